@@ -1,0 +1,299 @@
+"""The data that flows through cutcell: a mesh, a skeleton, and both together as a rig.
+
+All are frozen and checked when they are made, so that no later stage meets a bad array.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .errors import MeshError, SkeletonError, WeightsError
+
+FAR_OUTSIDE = 10.0
+"""A joint this many bounding-box diagonals away from the mesh is in another unit."""
+
+
+@dataclass(frozen=True, eq=False)
+class TriangleMesh:
+    """Triangles in space; closed or open, clean or a soup.
+
+    Parameters
+    ----------
+    vertices : array_like, shape (n, 3), float64
+        Rest positions in the file's units.
+    faces : array_like, shape (m, 3), int32
+        Vertex indices, counter-clockwise seen from outside.
+
+    Raises
+    ------
+    MeshError
+        No vertices or faces, a coordinate that is not finite, an index out of range, or
+        a mesh without extent.
+    """
+
+    vertices: NDArray[np.float64]
+    faces: NDArray[np.int32]
+
+    def __post_init__(self) -> None:
+        vertices = _array(self.vertices, np.float64, (None, 3), "vertices", MeshError)
+        faces = _array(self.faces, np.int64, (None, 3), "faces", MeshError)
+        if len(faces) == 0:
+            raise MeshError("the mesh has no faces; it needs at least one triangle")
+        _check_finite(vertices, "vertex", MeshError)
+        bad = np.flatnonzero(((faces < 0) | (faces >= len(vertices))).any(axis=1))
+        if len(bad):
+            raise MeshError(
+                f"face {bad[0]} uses the vertices {faces[bad[0]].tolist()}, but the mesh has "
+                f"only {len(vertices)} (numbered from 0); {len(bad)} faces are out of range"
+            )
+        used = vertices[np.unique(faces)]
+        if np.ptp(used, axis=0).max() == 0:
+            raise MeshError("all faces of the mesh lie in one point; it has no extent")
+        object.__setattr__(self, "vertices", _frozen(vertices))
+        object.__setattr__(self, "faces", _frozen(faces.astype(np.int32)))
+
+    @cached_property
+    def bounds(self) -> NDArray[np.float64]:
+        """Lowest and highest corner of the faces' bounding box, shape (2, 3)."""
+        used = self.vertices[np.unique(self.faces)]
+        return np.stack([used.min(axis=0), used.max(axis=0)])
+
+
+@dataclass(frozen=True, eq=False)
+class Skeleton:
+    """Joints and their parents, in the space and units of the mesh.
+
+    Parameters
+    ----------
+    joints : array_like, shape (j, 3), float64
+        Rest positions.
+    parents : array_like, shape (j,), int32
+        Index of each joint's parent, -1 for a root; several roots are allowed.
+    names : sequence of str, optional
+        One name a joint; "joint 0", "joint 1", ... when left out.
+    deform : array_like, shape (j,), bool, optional
+        Which joints may carry weight; all when left out.
+
+    Raises
+    ------
+    SkeletonError
+        No joints, a position that is not finite, a parent out of range, a cycle, a wrong
+        number of names, or no joint that may carry weight.
+    """
+
+    joints: NDArray[np.float64]
+    parents: NDArray[np.int32]
+    names: tuple[str, ...] = ()
+    deform: NDArray[np.bool_] = None  # type: ignore[assignment]
+
+    def __post_init__(self) -> None:
+        joints = _array(self.joints, np.float64, (None, 3), "joints", SkeletonError)
+        count = len(joints)
+        if count == 0:
+            raise SkeletonError("the skeleton has no joints; it needs at least one")
+        parents = _array(self.parents, np.int64, (count,), "parents", SkeletonError)
+        names = tuple(self.names) or tuple(f"joint {i}" for i in range(count))
+        if len(names) != count:
+            raise SkeletonError(f"the skeleton has {count} joints but {len(names)} names")
+        _check_finite(joints, "joint", SkeletonError, names)
+        bad = np.flatnonzero((parents < -1) | (parents >= count))
+        if len(bad):
+            raise SkeletonError(
+                f'joint "{names[bad[0]]}" has the parent {parents[bad[0]]}, but parents are '
+                f"-1 (a root) to {count - 1}"
+            )
+        deform = np.ones(count, bool) if self.deform is None else self.deform
+        deform = _array(deform, np.bool_, (count,), "deform", SkeletonError)
+        if not deform.any():
+            raise SkeletonError("no joint of the skeleton may carry weight (deform is all False)")
+        _check_acyclic(parents, names)
+        object.__setattr__(self, "joints", _frozen(joints))
+        object.__setattr__(self, "parents", _frozen(parents.astype(np.int32)))
+        object.__setattr__(self, "names", names)
+        object.__setattr__(self, "deform", _frozen(deform))
+
+    @cached_property
+    def children(self) -> tuple[NDArray[np.intp], ...]:
+        """The child joints of each joint, ascending."""
+        return tuple(np.flatnonzero(self.parents == j) for j in range(len(self.joints)))
+
+    @cached_property
+    def subtree(self) -> NDArray[np.bool_]:
+        """Whether joint k moves along when joint j turns: shape (j, k); true for k = j."""
+        inside = np.eye(len(self.parents), dtype=bool)
+        above = self.parents.copy()
+        while (above >= 0).any():
+            k = np.flatnonzero(above >= 0)
+            inside[above[k], k] = True
+            above[k] = self.parents[above[k]]
+        return _frozen(inside)
+
+
+@dataclass(frozen=True, eq=False)
+class Clip:
+    """A motion, ready to skin with.
+
+    Parameters
+    ----------
+    name : str
+    times : array, shape (f,), seconds, ascending from 0
+    transforms : array, shape (f, j, 4, 4)
+        Takes a point of the rest mesh, held by one joint, to where it is at that time.
+    """
+
+    name: str
+    times: NDArray[np.float64]
+    transforms: NDArray[np.float64]
+
+    @property
+    def duration(self) -> float:
+        """Length in seconds."""
+        return float(self.times[-1]) if len(self.times) else 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Attachment:
+    """An unskinned mesh that hangs rigidly on one joint, such as a sword in a hand.
+
+    Its vertices are in the rig's space at rest. It is shown and moved, never bound.
+    """
+
+    name: str
+    mesh: TriangleMesh
+    joint: int
+
+
+@dataclass(frozen=True, eq=False)
+class Rig:
+    """A character: mesh, skeleton, and what its file says about weights and motion.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+        All skinned meshes of the file, one after the other, vertices in the file's order.
+    skeleton : Skeleton
+    weights : array_like, shape (n, j), float64, optional
+        Not negative; rows sum to one, or to zero where a vertex has no weight.
+    clips : tuple of Clip
+    attachments : tuple of Attachment
+    name : str
+    world : array_like, shape (4, 4)
+        From the rig's space to the scene's, where y is up. For looking, not for computing.
+    allowed : array_like, shape (n, j), bool, optional
+        Which joints the file can store for which vertex; None when all. A glTF primitive
+        can only name the joints of its own skin.
+    source
+        What `cutcell.save` needs to write the same document again; opaque.
+
+    Raises
+    ------
+    SkeletonError
+        A joint that may carry weight lies more than ten bounding-box diagonals away from
+        the mesh: skeleton and mesh are in different units.
+    WeightsError
+        Weights of the wrong shape, negative, or not finite.
+    """
+
+    mesh: TriangleMesh
+    skeleton: Skeleton
+    weights: NDArray[np.float64] | None = None
+    clips: tuple[Clip, ...] = ()
+    attachments: tuple[Attachment, ...] = ()
+    name: str = "rig"
+    world: NDArray[np.float64] = field(default_factory=lambda: np.eye(4))
+    allowed: NDArray[np.bool_] | None = None
+    source: Any = field(default=None, repr=False)
+
+    def __post_init__(self) -> None:
+        shape = (len(self.mesh.vertices), len(self.skeleton.joints))
+        if self.weights is not None:
+            weights = _array(self.weights, np.float64, shape, "weights", WeightsError)
+            bad = np.flatnonzero(~(np.isfinite(weights) & (weights >= 0)).all(axis=1))
+            if len(bad):
+                raise WeightsError(
+                    f"vertex {bad[0]} has a weight that is negative or not a number; "
+                    f"{len(bad)} of {len(weights)} vertices are so"
+                )
+            object.__setattr__(self, "weights", _frozen(weights))
+        if self.allowed is not None:
+            allowed = _array(self.allowed, np.bool_, shape, "allowed", WeightsError)
+            object.__setattr__(self, "allowed", _frozen(allowed))
+        self._check_units()
+
+    def with_weights(self, weights: ArrayLike) -> Rig:
+        """Return the same rig with other weights, shape (n, j)."""
+        return replace(self, weights=weights)
+
+    def _check_units(self) -> None:
+        low, high = self.mesh.bounds
+        joints = self.skeleton.joints
+        outside = np.maximum(np.maximum(low - joints, joints - high), 0)
+        distance = np.linalg.norm(outside, axis=1)
+        diagonal = np.linalg.norm(high - low)
+        far = np.flatnonzero((distance > FAR_OUTSIDE * diagonal) & self.skeleton.deform)
+        if len(far):
+            worst = far[np.argmax(distance[far])]
+            position = ", ".join(f"{x:.4g}" for x in joints[worst])
+            raise SkeletonError(
+                f'joint "{self.skeleton.names[worst]}" at ({position}) lies '
+                f"{distance[worst] / diagonal:.0f} times the mesh's size away from it "
+                f"({len(far)} joints lie too far); are skeleton and mesh in the same units?"
+            )
+
+
+def _array(value: Any, dtype: Any, shape: tuple, name: str, error: type) -> NDArray:
+    try:
+        array = np.asarray(value)
+        if array.size == 0:
+            array = np.zeros([0 if s is None else s for s in shape] if None in shape else shape)
+        if np.issubdtype(dtype, np.integer) and not np.issubdtype(array.dtype, np.integer):
+            if not np.array_equal(array, np.round(array)):
+                raise error(f"{name} must be whole numbers")
+        array = np.array(array, dtype=dtype)
+    except (TypeError, ValueError) as e:
+        if isinstance(e, error):
+            raise
+        raise error(f"{name} must be an array of numbers: {e}") from None
+    expected = tuple("any" if s is None else s for s in shape)
+    if array.ndim != len(shape) or any(
+        s is not None and s != a for s, a in zip(shape, array.shape, strict=True)
+    ):
+        raise error(f"{name} has the shape {array.shape}, expected {expected}".replace("'", ""))
+    return array
+
+
+def _frozen(array: NDArray) -> NDArray:
+    array.flags.writeable = False
+    return array
+
+
+def _check_finite(points: NDArray, what: str, error: type, names: Any = None) -> None:
+    bad = np.flatnonzero(~np.isfinite(points).all(axis=1))
+    if len(bad):
+        which = f'"{names[bad[0]]}"' if names else str(bad[0])
+        raise error(
+            f"{what} {which} has a coordinate that is not a finite number "
+            f"({points[bad[0]].tolist()}); {len(bad)} of {len(points)} are so"
+        )
+
+
+def _check_acyclic(parents: NDArray, names: tuple[str, ...]) -> None:
+    above = parents.copy()
+    for _ in range(len(parents)):
+        climbing = above >= 0
+        if not climbing.any():
+            return
+        above[climbing] = parents[above[climbing]]
+    joint = int(np.flatnonzero(above >= 0)[0])
+    for _ in range(len(parents)):
+        joint = int(parents[joint])  # walk until surely on the cycle itself
+    cycle = [joint]
+    while parents[cycle[-1]] != joint:
+        cycle.append(int(parents[cycle[-1]]))
+    chain = " -> ".join(f'"{names[j]}"' for j in [*cycle, joint])
+    raise SkeletonError(f"the skeleton has a cycle: {chain}; every joint needs a root above it")
