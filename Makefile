@@ -1,0 +1,54 @@
+# Everything is set up inside .venv in this folder; a second run finds it there.
+# `make` alone lists what can be made.
+
+VENV := .venv
+PYTHON := $(VENV)/bin/python
+SETUP := pyproject.toml requirements.lock scripts/setup.sh
+
+.DEFAULT_GOAL := help
+.PHONY: help app test lint format assets lock clean
+
+help: ## Show this list
+	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## /  make \1|/' \
+		| awk -F'|' '{ printf "%-14s %s\n", $$1, $$2 }'
+
+app: $(VENV)/.app ## Open the page; pass options on by ARGS='--no-show --port 5010 rig.glb'
+	@$(PYTHON) -m cutcell app $(ARGS)
+
+test: $(VENV)/.tools ## Check style and types, run all tests; ARGS='tests/cutcell -x' for some
+	@$(PYTHON) -m ruff check .
+	@$(PYTHON) -m ruff format --check .
+	@$(PYTHON) -m mypy
+	@$(PYTHON) -m pytest $(ARGS)
+
+lint: $(VENV)/.test ## Check style and types only
+	@$(PYTHON) -m ruff check .
+	@$(PYTHON) -m ruff format --check .
+	@$(PYTHON) -m mypy
+
+format: $(VENV)/.test ## Format the code and mend what ruff can mend
+	@$(PYTHON) -m ruff format .
+	@$(PYTHON) -m ruff check --fix .
+
+assets: $(VENV)/.test ## Make the demo characters again
+	@$(PYTHON) -m assets
+
+lock: $(VENV)/.test ## Choose the locked versions again
+	@scripts/lock.sh
+
+clean: ## Remove .venv and all that was made here
+	rm -rf $(VENV) build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis test-output
+	find . -name __pycache__ -type d -prune -exec rm -rf {} +
+
+# Stamps: written when the set-up has succeeded, out of date when its recipe changes.
+$(VENV)/.app: $(SETUP)
+	@scripts/setup.sh app
+
+$(VENV)/.test: $(SETUP)
+	@scripts/setup.sh test
+
+# What the tests need beside Python: a browser, and OpenGL to render off-screen.
+$(VENV)/.tools: $(VENV)/.test scripts/get_chromium.py scripts/get_opengl.py scripts/debian.py
+	@$(PYTHON) scripts/get_opengl.py
+	@$(PYTHON) scripts/get_chromium.py
+	@touch $@
