@@ -24,35 +24,37 @@ find_python() {
 \`python3.12\` or \`python3.11\` is on the PATH, and run make again."
 }
 
-# Debian ships Python without ensurepip, which puts pip into a new environment.
+# Debian ships Python without ensurepip, which puts pip into a new environment. Then pip comes
+# from the system's own, or from Debian's wheel of it, unpacked here: nothing is installed.
 make_venv() {
     local python=$1
     say "Making $venv with $("$python" --version)"
     rm -rf "$venv"
     if "$python" -c 'import ensurepip' 2>/dev/null; then
         "$python" -m venv "$venv"
-    elif "$python" -m pip --python "$python" --version >/dev/null 2>&1; then
-        "$python" -m venv --without-pip "$venv"
-        "$python" -m pip --python "$venv/bin/python" install --quiet pip
-    elif [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null; then
-        install_venv_package "$python"
-        "$python" -m venv "$venv"
-    else
-        fail "this Python cannot make environments (its module ensurepip is missing).
-On Debian or Ubuntu: sudo apt-get install $(venv_package "$python")
-Then run make again."
+        return
     fi
+    "$python" -m venv --without-pip "$venv"
+    if "$python" -m pip --python "$venv/bin/python" install --quiet pip 2>/dev/null; then return; fi
+    if pip_from_debian 2>"$venv/debian.log"; then return; fi
+    cat "$venv/debian.log" >&2
+    fail "this Python cannot make environments (its module ensurepip is missing).
+On Debian or Ubuntu: sudo apt-get install $("$python" -c \
+    'import sys; print("python%d.%d-venv" % sys.version_info[:2])')
+Then run make again."
 }
 
-venv_package() { "$1" -c 'import sys; print("python%d.%d-venv" % sys.version_info[:2])'; }
-
-install_venv_package() {
-    local package
-    package=$(venv_package "$1")
-    say "Installing Debian's $package, which makes environments"
-    export DEBIAN_FRONTEND=noninteractive
-    { apt-get update -qq && apt-get install -y -qq --no-install-recommends "$package"; } >&2 \
-        || fail "apt-get could not install $package; install it by hand and run make again."
+pip_from_debian() {
+    local wheels
+    command -v apt-get >/dev/null && command -v dpkg-deb >/dev/null || return 1
+    say "Taking pip from Debian's python3-pip-whl"
+    if [ "$(id -u)" = 0 ]; then apt-get update -qq || return 1; fi
+    (cd "$venv" && apt-get download -qq python3-pip-whl && dpkg-deb -x python3-pip-whl_*.deb debian) \
+        || return 1
+    wheels=("$venv"/debian/usr/share/python-wheels/pip-*.whl)
+    "$venv/bin/python" "${wheels[0]}/pip" --disable-pip-version-check install --quiet \
+        --no-index --find-links "$venv/debian/usr/share/python-wheels" pip || return 1
+    rm -rf "$venv"/debian "$venv"/python3-pip-whl_*.deb
 }
 
 install() {
