@@ -36,7 +36,10 @@ make_venv() {
     fi
     "$python" -m venv --without-pip "$venv"
     if "$python" -m pip --python "$venv/bin/python" install --quiet pip 2>/dev/null; then return; fi
-    if pip_from_debian 2>"$venv/debian.log"; then return; fi
+    if pip_from_debian 2>"$venv/debian.log"; then
+        say "Took pip from Debian's python3-pip-whl"
+        return
+    fi
     cat "$venv/debian.log" >&2
     fail "this Python cannot make environments (its module ensurepip is missing).
 On Debian or Ubuntu: sudo apt-get install $("$python" -c \
@@ -47,7 +50,6 @@ Then run make again."
 pip_from_debian() {
     local wheels
     command -v apt-get >/dev/null && command -v dpkg-deb >/dev/null || return 1
-    say "Taking pip from Debian's python3-pip-whl"
     if [ "$(id -u)" = 0 ]; then apt-get update -qq || return 1; fi
     (cd "$venv" && apt-get download -qq python3-pip-whl && dpkg-deb -x python3-pip-whl_*.deb debian) \
         || return 1
