@@ -1,0 +1,103 @@
+// What is written over the canvas: the legend, the name of a bone, and hints.
+
+const STYLE = `
+:host { display: block; }
+.stage { position: relative; width: 100%; height: 100%; min-height: 240px; overflow: hidden;
+  font-family: Roboto, system-ui, sans-serif; touch-action: none; user-select: none; }
+.canvas { position: absolute; inset: 0; outline: none; cursor: grab; touch-action: none; }
+.canvas:active { cursor: grabbing; }
+.canvas.over-bone { cursor: pointer; }
+.canvas:focus-visible { box-shadow: inset 0 0 0 2px #ff6c0c88; }
+.canvas > canvas, .canvas canvas { width: 100% !important; height: 100% !important; display: block; }
+.card { position: absolute; color: var(--ink); background: var(--card); pointer-events: none;
+  backdrop-filter: blur(6px); border-radius: 8px; font-size: 12px; line-height: 1.3; }
+.legend { left: 16px; bottom: 16px; width: 208px; padding: 10px 12px 9px; }
+.legend b { display: block; font-weight: 500; margin-bottom: 6px; overflow: hidden;
+  text-overflow: ellipsis; white-space: nowrap; }
+.legend canvas { width: 100%; height: 8px; border-radius: 4px; display: block; }
+.legend span { display: flex; justify-content: space-between; margin-top: 4px; opacity: .75;
+  font-variant-numeric: tabular-nums; }
+.bone { padding: 4px 8px; transform: translate(14px, -110%); white-space: nowrap; }
+.hint { right: 16px; bottom: 16px; padding: 0; background: none; opacity: .5; backdrop-filter: none; }
+.failed { inset: 0; margin: auto; width: min(420px, 80%); height: max-content; padding: 20px;
+  font-size: 14px; text-align: center; }
+.drop { inset: 12px; border: 2px dashed #ff6c0c; border-radius: 14px; display: grid;
+  place-items: center; font-size: 18px; }
+[hidden] { display: none !important; }
+@media (max-width: 700px) { .hint { display: none } .legend { left: 8px; bottom: 8px; width: 160px } }
+`
+
+class Overlay {
+  constructor() {
+    const make = (tag, className, parent, hidden = true) => {
+      const element = document.createElement(tag)
+      element.className = className
+      element.hidden = hidden
+      parent?.append(element)
+      return element
+    }
+    this.root = make("div", "stage", null, false)
+    const style = document.createElement("style")
+    style.textContent = STYLE
+    this.root.append(style)
+    this.canvas = make("div", "canvas", this.root, false)
+    this.canvas.tabIndex = 0
+    this.canvas.setAttribute("role", "application")
+    this.canvas.setAttribute(
+      "aria-label", "The character in 3D. Arrow keys turn, plus and minus zoom, Home resets.",
+    )
+    this.legend = make("div", "card legend", this.root)
+    this.bone = make("div", "card bone", this.root)
+    this.hint = make("div", "card hint", this.root, false)
+    this.hint.textContent = "drag to turn · right-drag to move · scroll to zoom · click a bone"
+    this.failed = make("div", "card failed", this.root)
+    this.drop = make("div", "card drop", this.root)
+    this.drop.textContent = "Drop the character here"
+  }
+
+  theme({top, bottom, ink, card}) {
+    this.root.style.background = `linear-gradient(${top}, ${bottom})`
+    this.root.style.setProperty("--ink", ink)
+    this.root.style.setProperty("--card", card)
+  }
+
+  showLegend(legend) {
+    this.legend.hidden = !legend
+    if (!legend) { return }
+    const {title, low, high} = legend
+    const table = plain(legend.table)
+    this.legend.replaceChildren()
+    const name = document.createElement("b")
+    name.textContent = title
+    const bar = document.createElement("canvas")
+    bar.width = table.length / 3
+    bar.height = 1
+    const image = new ImageData(bar.width, 1)
+    for (let i = 0; i < bar.width; i++) {
+      image.data.set([...table.subarray(3 * i, 3 * i + 3), 255], 4 * i)
+    }
+    bar.getContext("2d").putImageData(image, 0, 0)
+    const ends = document.createElement("span")
+    for (const text of [low, high]) {
+      const end = document.createElement("i")
+      end.style.fontStyle = "normal"
+      end.textContent = text
+      ends.append(end)
+    }
+    this.legend.append(name, bar, ends)
+  }
+
+  showBone(name, x, y) {
+    this.bone.hidden = !name
+    this.canvas.classList.toggle("over-bone", Boolean(name))
+    if (!name) { return }
+    this.bone.textContent = name
+    this.bone.style.left = `${x}px`
+    this.bone.style.top = `${y}px`
+  }
+
+  fail(message) {
+    this.failed.hidden = false
+    this.failed.textContent = message
+  }
+}

@@ -1,0 +1,119 @@
+// The vtk.js window: two layers (the scene, and what is drawn over it), lights, frames.
+
+function loadVtk(url) {
+  window.__cutcellVtk ??= new Promise((resolve, reject) => {
+    if (window.vtk) { resolve(window.vtk); return }
+    const script = document.createElement("script")
+    script.src = new URL(url, document.baseURI).href
+    script.onload = () => resolve(window.vtk)
+    script.onerror = () => reject(new Error("the 3D library could not be loaded"))
+    document.head.append(script)
+  })
+  return window.__cutcellVtk
+}
+
+class Stage {
+  constructor(vtk, element) {
+    this.vtk = vtk
+    this.element = element
+    const {vtkRenderWindow, vtkRenderer, vtkLight} = vtk.Rendering.Core
+    this.window = vtkRenderWindow.newInstance()
+    this.base = vtkRenderer.newInstance()
+    this.over = vtkRenderer.newInstance({layer: 1, preserveColorBuffer: true})
+    this.base.setBackground(0, 0, 0, 0)
+    this.window.setNumberOfLayers(2)
+    this.renderers = [this.base, this.over]
+    this.camera = this.base.getActiveCamera()
+    this.camera.setViewAngle(VIEW_ANGLE)
+    this.over.setActiveCamera(this.camera)
+    for (const renderer of this.renderers) {
+      renderer.setAutomaticLightCreation(false)
+      this.window.addRenderer(renderer)
+    }
+    this.Light = vtkLight
+    this.gl = vtk.Rendering.OpenGL.vtkRenderWindow.newInstance()
+    this.gl.setContainer(element)
+    this.window.addView(this.gl)
+    this.figures = new Map()
+    this.frames = 0
+    this.scale = 1
+    this.cost = 0
+  }
+
+  light(lights) {
+    for (const renderer of this.renderers) {
+      renderer.removeAllLights()
+      for (const [position, intensity] of lights) {
+        const light = this.Light.newInstance({position, focalPoint: [0, 0, 0], intensity})
+        light.setLightTypeToCameraLight()
+        renderer.addLight(light)
+      }
+    }
+  }
+
+  resize(moving = false) {
+    const {clientWidth: w, clientHeight: h} = this.element
+    // A slow machine gets a coarser picture while things move, and a full one at rest.
+    const coarse = moving && this.cost > 60 ? 0.6 : 1
+    const ratio = Math.min(window.devicePixelRatio || 1, 2) * coarse
+    const size = [Math.max(1, Math.round(w * ratio)), Math.max(1, Math.round(h * ratio))]
+    if (this.size?.join() === size.join()) { return }
+    this.size = size
+    this.gl.setSize(...size)
+  }
+
+  look(orbit) {
+    this.camera.set({position: orbit.position, focalPoint: orbit.target, viewUp: [0, 1, 0]})
+  }
+
+  draw(moving) {
+    this.resize(moving)
+    for (const figure of this.figures.values()) { figure.show(moving) }
+    const start = performance.now()
+    const range = this.depthRange()
+    this.camera.setClippingRange(...range)
+    this.gl.traverseAllPasses()
+    if (!moving) { this.cost = performance.now() - start }
+    this.frames += 1
+  }
+
+  depthRange() {
+    const [eye, target] = [this.camera.getPosition(), this.camera.getFocalPoint()]
+    const distance = Math.hypot(...eye.map((x, i) => x - target[i]))
+    const b = this.bounds()
+    const centre = [0, 1, 2].map((i) => (b[2 * i] + b[2 * i + 1]) / 2)
+    const radius = Math.hypot(...[0, 1, 2].map((i) => b[2 * i + 1] - b[2 * i]))
+    const toCentre = Math.hypot(...eye.map((x, i) => x - centre[i]))
+    return [Math.max(toCentre - radius, distance * 0.02), toCentre + radius * 1.5]
+  }
+
+  bounds() {
+    const b = [Infinity, -Infinity, Infinity, -Infinity, Infinity, -Infinity]
+    for (const figure of this.figures.values()) {
+      if (!figure.bounds || !figure.rest?.length) { continue }
+      for (let i = 0; i < 6; i += 2) {
+        b[i] = Math.min(b[i], figure.bounds[i])
+        b[i + 1] = Math.max(b[i + 1], figure.bounds[i + 1])
+      }
+    }
+    return Number.isFinite(b[0]) ? b : [-1, 1, -1, 1, -1, 1]
+  }
+
+  // From the scene to pixels of the page, relative to the canvas; null behind the eye.
+  project(point) {
+    const {clientWidth: w, clientHeight: h} = this.element
+    const m = this.camera.getCompositeProjectionMatrix(w / h, -1, 1)
+    const [x, y, z] = point
+    const row = (r) => m[4 * r] * x + m[4 * r + 1] * y + m[4 * r + 2] * z + m[4 * r + 3]
+    const depth = row(3)
+    if (depth <= 0) { return null }
+    return [(row(0) / depth + 1) / 2 * w, (1 - row(1) / depth) / 2 * h, depth]
+  }
+
+  remove() {
+    for (const figure of this.figures.values()) { figure.remove() }
+    this.gl.setContainer(null)
+    this.gl.delete()
+    this.window.delete()
+  }
+}

@@ -1,0 +1,182 @@
+// The page's 3D view. The server says what stands in the scene; turning it, picking bones
+// and playing motions happen here.
+
+class View {
+  constructor(model, vtk, overlay) {
+    this.model = model
+    this.overlay = overlay
+    this.stage = new Stage(vtk, overlay.canvas)
+    this.orbit = new Orbit(overlay.canvas, {
+      changed: () => this.changed(),
+      rested: () => this.rested(),
+      clicked: (e) => this.clicked(e),
+      hovered: (e) => this.hovered(e),
+    })
+    this.messages = 0
+    this.posed = 0
+    this.observer = new ResizeObserver(() => this.changed())
+    this.observer.observe(overlay.canvas)
+  }
+
+  receive(message) {
+    const {stage} = this
+    for (const name of message.remove || []) {
+      stage.figures.get(name)?.remove()
+      stage.figures.delete(name)
+    }
+    if (message.lights) { stage.light(message.lights) }
+    if (message.theme) { this.overlay.theme(message.theme) }
+    if ("legend" in message) { this.overlay.showLegend(message.legend) }
+    if ("cut" in message) {
+      this.cut = message.cut
+      for (const figure of stage.figures.values()) { figure.cut(this.cut) }
+    }
+    const renewed = []
+    for (const [name, part] of entries(message.actors)) {
+      if (!stage.figures.has(name)) {
+        stage.figures.set(name, new Figure(stage.vtk, stage.renderers))
+      }
+      const figure = stage.figures.get(name)
+      figure.update(part, this.cut)
+      if (part.points || part.skin || part.normals) { renewed.push(figure) }
+    }
+    if (message.bones) {
+      const {start, end, joint, names} = message.bones
+      this.bones = {
+        start: plainList(start), end: plainList(end), joint: plainList(joint), names,
+      }
+    }
+    if ("pose" in message) { this.pose = message.pose && plain(message.pose) }
+    if ("clip" in message) { this.clip = message.clip && new Clip(message.clip) }
+    if ("playing" in message) { this.play(message.playing) }
+    if ("pose" in message || "clip" in message) { this.applyPose() }
+    else if (this.currentPose) { for (const figure of renewed) { figure.pose(this.currentPose) } }
+    if (message.camera) {
+      this.orbit.setHome(message.camera.position, message.camera.focal_point)
+    }
+    this.messages = message.id
+    this.changed()
+  }
+
+  get currentPose() {
+    return this.clip ? this.clip.at(this.time || 0) : this.pose
+  }
+
+  applyPose() {
+    const pose = this.currentPose
+    for (const figure of this.stage.figures.values()) {
+      if (figure.visible || !pose) { figure.pose(pose) }
+    }
+    this.posed += 1
+  }
+
+  play(playing) {
+    this.playing = playing
+    this.last = null
+    if (playing) { this.tick() }
+  }
+
+  tick() {
+    cancelAnimationFrame(this.ticking)
+    this.ticking = requestAnimationFrame((now) => {
+      if (!this.playing || !this.clip || this.gone) { return }
+      this.time = (this.time || 0) + (this.last === null ? 0 : Math.min(now - this.last, 100) / 1000)
+      this.last = now
+      this.applyPose()
+      this.draw()
+      this.tick()
+    })
+  }
+
+  changed() {
+    if (this.waiting || this.gone) { return }
+    this.waiting = requestAnimationFrame(() => {
+      this.waiting = null
+      if (!this.playing) { this.draw() }
+    })
+  }
+
+  draw() {
+    if (this.gone || !this.overlay.canvas.clientWidth) { return }
+    this.stage.look(this.orbit)
+    this.stage.draw(this.orbit.moving || this.playing)
+  }
+
+  rested() {
+    this.changed()
+    this.model.send_msg({
+      type: "camera", position: this.orbit.position, focal_point: this.orbit.target,
+    })
+  }
+
+  at(e) {
+    const box = this.overlay.canvas.getBoundingClientRect()
+    const [x, y] = [e.clientX - box.left, e.clientY - box.top]
+    return [pickBone(this.stage, this.bones, this.currentPose, x, y), x, y]
+  }
+
+  clicked(e) {
+    const [joint] = this.at(e)
+    if (joint !== null) { this.model.send_msg({type: "pick", joint}) }
+  }
+
+  hovered(e) {
+    if (!e) { this.overlay.showBone(null); return }
+    const [joint, x, y] = this.at(e)
+    this.overlay.showBone(joint === null ? null : this.bones.names[joint], x, y)
+  }
+
+  // Where on the page a joint's first bone is: its middle. For tests.
+  bonePoint(joint) {
+    const i = this.bones.joint.indexOf(joint)
+    const box = this.overlay.canvas.getBoundingClientRect()
+    const [a, b] = boneEnds(this.stage, this.bones, this.currentPose, i)
+    return [box.left + (a[0] + b[0]) / 2, box.top + (a[1] + b[1]) / 2]
+  }
+
+  report() {
+    return {
+      messages: this.messages, frames: this.stage.frames, posed: this.posed,
+      cost: this.stage.cost, playing: Boolean(this.playing), time: this.time || 0,
+      idle: !this.waiting,
+      actors: Object.fromEntries([...this.stage.figures].map(([name, figure]) => [
+        name, {visible: figure.visible, cells: figure.count, points: figure.rest.length / 3},
+      ])),
+      bones: this.bones ? this.bones.joint.length : 0,
+      camera: this.orbit.position,
+    }
+  }
+
+  remove() {
+    this.gone = true
+    this.playing = false
+    this.observer.disconnect()
+    cancelAnimationFrame(this.waiting)
+    cancelAnimationFrame(this.ticking)
+    this.stage.remove()
+  }
+}
+
+function entries(map) {
+  if (!map) { return [] }
+  return map instanceof Map ? [...map] : Object.entries(map)
+}
+
+export function render({model}) {
+  const overlay = new Overlay()
+  let view = null
+  loadVtk(model.vtk_url).then((vtk) => {
+    const probe = document.createElement("canvas").getContext("webgl2")
+    if (!probe) { throw new Error("this browser offers no WebGL 2") }
+    probe.getExtension("WEBGL_lose_context")?.loseContext()
+    view = new View(model, vtk, overlay)
+    model.on("msg:custom", (message) => view.receive(message))
+    window.__cutcell = view
+    model.send_msg({type: "ready"})
+  }).catch((error) => {
+    console.error(error)
+    overlay.fail(`The 3D view cannot be shown: ${error.message}.`)
+  })
+  model.on("remove", () => view?.remove())
+  return overlay.root
+}

@@ -1,0 +1,177 @@
+"""The parts of a rig as actors: the body, what hangs on it, and its bones."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from cutcell.rig import Rig, Skeleton, TriangleMesh
+
+from .description import Actor
+from .palette import ATTACHMENT, BODY, BONE, BONE_CHOSEN, BONE_IDLE, to_bytes
+from .skin import Skin, rigid_skin, skin_of_weights
+
+CREASE = np.cos(np.radians(45))
+"""Faces that meet at a sharper angle than this keep their edge."""
+
+
+def to_scene(rig: Rig, points: ArrayLike) -> NDArray[np.float64]:
+    """Take points (n, 3) from the rig's space to the scene's, where y is up."""
+    return np.asarray(points, float) @ rig.world[:3, :3].T + rig.world[:3, 3]
+
+
+def pose_in_scene(rig: Rig, transforms: ArrayLike) -> NDArray[np.float64]:
+    """Take skinning matrices (..., 4, 4) from the rig's space to the scene's."""
+    return rig.world @ np.asarray(transforms, float) @ np.linalg.inv(rig.world)
+
+
+def body(rig: Rig, weights: ArrayLike | None = None, **look: Any) -> Actor:
+    """Return the rig's mesh as an actor.
+
+    Parameters
+    ----------
+    rig : Rig
+    weights : array_like, shape (n, j), optional
+        How the body follows the joints; the file's own when left out.
+    **look
+        Other fields of `Actor`: `colors`, `scalars`, `opacity`, ...
+    """
+    weights = rig.weights if weights is None else weights
+    skin = None if weights is None else skin_of_weights(weights)
+    return _surface(rig, rig.mesh, skin, **{"color": BODY, **look})
+
+
+def attachments(rig: Rig, **look: Any) -> dict[str, Actor]:
+    """Return what hangs rigidly on joints, one actor each."""
+    return {
+        f"attachment {i}": _surface(
+            rig,
+            one.mesh,
+            rigid_skin(np.full(len(one.mesh.vertices), one.joint)),
+            **{"color": ATTACHMENT, **look},
+        )
+        for i, one in enumerate(rig.attachments)
+    }
+
+
+def bones(rig: Rig, chosen: int | None = None, visible: bool = True) -> Actor:
+    """Return the skeleton as one octahedron a bone, drawn over everything.
+
+    Parameters
+    ----------
+    rig : Rig
+    chosen : int, optional
+        The joint whose bones are highlighted.
+    visible : bool
+    """
+    start, end, joint = drawn_segments(rig)
+    size = np.linalg.norm(np.ptp(to_scene(rig, rig.mesh.vertices), axis=0))
+    points = _octahedra(start, end, size)
+    color = np.where(rig.skeleton.deform[joint, None], BONE, BONE_IDLE)
+    color[joint == chosen] = BONE_CHOSEN
+    cells = _OCTAHEDRON + 6 * np.arange(len(joint))[:, None, None]
+    return Actor(
+        "surface",
+        points.reshape(-1, 3).astype(np.float32),
+        cells.reshape(-1, 3).astype(np.int32),
+        colors=np.repeat(to_bytes(color), 6, axis=0),
+        skin=rigid_skin(np.repeat(joint, 6)),
+        overlay=True,
+        clipped=False,
+        visible=visible,
+    )
+
+
+def drawn_segments(
+    rig: Rig,
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.intp]]:
+    """Return the bones as they are drawn and clicked.
+
+    A joint without children gets a short stub along its parent's direction, to have
+    something to click on.
+
+    Returns
+    -------
+    start, end : array, shape (b, 3)
+        In the scene's space.
+    joint : array, shape (b,)
+        The joint that each bone belongs to and moves with.
+    """
+    skeleton = rig.skeleton
+    joints = to_scene(rig, skeleton.joints)
+    size = np.linalg.norm(np.ptp(to_scene(rig, rig.mesh.vertices), axis=0))
+    pairs = [(joints[j], joints[c], j) for j, cs in enumerate(skeleton.children) for c in cs]
+    for j in range(len(joints)):
+        if not len(skeleton.children[j]):
+            pairs.append((joints[j], joints[j] + _stub(skeleton, joints, j, size), j))
+    start, end, joint = zip(*pairs, strict=True)
+    return np.array(start), np.array(end), np.array(joint)
+
+
+def _stub(skeleton: Skeleton, joints: NDArray, j: int, size: float) -> NDArray[np.float64]:
+    parent = skeleton.parents[j]
+    along = joints[j] - joints[parent] if parent >= 0 else np.array([0.0, 1, 0])
+    length = np.linalg.norm(along)
+    if length == 0:
+        along, length = np.array([0.0, 1, 0]), 1.0
+    return along / length * np.clip(0.4 * length, 0.006 * size, 0.03 * size)
+
+
+_OCTAHEDRON = np.array(
+    [[0, 2, 1], [0, 3, 2], [0, 4, 3], [0, 1, 4], [5, 1, 2], [5, 2, 3], [5, 3, 4], [5, 4, 1]]
+)
+
+
+def _octahedra(start: NDArray, end: NDArray, size: float) -> NDArray[np.float64]:
+    along = end - start
+    length = np.linalg.norm(along, axis=1, keepdims=True)
+    along = np.where(length > 0, along / np.where(length > 0, length, 1), [0.0, 1, 0])
+    helper = np.where(np.abs(along[:, 1:2]) < 0.9, [0.0, 1, 0], [1.0, 0, 0])
+    side = np.cross(along, helper)
+    side /= np.linalg.norm(side, axis=1, keepdims=True)
+    other = np.cross(along, side)
+    radius = np.clip(0.1 * length, 0.0025 * size, 0.014 * size)
+    ring = start + along * np.minimum(0.14 * length, 1.5 * radius)
+    around = [ring + radius * d for d in (side, other, -side, -other)]
+    return np.stack([start, *around, end], axis=1)
+
+
+def _surface(rig: Rig, mesh: TriangleMesh, skin: Skin | None, **look: Any) -> Actor:
+    points = to_scene(rig, mesh.vertices)
+    # A mirrored space turns faces inside out; for looking, turn them back.
+    faces = mesh.faces if np.linalg.det(rig.world[:3, :3]) > 0 else mesh.faces[:, ::-1]
+    return Actor(
+        "surface",
+        points.astype(np.float32),
+        faces.astype(np.int32),
+        normals=smooth_normals(points, faces).astype(np.float32),
+        skin=skin,
+        **look,
+    )
+
+
+def smooth_normals(points: NDArray[np.float64], faces: NDArray) -> NDArray[np.float64]:
+    """Return unit normals (n, 3) that are smooth over seams and sharp over creases.
+
+    Vertices at the same place share their normals where these differ by less than 45
+    degrees: exporters split vertices at texture seams as well as at hard edges.
+    """
+    corner = points[faces]
+    area = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
+    own = np.zeros_like(points)
+    for k in range(3):
+        np.add.at(own, faces[:, k], area)
+    unit = own / np.maximum(np.linalg.norm(own, axis=1, keepdims=True), 1e-300)
+    _, group = np.unique(points, axis=0, return_inverse=True)
+    order = np.argsort(group.ravel(), kind="stable")
+    group = group.ravel()[order]
+    total = own.copy()
+    for shift in range(1, int(np.bincount(group).max())):
+        a, b = order[:-shift], order[shift:]
+        near = (group[:-shift] == group[shift:]) & ((unit[a] * unit[b]).sum(axis=1) > CREASE)
+        np.add.at(total, a[near], own[b[near]])
+        np.add.at(total, b[near], own[a[near]])
+    length = np.linalg.norm(total, axis=1, keepdims=True)
+    return np.where(length > 0, total / np.where(length > 0, length, 1), [0.0, 1, 0])

@@ -1,0 +1,105 @@
+"""What a scene is, in plain data: named actors, a pose, a cut. Nothing here draws."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .palette import BODY, Color
+from .skin import Skin
+
+
+@dataclass(frozen=True, eq=False)
+class Actor:
+    """One thing in a scene.
+
+    Parameters
+    ----------
+    kind : {"surface", "lines", "points"}
+    points : array, shape (n, 3), float32
+        At rest, in the scene's space, where y is up.
+    cells : array, shape (m, 3), (m, 2) or (m, 1), int32
+        Triangles, segments or points, by the kind.
+    normals : array, shape (n, 3), float32, optional
+        At rest. Without them a surface is shaded flat.
+    color : tuple of float
+        Used where neither `colors` nor `scalars` are given.
+    colors : array, shape (n, 3), uint8, optional
+        A colour for each point.
+    scalars : array, shape (n,), float32, optional
+        A value for each point, shown through `colormap` between `limits`.
+    skin : Skin, optional
+        How the points follow the joints; without it they stand still.
+    overlay : bool
+        Drawn over all that is no overlay, as bones are.
+    clipped : bool
+        Whether the scene's cut takes away what lies before it.
+    slab : float
+        Keep only what lies less than this far behind the cut; 0 keeps all.
+    """
+
+    kind: Literal["surface", "lines", "points"]
+    points: NDArray[np.float32]
+    cells: NDArray[np.int32]
+    normals: NDArray[np.float32] | None = None
+    color: Color = BODY
+    colors: NDArray[np.uint8] | None = None
+    scalars: NDArray[np.float32] | None = None
+    colormap: str = "weight"
+    limits: tuple[float, float] = (0.0, 1.0)
+    opacity: float = 1.0
+    width: float = 1.0
+    visible: bool = True
+    overlay: bool = False
+    clipped: bool = True
+    slab: float = 0.0
+    skin: Skin | None = None
+
+
+@dataclass(frozen=True)
+class Cut:
+    """A plane that takes away what lies on the side its normal points to."""
+
+    origin: tuple[float, float, float]
+    normal: tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Legend:
+    """How to read the colours: the title, the map and the numbers at its two ends."""
+
+    title: str
+    colormap: str
+    low: str
+    high: str
+
+
+@dataclass(frozen=True, eq=False)
+class Description:
+    """A whole scene.
+
+    Parameters
+    ----------
+    actors : dict of str to Actor
+    pose : array, shape (j, 4, 4), float64, optional
+        Where each joint takes the points it holds, in the scene's space; None at rest.
+    cut : Cut, optional
+    legend : Legend, optional
+    """
+
+    actors: dict[str, Actor] = field(default_factory=dict)
+    pose: NDArray[np.float64] | None = None
+    cut: Cut | None = None
+    legend: Legend | None = None
+
+    @property
+    def bounds(self) -> NDArray[np.float64]:
+        """Lowest and highest corner of all actors at rest, shape (2, 3)."""
+        points = [a.points for a in self.actors.values() if len(a.points)]
+        if not points:
+            return np.array([[-1.0, -1, -1], [1, 1, 1]])
+        low = np.min([p.min(axis=0) for p in points], axis=0)
+        return np.stack([low, np.max([p.max(axis=0) for p in points], axis=0)]).astype(float)

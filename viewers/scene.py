@@ -1,0 +1,226 @@
+"""A description drawn by PyVista: the one scene that pictures are made from."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pyvista as pv
+from numpy.typing import NDArray
+
+from .description import Actor, Cut, Description
+from .palette import LIGHT, Theme, colormap
+from .skin import moved, turned
+
+VIEW_ANGLE = 30.0
+
+
+@dataclass(frozen=True)
+class Camera:
+    """Where the eye is, what it looks at, and which way is up."""
+
+    position: tuple[float, float, float]
+    focal_point: tuple[float, float, float]
+    up: tuple[float, float, float] = (0.0, 1.0, 0.0)
+
+
+def framing(bounds: NDArray[np.float64], aspect: float = 1.0) -> Camera:
+    """Return a camera that sees all of a box, from the front, a little aside and above.
+
+    Parameters
+    ----------
+    bounds : array, shape (2, 3)
+    aspect : float
+        Width over height of the picture.
+    """
+    low, high = np.asarray(bounds, float)
+    centre = (low + high) / 2
+    direction = np.array([0.42, 0.16, 1.0])
+    direction /= np.linalg.norm(direction)
+    right = np.cross([0, 1, 0], direction)
+    right /= np.linalg.norm(right)
+    up = np.cross(direction, right)
+    corners = np.array(np.meshgrid(*zip(low - centre, high - centre, strict=True))).reshape(3, -1).T
+    slope = np.tan(np.radians(VIEW_ANGLE / 2))
+    needed = np.maximum(np.abs(corners @ up), np.abs(corners @ right) / aspect) / slope
+    distance = 1.08 * (needed + corners @ direction).max()
+    position = centre + distance * direction
+    return Camera(tuple(position.tolist()), tuple(centre.tolist()))
+
+
+class Scene:
+    """The plotter of one description; updated in place when the description changes.
+
+    Parameters
+    ----------
+    theme : Theme
+    size : (int, int)
+        Width and height of the pictures, in pixels.
+    """
+
+    def __init__(self, theme: Theme = LIGHT, size: tuple[int, int] = (1200, 900)) -> None:
+        self.plotter = pv.Plotter(off_screen=True, window_size=list(size), lighting="none")
+        self.plotter.enable_anti_aliasing("msaa", multi_samples=8)
+        self._overlay = _add_overlay(self.plotter)
+        self.theme = theme
+        for position, intensity in LIGHTS:
+            light = pv.Light(position=position, light_type="camera light", intensity=intensity)
+            self.plotter.add_light(light)
+            self._overlay.AddLight(light)
+        self._names: dict[str, pv.Actor] = {}
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The actors that stand in the scene."""
+        return tuple(self._names)
+
+    def show(self, description: Description) -> None:
+        """Make the scene what a description says, actors that are hidden left out."""
+        for name, actor in self._names.items():
+            self._renderer(actor).RemoveActor(actor)
+            del name
+        self._names = {
+            name: self._add(actor, description)
+            for name, actor in description.actors.items()
+            if actor.visible and len(actor.cells)
+        }
+
+    def look(self, camera: Camera) -> None:
+        """Place the camera."""
+        view = self.plotter.camera
+        view.position, view.focal_point, view.up = camera.position, camera.focal_point, camera.up
+        view.view_angle = VIEW_ANGLE
+
+    def render_png(
+        self, path: str | Path | None = None, *, transparent: bool = False
+    ) -> NDArray[np.uint8]:
+        """Draw the scene.
+
+        Parameters
+        ----------
+        path : str or Path, optional
+            Where to write the PNG, too.
+        transparent : bool
+            Leave the background out.
+
+        Returns
+        -------
+        array, shape (height, width, 3 or 4), uint8
+        """
+        self.plotter.set_background(self.theme.bottom, top=self.theme.top)
+        self.plotter.renderer.ResetCameraClippingRange()
+        return self.plotter.screenshot(
+            None if path is None else str(path),
+            transparent_background=transparent,
+            return_img=True,
+        )
+
+    def close(self) -> None:
+        """Free the window."""
+        self.plotter.close()
+
+    def _renderer(self, actor: pv.Actor) -> pv.Renderer:
+        return self._overlay if self._overlay.HasViewProp(actor) else self.plotter.renderer
+
+    def _add(self, actor: Actor, description: Description) -> pv.Actor:
+        mapper = pv.DataSetMapper(_dataset(actor, description.pose))
+        drawn = pv.Actor(mapper=mapper)
+        _paint(drawn, actor)
+        if actor.clipped and description.cut is not None:
+            for plane in cut_planes(description.cut, actor.slab):
+                mapper.AddClippingPlane(pv._vtk.vtkPlane(**plane))
+        (self._overlay if actor.overlay else self.plotter.renderer).AddActor(drawn)
+        return drawn
+
+
+# A key light from the upper left and a soft fill from the right, both tied to the camera.
+LIGHTS = (((-0.5, 0.7, 1.0), 0.82), ((0.9, -0.1, 0.6), 0.34))
+AMBIENT = 0.16
+
+
+def render_png(
+    description: Description,
+    path: str | Path | None = None,
+    *,
+    theme: Theme = LIGHT,
+    size: tuple[int, int] = (1200, 900),
+    camera: Camera | None = None,
+) -> NDArray[np.uint8]:
+    """Draw a description once, off-screen; see `Scene.render_png`."""
+    scene = Scene(theme, size)
+    try:
+        scene.show(description)
+        scene.look(camera or framing(description.bounds, size[0] / size[1]))
+        return scene.render_png(path)
+    finally:
+        scene.close()
+
+
+def cut_planes(cut: Cut, slab: float) -> list[dict[str, tuple[float, ...]]]:
+    """Return the planes that keep what lies behind a cut, each as origin and normal.
+
+    What a plane keeps lies on the side that its normal points to.
+    """
+    origin, normal = np.array(cut.origin), np.array(cut.normal)
+    planes = [{"origin": tuple(origin.tolist()), "normal": tuple((-normal).tolist())}]
+    if slab > 0:
+        back = origin - slab * normal
+        planes.append({"origin": tuple(back.tolist()), "normal": tuple(normal.tolist())})
+    return planes
+
+
+def _dataset(actor: Actor, pose: NDArray[np.float64] | None) -> pv.PolyData:
+    points, normals = actor.points, actor.normals
+    if pose is not None and actor.skin is not None:
+        points = moved(points, actor.skin, pose).astype(np.float32)
+        if normals is not None:
+            normals = turned(normals, actor.skin, pose).astype(np.float32)
+    data = pv.PolyData()
+    data.points = points
+    cells = np.insert(actor.cells, 0, actor.cells.shape[1], axis=1).ravel()
+    setattr(data, {"surface": "faces", "lines": "lines", "points": "verts"}[actor.kind], cells)
+    if normals is not None:
+        data.point_data.active_normals = normals
+    if actor.colors is not None:
+        data.point_data["colors"] = actor.colors
+    elif actor.scalars is not None:
+        data.point_data["values"] = actor.scalars
+    return data
+
+
+def _paint(drawn: pv.Actor, actor: Actor) -> None:
+    look = drawn.prop
+    look.color, look.opacity, look.line_width = actor.color, actor.opacity, actor.width
+    look.ambient, look.diffuse = AMBIENT, 1.0
+    look.lighting = actor.kind == "surface"
+    look.point_size = actor.width
+    if actor.normals is None:
+        look.interpolation = "flat"
+    mapper = drawn.mapper
+    mapper.scalar_visibility = actor.colors is not None or actor.scalars is not None
+    if actor.colors is not None:
+        mapper.SetScalarModeToUsePointFieldData()
+        mapper.SelectColorArray("colors")
+        mapper.SetColorModeToDirectScalars()
+    elif actor.scalars is not None:
+        mapper.SetScalarModeToUsePointFieldData()
+        mapper.SelectColorArray("values")
+        mapper.interpolate_before_map = True
+        table = colormap(actor.colormap)
+        opaque = np.full((len(table), 1), 255, np.uint8)
+        mapper.lookup_table = pv.LookupTable(values=np.hstack([table, opaque]))
+        mapper.scalar_range = actor.limits
+    if actor.kind == "lines":
+        # Lines on a surface lie in it: pull them a little towards the eye.
+        mapper.SetResolveCoincidentTopologyToPolygonOffset()
+        mapper.SetRelativeCoincidentTopologyLineOffsetParameters(0, -4)
+
+
+def _add_overlay(plotter: pv.Plotter) -> pv.Renderer:
+    renderer = pv.Renderer(plotter)
+    renderer.SetLayer(1)
+    renderer.SetActiveCamera(plotter.renderer.GetActiveCamera())
+    plotter.render_window.SetNumberOfLayers(2)
+    plotter.render_window.AddRenderer(renderer)
+    return renderer
