@@ -1,0 +1,87 @@
+"""Reading and writing whole files, with errors that name them."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from ..errors import CutcellError, FileError
+
+
+@contextmanager
+def naming(path: Path) -> Iterator[None]:
+    """Put the file's name in front of every cutcell error raised inside, once."""
+    try:
+        yield
+    except CutcellError as e:
+        if path.name in str(e):
+            raise
+        raise type(e)(f"{path.name}: {e}") from e
+
+
+def read_bytes(path: Path) -> bytes:
+    """Read a file that must exist, be a file, and hold something."""
+    try:
+        data = path.read_bytes()
+    except FileNotFoundError:
+        raise FileError(f"{path}: there is no such file") from None
+    except IsADirectoryError:
+        raise FileError(f"{path}: is a folder; give a file in it") from None
+    except (OSError, ValueError) as e:  # ValueError: a null byte in the path
+        raise FileError(f"{path}: cannot be read ({_reason(e)})") from None
+    if not data:
+        raise FileError(f"{path.name}: the file is empty")
+    return data
+
+
+def read_text(path: Path) -> str:
+    """Read a text file in UTF-8."""
+    try:
+        return read_bytes(path).decode("utf-8-sig")
+    except UnicodeDecodeError as e:
+        raise FileError(f"{path.name}: is not a text file (byte {e.start} is not UTF-8)") from None
+
+
+def write_all(contents: dict[Path, bytes]) -> None:
+    """Write files so that a failure leaves the old ones as they were.
+
+    Everything is written under temporary names in the same folders first, then renamed
+    in the order given.
+    """
+    written: list[tuple[str, Path]] = []
+    try:
+        for path, data in contents.items():
+            written.append((_write_beside(path, data), path))
+        for temporary, path in written:
+            os.replace(temporary, path)
+    except OSError as e:
+        raise FileError(f"{path}: cannot be written ({_reason(e)})") from None
+    finally:
+        for temporary, _ in written:
+            Path(temporary).unlink(missing_ok=True)
+
+
+def _write_beside(path: Path, data: bytes) -> str:
+    handle, temporary = tempfile.mkstemp(prefix=f".{path.name[:40]}.", dir=path.parent)
+    try:
+        with os.fdopen(handle, "wb") as file:
+            file.write(data)
+        # mkstemp gives 0600; a saved file gets the rights any other new file would.
+        os.chmod(temporary, path.stat().st_mode & 0o777 if path.exists() else 0o666 & ~_umask())
+    except OSError:
+        Path(temporary).unlink(missing_ok=True)
+        raise
+    return temporary
+
+
+def _umask() -> int:
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask
+
+
+def _reason(error: BaseException) -> str:
+    return getattr(error, "strerror", None) or str(error)

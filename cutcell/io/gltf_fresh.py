@@ -1,0 +1,193 @@
+"""A new GLB for a rig that did not come from one."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import numpy as np
+import pygltflib as gl
+from numpy.typing import NDArray
+
+from .. import __version__
+from ..errors import WeightsError
+from ..rig import Clip, Rig, TriangleMesh
+from .gltf_container import pack_glb
+from .gltf_influences import pack_influences
+from .gltf_nodes import decompose
+
+CODES = {"f": gl.FLOAT, "u1": gl.UNSIGNED_BYTE, "u2": gl.UNSIGNED_SHORT, "u4": gl.UNSIGNED_INT}
+KINDS = {1: gl.SCALAR, 3: gl.VEC3, 4: gl.VEC4, 16: gl.MAT4}
+
+
+def new_glb(rig: Rig) -> bytes:
+    """Return a rig as a GLB file: mesh, normals, skin, joints as nodes, clips, attachments.
+
+    Raises
+    ------
+    WeightsError
+        The rig has no weights yet.
+    """
+    if rig.weights is None:
+        raise WeightsError("the rig has no weights to save; bind it first")
+    file = _File()
+    file.add_rig(rig)
+    return file.packed()
+
+
+class _File:
+    """A document under construction, and its one buffer."""
+
+    def __init__(self) -> None:
+        self.gltf = gl.GLTF2(asset=gl.Asset(version="2.0", generator=f"cutcell {__version__}"))
+        self.gltf.scene = 0
+        self.data = bytearray()
+
+    def add_rig(self, rig: Rig) -> None:
+        joints = len(rig.skeleton.joints)
+        self._add_joints(rig)
+        # glTF's own default material is metal, which looks black without surroundings.
+        plain = gl.PbrMetallicRoughness(
+            baseColorFactor=[0.8, 0.8, 0.8, 1.0], metallicFactor=0.0, roughnessFactor=0.8
+        )
+        self.gltf.materials = [
+            gl.Material(
+                name="plain",
+                pbrMetallicRoughness=plain,
+                doubleSided=True,
+                emissiveFactor=None,
+                alphaMode=None,
+                alphaCutoff=None,
+            )
+        ]
+        primitive = self._primitive(rig.mesh)
+        small = np.uint8 if joints <= 256 else np.uint16
+        for n, (where, share) in enumerate(zip(*pack_influences(rig.weights), strict=True)):  # type: ignore[arg-type]
+            target = gl.ARRAY_BUFFER
+            setattr(primitive.attributes, f"JOINTS_{n}", self._array(where.astype(small), target))
+            setattr(primitive.attributes, f"WEIGHTS_{n}", self._array(share, target))
+        self.gltf.meshes.append(gl.Mesh(name=rig.name, primitives=[primitive]))
+        binds = np.tile(np.eye(4), (joints, 1, 1))
+        binds[:, :3, 3] = -rig.skeleton.joints
+        stored = self._array(binds.transpose(0, 2, 1).reshape(-1, 16).astype(np.float32))
+        self.gltf.skins = [gl.Skin(inverseBindMatrices=stored, joints=list(range(joints)))]
+        mesh_node = self._node(name=rig.name, mesh=0, skin=0)
+        self._add_attachments(rig)
+        self.gltf.scenes = [gl.Scene(nodes=[joints, mesh_node])]
+        for clip in rig.clips:
+            self._add_clip(rig, clip)
+
+    def _node(self, **fields: Any) -> int:
+        self.gltf.nodes.append(gl.Node(**fields))
+        return len(self.gltf.nodes) - 1
+
+    def _add_joints(self, rig: Rig) -> None:
+        """Add a node a joint, in order, and one above the roots that carries the world."""
+        skeleton = rig.skeleton
+        for j, parent in enumerate(skeleton.parents):
+            above = skeleton.joints[parent] if parent >= 0 else 0.0
+            self._node(
+                name=skeleton.names[j],
+                translation=(skeleton.joints[j] - above).tolist(),
+                children=skeleton.children[j].tolist(),
+            )
+        roots = np.flatnonzero(skeleton.parents < 0).tolist()
+        top = self._node(name="armature", children=roots)
+        if not np.array_equal(rig.world, np.eye(4)):
+            self.gltf.nodes[top].matrix = rig.world.T.ravel().tolist()
+
+    def _add_attachments(self, rig: Rig) -> None:
+        for attachment in rig.attachments:
+            primitive = self._primitive(attachment.mesh)
+            self.gltf.meshes.append(gl.Mesh(name=attachment.name, primitives=[primitive]))
+            node = self._node(
+                name=attachment.name,
+                mesh=len(self.gltf.meshes) - 1,
+                translation=(-rig.skeleton.joints[attachment.joint]).tolist(),
+            )
+            self.gltf.nodes[attachment.joint].children.append(node)
+
+    def _primitive(self, mesh: TriangleMesh) -> gl.Primitive:
+        positions = mesh.vertices.astype(np.float32)
+        found = gl.Attributes(
+            POSITION=self._array(positions, gl.ARRAY_BUFFER, bounds=True),
+            NORMAL=self._array(vertex_normals(mesh), gl.ARRAY_BUFFER),
+        )
+        corners = mesh.faces.reshape(-1, 1).astype(np.uint32)
+        if len(positions) < 65535:
+            corners = corners.astype(np.uint16)
+        indices = self._array(corners, gl.ELEMENT_ARRAY_BUFFER)
+        return gl.Primitive(attributes=found, indices=indices, material=0)
+
+    def _add_clip(self, rig: Rig, clip: Clip) -> None:
+        animation = gl.Animation(name=clip.name)
+        times = self._array(clip.times[:, None].astype(np.float32), bounds=True)
+        for path, values in _local_poses(rig, clip).items():
+            for j in range(values.shape[1]):
+                output = self._array(values[:, j].astype(np.float32))
+                animation.samplers.append(gl.AnimationSampler(input=times, output=output))
+                target = gl.AnimationChannelTarget(node=j, path=path)
+                sampler = len(animation.samplers) - 1
+                animation.channels.append(gl.AnimationChannel(sampler=sampler, target=target))
+        self.gltf.animations.append(animation)
+
+    def _array(self, values: NDArray, target: int | None = None, bounds: bool = False) -> int:
+        """Append an array to the buffer and return its accessor."""
+        self.data += b"\0" * (-len(self.data) % 4)
+        view = gl.BufferView(
+            buffer=0, byteOffset=len(self.data), byteLength=values.nbytes, target=target
+        )
+        self.data += np.ascontiguousarray(values).tobytes()
+        self.gltf.bufferViews.append(view)
+        accessor = gl.Accessor(
+            bufferView=len(self.gltf.bufferViews) - 1,
+            componentType=CODES[values.dtype.str[1:] if values.dtype.kind == "u" else "f"],
+            count=len(values),
+            type=KINDS[values.shape[1]],
+            normalized=None,
+        )
+        if bounds:
+            accessor.min = values.min(axis=0).tolist()
+            accessor.max = values.max(axis=0).tolist()
+        self.gltf.accessors.append(accessor)
+        return len(self.gltf.accessors) - 1
+
+    def packed(self) -> bytes:
+        self.data += b"\0" * (-len(self.data) % 4)
+        self.gltf.buffers = [gl.Buffer(byteLength=len(self.data))]
+        document = json.loads(self.gltf.gltf_to_json())
+        text = json.dumps(document, separators=(",", ":"))
+        return pack_glb(text.encode(), bytes(self.data), [])
+
+
+def vertex_normals(mesh: TriangleMesh) -> NDArray[np.float32]:
+    """Return unit normals, shape (n, 3): faces weighted by area, equal positions together."""
+    corners = mesh.vertices[mesh.faces]
+    area = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    _, same = np.unique(mesh.vertices, axis=0, return_inverse=True)
+    same = same.reshape(-1)
+    summed = np.zeros((same.max() + 1, 3))
+    for k in range(3):
+        np.add.at(summed, same[mesh.faces[:, k]], area)
+    summed /= np.abs(summed).max() or 1.0
+    length = np.linalg.norm(summed, axis=1, keepdims=True)
+    # Any direction does for a vertex without a face; glTF only asks for unit length.
+    unit = np.where(length > 1e-12, summed / np.maximum(length, 1e-12), [0.0, 1.0, 0.0])
+    return unit[same].astype(np.float32)
+
+
+def _local_poses(rig: Rig, clip: Clip) -> dict[str, NDArray]:
+    """Return what each joint's node does, relative to its parent's node."""
+    at_joint = np.tile(np.eye(4), (len(rig.skeleton.joints), 1, 1))
+    at_joint[:, :3, 3] = rig.skeleton.joints
+    world = clip.transforms @ at_joint
+    local = world.copy()
+    held = np.flatnonzero(rig.skeleton.parents >= 0)
+    local[:, held] = np.linalg.inv(world[:, rig.skeleton.parents[held]]) @ world[:, held]
+    translation, rotation, scale = decompose(local)
+    turned = (rotation[1:] * rotation[:-1]).sum(axis=-1) < 0
+    flips = np.concatenate([np.zeros((1, turned.shape[1]), bool), turned]).cumsum(axis=0) % 2
+    poses = {"translation": translation, "rotation": rotation * np.where(flips, -1, 1)[..., None]}
+    if np.abs(scale - 1).max() > 1e-6:
+        poses["scale"] = scale
+    return poses

@@ -1,0 +1,43 @@
+"""Dense weights to JOINTS_n and WEIGHTS_n."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+def pack_influences(weights: NDArray) -> tuple[NDArray, NDArray]:
+    """Sort each row's influences into slots of four.
+
+    Parameters
+    ----------
+    weights : array, shape (n, j), float64
+        On the joints of one skin; rows sum to one, or to zero.
+
+    Returns
+    -------
+    joints : array, shape (s, n, 4), uint16
+        Heaviest first; a slot without weight names joint 0, as glTF asks.
+    shares : array, shape (s, n, 4), float32
+        Rows sum to one as exactly as float32 can, over all s sets together.
+    """
+    sums = weights.sum(axis=1, keepdims=True)
+    exact = np.divide(weights, sums, out=np.zeros(weights.shape), where=sums > 0)
+    rounded = exact.astype(np.float32)
+    most = int((rounded > 0).sum(axis=1).max(initial=1))
+    sets = max(-(-most // 4), 1)
+    slots = min(4 * sets, weights.shape[1])
+    order = np.argsort(-rounded, axis=1, kind="stable")[:, :slots]
+    shares = np.zeros((len(weights), 4 * sets), np.float32)
+    shares[:, :slots] = np.take_along_axis(rounded, order, axis=1)
+    joints = np.zeros((len(weights), 4 * sets), np.uint16)
+    joints[:, :slots] = order
+    joints[shares == 0] = 0
+    # What rounding took or gave goes to the heaviest, where it matters least.
+    held = shares[:, 0] > 0
+    rest = 1 - shares.astype(np.float64).sum(axis=1)
+    shares[held, 0] = (shares[held, 0].astype(np.float64) + rest[held]).astype(np.float32)
+    return (
+        joints.reshape(-1, sets, 4).transpose(1, 0, 2),
+        shares.reshape(-1, sets, 4).transpose(1, 0, 2),
+    )

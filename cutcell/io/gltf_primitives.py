@@ -1,0 +1,165 @@
+"""The triangles of glTF primitives, and the weights on their vertices."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pygltflib
+from numpy.typing import NDArray
+
+from ..errors import FileError, MeshError, WeightsError
+from .gltf_accessors import read_accessor
+from .gltf_container import Document
+
+DRAWS_TRIANGLES = (pygltflib.TRIANGLES, pygltflib.TRIANGLE_STRIP, pygltflib.TRIANGLE_FAN)
+
+
+def primitives(document: Document, mesh: Any, user: str) -> list[dict[str, Any]]:
+    """Return a mesh's primitives."""
+    found = document.item("meshes", mesh, user).get("primitives")
+    if not isinstance(found, list) or not all(isinstance(p, dict) for p in found):
+        raise FileError(f'{document.label("meshes", mesh)}: "primitives" must be a list of objects')
+    return found
+
+
+def attributes(primitive: dict[str, Any], user: str) -> dict[str, Any]:
+    """Return a primitive's attributes."""
+    found = primitive.get("attributes")
+    if not isinstance(found, dict):
+        raise FileError(f'{user}: has no "attributes"')
+    return found
+
+
+def draws_triangles(primitive: dict[str, Any]) -> bool:
+    """Tell whether a primitive is triangles, not points or lines."""
+    return primitive.get("mode", pygltflib.TRIANGLES) in DRAWS_TRIANGLES
+
+
+def read_positions(document: Document, primitive: dict[str, Any], user: str) -> NDArray:
+    """Return the vertices, shape (n, 3), float64."""
+    found = attributes(primitive, user)
+    if "POSITION" not in found:
+        raise MeshError(f"{user} has no POSITION")
+    positions = read_accessor(document, found["POSITION"], "VEC3", user).astype(np.float64)
+    bad = np.flatnonzero(~np.isfinite(positions).all(axis=1))
+    if len(bad):
+        raise MeshError(
+            f"{user}: vertex {bad[0]} has a coordinate that is not a finite number; "
+            f"{len(bad)} of {len(positions)} are so"
+        )
+    return positions
+
+
+def read_faces(document: Document, primitive: dict[str, Any], count: int, user: str) -> NDArray:
+    """Return the triangles, shape (m, 3), int64, of `count` vertices."""
+    if "indices" in primitive:
+        corners = read_accessor(document, primitive["indices"], "SCALAR", user)[:, 0]
+        if corners.dtype.kind != "u":
+            raise FileError(f"{user}: its indices are {corners.dtype}, not unsigned integers")
+        corners = corners.astype(np.int64)
+        bad = np.flatnonzero(corners >= count)
+        if len(bad):
+            raise MeshError(
+                f"{user}: index {corners[bad[0]]} is out of range: it has {count} vertices "
+                f"(numbered from 0); {len(bad)} indices are so"
+            )
+    else:
+        corners = np.arange(count)
+    mode = primitive.get("mode", pygltflib.TRIANGLES)
+    if mode == pygltflib.TRIANGLES:
+        if len(corners) % 3:
+            raise MeshError(f"{user}: {len(corners)} corners do not make whole triangles")
+        return corners.reshape(-1, 3)
+    if mode == pygltflib.TRIANGLE_STRIP:
+        faces = np.stack([corners[:-2], corners[1:-1], corners[2:]], axis=1)
+        faces[1::2, :2] = faces[1::2, 1::-1]
+    else:
+        middle = np.full(max(len(corners) - 2, 0), corners[0])
+        faces = np.stack([corners[1:-1], corners[2:], middle], axis=1)
+    a, b, c = faces.T
+    return faces[(a != b) & (b != c) & (c != a)]  # strips are joined by flat triangles
+
+
+def read_triangles(
+    document: Document, mesh: Any, user: str
+) -> tuple[NDArray, NDArray, list[dict[str, Any]]]:
+    """Return vertices, faces and triangle primitives of a whole mesh, buffers counted once."""
+    vertices: list[NDArray] = []
+    faces: list[NDArray] = []
+    start: dict[Any, int] = {}
+    total = 0
+    found = [p for p in primitives(document, mesh, user) if draws_triangles(p)]
+    for k, primitive in enumerate(found):
+        name = f"{document.label('meshes', mesh)}, primitive {k}"
+        positions = read_positions(document, primitive, name)
+        key = primitive["attributes"]["POSITION"]
+        if key not in start:
+            start[key] = total
+            total += len(positions)
+            vertices.append(positions)
+        faces.append(read_faces(document, primitive, len(positions), name) + start[key])
+    if not found:
+        return np.zeros((0, 3)), np.zeros((0, 3), int), found
+    return np.concatenate(vertices), np.concatenate(faces), found
+
+
+def influence_sets(found: dict[str, Any]) -> list[int]:
+    """Return the n of all JOINTS_n, ascending."""
+    sets = [k.removeprefix("JOINTS_") for k in found if k.startswith("JOINTS_")]
+    return sorted(int(n) for n in sets if n.isdecimal())
+
+
+def read_weights(
+    document: Document, primitive: dict[str, Any], count: int, joints: int, user: str
+) -> NDArray | None:
+    """Return the weights on a skin's joints, shape (count, joints), or None without any.
+
+    Rows are scaled to sum to one; rows of zero stay zero.
+    """
+    found = attributes(primitive, user)
+    sets = influence_sets(found)
+    if not sets:
+        return None
+    weights = np.zeros((count, joints))
+    rows = np.arange(count)
+    for n in sets:
+        where, share = _influences(document, found, n, user)
+        if len(where) != count or len(share) != count:
+            raise WeightsError(
+                f"{user}: {count} vertices but {len(where)} JOINTS_{n} and {len(share)} WEIGHTS_{n}"
+            )
+        _check_influences(where, share, joints, n, user)
+        for k in range(4):
+            carrying = share[:, k] > 0
+            np.add.at(weights, (rows[carrying], where[carrying, k]), share[carrying, k])
+    sums = weights.sum(axis=1, keepdims=True)
+    return np.divide(weights, sums, out=weights, where=sums > 0)
+
+
+def _influences(
+    document: Document, found: dict[str, Any], n: int, user: str
+) -> tuple[NDArray, NDArray]:
+    if f"WEIGHTS_{n}" not in found:
+        raise WeightsError(f"{user} has JOINTS_{n} but no WEIGHTS_{n}")
+    where = read_accessor(document, found[f"JOINTS_{n}"], "VEC4", user)
+    if where.dtype.kind != "u":
+        raise FileError(f"{user}: JOINTS_{n} are {where.dtype}, not unsigned integers")
+    share = read_accessor(document, found[f"WEIGHTS_{n}"], "VEC4", user)
+    if share.dtype.kind != "f":
+        raise FileError(f"{user}: WEIGHTS_{n} are {share.dtype}, neither floats nor normalised")
+    return where, share
+
+
+def _check_influences(where: NDArray, share: NDArray, joints: int, n: int, user: str) -> None:
+    bad = np.flatnonzero(~(np.isfinite(share) & (share >= 0)).all(axis=1))
+    if len(bad):
+        raise WeightsError(
+            f"{user}: vertex {bad[0]} has a weight in WEIGHTS_{n} that is negative or not a number"
+        )
+    bad = np.flatnonzero(((where >= joints) & (share > 0)).any(axis=1))
+    if len(bad):
+        raise WeightsError(
+            f"{user}: vertex {bad[0]} is weighted to joint {where[bad[0]].max()} in JOINTS_{n}, "
+            f"but its skin has {joints} joints (numbered from 0)"
+        )

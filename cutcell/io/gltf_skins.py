@@ -1,0 +1,163 @@
+"""From glTF skins to one skeleton in one space.
+
+The space is the bind space of the first skin: there a vertex stands as its accessor says.
+A joint's rest position is where its inverse bind matrix comes from, inverse(IBM) · 0.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import FileError, SkeletonError
+from ..rig import Skeleton
+from .gltf_accessors import read_accessor
+from .gltf_container import Document, indices
+from .gltf_nodes import Nodes
+
+
+@dataclass(eq=False)
+class Bind:
+    """All joints of a file, and how each skin's vertices get into the rig's space."""
+
+    nodes: list[int] = field(default_factory=list)
+    """The node of each joint."""
+    inverse: list[NDArray] = field(default_factory=list)
+    """Inverse bind matrix of each joint, for vertices in the rig's space."""
+    skins: dict[int, list[int]] = field(default_factory=dict)
+    """Joint of the rig for each joint of a skin."""
+    to_rig: dict[int, NDArray] = field(default_factory=dict)
+    """From a skin's bind space to the rig's space."""
+    world: NDArray = field(default_factory=lambda: np.eye(4))
+    """From the rig's space to the scene, at rest."""
+    unbound: set[int] = field(default_factory=set)
+    """Joints whose skin has no inverse bind matrices to take a position from."""
+
+
+def read_bind(document: Document, nodes: Nodes, skins: list[int]) -> Bind:
+    """Bring the skins of a file together; the first one sets the space."""
+    bind = Bind()
+    place: dict[int, int] = {}
+    for skin in skins:
+        joints = _skin_joints(document, skin)
+        inverse, given = _inverse_binds(document, skin, joints)
+        shared = [k for k, node in enumerate(joints) if node in place]
+        if not bind.nodes:
+            to_rig = np.eye(4)
+            bind.world = _rest_world(nodes, joints, inverse)
+        elif shared:
+            known = np.array([bind.inverse[place[joints[k]]] for k in shared])
+            to_rig = _first_regular(known, inverse[shared])
+        else:
+            to_rig = np.linalg.inv(bind.world) @ _rest_world(nodes, joints, inverse)
+        if not _invertible(to_rig):
+            raise SkeletonError(
+                f"{document.label('skins', skin)}: its inverse bind matrices cannot be inverted"
+            )
+        back = np.linalg.inv(to_rig)
+        for k, node in enumerate(joints):
+            if node not in place:
+                place[node] = len(bind.nodes)
+                bind.nodes.append(node)
+                bind.inverse.append(inverse[k] @ back)
+                if not given and len(joints) > 1:
+                    bind.unbound.add(place[node])
+        bind.skins[skin] = [place[node] for node in joints]
+        bind.to_rig[skin] = to_rig
+    return bind
+
+
+def _skin_joints(document: Document, skin: int) -> list[int]:
+    user = document.label("skins", skin)
+    joints = indices(document.item("skins", skin, "a node"), "joints", user)
+    if not joints:
+        raise SkeletonError(f"{user} has no joints")
+    for node in joints:
+        document.item("nodes", node, user)
+    if len(set(joints)) < len(joints):
+        twice = next(node for node in joints if joints.count(node) > 1)
+        raise SkeletonError(f"{user} names {document.label('nodes', twice)} twice as a joint")
+    return joints
+
+
+def _inverse_binds(document: Document, skin: int, joints: list[int]) -> tuple[NDArray, bool]:
+    owner, user = document.items("skins")[skin], document.label("skins", skin)
+    if "inverseBindMatrices" not in owner:
+        return np.tile(np.eye(4), (len(joints), 1, 1)), False
+    stored = read_accessor(document, owner["inverseBindMatrices"], "MAT4", user)
+    if len(stored) < len(joints):
+        raise SkeletonError(
+            f"{user} has {len(joints)} joints but {len(stored)} inverse bind matrices"
+        )
+    inverse = stored[: len(joints)].astype(np.float64).reshape(-1, 4, 4).transpose(0, 2, 1)
+    for k, node in enumerate(joints):
+        if not _invertible(inverse[k]):
+            raise SkeletonError(
+                f"{user}: the inverse bind matrix of the joint {document.label('nodes', node)} "
+                "cannot be inverted"
+            )
+    inverse = inverse.copy()
+    inverse[:, 3] = [0, 0, 0, 1]  # exporters leave rounding noise here
+    return inverse, True
+
+
+def _invertible(matrix: NDArray) -> bool:
+    if not np.isfinite(matrix).all():
+        return False
+    linear = matrix[:3, :3]
+    size = np.linalg.norm(linear, axis=0).prod()
+    return bool(size > 0 and abs(np.linalg.det(linear)) > 1e-9 * size)
+
+
+def _rest_world(nodes: Nodes, joints: list[int], inverse: NDArray) -> NDArray:
+    """Return where a skin's bind space stands in the scene: seen by its first joint."""
+    for node, matrix in zip(joints, inverse, strict=True):
+        world = nodes.world[node] @ matrix
+        if _invertible(world):  # a joint may be scaled to nothing to hide what it holds
+            return world
+    return np.eye(4)
+
+
+def _first_regular(known: NDArray, inverse: NDArray) -> NDArray:
+    return np.linalg.inv(known[0]) @ inverse[0]
+
+
+def read_skeleton(document: Document, nodes: Nodes, bind: Bind, used: NDArray) -> Skeleton:
+    """Return the joints with positions, parents and unique names.
+
+    Parameters
+    ----------
+    document, nodes, bind
+    used : array, shape (j,), bool
+        Which joints carry weight in the file. When none does, all may.
+    """
+    place = {node: j for j, node in enumerate(bind.nodes)}
+    parents = [
+        next((place[a] for a in nodes.ancestors(node) if a in place), -1) for node in bind.nodes
+    ]
+    positions = np.linalg.inv(np.array(bind.inverse))[:, :3, 3]
+    if bind.unbound:
+        at_rest = np.linalg.inv(bind.world) @ nodes.world[bind.nodes]
+        alike = sorted(bind.unbound)
+        positions[alike] = at_rest[alike, :3, 3]
+    if not np.isfinite(positions).all():
+        raise FileError("a joint has no finite rest position")
+    names = unique_names([nodes.raw[node].get("name") for node in bind.nodes])
+    return Skeleton(positions, np.array(parents), names, used if used.any() else None)  # type: ignore[arg-type]
+
+
+def unique_names(names: list) -> tuple[str, ...]:
+    """Name the unnamed after their number and number those that are named alike."""
+    given = [n if isinstance(n, str) and n else f"joint {i}" for i, n in enumerate(names)]
+    taken = set(given)
+    seen: set[str] = set()
+    unique = []
+    for name in given:
+        candidate, k = name, 2
+        while candidate in seen or (candidate != name and candidate in taken):
+            candidate, k = f"{name} ({k})", k + 1
+        seen.add(candidate)
+        unique.append(candidate)
+    return tuple(unique)
