@@ -1,0 +1,195 @@
+"""All crossings of axis-aligned rays with a mesh (paper section 3.1, algorithm 1).
+
+Casting every ray of an axis is drawing the triangles seen along it: for each triangle,
+visit the lattice columns inside its projection. Each column line u = const meets the
+outline of a triangle in no edge or in two, and the ray at height v hits the triangle
+when it lies between these two. The height of an edge on a column line is computed from
+its ends in one fixed order, so two triangles that share the edge see the same number,
+to the last bit: whatever rounding does, a ray leaves a closed surface as often as it
+enters it.
+
+A ray exactly through an edge or a vertex counts as moved by infinitesimal amounts, far
+less along u than along v: a vertex on the column line lies left of it, and an edge at the
+ray's very height lies below it. Seen along any axis, u comes before v in the order x, y, z,
+so the three families of rays see one and the same movement.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit, prange
+from numpy.typing import NDArray
+
+AXES = ((1, 2, 0), (0, 2, 1), (0, 1, 2))
+"""For rays along x, y, z: the two axes (u, v) of the plane they cross, and their own."""
+
+STRIPS = 8
+"""Strips of columns drawn in parallel for each axis; more than cores, so that none idles."""
+
+
+@dataclass(frozen=True, eq=False)
+class Crossings:
+    """Where the R x R rays along one axis meet the triangles, ray by ray.
+
+    Parameters
+    ----------
+    start : array, shape (R * R + 1,), int64
+        Crossings of ray i * R + j, through u = (i + 1/2) / R and v = (j + 1/2) / R, are
+        those from start[i * R + j] to start[i * R + j + 1].
+    position : array, shape (c,), float64
+        Coordinate along the axis, ascending within each ray.
+    triangle : array, shape (c,), int32
+    sign : array, shape (c,), int8
+        +1 where the ray leaves through the triangle's back, along its normal; -1 where it
+        enters. At equal positions entering comes first.
+    """
+
+    start: NDArray[np.int64]
+    position: NDArray[np.float64]
+    triangle: NDArray[np.int32]
+    sign: NDArray[np.int8]
+
+
+def cast_rays(
+    vertices: NDArray[np.float64], faces: NDArray[np.int32], resolution: int, axis: int
+) -> Crossings:
+    """Cast the R x R rays along one axis through the lattice points of the unit cube.
+
+    Parameters
+    ----------
+    vertices : array, shape (n, 3), float64
+        Unit-cube coordinates. The fixed order of an edge's ends is their numbering.
+    faces : array, shape (m, 3), int32
+    resolution : int
+        R.
+    axis : int
+        0, 1, 2 for x, y, z.
+
+    Returns
+    -------
+    Crossings
+    """
+    u, v, along = AXES[axis]
+    projected = np.ascontiguousarray(vertices[:, [u, v, along]])
+    flip = -1 if axis == 1 else 1  # x cross z points along -y
+    counts = np.zeros(resolution**2 + 1, np.int64)
+    nothing = (np.empty(0), np.empty(0, np.int32), np.empty(0, np.int8))
+    _draw(projected, faces, resolution, flip, False, counts[1:], *nothing)
+    start = np.cumsum(counts)
+    total = int(start[-1])
+    found = (np.empty(total), np.empty(total, np.int32), np.empty(total, np.int8))
+    _draw(projected, faces, resolution, flip, True, start[:-1].copy(), *found)
+    _sort_rays(start, *found)
+    return Crossings(start, *found)
+
+
+@njit(cache=True, parallel=True)
+def _draw(vertices, faces, resolution, flip, store, cursor, position, triangle, sign):
+    """Count the crossings of each ray in `cursor`; or store them there, moving it on."""
+    for strip in prange(STRIPS):
+        first = strip * resolution // STRIPS
+        last = (strip + 1) * resolution // STRIPS - 1
+        for f in range(len(faces)):
+            u0, u1, u2 = (
+                vertices[faces[f, 0], 0],
+                vertices[faces[f, 1], 0],
+                vertices[faces[f, 2], 0],
+            )
+            begin = max(first, first_at_least(min(u0, u1, u2), resolution))
+            end = min(last, first_at_least(max(u0, u1, u2), resolution) - 1)
+            for i in range(begin, end + 1):
+                pu = (i + 0.5) / resolution
+                low_v, low_a, high_v, high_a, side = column_span(vertices, faces, f, pu)
+                j = first_at_least(low_v, resolution)
+                while j < resolution and (j + 0.5) / resolution < high_v:
+                    ray = i * resolution + j
+                    if store:
+                        k = cursor[ray]
+                        pv = (j + 0.5) / resolution
+                        position[k] = height_between(low_v, low_a, high_v, high_a, pv)
+                        triangle[k] = f
+                        sign[k] = flip * side
+                    cursor[ray] += 1
+                    j += 1
+
+
+@njit(cache=True, inline="always")
+def first_at_least(coordinate, resolution):
+    """Return the first i >= 0 whose (i + 1/2) / R is not below the coordinate."""
+    i = max(0, int(np.ceil(coordinate * resolution - 0.5)))
+    while i > 0 and (i - 0.5) / resolution >= coordinate:
+        i -= 1
+    while (i + 0.5) / resolution < coordinate:
+        i += 1
+    return i
+
+
+@njit(cache=True)
+def column_span(vertices, faces, f, pu):
+    """Return where the line u = pu enters and leaves the triangle f, lower v first.
+
+    Two pairs (v, along), and the side: +1 if the triangle turns counter-clockwise in the
+    (u, v) plane, so that rays leave through it, else -1. A line beside the triangle gets
+    an empty span.
+    """
+    right_v = left_v = right_a = left_a = 0.0
+    for k in range(3):
+        a, b = faces[f, k], faces[f, (k + 1) % 3]
+        a_left = vertices[a, 0] <= pu
+        if a_left == (vertices[b, 0] <= pu):
+            continue
+        v, along = edge_height(vertices, min(a, b), max(a, b), pu)
+        if a_left:
+            right_v, right_a = v, along
+        else:
+            left_v, left_a = v, along
+    if right_v <= left_v:
+        return right_v, right_a, left_v, left_a, 1
+    return left_v, left_a, right_v, right_a, -1
+
+
+@njit(cache=True, inline="always")
+def edge_height(vertices, a, b, pu):
+    """Return v and the third coordinate of the edge a, b at u = pu; a < b, always."""
+    width = vertices[b, 0] - vertices[a, 0]
+    step = pu - vertices[a, 0]
+    v = vertices[a, 1] + step * (vertices[b, 1] - vertices[a, 1]) / width
+    along = vertices[a, 2] + step * (vertices[b, 2] - vertices[a, 2]) / width
+    return v, along
+
+
+@njit(cache=True, inline="always")
+def height_between(low_v, low_a, high_v, high_a, pv):
+    """Return the coordinate along the ray where v = pv between the two ends of a span."""
+    along = low_a + (pv - low_v) * (high_a - low_a) / (high_v - low_v)
+    return min(max(along, min(low_a, high_a)), max(low_a, high_a))
+
+
+@njit(cache=True, parallel=True)
+def _sort_rays(start, position, triangle, sign):
+    for ray in prange(len(start) - 1):
+        begin, end = start[ray], start[ray + 1]
+        if end - begin > 64:  # a soup of many layers: leave little to the insertions below
+            order = begin + np.argsort(position[begin:end])
+            position[begin:end] = position[order]
+            triangle[begin:end] = triangle[order]
+            sign[begin:end] = sign[order]
+        for k in range(begin + 1, end):
+            p, t, s = position[k], triangle[k], sign[k]
+            while k > begin and _after(position[k - 1], sign[k - 1], triangle[k - 1], p, s, t):
+                position[k] = position[k - 1]
+                triangle[k] = triangle[k - 1]
+                sign[k] = sign[k - 1]
+                k -= 1
+            position[k], triangle[k], sign[k] = p, t, s
+
+
+@njit(cache=True, inline="always")
+def _after(position0, sign0, triangle0, position1, sign1, triangle1):
+    if position0 != position1:
+        return position0 > position1
+    if sign0 != sign1:
+        return sign0 > sign1
+    return triangle0 > triangle1
