@@ -58,7 +58,7 @@ DEMOS: tuple[Demo, ...] = (
     Demo(
         "biped_soup",
         "Walker, unwelded and torn",
-        "Every triangle has its own three vertices and some are missing; the volume is still there.",
+        "Every triangle has its own corners and some are missing; the volume is still there.",
     ),
     Demo(
         "biped_flipped_arm",
