@@ -1,0 +1,286 @@
+"""The `cutcell` command: app, bind, graph.
+
+Nothing heavy is imported before a command runs, so that `--help` answers at once.
+"""
+
+from __future__ import annotations
+
+import time
+from importlib import import_module
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from . import __version__
+from .console import for_people, print_json, print_table, print_warnings, progress_bars
+from .errors import MissingLibraryError, ParameterError
+from .options import (
+    Alpha,
+    Connectivity,
+    Falloff,
+    Json,
+    Leaf,
+    MaxInfluences,
+    Quiet,
+    Resolution,
+    RigFile,
+    Samples,
+    SkeletonFile,
+    Threshold,
+    WindingThreshold,
+)
+from .report import report_rows
+
+if TYPE_CHECKING:
+    from .rig import Rig, TriangleMesh
+
+app = typer.Typer(
+    name="cutcell",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    rich_markup_mode="rich",
+    context_settings={"help_option_names": ["-h", "--help"]},
+    epilog="""The method is that of [bold]A Geodesic Cut-Cell Prior for Neural Skinning[/bold]
+(Ma et al. 2026). Exit codes: 0 done, 2 wrong input (one sentence says what), 130 stopped
+by Ctrl-C.""",
+)
+
+
+def _print_version(wanted: bool) -> None:
+    if wanted:
+        typer.echo(f"cutcell {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def cutcell(
+    version: Annotated[
+        bool,
+        typer.Option(
+            "--version", callback=_print_version, is_eager=True, help="Print the version and stop."
+        ),
+    ] = False,
+) -> None:
+    """Skinning weights for any triangle mesh, from geodesic cut-cell graphs.
+
+    A mesh and its skeleton go in, weights come out: how much each vertex follows each joint.
+    The mesh may be open, in many pieces, or intersect itself.
+    """
+
+
+@app.command(name="app", epilog="Example: [bold]cutcell app character.glb --port 5010[/bold]")
+@for_people
+def open_page(
+    rig: Annotated[
+        Path | None,
+        typer.Argument(metavar="[RIG]", help="What to open; a demo character when left out."),
+    ] = None,
+    port: Annotated[
+        int, typer.Option("--port", help="Where the page is served; 0 takes any free port.")
+    ] = 5006,
+    address: Annotated[
+        str,
+        typer.Option("--address", help="Who may connect: this machine only, or 0.0.0.0 for all."),
+    ] = "localhost",
+    show: Annotated[
+        bool, typer.Option("--show/--no-show", help="Open a browser on the page.")
+    ] = True,
+) -> None:
+    """Open the page: look at a character, its graph, distances and weights, and move it."""
+    if not 0 <= port <= 65535:
+        raise ParameterError(f"port must be a whole number from 0 to 65,535, not {port}")
+    serve = _page()
+    if rig is not None:
+        from .io import load
+
+        load(rig)  # a wrong file is told here, not by an empty page
+    try:
+        serve(rig, port=port, address=address, show=show)
+    except OSError as error:
+        raise ParameterError(
+            f"the page cannot be served at {address}, port {port} ({error.strerror or error}); "
+            "choose another --port, or 0 for any free one"
+        ) from None
+
+
+@app.command(
+    epilog="""Examples:
+
+[bold]cutcell bind character.glb bound.glb[/bold]  the paper's own choices
+
+[bold]cutcell bind character.glb bound.glb -r 128 --connectivity 26[/bold]  finer, truer distances
+
+[bold]cutcell bind body.obj bound.glb --skeleton body.json[/bold]  a bare mesh
+
+[bold]cutcell bind character.glb bound.glb --json | jq .seconds[/bold]  for a script"""
+)
+@for_people
+def bind(
+    rig: RigFile,
+    out: Annotated[
+        Path,
+        typer.Argument(
+            metavar="OUT",
+            help="Where to save it with the new weights; all else in the file stays as it was.",
+        ),
+    ],
+    resolution: Resolution = 64,
+    connectivity: Connectivity = 6,
+    winding_threshold: WindingThreshold = 0.5,
+    samples: Samples = 5,
+    leaf: Leaf = "point",
+    falloff: Falloff = "paper",
+    alpha: Alpha = 0.5,
+    max_influences: MaxInfluences = 4,
+    threshold: Threshold = 0.0,
+    skeleton: SkeletonFile = None,
+    json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Compute skinning weights for RIG and save it with them as OUT.
+
+    Weights follow the shortest path through the inside of the mesh from each bone to each
+    vertex, so that a hand beside a hip does not follow the hip. The paths are found in a
+    graph: rays along x, y and z cut the mesh, and the pieces inside become edges.
+    """
+    from . import summary
+    from .io import save
+    from .skinning import bind as compute
+
+    parameters: dict[str, Any] = {
+        "resolution": resolution,
+        "connectivity": connectivity,
+        "winding_threshold": winding_threshold,
+        "samples": samples,
+        "leaf": leaf,
+        "falloff": falloff,
+        "alpha": alpha,
+        "max_influences": max_influences,
+        "threshold": threshold,
+    }
+    loaded = _load(rig, skeleton)
+    with progress_bars(quiet) as progress:
+        binding = compute(loaded, **parameters, progress=progress)
+    save(out, loaded.with_weights(binding.weights))
+    seconds = {name: round(value, 4) for name, value in binding.seconds.items()}
+    document = {
+        "input": str(rig),
+        "output": str(out),
+        "parameters": parameters,
+        "mesh": summary.summarize_mesh(loaded.mesh, binding.graph),
+        "skeleton": summary.summarize_skeleton(loaded.skeleton),
+        "graph": summary.summarize_graph(binding.graph),
+        "fallback": summary.summarize_fallback(binding.distances),
+        "influences": summary.summarize_weights(binding.weights),
+        "seconds": seconds,
+        "warnings": list(binding.warnings),
+    }
+    if not quiet:
+        print_warnings(binding.warnings)
+    if json:
+        print_json(document)
+    elif not quiet:
+        print_table(f"{rig.name} -> {out}", report_rows(document))
+
+
+@app.command(
+    epilog="""Examples:
+
+[bold]cutcell graph character.glb[/bold]
+
+[bold]cutcell graph scan.ply -r 128[/bold]  a mesh alone: no skeleton is needed
+
+[bold]cutcell graph character.glb --json | jq .edges.total[/bold]"""
+)
+@for_people
+def graph(
+    rig: RigFile,
+    resolution: Resolution = 64,
+    connectivity: Connectivity = 6,
+    winding_threshold: WindingThreshold = 0.5,
+    samples: Samples = 5,
+    leaf: Leaf = "point",
+    skeleton: SkeletonFile = None,
+    json: Json = False,
+) -> None:
+    """Build the cut-cell graph of RIG and say what it holds; nothing is written.
+
+    Counts nodes and edges (of the mesh, inside, on the surface), pieces that hang together,
+    and the share of vertices that no bone reaches through the graph.
+    """
+    from . import summary
+    from .geodesics import bone_distances
+    from .graph import build_graph
+
+    mesh, loaded = _load_mesh(rig, skeleton)
+    seconds: dict[str, float] = {}
+    start = time.perf_counter()
+    with progress_bars(quiet=json) as progress:
+        built = build_graph(
+            mesh,
+            resolution,
+            connectivity=connectivity,
+            winding_threshold=winding_threshold,
+            progress=progress,
+        )
+        seconds["graph"] = round(time.perf_counter() - start, 4)
+        distances = None
+        if loaded:
+            start = time.perf_counter()
+            distances = bone_distances(
+                built,
+                loaded.skeleton,
+                samples=samples,
+                leaf=leaf,
+                allowed=loaded.allowed,
+                progress=progress,
+            )
+            seconds["distances"] = round(time.perf_counter() - start, 4)
+    document = {
+        "input": str(rig),
+        "parameters": {
+            "resolution": resolution,
+            "connectivity": connectivity,
+            "winding_threshold": winding_threshold,
+            "samples": samples,
+            "leaf": leaf,
+        },
+        "mesh": summary.summarize_mesh(mesh, built),
+        "skeleton": loaded and summary.summarize_skeleton(loaded.skeleton),
+        "graph": summary.summarize_graph(built),
+        "fallback": distances and summary.summarize_fallback(distances),
+        "seconds": seconds,
+    }
+    if json:
+        print_json(document)
+    else:
+        print_table(rig.name, report_rows(document))
+
+
+def main() -> None:
+    """Run the command line."""
+    app()
+
+
+def _page() -> Any:
+    """Fetch the page, or say how to install what it needs."""
+    try:
+        return import_module("app.serve").serve
+    except ModuleNotFoundError as error:
+        raise MissingLibraryError(
+            f"the page needs libraries that are not installed ({error.name} is missing); "
+            "install them by: pip install 'cutcell[app]'"
+        ) from None
+
+
+def _load(path: Path, skeleton: Path | None) -> Rig:
+    from .io import load
+
+    return load(path, skeleton=skeleton)
+
+
+def _load_mesh(path: Path, skeleton: Path | None) -> tuple[TriangleMesh, Rig | None]:
+    loaded = _load(path, skeleton)
+    return loaded.mesh, loaded

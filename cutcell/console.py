@@ -1,0 +1,94 @@
+"""What the commands print: results on standard output, all else on standard error."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from functools import wraps
+from typing import Any, TypeVar
+
+import typer
+from rich.console import Console
+from rich.markup import escape
+from rich.progress import BarColumn, TaskID, TextColumn, TimeElapsedColumn
+from rich.progress import Progress as Bars
+from rich.table import Table
+
+from .errors import CutcellError
+from .progress import Progress, silent
+
+WRONG_INPUT = 2
+INTERRUPTED = 130
+
+STAGES = {"graph": "Building the graph", "distances": "Finding distances", "weights": "Weighting"}
+
+Command = TypeVar("Command", bound=Callable[..., Any])
+
+
+def for_people(command: Command) -> Command:
+    """Turn an error that a person can mend into one sentence and exit code 2."""
+
+    @wraps(command)
+    def run(*args: Any, **kwargs: Any) -> Any:
+        try:
+            return command(*args, **kwargs)
+        except CutcellError as error:
+            _to_stderr("error", str(error), "bold red")
+            raise typer.Exit(WRONG_INPUT) from None
+        except KeyboardInterrupt:
+            _to_stderr("stopped", "nothing was written", "bold yellow")
+            raise typer.Exit(INTERRUPTED) from None
+
+    return run  # type: ignore[return-value]
+
+
+@contextmanager
+def progress_bars(quiet: bool = False) -> Iterator[Progress]:
+    """Give a progress callback that draws a bar for each stage while the block runs.
+
+    Nothing is drawn where standard error is not a terminal.
+    """
+    console = Console(stderr=True)
+    if quiet or not console.is_terminal:
+        yield silent
+        return
+    columns = (TextColumn("{task.description:<18}"), BarColumn(), TimeElapsedColumn())
+    with Bars(*columns, console=console, transient=True) as bars:
+        tasks: dict[str, TaskID] = {}
+
+        def report(stage: str, fraction: float) -> None:
+            if stage not in tasks:
+                tasks[stage] = bars.add_task(STAGES.get(stage, stage), total=1.0)
+            bars.update(tasks[stage], completed=fraction)
+
+        yield report
+
+
+def print_json(document: Mapping[str, Any]) -> None:
+    """Print one JSON document, and nothing else, on standard output."""
+    sys.stdout.write(json.dumps(document, indent=2, ensure_ascii=False, allow_nan=False) + "\n")
+
+
+def print_table(title: str, rows: Iterable[tuple[str, str]]) -> None:
+    """Print named results below each other on standard output."""
+    table = Table(title=escape(title), title_justify="left", title_style="bold", box=None)
+    table.show_header = False
+    table.add_column(style="dim", no_wrap=True)
+    table.add_column()
+    for name, value in rows:
+        table.add_row(name, escape(value))
+    Console(highlight=False).print(table)
+
+
+def print_warnings(warnings: Iterable[str]) -> None:
+    """Print each warning on a line of its own on standard error."""
+    for warning in warnings:
+        _to_stderr("warning", warning, "bold yellow")
+
+
+def _to_stderr(label: str, message: str, style: str) -> None:
+    # Soft wrapping leaves lines whole, so that a sentence can be searched for and copied.
+    console = Console(stderr=True, highlight=False, soft_wrap=True)
+    console.print(f"[{style}]{label}:[/] {escape(message)}")

@@ -1,0 +1,121 @@
+"""The options that commands share, each explained where `--help` shows it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+METHOD = "The method"
+FILES = "Files and output"
+
+RigFile = Annotated[
+    Path,
+    typer.Argument(
+        metavar="RIG", help="A character: .glb, .gltf, .npz, or .obj with its rig .txt."
+    ),
+]
+SkeletonFile = Annotated[
+    Path | None,
+    typer.Option(
+        "--skeleton",
+        metavar="FILE",
+        help="Skeleton (JSON) of a bare mesh: .obj, .ply, .stl, .off.",
+        rich_help_panel=FILES,
+    ),
+]
+Json = Annotated[
+    bool, typer.Option("--json", help="Print one JSON document.", rich_help_panel=FILES)
+]
+Quiet = Annotated[
+    bool,
+    typer.Option("--quiet", "-q", help="No bars, no table, no warnings.", rich_help_panel=FILES),
+]
+Resolution = Annotated[
+    int,
+    typer.Option(
+        "--resolution",
+        "-r",
+        metavar="R",
+        help="Rays along the longest side of the mesh. More: finer parts are told apart, more"
+        " time and memory.",
+        rich_help_panel=METHOD,
+    ),
+]
+Connectivity = Annotated[
+    int,
+    typer.Option(
+        "--connectivity",
+        metavar="6|26",
+        help="Neighbours of a point inside. 6: the paper's, paths along the axes only. 26: also"
+        " diagonals, so distances are truer.",
+        rich_help_panel=METHOD,
+    ),
+]
+WindingThreshold = Annotated[
+    float,
+    typer.Option(
+        "--winding-threshold",
+        metavar="T",
+        help="Winding number from which a point is inside, 0 to 1. Lower fills more of an"
+        " open mesh.",
+        rich_help_panel=METHOD,
+    ),
+]
+Samples = Annotated[
+    int,
+    typer.Option(
+        "--samples",
+        metavar="N",
+        help="Points along each bone that distances start from.",
+        rich_help_panel=METHOD,
+    ),
+]
+Leaf = Annotated[
+    str,
+    typer.Option(
+        "--leaf",
+        metavar="point|extend",
+        help="Bone of a joint without children: the joint alone, or a segment on along its"
+        " parent's direction.",
+        rich_help_panel=METHOD,
+    ),
+]
+Falloff = Annotated[
+    str,
+    typer.Option(
+        "--falloff",
+        metavar="NAME",
+        help="How weight falls with distance. paper: the paper's kernel (its equation 1), smooth"
+        " and soft.",
+        rich_help_panel=METHOD,
+    ),
+]
+Alpha = Annotated[
+    float,
+    typer.Option(
+        "--alpha",
+        metavar="A",
+        help="Of the paper's falloff, 0 to 1: 0 linear in the distance, 1 quadratic.",
+        rich_help_panel=METHOD,
+    ),
+]
+MaxInfluences = Annotated[
+    int,
+    typer.Option(
+        "--max-influences",
+        metavar="K",
+        help="Most joints a vertex may follow. 4 is what game engines read.",
+        rich_help_panel=METHOD,
+    ),
+]
+Threshold = Annotated[
+    float,
+    typer.Option(
+        "--threshold",
+        metavar="W",
+        help="Weights below this are dropped and the rest made to sum to 1 again.",
+        rich_help_panel=METHOD,
+    ),
+]

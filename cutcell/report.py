@@ -1,0 +1,62 @@
+"""The tables that the commands print, made of the same numbers as their JSON."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+
+def report_rows(document: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    """Say in words what a command has found, as pairs of a name and a text.
+
+    Parameters
+    ----------
+    document : mapping
+        What the command prints with `--json`.
+    """
+    mesh, graph, skeleton = document["mesh"], document["graph"], document["skeleton"]
+    yield (
+        "mesh",
+        f"{_count(mesh['vertices'], 'vertex')} ({mesh['welded_vertices']:,} places), "
+        f"{_count(mesh['triangles'], 'triangle')}, {_count(mesh['components'], 'component')}",
+    )
+    if mesh["closed"]:
+        yield "surface", "closed"
+    else:
+        yield "surface", f"open: {_count(mesh['open_edges'], 'edge')} with one triangle"
+    if skeleton:
+        roots = _count(skeleton["roots"], "root")
+        yield (
+            "skeleton",
+            f"{_count(skeleton['joints'], 'joint')}, {skeleton['deform']:,} may "
+            f"carry weight; {roots}",
+        )
+    yield "resolution", f"{graph['resolution']}"
+    for what in ("nodes", "edges"):
+        kinds = ", ".join(
+            f"{graph[what][kind]:,} {kind}" for kind in ("mesh", "interior", "surface")
+        )
+        yield what, f"{graph[what]['total']:,}: {kinds}"
+    yield (
+        "in one piece",
+        f"{graph['largest_component']:.1%} of the nodes; "
+        f"{_count(graph['components'], 'piece')} in all",
+    )
+    if document["fallback"]:
+        yield "not reached", _fallback(document["fallback"])
+    if "influences" in document:
+        influences = document["influences"]
+        yield "influences", f"{influences['mean']:.2f} a vertex, {influences['most']} at most"
+    yield "seconds", ", ".join(f"{name} {value:.2f}" for name, value in document["seconds"].items())
+
+
+def _fallback(fallback: Mapping[str, Any]) -> str:
+    if not fallback["vertices"]:
+        return "none: a path inside leads from a bone to every vertex"
+    reasons = "; ".join(f"{count:,} {reason}" for reason, count in fallback["reasons"].items())
+    return f"{fallback['share']:.1%} of the vertices ({reasons})"
+
+
+def _count(number: int, noun: str) -> str:
+    plural = {"vertex": "vertices"}.get(noun, noun + "s")
+    return f"{number:,} {noun if number == 1 else plural}"
