@@ -73,17 +73,17 @@ def build_graph(
         crossings.append(found)
         runs.append(find_runs(vertices, found, boundary, caps, resolution, axis, winding_threshold))
     progress("graph", 0.85)
-    graph = _assemble(vertices, faces, crossings, runs, lattice, connectivity) + (
-        vertex_node,
-        lattice,
-        len(boundary.edges) == 0,
+    graph = _assemble(
+        vertices, vertex_node, faces, boundary, crossings, runs, lattice, connectivity
     )
     progress("graph", 1.0)
-    return CutCellGraph(*graph)
+    return graph
 
 
-def _assemble(vertices, faces, crossings, runs, lattice, connectivity):
-    """Number the nodes, list the edges."""
+def _assemble(
+    vertices, vertex_node, faces, boundary, crossings, runs, lattice, connectivity
+) -> CutCellGraph:
+    """Give each node its number and list the edges."""
     resolution = lattice.resolution
     # Until they are numbered, nodes are known by keys: a lattice point by its number in
     # the lattice, a crossing by its place behind all of these.
@@ -113,7 +113,10 @@ def _assemble(vertices, faces, crossings, runs, lattice, connectivity):
     lengths = np.linalg.norm(nodes[edges[:, 0]] - nodes[edges[:, 1]], axis=1)
     of_node = np.full(len(nodes), -1, np.int32)
     of_node[len(nodes) - len(outer) :] = triangle
-    return nodes, kinds, edges, lengths, edge_kind, of_node
+    closed = len(boundary.edges) == 0
+    return CutCellGraph(
+        nodes, kinds, edges, lengths, edge_kind, of_node, vertex_node, lattice, closed
+    )
 
 
 def _segment_keys(runs: Runs, axis: int, resolution: int, first_key: int) -> NDArray[np.int64]:

@@ -14,7 +14,7 @@ from numba import njit, prange
 from numpy.typing import NDArray
 
 from .caps import Caps
-from .rays import AXES, Crossings, cast_rays, first_at_least
+from .rays import AXES, Crossings, cast_rays
 from .winding import Boundary, boundary_turns
 
 NONE = -1
@@ -141,8 +141,10 @@ def _walk_rays(surface, spheres, crossings, closing, store, cursor, ray, first, 
 
 @njit(cache=True)
 def _is_inside(surface, spheres, closing, r, chi, height):
-    """Tell whether the winding number on ray r is at least tau; chi counts the real
-    crossings ahead."""
+    """Tell whether the winding number at a height on ray r is at least tau.
+
+    chi counts the mesh's own crossings ahead.
+    """
     resolution, tau, turn, vertices, edges, count = surface
     centre, radius, area = spheres
     if len(radius) == 0:

@@ -146,9 +146,10 @@ def _number_at(points, vertices, faces, cells, start, listed, edges, count, numb
             cell = min(int(pu * cells), cells - 1) * cells + min(int(pv * cells), cells - 1)
             for k in range(start[cell], start[cell + 1]):
                 low_v, low_a, high_v, high_a, side = column_span(vertices, faces, listed[k], pu)
-                if low_v <= pv < high_v:
-                    if height_between(low_v, low_a, high_v, high_a, pv) > height:
-                        chi += side
+                if not low_v <= pv < high_v:
+                    continue
+                if height_between(low_v, low_a, high_v, high_a, pv) > height:
+                    chi += side
         number[q] = chi + boundary_turns(vertices, edges, count, pu, pv, height)
 
 

@@ -1,0 +1,15 @@
+"""Bones, their distances through the body, and what to do where there are none."""
+
+from .bones import Bones, Sources, bone_segments, distance_to_segment
+from .distances import BoneDistances, bone_distances
+from .fallback import FALLBACK_REASONS
+
+__all__ = [
+    "FALLBACK_REASONS",
+    "BoneDistances",
+    "Bones",
+    "Sources",
+    "bone_distances",
+    "bone_segments",
+    "distance_to_segment",
+]

@@ -1,0 +1,133 @@
+"""Bones as segments, and where in the graph their distances begin (paper section 3.2)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.spatial import cKDTree
+
+from ..checks import check_choice
+from ..errors import MeshError
+from ..graph import CutCellGraph
+from ..rig import Skeleton
+
+LEAVES = ("point", "extend")
+TIE = 1e-9
+"""Relative: nodes this nearly as near as the nearest are sources as well. The middle of a
+lattice cell has eight nearest nodes, and none of them may win by rounding."""
+
+
+@dataclass(frozen=True, eq=False)
+class Bones:
+    """The segments that stand for the joints.
+
+    Parameters
+    ----------
+    start, end : arrays, shape (b, 3)
+        Ends of each bone; equal for a bone that is a point.
+    joint : array, shape (b,), int32
+        The joint that moves the bone: its parent end.
+    """
+
+    start: NDArray[np.float64]
+    end: NDArray[np.float64]
+    joint: NDArray[np.int32]
+
+
+def bone_segments(skeleton: Skeleton, leaf: str = "point") -> Bones:
+    """List the bones of every joint that may carry weight.
+
+    A joint's bones run to its child joints.
+
+    Parameters
+    ----------
+    skeleton : Skeleton
+    leaf : {"point", "extend"}
+        A joint without children is a point, or is extended along its parent's direction by
+        half its parent's length. A lone joint is a point either way.
+
+    Returns
+    -------
+    Bones
+        Ordered by joint; in the units of the skeleton.
+
+    Raises
+    ------
+    ParameterError
+        An unknown `leaf`.
+    """
+    check_choice("leaf", leaf, LEAVES)
+    start, end, joint = [], [], []
+    for j in np.flatnonzero(skeleton.deform):
+        head = skeleton.joints[j]
+        tails = [skeleton.joints[k] for k in skeleton.children[j]]
+        if not tails:
+            parent = skeleton.parents[j]
+            extend = leaf == "extend" and parent >= 0
+            tails = [head + (head - skeleton.joints[parent]) / 2 if extend else head]
+        for tail in tails:
+            start.append(head)
+            end.append(tail)
+            joint.append(j)
+    return Bones(np.array(start), np.array(end), np.array(joint, np.int32))
+
+
+def distance_to_segment(points: ArrayLike, start: ArrayLike, end: ArrayLike) -> NDArray:
+    """Compute the distance from points (..., 3) to segments (..., 3), broadcast."""
+    points, start, end = (np.asarray(x, np.float64) for x in (points, start, end))
+    along = end - start
+    squared = (along * along).sum(axis=-1)
+    travel = ((points - start) * along).sum(axis=-1)
+    fraction = np.clip(travel / np.where(squared > 0, squared, 1), 0, 1)
+    return np.linalg.norm(points - start - fraction[..., None] * along, axis=-1)
+
+
+@dataclass(frozen=True, eq=False)
+class Sources:
+    """Where each bone's distances begin.
+
+    Parameters
+    ----------
+    node : array, shape (s,), int32
+    bone : array, shape (s,), int32
+        Ascending.
+    distance : array, shape (s,), float64
+        From the node straight to the bone.
+    """
+
+    node: NDArray[np.int32]
+    bone: NDArray[np.int32]
+    distance: NDArray[np.float64]
+
+
+def find_sources(graph: CutCellGraph, bones: Bones, samples: int) -> Sources:
+    """Find the graph nodes nearest to evenly spaced points on each bone.
+
+    Parameters
+    ----------
+    graph : CutCellGraph
+    bones : Bones
+        In the unit cube.
+    samples : int
+        N, points a bone, both ends included; a single one lies in the middle.
+
+    Raises
+    ------
+    MeshError
+        The graph has no edges, so that nothing can be reached.
+    """
+    connected = np.flatnonzero(graph.degree > 0)
+    if len(connected) == 0:
+        raise MeshError("every triangle of the mesh has collapsed into a point")
+    spots = np.linspace(0, 1, samples) if samples > 1 else np.array([0.5])
+    points = bones.start[:, None] + spots[:, None] * (bones.end - bones.start)[:, None]
+    near = min(8, len(connected))
+    distance, place = cKDTree(graph.nodes[connected]).query(points, k=list(range(1, near + 1)))
+    chosen = distance <= distance[..., :1] * (1 + TIE)
+    bone = np.broadcast_to(np.arange(len(points))[:, None, None], chosen.shape)[chosen]
+    pairs = np.unique(np.stack([bone, connected[place[chosen]]], axis=1), axis=0)
+    bone, node = pairs.T.astype(np.int32)
+    straight = distance_to_segment(graph.nodes[node], bones.start[bone], bones.end[bone])
+    return Sources(node, bone, straight)

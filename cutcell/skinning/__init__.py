@@ -1,0 +1,6 @@
+"""Weights from distances, and the whole way from a rig to its weights."""
+
+from .bind import Binding, bind
+from .weights import FALLOFFS, skinning_weights
+
+__all__ = ["FALLOFFS", "Binding", "bind", "skinning_weights"]

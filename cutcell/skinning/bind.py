@@ -1,0 +1,130 @@
+"""All stages in one call: the only place that composes them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from time import perf_counter
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..geodesics import FALLBACK_REASONS, BoneDistances, bone_distances
+from ..graph import CutCellGraph, build_graph
+from ..progress import Progress, silent
+from ..rig import Rig
+from .weights import skinning_weights
+
+
+@dataclass(frozen=True, eq=False)
+class Binding:
+    """A bound rig: weights, and everything they came from.
+
+    Parameters
+    ----------
+    weights : array, shape (n, j), float64
+        For the rig's own vertices, in their order.
+    graph : CutCellGraph
+    distances : BoneDistances
+    seconds : dict of str to float
+        Time taken by each stage: "graph", "distances", "weights".
+    warnings : tuple of str
+        What a person should know about the result, in sentences.
+    """
+
+    weights: NDArray[np.float64]
+    graph: CutCellGraph
+    distances: BoneDistances
+    seconds: dict[str, float]
+    warnings: tuple[str, ...]
+
+
+def bind(
+    rig: Rig,
+    resolution: int = 64,
+    *,
+    connectivity: int = 6,
+    winding_threshold: float = 0.5,
+    samples: int = 5,
+    leaf: str = "point",
+    falloff: str = "paper",
+    alpha: float = 0.5,
+    max_influences: int | None = 4,
+    threshold: float = 0.0,
+    progress: Progress = silent,
+) -> Binding:
+    """Compute skinning weights for a rig.
+
+    Parameters
+    ----------
+    rig : Rig
+        Its own weights are not used, except that joints without any stay without
+        (`Skeleton.deform`).
+    resolution, connectivity, winding_threshold
+        See `build_graph`.
+    samples, leaf
+        See `bone_distances`.
+    falloff, alpha, max_influences, threshold
+        See `skinning_weights`.
+    progress : callable
+        See `cutcell.progress`; stages are "graph", "distances", "weights".
+
+    Returns
+    -------
+    Binding
+
+    Raises
+    ------
+    ParameterError
+        A parameter is out of its range.
+    MeshError, WeightsError
+        The rig cannot be bound; the sentence says why.
+
+    Examples
+    --------
+    >>> rig = cutcell.load("character.glb")  # doctest: +SKIP
+    >>> binding = cutcell.bind(rig)  # doctest: +SKIP
+    >>> cutcell.save("bound.glb", rig.with_weights(binding.weights))  # doctest: +SKIP
+    """
+    ticks = [perf_counter()]
+    graph = build_graph(
+        rig.mesh,
+        resolution,
+        winding_threshold=winding_threshold,
+        connectivity=connectivity,
+        progress=progress,
+    )
+    ticks.append(perf_counter())
+    distances = bone_distances(
+        graph, rig.skeleton, samples=samples, leaf=leaf, allowed=rig.allowed, progress=progress
+    )
+    ticks.append(perf_counter())
+    progress("weights", 0.0)
+    weights = skinning_weights(
+        distances,
+        falloff=falloff,
+        alpha=alpha,
+        max_influences=max_influences,
+        threshold=threshold,
+    )
+    progress("weights", 1.0)
+    ticks.append(perf_counter())
+    seconds = dict(zip(("graph", "distances", "weights"), np.diff(ticks).tolist(), strict=True))
+    return Binding(weights, graph, distances, seconds, _warnings(graph, distances))
+
+
+def _warnings(graph: CutCellGraph, distances: BoneDistances) -> tuple[str, ...]:
+    found = []
+    for reason, text in enumerate(FALLBACK_REASONS[1:], start=1):
+        count = int((distances.fallback == reason).sum())
+        if count:
+            found.append(
+                f"{count} of {len(distances.fallback)} vertices follow their nearest bones "
+                f"in a straight line: {text}"
+            )
+    if not (graph.node_kind == 1).any():
+        found.append(
+            "no lattice point lies inside the mesh, distances run over its surface alone: "
+            "are its faces turned inside out, or is it thinner than a lattice cell? Try a "
+            "higher resolution"
+        )
+    return tuple(found)
