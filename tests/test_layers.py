@@ -115,9 +115,7 @@ def test_parts_of_the_core_use_only_those_before_them():
             continue
         for name, line in imports_of(path):
             used = name.split(".")[1] if name.startswith("cutcell.") else part
-            if RANK.get(used, -1) > RANK[part] or (
-                used != part and used in ORDER[-1] and part != "cli"
-            ):
+            if RANK.get(used, -1) > RANK[part]:
                 wrong.append(f"{path.relative_to(ROOT)}:{line} imports {name}")
     assert wrong == []
 
