@@ -54,6 +54,7 @@ def write_all(contents: dict[Path, bytes]) -> None:
     written: list[tuple[str, Path]] = []
     try:
         for path, data in contents.items():
+            path.parent.mkdir(parents=True, exist_ok=True)
             written.append((_write_beside(path, data), path))
         for temporary, path in written:
             os.replace(temporary, path)

@@ -35,6 +35,8 @@ class Document:
     path: Path
     json: dict[str, Any]
     buffers: list[bytes]
+    binary: bool = True
+    """Whether it came as a GLB container."""
     chunks: list[tuple[int, bytes]] = field(default_factory=list)
     """GLB chunks that are neither JSON nor the binary buffer."""
     decoded: dict[int, Any] = field(default_factory=dict)
@@ -107,7 +109,7 @@ def read_document(path: Path) -> Document:
             "is not a glTF file: it starts with neither the letters glTF (binary) nor a "
             "brace (JSON text)"
         )
-    document = Document(path, _parse(text), [], others)
+    document = Document(path, _parse(text), [], data[:4] == MAGIC, others)
     _check_version(document)
     for i, buffer in enumerate(document.items("buffers")):
         document.buffers.append(_buffer_bytes(path, buffer, i, binary))
@@ -220,4 +222,6 @@ def pack_glb(text: bytes, binary: bytes, chunks: list[tuple[int, bytes]]) -> byt
         parts.append((BINARY_CHUNK, binary + b"\0" * (-len(binary) % 4)))
     parts += [(kind, body + b"\0" * (-len(body) % 4)) for kind, body in chunks]
     packed = b"".join(struct.pack("<II", len(body), kind) + body for kind, body in parts)
+    if 12 + len(packed) >= 2**32:
+        raise FileError("is too large for a GLB file, which ends at 4 GiB; save it as .gltf")
     return MAGIC + struct.pack("<II", 2, 12 + len(packed)) + packed

@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from .weights import normalised
+
 
 def pack_influences(weights: NDArray) -> tuple[NDArray, NDArray]:
     """Sort each row's influences into slots of four.
@@ -21,9 +23,7 @@ def pack_influences(weights: NDArray) -> tuple[NDArray, NDArray]:
     shares : array, shape (s, n, 4), float32
         Rows sum to one as exactly as float32 can, over all s sets together.
     """
-    sums = weights.sum(axis=1, keepdims=True)
-    exact = np.divide(weights, sums, out=np.zeros(weights.shape), where=sums > 0)
-    rounded = exact.astype(np.float32)
+    rounded = normalised(weights).astype(np.float32)
     most = int((rounded > 0).sum(axis=1).max(initial=1))
     sets = max(-(-most // 4), 1)
     slots = min(4 * sets, weights.shape[1])

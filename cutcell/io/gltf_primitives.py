@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from ..errors import FileError, MeshError, WeightsError
 from .gltf_accessors import read_accessor
 from .gltf_container import Document
+from .weights import normalised
 
 DRAWS_TRIANGLES = (pygltflib.TRIANGLES, pygltflib.TRIANGLE_STRIP, pygltflib.TRIANGLE_FAN)
 
@@ -133,8 +134,7 @@ def read_weights(
         for k in range(4):
             carrying = share[:, k] > 0
             np.add.at(weights, (rows[carrying], where[carrying, k]), share[carrying, k])
-    sums = weights.sum(axis=1, keepdims=True)
-    return np.divide(weights, sums, out=weights, where=sums > 0)
+    return normalised(weights)
 
 
 def _influences(

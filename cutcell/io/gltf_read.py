@@ -25,6 +25,7 @@ from .gltf_primitives import (
     read_weights,
 )
 from .gltf_skins import Bind, read_bind, read_skeleton
+from .weights import carrying
 
 
 @dataclass(eq=False)
@@ -73,7 +74,7 @@ def _read(document: Document, path: Path) -> Rig:
         raise MeshError("its skinned meshes have no triangles")
     mesh = TriangleMesh(np.concatenate(vertices), np.concatenate(faces))  # type: ignore[arg-type]
     weights = _dense(parts, stored, len(mesh.vertices), len(bind.nodes))
-    used = np.zeros(len(bind.nodes), bool) if weights is None else (weights > 0).any(axis=0)
+    used = None if weights is None else carrying(weights)
     skeleton = read_skeleton(document, nodes, bind, used)
     return Rig(
         mesh,
@@ -171,7 +172,7 @@ def _allowed(parts: list[Part], vertices: int, joints: int) -> NDArray | None:
 
 def _read_attachments(document: Document, nodes: Nodes, bind: Bind) -> tuple[Attachment, ...]:
     place = {node: j for j, node in enumerate(bind.nodes)}
-    found = []
+    found: list[Attachment] = []
     for i, node in enumerate(nodes.raw):
         if "mesh" not in node or "skin" in node:
             continue

@@ -124,14 +124,14 @@ def _first_regular(known: NDArray, inverse: NDArray) -> NDArray:
     return np.linalg.inv(known[0]) @ inverse[0]
 
 
-def read_skeleton(document: Document, nodes: Nodes, bind: Bind, used: NDArray) -> Skeleton:
+def read_skeleton(document: Document, nodes: Nodes, bind: Bind, used: NDArray | None) -> Skeleton:
     """Return the joints with positions, parents and unique names.
 
     Parameters
     ----------
     document, nodes, bind
-    used : array, shape (j,), bool
-        Which joints carry weight in the file. When none does, all may.
+    used : array, shape (j,), bool, or None
+        Which joints may carry weight; all for None.
     """
     place = {node: j for j, node in enumerate(bind.nodes)}
     parents = [
@@ -145,7 +145,7 @@ def read_skeleton(document: Document, nodes: Nodes, bind: Bind, used: NDArray) -
     if not np.isfinite(positions).all():
         raise FileError("a joint has no finite rest position")
     names = unique_names([nodes.raw[node].get("name") for node in bind.nodes])
-    return Skeleton(positions, np.array(parents), names, used if used.any() else None)  # type: ignore[arg-type]
+    return Skeleton(positions, np.array(parents), names, used)  # type: ignore[arg-type]
 
 
 def unique_names(names: list) -> tuple[str, ...]:

@@ -45,4 +45,5 @@ def linear_blend_skinning(
         raise ParameterError(f"{len(points)} vertices but {len(shares)} rows of weights")
     blended = (shares @ matrices[:, :3].reshape(-1, 12)).reshape(-1, 3, 4)
     posed = np.einsum("nab,nb->na", blended[:, :, :3], points) + blended[:, :, 3]
-    return np.where(shares.any(axis=1)[:, None], posed, points)
+    held = np.abs(shares).sum(axis=1, keepdims=True) > 0
+    return np.where(held, posed, points)

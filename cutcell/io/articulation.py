@@ -1,0 +1,166 @@
+"""Articulation-XL 2.0: one rig as arrays in an ``npz`` file (Song et al. 2025).
+
+``vertices`` (n, 3), ``faces`` (m, 3), ``joints`` (j, 3), ``bones`` (b, 2) as pairs of
+parent and child, ``root_index``, ``joint_names`` (j,), and the weights as a sparse matrix:
+``skinning_weights_value``, ``_row``, ``_col`` (or ``_rows``, ``_cols``) and ``_shape``.
+"""
+
+from __future__ import annotations
+
+import io
+import zipfile
+import zlib
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import FileError, SkeletonError, WeightsError
+from ..rig import Rig, Skeleton, TriangleMesh
+from .files import read_bytes
+from .weights import carrying, normalised
+
+REQUIRED = ("vertices", "faces", "joints", "bones")
+
+
+def read_articulation(path: Path) -> Rig:
+    """Load an Articulation-XL rig.
+
+    Raises
+    ------
+    FileError
+        Not such a file, an array is missing, or it holds pickled objects: those could run
+        any code when read, and are never opened.
+    """
+    arrays = _arrays(read_bytes(path))
+    missing = [name for name in REQUIRED if name not in arrays]
+    if missing:
+        raise FileError(
+            f"is no Articulation-XL rig: it lacks {', '.join(missing)} "
+            f"(it has {', '.join(sorted(arrays)) or 'nothing'})"
+        )
+    mesh = TriangleMesh(arrays["vertices"], arrays["faces"])
+    count = len(np.atleast_1d(arrays["joints"]))
+    weights = _weights(arrays, len(mesh.vertices), count)
+    skeleton = Skeleton(
+        arrays["joints"],
+        _parents(arrays, count),
+        _names(arrays, count),
+        carrying(weights),  # type: ignore[arg-type]
+    )
+    return Rig(mesh, skeleton, weights, name=path.stem)
+
+
+def _arrays(data: bytes) -> dict[str, NDArray]:
+    found = {}
+    try:
+        with np.load(io.BytesIO(data), allow_pickle=False) as archive:
+            if not isinstance(archive, np.lib.npyio.NpzFile):
+                raise FileError("is a single array, not an npz archive of several")
+            for name in archive.files:
+                found[name] = archive[name]
+    except FileError:
+        raise
+    except ValueError as e:
+        if "pickle" in str(e).lower() or "object array" in str(e).lower():
+            raise FileError(
+                "holds pickled Python objects, which could run any code and are not opened; "
+                "save its arrays as plain numbers and text"
+            ) from None
+        raise FileError(f"is not a readable npz archive: {e}") from None
+    except (OSError, EOFError, KeyError, zipfile.BadZipFile, zlib.error, NotImplementedError,
+            SyntaxError, MemoryError, RuntimeError, TypeError, OverflowError) as e:  # fmt: skip
+        raise FileError(f"is not a readable npz archive: {e}") from None
+    return found
+
+
+def _parents(arrays: dict[str, NDArray], count: int) -> NDArray:
+    bones = arrays["bones"].reshape(-1, 2) if arrays["bones"].size else np.zeros((0, 2), int)
+    if bones.dtype.kind not in "iu" or ((bones < 0) | (bones >= count)).any():
+        raise SkeletonError(f"bones must be pairs of joint numbers, 0 to {count - 1}")
+    parents = np.full(count, -1)
+    for parent, child in bones.tolist():
+        if parents[child] not in (-1, parent):
+            raise SkeletonError(f"joint {child} hangs on two joints, {parents[child]} and {parent}")
+        parents[child] = parent
+    if "root_index" in arrays:
+        root = arrays["root_index"]
+        if root.size != 1 or root.dtype.kind not in "iu" or not 0 <= int(root.flat[0]) < count:
+            raise SkeletonError(f"root_index must be one joint number, 0 to {count - 1}")
+        if parents[int(root.flat[0])] >= 0:
+            raise SkeletonError(
+                f"joint {int(root.flat[0])} is the root but hangs on "
+                f"joint {parents[int(root.flat[0])]}"
+            )
+    return parents
+
+
+def _names(arrays: dict[str, NDArray], count: int) -> tuple[str, ...]:
+    if "joint_names" not in arrays:
+        return ()
+    names = arrays["joint_names"].reshape(-1)
+    if len(names) != count or names.dtype.kind not in "US":
+        raise SkeletonError(f"joint_names must be {count} texts, as many as there are joints")
+    return tuple(n.decode("utf-8", "replace") if isinstance(n, bytes) else str(n) for n in names)
+
+
+def _weights(arrays: dict[str, NDArray], vertices: int, joints: int) -> NDArray | None:
+    if "skinning_weights_value" not in arrays:
+        return None
+    parts = []
+    for names in (("row", "rows"), ("col", "cols")):
+        keys = [f"skinning_weights_{n}" for n in names]
+        key = next((k for k in keys if k in arrays), None)
+        if key is None:
+            raise FileError(f"has skinning_weights_value but no {keys[0]}")
+        parts.append(arrays[key].reshape(-1))
+    (rows, columns), values = parts, arrays["skinning_weights_value"].reshape(-1)
+    if any(p.dtype.kind not in "iu" for p in parts) or values.dtype.kind not in "fiu":
+        raise WeightsError("skinning weights must be numbers, their rows and columns whole ones")
+    if not len(rows) == len(columns) == len(values):
+        raise WeightsError(
+            f"there are {len(values)} skinning weights, {len(rows)} rows and {len(columns)} columns"
+        )
+    if ((rows < 0) | (rows >= vertices) | (columns < 0) | (columns >= joints)).any():
+        raise WeightsError(
+            f"a skinning weight lies outside of {vertices} vertices and {joints} joints"
+        )
+    shape = arrays.get("skinning_weights_shape")
+    if shape is not None and shape.reshape(-1).tolist() != [vertices, joints]:
+        raise WeightsError(
+            f"the skinning weights are {shape.reshape(-1).tolist()}, but the mesh has {vertices} "
+            f"vertices and the skeleton {joints} joints"
+        )
+    if not (np.isfinite(values) & (values >= 0)).all():
+        raise WeightsError("a skinning weight is negative or not a number")
+    weights = np.zeros((vertices, joints))
+    np.add.at(weights, (rows, columns), values)
+    return normalised(weights)
+
+
+def articulation_bytes(rig: Rig) -> bytes:
+    """Return a rig as an Articulation-XL archive.
+
+    `root_index` is the first root; further roots are joints on which no bone ends.
+    """
+    skeleton = rig.skeleton
+    held = np.flatnonzero(skeleton.parents >= 0)
+    arrays = {
+        "vertices": rig.mesh.vertices,
+        "faces": rig.mesh.faces,
+        "joints": skeleton.joints,
+        "bones": np.stack([skeleton.parents[held], held], axis=1).astype(np.int32),
+        "root_index": np.array(int(np.flatnonzero(skeleton.parents < 0)[0])),
+        "joint_names": np.array(skeleton.names, dtype=np.str_),
+    }
+    if rig.weights is not None:
+        rows, columns = np.nonzero(rig.weights)
+        arrays |= {
+            "skinning_weights_value": rig.weights[rows, columns],
+            "skinning_weights_row": rows.astype(np.int32),
+            "skinning_weights_col": columns.astype(np.int32),
+            "skinning_weights_shape": np.array(rig.weights.shape, np.int64),
+        }
+    packed = io.BytesIO()
+    np.savez_compressed(packed, **arrays)  # type: ignore[arg-type]
+    return packed.getvalue()

@@ -1,0 +1,67 @@
+"""Taking a document's image files along when it moves."""
+
+from __future__ import annotations
+
+import mimetypes
+from pathlib import Path
+from typing import Any
+
+from ..errors import FileError
+from .gltf_container import Document, beside
+from .gltf_storage import Storage
+
+SIGNATURES = {
+    b"\x89PNG": "image/png",
+    b"\xff\xd8\xff": "image/jpeg",
+    b"RIFF": "image/webp",
+    b"\xabKTX": "image/ktx2",
+}
+
+
+def carry_images(storage: Storage, document: Document, target: Path) -> dict[Path, bytes]:
+    """Keep images that lie in files of their own reachable from the new document.
+
+    A ``.gltf`` that becomes a ``.glb``, or a ``.glb`` that moves, takes them in; a ``.gltf``
+    that moves takes them along. A file that is not there is left as it is named.
+
+    Returns
+    -------
+    dict
+        Files to write beside the document.
+    """
+    source = document.path
+    moved = source.parent.resolve() != target.parent.resolve()
+    to_text = target.suffix.lower() == ".gltf"
+    if not moved and (to_text or document.binary):
+        return {}
+    files: dict[Path, bytes] = {}
+    for image in storage.document.get("images", []):
+        uri = image.get("uri")
+        if not isinstance(uri, str) or uri.startswith("data:"):
+            continue
+        found, goal = beside(source, uri), beside(target, uri)
+        if found is None or goal is None or not found.is_file():
+            continue
+        content = found.read_bytes()
+        if to_text:
+            _check_free(goal, content)
+            files[goal] = content
+        else:
+            _embed(storage, image, uri, content)
+    return files
+
+
+def _check_free(goal: Path, content: bytes) -> None:
+    if goal.exists() and (not goal.is_file() or goal.read_bytes() != content):
+        raise FileError(f"its image {goal.name} would replace another file, {goal}")
+
+
+def _embed(storage: Storage, image: dict[str, Any], uri: str, content: bytes) -> None:
+    signed = next((m for s, m in SIGNATURES.items() if content.startswith(s)), None)
+    kind = image.get("mimeType") or signed or mimetypes.guess_type(uri)[0]
+    if kind is None:
+        return
+    del image["uri"]
+    image.setdefault("name", Path(uri).stem)
+    image["mimeType"] = kind
+    image["bufferView"] = storage.add_view(content)

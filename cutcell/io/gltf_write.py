@@ -1,0 +1,133 @@
+"""Writing new weights into a glTF document, and nothing else.
+
+The document's JSON is edited, not made anew: whatever it holds besides the skin weights
+stays, and so does the number of every object in it, because extensions and extras may
+refer to them.
+"""
+
+from __future__ import annotations
+
+import base64
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import FileError, MeshError, SkeletonError, WeightsError
+from ..rig import Rig
+from .gltf_container import Document, pack_glb
+from .gltf_images import carry_images
+from .gltf_influences import pack_influences
+from .gltf_read import GltfSource, Part
+from .gltf_storage import Storage
+
+
+def rewritten(rig: Rig, path: Path) -> dict[Path, bytes]:
+    """Return the files to write so that a rig's glTF document holds its weights.
+
+    Parameters
+    ----------
+    rig : Rig
+        Loaded from a GLB or glTF file; only its weights may have changed.
+    path : Path
+        Where the document will stand: ``.glb``, or ``.gltf`` with a ``.bin`` beside it.
+
+    Raises
+    ------
+    WeightsError
+        No weights, or weight on a joint that the vertex' skin does not have.
+    MeshError, SkeletonError
+        The mesh or the skeleton is no longer the document's.
+    """
+    source: GltfSource = rig.source
+    _check_same(rig, source)
+    document = json.loads(json.dumps(source.document.json))  # a copy, and quicker than deepcopy
+    before = [_take_influences(document, part) for part in source.parts]
+    storage = Storage(document, source.document.buffers)
+    storage.free({v for old in before for v in old.values()})
+    for part, old in zip(source.parts, before, strict=True):
+        _store(storage, document, rig, part, old)
+    storage.compact()
+    carried = carry_images(storage, source.document, path)
+    return {**carried, **_packed(storage, source.document, path)}
+
+
+def _check_same(rig: Rig, source: GltfSource) -> None:
+    if rig.weights is None:
+        raise WeightsError("the rig has no weights to save; bind it first")
+    remedy = "set the rig's source to None to write a new file instead"
+    count = source.parts[-1].rows.stop
+    if len(rig.mesh.vertices) != count:
+        raise MeshError(
+            f"the rig has {len(rig.mesh.vertices)} vertices, its document {count}; {remedy}"
+        )
+    if rig.skeleton.names != source.joints:
+        raise SkeletonError(f"the rig's joints are no longer those of its document; {remedy}")
+
+
+def _take_influences(document: dict[str, Any], part: Part) -> dict[str, int]:
+    """Remove JOINTS_n and WEIGHTS_n from a part's primitives and return what they were."""
+    taken: dict[str, int] = {}
+    for primitive in _primitives(document, part):
+        found = primitive["attributes"]
+        for name in [k for k in found if k.startswith(("JOINTS_", "WEIGHTS_"))]:
+            taken[name] = found.pop(name)
+    return taken
+
+
+def _primitives(document: dict[str, Any], part: Part) -> list[dict[str, Any]]:
+    return [document["meshes"][mesh]["primitives"][k] for mesh, k in part.primitives]
+
+
+def _store(
+    storage: Storage, document: dict[str, Any], rig: Rig, part: Part, old: dict[str, int]
+) -> None:
+    weights = rig.weights[part.rows]  # type: ignore[index]
+    _check_reachable(weights, rig, part)
+    for n, (where, share) in enumerate(zip(*pack_influences(weights[:, part.joints]), strict=True)):
+        joints, shares = f"JOINTS_{n}", f"WEIGHTS_{n}"
+        small = len(part.joints) <= 256 and storage.stored_type(old.get(joints)) != np.uint16
+        numbers = where.astype("<u1" if small else "<u2")
+        new = {
+            joints: storage.store(numbers, old.get(joints)),
+            shares: storage.store(share.astype("<f4"), old.get(shares)),
+        }
+        for primitive in _primitives(document, part):
+            primitive["attributes"].update(new)
+
+
+def _check_reachable(weights: NDArray, rig: Rig, part: Part) -> None:
+    outside = np.ones(weights.shape[1], bool)
+    outside[part.joints] = False
+    rows, columns = np.nonzero(weights * outside)
+    if len(rows):
+        raise WeightsError(
+            f"{part.label}: vertex {rows[0]} has weight on the joint "
+            f'"{rig.skeleton.names[columns[0]]}", which the skin of that mesh does not have '
+            f"({len(set(rows.tolist()))} vertices are so); keep to the joints in Rig.allowed"
+        )
+
+
+def _packed(storage: Storage, document: Document, path: Path) -> dict[Path, bytes]:
+    uris = [buffer.get("uri") for buffer in document.items("buffers")]
+    data = storage.finish()
+    own = storage.document["buffers"][0] if data else {}
+    own.pop("uri", None)
+    if path.suffix.lower() != ".gltf":
+        return {path: pack_glb(_text(storage.document), data, document.chunks)}
+    if uris and all(isinstance(u, str) and u.startswith("data:") for u in uris):
+        head = "data:application/octet-stream;base64,"
+        own["uri"] = head + base64.b64encode(data).decode()
+        return {path: _text(storage.document)}
+    beside = path.with_suffix(".bin")
+    own["uri"] = beside.name.replace("%", "%25").replace("#", "%23").replace("?", "%3F")
+    return {beside: data, path: _text(storage.document)}
+
+
+def _text(document: dict[str, Any]) -> bytes:
+    try:
+        return json.dumps(document, separators=(",", ":"), allow_nan=False).encode()
+    except ValueError as e:
+        raise FileError(f"its document cannot be written as JSON: {e}") from None

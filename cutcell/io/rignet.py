@@ -1,0 +1,172 @@
+"""RigNet's pair of text files: ``NAME.obj`` and ``NAME.txt`` or ``NAME_rig.txt``.
+
+Lines of the second: ``joints NAME x y z``, ``root NAME``, ``hier PARENT CHILD``, and
+``skin VERTEX JOINT weight JOINT weight ...`` (Xu et al. 2020).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import FileError, SkeletonError, WeightsError
+from ..rig import Rig, Skeleton
+from .files import naming, read_text
+from .objects import numbered_words, numbers, parse_obj, write_obj
+from .weights import carrying, normalised
+
+
+@dataclass
+class _Text:
+    """What the lines of a rig file say."""
+
+    positions: dict[str, list[float]] = field(default_factory=dict)
+    parents: dict[str, str] = field(default_factory=dict)
+    roots: list[str] = field(default_factory=list)
+    skin: list[tuple[int, list[str]]] = field(default_factory=list)
+
+
+def rig_file(path: Path) -> Path | None:
+    """Return the rig file that stands beside an OBJ, if there is one."""
+    choices = (path.with_suffix(".txt"), path.with_name(f"{path.stem}_rig.txt"))
+    return next((c for c in choices if c.is_file()), None)
+
+
+def mesh_file(path: Path) -> Path:
+    """Return the OBJ that stands beside a rig file."""
+    choices = [path.with_suffix(".obj")]
+    if path.stem.endswith("_rig"):
+        choices.insert(0, path.with_name(path.stem.removesuffix("_rig") + ".obj"))
+    for choice in choices:
+        if choice.is_file():
+            return choice
+    names = " or ".join(c.name for c in choices)
+    raise FileError(f"is a RigNet rig whose mesh is missing: put {names} beside it")
+
+
+def read_rignet(path: Path) -> Rig:
+    """Load a RigNet rig, given its rig file (``.txt``)."""
+    text = read_text(path)  # before its mesh is looked for: it may not be there at all
+    obj = mesh_file(path)
+    with naming(obj):
+        mesh = parse_obj(read_text(obj))
+    with naming(path):
+        said = _parse(text)
+        skeleton_names = tuple(said.positions)
+        weights = _weights(said, len(mesh.vertices), skeleton_names)
+        skeleton = _skeleton(said, weights)
+        return Rig(mesh, skeleton, weights, name=obj.stem)
+
+
+def _parse(text: str) -> _Text:
+    said = _Text()
+    for number, words in numbered_words(text):
+        kind, rest = words[0], words[1:]
+        if kind == "joints":
+            if not rest:
+                raise FileError(f"line {number}: a joint needs a name")
+            if rest[0] in said.positions:
+                raise SkeletonError(f'line {number}: the joint "{rest[0]}" is there twice')
+            said.positions[rest[0]] = numbers(rest[1:], 3, number)
+        elif kind == "root":
+            said.roots += [_joint(rest, 0, number)]
+        elif kind == "hier":
+            parent, child = _joint(rest, 0, number), _joint(rest, 1, number)
+            if said.parents.get(child, parent) != parent:
+                raise SkeletonError(f'line {number}: the joint "{child}" has two parents')
+            said.parents[child] = parent
+        elif kind == "skin":
+            said.skin.append((number, rest))
+        else:
+            raise FileError(
+                f'line {number}: starts with "{kind[:40]}", expected joints, root, hier or skin'
+            )
+    if not said.positions:
+        raise SkeletonError("has no joints (no lines that start with the word joints)")
+    for name in [*said.parents, *said.parents.values(), *said.roots]:
+        if name not in said.positions:
+            raise SkeletonError(f'the joint "{name}" has no line that gives its position')
+    for name in said.roots:
+        if name in said.parents:
+            raise SkeletonError(f'the joint "{name}" is a root but hangs on "{said.parents[name]}"')
+    return said
+
+
+def _joint(words: list[str], at: int, line: int) -> str:
+    if len(words) <= at:
+        raise FileError(f"line {line}: the name of a joint is missing")
+    return words[at]
+
+
+def _skeleton(said: _Text, weights: NDArray | None) -> Skeleton:
+    place = {name: j for j, name in enumerate(said.positions)}
+    parents = [place[said.parents[n]] if n in said.parents else -1 for n in place]
+    return Skeleton(
+        np.array(list(said.positions.values())),
+        np.array(parents),
+        tuple(place),
+        carrying(weights),  # type: ignore[arg-type]
+    )
+
+
+def _weights(said: _Text, vertices: int, names: tuple[str, ...]) -> NDArray | None:
+    if not said.skin:
+        return None
+    place = {name: j for j, name in enumerate(names)}
+    weights = np.zeros((vertices, len(names)))
+    for line, words in said.skin:
+        vertex = int(words[0]) if words and words[0].isdecimal() else -1
+        if not 0 <= vertex < vertices:
+            raise WeightsError(
+                f"line {line}: there is no vertex {words[0] if words else '(missing)'}; the "
+                f"mesh has {vertices} (numbered from 0)"
+            )
+        if len(words) % 2 == 0:
+            raise WeightsError(f"line {line}: joints and weights must come in pairs")
+        for name, word in zip(words[1::2], words[2::2], strict=True):
+            if name not in place:
+                raise WeightsError(f'line {line}: there is no joint "{name}"')
+            share = numbers([word], 1, line)[0]
+            if share < 0:
+                raise WeightsError(f"line {line}: the weight {word} is negative")
+            weights[vertex, place[name]] += share
+    return normalised(weights)
+
+
+def rignet_files(path: Path, rig: Rig) -> dict[Path, bytes]:
+    """Return the two files of a rig, given the path of the rig file (``.txt``)."""
+    skeleton = rig.skeleton
+    names = word_names(skeleton.names)
+    lines = [
+        f"joints {n} {x!r} {y!r} {z!r}"
+        for n, (x, y, z) in zip(names, skeleton.joints.tolist(), strict=True)
+    ]
+    parents = skeleton.parents.tolist()
+    lines += [f"root {n}" for n, p in zip(names, parents, strict=True) if p < 0]
+    lines += [f"hier {names[p]} {n}" for n, p in zip(names, parents, strict=True) if p >= 0]
+    if rig.weights is not None:
+        for i, row in enumerate(rig.weights):
+            carrying = np.flatnonzero(row)
+            pairs = " ".join(f"{names[j]} {float(row[j])!r}" for j in carrying)
+            if pairs:
+                lines.append(f"skin {i} {pairs}")
+    stem = path.stem.removesuffix("_rig") if path.stem != "_rig" else path.stem
+    text = "\n".join(lines) + "\n"
+    return {path.with_name(f"{stem}.obj"): write_obj(rig.mesh).encode(), path: text.encode()}
+
+
+def word_names(names: tuple[str, ...]) -> list[str]:
+    """Return names without spaces, still unique: words are what these lines are made of."""
+    words: list[str] = []
+    taken: set[str] = set()
+    for name in names:
+        word = base = "_".join(name.split()) or "joint"
+        k = 2
+        while word in taken:
+            word, k = f"{base}_{k}", k + 1
+        taken.add(word)
+        words.append(word)
+    return words

@@ -1,0 +1,97 @@
+"""A skeleton in a small JSON file, to stand beside a bare mesh."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..errors import FileError, SkeletonError
+from ..rig import Skeleton
+from .files import naming, read_text
+
+FIELDS = ("name", "position", "parent", "deform")
+
+
+def skeleton_file(path: Path) -> Path | None:
+    """Return the skeleton file that stands beside a mesh, if there is one."""
+    choices = (path.with_name(f"{path.stem}.skeleton.json"), path.with_suffix(".json"))
+    return next((c for c in choices if c.is_file()), None)
+
+
+def read_skeleton_json(path: Path) -> Skeleton:
+    """Read a skeleton.
+
+    Raises
+    ------
+    FileError
+        Not JSON, or not of the form that ``docs/formats.md`` describes.
+    SkeletonError
+        A joint is unusable: no position, a parent that is not there, a cycle.
+    """
+    with naming(path):
+        try:
+            data = json.loads(read_text(path))
+        except (json.JSONDecodeError, RecursionError) as e:
+            raise FileError(f"its JSON cannot be read: {e}") from None
+        joints = data.get("joints") if isinstance(data, dict) else None
+        if not isinstance(joints, list):
+            raise FileError('is not a skeleton: it must be {"joints": [...]}')
+        names = [_name(joint, k) for k, joint in enumerate(joints)]
+        twice = next((n for n in names if names.count(n) > 1), None)
+        if twice is not None:
+            raise SkeletonError(f'the joint "{twice}" is there twice; names must differ')
+        place = {name: k for k, name in enumerate(names)}
+        for name, joint in zip(names, joints, strict=True):
+            _check_fields(joint, name)
+        return Skeleton(
+            np.array([_position(j, n) for n, j in zip(names, joints, strict=True)]),
+            np.array([_parent(j, n, place) for n, j in zip(names, joints, strict=True)], int),  # type: ignore[arg-type]
+            tuple(names),
+            np.array([_deform(j, n) for n, j in zip(names, joints, strict=True)], bool),
+        )
+
+
+def _name(joint: Any, k: int) -> str:
+    if not isinstance(joint, dict):
+        raise FileError(f"joint {k} must be an object with a name and a position")
+    name = joint.get("name")
+    if not isinstance(name, str) or not name:
+        raise SkeletonError(f'joint {k} needs a "name"')
+    return name
+
+
+def _check_fields(joint: dict[str, Any], name: str) -> None:
+    unknown = next((k for k in joint if k not in FIELDS), None)
+    if unknown is not None:
+        raise FileError(f'joint "{name}": "{unknown}" is none of {", ".join(FIELDS)}')
+
+
+def _position(joint: dict[str, Any], name: str) -> list[float]:
+    value = joint.get("position")
+    if (
+        not isinstance(value, list)
+        or len(value) != 3
+        or any(type(x) not in (int, float) for x in value)
+        or not np.isfinite(np.array(value, float)).all()
+    ):
+        raise SkeletonError(f'joint "{name}": "position" must be three finite numbers')
+    return value
+
+
+def _parent(joint: dict[str, Any], name: str, place: dict[str, int]) -> int:
+    parent = joint.get("parent")
+    if parent is None:
+        return -1
+    if not isinstance(parent, str) or parent not in place:
+        raise SkeletonError(f'joint "{name}": its parent {parent!r} is not a joint of the file')
+    return place[parent]
+
+
+def _deform(joint: dict[str, Any], name: str) -> bool:
+    value = joint.get("deform", True)
+    if not isinstance(value, bool):
+        raise SkeletonError(f'joint "{name}": "deform" must be true or false')
+    return value
