@@ -17,7 +17,9 @@ def install(packages: list[str], what_for: str) -> bool:
         ["apt-get", "update", *quiet],
         ["apt-get", "install", "-y", "--no-install-recommends", *quiet, *packages],
     ]
-    # What apt-get says is for the log, and standard output is not: it may carry a result.
-    return all(
-        subprocess.run(c, env=environment, stdout=sys.stderr).returncode == 0 for c in commands
-    )
+    for command in commands:
+        done = subprocess.run(command, env=environment, capture_output=True, text=True)
+        if done.returncode != 0:
+            print(done.stdout, done.stderr, sep="", file=sys.stderr)
+            return False
+    return True

@@ -62,6 +62,7 @@ def find() -> str:
 
 def get() -> str:
     """Return the path of a Chromium that opens a page, fetching one if need be."""
+    _check_playwright()
     try:
         return find()
     except NoChromiumError:
@@ -74,6 +75,23 @@ def get() -> str:
             except NoChromiumError:
                 continue
     return find()
+
+
+def _check_playwright() -> None:
+    """See that Playwright itself runs: its Node needs a library that bare systems lack."""
+    command = [sys.executable, "-m", "playwright", "--version"]
+    done = subprocess.run(command, capture_output=True, text=True)
+    if done.returncode != 0:
+        import debian
+
+        debian.install(["libatomic1"], "for Playwright, which drives the browser")
+        done = subprocess.run(command, capture_output=True, text=True)
+    if done.returncode != 0:
+        raise NoChromiumError(
+            "Playwright, which drives the browser, does not run on this machine:\n"
+            f"{done.stderr.strip()}\n"
+            "On Debian or Ubuntu: sudo apt-get install libatomic1\n"
+        )
 
 
 def _candidates() -> Iterator[str]:

@@ -1,0 +1,104 @@
+"""Every public name is there, and its docstring tells what a person needs (numpydoc)."""
+
+import inspect
+import re
+from importlib import import_module
+
+import pytest
+
+import cutcell
+
+PACKAGES = ["io", "graph", "geodesics", "skinning", "pose"]
+ROOT_FUNCTIONS = sorted(
+    name
+    for name in cutcell.__all__
+    if name != "__version__" and inspect.isfunction(getattr(cutcell, name))
+)
+CLASSES = sorted(
+    name
+    for name in cutcell.__all__
+    if name != "__version__" and inspect.isclass(getattr(cutcell, name))
+)
+FUNCTIONS = sorted(
+    {
+        (package, name)
+        for package in PACKAGES
+        for name in import_module(f"cutcell.{package}").__all__
+        if inspect.isfunction(getattr(import_module(f"cutcell.{package}"), name))
+    }
+)
+
+
+def sections(thing) -> dict[str, str]:
+    """Split a docstring at its underlined headings; the part before them is called ""."""
+    parts = re.split(r"^(\w[\w ]*)\n-+\n", inspect.getdoc(thing) or "", flags=re.MULTILINE)
+    return {"": parts[0], **dict(zip(parts[1::2], parts[2::2], strict=True))}
+
+
+def described(section: str) -> set[str]:
+    """Names that the unindented lines of a Parameters section describe."""
+    heads = [line.partition(":")[0] for line in section.splitlines() if re.match(r"\S", line)]
+    return {name.strip().lstrip("*") for head in heads for name in head.split(",")}
+
+
+@pytest.mark.parametrize("name", cutcell.__all__)
+def test_every_name_is_there_and_documented(name):
+    thing = getattr(cutcell, name)
+    if name != "__version__":
+        assert inspect.getdoc(thing)
+
+
+def test_dir_lists_the_public_names_and_others_are_unknown():
+    assert dir(cutcell) == cutcell.__all__
+    with pytest.raises(AttributeError, match="no attribute 'blind'"):
+        cutcell.blind  # noqa: B018
+
+
+@pytest.mark.parametrize("name", ROOT_FUNCTIONS)
+def test_functions_say_what_they_take_give_and_raise(name):
+    function = getattr(cutcell, name)
+    found = sections(function)
+    assert "Parameters" in found
+    assert "Raises" in found
+    if inspect.signature(function).return_annotation not in (None, "None"):
+        assert "Returns" in found
+
+
+@pytest.mark.parametrize(("package", "name"), FUNCTIONS)
+def test_every_parameter_is_spoken_of(package, name):
+    """One by one in a section, or, where one sentence says all, in that sentence."""
+    function = getattr(import_module(f"cutcell.{package}"), name)
+    parameters = set(inspect.signature(function).parameters)
+    found = sections(function)
+    if "Parameters" in found:
+        assert parameters == described(found["Parameters"])
+    else:
+        assert len(parameters) <= 3
+        assert found[""].strip()
+
+
+@pytest.mark.parametrize(("package", "name"), FUNCTIONS)
+def test_every_parameter_and_result_has_a_type(package, name):
+    signature = inspect.signature(getattr(import_module(f"cutcell.{package}"), name))
+    untyped = [p.name for p in signature.parameters.values() if p.annotation is p.empty]
+    assert untyped == []
+    assert signature.return_annotation is not signature.empty
+
+
+@pytest.mark.parametrize("name", [c for c in CLASSES if not c.endswith(("Error", "Cancelled"))])
+def test_every_field_of_a_dataclass_is_described(name):
+    kind = getattr(cutcell, name)
+    text = inspect.getdoc(kind)
+    fields = set(kind.__dataclass_fields__) - {"name"}  # says it all
+    missing = [field for field in fields if not re.search(rf"\b{field}\b", text)]
+    assert missing == []
+
+
+def test_errors_have_one_base_that_is_a_value_error():
+    errors = [getattr(cutcell, name) for name in CLASSES if name.endswith("Error")]
+    assert all(issubclass(error, cutcell.CutcellError) for error in errors)
+    assert issubclass(cutcell.CutcellError, ValueError)
+
+
+def test_cancelling_is_no_error_of_the_input():
+    assert not issubclass(cutcell.Cancelled, cutcell.CutcellError)
