@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -16,12 +15,8 @@ from viewers.description import Actor, Description, Legend
 from viewers.palette import Theme, colormap, to_hex
 from viewers.scene import AMBIENT, LIGHTS, Camera
 
-_SCRIPTS = ("orbit", "skin", "figure", "stage", "pick", "overlay", "view")
-
-
-def _script() -> str:
-    folder = Path(__file__).parent / "js"
-    return "\n".join((folder / f"{name}.js").read_text(encoding="utf-8") for name in _SCRIPTS)
+from .scripts import script
+from .upload import Receiver
 
 
 class SceneView(JSComponent):
@@ -37,13 +32,17 @@ class SceneView(JSComponent):
         doc="Where Panel's own server keeps vtk.js.",
     )
 
-    _esm = _script()
+    _esm = script("orbit", "skin", "figure", "stage", "pick", "upload", "overlay", "view")
 
     def __init__(
-        self, on_pick: Callable[[int], None] | None = None, **params: Any
+        self,
+        on_pick: Callable[[int], None] | None = None,
+        receiver: Receiver | None = None,
+        **params: Any,
     ) -> None:
         super().__init__(**params)
         self._on_pick = on_pick
+        self._receiver = receiver
         self.camera: Camera | None = None
         self._ready = False
         self._count = 0
@@ -68,6 +67,10 @@ class SceneView(JSComponent):
         if self._ready:
             self._send(parts)
 
+    def offer(self, name: str, content: bytes) -> None:
+        """Let the browser save a file."""
+        self._send_msg({"download": {"name": name, "content": content}})
+
     def _send(self, message: dict[str, Any]) -> None:
         if message:
             self._count += 1
@@ -75,6 +78,9 @@ class SceneView(JSComponent):
 
     def _handle_msg(self, data: dict[str, Any]) -> None:
         kind = data.get("type")
+        answer = None if self._receiver is None else self._receiver.answer(data)
+        if answer is not None:
+            self._send_msg({"upload": answer})
         if kind == "ready":
             self._ready = True
             self._sent.clear()

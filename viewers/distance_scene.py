@@ -42,15 +42,21 @@ def distance_scene(
     Description
         With the actors "body", "bones" and the attachments.
     """
-    limits = distance_limits(distance)
-    values = shown_distance(distance, limits)
-    look.update(scalars=values, colormap="distance", limits=limits)
+    colors, legend = distance_colors(rig, distance, joint)
     actors = {
-        "body": body(rig, weights, **look),
+        "body": body(rig, weights, **colors, **look),
         **attachments(rig),
         "bones": bones(rig, joint, skeleton),
     }
-    return Description(actors, legend=distance_legend(rig, joint, limits))
+    return Description(actors, legend=legend)
+
+
+def distance_colors(rig: Rig, distance: ArrayLike, joint: int) -> tuple[dict[str, Any], Legend]:
+    """Return the fields of the body's `Actor` that colour it, and how to read them."""
+    limits = distance_limits(distance)
+    values = shown_distance(distance, limits)
+    colors = {"scalars": values, "colormap": "distance", "limits": limits}
+    return colors, distance_legend(rig, joint, limits)
 
 
 def distance_limits(distance: ArrayLike) -> tuple[float, float]:

@@ -88,9 +88,7 @@ def swing(rig: Rig, joint: int, axis: str, degrees: float) -> Clip:
 
     phase = np.linspace(0, 2 * np.pi, SWING_FRAMES + 1)
     transforms = [
-        forward_kinematics(
-            rig.skeleton, joint_turns(rig, {joint: turn(axis, degrees * np.sin(p))})
-        )
+        forward_kinematics(rig.skeleton, joint_turns(rig, {joint: turn(axis, degrees * np.sin(p))}))
         for p in phase
     ]
     times = np.linspace(0, SWING_SECONDS, SWING_FRAMES + 1)

@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
+import os
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-import pyvista as pv
 from numpy.typing import NDArray
+
+if sys.platform == "linux" and not os.environ.get("DISPLAY"):
+    # Without a screen VTK first tries one, and complains; this spares it the trial.
+    os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
+
+import pyvista as pv
 
 from .description import Actor, Cut, Description
 from .palette import LIGHT, Theme, colormap
@@ -195,8 +202,7 @@ def _paint(drawn: pv.Actor, actor: Actor) -> None:
     look.ambient, look.diffuse = AMBIENT, 1.0
     look.lighting = actor.kind == "surface"
     look.point_size = actor.width
-    if actor.normals is None:
-        look.interpolation = "flat"
+    look.interpolation = "flat" if actor.normals is None else "phong"
     mapper = drawn.mapper
     mapper.scalar_visibility = actor.colors is not None or actor.scalars is not None
     if actor.colors is not None:

@@ -11,7 +11,7 @@ from cutcell.rig import Rig
 
 from .character import attachments, body, bones
 from .description import Description, Legend
-from .palette import joint_colors, to_bytes
+from .palette import UNREACHED, joint_colors, to_bytes
 
 
 def weights_scene(
@@ -44,18 +44,23 @@ def weights_scene(
     Description
         With the actors "body", "bones" and "attachment 0", "attachment 1", ...
     """
-    weights = np.asarray(weights, float)
-    legend = None
-    if joint is None:
-        colors = weights @ joint_colors(rig.skeleton.parents)
-        colors += (1 - np.minimum(weights.sum(axis=1, keepdims=True), 1)) * 0.5
-        look["colors"] = to_bytes(np.clip(colors, 0, 1))
-    else:
-        look.update(scalars=weights[:, joint].astype(np.float32), colormap="weight")
-        legend = Legend(f"Weight of {rig.skeleton.names[joint]}", "weight", "0", "1")
+    colors, legend = weight_colors(rig, weights, joint)
     actors = {
-        "body": body(rig, weights, **look),
+        "body": body(rig, weights, **colors, **look),
         **attachments(rig),
         "bones": bones(rig, joint if chosen is None else chosen, skeleton),
     }
     return Description(actors, legend=legend)
+
+
+def weight_colors(
+    rig: Rig, weights: ArrayLike, joint: int | None = None
+) -> tuple[dict[str, Any], Legend | None]:
+    """Return the fields of the body's `Actor` that colour it, and how to read them."""
+    weights = np.asarray(weights, float)
+    if joint is not None:
+        legend = Legend(f"Weight of {rig.skeleton.names[joint]}", "weight", "0", "1")
+        return {"scalars": weights[:, joint].astype(np.float32), "colormap": "weight"}, legend
+    total = np.minimum(weights.sum(axis=1, keepdims=True), 1)
+    mixed = weights @ joint_colors(rig.skeleton.parents) + (1 - total) * UNREACHED
+    return {"colors": to_bytes(np.clip(mixed, 0, 1))}, None

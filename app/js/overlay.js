@@ -52,7 +52,6 @@ class Overlay {
     this.hint.textContent = "drag to turn · right-drag to move · scroll to zoom · click a bone"
     this.failed = make("div", "card failed", this.root)
     this.drop = make("div", "card drop", this.root)
-    this.drop.textContent = "Drop the character here"
   }
 
   theme({top, bottom, ink, card}) {
@@ -94,6 +93,11 @@ class Overlay {
     this.bone.textContent = name
     this.bone.style.left = `${x}px`
     this.bone.style.top = `${y}px`
+  }
+
+  say(text) {
+    this.drop.hidden = !text
+    this.drop.textContent = text || ""
   }
 
   fail(message) {

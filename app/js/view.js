@@ -12,6 +12,13 @@ class View {
       clicked: (e) => this.clicked(e),
       hovered: (e) => this.hovered(e),
     })
+    const uploader = new Uploader(model, {
+      started: (files) => overlay.say(`Sending ${files.map((f) => f.name).join(", ")}`),
+      moved: () => {},
+      ended: () => overlay.say(null),
+    })
+    const over = (hanging) => overlay.say(hanging ? "Drop the character here" : null)
+    acceptDrops(overlay.root, over, (files) => uploader.send(files))
     this.messages = 0
     this.posed = 0
     this.observer = new ResizeObserver(() => this.changed())
@@ -20,6 +27,8 @@ class View {
 
   receive(message) {
     const {stage} = this
+    if (message.download) { save(message.download) }
+    if (!message.id) { return }
     for (const name of message.remove || []) {
       stage.figures.get(name)?.remove()
       stage.figures.delete(name)
@@ -155,6 +164,14 @@ class View {
     cancelAnimationFrame(this.ticking)
     this.stage.remove()
   }
+}
+
+function save({name, content}) {
+  const link = document.createElement("a")
+  link.download = name
+  link.href = URL.createObjectURL(new Blob([content]))
+  link.click()
+  setTimeout(() => URL.revokeObjectURL(link.href), 60000)
 }
 
 function entries(map) {

@@ -1,0 +1,128 @@
+"""Work off the event loop: one at a time, with progress, stoppable, newest first."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+from typing import Any
+
+from cutcell.errors import Cancelled
+from cutcell.progress import Progress
+
+Schedule = Callable[[Callable[[], None]], None]
+"""Runs a function later, on the thread that owns the page."""
+
+_TURN = threading.Lock()
+"""Numeric libraries share one pool of threads: sessions compute in turn."""
+
+REPORT_EVERY = 0.08
+"""Seconds between two reports of progress; more would only keep the page busy."""
+
+
+class Job:
+    """One piece of work."""
+
+    def __init__(self, schedule: Schedule, report: Progress) -> None:
+        self.cancelled = threading.Event()
+        self._schedule = schedule
+        self._report = report
+        self._last = ("", 0.0)
+
+    def progress(self, stage: str, fraction: float) -> None:
+        """Tell the page, or stop the work when it is no longer wanted."""
+        if self.cancelled.is_set():
+            raise Cancelled
+        now = time.monotonic()
+        if stage != self._last[0] or now - self._last[1] >= REPORT_EVERY:
+            self._last = (stage, now)
+            self.later(lambda: self._report(stage, fraction))
+
+    def later(self, action: Callable[[], None]) -> None:
+        """Run an action on the page's own thread, unless the job is stopped till then."""
+        self._schedule(lambda: None if self.cancelled.is_set() else action())
+
+    def wait_for_turn(self) -> None:
+        """Wait until no other session computes."""
+        while not _TURN.acquire(timeout=0.05):
+            self.progress("waiting for another computation", 0.0)
+
+
+class Jobs:
+    """The work of one session; starting one stops the one before.
+
+    Parameters
+    ----------
+    schedule : callable
+        Runs a function on the page's own thread, soon. Called from any thread.
+    """
+
+    def __init__(self, schedule: Schedule) -> None:
+        self._schedule = schedule
+        self._current: Job | None = None
+        self._closed = False
+
+    @property
+    def running(self) -> bool:
+        """Whether there is work that was neither finished nor stopped."""
+        return self._current is not None
+
+    def start(
+        self,
+        work: Callable[[Progress], Any],
+        done: Callable[[Any], None],
+        failed: Callable[[Exception], None],
+        report: Progress,
+    ) -> Job | None:
+        """Do some work in a thread; `done`, `failed` and `report` run on the page's thread.
+
+        Whatever ran before is stopped, and none of its results arrive any more.
+        """
+        self.cancel()
+        if self._closed:
+            return None
+        job = self._current = Job(self._schedule, report)
+        arguments = (job, work, self._finishing(job, done), self._finishing(job, failed))
+        threading.Thread(target=_run, args=arguments, daemon=True, name="cutcell job").start()
+        return job
+
+    def cancel(self) -> bool:
+        """Stop what runs; return whether there was anything to stop."""
+        job, self._current = self._current, None
+        if job is not None:
+            job.cancelled.set()
+        return job is not None
+
+    def close(self) -> None:
+        """Stop what runs, and start nothing any more."""
+        self._closed = True
+        self.cancel()
+
+    def _finishing(self, job: Job, action: Callable[[Any], None]) -> Callable[[Any], None]:
+        def finish(value: Any) -> None:
+            if self._current is job:
+                self._current = None
+            action(value)
+
+        return finish
+
+
+def _run(
+    job: Job,
+    work: Callable[[Progress], Any],
+    done: Callable[[Any], None],
+    failed: Callable[[Exception], None],
+) -> None:
+    try:
+        job.wait_for_turn()
+        try:
+            result = work(job.progress)
+        finally:
+            _TURN.release()
+    except Cancelled:
+        return
+    except Exception as error:  # whatever it is, the page must hear of it
+        problem = error
+        job.later(lambda: failed(problem))
+    else:
+        job.later(lambda: done(result))

@@ -1,0 +1,77 @@
+"""The layout of the page: a sidebar, one big canvas, a slim line of facts."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import panel as pn
+import panel_material_ui as pmui
+
+from assets import DEMOS
+
+from .panels.bone import bone
+from .panels.character import character
+from .panels.export import export
+from .panels.graph import graph
+from .panels.pose import pose
+from .session import Session
+from .status import messages, status_line
+from .theme import PAGE_STYLE, THEME
+
+
+def page(path: Path | None = None) -> pmui.Page:
+    """Return a new page, on which a character is about to stand.
+
+    Parameters
+    ----------
+    path : Path, optional
+        The character to open; the first demo when left out.
+    """
+    document = pn.state.curdoc
+    session = Session(document.add_next_tick_callback)
+    # Bound as a default: the names of a page are gone when its end is told.
+    document.on_session_destroyed(lambda context, session=session: session.close())
+    result = layout(session)
+    if path is None:
+        session.open_demo(next(demo.id for demo in DEMOS if demo.path.exists()))
+    else:
+        session.open_files([path])
+    return result
+
+
+def layout(session: Session) -> pmui.Page:
+    """Return the page of a session."""
+    tagline = pmui.Typography(
+        "geodesic skinning weights for any mesh",
+        sx={"color": "text.secondary", "fontSize": 13, "display": {"xs": "none", "sm": "block"}},
+        margin=(2, 0, 0, 16),
+    )
+    main = pmui.Column(
+        messages(session),
+        session.view,
+        status_line(session),
+        sizing_mode="stretch_both",
+        margin=0,
+        sx={"gap": 0},
+    )
+    panels = [character, bone, pose, graph, export]
+    result = pmui.Page(
+        title="cutcell",
+        header=[tagline],
+        sidebar=[panel(session) for panel in panels],
+        sidebar_width=320,
+        sidebar_variant="auto",
+        main=[main],
+        busy_indicator=None,
+        theme_config=THEME,
+        sx=PAGE_STYLE,
+        favicon=Path(__file__).parent / "favicon.svg",
+    )
+
+    def themed(event: Any) -> None:
+        session.state.dark = event.new
+
+    result.param.watch(themed, "dark_theme")
+    session.state.dark = result.dark_theme
+    return result

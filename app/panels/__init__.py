@@ -1,0 +1,1 @@
+"""The sections of the sidebar, one file each: `section(session) -> Viewable`."""

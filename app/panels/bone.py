@@ -1,0 +1,53 @@
+"""Choose a bone, and what the colours tell of it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import panel_material_ui as pmui
+
+from ..session import Session
+from .parts import GAP, choice, section
+
+SHOWN = {"All bones": "bones", "Weights": "weights", "Distance": "distance", "Plain": "plain"}
+
+
+def bone(session: Session) -> pmui.Column:
+    """Return the section of the chosen bone."""
+    state = session.state
+    select = pmui.Select(
+        label="Bone",
+        options={},
+        size="small",
+        margin=GAP,
+        sizing_mode="stretch_width",
+        searchable=True,
+    )
+
+    def listed(*events: Any) -> None:
+        names = state.rig.skeleton.names if state.rig is not None else ()
+        select.param.update(options=unique_options(names), value=state.joint)
+
+    def chosen(event: Any) -> None:
+        if event.new is not None:
+            state.joint = event.new
+
+    def shown(event: Any) -> None:
+        select.value = event.new
+
+    state.param.watch(listed, "rig")
+    state.param.watch(shown, "joint")
+    select.param.watch(chosen, "value")
+    listed()
+    skeleton = pmui.Switch.from_param(
+        state.param.skeleton, label="Show the skeleton", size="small", margin=(1, 0)
+    )
+    return section("Bone", select, choice(state.param.coloring, SHOWN), skeleton)
+
+
+def unique_options(names: tuple[str, ...]) -> dict[str, int]:
+    """Return the index of each name; a name that comes again gets its index added."""
+    options: dict[str, int] = {}
+    for index, name in enumerate(names):
+        options[f"{name} ({index})" if name in options else name] = index
+    return options

@@ -1,0 +1,48 @@
+"""Choose a demo character, or drop a file."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import panel_material_ui as pmui
+
+from assets import DEMOS
+
+from ..session import Session
+from ..state import MAX_UPLOAD
+from ..upload import FileDrop
+from .parts import GAP, caption, section
+
+OWN = "Your own"
+HINT = f"GLB, glTF, OBJ + TXT, NPZ, mesh + JSON · up to {MAX_UPLOAD // 2**20} MB"
+
+
+def character(session: Session) -> pmui.Column:
+    """Return the section that opens characters."""
+    state = session.state
+    demos = {demo.title: demo.id for demo in DEMOS if demo.path.exists()}
+    select = pmui.Select(
+        label="Demo character",
+        options=demos,
+        value=None,
+        size="small",
+        margin=GAP,
+        sizing_mode="stretch_width",
+    )
+    lesson = caption()
+
+    def chosen(event: Any) -> None:
+        if event.new and event.new != state.demo:
+            session.open_demo(event.new)
+
+    def shown(*events: Any) -> None:
+        own = {} if state.demo else {OWN: ""}
+        select.param.update(options={**own, **demos}, value=state.demo)
+        lessons = {demo.id: demo.lesson for demo in DEMOS}
+        lesson.object = lessons.get(state.demo) or (state.rig.name if state.rig else "")
+
+    select.param.watch(chosen, "value")
+    state.param.watch(shown, ["demo", "rig"])
+    shown()
+    drop = FileDrop(session.receiver(), hint=HINT, sizing_mode="stretch_width", margin=GAP)
+    return section("Character", select, lesson, drop)

@@ -1,0 +1,271 @@
+"""What one browser's page does: opens characters, binds them, shows the result."""
+
+from __future__ import annotations
+
+import functools
+import logging
+import shutil
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import cutcell
+from assets import DEMOS, demo_path
+from cutcell.errors import CutcellError, FileError
+from cutcell.progress import Progress
+from cutcell.rig import Rig
+from viewers.scene import Scene, framing
+
+from .jobs import Jobs, Schedule
+from .resolve import (
+    Memo,
+    bones_part,
+    bounds_of,
+    clip_of,
+    clip_part,
+    first_joint,
+    resolve,
+    theme_of,
+    wants_field,
+)
+from .state import State
+from .upload import Receiver
+from .view import SceneView, camera_part, theme_part
+
+logger = logging.getLogger("cutcell.app")
+
+SEEN = [
+    "rig", "binding", "field", "body", "mesh_edges", "interior_edges", "surface_edges",
+    "skeleton", "cut_axis", "cut_position", "thin", "coloring", "joint", "turns", "moving",
+    "dark",
+]  # fmt: skip
+"""The parts of the state that the scene depends on."""
+
+COMPANIONS = {".txt", ".json", ".mtl", ".bin", ".png", ".jpg", ".jpeg"}
+"""Files that come along with the one that is opened."""
+
+
+class Session:
+    """The state of one page, its view, and the work that goes on for it.
+
+    Parameters
+    ----------
+    schedule : callable
+        Runs a function on the page's own thread; see `Jobs`.
+    """
+
+    def __init__(self, schedule: Schedule) -> None:
+        self.state = State()
+        self.folder = Path(tempfile.mkdtemp(prefix="cutcell-"))
+        self.view = SceneView(self.pick, self.receiver(), sizing_mode="stretch_both")
+        self._jobs = Jobs(schedule)
+        self._fields = Jobs(schedule)
+        self._memo = Memo()
+        self.state.param.watch(self._refresh, SEEN)
+        self.state.param.watch(self._move, ["rig", "moving", "playing", "clip", "joint"])
+        self.state.param.watch(self._theme, "dark")
+        self.state.param.watch(lambda event: self.bind(), "resolution")
+        self._theme()
+
+    # Opening
+
+    def open_demo(self, id: str) -> None:
+        """Show a demo character and bind it."""
+        self.state.demo = id
+        title = next(demo.title for demo in DEMOS if demo.id == id)
+        self._open(lambda: demo_rig(id), f"opening {title}")
+
+    def open_files(self, paths: list[Path]) -> None:
+        """Show the character in files that a person dropped, and bind it."""
+        try:
+            path = main_file(paths)
+        except CutcellError as error:
+            self.fail(error)
+            return
+        self._open(lambda: cutcell.load(path), f"opening {path.name}", demo="")
+
+    def receiver(self) -> Receiver:
+        """Return what takes files from the browser and opens them."""
+        return Receiver(self.folder, self.open_files, self.fail)
+
+    def open_rig(self, rig: Rig) -> None:
+        """Show a character that is loaded already, and bind it."""
+        self.state.demo = ""
+        self._stand(rig)
+
+    def _open(self, load: Callable[[], Rig], stage: str, **then: Any) -> None:
+        def work(progress: Progress) -> Rig:
+            progress(stage, 0.0)
+            return load()
+
+        def done(rig: Rig) -> None:
+            self.state.param.update(**then)
+            self._stand(rig)
+
+        self._start(work, done)
+
+    def _stand(self, rig: Rig) -> None:
+        state = self.state
+        self._fields.cancel()
+        state.param.update(
+            rig=rig, binding=None, field=None, turns={}, moving=False, playing=False,
+            clip=0 if rig.clips else -1, message=None, joint=0,
+        )  # fmt: skip
+        state.joint = first_joint(state)
+        self.view.camera = framing(bounds_of(state), 1.2)
+        self.view.tell(bones=bones_part(state), camera=camera_part(self.view.camera))
+        self.bind()
+
+    # Computing
+
+    def bind(self) -> None:
+        """Compute graph, distances and weights of the character that stands there."""
+        state = self.state
+        rig, resolution = state.rig, state.resolution
+        if rig is None:
+            return
+
+        def done(binding: Any) -> None:
+            state.param.update(binding=binding, field=None, message=None)
+
+        self._start(lambda progress: cutcell.bind(rig, resolution, progress=progress), done)
+
+    def cancel(self) -> None:
+        """Stop computing; what was there stays."""
+        if self._jobs.cancel():
+            self.state.param.update(
+                busy=False, message=("info", "Cancelled. The page keeps what it had.")
+            )
+
+    def _start(self, work: Callable[[Progress], Any], done: Callable[[Any], None]) -> None:
+        def finish(result: Any) -> None:
+            self.state.busy = self._jobs.running
+            done(result)
+
+        def failed(error: Exception) -> None:
+            self.state.busy = False
+            self.fail(error)
+
+        self.state.param.update(busy=True, stage="", fraction=0.0)
+        self._jobs.start(work, finish, failed, self._report)
+
+    def _report(self, stage: str, fraction: float) -> None:
+        self.state.param.update(stage=stage, fraction=fraction)
+
+    def fail(self, error: Exception) -> None:
+        """Tell what went wrong; the page keeps what it had."""
+        if isinstance(error, CutcellError):
+            self.state.message = ("error", sentence(str(error)))
+            return
+        logger.error("unexpected error", exc_info=error)
+        self.state.message = (
+            "error",
+            f"Something unexpected went wrong ({type(error).__name__}: {error}). The page keeps "
+            "what it had; the details are in the server's log.",
+        )
+
+    # Looking
+
+    def pick(self, joint: int) -> None:
+        """Choose a joint; show its weights where the colours told of all joints."""
+        state = self.state
+        if state.rig is None or not 0 <= joint < len(state.rig.skeleton.joints):
+            return
+        coloring = "weights" if state.coloring in ("bones", "plain") else state.coloring
+        state.param.update(joint=joint, coloring=coloring)
+
+    def picture(self, size: tuple[int, int] = (1600, 1200)) -> bytes:
+        """Return what is seen as a PNG, drawn off-screen with the view's camera."""
+        path = self.folder / "picture.png"
+        scene = Scene(theme_of(self.state), size)
+        try:
+            scene.show(resolve(self.state, self._memo))
+            scene.look(self.view.camera or framing(bounds_of(self.state), size[0] / size[1]))
+            scene.render_png(path)
+        finally:
+            scene.close()
+        return path.read_bytes()
+
+    def bound_file(self, done: Callable[[str, bytes], None]) -> None:
+        """Write the character with its new weights, and hand over its name and content."""
+        state = self.state
+        if state.binding is None:
+            state.message = ("info", "There are no weights to download yet.")
+            return
+        rig = state.rig.with_weights(state.binding.weights)
+        path = self.folder / f"{Path(rig.name).stem or 'character'}-bound.glb"
+
+        def work(progress: Progress) -> tuple[str, bytes]:
+            progress("writing the file", 0.0)
+            cutcell.save(path, rig)
+            return path.name, path.read_bytes()
+
+        self._start(work, lambda result: done(*result))
+
+    def _refresh(self, *events: Any) -> None:
+        self._find_field()
+        self.view.show(resolve(self.state, self._memo))
+
+    def _move(self, *events: Any) -> None:
+        state = self.state
+        inputs = (state.rig, state.moving, state.clip, state.clip < 0 and state.joint)
+        clip = self._memo("clip", inputs, lambda: clip_part(state, clip_of(state)))
+        self.view.tell(clip=clip, playing=state.playing and clip is not None)
+
+    def _theme(self, *events: Any) -> None:
+        self.view.tell(theme=theme_part(theme_of(self.state)))
+
+    def _find_field(self) -> None:
+        state = self.state
+        binding, joint = state.binding, state.joint
+        if not wants_field(state):
+            return
+        if state.field is not None and state.field[0] is binding and state.field[1] == joint:
+            return
+
+        def work(progress: Progress) -> Any:
+            return binding.distances.field(joint)
+
+        def done(field: Any) -> None:
+            state.field = (binding, joint, field)
+
+        self._fields.start(work, done, self.fail, lambda stage, fraction: None)
+
+    def close(self) -> None:
+        """Stop all work and remove what was uploaded."""
+        self._jobs.close()
+        self._fields.close()
+        shutil.rmtree(self.folder, ignore_errors=True)
+
+
+@functools.cache
+def demo_rig(id: str) -> Rig:
+    """Return a demo character; it is read once, and nothing can write to it."""
+    return cutcell.load(demo_path(id))
+
+
+def main_file(paths: list[Path]) -> Path:
+    """Return the one file of a dropped group that is to be opened.
+
+    Raises
+    ------
+    FileError
+        There is none, or more than one.
+    """
+    found = [path for path in paths if path.suffix.lower() not in COMPANIONS]
+    names = ", ".join(path.name for path in paths)
+    if not found:
+        raise FileError(
+            f"no character among the dropped files ({names}); drop a GLB, glTF, OBJ, PLY, STL, "
+            "OFF or NPZ file, and the files that belong to it together with it"
+        )
+    if len(found) > 1:
+        raise FileError(f"more than one character was dropped ({names}); drop one at a time")
+    return found[0]
+
+
+def sentence(text: str) -> str:
+    """Return a message as a sentence: with a capital and a full stop."""
+    text = text.strip()
+    return text[:1].upper() + text[1:] + ("" if text.endswith((".", "!", "?")) else ".")

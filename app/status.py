@@ -1,0 +1,124 @@
+"""What is told about the work: progress, counts and seconds, warnings, errors."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import panel as pn
+import panel_material_ui as pmui
+
+from cutcell.graph import INTERIOR, MESH, SURFACE
+
+from .session import Session, sentence
+from .state import State
+
+TITLES = {
+    "graph": "Building the graph",
+    "distances": "Measuring distances",
+    "weights": "Computing weights",
+}
+
+
+def status_line(session: Session) -> pmui.Row:
+    """Return the slim line under the canvas."""
+    state = session.state
+    small = {"fontSize": "12px", "lineHeight": 1.4, "fontVariantNumeric": "tabular-nums"}
+    counts = pmui.Typography(
+        pn.bind(lambda *_: summary(state), state.param.rig, state.param.binding),
+        visible=pn.bind(lambda busy: not busy, state.param.busy),
+        sx={**small, "color": "text.secondary"},
+        margin=0,
+        sizing_mode="stretch_width",
+    )
+    stage = pmui.Typography(
+        pn.bind(stage_text, state.param.stage),
+        visible=state.param.busy,
+        sx={**small, "minWidth": "150px"},
+        margin=(0, 12, 0, 0),
+    )
+    bar = pmui.LinearProgress(
+        value=pn.bind(lambda fraction: round(100 * fraction), state.param.fraction),
+        visible=state.param.busy,
+        variant="determinate",
+        sizing_mode="stretch_width",
+        margin=(0, 12, 0, 0),
+    )
+    cancel = pmui.Button(
+        label="Cancel",
+        size="small",
+        variant="text",
+        visible=state.param.busy,
+        on_click=lambda event: session.cancel(),
+        margin=0,
+    )
+    return pmui.Row(
+        stage,
+        bar,
+        cancel,
+        counts,
+        sizing_mode="stretch_width",
+        margin=0,
+        sx={
+            "alignItems": "center",
+            "minHeight": "38px",
+            "px": "16px",
+            "borderTop": "1px solid",
+            "borderColor": "divider",
+            "bgcolor": "background.paper",
+        },
+    )
+
+
+def messages(session: Session) -> pmui.Column:
+    """Return the place over the canvas where errors and warnings are shown."""
+    state = session.state
+    # The sentence is the title: titles are shown as they are, never read as HTML.
+    look = {"borderRadius": 0, "& .MuiAlertTitle-root": {"fontSize": 13, "fontWeight": 400, "m": 0}}
+    alert = pmui.Alert(
+        closeable=True, margin=0, sizing_mode="stretch_width", visible=False, sx=look,
+        variant="outlined",
+    )  # fmt: skip
+
+    def told(*events: Any) -> None:
+        severity, text = state.message or warning(state) or ("info", "")
+        alert.param.update(severity=severity, title=text, closed=False, visible=bool(text))
+
+    def closed(event: Any) -> None:
+        if event.new:
+            alert.visible = False
+
+    state.param.watch(told, ["message", "binding"])
+    alert.param.watch(closed, "closed")
+    return pmui.Column(alert, margin=0, sizing_mode="stretch_width")
+
+
+def warning(state: State) -> tuple[str, str] | None:
+    """Return what a person should know about the result."""
+    if state.binding is None or not state.binding.warnings:
+        return None
+    return "warning", " ".join(sentence(text) for text in state.binding.warnings)
+
+
+def stage_text(stage: str) -> str:
+    """Return a stage as it is told to a person."""
+    return TITLES.get(stage, sentence(stage).rstrip(".") if stage else "Starting")
+
+
+def summary(state: State) -> str:
+    """Return the counts and the seconds, in one line."""
+    rig, binding = state.rig, state.binding
+    if rig is None:
+        return ""
+    mesh, joints = rig.mesh, len(rig.skeleton.joints)
+    parts = [f"{len(mesh.vertices):,} vertices · {len(mesh.faces):,} faces · {joints} joints"]
+    if binding is not None:
+        graph = binding.graph
+        kinds = np.bincount(graph.edge_kind, minlength=3)
+        parts.append(
+            f"{len(graph.nodes):,} nodes · {len(graph.edges):,} edges ({kinds[MESH]:,} mesh, "
+            f"{kinds[INTERIOR]:,} interior, {kinds[SURFACE]:,} surface)"
+        )
+        seconds = binding.seconds.items()
+        parts.append(" · ".join(f"{stage} {value:.2f} s" for stage, value in seconds))
+    return "  |  ".join(parts)
