@@ -68,17 +68,13 @@ class Material:
 
 @dataclass
 class Surface:
-    """Triangles of one material, (n, 3), (m, 3), with normals (n, 3) and weights (n, j).
-
-    `colours` (n, 3), sRGB from 0 to 1, if there, multiplies the material's colour.
-    """
+    """Triangles of one material: vertices (n, 3), faces (m, 3), weights (n, j)."""
 
     vertices: NDArray
     faces: NDArray
     normals: NDArray | None
     weights: NDArray
     material: Material
-    colours: NDArray | None = None
 
 
 @dataclass

@@ -62,7 +62,6 @@ class _Blob:
         dtype: str = "float32",
         target: int | None = None,
         bounds: bool = False,
-        normalized: bool = False,
     ) -> int:
         """Append an array; return the index of its accessor."""
         array = np.ascontiguousarray(array, dtype)
@@ -77,7 +76,6 @@ class _Blob:
             gltf.Accessor(
                 bufferView=len(self.document.bufferViews) - 1,
                 componentType=_COMPONENTS[dtype],
-                normalized=normalized,
                 count=len(array),
                 type=kind,
                 min=rows.min(axis=0).tolist() if bounds else None,
@@ -122,10 +120,6 @@ def _primitive(blob: _Blob, index: int, surface: Surface) -> gltf.Primitive:
     )
     if surface.normals is not None:
         attributes.NORMAL = blob.add(surface.normals, "VEC3", target=_VERTICES)
-    if surface.colours is not None:
-        light = np.round(linear(surface.colours) * 255)
-        rows = np.column_stack([light, np.full(len(light), 255)])
-        attributes.COLOR_0 = blob.add(rows, "VEC4", "uint8", _VERTICES, normalized=True)
     dtype = "uint16" if len(surface.vertices) < 65535 else "uint32"
     indices = blob.add(surface.faces.ravel(), "SCALAR", dtype, _INDICES)
     return gltf.Primitive(attributes=attributes, indices=indices, material=index)

@@ -64,7 +64,7 @@ def remeshed(
         vertices, faces, wanted = collapse_short_edges(vertices, faces, wanted)
         faces = flip_edges(vertices, faces)
         for _ in range(4):
-            vertices = _onto_surface(body, _relaxed(vertices, faces, wanted))
+            vertices = onto_surface(body, relaxed(vertices, faces, wanted))
     return vertices, flip_edges(vertices, faces)
 
 
@@ -106,7 +106,7 @@ def _without_slivers(vertices: NDArray, faces: NDArray, spacing: float) -> tuple
     return vertices, faces
 
 
-def _relaxed(vertices: NDArray, faces: NDArray, wanted: NDArray) -> NDArray:
+def relaxed(vertices: NDArray, faces: NDArray, wanted: NDArray) -> NDArray:
     """Slide each vertex half the way to its triangles' middle, weighted by their area."""
     count = len(vertices)
     vectors = face_vectors(vertices, faces)
@@ -123,7 +123,8 @@ def _relaxed(vertices: NDArray, faces: NDArray, wanted: NDArray) -> NDArray:
     return vertices + 0.6 * move
 
 
-def _onto_surface(body: Body, vertices: NDArray) -> NDArray:
+def onto_surface(body: Body, vertices: NDArray) -> NDArray:
+    """Return the vertices put back on the body's surface."""
     normal, slope, value = _gradient(body, vertices, 1e-4)
     # Where limbs meet in a crease the slope is unreliable: never step further than 1 cm.
     step = np.clip(value / np.maximum(slope, 0.3), -0.01, 0.01)

@@ -142,6 +142,17 @@ def shell(shape: Shape, grow: float) -> Shape:
     return Shape(lambda p: shape.distance(p) - grow, shape.centre, shape.radius + grow)
 
 
+def flattened(shape: Shape, point: ArrayLike, normal: ArrayLike, factor: float) -> Shape:
+    """Return the shape pressed `factor` times thinner along `normal`, towards `point`."""
+    c, n = np.asarray(point, float), unit(normal)
+
+    def distance(p: Points) -> NDArray:
+        away = (factor - 1) * _dot(p - c, n)
+        return shape.distance(p + away[:, None] * n) / factor
+
+    return Shape(distance, shape.centre, shape.radius)
+
+
 def mirrored(shape: Shape) -> Shape:
     """Return the shape reflected at the plane x = 0."""
     flip = np.array([-1.0, 1.0, 1.0])
@@ -244,14 +255,13 @@ class Body:
                 np.minimum(column, part.shape.distance(points), out=column)
         return distances
 
-    def colours(self, points: Points) -> list[str]:
+    def colours(self, points: Points) -> NDArray:
         """Return the name of each point's colour: its nearest part's, or the paint's."""
         solid = [part for part in self.parts if not part.carve]
         nearest = np.argmin([part.shape.distance(points) for part in solid], axis=0)
-        names = [solid[k].colour for k in nearest]
+        names = np.array([part.colour for part in solid], object)[nearest]
         for shape, colour, _ in self.paint:
-            for k in np.flatnonzero(shape.distance(points) < 0):
-                names[k] = colour
+            names[shape.distance(points) < 0] = colour
         return names
 
 
