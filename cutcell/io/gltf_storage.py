@@ -80,7 +80,7 @@ class Storage:
             self.views[view].update(buffer=0, byteOffset=0, byteLength=0)
         self._free_accessors.discard(index)
         self._free_views.discard(view)
-        self._put(self.views[view], values)
+        self._put(view, values)
         for key in ("byteOffset", "normalized", "sparse", "min", "max"):
             accessor.pop(key, None)
         accessor["bufferView"] = view
@@ -96,7 +96,9 @@ class Storage:
         if same != tuple(accessor.get(k) for k in ("componentType", "count", "type")):
             return False
         view = accessor.get("bufferView")
-        if view is None or "sparse" in accessor or self._shares_bytes(index):
+        if view is None or "sparse" in accessor or self._overlapped(view):
+            return False
+        if self._shares_bytes(index):
             return False
         start = self.views[view].get("byteOffset", 0) + accessor.get("byteOffset", 0)
         stride = self.views[view].get("byteStride") or 4 * values.itemsize
@@ -132,10 +134,19 @@ class Storage:
         start = accessor.get("byteOffset", 0)
         return start, start + (stride or width) * (accessor["count"] - 1) + width, width
 
-    def _put(self, view: dict[str, Any], values: NDArray) -> None:
-        content = np.ascontiguousarray(values).tobytes()
+    def _overlapped(self, view: int) -> bool:
+        """Tell whether another buffer view in use covers bytes of this one."""
+        start, end = _extent(self.views[view])
+        return any(
+            i != view and i not in self._free_views and other_start < end and start < other_end
+            for i, (other_start, other_end) in enumerate(map(_extent, self.views))
+        )
+
+    def _put(self, index: int, values: NDArray) -> None:
+        """Make a view hold just these values, in its old place if they fit."""
+        view, content = self.views[index], values.tobytes()
         start, end = _extent(view)
-        if start % 4 or end - start < len(content):
+        if start % 4 or end - start < len(content) or self._overlapped(index):
             start = self._append(content)
         else:
             self.data[start : start + len(content)] = content
