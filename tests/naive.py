@@ -1,0 +1,146 @@
+"""Slow oracles, written to be read: exact fractions, plain sums, one loop after the other."""
+
+import heapq
+from fractions import Fraction
+
+import numpy as np
+
+PLANE = {0: (1, 2), 1: (0, 2), 2: (0, 1)}
+
+
+def orientation(a, b, p):
+    """Sign of the turn a -> b -> p in the plane; p is moved by e in v and by e^2 in u."""
+    turn = (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0])
+    for term in (turn, b[0] - a[0], a[1] - b[1]):
+        if term != 0:
+            return 1 if term > 0 else -1
+    return 0
+
+
+def rays(vertices, faces, resolution, axis):
+    """All crossings (i, j, position, sign, triangle) along one axis, in exact fractions."""
+    u, v = PLANE[axis]
+    exact = [[Fraction(float(x)) for x in p] for p in vertices]
+    found = []
+    for t, face in enumerate(faces):
+        corners = [(exact[k][u], exact[k][v], exact[k][axis]) for k in face]
+        a, b, c = corners
+        area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+        if area == 0:
+            continue
+        for i in range(resolution):
+            # The lattice's own coordinates are floating-point numbers.
+            pu = Fraction((i + 0.5) / resolution)
+            if not min(a[0], b[0], c[0]) <= pu <= max(a[0], b[0], c[0]):
+                continue
+            for j in range(resolution):
+                p = pu, Fraction((j + 0.5) / resolution)
+                sides = {orientation(corners[k], corners[(k + 1) % 3], p) for k in range(3)}
+                if len(sides) > 1:
+                    continue
+                weight = [
+                    ((y[0] - x[0]) * (p[1] - x[1]) - (y[1] - x[1]) * (p[0] - x[0])) / area
+                    for x, y in ((b, c), (c, a), (a, b))
+                ]
+                position = sum(w * q[2] for w, q in zip(weight, corners, strict=True))
+                sign = sides.pop() * (-1 if axis == 1 else 1)
+                found.append((i, j, float(position), sign, t))
+    return sorted(found)
+
+
+def winding_number(vertices, faces, points):
+    """Sum of the solid angles of all triangles (van Oosterom & Strackee), over 4 pi."""
+    total = np.zeros(len(points))
+    for face in faces:
+        p, q, r = vertices[face]
+        if not np.cross(q - p, r - p).any():
+            continue  # no area, and no solid angle either; arctan2(0, -1) would say pi
+        a, b, c = p - points, q - points, r - points
+        la, lb, lc = (np.linalg.norm(x, axis=1) for x in (a, b, c))
+        numerator = np.einsum("ij,ij->i", a, np.cross(b, c))
+        denominator = (
+            la * lb * lc
+            + np.einsum("ij,ij->i", a, b) * lc
+            + np.einsum("ij,ij->i", b, c) * la
+            + np.einsum("ij,ij->i", c, a) * lb
+        )
+        total += np.arctan2(numerator, denominator)
+    return total / (2 * np.pi)
+
+
+def segments(vertices, faces, resolution, tau):
+    """All kept segments as ((axis, i, j, kind, place), (...)), lattice points and crossings.
+
+    A crossing is named by its ray and its place along it, a lattice point by x, y, z.
+    """
+    kept = []
+    for axis in range(3):
+        by_ray = {}
+        for i, j, position, sign, _ in rays(vertices, faces, resolution, axis):
+            by_ray.setdefault((i, j), []).append((position, sign))
+        for i in range(resolution):
+            for j in range(resolution):
+                crossings = sorted(by_ray.get((i, j), []))
+                stops = [(p, 0, n, s) for n, (p, s) in enumerate(crossings)]
+                stops += [((k + 0.5) / resolution, 1, k, 0) for k in range(resolution)]
+                stops.sort()  # a crossing comes before a lattice point at the same place
+                kept += _segments_of_ray(vertices, faces, axis, i, j, stops, resolution, tau)
+    return set(kept)
+
+
+def _segments_of_ray(vertices, faces, axis, i, j, stops, resolution, tau):
+    u, v = PLANE[axis]
+    stops = [(-1.0, 2, 0, 0), *stops]  # a place surely outside, where no segment is kept
+    middles = np.empty((len(stops) - 1, 3))
+    middles[:, u] = (i + 0.5) / resolution
+    middles[:, v] = (j + 0.5) / resolution
+    middles[:, axis] = [(a[0] + b[0]) / 2 for a, b in zip(stops, stops[1:], strict=False)]
+    inside = winding_number(vertices, faces, middles)
+    for n in range(1, len(inside)):
+        if stops[n][0] == stops[n + 1][0]:  # no length: the number is known by the crossing
+            inside[n] = inside[n - 1] - stops[n][3]
+    names = [_name(axis, i, j, stop) for stop in stops]
+    return [(names[n], names[n + 1]) for n in range(1, len(inside)) if inside[n] >= tau]
+
+
+def _name(axis, i, j, stop):
+    _, kind, place, _ = stop
+    if kind == 2:
+        return None
+    if kind == 0:
+        return ("crossing", axis, i, j, place)
+    u, v = PLANE[axis]
+    point = [0, 0, 0]
+    point[u], point[v], point[axis] = i, j, place
+    return ("lattice", *point)
+
+
+def shortest_paths(count, edges, lengths, sources):
+    """Dijkstra's algorithm from {node: first distance}."""
+    neighbours = [[] for _ in range(count)]
+    for (a, b), length in zip(edges, lengths, strict=True):
+        neighbours[a].append((b, length))
+        neighbours[b].append((a, length))
+    distance = [float("inf")] * count
+    queue = [(d, node) for node, d in sources.items()]
+    for d, node in queue:
+        distance[node] = min(distance[node], d)
+    heapq.heapify(queue)
+    while queue:
+        d, node = heapq.heappop(queue)
+        if d > distance[node]:
+            continue
+        for other, length in neighbours[node]:
+            if d + length < distance[other]:
+                distance[other] = d + length
+                heapq.heappush(queue, (d + length, other))
+    return np.array(distance)
+
+
+def paper_weights(distance, diagonal, alpha):
+    """Equation 1 as it stands in the paper, normalised; distance is (j, n)."""
+    weights = np.zeros(distance.T.shape)
+    for i, j in np.ndindex(*weights.shape):
+        d = distance[j, i] / diagonal
+        weights[i, j] = (1 / ((1 - alpha) * d + alpha * d**2)) ** 2 if np.isfinite(d) else 0
+    return weights / weights.sum(axis=1, keepdims=True)
