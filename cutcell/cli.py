@@ -14,7 +14,7 @@ import typer
 
 from . import __version__
 from .console import for_people, print_json, print_table, print_warnings, progress_bars
-from .errors import MissingLibraryError, ParameterError
+from .errors import FileError, MissingLibraryError, ParameterError
 from .options import (
     Alpha,
     Connectivity,
@@ -40,12 +40,16 @@ app = typer.Typer(
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
-    rich_markup_mode="rich",
+    rich_markup_mode="markdown",
     context_settings={"help_option_names": ["-h", "--help"]},
-    epilog="""The method is that of [bold]A Geodesic Cut-Cell Prior for Neural Skinning[/bold]
-(Ma et al. 2026). Exit codes: 0 done, 2 wrong input (one sentence says what), 130 stopped
-by Ctrl-C.""",
+    epilog="""The method is that of *A Geodesic Cut-Cell Prior for Neural Skinning* (Ma et al. 2026).
+
+Exit codes: 0 done; 2 wrong input, and one sentence says what; 130 stopped by Ctrl-C.""",
 )
+
+
+ENDINGS = (".glb", ".gltf", ".npz", ".txt")
+"""Of the files that rigs are saved in, as `cutcell.io` names them."""
 
 
 def _print_version(wanted: bool) -> None:
@@ -70,7 +74,7 @@ def cutcell(
     """
 
 
-@app.command(name="app", epilog="Example: [bold]cutcell app character.glb --port 5010[/bold]")
+@app.command(name="app", epilog="Example: `cutcell app character.glb --port 5010`")
 @for_people
 def open_page(
     rig: Annotated[
@@ -78,7 +82,11 @@ def open_page(
         typer.Argument(metavar="[RIG]", help="What to open; a demo character when left out."),
     ] = None,
     port: Annotated[
-        int, typer.Option("--port", help="Where the page is served; 0 takes any free port.")
+        int,
+        typer.Option(
+            "--port",
+            help="Where the page is served; the next free one if taken, any free one if 0.",
+        ),
     ] = 5006,
     address: Annotated[
         str,
@@ -101,20 +109,20 @@ def open_page(
     except OSError as error:
         raise ParameterError(
             f"the page cannot be served at {address}, port {port} ({error.strerror or error}); "
-            "choose another --port, or 0 for any free one"
+            "choose another --address or --port"
         ) from None
 
 
 @app.command(
     epilog="""Examples:
 
-[bold]cutcell bind character.glb bound.glb[/bold]  the paper's own choices
+- `cutcell bind character.glb bound.glb`  (the paper's own choices)
 
-[bold]cutcell bind character.glb bound.glb -r 128 --connectivity 26[/bold]  finer, truer distances
+- `cutcell bind character.glb bound.glb -r 128 --connectivity 26`  (finer, truer distances)
 
-[bold]cutcell bind body.obj bound.glb --skeleton body.json[/bold]  a bare mesh
+- `cutcell bind body.obj bound.glb --skeleton body.json`  (a bare mesh)
 
-[bold]cutcell bind character.glb bound.glb --json | jq .seconds[/bold]  for a script"""
+- `cutcell bind character.glb bound.glb --json | jq .seconds`  (for a script)"""
 )
 @for_people
 def bind(
@@ -160,6 +168,7 @@ def bind(
         "max_influences": max_influences,
         "threshold": threshold,
     }
+    _check_output(out)
     loaded = _load(rig, skeleton)
     with progress_bars(quiet) as progress:
         binding = compute(loaded, **parameters, progress=progress)
@@ -188,11 +197,11 @@ def bind(
 @app.command(
     epilog="""Examples:
 
-[bold]cutcell graph character.glb[/bold]
+- `cutcell graph character.glb`
 
-[bold]cutcell graph scan.ply -r 128[/bold]  a mesh alone: no skeleton is needed
+- `cutcell graph scan.ply -r 128`  (a mesh alone: no skeleton is needed)
 
-[bold]cutcell graph character.glb --json | jq .edges.total[/bold]"""
+- `cutcell graph character.glb --json | jq .graph.edges.total`"""
 )
 @for_people
 def graph(
@@ -282,5 +291,25 @@ def _load(path: Path, skeleton: Path | None) -> Rig:
 
 
 def _load_mesh(path: Path, skeleton: Path | None) -> tuple[TriangleMesh, Rig | None]:
-    loaded = _load(path, skeleton)
-    return loaded.mesh, loaded
+    """Load a rig, or a mesh that has no skeleton beside it."""
+    from .io.files import naming
+    from .io.rignet import rig_file
+    from .io.skeleton_json import skeleton_file
+    from .io.soup import MESHES, read_mesh
+
+    if path.suffix.lower() not in MESHES or skeleton or skeleton_file(path) or rig_file(path):
+        loaded = _load(path, skeleton)
+        return loaded.mesh, loaded
+    with naming(path):
+        return read_mesh(path), None
+
+
+def _check_output(path: Path) -> None:
+    """Meet a wrong name before the work, not after it; `save` checks again."""
+    if path.suffix.lower() not in ENDINGS:
+        raise FileError(
+            f'{path.name}: a rig cannot be saved as "{path.suffix}"; end the name in one of '
+            f"{', '.join(ENDINGS)}"
+        )
+    if not path.parent.is_dir():
+        raise FileError(f"{path.name}: there is no folder {path.parent} to save it in")

@@ -38,7 +38,7 @@ def for_people(command: Command) -> Command:
             _to_stderr("error", str(error), "bold red")
             raise typer.Exit(WRONG_INPUT) from None
         except KeyboardInterrupt:
-            _to_stderr("stopped", "nothing was written", "bold yellow")
+            _to_stderr("stopped", "by Ctrl-C", "bold yellow")
             raise typer.Exit(INTERRUPTED) from None
 
     return run  # type: ignore[return-value]

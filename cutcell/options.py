@@ -13,7 +13,9 @@ FILES = "Files and output"
 RigFile = Annotated[
     Path,
     typer.Argument(
-        metavar="RIG", help="A character: .glb, .gltf, .npz, or .obj with its rig .txt."
+        metavar="RIG",
+        help="A character: .glb or .gltf; RigNet's .obj with .txt; Articulation-XL's .npz; or a"
+        " mesh (.obj, .ply, .stl, .off) with a skeleton in a .json beside it.",
     ),
 ]
 SkeletonFile = Annotated[
@@ -21,7 +23,7 @@ SkeletonFile = Annotated[
     typer.Option(
         "--skeleton",
         metavar="FILE",
-        help="Skeleton (JSON) of a bare mesh: .obj, .ply, .stl, .off.",
+        help="The skeleton (.json) of a mesh, where it does not stand beside it under its name.",
         rich_help_panel=FILES,
     ),
 ]
