@@ -20,6 +20,38 @@ REPORT_EVERY = 0.08
 """Seconds between two reports of progress; more would only keep the page busy."""
 
 
+class Gate:
+    """Holds scheduled actions back until a page is there to show what they do.
+
+    What is changed while a browser is still loading may arrive in the wrong order.
+
+    Parameters
+    ----------
+    schedule : callable
+        What to schedule with once the gate is open.
+    """
+
+    def __init__(self, schedule: Schedule) -> None:
+        self._schedule = schedule
+        self._waiting: list[Callable[[], None]] | None = []
+        self._lock = threading.Lock()
+
+    def __call__(self, action: Callable[[], None]) -> None:
+        """Schedule an action, now or when the gate opens; from any thread."""
+        with self._lock:
+            if self._waiting is not None:
+                self._waiting.append(action)
+                return
+        self._schedule(action)
+
+    def open(self) -> None:
+        """Schedule all that waits, in order."""
+        with self._lock:
+            waiting, self._waiting = self._waiting or [], None
+            for action in waiting:
+                self._schedule(action)
+
+
 class Job:
     """One piece of work."""
 

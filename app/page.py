@@ -10,6 +10,7 @@ import panel_material_ui as pmui
 
 from assets import DEMOS
 
+from .jobs import Gate
 from .panels.bone import bone
 from .panels.character import character
 from .panels.export import export
@@ -29,7 +30,9 @@ def page(path: Path | None = None) -> pmui.Page:
         The character to open; the first demo when left out.
     """
     document = pn.state.curdoc
-    session = Session(document.add_next_tick_callback)
+    gate = Gate(document.add_next_tick_callback)
+    pn.state.onload(gate.open)
+    session = Session(gate)
     # Bound as a default: the names of a page are gone when its end is told.
     document.on_session_destroyed(lambda context, session=session: session.close())
     result = layout(session)

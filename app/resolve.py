@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
@@ -173,13 +174,7 @@ def clip_of(state: State) -> Clip | None:
         return None
     if 0 <= state.clip < len(state.rig.clips):
         return state.rig.clips[state.clip]
-    axis = strongest_axis(state.turns.get(state.joint, (0, 0, 0)))
-    return swing(state.rig, state.joint, axis, SWING_DEGREES)
-
-
-def strongest_axis(angles: tuple[float, float, float]) -> str:
-    """Return the axis that a joint is turned about most; z, sideways, for none."""
-    return "xyz"[int(np.argmax(np.abs(angles)))] if any(angles) else "z"
+    return swing(state.rig, state.joint, state.axis, SWING_DEGREES)
 
 
 def clip_part(state: State, clip: Clip | None) -> dict[str, Any] | None:
@@ -202,12 +197,17 @@ def bones_part(state: State) -> dict[str, Any]:
 
 
 def first_joint(state: State) -> int:
-    """Return the joint to begin with: a long bone in the middle of things."""
+    """Return the joint to begin with: an arm if there is one, else the longest bone."""
+    skeleton = state.rig.skeleton
     start, end, joint = drawn_segments(state.rig)
-    inner = [len(state.rig.skeleton.children[j]) > 0 for j in joint]
-    useful = state.rig.skeleton.deform[joint] & inner & (state.rig.skeleton.parents[joint] >= 0)
-    length = np.linalg.norm(end - start, axis=1) * (useful + 1e-6)
-    return int(joint[np.argmax(length)])
+    inner = np.array([len(skeleton.children[j]) > 0 for j in joint])
+    useful = skeleton.deform[joint] & inner & (skeleton.parents[joint] >= 0)
+    arm = np.array([bool(_ARM.search(skeleton.names[j])) for j in joint])
+    score = np.linalg.norm(end - start, axis=1) * (useful + 1e-6) * (1 + 100 * arm)
+    return int(joint[np.argmax(score)])
+
+
+_ARM = re.compile(r"arm", re.IGNORECASE)
 
 
 def _same_inputs(a: tuple[Any, ...], b: tuple[Any, ...]) -> bool:

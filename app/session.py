@@ -63,7 +63,7 @@ class Session:
         self._fields = Jobs(schedule)
         self._memo = Memo()
         self.state.param.watch(self._refresh, SEEN)
-        self.state.param.watch(self._move, ["rig", "moving", "playing", "clip", "joint"])
+        self.state.param.watch(self._move, ["rig", "moving", "playing", "clip", "joint", "axis"])
         self.state.param.watch(self._theme, "dark")
         self.state.param.watch(lambda event: self.bind(), "resolution")
         self._theme()
@@ -209,7 +209,8 @@ class Session:
 
     def _move(self, *events: Any) -> None:
         state = self.state
-        inputs = (state.rig, state.moving, state.clip, state.clip < 0 and state.joint)
+        swings = f"{state.joint} {state.axis}" if state.clip < 0 else ""
+        inputs = (state.rig, state.moving, state.clip, swings)
         clip = self._memo("clip", inputs, lambda: clip_part(state, clip_of(state)))
         self.view.tell(clip=clip, playing=state.playing and clip is not None)
 

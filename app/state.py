@@ -47,6 +47,7 @@ class State(param.Parameterized):
     )
     joint: Any = param.Integer(0, doc="The chosen joint.")
 
+    axis: Any = param.Selector(default="z", objects=["x", "y", "z"], doc="What to turn about.")
     turns: Any = param.Dict({}, doc="Degrees about x, y and z, a triple for each turned joint.")
     clip: Any = param.Integer(-1, doc="Which clip of the rig to play; -1 swings the joint.")
     moving: Any = param.Boolean(False, doc="Whether a motion, rather than `turns`, poses.")

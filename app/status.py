@@ -28,21 +28,21 @@ def status_line(session: Session) -> pmui.Row:
         pn.bind(lambda *_: summary(state), state.param.rig, state.param.binding),
         visible=pn.bind(lambda busy: not busy, state.param.busy),
         sx={**small, "color": "text.secondary"},
-        margin=0,
+        margin=(10, 16),
         sizing_mode="stretch_width",
     )
     stage = pmui.Typography(
         pn.bind(stage_text, state.param.stage),
         visible=state.param.busy,
         sx={**small, "minWidth": "150px"},
-        margin=(0, 12, 0, 0),
+        margin=(10, 8, 10, 16),
     )
     bar = pmui.LinearProgress(
         value=pn.bind(lambda fraction: round(100 * fraction), state.param.fraction),
         visible=state.param.busy,
         variant="determinate",
         sizing_mode="stretch_width",
-        margin=(0, 12, 0, 0),
+        margin=(17, 8),
     )
     cancel = pmui.Button(
         label="Cancel",
@@ -50,7 +50,7 @@ def status_line(session: Session) -> pmui.Row:
         variant="text",
         visible=state.param.busy,
         on_click=lambda event: session.cancel(),
-        margin=0,
+        margin=(4, 12),
     )
     return pmui.Row(
         stage,
@@ -60,9 +60,7 @@ def status_line(session: Session) -> pmui.Row:
         sizing_mode="stretch_width",
         margin=0,
         sx={
-            "alignItems": "center",
             "minHeight": "38px",
-            "px": "16px",
             "borderTop": "1px solid",
             "borderColor": "divider",
             "bgcolor": "background.paper",

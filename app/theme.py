@@ -46,7 +46,7 @@ PAGE_STYLE: dict[str, Any] = {
         "borderBottom": "1px solid",
         "borderColor": "divider",
     },
-    "& .header .title": {"color": "inherit"},
+    "& .header a, & .header .title": {"color": "inherit"},
     "& .header .MuiToolbar-root": {"minHeight": "52px", "margin": 0},
     "& .MuiToolbar-root": {"minHeight": "52px"},
     "& .sidebar": {"backgroundImage": "none", "borderColor": "divider"},

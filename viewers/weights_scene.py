@@ -13,6 +13,9 @@ from .character import attachments, body, bones
 from .description import Description, Legend
 from .palette import UNREACHED, joint_colors, to_bytes
 
+EMPHASIS = 4
+"""The power that weights are raised to before their joints' colours are mixed."""
+
 
 def weights_scene(
     rig: Rig,
@@ -31,7 +34,7 @@ def weights_scene(
     weights : array_like, shape (n, j)
     joint : int, optional
         Whose weights to show, from grey (none) to dark red (all). Without it every joint
-        has a colour, and each vertex their mixture.
+        has a colour, and each vertex their mixture, the strongest foremost.
     skeleton : bool
         Whether the bones are seen.
     chosen : int, optional
@@ -61,6 +64,9 @@ def weight_colors(
     if joint is not None:
         legend = Legend(f"Weight of {rig.skeleton.names[joint]}", "weight", "0", "1")
         return {"scalars": weights[:, joint].astype(np.float32), "colormap": "weight"}, legend
-    total = np.minimum(weights.sum(axis=1, keepdims=True), 1)
-    mixed = weights @ joint_colors(rig.skeleton.parents) + (1 - total) * UNREACHED
+    # Many small weights mix to grey; a power lets the strongest show its colour.
+    strong = weights**EMPHASIS
+    total = strong.sum(axis=1, keepdims=True)
+    mixed = strong @ joint_colors(rig.skeleton.parents) / np.where(total > 0, total, 1)
+    mixed = np.where(total > 0, mixed, UNREACHED)
     return {"colors": to_bytes(np.clip(mixed, 0, 1))}, None

@@ -39,10 +39,7 @@ def bone(session: Session) -> pmui.Column:
     state.param.watch(shown, "joint")
     select.param.watch(chosen, "value")
     listed()
-    skeleton = pmui.Switch.from_param(
-        state.param.skeleton, label="Show the skeleton", size="small", margin=(1, 0)
-    )
-    return section("Bone", select, choice(state.param.coloring, SHOWN), skeleton)
+    return section("Bone", select, choice(state.param.coloring, SHOWN))
 
 
 def unique_options(names: tuple[str, ...]) -> dict[str, int]:

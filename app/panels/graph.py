@@ -44,7 +44,12 @@ def graph(session: Session) -> pmui.Column:
             state.param.busy,
         ),
     )
-    layers = [_layer(state, name) for name in ("body", *LAYER_COLORS)]
+    layers = pn.GridBox(
+        *[_layer(state, name) for name in ("body", "skeleton", *LAYER_COLORS)],
+        ncols=2,
+        sizing_mode="stretch_width",
+        margin=GAP,
+    )
     rest = caption(
         "The graph is of the resting character: it hides while the character is posed.",
         visible=pn.bind(lambda *_: state.posed, state.param.turns, state.param.moving),
@@ -68,7 +73,7 @@ def graph(session: Session) -> pmui.Column:
         "Graph",
         resolution,
         again,
-        *layers,
+        layers,
         rest,
         caption("Cutting plane", margin=(8, 0, 0, 0)),
         choice(state.param.cut_axis, {"Off": "off", "X": "x", "Y": "y", "Z": "z"}),

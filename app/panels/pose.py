@@ -8,7 +8,7 @@ import panel as pn
 import panel_material_ui as pmui
 
 from ..session import Session
-from .parts import GAP, caption, section
+from .parts import GAP, caption, choice, section
 
 AXES = ("x", "y", "z")
 
@@ -16,7 +16,7 @@ AXES = ("x", "y", "z")
 def pose(session: Session) -> pmui.Column:
     """Return the section that moves the character."""
     state = session.state
-    sliders = [_angle(session, k) for k in range(3)]
+    axis = choice(state.param.axis, {"X": "x", "Y": "y", "Z": "z"})
     motion = pmui.Select(
         label="Motion", options={}, size="small", margin=GAP, sizing_mode="stretch_width"
     )
@@ -70,24 +70,25 @@ def pose(session: Session) -> pmui.Column:
         ),
         margin=0,
     )
-    return section("Pose", turned, *sliders, motion, buttons)
+    return section("Pose", turned, axis, _angle(session), motion, buttons)
 
 
-def _angle(session: Session, k: int) -> pmui.IntSlider:
+def _angle(session: Session) -> pmui.IntSlider:
     state = session.state
     slider = pmui.IntSlider(
-        label=f"about {AXES[k]}",
+        label="Angle",
         value=0,
         start=-120,
         end=120,
         step=1,
         format="0°",
         size="small",
-        margin=(2, 0),
+        margin=GAP,
         sizing_mode="stretch_width",
     )
 
     def turned(event: Any) -> None:
+        k = AXES.index(state.axis)
         angles = list(state.turns.get(state.joint, (0, 0, 0)))
         if angles[k] == event.new:
             return
@@ -96,8 +97,8 @@ def _angle(session: Session, k: int) -> pmui.IntSlider:
         state.param.update(turns=turns, moving=False, playing=False)
 
     def shown(*events: Any) -> None:
-        slider.value = state.turns.get(state.joint, (0, 0, 0))[k]
+        slider.value = state.turns.get(state.joint, (0, 0, 0))[AXES.index(state.axis)]
 
     slider.param.watch(turned, "value")
-    state.param.watch(shown, ["turns", "joint"])
+    state.param.watch(shown, ["turns", "joint", "axis"])
     return slider
