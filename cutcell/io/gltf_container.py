@@ -65,7 +65,8 @@ class Document:
     def label(self, kind: str, index: int) -> str:
         """Return how to name an object to people: by its name, else by its number."""
         name = self.items(kind)[index].get("name")
-        return f'{kind[:-1]} "{name}"' if isinstance(name, str) and name else f"{kind}[{index}]"
+        one = "mesh" if kind == "meshes" else kind.removesuffix("s")
+        return f'{one} "{name}"' if isinstance(name, str) and name else f"{kind}[{index}]"
 
 
 def whole(owner: dict[str, Any], key: str, user: str, default: int | None = None) -> int:

@@ -47,7 +47,7 @@ def carry_images(storage: Storage, document: Document, target: Path) -> dict[Pat
             _check_free(goal, content)
             files[goal] = content
         else:
-            _embed(storage, image, uri, content)
+            _embed(storage, image, found.name, content)
     return files
 
 
@@ -56,12 +56,12 @@ def _check_free(goal: Path, content: bytes) -> None:
         raise FileError(f"its image {goal.name} would replace another file, {goal}")
 
 
-def _embed(storage: Storage, image: dict[str, Any], uri: str, content: bytes) -> None:
+def _embed(storage: Storage, image: dict[str, Any], name: str, content: bytes) -> None:
     signed = next((m for s, m in SIGNATURES.items() if content.startswith(s)), None)
-    kind = image.get("mimeType") or signed or mimetypes.guess_type(uri)[0]
+    kind = image.get("mimeType") or signed or mimetypes.guess_type(name)[0]
     if kind is None:
         return
     del image["uri"]
-    image.setdefault("name", Path(uri).stem)
+    image.setdefault("name", Path(name).stem)
     image["mimeType"] = kind
     image["bufferView"] = storage.add_view(content)

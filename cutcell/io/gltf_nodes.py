@@ -132,7 +132,7 @@ def compose(translation: NDArray, rotation: NDArray, scale: NDArray) -> NDArray:
     """Return matrices (..., 4, 4) from translations, quaternions (x, y, z, w) and scales."""
     norm = np.linalg.norm(rotation, axis=-1, keepdims=True)
     with np.errstate(invalid="ignore", divide="ignore"):
-        q = np.where(norm > 0, rotation / norm, [0.0, 0.0, 0.0, 1.0])
+        q = np.where(norm == 0, [0.0, 0.0, 0.0, 1.0], rotation / norm)
     x, y, z, w = np.moveaxis(q, -1, 0)
     out = np.zeros((*q.shape[:-1], 4, 4))
     out[..., 0, 0], out[..., 0, 1], out[..., 0, 2] = (

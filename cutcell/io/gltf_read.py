@@ -65,9 +65,9 @@ def read_gltf(path: Path) -> Rig:
 def _read(document: Document, path: Path) -> Rig:
     nodes = Nodes(document)
     skinned = _skinned_nodes(document, nodes)
+    for i in skinned:
+        document.item("skins", nodes.raw[i]["skin"], document.label("nodes", i))
     skins = list(dict.fromkeys(nodes.raw[i]["skin"] for i in skinned))
-    for skin in skins:
-        document.item("skins", skin, "a node")
     bind = read_bind(document, nodes, skins)
     parts, vertices, faces, stored = _read_parts(document, nodes, skinned, bind)
     if not faces or not sum(len(f) for f in faces):

@@ -71,7 +71,7 @@ def read_bind(document: Document, nodes: Nodes, skins: list[int]) -> Bind:
 
 def _skin_joints(document: Document, skin: int) -> list[int]:
     user = document.label("skins", skin)
-    joints = indices(document.item("skins", skin, "a node"), "joints", user)
+    joints = indices(document.items("skins")[skin], "joints", user)
     if not joints:
         raise SkeletonError(f"{user} has no joints")
     for node in joints:
