@@ -59,7 +59,7 @@ def non_manifold():
 
 
 def degenerate():
-    """A box with needles, points and doubled faces among its triangles."""
+    """Spoil a box with needles, points and doubled faces among its triangles."""
     v, f = box()
     bad = [[0, 0, 1], [2, 2, 2], [0, 1, 0], [0, 7, 7], list(f[0]), list(f[0][::-1])]
     return v, np.concatenate([f, np.array(bad, np.int32)])

@@ -2,6 +2,7 @@
 
 import heapq
 from fractions import Fraction
+from itertools import pairwise
 
 import numpy as np
 
@@ -94,11 +95,14 @@ def _segments_of_ray(vertices, faces, axis, i, j, stops, resolution, tau):
     middles = np.empty((len(stops) - 1, 3))
     middles[:, u] = (i + 0.5) / resolution
     middles[:, v] = (j + 0.5) / resolution
-    middles[:, axis] = [(a[0] + b[0]) / 2 for a, b in zip(stops, stops[1:], strict=False)]
-    inside = winding_number(vertices, faces, middles)
-    for n in range(1, len(inside)):
-        if stops[n][0] == stops[n + 1][0]:  # no length: the number is known by the crossing
-            inside[n] = inside[n - 1] - stops[n][3]
+    crossed = np.zeros(len(middles))
+    for n, (a, b) in enumerate(pairwise(stops)):
+        middles[n, axis] = (a[0] + b[0]) / 2
+        if a[0] == b[0]:
+            # No length: take the number just before this place, and count from there.
+            middles[n, axis] -= 1e-9
+            crossed[n] = sum(s for p, _, _, s in stops[: n + 1] if p == a[0])
+    inside = winding_number(vertices, faces, middles) - crossed
     names = [_name(axis, i, j, stop) for stop in stops]
     return [(names[n], names[n + 1]) for n in range(1, len(inside)) if inside[n] >= tau]
 

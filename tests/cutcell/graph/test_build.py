@@ -12,7 +12,7 @@ from tests import meshes, naive
 
 
 def in_unit_cube(vertices, faces):
-    """The mesh as the graph sees it: in the unit cube, vertices welded and sorted."""
+    """Return the mesh as the graph sees it: in the unit cube, vertices welded and sorted."""
     mesh = TriangleMesh(vertices, faces)
     graph = build_graph(mesh, 2)
     welded = graph.nodes[graph.node_kind == MESH]
@@ -20,7 +20,7 @@ def in_unit_cube(vertices, faces):
 
 
 def named_segments(graph):
-    """The inside edges of a graph, each end named by where it lies."""
+    """List the inside edges of a graph, each end named by where it lies."""
     resolution = graph.lattice.resolution
     names = {}
     for node in np.flatnonzero(graph.node_kind == INTERIOR):

@@ -56,7 +56,7 @@ def test_points_in_line_with_edges_and_vertices(seed):
     np.testing.assert_allclose(found, expected, atol=1e-9)
 
 
-@pytest.mark.parametrize("name", meshes.CLOSED)
+@pytest.mark.parametrize("name", ["box", "ball", "torus"])
 def test_one_just_inside_zero_just_outside(name):
     vertices, faces = meshes.CLOSED[name]()
     corners = vertices[faces]
@@ -67,7 +67,7 @@ def test_one_just_inside_zero_just_outside(name):
     inside = winding_number(TriangleMesh(vertices, faces), spot - 1e-6 * normal)
     outside = winding_number(TriangleMesh(vertices, faces), spot + 1e-6 * normal)
     np.testing.assert_allclose(inside - outside, 1, atol=1e-9)
-    assert set(np.round(inside, 9)) <= {1.0, 2.0}
+    np.testing.assert_allclose(inside, 1, atol=1e-9)
 
 
 def test_units_do_not_matter():
