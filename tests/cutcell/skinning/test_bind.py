@@ -1,0 +1,134 @@
+"""What binding must never depend on, and what it tells."""
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+import cutcell
+from cutcell import Cancelled, Rig, Skeleton, TriangleMesh, bind
+from tests import meshes
+
+
+def figure():
+    """Make a closed body with two limbs close to each other, of unequal sides."""
+    vertices, faces = meshes.torus()
+    vertices = vertices * [1.3, 1, 0.8]
+    joints = np.array([[0.65, 0.17, 0.4], [1.08, 0.5, 0.4], [0.65, 0.83, 0.4], [0.22, 0.5, 0.4]])
+    return Rig(TriangleMesh(vertices, faces), Skeleton(joints, [-1, 0, 1, 2]))
+
+
+def moved(rig, change):
+    mesh = TriangleMesh(change(rig.mesh.vertices), rig.mesh.faces)
+    return Rig(mesh, Skeleton(change(rig.skeleton.joints), rig.skeleton.parents))
+
+
+@pytest.mark.parametrize("connectivity", [6, 26])
+@pytest.mark.parametrize("leaf", ["point", "extend"])
+def test_translation_and_scale_change_nothing(connectivity, leaf):
+    rig = figure()
+    # Coordinates with few bits, so that the changes below are exact.
+    rig = moved(rig, lambda x: np.round(x * 2**20) / 2**20)
+    options = dict(connectivity=connectivity, leaf=leaf)
+    weights = bind(rig, 16, **options).weights
+    for change in (
+        lambda x: x + np.array([3, -5, 7]),
+        lambda x: x * 1024,
+        lambda x: x / 64,
+        lambda x: x * 8 + 2,
+    ):
+        found = bind(moved(rig, change), 16, **options).weights
+        np.testing.assert_allclose(found, weights, atol=1e-9)
+
+
+@pytest.mark.parametrize("make", [meshes.torus, meshes.ball_with_holes, meshes.grid_soup])
+def test_numbering_changes_nothing(make):
+    vertices, faces = make()
+    joints = np.array([[0.2, 0.5, 0.5], [0.5, 0.5, 0.5], [0.8, 0.5, 0.5], [0.5, 0.8, 0.5]])
+    skeleton = Skeleton(joints, [-1, 0, 1, 1])
+    rig = Rig(TriangleMesh(vertices, faces), skeleton)
+    weights = bind(rig, 16, max_influences=2).weights
+
+    rng = np.random.default_rng(0)
+    order, shuffle, swap = (rng.permutation(len(x)) for x in (vertices, faces, joints))
+    place = np.argsort(order)
+    turned = np.stack([np.roll(f, rng.integers(3)) for f in place[faces[shuffle]]])
+    parents = np.array([np.argsort(swap)[p] if p >= 0 else -1 for p in skeleton.parents[swap]])
+    other = Rig(TriangleMesh(vertices[order], turned), Skeleton(joints[swap], parents))
+    found = bind(other, 16, max_influences=2).weights
+    np.testing.assert_allclose(found, weights[order][:, swap], atol=1e-9)
+
+
+def test_split_vertices_get_equal_weights():
+    rig = figure()
+    corners = rig.mesh.faces.ravel()
+    split = TriangleMesh(rig.mesh.vertices[corners], np.arange(len(corners)).reshape(-1, 3))
+    found = bind(Rig(split, rig.skeleton), 16).weights
+    np.testing.assert_allclose(found, bind(rig, 16).weights[corners], atol=1e-12)
+
+
+def test_mirrored_figures_have_mirrored_weights():
+    vertices, faces = meshes.ball(2)
+    joints = [[0.5, 0.5, 0.5], [0.3, 0.5, 0.5], [0.7, 0.5, 0.5]]
+    weights = bind(Rig(TriangleMesh(vertices, faces), Skeleton(joints, [-1, 0, 0])), 16).weights
+    twin = np.argmin(
+        np.linalg.norm(vertices * [-1, 1, 1] + [1, 0, 0] - vertices[:, None], axis=2), axis=1
+    )
+    np.testing.assert_allclose(weights[twin][:, [0, 2, 1]], weights, atol=1e-9)
+
+
+def test_every_stage_reports_and_each_can_be_cancelled():
+    seen = []
+    binding = bind(figure(), 8, progress=lambda stage, fraction: seen.append(stage))
+    assert list(dict.fromkeys(seen)) == ["graph", "distances", "weights"]
+    assert list(binding.seconds) == ["graph", "distances", "weights"]
+    assert all(s >= 0 for s in binding.seconds.values())
+    for stop in binding.seconds:
+
+        def cancel(stage, fraction, stop=stop):
+            if stage == stop:
+                raise Cancelled
+
+        with pytest.raises(Cancelled):
+            bind(figure(), 8, progress=cancel)
+
+
+def test_warnings_say_what_happened():
+    vertices, faces = meshes.ball()
+    extra, extra_faces = meshes.box(1.2, 1.3)
+    mesh = TriangleMesh(
+        np.concatenate([vertices, extra]), np.concatenate([faces, extra_faces + len(vertices)])
+    )
+    binding = bind(Rig(mesh, Skeleton([[0.5, 0.5, 0.5]], [-1])), 16)
+    assert "8 of 170 vertices follow their nearest bones" in binding.warnings[0]
+    inside_out = TriangleMesh(vertices, faces[:, ::-1])
+    binding = bind(Rig(inside_out, Skeleton([[0.5, 0.5, 0.5]], [-1])), 16)
+    assert "inside out" in binding.warnings[0]
+    np.testing.assert_allclose(binding.weights.sum(axis=1), 1)
+
+
+def test_all_real_rigs_can_be_bound(rigs):
+    for path in rigs:
+        rig = cutcell.load(path)
+        weights = bind(rig, 32).weights
+        assert weights.shape == rig.weights.shape, path
+        assert np.isfinite(weights).all(), path
+        assert (weights >= 0).all(), path
+        np.testing.assert_allclose(weights.sum(axis=1), 1, atol=1e-6, err_msg=str(path))
+        assert (weights[:, ~rig.skeleton.deform] == 0).all(), path
+
+
+def rotation_change(resolution, connectivity):
+    """Measure how far weights move, summed over joints, when the figure is rotated."""
+    turn = Rotation.from_rotvec(0.5 * np.array([1, 2, 3]) / 14**0.5).as_matrix()
+    rig = figure()
+    options = dict(connectivity=connectivity, max_influences=None)
+    once = bind(rig, resolution, **options).weights
+    again = bind(moved(rig, lambda x: x @ turn.T), resolution, **options).weights
+    return np.abs(again - once).sum(axis=1).mean()
+
+
+@pytest.mark.parametrize("connectivity", [6, 26])
+def test_rotation_changes_less_on_a_finer_lattice(connectivity):
+    coarse, middle, fine = (rotation_change(r, connectivity) for r in (8, 24, 72))
+    assert coarse > middle > fine
+    assert fine < 0.1

@@ -1,0 +1,66 @@
+"""The falloff is the paper's formula, and pruning keeps the largest."""
+
+import numpy as np
+import pytest
+
+from cutcell import ParameterError, Skeleton, TriangleMesh, bone_distances, build_graph
+from cutcell.skinning import skinning_weights
+from cutcell.skinning.kernel import paper_kernel
+from cutcell.skinning.prune import prune
+from tests import meshes, naive
+
+CHAIN = Skeleton([[0.5, 0.5, 0.15 * k] for k in range(1, 7)], range(-1, 5))
+
+
+@pytest.fixture(scope="module")
+def distances():
+    return bone_distances(build_graph(TriangleMesh(*meshes.ball()), 12), CHAIN)
+
+
+@pytest.mark.parametrize("alpha", [0, 0.3, 0.5, 1])
+def test_paper_falloff_is_equation_1(distances, alpha):
+    found = skinning_weights(distances, alpha=alpha, max_influences=None)
+    expected = naive.paper_weights(distances.joint, distances.graph.lattice.diagonal, alpha)
+    np.testing.assert_allclose(found, expected, atol=1e-12)
+
+
+@pytest.mark.parametrize("alpha", [0, 0.5, 1])
+def test_bones_that_touch_a_vertex_share_it(alpha):
+    distance = np.array([[0.0, 1e-200, 0.2], [0.0, 1.0, np.inf], [0.5, 1.0, 0.2]])
+    weights = paper_kernel(distance, 1.0, alpha)
+    np.testing.assert_allclose(weights, [[0.5, 0.5, 0], [1, 0, 0], [0.5, 0, 0.5]], atol=1e-12)
+
+
+@pytest.mark.parametrize("influences", [1, 2, 4, 6, None])
+def test_rows_sum_to_one(distances, influences):
+    weights = skinning_weights(distances, max_influences=influences)
+    np.testing.assert_allclose(weights.sum(axis=1), 1, atol=1e-12)
+    assert (weights >= 0).all()
+    assert (weights > 0).sum(axis=1).max() == (influences or 6)
+
+
+def test_pruning_keeps_the_largest():
+    weights = np.array([[0.1, 0.4, 0.2, 0.3], [0.25, 0.25, 0.25, 0.25]])
+    order = np.array([3, 2, 1, 0])
+    found = prune(weights, 2, 0.0, order)
+    np.testing.assert_allclose(found, [[0, 4 / 7, 0, 3 / 7], [0, 0, 0.5, 0.5]])
+    found = prune(weights, None, 0.22, order)
+    np.testing.assert_allclose(found[0], [0, 4 / 7, 0, 3 / 7])
+    found = prune(weights, None, 0.9, order)
+    np.testing.assert_allclose(found[0], [0, 1, 0, 0])
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "sentence"),
+    [
+        ("alpha", 1.5, "alpha must be a number from 0 to 1, not 1.5"),
+        ("alpha", float("nan"), "alpha must be a number from 0 to 1, not nan"),
+        ("alpha", "soft", "alpha must be a number from 0 to 1, not 'soft'"),
+        ("threshold", -1, "threshold must be a number from 0 to 1, not -1"),
+        ("max_influences", 0, "max_influences must be a whole number from 1"),
+        ("falloff", "linear", "falloff must be one of 'paper', not 'linear'"),
+    ],
+)
+def test_parameters_are_checked(distances, name, value, sentence):
+    with pytest.raises(ParameterError, match=sentence):
+        skinning_weights(distances, **{name: value})
