@@ -7,8 +7,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from .character import Bones, Character, Material, Motion, Surface
 from .meshing import mesh_of, normals_of
-from .seams import with_seams
 from .sdf import Body
+from .seams import with_seams
 from .weights import from_parts
 
 

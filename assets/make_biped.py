@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 
 from .biped_bones import DOWN, FINGERS, finger_places, skeleton
@@ -19,6 +21,7 @@ from .sdf import (
     half_space,
     round_cone,
     shell,
+    shifted,
     torus,
     unit,
 )
@@ -38,8 +41,9 @@ MATERIALS = {
 }
 
 
-def make() -> Character:
-    """Return the walker."""
+@cache
+def make(detail: float = 1.0) -> Character:
+    """Return the walker, its triangles `detail` times as large as designed."""
     bones, body = skeleton(), Body()
     _torso(body)
     _head(body)
@@ -48,7 +52,7 @@ def make() -> Character:
     _leg(body, bones)
     _shoe(body, bones["foot.L"])
     box = [[-0.29, -0.02, -0.24], [0.29, 1.64, 0.22]]
-    return closed_character("Walker", bones, body, box, 0.003, MATERIALS, walk())
+    return closed_character("Walker", bones, body, box, 0.003, MATERIALS, walk(), detail)
 
 
 def _torso(body: Body) -> None:
@@ -201,7 +205,7 @@ def _leg(body: Body, bones: Bones) -> None:
     hip, knee, ankle = (bones[f"{n}.L"] for n in ("thigh", "shin", "foot"))
     hem = hip + (knee - hip) * 0.8
     shorts = {"colour": "shorts", "both": True}
-    thigh = round_cone(hip - [0, 0.035, 0], hem, 0.077, 0.067)
+    thigh = round_cone(shifted(hip, 0, -0.035, 0), hem, 0.077, 0.067)
     body.add(thigh, "thigh.L", at=hip, reach=0.14, blend=0.04, edge=0.018, **shorts)
     roll = torus(hem, hip - knee, 0.0595, 0.0115)
     body.add(roll, "thigh.L", at=hem, reach=0.09, blend=0.008, edge=0.011, **shorts)
@@ -209,31 +213,31 @@ def _leg(body: Body, bones: Bones) -> None:
     body.add(
         round_cone(hem, knee, 0.053, 0.047), "thigh.L", at=hem, reach=0.08, blend=0.004, **skin
     )
-    shin = round_cone(knee, ankle + [0, 0.03, 0], 0.047, 0.034)
+    shin = round_cone(knee, shifted(ankle, 0, 0.03, 0), 0.047, 0.034)
     body.add(shin, "shin.L", at=knee, reach=0.08, blend=0.006, **skin)
     calf = ellipsoid([0.089, 0.31, -0.02], [0.039, 0.1, 0.043])
     body.add(calf, "shin.L", at=np.array([0.089, 0.31, -0.01]), reach=0.15, blend=0.03, **skin)
-    sock = {"both": True, "colour": "sock", "at": ankle + [0, 0.05, 0], "reach": 0.2}
-    tube = round_cone(ankle, ankle + [-0.0005, 0.062, 0.005], 0.0375, 0.0385)
+    sock = {"both": True, "colour": "sock", "at": shifted(ankle, 0, 0.05, 0), "reach": 0.2}
+    tube = round_cone(ankle, shifted(ankle, -0.0005, 0.062, 0.005), 0.0375, 0.0385)
     body.add(tube, "shin.L", blend=0.004, edge=0.012, **sock)
-    roll = torus(ankle + [-0.0008, 0.085, 0.008], [0, 1, -0.1], 0.0335, 0.0115)
+    roll = torus(shifted(ankle, -0.0008, 0.085, 0.008), [0, 1, -0.1], 0.0335, 0.0115)
     body.add(roll, "shin.L", blend=0.006, edge=0.009, **sock)
 
 
 def _shoe(body: Body, ankle: Points) -> None:
     ground = half_space([0, 0, 0], [0, -1, 0])
     floor = half_space([0, 0.02, 0], [0, 1, 0])
-    place = {"at": ankle + [0.004, -0.05, 0.05], "reach": 0.25, "both": True}
+    place = {"at": shifted(ankle, 0.004, -0.05, 0.05), "reach": 0.25, "both": True}
     upper = {"colour": "shoe", "edge": 0.013, **place}
     back = round_cone([0.091, 0.045, -0.042], [0.099, 0.04, 0.085], 0.046, 0.043)
     front = ellipsoid([0.102, 0.038, 0.112], [0.05, 0.047, 0.066])
     body.add(common(back, ground, 0.012), "foot.L", blend=0.01, **upper)
-    instep = round_cone(ankle + [0, 0.006, 0.002], [0.096, 0.06, 0.03], 0.0425, 0.037)
+    instep = round_cone(shifted(ankle, 0, 0.006, 0.002), [0.096, 0.06, 0.03], 0.0425, 0.037)
     body.add(instep, "foot.L", blend=0.03, **upper)
     body.add(common(front, ground, 0.012), "toe.L", blend=0.025, **upper)
     for shape, joint in ((back, "foot.L"), (front, "toe.L")):
         sole = common(common(shell(shape, 0.007), floor, 0.008), ground, 0.008)
         body.add(sole, joint, blend=0.004, colour="sole", edge=0.0075, **place)
-    tongue = ankle + [0, 0.028, 0.002]
+    tongue = shifted(ankle, 0, 0.028, 0.002)
     rim = torus(tongue, [0, 1, -0.12], 0.034, 0.0095)
     body.add(rim, "foot.L", blend=0.008, **upper)

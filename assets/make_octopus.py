@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from .build import closed_character
 from .character import Bones, Character, Material, Motion
 from .motion import X, Y, Z, loop, move, phase, rotate, turn, wave
-from .sdf import Body, ball, chain, ellipsoid, shell, unit
+from .sdf import Body, ball, chain, common, ellipsoid, half_space, shell, shifted, unit
 
 MATERIALS = {
     "skin": Material("skin", "#d9627a", roughness=0.45),
@@ -34,62 +34,73 @@ CURLS = (
     (390, 0.41, 20),
 )
 
-LENGTH = 0.92
+LENGTH = 1.0
 
 
 def make() -> Character:
     """Return the octopus."""
     bones, body = Bones(), Body()
-    bones.add("body", None, [0, 0.27, 0])
-    bones.add("mantle", "body", [0, 0.52, -0.03])
-    bones.add("crown", "mantle", [0, 0.80, -0.09])
+    bones.add("body", None, [0, 0.25, 0])
+    bones.add("mantle", "body", [0, 0.38, -0.01])
+    bones.add("crown", "mantle", [0, 0.57, -0.09])
     _head(body)
     for k in range(len(CURLS)):
         line, _, _ = _arm_line(k)
         bones.add_chain(f"arm{'ABCDEFGH'[k]}", "body", line[:: STEPS // JOINTS][:JOINTS])
         _arm(body, k)
-    box = [[-0.95, -0.03, -0.95], [0.95, 1.1, 0.95]]
-    return closed_character("Octopus", bones, body, box, 0.0065, MATERIALS, _sway())
+    box = [[-1, -0.03, -1], [1, 1, 1]]
+    return closed_character("Octopus", bones, body, box, 0.006, MATERIALS, _sway())
 
 
 def _head(body: Body) -> None:
-    body.add(ellipsoid([0, 0.27, 0], [0.19, 0.15, 0.18]), "body", edge=0.026)
-    body.add(ball([0, 0.5, -0.01], 0.185), "mantle", blend=0.12, edge=0.028)
-    tilt = np.array([[1, 0, 0], [0, *unit([1, -0.3])], [0, *unit([0.3, 1])]])
-    body.add(ellipsoid([0, 0.74, -0.07], [0.255, 0.27, 0.25], tilt), "crown", blend=0.16, edge=0.03)
-    lid = ball([0.12, 0.46, 0.135], 0.082)
-    body.add(lid, "mantle", both=True, blend=0.05, edge=0.016)
-    look = unit([0.35, 0.12, 1])
-    white = ball([0.125, 0.462, 0.16], 0.071)
-    body.add(white, "mantle", both=True, blend=0.004, edge=0.012, colour="white")
-    pupil = np.array([0.125, 0.462, 0.16]) + look * 0.066
-    body.colour(ellipsoid(pupil, [0.03, 0.038, 0.03]), "eye", 0.01, both=True)
-    for x in (1, -1):
-        spot = pupil * [x, 1, 1] + [0.008, 0.018, 0.012]
-        body.colour(ball(spot, 0.012), "light", 0.006)
-    smile = chain(
-        [
-            [-0.06, 0.375, 0.166],
-            [-0.03, 0.358, 0.178],
-            [0, 0.353, 0.182],
-            [0.03, 0.358, 0.178],
-            [0.06, 0.375, 0.166],
-        ],
-        [0.004, 0.009, 0.010, 0.009, 0.004],
-    )
-    body.add(smile, "mantle", blend=0.012, edge=0.009, carve=True)
-    body.colour(shell(smile, 0.002), "spot", 0.009)
+    body.add(ellipsoid([0, 0.25, 0], [0.205, 0.14, 0.195]), "body", edge=0.026)
+    body.add(ellipsoid([0, 0.41, 0], [0.215, 0.17, 0.2]), "mantle", blend=0.1, edge=0.028)
+    back = unit([0, 1, -0.55])
+    tilt = np.array([[1, 0, 0], back, np.cross([1, 0, 0], back)])
+    body.add(ellipsoid([0, 0.63, -0.13], [0.29, 0.31, 0.265], tilt), "crown", blend=0.12, edge=0.03)
+    _face(body)
     for place, size in (
-        ([0.14, 0.86, 0.1], 0.055),
-        ([0.06, 0.94, 0.06], 0.035),
-        ([-0.17, 0.8, 0.1], 0.042),
-        ([0.2, 0.75, -0.13], 0.05),
-        ([-0.1, 0.93, -0.15], 0.06),
-        ([-0.24, 0.72, -0.08], 0.035),
-        ([0.08, 0.8, -0.31], 0.055),
-        ([-0.1, 0.68, -0.31], 0.04),
+        ([0.15, 0.83, 0.02], 0.06),
+        ([0.055, 0.89, -0.06], 0.04),
+        ([-0.19, 0.78, 0.02], 0.05),
+        ([0.26, 0.68, -0.16], 0.055),
+        ([-0.1, 0.91, -0.24], 0.065),
+        ([-0.28, 0.68, -0.12], 0.04),
+        ([0.09, 0.75, -0.41], 0.06),
+        ([-0.12, 0.62, -0.38], 0.045),
     ):
         body.colour(ball(place, size), "spot", 0.016)
+
+
+def _face(body: Body) -> None:
+    centre = np.array([0.128, 0.455, 0.148])
+    body.add(ball([0.122, 0.455, 0.125], 0.092), "mantle", both=True, blend=0.05, edge=0.016)
+    body.add(ball(centre, 0.083), "mantle", both=True, blend=0.003, edge=0.012, colour="white")
+    # A lid, lowered a little: it makes the look a friendly one.
+    down = unit([0.12, -1, 0.55])
+    lid = common(ball(centre, 0.092), half_space(centre - down * 0.028, down), 0.008)
+    body.add(lid, "mantle", both=True, blend=0.004, edge=0.012)
+    pupil = centre + unit([0.06, 0.02, 1]) * 0.078
+    body.colour(ellipsoid(pupil, [0.031, 0.04, 0.035]), "eye", 0.01, both=True)
+    for side in (1, -1):
+        body.colour(
+            ball(shifted(pupil * [side, 1, 1], 0.009, 0.014, 0.006), 0.0125), "light", 0.006
+        )
+    smile = [[-0.075, 0.345], [-0.04, 0.318], [0, 0.309], [0.04, 0.318], [0.075, 0.345]]
+    line = [[x, y, _front(body, x, y)] for x, y in smile]
+    mouth = chain(line, [0.005, 0.011, 0.013, 0.011, 0.005])
+    body.add(mouth, "mantle", blend=0.01, edge=0.009, carve=True)
+    body.colour(shell(mouth, 0.002), "spot", 0.009)
+
+
+def _front(body: Body, x: float, y: float) -> float:
+    """Return where the surface is, coming from the front, by halving."""
+    near, far = 0.4, 0.0
+    for _ in range(40):
+        middle = (near + far) / 2
+        inside = body.distance(np.array([[x, y, middle]]))[0] < 0
+        near, far = (near, middle) if inside else (middle, far)
+    return near
 
 
 def _direction(k: int) -> tuple[NDArray, NDArray]:
@@ -114,14 +125,14 @@ def _arm_line(k: int) -> tuple[NDArray, NDArray, NDArray]:
         if s < 0.28:
             pitch = min(0.0, pitch + 38 / (0.28 * STEPS))  # reach the ground and lie on it
         elif s > start:
-            pitch += upward * step * 2 * (s - start) / (1 - start)
+            pitch += upward * step * 2.3 * (s - start) / (1 - start)
         heading += sideways * step * (1.6 if s > 0.15 else 0.0)
         p, h = np.radians([pitch, heading])
         ahead = np.cos(h) * out + np.sin(h) * side
         line.append(line[-1] + step * (np.cos(p) * ahead + np.sin(p) * Y))
         under.append(np.sin(p) * ahead - np.cos(p) * Y)
     s = np.linspace(0, 1, STEPS + 1)
-    radii = 0.076 * (1 - s) + 0.017 * s
+    radii = 0.076 * (1 - s) + 0.013 * s
     places = np.array(line[:-1])
     places[:, 1] += radii - radii[0]
     places[:, 1] -= (places[:, 1] - radii).min() - 0.004
@@ -162,7 +173,7 @@ def _sway() -> Motion:
     rotate(motion, "mantle", turn(X, 3 * wave(t, 0.1)), turn(Z, 4 * wave(t, 0.3)))
     rotate(motion, "crown", turn(X, -5 * wave(t, 0.0)), turn(Z, 5 * wave(t, 0.2)))
     for k in range(len(CURLS)):
-        out, side = _direction(k)
+        _, side = _direction(k)
         for j in range(JOINTS):
             late = 0.09 * j + 0.375 * k
             lift = (4 + 2.2 * j) * wave(t, late) - (2 if j else 4)

@@ -11,13 +11,13 @@ from .motion import X, Y, Z, curve, loop, move, phase, rotate, turn
 from .sdf import (
     Body,
     ball,
-    chain,
     common,
     ellipsoid,
     flattened,
     half_space,
     round_cone,
     shell,
+    shifted,
     unit,
 )
 
@@ -77,7 +77,7 @@ def _skeleton(ear: NDArray) -> Bones:
 def _trunk(body: Body) -> None:
     body.add(ellipsoid([0, 0.465, -0.30], [0.235, 0.265, 0.29]), "hips", edge=0.036, colour="fur")
     fur = {"edge": 0.034, "colour": "fur"}
-    body.add(ellipsoid([0, 0.445, -0.04], [0.195, 0.215, 0.26]), "spine", blend=0.1, **fur)
+    body.add(ellipsoid([0, 0.465, -0.04], [0.2, 0.235, 0.28]), "spine", blend=0.1, **fur)
     body.add(ellipsoid([0, 0.46, 0.19], [0.175, 0.205, 0.19]), "chest", blend=0.1, **fur)
     neck = round_cone([0, 0.53, 0.24], [0, 0.68, 0.37], 0.135, 0.11)
     body.add(neck, "neck", blend=0.08, edge=0.028, colour="fur")
@@ -130,7 +130,7 @@ def _head(body: Body) -> None:
         colour="eye",
     )
     for side in (1, -1):
-        glint = (eye + out * 0.032) * [side, 1, 1] + [0.004, 0.014, 0.004]
+        glint = shifted((eye + out * 0.032) * [side, 1, 1], 0.004, 0.014, 0.004)
         body.colour(ball(glint, 0.0105), "light", 0.0055)
 
 
@@ -146,6 +146,8 @@ def _ear_line(trunk: Body) -> NDArray:
     line[0] = [0.058, 0.855, 0.40]
     line[1, 1] = max(line[1, 1], 0.885)
     line[2, 1] = max(line[2, 1], (line[1, 1] + line[3, 1]) / 2 + 0.012)
+    for _ in range(3):  # a taut ear, not one that follows every dip
+        line[2:-1, 1] = np.maximum(line[2:-1, 1], (line[1:-2, 1] + line[3:, 1]) / 2)
     return np.round(line, 4)
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from .character import Bones, Character, Material, Motion, Surface
 from .motion import X, Y, Z, curve, loop, move, phase, rotate, turn, wave
 from .plates import Plate, barrel, box, globe, turned
-from .sdf import unit
+from .sdf import shifted, unit
 from .weights import rigid
 
 MATERIALS = {
@@ -66,12 +66,12 @@ def _skeleton() -> Bones:
     bones.add("neck", "chest", [0, 1.165, 0])
     bones.add("head", "neck", [0, 1.215, 0])
     bones.add("antenna", "head", [0, 1.60, 0.01])
-    bones.add("shoulder.L", "chest", [0.16, 1.09, 0], both=True)
-    bones.add("upper_arm.L", "shoulder.L", [0.275, 1.09, 0], both=True)
-    bones.add("forearm.L", "upper_arm.L", [0.315, 0.885, 0], both=True)
-    bones.add("hand.L", "forearm.L", [0.335, 0.655, 0.02], both=True)
+    bones.add("shoulder.L", "chest", [0.17, 1.09, 0], both=True)
+    bones.add("upper_arm.L", "shoulder.L", [0.302, 1.09, 0], both=True)
+    bones.add("forearm.L", "upper_arm.L", [0.334, 0.885, 0], both=True)
+    bones.add("hand.L", "forearm.L", [0.348, 0.655, 0.02], both=True)
     for name, place in _CLAWS.items():
-        tip = np.array(place) + [0, -0.055, 0.0]
+        tip = shifted(place, 0, -0.055, 0)
         bones.add_chain(f"{name}.L", "hand.L", [place, tip], both=True)
     bones.add("thigh.L", "hips", [0.115, 0.61, 0], both=True)
     bones.add("shin.L", "thigh.L", [0.12, 0.355, 0.005], both=True)
@@ -81,9 +81,9 @@ def _skeleton() -> Bones:
 
 
 _CLAWS = {
-    "front": (0.345, 0.575, 0.062),
-    "back": (0.345, 0.575, -0.022),
-    "inner": (0.302, 0.575, 0.02),
+    "front": (0.36, 0.575, 0.062),
+    "back": (0.36, 0.575, -0.022),
+    "inner": (0.317, 0.575, 0.02),
 }
 
 
@@ -108,7 +108,7 @@ def _head(kit: Kit) -> None:
     tilt = np.array([unit([1, 0.26, 0]), unit([-0.26, 1, 0.2]), [0, 0, 0]])
     tilt[2] = unit(np.cross(tilt[0], tilt[1]))
     tilt[1] = np.cross(tilt[2], tilt[0])
-    kit.add(ring.turned(tilt).moved(HEAD + [0, 0.012, 0]), "head", "ring")
+    kit.add(ring.turned(tilt).moved(shifted(HEAD, 0, 0.012, 0)), "head", "ring")
 
 
 def _torso(kit: Kit) -> None:
@@ -132,30 +132,30 @@ def _torso(kit: Kit) -> None:
 def _arm(kit: Kit, bones: Bones) -> None:
     shoulder, elbow, hand = (bones[f"{n}.L"] for n in ("upper_arm", "forearm", "hand"))
     collar = barrel(0.045, 0.04, 0.022, 0.006)
-    kit.add(collar.along([0.2, 1.09, 0], [0.215, 1.09, 0]), "shoulder.L", "dark", both=True)
-    kit.add(globe(0.058).moved(shoulder + [0.008, 0, 0]), "upper_arm.L", "steel", both=True)
+    kit.add(collar.along([0.21, 1.09, 0], [0.234, 1.09, 0]), "shoulder.L", "dark", both=True)
+    kit.add(globe(0.058).moved(shifted(shoulder, 0.008, 0, 0)), "upper_arm.L", "steel", both=True)
     kit.add(_cap().along(elbow, shoulder, 1.04), "upper_arm.L", "accent", both=True)
     kit.add(
-        barrel(0.042, 0.05, 0.075).along(elbow, shoulder, 0.46), "upper_arm.L", "shell", both=True
+        barrel(0.043, 0.053, 0.1).along(elbow, shoulder, 0.46), "upper_arm.L", "shell", both=True
     )
     kit.add(globe(0.04).moved(elbow), "forearm.L", "steel", both=True)
-    kit.add(barrel(0.067, 0.048, 0.15).along(hand, elbow, 0.47), "forearm.L", "shell", both=True)
-    band = turned([[0.066, -0.015], [0.078, -0.015], [0.076, 0.015], [0.064, 0.015]], 0.005, 28)
+    kit.add(barrel(0.068, 0.047, 0.165).along(hand, elbow, 0.45), "forearm.L", "shell", both=True)
+    band = turned([[0.071, -0.015], [0.083, -0.015], [0.081, 0.015], [0.069, 0.015]], 0.005, 28)
     kit.add(band.along(hand, elbow, 0.25), "forearm.L", "accent", both=True)
     kit.add(
-        box([0.036, 0.026, 0.055], 0.018, 0.04).moved(hand - [-0.004, 0.042, 0]),
+        box([0.042, 0.034, 0.062], 0.022, 0.05).moved(shifted(hand, 0.004, -0.033, 0)),
         "hand.L",
         "dark",
         both=True,
     )
     for name, place in _CLAWS.items():
         knuckle, tip = bones[f"{name}1.L"], bones[f"{name}2.L"]
-        first = box([0.013, 0.02, 0.013], 0.007, 0.03)
+        first = box([0.017, 0.026, 0.0175], 0.008, 0.04)
         kit.add(first.moved((knuckle + tip) / 2), f"{name}1.L", "shell", both=True)
-        lean = np.array([0.326, 0, 0.02]) - [place[0], 0, place[2]]
-        end = tip + lean * 0.4 - Y * 0.05
-        claw = barrel(0.004, 0.013, 0.042, 0.004, 12)
-        kit.add(claw.along(end, tip, 0.48), f"{name}2.L", "steel", both=True)
+        lean = np.array([0.341 - place[0], 0, 0.02 - place[2]])
+        end = tip + lean * 0.4 - Y * 0.055
+        claw = barrel(0.006, 0.0175, 0.05, 0.004, 12)
+        kit.add(claw.along(end, tip, 0.45), f"{name}2.L", "steel", both=True)
 
 
 def _cap() -> Plate:
@@ -170,13 +170,15 @@ def _cap() -> Plate:
 
 def _leg(kit: Kit, bones: Bones) -> None:
     hip, knee, ankle, toe = (bones[f"{n}.L"] for n in ("thigh", "shin", "foot", "toe"))
-    kit.add(globe(0.05).moved(hip - [0, 0.038, 0]), "thigh.L", "steel", both=True)
+    kit.add(globe(0.05).moved(shifted(hip, 0, -0.038, 0)), "thigh.L", "steel", both=True)
     kit.add(barrel(0.055, 0.072, 0.105).along(knee, hip, 0.435), "thigh.L", "shell", both=True)
     kit.add(globe(0.046).moved(knee), "shin.L", "steel", both=True)
     guard = box([0.038, 0.042, 0.011], 0.01, 0.04)
-    kit.add(guard.moved(knee + [0, 0.002, 0.064]), "shin.L", "accent", both=True)
+    kit.add(guard.moved(shifted(knee, 0, 0.002, 0.064)), "shin.L", "accent", both=True)
     kit.add(barrel(0.088, 0.056, 0.15).along(ankle, knee, 0.5), "shin.L", "shell", both=True)
-    kit.add(barrel(0.04, 0.04, 0.03).moved(ankle + [0, 0.018, 0]), "foot.L", "dark", both=True)
+    kit.add(
+        barrel(0.04, 0.04, 0.03).moved(shifted(ankle, 0, 0.018, 0)), "foot.L", "dark", both=True
+    )
     kit.add(
         box([0.068, 0.042, 0.088], 0.026).moved([0.128, 0.046, -0.018]),
         "foot.L",
@@ -184,7 +186,7 @@ def _leg(kit: Kit, bones: Bones) -> None:
         both=True,
     )
     kit.add(
-        box([0.072, 0.034, 0.046], 0.026).moved(toe + [0, -0.007, 0.04]),
+        box([0.072, 0.034, 0.046], 0.026).moved(shifted(toe, 0, -0.007, 0.04)),
         "toe.L",
         "shell",
         both=True,

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy import sparse
+from scipy.sparse.csgraph import connected_components
 
 from .remesh import collapse_short_edges, flip_edges, split_long_edges
 from .sdf import Body
@@ -44,6 +46,7 @@ def mesh_of(
     faces = faces.astype(np.int64)
     if _volume(vertices, faces) < 0:
         faces = faces[:, ::-1]
+    vertices, faces = _without_specks(vertices, faces)
     vertices, faces = _without_slivers(vertices, faces, spacing)
     return remeshed(body, vertices, faces, detail)
 
@@ -98,6 +101,16 @@ def _sample(body: Body, lower: NDArray, upper: NDArray, spacing: float) -> NDArr
     # A sample exactly on the surface would make triangles without area.
     values[np.abs(values) < 1e-5 * spacing] = 1e-5 * spacing
     return values
+
+
+def _without_specks(vertices: NDArray, faces: NDArray) -> tuple[NDArray, NDArray]:
+    """Keep the largest piece: where a carving ends thin, crumbs smaller than a cell remain."""
+    start, end = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
+    links = sparse.coo_array((np.ones(len(start)), (start, end)), shape=(len(vertices),) * 2)
+    _, piece = connected_components(links, directed=False)
+    alive = piece == np.bincount(piece).argmax()
+    number = np.cumsum(alive) - 1
+    return vertices[alive], number[faces[alive[faces[:, 0]]]]
 
 
 def _without_slivers(vertices: NDArray, faces: NDArray, spacing: float) -> tuple[NDArray, NDArray]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -48,7 +49,7 @@ class Plate:
         return normals / np.sqrt((normals**2).sum(axis=1, keepdims=True))
 
 
-def box(half: ArrayLike, radius: float, longest: float = 0.06) -> Plate:
+def box(half: ArrayLike, radius: float, longest: float = 0.085) -> Plate:
     """Return a box of half sizes `half`, edges and corners rounded, edges up to `longest`."""
     half = np.asarray(half, float)
     lines = [_ticks(h, radius, longest) for h in half]
@@ -71,7 +72,7 @@ def box(half: ArrayLike, radius: float, longest: float = 0.06) -> Plate:
 
 
 def turned(
-    profile: ArrayLike, bevel: float = 0.012, sides: int = 24, longest: float = 0.05
+    profile: ArrayLike, bevel: float = 0.012, sides: int = 20, longest: float = 0.08
 ) -> Plate:
     """Return the solid that a profile (k, 2) of (radius, y) sweeps around the y axis.
 
@@ -97,13 +98,13 @@ def turned(
     return _welded(rings.reshape(-1, 3), faces)
 
 
-def barrel(low: float, high: float, length: float, bevel: float = 0.012, sides: int = 24) -> Plate:
+def barrel(low: float, high: float, length: float, bevel: float = 0.012, sides: int = 20) -> Plate:
     """Return a round bar along y around the origin: radius at its low and its high end."""
     h = length / 2
     return turned([[0, -h], [low, -h], [high, h], [0, h]], bevel, sides)
 
 
-def globe(radius: float, low: float = -1.0, high: float = 1.0, sides: int = 24) -> Plate:
+def globe(radius: float, low: float = -1.0, high: float = 1.0, sides: int = 20) -> Plate:
     """Return a ball, or the slice of it between two heights given as parts of its radius."""
     angle = np.linspace(np.arcsin(low), np.arcsin(high), 3 + round(8 * (high - low)))
     arc = radius * np.round(np.column_stack([np.cos(angle), np.sin(angle)]), 9)
@@ -118,12 +119,12 @@ def globe(radius: float, low: float = -1.0, high: float = 1.0, sides: int = 24) 
 
 
 def _ticks(half: float, radius: float, longest: float) -> NDArray:
-    """Return where grid lines cross an edge: three steps in each rounding, equal between."""
+    """Return where grid lines cross an edge: two steps in each half rounding, equal between."""
     flat = np.linspace(
         radius - half, half - radius, 1 + int(np.ceil(2 * (half - radius) / longest))
     )
-    # Steps of 30 degrees after the points are pushed onto the rounding.
-    bend = radius * np.array([1.0, 0.577350269, 0.267949192])
+    # Once pushed onto the rounding, these are 45 and 22.5 degrees from the flat.
+    bend = radius * np.array([1.0, 0.414213562])
     return np.concatenate([-(half - radius) - bend, flat, (half - radius) + bend[::-1]])
 
 
@@ -148,7 +149,7 @@ def _rounded(points: NDArray, bevel: float, loop: bool) -> NDArray:
         for other in (before, after):
             reach = np.sqrt(((other - corner) ** 2).sum())
             ends.append(corner + (other - corner) * min(bevel / reach, 0.4))
-        u = np.linspace(0, 1, 4)[:, None]
+        u = np.linspace(0, 1, 3)[:, None]
         result.append((1 - u) ** 2 * ends[0] + 2 * u * (1 - u) * corner + u * u * ends[1])
     return np.concatenate(result)
 
@@ -156,7 +157,7 @@ def _rounded(points: NDArray, bevel: float, loop: bool) -> NDArray:
 def _divided(points: NDArray, longest: float, loop: bool) -> NDArray:
     ends = np.concatenate([points, points[:1]]) if loop else points
     pieces = []
-    for a, b in zip(ends, ends[1:], strict=False):
+    for a, b in pairwise(ends):
         count = max(1, int(np.ceil(np.sqrt(((b - a) ** 2).sum()) / longest - 1e-9)))
         pieces.append(a + np.arange(count)[:, None] / count * (b - a))
     return np.concatenate(pieces if loop else [*pieces, ends[-1:]])

@@ -265,6 +265,11 @@ class Body:
         return names
 
 
+def shifted(point: ArrayLike, x: float, y: float, z: float) -> NDArray:
+    """Return a point moved by x, y, z."""
+    return np.asarray(point, float) + np.array([x, y, z])
+
+
 def unit(vector: ArrayLike) -> NDArray:
     """Return the vector at length 1."""
     vector = np.asarray(vector, float)
