@@ -29,7 +29,7 @@ def closed_character(
     """
     lower, upper = np.asarray(box, float)
     vertices, faces = mesh_of(body, lower, upper, spacing, detail)
-    vertices, colours = with_seams(body, vertices, faces)
+    vertices, faces, colours = with_seams(body, vertices, faces, detail)
     weights = from_parts(body, bones, vertices, faces)
     normals = normals_of(body, vertices)
     surfaces = []

@@ -19,7 +19,7 @@ MATERIALS = {
     "light": Material("glint", "#ffffff", roughness=0.3),
 }
 
-JOINTS, STEPS = 6, 18
+JOINTS, STEPS = 6, 36
 """Joints an arm, and the straight pieces that it is built of."""
 
 CURLS = (
@@ -150,8 +150,8 @@ def _arm(body: Body, k: int) -> None:
         shape = chain(line[piece], radii[piece])
         body.add(shape, f"{name}{j + 1}", at=at, reach=reach, blend=blend, edge=edge)
     belly = line + under * radii[:, None]
-    body.colour(chain(belly[5:], 0.72 * radii[5:]), "under", 0.02)
-    for i in range(7, STEPS, 1):
+    body.colour(chain(belly[10:], 0.72 * radii[10:]), "under", 0.02)
+    for i in range(14, STEPS, 2):
         sucker = ellipsoid(belly[i], np.full(3, 0.42 * radii[i]))
         edge = float(0.16 * radii[i] + 0.003)
         body.add(

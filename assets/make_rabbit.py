@@ -36,9 +36,9 @@ EAR = {
     # how far back, sideways, half width; the first two points rise out of the head
     "z": (0.36, 0.27, 0.15, 0.03, -0.09, -0.21, -0.32),
     "x": (0.060, 0.072, 0.088, 0.100, 0.108, 0.112, 0.112),
-    "width": (0.040, 0.050, 0.064, 0.070, 0.066, 0.050, 0.022),
+    "width": (0.050, 0.056, 0.066, 0.071, 0.067, 0.053, 0.028),
 }
-FLAT = 2.6
+FLAT = 2.5
 
 
 def make() -> Character:
@@ -75,20 +75,20 @@ def _skeleton(ear: NDArray) -> Bones:
 
 
 def _trunk(body: Body) -> None:
-    body.add(ellipsoid([0, 0.465, -0.30], [0.235, 0.265, 0.29]), "hips", edge=0.036, colour="fur")
-    fur = {"edge": 0.034, "colour": "fur"}
-    body.add(ellipsoid([0, 0.465, -0.04], [0.2, 0.235, 0.28]), "spine", blend=0.1, **fur)
-    body.add(ellipsoid([0, 0.46, 0.19], [0.175, 0.205, 0.19]), "chest", blend=0.1, **fur)
-    neck = round_cone([0, 0.53, 0.24], [0, 0.68, 0.37], 0.135, 0.11)
+    body.add(ellipsoid([0, 0.465, -0.30], [0.212, 0.265, 0.29]), "hips", edge=0.031, colour="fur")
+    fur = {"edge": 0.03, "colour": "fur"}
+    body.add(ellipsoid([0, 0.475, -0.04], [0.2, 0.25, 0.28]), "spine", blend=0.1, **fur)
+    body.add(ellipsoid([0, 0.475, 0.17], [0.178, 0.23, 0.2]), "chest", blend=0.1, **fur)
+    neck = round_cone([0, 0.55, 0.22], [0, 0.70, 0.36], 0.155, 0.12)
     body.add(neck, "neck", blend=0.08, edge=0.028, colour="fur")
     body.add(
-        ellipsoid([0, 0.765, 0.47], [0.160, 0.145, 0.185]),
+        ellipsoid([0, 0.768, 0.47], [0.168, 0.152, 0.185]),
         "head",
         blend=0.05,
         edge=0.024,
         colour="fur",
     )
-    body.colour(ellipsoid([0, 0.24, 0.02], [0.16, 0.12, 0.5]), "cream", 0.034)
+    body.colour(ellipsoid([0, 0.42, 0.335], [0.098, 0.165, 0.1]), "cream", 0.024)
     tail = [
         ([0, 0.50, -0.615], 0.075),
         ([0, 0.56, -0.62], 0.06),
@@ -119,10 +119,10 @@ def _head(body: Body) -> None:
     body.add(chin, "head", blend=0.012, edge=0.012, colour="cream")
     nose = ellipsoid([0, 0.742, 0.678], [0.028, 0.019, 0.018])
     body.add(nose, "head", blend=0.006, edge=0.009, colour="pink")
-    eye = np.array([0.118, 0.795, 0.565])
+    eye = np.array([0.125, 0.797, 0.562])
     out = unit([0.75, 0.12, 0.62])
     body.add(
-        ellipsoid(eye, [0.034, 0.042, 0.034]),
+        ellipsoid(eye, [0.036, 0.047, 0.037]),
         "head",
         both=True,
         blend=0.004,
@@ -197,8 +197,8 @@ def _front_leg(body: Body, bones: Bones) -> None:
 def _hind_leg(body: Body, bones: Bones) -> None:
     hip, knee, heel, toe = (bones[f"{n}.L"] for n in ("thigh", "shin", "foot", "toe"))
     fur = {"both": True, "colour": "fur"}
-    thigh = ellipsoid([0.185, 0.385, -0.235], [0.088, 0.165, 0.185])
-    body.add(thigh, "thigh.L", at=hip, reach=0.4, blend=0.05, edge=0.03, **fur)
+    thigh = ellipsoid([0.188, 0.40, -0.245], [0.098, 0.18, 0.19])
+    body.add(thigh, "thigh.L", at=hip, reach=0.4, blend=0.05, edge=0.028, **fur)
     shin = round_cone(knee, heel, 0.066, 0.046)
     body.add(shin, "shin.L", at=knee, reach=0.13, blend=0.04, edge=0.022, **fur)
     ground = half_space([0, 0, 0], [0, -1, 0])
@@ -226,7 +226,7 @@ def _hop() -> Motion:
     motion = loop("hop", 1.0, 30)
     t = phase(motion)
     # Eight keys: rest, crouch, push, rise, top, fall, land, settle.
-    up = np.maximum(curve(t, [0, -0.05, 0.04, 0.25, 0.36, 0.22, -0.02, -0.03]), -0.06)
+    up = np.maximum(curve(t, [0, -0.05, 0.04, 0.2, 0.27, 0.17, -0.02, -0.03]), -0.06)
     pitch = curve(t, [0, 2, -16, -20, -4, 14, 10, 2])
     move(motion, "hips", 0, up, curve(t, [0, -0.03, 0.02, 0.05, 0.04, 0.02, 0.01, 0]))
     rotate(motion, "hips", turn(X, pitch))

@@ -66,8 +66,9 @@ def remeshed(
             vertices, faces, wanted = split_long_edges(vertices, faces, wanted)
         vertices, faces, wanted = collapse_short_edges(vertices, faces, wanted)
         faces = flip_edges(vertices, faces)
-        for _ in range(4):
-            vertices = onto_surface(body, relaxed(vertices, faces, wanted))
+        for _ in range(2):
+            vertices = relaxed(relaxed(vertices, faces, wanted), faces, wanted)
+            vertices = onto_surface(body, vertices)
     return vertices, flip_edges(vertices, faces)
 
 

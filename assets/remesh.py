@@ -85,6 +85,35 @@ def flip_edges(vertices: NDArray, faces: NDArray, rounds: int = 30) -> NDArray:
     return faces
 
 
+def flip_thin(
+    vertices: NDArray, faces: NDArray, labels: NDArray, thin: float = 0.35, rounds: int = 10
+) -> NDArray:
+    """Flip edges of thin triangles, between faces of the same label, if that mends them."""
+    for _ in range(rounds):
+        edges, sides = edges_of(faces)
+        a, b = edges.T
+        c, d = (_opposite(faces, sides[:, k]) for k in range(2))
+        one, two = sides.T // 3
+        before = np.minimum(_shape(vertices[faces[one]]), _shape(vertices[faces[two]]))
+        after = np.minimum(*(_shape(vertices[f]) for f in _flipped(faces, sides)))
+        candidate = (before < thin) & (after > 1.2 * before) & (labels[one] == labels[two])
+        count = len(vertices)
+        known = np.minimum(a, b) * count + np.maximum(a, b)
+        candidate &= ~np.isin(np.minimum(c, d) * count + np.maximum(c, d), known)
+        facing = np.ones(len(edges), bool)
+        for new in _flipped(faces, sides):
+            n = np.cross(*np.diff(vertices[new], axis=1).transpose(1, 0, 2))
+            for old in (one, two):
+                m = np.cross(*np.diff(vertices[faces[old]], axis=1).transpose(1, 0, 2))
+                # A triangle without area has no side to compare with.
+                facing &= ((n * m).sum(axis=1) > 0) | (_shape(vertices[faces[old]]) < 0.05)
+        chosen = _apart(candidate & facing, before, np.stack([a, b, c, d], 1), count)
+        if not len(chosen):
+            break
+        faces = _flip(faces, sides[chosen])
+    return faces
+
+
 def edges_of(faces: NDArray) -> tuple[NDArray, NDArray]:
     """Return the edges of a closed mesh and their two sides.
 
@@ -187,14 +216,18 @@ def _collapse_is_good(
     return good
 
 
+def _shape(triangles: NDArray) -> NDArray:
+    """Return twice the area over the longest side squared: 0.87 at best, 0 for slivers."""
+    n = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+    sides = ((triangles - np.roll(triangles, 1, axis=1)) ** 2).sum(axis=2)
+    return np.sqrt((n * n).sum(axis=1)) / sides.max(axis=1)
+
+
 def _turned(before: NDArray, after: NDArray) -> NDArray:
     """Whether triangles (m, 3, 3) turn too far, or lose their shape."""
     n, m = (np.cross(t[:, 1] - t[:, 0], t[:, 2] - t[:, 0]) for t in (before, after))
     sizes = np.sqrt((n * n).sum(axis=1) * (m * m).sum(axis=1))
-    longest = ((after - np.roll(after, 1, axis=1)) ** 2).sum(axis=2).max(axis=1)
-    thin = np.sqrt((m * m).sum(axis=1)) < 0.15 * longest
-    was = ((before - np.roll(before, 1, axis=1)) ** 2).sum(axis=2).max(axis=1)
-    was_thin = np.sqrt((n * n).sum(axis=1)) < 0.15 * was
+    thin, was_thin = _shape(after) < 0.15, _shape(before) < 0.15
     return ((n * m).sum(axis=1) < TURN * sizes) & ~was_thin | thin & ~was_thin
 
 

@@ -6,11 +6,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .meshing import onto_surface, relaxed
-from .remesh import edges_of
+from .remesh import collapse_short_edges, edges_of, flip_thin
 from .sdf import Body
 
 
-def with_seams(body: Body, vertices: NDArray, faces: NDArray) -> tuple[NDArray, NDArray]:
+def with_seams(
+    body: Body, vertices: NDArray, faces: NDArray, detail: float = 1.0
+) -> tuple[NDArray, NDArray, NDArray]:
     """Move vertices onto the borders of the body's colours, so that faces do not cross them.
 
     Of every edge between two colours, the end nearer to the border moves there.
@@ -18,9 +20,25 @@ def with_seams(body: Body, vertices: NDArray, faces: NDArray) -> tuple[NDArray, 
     Returns
     -------
     vertices : array, shape (n, 3)
+    faces : array, shape (m, 3)
     colours : array, shape (m,), str
         Each face's colour.
     """
+    # Twice: vertices that came too close to each other on a border are joined in between.
+    vertices, _, _ = _snapped(body, vertices, faces)
+    wanted = detail * body.edge_length(vertices)
+    vertices, faces, _ = collapse_short_edges(vertices, faces, 0.5 * wanted)
+    vertices, labels, pinned = _snapped(body, vertices, faces)
+    colours = _face_colours(body, vertices, faces, labels, pinned)
+    wanted = detail * body.edge_length(vertices)
+    for _ in range(4):
+        free = onto_surface(body, relaxed(vertices, faces, wanted))
+        vertices = np.where(pinned[:, None], vertices, free)
+    return vertices, flip_thin(vertices, faces, colours), colours
+
+
+def _snapped(body: Body, vertices: NDArray, faces: NDArray) -> tuple[NDArray, NDArray, NDArray]:
+    """Return the vertices moved, their colours before, and which are on a border now."""
     labels = body.colours(vertices)
     edges, _ = edges_of(faces)
     edges = edges[labels[edges[:, 0]] != labels[edges[:, 1]]]
@@ -34,13 +52,7 @@ def with_seams(body: Body, vertices: NDArray, faces: NDArray) -> tuple[NDArray, 
     for k in range(3):
         total = np.bincount(near, goal[:, k], len(vertices))
         vertices[pinned, k] = total[pinned] / uses[pinned]
-    vertices = onto_surface(body, vertices)
-    colours = _face_colours(body, vertices, faces, labels, pinned)
-    wanted = body.edge_length(vertices)
-    for _ in range(4):
-        free = onto_surface(body, relaxed(vertices, faces, wanted))
-        vertices = np.where(pinned[:, None], vertices, free)
-    return vertices, colours
+    return onto_surface(body, vertices), labels, pinned
 
 
 def _border(body: Body, vertices: NDArray, edges: NDArray, labels: NDArray) -> NDArray:
