@@ -40,10 +40,13 @@ def read_articulation(path: Path) -> Rig:
             f"(it has {', '.join(sorted(arrays)) or 'nothing'})"
         )
     mesh = TriangleMesh(arrays["vertices"], arrays["faces"])
-    count = len(np.atleast_1d(arrays["joints"]))
+    joints = arrays["joints"]
+    if joints.ndim != 2 or joints.shape[1] != 3:
+        raise SkeletonError(f"joints has the shape {joints.shape}, expected (any, 3)")
+    count = len(joints)
     weights = _weights(arrays, len(mesh.vertices), count)
     skeleton = Skeleton(
-        arrays["joints"],
+        joints,
         _parents(arrays, count),
         _names(arrays, count),
         carrying(weights),  # type: ignore[arg-type]
@@ -54,9 +57,10 @@ def read_articulation(path: Path) -> Rig:
 def _arrays(data: bytes) -> dict[str, NDArray]:
     found = {}
     try:
-        with np.load(io.BytesIO(data), allow_pickle=False) as archive:
-            if not isinstance(archive, np.lib.npyio.NpzFile):
-                raise FileError("is a single array, not an npz archive of several")
+        archive = np.load(io.BytesIO(data), allow_pickle=False)
+        if not isinstance(archive, np.lib.npyio.NpzFile):
+            raise FileError("is a single array, not an npz archive of several")
+        with archive:
             for name in archive.files:
                 found[name] = archive[name]
     except FileError:
@@ -75,8 +79,9 @@ def _arrays(data: bytes) -> dict[str, NDArray]:
 
 
 def _parents(arrays: dict[str, NDArray], count: int) -> NDArray:
-    bones = arrays["bones"].reshape(-1, 2) if arrays["bones"].size else np.zeros((0, 2), int)
-    if bones.dtype.kind not in "iu" or ((bones < 0) | (bones >= count)).any():
+    bones = arrays["bones"] if arrays["bones"].size else np.zeros((0, 2), int)
+    whole = bones.dtype.kind in "iu" and bones.ndim == 2 and bones.shape[1] == 2
+    if not whole or ((bones < 0) | (bones >= count)).any():
         raise SkeletonError(f"bones must be pairs of joint numbers, 0 to {count - 1}")
     parents = np.full(count, -1)
     for parent, child in bones.tolist():

@@ -13,13 +13,22 @@ from ..errors import CutcellError, FileError
 
 @contextmanager
 def naming(path: Path) -> Iterator[None]:
-    """Put the file's name in front of every cutcell error raised inside, once."""
+    """Put the file's name in front of every cutcell error raised inside.
+
+    Where several of these stand inside each other, the innermost knows best.
+    """
     try:
         yield
     except CutcellError as e:
-        if path.name in str(e):
+        if "named" in vars(e):
             raise
-        raise type(e)(f"{path.name}: {e}") from e
+        named = e
+        if not str(e).startswith((f"{path}:", f"{path.name}:")):
+            named = type(e)(f"{path.name}: {e}")
+        vars(named)["named"] = True
+        if named is e:
+            raise
+        raise named from e
 
 
 def read_bytes(path: Path) -> bytes:

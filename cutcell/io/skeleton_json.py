@@ -71,14 +71,13 @@ def _check_fields(joint: dict[str, Any], name: str) -> None:
 
 def _position(joint: dict[str, Any], name: str) -> list[float]:
     value = joint.get("position")
-    if (
-        not isinstance(value, list)
-        or len(value) != 3
-        or any(type(x) not in (int, float) for x in value)
-        or not np.isfinite(np.array(value, float)).all()
-    ):
-        raise SkeletonError(f'joint "{name}": "position" must be three finite numbers')
-    return value
+    try:
+        right = isinstance(value, list) and [type(x) in (int, float) for x in value] == [True] * 3
+        if right and np.isfinite(np.array(value, np.float64)).all():
+            return value  # type: ignore[return-value]
+    except OverflowError:  # a whole number with hundreds of digits
+        pass
+    raise SkeletonError(f'joint "{name}": "position" must be three finite numbers')
 
 
 def _parent(joint: dict[str, Any], name: str, place: dict[str, int]) -> int:

@@ -406,7 +406,7 @@ def test_odd_fields_never_escape_as_anything_else(tmp_path, changes):
         try:
             for key in path[:-1]:
                 owner = owner[key]
-            owner[path[-1]] = value
+            owner[path[-1]] = json.loads(json.dumps(value))
         except (KeyError, IndexError, TypeError):
             continue  # an earlier change took the place away
     check_only_our_errors(tmp_path, pack(json.dumps(document).encode(), BODY))
