@@ -145,9 +145,7 @@ def _ear_line(trunk: Body) -> NDArray:
         low, high = np.where(inside, line[:, 1], low), np.where(inside, high, line[:, 1])
     line[0] = [0.058, 0.855, 0.40]
     line[1, 1] = max(line[1, 1], 0.885)
-    line[2, 1] = max(line[2, 1], (line[1, 1] + line[3, 1]) / 2 + 0.012)
-    for _ in range(3):  # a taut ear, not one that follows every dip
-        line[2:-1, 1] = np.maximum(line[2:-1, 1], (line[1:-2, 1] + line[3:, 1]) / 2)
+    line[2, 1] = max(line[2, 1], (line[1, 1] + line[3, 1]) / 2 - 0.012)
     return np.round(line, 4)
 
 
@@ -180,7 +178,7 @@ def _ear(body: Body, line: NDArray) -> None:
 
 def _up(along: NDArray) -> NDArray:
     """Return the unit vector that is square to a direction and closest to up and outward."""
-    up, along = unit([0.25, 1, 0]), unit(along)
+    up, along = unit([0.4, 1, 0]), unit(along)
     return unit(up - along * float((up * along).sum()))
 
 
