@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-import tempfile
+import secrets
+import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -60,37 +61,32 @@ def write_all(contents: dict[Path, bytes]) -> None:
     Everything is written under temporary names in the same folders first, then renamed
     in the order given.
     """
-    written: list[tuple[str, Path]] = []
+    written: list[tuple[Path, Path]] = []
     try:
         for path, data in contents.items():
             path.parent.mkdir(parents=True, exist_ok=True)
-            written.append((_write_beside(path, data), path))
-        for temporary, path in written:
-            os.replace(temporary, path)
+            real = path.resolve()  # through a link, not over it
+            written.append((_write_beside(real, data), real))
+        for temporary, real in written:
+            os.replace(temporary, real)
     except OSError as e:
         raise FileError(f"{path}: cannot be written ({_reason(e)})") from None
     finally:
         for temporary, _ in written:
-            Path(temporary).unlink(missing_ok=True)
+            temporary.unlink(missing_ok=True)
 
 
-def _write_beside(path: Path, data: bytes) -> str:
-    handle, temporary = tempfile.mkstemp(prefix=f".{path.name[:40]}.", dir=path.parent)
+def _write_beside(path: Path, data: bytes) -> Path:
+    temporary = path.with_name(f".{path.name[:40]}.{secrets.token_hex(4)}")
     try:
-        with os.fdopen(handle, "wb") as file:
+        with temporary.open("xb") as file:
             file.write(data)
-        # mkstemp gives 0600; a saved file gets the rights any other new file would.
-        os.chmod(temporary, path.stat().st_mode & 0o777 if path.exists() else 0o666 & ~_umask())
+        if path.exists():
+            shutil.copymode(path, temporary)
     except OSError:
-        Path(temporary).unlink(missing_ok=True)
+        temporary.unlink(missing_ok=True)
         raise
     return temporary
-
-
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
 
 
 def _reason(error: BaseException) -> str:

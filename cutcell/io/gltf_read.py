@@ -125,7 +125,7 @@ def _read_parts(
             label = f"{document.label('meshes', mesh)}, primitive {k}"
             positions = read_positions(document, primitive, label)
             corners = read_faces(document, primitive, len(positions), label)
-            key = (tuple(bind.skins[skin]), skin, _vertex_key(primitive, label))
+            key = (skin, _vertex_key(primitive, label))
             if key not in parts:
                 rows = slice(total, total := total + len(positions))
                 parts[key] = Part(label, [], skin, rows, bind.skins[skin])

@@ -48,8 +48,8 @@ def read_bind(document: Document, nodes: Nodes, skins: list[int]) -> Bind:
             to_rig = np.eye(4)
             bind.world = _rest_world(nodes, joints, inverse)
         elif shared:
-            known = np.array([bind.inverse[place[joints[k]]] for k in shared])
-            to_rig = _first_regular(known, inverse[shared])
+            known = bind.inverse[place[joints[shared[0]]]]
+            to_rig = np.linalg.inv(known) @ inverse[shared[0]]
         else:
             to_rig = np.linalg.inv(bind.world) @ _rest_world(nodes, joints, inverse)
         if not _invertible(to_rig):
@@ -112,16 +112,15 @@ def _invertible(matrix: NDArray) -> bool:
 
 
 def _rest_world(nodes: Nodes, joints: list[int], inverse: NDArray) -> NDArray:
-    """Return where a skin's bind space stands in the scene: seen by its first joint."""
-    for node, matrix in zip(joints, inverse, strict=True):
-        world = nodes.world[node] @ matrix
+    """Return where a skin's bind space stands in the scene, as its topmost joint sees it.
+
+    The other joints may stand in a pose; the topmost one seldom does.
+    """
+    for k in sorted(range(len(joints)), key=lambda k: len(nodes.ancestors(joints[k]))):
+        world = nodes.world[joints[k]] @ inverse[k]
         if _invertible(world):  # a joint may be scaled to nothing to hide what it holds
             return world
     return np.eye(4)
-
-
-def _first_regular(known: NDArray, inverse: NDArray) -> NDArray:
-    return np.linalg.inv(known[0]) @ inverse[0]
 
 
 def read_skeleton(document: Document, nodes: Nodes, bind: Bind, used: NDArray | None) -> Skeleton:
