@@ -105,7 +105,7 @@ def _keys(document: Document, index: Any, label: str) -> NDArray:
 
 def _values(document: Document, sampler: Any, how: Any, path: str, label: str) -> NDArray:
     """Return the values at the keys, shape (k, width), or (k, 3, width) for a cubic spline."""
-    keys = len(_keys(document, sampler.get("input"), label))
+    keys = len(read_accessor(document, sampler.get("input"), "SCALAR", label))
     kind = "VEC4" if path == "rotation" else "VEC3"
     values = read_accessor(document, sampler.get("output"), kind, label)
     if how not in (
