@@ -10,6 +10,7 @@ from .character import Bones, Character, Material, Motion
 from .motion import X, Y, Z, curve, loop, move, phase, rotate, turn
 from .sdf import (
     Body,
+    Shape,
     ball,
     common,
     ellipsoid,
@@ -18,6 +19,7 @@ from .sdf import (
     round_cone,
     shell,
     shifted,
+    union,
     unit,
 )
 
@@ -62,7 +64,7 @@ def _skeleton(ear: NDArray) -> Bones:
     bones.add("chest", "spine", [0, 0.49, 0.12])
     bones.add("neck", "chest", [0, 0.57, 0.27])
     bones.add("head", "neck", [0, 0.70, 0.38])
-    bones.add_chain("ear.L", "head", ear[[0, 2, 3, 5]], both=True)
+    bones.add_chain("ear.L", "head", ear[[0, 4, 6, 10]], both=True)
     bones.add("tail", "hips", [0, 0.50, -0.52])
     bones.add("upper_arm.L", "chest", [0.115, 0.42, 0.23], both=True)
     bones.add("forearm.L", "upper_arm.L", [0.135, 0.27, 0.18], both=True)
@@ -135,7 +137,7 @@ def _head(body: Body) -> None:
 
 
 def _ear_line(trunk: Body) -> NDArray:
-    """Return the middle line of the left ear, laid on the trunk with a gap: (7, 3)."""
+    """Return the middle line of the left ear, laid on the trunk with a gap: (13, 3)."""
     line = np.column_stack([EAR["x"], np.zeros(7), EAR["z"]])
     clear = GAP + np.array(EAR["width"]) / FLAT
     low, high = np.full(7, 0.5), np.full(7, 1.3)
@@ -146,34 +148,37 @@ def _ear_line(trunk: Body) -> NDArray:
     line[0] = [0.058, 0.855, 0.40]
     line[1, 1] = max(line[1, 1], 0.885)
     line[2, 1] = max(line[2, 1], (line[1, 1] + line[3, 1]) / 2 - 0.012)
-    return np.round(line, 4)
+    return np.round(_refined(line), 4)
 
 
 def _ear(body: Body, line: NDArray) -> None:
-    widths = np.array(EAR["width"])
-    joints = ("ear1", "ear1", "ear2", "ear3", "ear3", "ear4")
-    for k, joint in enumerate(joints):
-        normal = _up(line[k + 1] - line[k])
-        cone = round_cone(line[k], line[k + 1], widths[k], widths[k + 1])
-        shape = flattened(cone, (line[k] + line[k + 1]) / 2, normal, FLAT)
-        reach, blend = (0.09, 0.03) if k == 0 else (0.07, 0.008)
-        body.add(
-            shape,
-            f"{joint}.L",
-            both=True,
-            at=line[k],
-            reach=reach,
-            blend=blend,
-            edge=0.015,
-            colour="fur",
-        )
+    widths = _refined(np.array(EAR["width"])[:, None])[:, 0]
+    ear = {"both": True, "edge": 0.0135, "colour": "fur"}
+    for k in range(len(line) - 1):
+        joint = 1 if k < 4 else 2 if k < 6 else 3 if k < 10 else 4
+        shape = _slab(line[k], line[k + 1], widths[k], widths[k + 1], FLAT)
+        reach, blend = (0.09, 0.03) if k < 2 else (0.06, 0.006)
+        body.add(shape, f"ear{joint}.L", at=line[k], reach=reach, blend=blend, **ear)
     ups = np.array([_up(d) for d in np.gradient(line, axis=0)])
-    hollow = line + ups * widths[:, None] / FLAT * 1.1
-    for k in range(1, 5):
-        cone = round_cone(hollow[k], hollow[k + 1], 0.62 * widths[k], 0.62 * widths[k + 1])
-        shape = flattened(cone, (hollow[k] + hollow[k + 1]) / 2, _up(line[k + 1] - line[k]), 3.2)
-        body.add(shape, f"{joints[k]}.L", both=True, blend=0.006, edge=0.014, carve=True)
-        body.colour(shell(shape, 0.0015), "pink", 0.014, both=True)
+    top = line + ups * widths[:, None] / FLAT * 1.1
+    thin = 0.62 * widths
+    hollow = union([_slab(top[k], top[k + 1], thin[k], thin[k + 1], 3.2) for k in range(2, 10)])
+    body.add(hollow, "ear1.L", both=True, blend=0.006, edge=0.013, carve=True)
+    body.colour(shell(hollow, 0.0015), "pink", 0.013, both=True)
+
+
+def _slab(a: NDArray, b: NDArray, wide_a: float, wide_b: float, flat: float) -> Shape:
+    """Return a round cone from a to b, pressed flat."""
+    return flattened(round_cone(a, b, wide_a, wide_b), (a + b) / 2, _up(b - a), flat)
+
+
+def _refined(rows: NDArray) -> NDArray:
+    """Put a point between each two of a smooth curve (n, k), by cubic interpolation."""
+    padded = np.concatenate([2 * rows[:1] - rows[1:2], rows, 2 * rows[-1:] - rows[-2:-1]])
+    between = (9 * (rows[:-1] + rows[1:]) - padded[:-3] - padded[3:]) / 16
+    result = np.empty((2 * len(rows) - 1, rows.shape[1]))
+    result[::2], result[1::2] = rows, between
+    return result
 
 
 def _up(along: NDArray) -> NDArray:

@@ -8,7 +8,7 @@ from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 
 from .remesh import collapse_short_edges, flip_edges, split_long_edges
-from .sdf import Body
+from .sdf import Body, neighbourhoods
 
 BLOCK = 16
 """Lattice points along a side of the blocks that are sampled, or skipped, as one."""
@@ -148,26 +148,14 @@ def onto_surface(body: Body, vertices: NDArray) -> NDArray:
 def _gradient(body: Body, vertices: NDArray, step: float) -> tuple[NDArray, NDArray, NDArray]:
     """Return unit gradient, slope and value, from four samples at a tetrahedron's corners."""
     corners = np.array([[1, -1, -1], [-1, -1, 1], [-1, 1, -1], [1, 1, 1]], float)
-    order, groups = _neighbourhoods(vertices)
     gradient, value = np.zeros_like(vertices), np.zeros(len(vertices))
-    for group in groups:
-        rows = order[group]
+    for rows in neighbourhoods(vertices):
         for corner in corners:
             sample = body.distance(vertices[rows] + step * corner)
             gradient[rows] += sample[:, None] * corner / (4 * step)
             value[rows] += sample / 4
     slope = np.sqrt((gradient**2).sum(axis=1))
     return gradient / np.maximum(slope, 1e-9)[:, None], slope, value
-
-
-def _neighbourhoods(vertices: NDArray, cell: float = 0.1) -> tuple[NDArray, list[slice]]:
-    """Group the vertices by cells of space, so that far parts of a body can be skipped."""
-    keys = np.floor((vertices - vertices.min(axis=0)) / cell).astype(np.int64)
-    code = (keys[:, 0] * 1024 + keys[:, 1]) * 1024 + keys[:, 2]
-    order = np.argsort(code, kind="stable")
-    starts = np.flatnonzero(np.diff(code[order], prepend=-1))
-    ends = [*starts[1:], len(order)]
-    return order, [slice(a, b) for a, b in zip(starts, ends, strict=True)]
 
 
 def _sum_at(index: NDArray, rows: NDArray, count: int) -> NDArray:

@@ -87,13 +87,21 @@ def chain(points: ArrayLike, radii: ArrayLike) -> Shape:
         for a, b, ra, rb in zip(points, points[1:], radii, radii[1:], strict=False)
     ]
 
+    return union(cones)
+
+
+def union(shapes: list[Shape]) -> Shape:
+    """Return several shapes as one."""
+
     def distance(p: Points) -> NDArray:
-        nearest = cones[0].distance(p)
-        for cone in cones[1:]:
-            nearest = np.minimum(nearest, cone.distance(p))
+        nearest = shapes[0].distance(p)
+        for shape in shapes[1:]:
+            nearest = np.minimum(nearest, shape.distance(p))
         return nearest
 
-    return Shape(distance, *_enclosing(points, float(radii.max())))
+    centre = np.mean([shape.centre for shape in shapes], axis=0)
+    reach = [float(_length(shape.centre - centre)) + shape.radius for shape in shapes]
+    return Shape(distance, centre, max(reach))
 
 
 def torus(centre: ArrayLike, axis: ArrayLike, ring: float, tube: float) -> Shape:
@@ -240,10 +248,18 @@ class Body:
         """Return the wanted length of mesh edges: each part's own near it, growing away."""
         shapes = [(part.shape, part.edge) for part in self.parts]
         shapes += [(shape, edge) for shape, _, edge in self.paint]
-        lengths = np.full(len(points), np.inf)
-        for shape, edge in shapes:
-            lengths = np.minimum(lengths, edge + growth * np.maximum(shape.distance(points), 0))
-        return lengths
+        result = np.full(len(points), 1e6)
+        for rows in neighbourhoods(points):
+            near, lengths = points[rows], result[rows]
+            centre = (near.min(axis=0) + near.max(axis=0)) / 2
+            spread = float(_length(near - centre).max())
+            for shape, edge in shapes:
+                gap = float(_length(shape.centre - centre)) - shape.radius - spread
+                if edge + growth * max(gap, 0) < lengths.max():
+                    distance = np.maximum(shape.distance(near), 0)
+                    lengths = np.minimum(lengths, edge + growth * distance)
+            result[rows] = lengths
+        return result
 
     def joint_distances(self, points: Points, names: Iterable[str]) -> NDArray:
         """Return the distance of each point to the parts of each joint, shape (n, j)."""
@@ -263,6 +279,14 @@ class Body:
         for shape, colour, _ in self.paint:
             names[shape.distance(points) < 0] = colour
         return names
+
+
+def neighbourhoods(points: Points, cell: float = 0.1) -> list[NDArray]:
+    """Return the rows of points in each cell of space: far parts of a body can be skipped."""
+    keys = np.floor((points - points.min(axis=0)) / cell).astype(np.int64)
+    code = (keys[:, 0] * 1024 + keys[:, 1]) * 1024 + keys[:, 2]
+    order = np.argsort(code, kind="stable")
+    return np.split(order, np.flatnonzero(np.diff(code[order])) + 1)
 
 
 def shifted(point: ArrayLike, x: float, y: float, z: float) -> NDArray:
@@ -285,11 +309,6 @@ def _joined(part: Part, points: Points, total: NDArray) -> NDArray:
     if part.carve:
         return -smooth_min(-total, distance, blend)
     return smooth_min(total, distance, blend)
-
-
-def _enclosing(points: Points, margin: float) -> tuple[Points, float]:
-    centre = (points.min(axis=0) + points.max(axis=0)) / 2
-    return centre, float(_length(points - centre).max()) + margin
 
 
 def _dot(a: NDArray, b: NDArray) -> NDArray:
