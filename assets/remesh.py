@@ -13,6 +13,9 @@ from scipy import sparse
 LONG, SHORT = 4 / 3, 4 / 5
 """Edges outside of this range, relative to the wanted length, are split or collapsed."""
 
+SLIVER = 0.08
+"""Triangles lower than this, relative to their longest side, have no shape to keep."""
+
 ENOUGH = 0.001
 """Stop collapsing when fewer edges than this, of all, can be collapsed at once."""
 
@@ -87,16 +90,22 @@ def flip_edges(vertices: NDArray, faces: NDArray, rounds: int = 30) -> NDArray:
 
 def flip_thin(
     vertices: NDArray, faces: NDArray, labels: NDArray, thin: float = 0.35, rounds: int = 10
-) -> NDArray:
-    """Flip edges of thin triangles, between faces of the same label, if that mends them."""
+) -> tuple[NDArray, NDArray]:
+    """Flip edges of thin triangles, if that mends them; return faces and their labels.
+
+    Only between faces of the same label, or if one of them is a sliver: both get the other's.
+    """
+    labels = labels.copy()
     for _ in range(rounds):
         edges, sides = edges_of(faces)
         a, b = edges.T
         c, d = (_opposite(faces, sides[:, k]) for k in range(2))
         one, two = sides.T // 3
-        before = np.minimum(_shape(vertices[faces[one]]), _shape(vertices[faces[two]]))
+        shapes = _shape(vertices[faces])
+        before = np.minimum(shapes[one], shapes[two])
         after = np.minimum(*(_shape(vertices[f]) for f in _flipped(faces, sides)))
-        candidate = (before < thin) & (after > 1.2 * before) & (labels[one] == labels[two])
+        candidate = (before < thin) & (after > 1.2 * before)
+        candidate &= (labels[one] == labels[two]) | (before < SLIVER)
         count = len(vertices)
         known = np.minimum(a, b) * count + np.maximum(a, b)
         candidate &= ~np.isin(np.minimum(c, d) * count + np.maximum(c, d), known)
@@ -106,12 +115,15 @@ def flip_thin(
             for old in (one, two):
                 m = np.cross(*np.diff(vertices[faces[old]], axis=1).transpose(1, 0, 2))
                 # A triangle without area has no side to compare with.
-                facing &= ((n * m).sum(axis=1) > 0) | (_shape(vertices[faces[old]]) < 0.05)
+                facing &= ((n * m).sum(axis=1) > 0) | (shapes[old] < SLIVER)
         chosen = _apart(candidate & facing, before, np.stack([a, b, c, d], 1), count)
         if not len(chosen):
             break
+        pair = np.stack([one, two], axis=1)[chosen]
+        wider = np.take_along_axis(pair, shapes[pair].argmax(axis=1)[:, None], axis=1)
+        labels[pair] = labels[wider]
         faces = _flip(faces, sides[chosen])
-    return faces
+    return faces, labels
 
 
 def edges_of(faces: NDArray) -> tuple[NDArray, NDArray]:

@@ -34,7 +34,8 @@ def with_seams(
     for _ in range(4):
         free = onto_surface(body, relaxed(vertices, faces, wanted))
         vertices = np.where(pinned[:, None], vertices, free)
-    return vertices, flip_thin(vertices, faces, colours), colours
+    faces, colours = flip_thin(vertices, faces, colours)
+    return vertices, faces, colours
 
 
 def _snapped(body: Body, vertices: NDArray, faces: NDArray) -> tuple[NDArray, NDArray, NDArray]:
