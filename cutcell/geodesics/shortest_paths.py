@@ -42,8 +42,7 @@ def shortest_paths(
     array, shape (b, t), float64
         Infinite where no path leads.
     """
-    matrix = graph.csr()
-    indptr, indices = matrix.indptr.astype(np.int32), matrix.indices.astype(np.int32)
+    indptr, indices, lengths = graph.adjacency
     start = np.searchsorted(sources.bone, np.arange(bones + 1))
     result = np.empty((bones, len(targets)))
     step = ROUNDS * get_num_threads()
@@ -53,7 +52,7 @@ def shortest_paths(
         _all_bones(
             indptr,
             indices,
-            matrix.data,
+            lengths,
             part,
             sources.node,
             sources.distance,

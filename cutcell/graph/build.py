@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
+from numba import njit, prange
 from numpy.typing import NDArray
 
 from ..checks import check_choice, check_number
@@ -11,10 +11,11 @@ from ..progress import Progress, silent
 from ..rig import TriangleMesh
 from .caps import cap_holes
 from .cutcell_graph import INTERIOR, MESH, SURFACE, CutCellGraph
-from .diagonals import cell_diagonals
+from .inside_edges import diagonal_edges, segment_edges
+from .interior import interior_points
 from .lattice import Lattice
 from .rays import AXES, Crossings, cast_rays
-from .segments import NONE, Runs, find_runs
+from .segments import NONE, find_runs
 from .weld import weld
 from .winding import find_boundary
 
@@ -84,109 +85,83 @@ def _assemble(
     vertices, vertex_node, faces, boundary, crossings, runs, lattice, connectivity
 ) -> CutCellGraph:
     """Give each node its number and list the edges."""
-    resolution = lattice.resolution
-    # Until they are numbered, nodes are known by keys: a lattice point by its number in
-    # the lattice, a crossing by its place behind all of these.
-    first_key = resolution**3 + np.cumsum([0, *(len(c.position) for c in crossings)])
-    segments = [_segment_keys(runs[axis], axis, resolution, first_key[axis]) for axis in range(3)]
-    keys = np.unique(np.concatenate(segments))
-    lattice_count = np.searchsorted(keys, resolution**3)
-    inner, outer = keys[:lattice_count], keys[lattice_count:]
+    points = interior_points(runs, lattice.resolution)
+    first_point = len(vertices)
+    first_crossing = first_point + len(points)
 
-    surface_points, triangle = _surface_nodes(outer, first_key, crossings, resolution)
-    nodes = np.concatenate([vertices, _lattice_points(inner, resolution), surface_points])
-    kinds = np.repeat(
-        np.array([MESH, INTERIOR, SURFACE], np.uint8),
-        [len(vertices), len(inner), len(outer)],
-    )
+    crossing_node, positions, triangles = [], [], []
+    count = first_crossing
+    for axis in range(3):
+        used = np.zeros(len(crossings[axis].position), np.bool_)
+        for ends in (runs[axis].low, runs[axis].high):
+            used[ends[ends != NONE]] = True
+        crossing_node.append((np.cumsum(used) - 1 + count).astype(np.int32))
+        positions.append(_crossing_positions(crossings[axis], used, axis, lattice.resolution))
+        triangles.append(crossings[axis].triangle[used])
+        count += len(triangles[-1])
+    nodes = np.concatenate([vertices, points.positions(), *positions])
+    of_triangle = np.concatenate(triangles)
+    node_kind = _kinds([len(vertices), len(points), len(of_triangle)])
+    triangle = np.concatenate([np.full(first_crossing, -1, np.int32), of_triangle])
+
+    whole = np.zeros((3, len(points)), np.bool_)
+    inside = [
+        segment_edges(runs[axis], axis, points, first_point, crossing_node[axis], whole[axis])
+        for axis in range(3)
+    ]
     if connectivity == 26:
-        segments.append(cell_diagonals(_whole_edges(segments, resolution), resolution))
-    inside = np.searchsorted(keys, np.concatenate(segments)) + len(vertices)
-    corners = faces[triangle]
-    crossing = np.arange(len(nodes) - len(outer), len(nodes))
-    to_corners = np.stack([np.repeat(crossing, 3), corners.ravel()], axis=1)
-    parts = [_mesh_edges(faces), inside, to_corners]
-    edges = np.concatenate(parts).astype(np.int32)
-    edge_kind = np.repeat(
-        np.array([MESH, INTERIOR, SURFACE], np.uint8), [len(part) for part in parts]
-    )
-    lengths = np.linalg.norm(nodes[edges[:, 0]] - nodes[edges[:, 1]], axis=1)
-    of_node = np.full(len(nodes), -1, np.int32)
-    of_node[len(nodes) - len(outer) :] = triangle
-    closed = len(boundary.edges) == 0
+        inside.append(diagonal_edges(points, first_point, whole))
+    to_corners = np.empty((len(of_triangle), 3, 2), np.int32)
+    to_corners[:, :, 0] = np.arange(first_crossing, len(nodes))[:, None]
+    to_corners[:, :, 1] = faces[of_triangle]
+    parts = [_mesh_edges(faces), np.concatenate(inside), to_corners.reshape(-1, 2)]
+    edges = np.concatenate(parts)
     return CutCellGraph(
-        nodes, kinds, edges, lengths, edge_kind, of_node, vertex_node, lattice, closed
+        nodes=nodes,
+        node_kind=node_kind,
+        edges=edges,
+        lengths=_lengths(nodes, edges),
+        edge_kind=_kinds([len(part) for part in parts]),
+        triangle=triangle,
+        vertex_node=vertex_node,
+        lattice=lattice,
+        is_closed=len(boundary.edges) == 0,
+        connectivity=connectivity,
+        interior=points,
+        whole=whole,
     )
 
 
-def _segment_keys(runs: Runs, axis: int, resolution: int, first_key: int) -> NDArray[np.int64]:
-    """List the kept segments along one axis as pairs of keys, shape (s, 2)."""
-    points = np.maximum(runs.last.astype(np.int64) - runs.first + 1, 0)
-    ends = (runs.low != NONE).astype(np.int64) + (runs.high != NONE)
-    start = np.concatenate([[0], np.cumsum(points + ends - 1)])
-    strides = [resolution**2, resolution, 1]
-    u, v, along = (strides[k] for k in AXES[axis])
-    base = (runs.ray // resolution).astype(np.int64) * u + (runs.ray % resolution) * v
-    segments = np.empty((start[-1], 2), np.int64)
-    _expand(runs.first, runs.last, runs.low, runs.high, start, base, along, first_key, segments)
-    return segments
+def _kinds(counts: list[int]) -> NDArray[np.uint8]:
+    return np.repeat(np.array([MESH, INTERIOR, SURFACE], np.uint8), counts)
 
 
-@njit(cache=True)
-def _expand(first, last, low, high, start, base, along, first_key, segments):
-    for r in range(len(first)):
-        n = start[r]
-        previous = first_key + low[r] if low[r] != NONE else NONE
-        for k in range(first[r], last[r] + 1):
-            key = base[r] + k * along
-            if previous != NONE:
-                segments[n, 0], segments[n, 1] = previous, key
-                n += 1
-            previous = key
-        if high[r] != NONE:
-            segments[n, 0], segments[n, 1] = previous, first_key + high[r]
+def _crossing_positions(
+    crossings: Crossings, used: NDArray[np.bool_], axis: int, resolution: int
+) -> NDArray[np.float64]:
+    """Return the used crossings' places in the unit cube, shape (c, 3)."""
+    ray = np.repeat(np.arange(resolution**2), np.diff(crossings.start))[used]
+    u, v, along = AXES[axis]
+    positions = np.empty((len(ray), 3))
+    positions[:, u] = (ray // resolution + 0.5) / resolution
+    positions[:, v] = (ray % resolution + 0.5) / resolution
+    positions[:, along] = crossings.position[used]
+    return positions
 
 
-def _whole_edges(segments, resolution):
-    """Return for each axis the sorted lattice numbers whose edge to the next is kept."""
-    return tuple(
-        np.sort(pairs[(pairs < resolution**3).all(axis=1)].min(axis=1)) for pairs in segments[:3]
-    )
+@njit(cache=True, parallel=True)
+def _lengths(nodes, edges):
+    lengths = np.empty(len(edges))
+    for e in prange(len(edges)):
+        a, b = edges[e, 0], edges[e, 1]
+        x, y, z = nodes[a, 0] - nodes[b, 0], nodes[a, 1] - nodes[b, 1], nodes[a, 2] - nodes[b, 2]
+        lengths[e] = np.sqrt(x * x + y * y + z * z)
+    return lengths
 
 
-def _lattice_points(number: NDArray[np.int64], resolution: int) -> NDArray[np.float64]:
-    index = np.stack(
-        [number // resolution**2, number // resolution % resolution, number % resolution]
-    )
-    return (index.T + 0.5) / resolution
-
-
-def _surface_nodes(
-    keys: NDArray[np.int64],
-    first_key: NDArray[np.int64],
-    crossings: list[Crossings],
-    resolution: int,
-) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
-    """Return the positions (s, 3) and triangles (s,) of crossings given by sorted keys."""
-    points = np.empty((len(keys), 3))
-    triangle = np.empty(len(keys), np.int32)
-    bounds = np.searchsorted(keys, first_key)
-    for axis, found in enumerate(crossings):
-        part = slice(bounds[axis], bounds[axis + 1])
-        index = keys[part] - first_key[axis]
-        ray = np.searchsorted(found.start, index, side="right") - 1
-        u, v, along = AXES[axis]
-        points[part, u] = (ray // resolution + 0.5) / resolution
-        points[part, v] = (ray % resolution + 0.5) / resolution
-        points[part, along] = found.position[index]
-        triangle[part] = found.triangle[index]
-    return points, triangle
-
-
-def _mesh_edges(faces: NDArray[np.int32]) -> NDArray[np.int64]:
+def _mesh_edges(faces: NDArray[np.int32]) -> NDArray[np.int32]:
     ends = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]).astype(np.int64)
-    ends.sort(axis=1)
-    ends = ends[ends[:, 0] != ends[:, 1]]  # welding can close an edge up
+    low, high = ends.min(axis=1), ends.max(axis=1)
     size = int(faces.max()) + 1
-    keys = np.unique(ends[:, 0] * size + ends[:, 1])
-    return np.stack([keys // size, keys % size], axis=1)
+    keys = np.unique((low * size + high)[low != high])  # welding can close an edge up
+    return np.stack([keys // size, keys % size], axis=1).astype(np.int32)

@@ -6,9 +6,11 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
+from .interior import InteriorPoints
 from .lattice import Lattice
 
 MESH, INTERIOR, SURFACE = 0, 1, 2
@@ -40,6 +42,13 @@ class CutCellGraph:
     lattice : Lattice
     is_closed : bool
         Whether the faces leave no boundary, so that inside and outside are never in doubt.
+    connectivity : {6, 26, "any"}
+        How paths may run inside, see `build_graph`.
+    interior : InteriorPoints
+        The lattice points inside, in the order of their nodes.
+    whole : array, shape (3, p), bool
+        For x, y, z: whether the edge from an interior lattice point to the next along that
+        axis lies inside, not crossed by the surface.
     """
 
     nodes: NDArray[np.float64]
@@ -51,20 +60,35 @@ class CutCellGraph:
     vertex_node: NDArray[np.int32]
     lattice: Lattice
     is_closed: bool
+    connectivity: int | str
+    interior: InteriorPoints
+    whole: NDArray[np.bool_]
 
     def csr(self) -> csr_array:
         """Return the lengths as a symmetric matrix, shape (N, N); zero lengths are stored."""
-        return self._matrix
+        indptr, indices, lengths = self.adjacency
+        return csr_array((lengths, indices, indptr), shape=(len(self.nodes),) * 2)
 
     @cached_property
-    def _matrix(self) -> csr_array:
-        count = len(self.nodes)
-        a, b = self.edges.T
-        ends = np.concatenate([a, b]), np.concatenate([b, a])
-        lengths = np.concatenate([self.lengths, self.lengths])
-        return csr_array((lengths, ends), shape=(count, count))
+    def adjacency(self) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.float64]]:
+        """Neighbours of each node: indptr (N + 1,), indices (2E,) and lengths (2E,)."""
+        indptr = np.concatenate([[0], np.cumsum(self.degree)]).astype(np.int32)
+        indices = np.empty(2 * len(self.edges), np.int32)
+        lengths = np.empty(2 * len(self.edges))
+        _fill_adjacency(self.edges, self.lengths, indptr[:-1].copy(), indices, lengths)
+        return indptr, indices, lengths
 
     @cached_property
     def degree(self) -> NDArray[np.int64]:
         """Number of edges at each node, shape (N,)."""
         return np.bincount(self.edges.ravel(), minlength=len(self.nodes))
+
+
+@njit(cache=True)
+def _fill_adjacency(edges, edge_lengths, cursor, indices, lengths):
+    for e in range(len(edges)):
+        for side in range(2):
+            node = edges[e, side]
+            indices[cursor[node]] = edges[e, 1 - side]
+            lengths[cursor[node]] = edge_lengths[e]
+            cursor[node] += 1

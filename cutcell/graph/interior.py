@@ -1,0 +1,133 @@
+"""The lattice points inside the body, numbered column by column without an R^3 table.
+
+The runs along z already list them: a column of the lattice holds few runs, so the number
+of a point is that of its run's first point plus the way to it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit, prange
+from numpy.typing import NDArray
+
+from .segments import Runs
+
+OUTSIDE = -1
+
+
+@dataclass(frozen=True, eq=False)
+class InteriorPoints:
+    """Lattice points with at least one kept segment, ascending by (x, y, z).
+
+    Parameters
+    ----------
+    resolution : int
+        R.
+    start : array, shape (R * R + 1,), int64
+        Column x * R + y holds the stretches from start[x * R + y] on.
+    first, last : arrays, shape (s,), int32
+        Lowest and highest z of each stretch of points that follow one another.
+    number : array, shape (s + 1,), int64
+        How many points come before each stretch.
+    """
+
+    resolution: int
+    start: NDArray[np.int64]
+    first: NDArray[np.int32]
+    last: NDArray[np.int32]
+    number: NDArray[np.int64]
+
+    def __len__(self) -> int:
+        return int(self.number[-1])
+
+    @property
+    def table(self) -> tuple[NDArray, NDArray, NDArray, NDArray]:
+        """What `point_number` looks a point up in."""
+        return self.start, self.first, self.last, self.number
+
+    def positions(self) -> NDArray[np.float64]:
+        """Return the points in the unit cube, shape (len, 3)."""
+        index = np.empty((len(self), 3), np.int32)
+        _list_points(self.resolution, *self.table, index)
+        return (index + 0.5) / self.resolution
+
+
+def interior_points(runs: tuple[Runs, Runs, Runs], resolution: int) -> InteriorPoints:
+    """Collect the lattice points of the runs along x, y and z."""
+    along_z = runs[2]
+    filled = along_z.first <= along_z.last
+    column, first, last = (a[filled] for a in (along_z.ray, along_z.first, along_z.last))
+    points = _numbered(column, first, last, resolution)
+    # Where the surface runs through a lattice point, or an open mesh's winding number is
+    # close to the threshold, a point may have kept segments along x or y alone.
+    missed = [_missed_points(runs[axis], axis, points) for axis in (0, 1)]
+    extra = np.unique(np.concatenate(missed))
+    if len(extra) == 0:
+        return points
+    column = np.concatenate([column, (extra // resolution).astype(np.int32)])
+    first = np.concatenate([first, (extra % resolution).astype(np.int32)])
+    last = np.concatenate([last, (extra % resolution).astype(np.int32)])
+    order = np.lexsort((first, column))
+    return _numbered(column[order], first[order], last[order], resolution)
+
+
+def _numbered(column, first, last, resolution) -> InteriorPoints:
+    start = np.searchsorted(column, np.arange(resolution**2 + 1))
+    number = np.concatenate([[0], np.cumsum(last.astype(np.int64) - first + 1)])
+    return InteriorPoints(resolution, start, first, last, number)
+
+
+def _missed_points(runs: Runs, axis: int, points: InteriorPoints) -> NDArray[np.int64]:
+    """List the lattice numbers of a family's points that `points` does not hold."""
+    resolution = points.resolution
+    arguments = (runs.ray, runs.first, runs.last, axis, resolution, *points.table)
+    missed = np.empty(_find_missed(*arguments, np.empty(0, np.int64)), np.int64)
+    if len(missed):
+        _find_missed(*arguments, missed)
+    return missed
+
+
+@njit(cache=True, inline="always")
+def point_number(start, first, last, number, column, z):
+    """Return the number of the point at z in a column, or OUTSIDE."""
+    for s in range(start[column], start[column + 1]):
+        if first[s] <= z <= last[s]:
+            return number[s] + z - first[s]
+    return np.int64(OUTSIDE)
+
+
+@njit(cache=True, inline="always")
+def place_on_ray(axis, ray, k, resolution):
+    """Return column and z of the lattice point k on a ray of `rays.AXES[axis]`."""
+    i, j = ray // resolution, ray % resolution
+    if axis == 0:
+        return k * resolution + i, j
+    if axis == 1:
+        return i * resolution + k, j
+    return ray, k
+
+
+@njit(cache=True)
+def _find_missed(ray, first_k, last_k, axis, resolution, start, first, last, number, missed):
+    count = 0
+    for r in range(len(ray)):
+        for k in range(first_k[r], last_k[r] + 1):
+            column, z = place_on_ray(axis, ray[r], k, resolution)
+            if point_number(start, first, last, number, column, z) == OUTSIDE:
+                if len(missed):
+                    missed[count] = column * resolution + z
+                count += 1
+    return count
+
+
+@njit(cache=True, parallel=True)
+def _list_points(resolution, start, first, last, number, index):
+    for column in prange(resolution * resolution):
+        for s in range(start[column], start[column + 1]):
+            for z in range(first[s], last[s] + 1):
+                n = number[s] + z - first[s]
+                index[n, 0] = column // resolution
+                index[n, 1] = column % resolution
+                index[n, 2] = z
