@@ -42,7 +42,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     rich_markup_mode="markdown",
     context_settings={"help_option_names": ["-h", "--help"]},
-    epilog="""The method is that of *A Geodesic Cut-Cell Prior for Neural Skinning* (Ma et al. 2026).
+    epilog="""The method: *A Geodesic Cut-Cell Prior for Neural Skinning* (Ma et al. 2026).
 
 Exit codes: 0 done; 2 wrong input, and one sentence says what; 130 stopped by Ctrl-C.""",
 )
