@@ -1,0 +1,177 @@
+"""Embree, Open3D and the fast winding number find what the exact kernels find."""
+
+import sys
+
+import numpy as np
+import pytest
+
+from cutcell import MissingLibraryError
+from cutcell.graph import backends
+from cutcell.graph.caps import cap_holes
+from cutcell.graph.rays import AXES, cast_rays
+from cutcell.graph.segments import find_runs
+from cutcell.graph.weld import weld
+from cutcell.graph.winding import find_boundary
+from tests import meshes
+
+RUN = ("ray", "first", "last", "low", "high")
+FLOAT32 = 2e-6
+"""Rays within this distance of an edge may miss or double it in float32."""
+
+
+def open3d_rays(*arguments):
+    pytest.importorskip("open3d", reason="Open3D is not installed", exc_type=ImportError)
+    return backends.cast_rays_open3d(*arguments)
+
+
+CASTERS = {"open3d": open3d_rays, "embree": backends.cast_rays_embree}
+
+
+def turned(vertices, faces):
+    """Turn a mesh about a skew axis, so that hardly any ray meets an edge."""
+    angle = 0.3
+    cos, sin = np.cos(angle), np.sin(angle)
+    about_z = np.array([[cos, -sin, 0], [sin, cos, 0], [0, 0, 1]])
+    about_x = np.array([[1, 0, 0], [0, cos, -sin], [0, sin, cos]])
+    points = (vertices - 0.5) @ (about_z @ about_x).T * 0.55 + 0.5
+    points, index = weld(points)
+    return points, index[faces]
+
+
+def on_edges(vertices, faces, resolution, axis):
+    """Tell which rays pass an edge within float32 rounding."""
+    u, v, _ = AXES[axis]
+    lattice = (np.arange(resolution) + 0.5) / resolution
+    ray = np.stack(np.meshgrid(lattice, lattice, indexing="ij"), -1).reshape(-1, 1, 2)
+    plane = vertices[:, [u, v]]
+    near = np.zeros(resolution**2, bool)
+    for k in range(3):
+        a, b = plane[faces[:, k]], plane[faces[:, (k + 1) % 3]]
+        along = b - a
+        squared = np.maximum((along * along).sum(axis=1), 1e-300)
+        travel = np.clip(((ray - a) * along).sum(axis=2) / squared, 0, 1)
+        distance = np.linalg.norm(ray - a - travel[..., None] * along, axis=2)
+        near |= (distance < FLOAT32).any(axis=1)
+    return near
+
+
+@pytest.mark.parametrize("axis", [0, 1, 2])
+@pytest.mark.parametrize("name", ["box", "ball", "torus", "holes", "tube", "flipped"])
+@pytest.mark.parametrize("caster", CASTERS)
+def test_crossings_equal_the_drawn_ones(caster, name, axis):
+    vertices, faces = turned(*meshes.ALL[name]())
+    expected = cast_rays(vertices, faces, 24, axis)
+    found = CASTERS[caster](vertices, faces, 24, axis)
+    assert len(expected.position) > 40
+    tied = on_edges(vertices, faces, 24, axis)
+    assert tied.mean() < 0.01
+    np.testing.assert_array_equal(np.diff(found.start)[~tied], np.diff(expected.start)[~tied])
+    clear_found = ~np.repeat(tied, np.diff(found.start))
+    clear = ~np.repeat(tied, np.diff(expected.start))
+    np.testing.assert_allclose(
+        found.position[clear_found], expected.position[clear], atol=1e-5, rtol=0
+    )
+    # Two crossings nearer than rounding may swap; their triangles and signs swap along.
+    apart = np.ones(clear.sum(), bool)
+    close = np.flatnonzero(np.diff(expected.position[clear]) < 1e-9)
+    apart[close] = apart[close + 1] = False
+    for name in ("triangle", "sign"):
+        np.testing.assert_array_equal(
+            getattr(found, name)[clear_found][apart], getattr(expected, name)[clear][apart]
+        )
+    assert found.start.dtype == expected.start.dtype
+    assert found.triangle.dtype == expected.triangle.dtype
+    assert found.sign.dtype == expected.sign.dtype
+
+
+@pytest.mark.parametrize("caster", CASTERS)
+def test_a_ray_through_a_shared_edge_crosses_once(caster):
+    # R is a power of two: lattice lines run exactly through the diagonals of the box's sides.
+    vertices, faces = meshes.box()
+    vertices, index = weld(vertices)
+    for axis in range(3):
+        found = CASTERS[caster](vertices, index[faces], 16, axis)
+        balance = np.concatenate([[0], np.cumsum(found.sign, dtype=int)])[found.start]
+        assert (balance == 0).all()
+        expected = cast_rays(vertices, index[faces], 16, axis)
+        np.testing.assert_array_equal(np.diff(found.start), np.diff(expected.start))
+
+
+@pytest.mark.parametrize("caster", CASTERS)
+def test_doubled_triangles_are_all_found(caster):
+    vertices, faces = turned(*meshes.ball(1))
+    doubled = np.concatenate([faces, faces[:, ::-1]])
+    expected = cast_rays(vertices, doubled, 16, 2)
+    found = CASTERS[caster](vertices, doubled, 16, 2)
+    np.testing.assert_array_equal(np.diff(found.start), np.diff(expected.start))
+
+
+def both_runs(vertices, faces, resolution, axis, tau):
+    crossings = cast_rays(vertices, faces, resolution, axis)
+    boundary = find_boundary(faces)
+    caps = cap_holes(vertices, boundary)
+    exact = find_runs(vertices, crossings, boundary, caps, resolution, axis, tau)
+    fast = backends.find_runs_fast(vertices, faces, crossings, resolution, axis, tau)
+    return tuple(
+        set(zip(*(getattr(r, n).tolist() for n in RUN), strict=True)) for r in (exact, fast)
+    )
+
+
+@pytest.mark.parametrize("axis", [0, 1, 2])
+@pytest.mark.parametrize("name", ["box", "ball", "torus", "flipped"])
+def test_runs_equal_the_exact_ones(name, axis):
+    exact, fast = both_runs(*turned(*meshes.ALL[name]()), 24, axis, 0.5)
+    assert len(exact) > 20
+    assert exact == fast
+
+
+@pytest.mark.parametrize("axis", [0, 1, 2])
+@pytest.mark.parametrize("name", ["holes", "tube", "open box"])
+def test_few_runs_of_open_meshes_differ(name, axis):
+    exact, fast = both_runs(*turned(*meshes.ALL[name]()), 24, axis, 0.4)
+    assert len(exact) > 20
+    assert len(exact ^ fast) <= 0.05 * len(exact)
+
+
+def test_a_ray_that_meets_nothing_has_no_runs():
+    vertices, faces = meshes.box(0.4, 0.6)
+    crossings = cast_rays(vertices, faces, 2, 0)
+    assert len(crossings.position) == 0
+    assert len(backends.find_runs_fast(vertices, faces, crossings, 2, 0, 0.5).ray) == 0
+
+
+@pytest.mark.parametrize(
+    ("call", "module", "package"),
+    [
+        (backends.cast_rays_open3d, "open3d", "pip install open3d"),
+        (backends.cast_rays_embree, "embreex.rtcore_scene", "pip install embreex"),
+    ],
+)
+def test_a_missing_package_is_named(monkeypatch, call, module, package):
+    monkeypatch.setitem(sys.modules, module, None)
+    with pytest.raises(MissingLibraryError, match=package):
+        call(*meshes.box(), 4, 0)
+
+
+def test_missing_libigl_is_named(monkeypatch):
+    vertices, faces = meshes.box()
+    crossings = cast_rays(vertices, faces, 4, 0)
+    monkeypatch.setitem(sys.modules, "igl", None)
+    with pytest.raises(MissingLibraryError, match="pip install libigl"):
+        backends.find_runs_fast(vertices, faces, crossings, 4, 0, 0.5)
+
+
+@pytest.mark.parametrize(
+    ("message", "advice"),
+    [
+        ("libusb-1.0.so.0: cannot open shared object file", "apt-get install libusb-1.0-0"),
+        ("libX.so: cannot open shared object file", "install the library that it names"),
+    ],
+)
+def test_a_missing_system_library_is_named(monkeypatch, message, advice):
+    def fail(name):
+        raise OSError(message)
+
+    monkeypatch.setattr(backends, "import_module", fail)
+    with pytest.raises(MissingLibraryError, match=advice):
+        backends.cast_rays_open3d(*meshes.box(), 4, 0)
