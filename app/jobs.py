@@ -10,7 +10,7 @@ from typing import Any
 from cutcell.errors import Cancelled
 from cutcell.progress import Progress
 
-Schedule = Callable[[Callable[[], None]], None]
+Schedule = Callable[[Callable[[], Any]], Any]
 """Runs a function later, on the thread that owns the page."""
 
 _TURN = threading.Lock()
@@ -33,10 +33,10 @@ class Gate:
 
     def __init__(self, schedule: Schedule) -> None:
         self._schedule = schedule
-        self._waiting: list[Callable[[], None]] | None = []
+        self._waiting: list[Callable[[], Any]] | None = []
         self._lock = threading.Lock()
 
-    def __call__(self, action: Callable[[], None]) -> None:
+    def __call__(self, action: Callable[[], Any]) -> None:
         """Schedule an action, now or when the gate opens; from any thread."""
         with self._lock:
             if self._waiting is not None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +19,10 @@ from .panels.graph import graph
 from .panels.pose import pose
 from .session import Session
 from .status import messages, status_line
-from .theme import PAGE_STYLE, THEME
+from .theme import LOADER_STYLE, PAGE_STYLE, THEME
+
+NARROW = 600
+"""Windows that are less wide than this, in pixels, show the sidebar on demand only."""
 
 
 def page(path: Path | None = None) -> pmui.Page:
@@ -29,18 +33,21 @@ def page(path: Path | None = None) -> pmui.Page:
     path : Path, optional
         The character to open; the first demo when left out.
     """
-    document = pn.state.curdoc
+    document: Any = pn.state.curdoc
     gate = Gate(document.add_next_tick_callback)
     pn.state.onload(gate.open)
     session = Session(gate)
-    # Bound as a default: the names of a page are gone when its end is told.
-    document.on_session_destroyed(lambda context, session=session: session.close())
+    document.on_session_destroyed(functools.partial(_close, session))
     result = layout(session)
     if path is None:
         session.open_demo(next(demo.id for demo in DEMOS if demo.path.exists()))
     else:
         session.open_files([path])
     return result
+
+
+def _close(session: Session, context: Any) -> None:
+    session.close()
 
 
 def layout(session: Session) -> pmui.Page:
@@ -65,8 +72,10 @@ def layout(session: Session) -> pmui.Page:
         sidebar=[panel(session) for panel in panels],
         sidebar_width=320,
         sidebar_variant="auto",
+        sidebar_open="Mobi" not in (pn.state.headers or {}).get("User-Agent", ""),
         main=[main],
         busy_indicator=None,
+        raw_css=[LOADER_STYLE],
         theme_config=THEME,
         sx=PAGE_STYLE,
         favicon=Path(__file__).parent / "favicon.svg",
@@ -75,6 +84,12 @@ def layout(session: Session) -> pmui.Page:
     def themed(event: Any) -> None:
         session.state.dark = event.new
 
+    def sized(event: Any) -> None:
+        # The canvas comes first where both have no room side by side.
+        wide = event.new >= NARROW
+        session.later(lambda: result.param.update(sidebar_open=wide))
+
     result.param.watch(themed, "dark_theme")
+    session.view.param.watch(sized, "window_width")
     session.state.dark = result.dark_theme
     return result

@@ -7,6 +7,7 @@ import logging
 import shutil
 import tempfile
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +16,8 @@ from assets import DEMOS, demo_path
 from cutcell.errors import CutcellError, FileError
 from cutcell.progress import Progress
 from cutcell.rig import Rig
+from viewers.description import Description
+from viewers.pose_scene import pose_at
 from viewers.scene import Scene, framing
 
 from .jobs import Jobs, Schedule
@@ -57,6 +60,7 @@ class Session:
 
     def __init__(self, schedule: Schedule) -> None:
         self.state = State()
+        self.later = schedule
         self.folder = Path(tempfile.mkdtemp(prefix="cutcell-"))
         self.view = SceneView(self.pick, self.receiver(), sizing_mode="stretch_both")
         self._jobs = Jobs(schedule)
@@ -180,12 +184,19 @@ class Session:
         path = self.folder / "picture.png"
         scene = Scene(theme_of(self.state), size)
         try:
-            scene.show(resolve(self.state, self._memo))
+            scene.show(self._snapshot())
             scene.look(self.view.camera or framing(bounds_of(self.state), size[0] / size[1]))
             scene.render_png(path)
         finally:
             scene.close()
         return path.read_bytes()
+
+    def _snapshot(self) -> Description:
+        description = resolve(self.state, self._memo)
+        clip = clip_of(self.state)
+        if clip is None or not len(clip.times):
+            return description
+        return replace(description, pose=pose_at(self.state.rig, clip, self.view.time))
 
     def bound_file(self, done: Callable[[str, bytes], None]) -> None:
         """Write the character with its new weights, and hand over its name and content."""
@@ -205,7 +216,7 @@ class Session:
 
     def _refresh(self, *events: Any) -> None:
         self._find_field()
-        self.view.show(resolve(self.state, self._memo))
+        self.view.present(resolve(self.state, self._memo))
 
     def _move(self, *events: Any) -> None:
         state = self.state
@@ -267,6 +278,9 @@ def main_file(paths: list[Path]) -> Path:
 
 
 def sentence(text: str) -> str:
-    """Return a message as a sentence: with a capital and a full stop."""
+    """Return a message as a sentence: with a full stop, and a capital if it begins a word."""
     text = text.strip()
-    return text[:1].upper() + text[1:] + ("" if text.endswith((".", "!", "?")) else ".")
+    first = text.split(" ", 1)[0]
+    if first.isalpha():
+        text = text[:1].upper() + text[1:]
+    return text + ("" if text.endswith((".", "!", "?")) else ".")

@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import panel as pn
 import panel_material_ui as pmui
 
 from cutcell.graph import INTERIOR, MESH, SURFACE
 
+from .panels.parts import when
 from .session import Session, sentence
 from .state import State
 
@@ -25,20 +25,20 @@ def status_line(session: Session) -> pmui.Row:
     state = session.state
     small = {"fontSize": "12px", "lineHeight": 1.4, "fontVariantNumeric": "tabular-nums"}
     counts = pmui.Typography(
-        pn.bind(lambda *_: summary(state), state.param.rig, state.param.binding),
-        visible=pn.bind(lambda busy: not busy, state.param.busy),
+        when(lambda *_: summary(state), state.param.rig, state.param.binding),
+        visible=when(lambda busy: not busy, state.param.busy),
         sx={**small, "color": "text.secondary"},
         margin=(10, 16),
         sizing_mode="stretch_width",
     )
     stage = pmui.Typography(
-        pn.bind(stage_text, state.param.stage),
+        when(stage_text, state.param.stage),
         visible=state.param.busy,
         sx={**small, "minWidth": "150px"},
         margin=(10, 8, 10, 16),
     )
     bar = pmui.LinearProgress(
-        value=pn.bind(lambda fraction: round(100 * fraction), state.param.fraction),
+        value=when(lambda fraction: round(100 * fraction), state.param.fraction),
         visible=state.param.busy,
         variant="determinate",
         sizing_mode="stretch_width",

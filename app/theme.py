@@ -58,3 +58,9 @@ LAYER_COLORS = {
     "surface_edges": to_hex(SURFACE),
 }
 """What marks each layer's switch, in the paper's colours."""
+
+# While the page loads: a quiet ring, no curtain.
+LOADER_STYLE = """
+#loader { background: none !important; pointer-events: none; }
+#loader .spinner { width: 28px; height: 28px; border: 3px solid #8885; border-top-color: #ff6c0c; }
+"""

@@ -32,6 +32,9 @@ class SceneView(JSComponent):
         doc="Where Panel's own server keeps vtk.js.",
     )
 
+    window_width = param.Integer(0, doc="Width of the browser's window, once it is known.")
+
+    _rename = {"window_width": None}  # noqa: RUF012
     _esm = script("orbit", "skin", "figure", "stage", "pick", "upload", "overlay", "view")
 
     def __init__(
@@ -44,6 +47,7 @@ class SceneView(JSComponent):
         self._on_pick = on_pick
         self._receiver = receiver
         self.camera: Camera | None = None
+        self.time = 0.0
         self._ready = False
         self._count = 0
         self._parts: dict[str, Any] = {}
@@ -51,7 +55,7 @@ class SceneView(JSComponent):
         self._wanted = Description()
         self._sent: set[str] = set()
 
-    def show(self, description: Description) -> None:
+    def present(self, description: Description) -> None:
         """Make the view what a description says."""
         self._wanted = description
         if self._ready:
@@ -83,12 +87,15 @@ class SceneView(JSComponent):
             self._send_msg({"upload": answer})
         if kind == "ready":
             self._ready = True
+            self.window_width = int(data.get("width", 0))
             self._sent.clear()
             first = {"lights": LIGHTS, **changes(Description(), self._wanted, self._sent)}
             self._send({**first, **self._parts})
             self._shown = self._wanted
         elif kind == "pick" and self._on_pick is not None:
             self._on_pick(int(data["joint"]))
+        elif kind == "time":
+            self.time = float(data["time"])
         elif kind == "camera":
             self.camera = Camera(tuple(data["position"]), tuple(data["focal_point"]))
 

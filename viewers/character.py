@@ -67,7 +67,7 @@ def bones(rig: Rig, chosen: int | None = None, visible: bool = True) -> Actor:
     visible : bool
     """
     start, end, joint = drawn_segments(rig)
-    size = np.linalg.norm(np.ptp(to_scene(rig, rig.mesh.vertices), axis=0))
+    size = float(np.linalg.norm(np.ptp(to_scene(rig, rig.mesh.vertices), axis=0)))
     points = _octahedra(start, end, size)
     color = np.where(rig.skeleton.deform[joint, None], BONE, BONE_IDLE)
     color[joint == chosen] = BONE_CHOSEN
@@ -101,7 +101,7 @@ def drawn_segments(
     """
     skeleton = rig.skeleton
     joints = to_scene(rig, skeleton.joints)
-    size = np.linalg.norm(np.ptp(to_scene(rig, rig.mesh.vertices), axis=0))
+    size = float(np.linalg.norm(np.ptp(to_scene(rig, rig.mesh.vertices), axis=0)))
     pairs = [(joints[j], joints[c], j) for j, cs in enumerate(skeleton.children) for c in cs]
     for j in range(len(joints)):
         if not len(skeleton.children[j]):
@@ -113,7 +113,7 @@ def drawn_segments(
 def _stub(skeleton: Skeleton, joints: NDArray, j: int, size: float) -> NDArray[np.float64]:
     parent = skeleton.parents[j]
     along = joints[j] - joints[parent] if parent >= 0 else np.array([0.0, 1, 0])
-    length = np.linalg.norm(along)
+    length = float(np.linalg.norm(along))
     if length == 0:
         along, length = np.array([0.0, 1, 0]), 1.0
     return along / length * np.clip(0.4 * length, 0.006 * size, 0.03 * size)

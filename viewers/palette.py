@@ -92,9 +92,9 @@ def colormap(name: str) -> NDArray[np.uint8]:
     table = np.clip(_oklab_to_srgb(mixed), 0, 1)
     if name == "distance":
         table = _with_iso_lines(table)
-    table = np.round(table * 255).astype(np.uint8)
-    table.flags.writeable = False
-    return table
+    colors = to_bytes(table)
+    colors.flags.writeable = False
+    return colors
 
 
 def joint_colors(parents: ArrayLike) -> NDArray[np.float64]:

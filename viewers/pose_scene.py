@@ -50,6 +50,21 @@ def posed(description: Description, rig: Rig, transforms: ArrayLike | None) -> D
     return replace(description, pose=pose)
 
 
+def pose_at(rig: Rig, clip: Clip, time: float) -> NDArray[np.float64]:
+    """Return a motion's pose at a time in seconds, in the scene's space, shape (j, 4, 4).
+
+    The motion repeats; between frames matrices are mixed linearly, as the page does it.
+    """
+    if not clip.duration:
+        return pose_in_scene(rig, clip.transforms[0])
+    time = time % clip.duration
+    after = int(np.clip(np.searchsorted(clip.times, time, side="right"), 1, len(clip.times) - 1))
+    span = clip.times[after] - clip.times[after - 1]
+    part = np.clip((time - clip.times[after - 1]) / span, 0, 1) if span > 0 else 0.0
+    mixed = (1 - part) * clip.transforms[after - 1] + part * clip.transforms[after]
+    return pose_in_scene(rig, mixed)
+
+
 def turn(axis: str, degrees: float) -> NDArray[np.float64]:
     """Return the rotation (3, 3) by an angle about x, y or z, right-handed."""
     k = "xyz".index(axis)

@@ -6,6 +6,7 @@ import os
 import sys
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -115,9 +116,10 @@ class Scene:
         -------
         array, shape (height, width, 3 or 4), uint8
         """
-        self.plotter.set_background(self.theme.bottom, top=self.theme.top)
-        self.plotter.renderer.ResetCameraClippingRange()
-        return self.plotter.screenshot(
+        plotter: Any = self.plotter
+        plotter.set_background(self.theme.bottom, top=self.theme.top)
+        plotter.renderer.ResetCameraClippingRange()
+        return plotter.screenshot(
             None if path is None else str(path),
             transparent_background=transparent,
             return_img=True,
@@ -183,7 +185,7 @@ def _dataset(actor: Actor, pose: NDArray[np.float64] | None) -> pv.PolyData:
         points = moved(points, actor.skin, pose).astype(np.float32)
         if normals is not None:
             normals = turned(normals, actor.skin, pose).astype(np.float32)
-    data = pv.PolyData()
+    data: Any = pv.PolyData()
     data.points = points
     cells = np.insert(actor.cells, 0, actor.cells.shape[1], axis=1).ravel()
     setattr(data, {"surface": "faces", "lines": "lines", "points": "verts"}[actor.kind], cells)
@@ -227,6 +229,7 @@ def _add_overlay(plotter: pv.Plotter) -> pv.Renderer:
     renderer = pv.Renderer(plotter)
     renderer.SetLayer(1)
     renderer.SetActiveCamera(plotter.renderer.GetActiveCamera())
-    plotter.render_window.SetNumberOfLayers(2)
-    plotter.render_window.AddRenderer(renderer)
+    window: Any = plotter.render_window
+    window.SetNumberOfLayers(2)
+    window.AddRenderer(renderer)
     return renderer

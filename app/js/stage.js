@@ -99,6 +99,27 @@ class Stage {
     return Number.isFinite(b[0]) ? b : [-1, 1, -1, 1, -1, 1]
   }
 
+  // How far the eye must be from the middle to see all, in this window, along a direction.
+  fitting(direction, target) {
+    const {clientWidth: w, clientHeight: h} = this.element
+    const slope = Math.tan(VIEW_ANGLE * Math.PI / 360)
+    const b = this.bounds()
+    const flat = Math.hypot(direction[0], direction[2]) || 1
+    const right = [direction[2] / flat, 0, -direction[0] / flat]
+    const up = [0, 1, 2].map((k) => {
+      const [i, j] = [(k + 1) % 3, (k + 2) % 3]
+      return direction[i] * right[j] - direction[j] * right[i]
+    })
+    let distance = 0
+    for (let corner = 0; corner < 8; corner++) {
+      const p = [0, 1, 2].map((i) => b[2 * i + (corner >> i & 1)] - target[i])
+      const along = (v) => p[0] * v[0] + p[1] * v[1] + p[2] * v[2]
+      const needed = Math.max(Math.abs(along(up)), Math.abs(along(right)) * h / Math.max(w, 1))
+      distance = Math.max(distance, needed / slope + along(direction))
+    }
+    return 1.08 * distance
+  }
+
   // From the scene to pixels of the page, relative to the canvas; null behind the eye.
   project(point) {
     const {clientWidth: w, clientHeight: h} = this.element

@@ -61,10 +61,19 @@ class View {
     if ("pose" in message || "clip" in message) { this.applyPose() }
     else if (this.currentPose) { for (const figure of renewed) { figure.pose(this.currentPose) } }
     if (message.camera) {
-      this.orbit.setHome(message.camera.position, message.camera.focal_point)
+      this.frame(message.camera)
     }
     this.messages = message.id
     this.changed()
+  }
+
+  // Looks from where the server says, from as far as this window needs.
+  frame({position, focal_point: target}) {
+    const offset = position.map((x, i) => x - target[i])
+    const direction = offset.map((x) => x / Math.hypot(...offset))
+    const distance = this.stage.fitting(direction, target)
+    this.orbit.setHome(direction.map((x, i) => target[i] + distance * x), target)
+    this.rested()
   }
 
   get currentPose() {
@@ -80,6 +89,7 @@ class View {
   }
 
   play(playing) {
+    if (this.playing && !playing) { this.tellTime() }
     this.playing = playing
     this.last = null
     if (playing) { this.tick() }
@@ -94,7 +104,12 @@ class View {
       this.applyPose()
       this.draw()
       this.tick()
+      if (now - (this.toldAt || 0) > 300) { this.toldAt = now; this.tellTime() }
     })
+  }
+
+  tellTime() {
+    this.model.send_msg({type: "time", time: this.time || 0})
   }
 
   changed() {
@@ -189,7 +204,7 @@ export function render({model}) {
     view = new View(model, vtk, overlay)
     model.on("msg:custom", (message) => view.receive(message))
     window.__cutcell = view
-    model.send_msg({type: "ready"})
+    model.send_msg({type: "ready", width: window.innerWidth})
   }).catch((error) => {
     console.error(error)
     overlay.fail(`The 3D view cannot be shown: ${error.message}.`)

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
-import panel as pn
 import panel_material_ui as pmui
 
 from ..session import Session
-from .parts import GAP, caption, section
+from .parts import GAP, caption, section, when
 
 
 def export(session: Session) -> pmui.Column:
@@ -28,7 +27,7 @@ def export(session: Session) -> pmui.Column:
             margin=GAP,
             sizing_mode="stretch_width",
             on_click=act,
-            disabled=pn.bind(lambda value: value is None, needed),
+            disabled=when(lambda value: value is None, needed),
             **params,
         )
 

@@ -9,7 +9,7 @@ import panel_material_ui as pmui
 
 from ..session import Session
 from ..theme import LAYER_COLORS
-from .parts import GAP, caption, choice, section
+from .parts import GAP, caption, choice, section, when
 
 
 def graph(session: Session) -> pmui.Column:
@@ -37,7 +37,7 @@ def graph(session: Session) -> pmui.Column:
         margin=GAP,
         sizing_mode="stretch_width",
         on_click=lambda event: session.bind(),
-        visible=pn.bind(
+        visible=when(
             lambda rig, binding, busy: rig is not None and binding is None and not busy,
             state.param.rig,
             state.param.binding,
@@ -52,9 +52,9 @@ def graph(session: Session) -> pmui.Column:
     )
     rest = caption(
         "The graph is of the resting character: it hides while the character is posed.",
-        visible=pn.bind(lambda *_: state.posed, state.param.turns, state.param.moving),
+        visible=when(lambda *_: state.posed, state.param.turns, state.param.moving),
     )
-    cutting = pn.bind(lambda axis: axis != "off", state.param.cut_axis)
+    cutting = when(lambda axis: axis != "off", state.param.cut_axis)
     position = pmui.FloatSlider.from_param(
         state.param.cut_position,
         label="Where the cut lies",

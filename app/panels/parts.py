@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
+import panel as pn
 import panel_material_ui as pmui
 
 GAP = (4, 0)
@@ -21,11 +23,16 @@ def section(title: str, *objects: Any) -> pmui.Column:
     return pmui.Column(heading, *objects, margin=(14, 20, 4, 20), sizing_mode="stretch_width")
 
 
-def caption(text: str = "", **params: Any) -> pmui.Typography:
+def caption(text: Any = "", **params: Any) -> pmui.Typography:
     """Return a line of small, quiet text."""
     look = {"color": "text.secondary", "lineHeight": 1.45, "display": "block"}
     params = {"margin": (2, 0, 6, 0), "sizing_mode": "stretch_width", **params}
     return pmui.Typography(text, variant="caption", sx=look, **params)
+
+
+def when(function: Callable[..., Any], *parameters: Any) -> Any:
+    """Return a value that follows parameters: `function` of theirs, ever again."""
+    return pn.bind(function, *parameters)
 
 
 def choice(parameter: Any, options: dict[str, Any], **params: Any) -> pmui.RadioButtonGroup:

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
-import panel as pn
 import panel_material_ui as pmui
 
 from ..session import Session
-from .parts import GAP, caption, choice, section
+from .parts import GAP, caption, choice, section, when
 
 AXES = ("x", "y", "z")
 
@@ -43,8 +42,8 @@ def pose(session: Session) -> pmui.Column:
 
     buttons = pmui.Row(
         pmui.Button(
-            label=pn.bind(lambda on: "Pause" if on else "Play", state.param.playing),
-            icon=pn.bind(lambda on: "pause" if on else "play_arrow", state.param.playing),
+            label=when(lambda on: "Pause" if on else "Play", state.param.playing),
+            icon=when(lambda on: "pause" if on else "play_arrow", state.param.playing),
             size="small",
             on_click=play,
             margin=(4, 8, 4, 0),
@@ -57,13 +56,13 @@ def pose(session: Session) -> pmui.Column:
             on_click=rest,
             margin=(4, 0),
             sizing_mode="stretch_width",
-            disabled=pn.bind(lambda *_: not state.posed, state.param.turns, state.param.moving),
+            disabled=when(lambda *_: not state.posed, state.param.turns, state.param.moving),
         ),
         sizing_mode="stretch_width",
         margin=0,
     )
     turned = caption(
-        pn.bind(
+        when(
             lambda rig, joint: "" if rig is None else f"Turn {rig.skeleton.names[joint]}",
             state.param.rig,
             state.param.joint,
