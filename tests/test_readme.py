@@ -1,0 +1,53 @@
+"""What the README shows is true: its example runs, its commands exist, its links lead somewhere."""
+
+import re
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+import cutcell
+from cutcell.cli import app
+
+ROOT = Path(__file__).resolve().parent.parent
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+PAGES = [ROOT / name for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")]
+
+
+def in_a_folder_of_its_own(tmp_path, monkeypatch):
+    (tmp_path / "assets").symlink_to(ROOT / "assets")
+    monkeypatch.chdir(tmp_path)
+
+
+def test_the_example_runs(tmp_path, monkeypatch, capsys):
+    in_a_folder_of_its_own(tmp_path, monkeypatch)
+    (example,) = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
+    names: dict = {}
+    exec(example, names)
+    assert "graph" in capsys.readouterr().out
+    assert len(names["distances"]) == len(names["weights"])
+    assert cutcell.load("bound.glb").weights is not None
+
+
+def test_the_commands_run(tmp_path, monkeypatch):
+    in_a_folder_of_its_own(tmp_path, monkeypatch)
+    commands = re.findall(r"^cutcell (.*)$", README, re.MULTILINE)
+    assert len(commands) == 2
+    for command in commands:
+        assert CliRunner().invoke(app, command.split()).exit_code == 0
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_links_lead_somewhere(page):
+    text = page.read_text(encoding="utf-8")
+    links = re.findall(r"\]\(([^)#]+)\)", text) + re.findall(r'src(?:set)?="([^"]+)"', text)
+    assert [link for link in links if not (ROOT / link).exists()] == []
+
+
+def test_make_targets_that_are_spoken_of_exist():
+    targets = set(re.findall(r"^([a-z]+):", (ROOT / "Makefile").read_text(), re.MULTILINE))
+    spoken = {
+        t for page in PAGES for t in re.findall(r"(?:^|`)make ([a-z]+)", page.read_text(), re.M)
+    }
+    assert spoken <= targets
+    assert {"app", "test", "lock"} <= spoken
