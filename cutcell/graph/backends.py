@@ -8,17 +8,22 @@ defaults, which are exact.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from importlib import import_module
 from types import ModuleType
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import MissingLibraryError
+from .midpoints import list_segments
 from .rays import AXES, Crossings
-from .segments import NONE, Runs
+from .segments import Runs
 from .winding import find_boundary
+
+Vertices = NDArray[np.float64]
+Faces = NDArray[np.int32]
+Hits = NDArray[np.int64]
 
 LEAD = 0.25
 """Rays begin this far outside the unit cube."""
@@ -138,14 +143,10 @@ def find_runs_fast(
     """
     igl = _import("igl", 'winding="fast"', "libigl")
     closed = len(find_boundary(faces).edges) == 0
-    pieces = _list_segments(crossings, resolution, closed)
+    pieces = list_segments(crossings, resolution, closed)
     kept = np.zeros(len(pieces.ray), bool)
     asked = np.flatnonzero(pieces.has_ends)
-    points = np.empty((len(asked), 3))
-    u, v, along = AXES[axis]
-    points[:, u] = (pieces.ray[asked] // resolution + 0.5) / resolution
-    points[:, v] = (pieces.ray[asked] % resolution + 0.5) / resolution
-    points[:, along] = pieces.middle[asked]
+    points = pieces.points(resolution, axis)[asked]
     if len(asked):
         number = igl.fast_winding_number(vertices, faces.astype(np.int64), points)
         kept[asked] = number >= winding_threshold
@@ -170,7 +171,9 @@ def _import(module: str, option: str, package: str) -> ModuleType:
         ) from error
 
 
-def _rays(resolution: int, axis: int, direction: int):
+def _rays(
+    resolution: int, axis: int, direction: int
+) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
     """Return origins and directions of the R x R rays, two arrays (R * R, 3) of float32."""
     u, v, along = AXES[axis]
     lattice = (np.arange(resolution) + 0.5) / resolution
@@ -183,7 +186,7 @@ def _rays(resolution: int, axis: int, direction: int):
     return origins, directions
 
 
-def _embree_scene(vertices, faces):
+def _embree_scene(vertices: Vertices, faces: Faces) -> Any:
     scenes = _import("embreex.rtcore_scene", 'rays="embree"', "embreex")
     construction = import_module("embreex.mesh_construction")
     scene = scenes.EmbreeScene()
@@ -191,7 +194,9 @@ def _embree_scene(vertices, faces):
     return scene
 
 
-def _follow(scene, vertices, faces, resolution, axis, direction) -> NDArray[np.int64]:
+def _follow(
+    scene: Any, vertices: Vertices, faces: Faces, resolution: int, axis: int, direction: int
+) -> Hits:
     """Follow all rays through the scene; return rays and triangles that met, shape (2, h)."""
     along = AXES[axis][2]
     origins, directions = _rays(resolution, axis, direction)
@@ -216,7 +221,9 @@ def _follow(scene, vertices, faces, resolution, axis, direction) -> NDArray[np.i
     return np.concatenate(hits, axis=1)
 
 
-def _positions(vertices, faces, resolution, axis, ray, triangle) -> NDArray[np.float64]:
+def _positions(
+    vertices: Vertices, faces: Faces, resolution: int, axis: int, ray: Hits, triangle: Hits
+) -> NDArray[np.float64]:
     """Intersect rays with the planes of triangles, in double precision."""
     u, v, along = AXES[axis]
     a, b, c = (vertices[faces[triangle, k]] for k in range(3))
@@ -230,7 +237,9 @@ def _positions(vertices, faces, resolution, axis, ray, triangle) -> NDArray[np.f
     return np.clip(place, ends.min(axis=0), ends.max(axis=0))
 
 
-def _crossings(vertices, faces, resolution, axis, ray, triangle) -> Crossings:
+def _crossings(
+    vertices: Vertices, faces: Faces, resolution: int, axis: int, ray: Hits, triangle: Hits
+) -> Crossings:
     """Sort hits into crossings, one for each place where a ray passes the surface."""
     ray, triangle = _with_twins(faces, ray, triangle)
     along = AXES[axis][2]
@@ -241,14 +250,14 @@ def _crossings(vertices, faces, resolution, axis, ray, triangle) -> Crossings:
     ray, triangle, sign = ray[facing], triangle[facing], sign[facing]
     position = _positions(vertices, faces, resolution, axis, ray, triangle)
     order = np.lexsort([triangle, sign, position, ray])
-    ray, triangle, sign, position = (x[order] for x in (ray, triangle, sign, position))
-    kept = ~_repeated(faces, ray, triangle, sign, position)
-    ray, triangle, sign, position = (x[kept] for x in (ray, triangle, sign, position))
+    repeated = _repeated(faces, ray[order], triangle[order], sign[order], position[order])
+    order = order[~repeated]
+    ray, triangle, sign, position = ray[order], triangle[order], sign[order], position[order]
     start = np.searchsorted(ray, np.arange(resolution**2 + 1)).astype(np.int64)
     return Crossings(start, position, triangle.astype(np.int32), sign)
 
 
-def _with_twins(faces, ray, triangle) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def _with_twins(faces: Faces, ray: Hits, triangle: Hits) -> tuple[Hits, Hits]:
     """Add the hits of triangles that have the same corners as a triangle hit."""
     _, group, size = np.unique(
         np.sort(faces, axis=1), axis=0, return_inverse=True, return_counts=True
@@ -263,7 +272,9 @@ def _with_twins(faces, ray, triangle) -> tuple[NDArray[np.int64], NDArray[np.int
     return ray, triangle
 
 
-def _repeated(faces, ray, triangle, sign, position) -> NDArray[np.bool_]:
+def _repeated(
+    faces: Faces, ray: Hits, triangle: Hits, sign: NDArray[np.int8], position: NDArray[np.float64]
+) -> NDArray[np.bool_]:
     """Tell which hits repeat an earlier one: a ray through an edge or corner meets all around.
 
     Triangles with all three corners in common are layers of their own, not neighbours.
@@ -284,61 +295,3 @@ def _repeated(faces, ray, triangle, sign, position) -> NDArray[np.bool_]:
         shared = (mine[:, :, None] == other[:, None, :]).any(axis=2).sum(axis=1)
         repeated[pair[(shared > 0) & (shared < 3)] + back] = True
     return repeated
-
-
-@dataclass(frozen=True, eq=False)
-class _Segments:
-    """All segments of the rays of one axis, in order: ray by ray, upward.
-
-    Gap c of a ray ends at the crossing c (or at the cube's wall), segment s of a gap at
-    the lattice point s (or, the last one, where the gap does).
-    """
-
-    ray: NDArray[np.int64]
-    gap: NDArray[np.int64]
-    number: NDArray[np.int64]
-    is_first: NDArray[np.bool_]
-    is_last: NDArray[np.bool_]
-    has_ends: NDArray[np.bool_]
-    middle: NDArray[np.float64]
-
-    def runs(self, kept: NDArray[np.bool_]) -> Runs:
-        """Join kept segments that follow one another within a gap."""
-        before, after = np.zeros(len(kept), bool), np.zeros(len(kept), bool)
-        before[1:], after[:-1] = kept[:-1], kept[1:]
-        begin = np.flatnonzero(kept & (self.is_first | ~before))
-        end = np.flatnonzero(kept & (self.is_last | ~after))
-        at_crossing = self.is_first[begin]
-        first = self.number[begin] - ~at_crossing
-        low = np.where(at_crossing, self.gap[begin] - 1, NONE)
-        high = np.where(self.is_last[end], self.gap[end], NONE)
-        last = self.number[end] - self.is_last[end]
-        return Runs(*(x.astype(np.int32) for x in (self.ray[begin], first, last)), low, high)
-
-
-def _list_segments(crossings: Crossings, resolution: int, closed: bool) -> _Segments:
-    """Dice rays by crossings and lattice points; a closed mesh leaves rays without any out."""
-    count = np.diff(crossings.start)
-    rays = np.flatnonzero(count > 0) if closed else np.arange(resolution**2)
-    lattice = (np.arange(resolution) + 0.5) / resolution
-    gaps = count[rays] + 1
-    ray = np.repeat(rays, gaps)
-    place = np.arange(len(ray)) - np.repeat(np.cumsum(gaps) - gaps, gaps)
-    from_wall, to_wall = place == 0, place == count[ray]
-    gap = crossings.start[ray] + place
-    # A padded list of positions spares the walls a case of their own.
-    position = np.concatenate([crossings.position, [0.0]])
-    low = np.where(from_wall, 0.0, position[gap - 1])
-    high = np.where(to_wall, 1.0, position[np.minimum(gap, len(position) - 1)])
-    first = np.where(from_wall, 0, np.searchsorted(lattice, low))
-    beyond = np.where(to_wall, resolution, np.searchsorted(lattice, high))
-
-    size = beyond - first + 1
-    of = np.repeat(np.arange(len(ray)), size)
-    number = first[of] + np.arange(len(of)) - np.repeat(np.cumsum(size) - size, size)
-    is_first, is_last = number == first[of], number == beyond[of]
-    left = np.where(is_first, low[of], (number - 0.5) / resolution)
-    right = np.where(is_last, high[of], (number + 0.5) / resolution)
-    has_ends = ~((is_first & from_wall[of]) | (is_last & to_wall[of]))
-    middle = (left + right) / 2
-    return _Segments(ray[of], gap[of], number, is_first, is_last, has_ends, middle)

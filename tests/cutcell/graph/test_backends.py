@@ -5,13 +5,11 @@ import sys
 import numpy as np
 import pytest
 
-from cutcell import MissingLibraryError
+from cutcell import MissingLibraryError, TriangleMesh, winding_number
 from cutcell.graph import backends
-from cutcell.graph.caps import cap_holes
+from cutcell.graph.midpoints import list_segments
 from cutcell.graph.rays import AXES, cast_rays
-from cutcell.graph.segments import find_runs
 from cutcell.graph.weld import weld
-from cutcell.graph.winding import find_boundary
 from tests import meshes
 
 RUN = ("ray", "first", "last", "low", "high")
@@ -108,9 +106,9 @@ def test_doubled_triangles_are_all_found(caster):
 
 def both_runs(vertices, faces, resolution, axis, tau):
     crossings = cast_rays(vertices, faces, resolution, axis)
-    boundary = find_boundary(faces)
-    caps = cap_holes(vertices, boundary)
-    exact = find_runs(vertices, crossings, boundary, caps, resolution, axis, tau)
+    segments = list_segments(crossings, resolution, closed=False)
+    number = winding_number(TriangleMesh(vertices, faces), segments.points(resolution, axis))
+    exact = segments.runs(segments.has_ends & (number >= tau))
     fast = backends.find_runs_fast(vertices, faces, crossings, resolution, axis, tau)
     return tuple(
         set(zip(*(getattr(r, n).tolist() for n in RUN), strict=True)) for r in (exact, fast)
