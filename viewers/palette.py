@@ -51,10 +51,10 @@ _MAPS: dict[str, tuple[tuple[int, int, int], ...]] = {
     # from the body's own grey to glowing orange: what a bone does not hold stays quiet
     "weight": (
         (201, 206, 214),
-        (243, 214, 160),
-        (250, 172, 78),
-        (245, 112, 32),
-        (196, 48, 30),
+        (236, 197, 142),
+        (247, 160, 72),
+        (240, 105, 32),
+        (192, 46, 30),
         (128, 14, 38),
     ),
     # near is light and warm, far is deep blue

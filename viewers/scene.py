@@ -100,30 +100,22 @@ class Scene:
         view.position, view.focal_point, view.up = camera.position, camera.focal_point, camera.up
         view.view_angle = VIEW_ANGLE
 
-    def render_png(
-        self, path: str | Path | None = None, *, transparent: bool = False
-    ) -> NDArray[np.uint8]:
+    def render_png(self, path: str | Path | None = None) -> NDArray[np.uint8]:
         """Draw the scene.
 
         Parameters
         ----------
         path : str or Path, optional
             Where to write the PNG, too.
-        transparent : bool
-            Leave the background out.
 
         Returns
         -------
-        array, shape (height, width, 3 or 4), uint8
+        array, shape (height, width, 3), uint8
         """
         plotter: Any = self.plotter
         plotter.set_background(self.theme.bottom, top=self.theme.top)
         plotter.renderer.ResetCameraClippingRange()
-        return plotter.screenshot(
-            None if path is None else str(path),
-            transparent_background=transparent,
-            return_img=True,
-        )
+        return plotter.screenshot(None if path is None else str(path), return_img=True)
 
     def close(self) -> None:
         """Free the window."""

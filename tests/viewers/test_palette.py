@@ -1,0 +1,41 @@
+"""Colours: the paper's three, maps that rise evenly, joints that can be told apart."""
+
+import numpy as np
+import pytest
+
+from viewers import palette
+
+
+def test_the_papers_colours():
+    assert palette.to_hex(palette.MESH) == "#90d2ec"
+    assert palette.to_hex(palette.INTERIOR) == "#ff6c0c"
+    assert palette.to_hex(palette.SURFACE) == "#99cb43"
+
+
+@pytest.mark.parametrize("name", ["weight", "distance"])
+def test_maps_go_from_light_to_dark(name):
+    table = palette.colormap(name).astype(float)
+    assert table.shape == (palette.TEXELS, 3)
+    light = table @ [0.2126, 0.7152, 0.0722]
+    # Iso-lines are dark on purpose: look between them.
+    smooth = light[:: palette.TEXELS // palette.ISO_LINES]
+    assert (np.diff(smooth) < 2).all()
+    assert smooth[0] > 180
+    assert smooth[-1] < 60
+
+
+def test_colour_maps_cannot_be_changed_by_their_users():
+    with pytest.raises(ValueError):
+        palette.colormap("weight")[0] = 0
+
+
+def test_iso_lines_are_as_many_as_they_say():
+    dark = palette.colormap("distance").astype(float).sum(axis=1)
+    drops = np.flatnonzero(np.diff(dark) < -60)
+    assert len(drops) in (palette.ISO_LINES - 1, palette.ISO_LINES)
+
+
+def test_neighbouring_joints_have_different_colours():
+    colors = palette.joint_colors(np.arange(60) - 1)
+    assert ((colors >= 0) & (colors <= 1)).all()
+    assert np.abs(np.diff(colors, axis=0)).max(axis=1).min() > 0.1

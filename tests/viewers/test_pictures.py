@@ -1,0 +1,118 @@
+"""Scenes drawn off-screen: something is there, where and as it should be."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from PIL import Image
+
+import cutcell
+from tests.viewers.arm import arm_rig
+from viewers import palette
+from viewers.description import Description
+from viewers.distance_scene import distance_scene
+from viewers.graph_scene import cut_at, graph_scene
+from viewers.pose_scene import joint_turns, pose_scene, turn
+from viewers.scene import Scene, framing, render_png
+from viewers.weights_scene import weights_scene
+
+SIZE = (240, 180)
+
+
+@pytest.fixture(scope="module")
+def rig():
+    return arm_rig()
+
+
+@pytest.fixture(scope="module")
+def binding(rig):
+    return cutcell.bind(rig, 16)
+
+
+@pytest.fixture(scope="module")
+def scenes(rig, binding):
+    bent = cutcell.forward_kinematics(rig.skeleton, joint_turns(rig, {1: turn("z", 60)}))
+    return {
+        "graph": graph_scene(rig, binding.graph),
+        "distance": distance_scene(rig, binding.distances.joint[1], 1),
+        "weights": weights_scene(rig, binding.weights, 1),
+        "bones": weights_scene(rig, binding.weights),
+        "pose": pose_scene(rig, binding.weights, bent),
+    }
+
+
+def drawn(scene, **options):
+    """Return the picture, and which pixels differ from an empty one."""
+    camera = framing(scene.bounds, SIZE[0] / SIZE[1])
+    picture = render_png(scene, size=SIZE, camera=camera, **options).astype(int)
+    options.pop("path", None)
+    empty = render_png(Description(), size=SIZE, camera=camera, **options).astype(int)
+    return picture, np.abs(picture - empty).max(axis=2) > 12
+
+
+@pytest.mark.parametrize("theme", [palette.LIGHT, palette.DARK], ids=lambda t: t.name)
+@pytest.mark.parametrize("name", ["graph", "distance", "weights", "bones", "pose"])
+def test_each_scene_fills_its_picture_and_stays_inside(scenes, name, theme):
+    _, seen = drawn(scenes[name], theme=theme)
+    assert 0.03 < seen.mean() < 0.8
+    if name != "pose":  # bounds are those of the rest pose
+        border = np.ones(seen.shape, bool)
+        border[2:-2, 2:-2] = False
+        assert not seen[border].any()
+
+
+def test_the_picture_is_written_as_a_png(scenes, tmp_path):
+    path = tmp_path / "scene.png"
+    picture, _ = drawn(scenes["weights"], path=path)
+    with Image.open(path) as image:
+        assert image.format == "PNG"
+        assert np.array_equal(np.asarray(image.convert("RGB")), picture)
+
+
+def test_the_graph_is_in_the_papers_colours(scenes):
+    for name, color in (("interior edges", palette.INTERIOR), ("surface edges", palette.SURFACE)):
+        actors = {name: scenes["graph"].actors[name]}
+        picture, seen = drawn(Description(actors))
+        # Lines are thin: where they cross, their colour is there undiluted.
+        nearest = np.abs(picture[seen] - palette.to_bytes(color).astype(int)).max(axis=1).min()
+        assert nearest < 48
+
+
+def test_a_cut_takes_away_what_lies_before_it(rig, scenes):
+    scene = Description({"body": scenes["weights"].actors["body"]})
+    _, whole = drawn(scene)
+    counts = []
+    for position in (0.75, 0.5, 0.25):
+        cut = cut_at(scene.bounds, "x", position)
+        _, seen = drawn(replace(scene, cut=cut))
+        counts.append(seen.sum())
+    assert whole.sum() > counts[0] > counts[1] > counts[2] > 0
+
+
+def test_a_slab_shows_less_than_all_behind_the_cut(rig, binding):
+    def seen(slab):
+        scene = graph_scene(rig, binding.graph, layers=("interior edges",), slab=slab)
+        return drawn(replace(scene, cut=cut_at(scene.bounds, "x", 0.6)))[1].sum()
+
+    assert 0 < seen(0.3) < seen(0.0)
+
+
+def test_bones_are_seen_through_the_body(rig):
+    with_bones = render_png(weights_scene(rig, rig.weights), size=SIZE)
+    without = render_png(weights_scene(rig, rig.weights, skeleton=False), size=SIZE)
+    assert (np.abs(with_bones.astype(int) - without).max(axis=2) > 12).mean() > 0.005
+
+
+def test_a_scene_can_be_changed_in_place(rig, scenes):
+    scene = Scene(size=SIZE)
+    try:
+        scene.show(scenes["weights"])
+        assert set(scene.names) == {"body", "bones", "attachment 0"}
+        scene.show(scenes["graph"])
+        assert set(scene.names) == {"mesh edges", "interior edges", "surface edges"}
+        scene.look(framing(scenes["graph"].bounds))
+        changed = scene.render_png()
+    finally:
+        scene.close()
+    fresh = render_png(scenes["graph"], size=SIZE, camera=framing(scenes["graph"].bounds))
+    assert np.abs(changed.astype(int) - fresh).mean() < 0.5
