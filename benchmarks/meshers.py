@@ -1,0 +1,63 @@
+"""Volume meshers beside the graph: each in a process of its own, with a time limit."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+from cutcell.graph import build_graph
+
+from .mesher import MESHERS
+from .rigs import Character
+from .stages import prepare
+from .tables import Table, seconds
+from .timing import in_turn
+
+SCRIPT = Path(__file__).with_name("mesher.py")
+
+
+def meshers_table(characters: list[Character], options: argparse.Namespace) -> Table:
+    """Time tetrahedral meshers, once each, beside the graph at R = 64."""
+    table = Table(
+        "Volume meshers",
+        ["rig", "cutcell graph, R=64", *MESHERS],
+        "Filling the welded mesh with tetrahedra, once, in a process of its own, start not "
+        "counted; fTetWild at its default edge length, TetGen without quality demands.",
+    )
+    for character in characters:
+        mesh = character.rig.mesh
+        ours = in_turn({"graph": lambda m=mesh: build_graph(m, 64)}, options.repeats)["graph"]
+        cells = [run_mesher(name, character, options) for name in MESHERS]
+        table.add(character.name, ours, *cells)
+        print(f"{table.title}: {character.name}", file=sys.stderr, flush=True)
+    return table
+
+
+def run_mesher(library: str, character: Character, options: argparse.Namespace) -> str:
+    """Run one mesher on one rig and put into words what came of it."""
+    mesh = prepare(character.rig.mesh, 64)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "mesh.npz"
+        np.savez(path, vertices=mesh.vertices, faces=mesh.faces)
+        command = [options.mesher_python, str(SCRIPT), library, str(path)]
+        try:
+            done = subprocess.run(
+                command, cwd=folder, capture_output=True, text=True, timeout=options.mesher_limit
+            )
+        except subprocess.TimeoutExpired:
+            return f"over {options.mesher_limit:g} s"
+    if done.returncode < 0:
+        return f"crashed (signal {-done.returncode})"
+    lines = [line for line in done.stdout.splitlines() if line.startswith('{"')]
+    if done.returncode or not lines:
+        return "failed"
+    result = json.loads(lines[-1])
+    if "missing" in result:
+        return "not installed"
+    return f"{seconds(result['seconds'])} ({result['cells']:,} tets)"

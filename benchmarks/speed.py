@@ -1,0 +1,305 @@
+"""How fast every stage is beside its peers, timed in turn in the same run.
+
+python -m benchmarks.speed [RIG...] [--resolutions 64 128] [--repeats 5] [--markdown OUT]
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+import igl
+import numpy as np
+
+import cutcell
+from cutcell.geodesics import bone_distances
+from cutcell.graph import build_graph
+
+from . import meshers, recipe, start_up
+from .rigs import Character, load_characters
+from .stages import cast, decide, midpoints, prepare
+from .tables import Table, ratio, seconds
+from .timing import Times, in_turn
+
+ALL = "**median**"
+
+
+class Sheet:
+    """A table of times with a row for each rig and resolution, and medians at its end."""
+
+    def __init__(
+        self, title: str, first: str, peers: Sequence[str], ratios: Sequence[str], note: str
+    ) -> None:
+        against = [f"{first} vs {peer}" for peer in ratios]
+        self.table = Table(title, ["rig", "R", first, *peers, *against], note)
+        self.first, self.ratios, self.peers = first, ratios, peers
+        self.seen: dict[int, list[tuple[list[float], list[float]]]] = {}
+
+    def add(self, rig: str, resolution: int, times: dict[str, Times | None]) -> None:
+        """Append the times of one rig; a peer that is not there is shown as a dash."""
+        mine = times[self.first]
+        assert mine is not None
+        taken = [times.get(name) for name in (self.first, *self.peers)]
+        against = [times.get(name) for name in self.ratios]
+        medians = [t.median if t else np.nan for t in taken]
+        faster = [t.median / mine.median if t else np.nan for t in against]
+        self.seen.setdefault(resolution, []).append((medians, faster))
+        self.table.add(
+            rig, resolution, *(str(t) if t else "-" for t in taken), *map(_ratio_cell, faster)
+        )
+        print(f"{self.table.title}: {rig}, R={resolution}", file=sys.stderr, flush=True)
+
+    def finish(self) -> Table:
+        """Add the medians over all rigs, and the least ratio in brackets."""
+        for resolution, rows in self.seen.items():
+            medians, faster = (np.array([row[k] for row in rows]) for k in range(2))
+            cells = [seconds(x) if np.isfinite(x) else "-" for x in _medians(medians)]
+            least = np.where(np.isfinite(faster), faster, np.inf).min(axis=0)
+            over = [
+                f"{ratio(m)} (least {ratio(low)})" if np.isfinite(m) else "-"
+                for m, low in zip(_medians(faster), least, strict=True)
+            ]
+            self.table.add(ALL, resolution, *cells, *over)
+        return self.table
+
+
+def _medians(values: np.ndarray) -> np.ndarray:
+    known = [column[np.isfinite(column)] for column in values.T]
+    return np.array([np.median(column) if len(column) else np.nan for column in known])
+
+
+def _ratio_cell(value: float) -> str:
+    return ratio(value) if np.isfinite(value) else "-"
+
+
+def graph_table(characters: list[Character], options: argparse.Namespace) -> Table:
+    """Time graph construction against the recipe."""
+    sheet = Sheet(
+        "Graph construction",
+        "cutcell",
+        ["recipe", "copy of the result"],
+        ["recipe"],
+        f"Mesh to graph, connectivity 6. The recipe casts its rays by {_cast_name()} and asks "
+        "libigl's fast winding number about each midpoint between the first and last hit of a "
+        "ray. Copying the arrays that make up the graph is the floor.",
+    )
+    for character, resolution in _each(characters, options):
+        mesh = character.rig.mesh
+        graph = build_graph(mesh, resolution)
+        arrays = [graph.nodes, graph.edges, graph.lengths, graph.node_kind, graph.edge_kind]
+        ways: dict[str, Callable[[], object]] = {
+            "cutcell": lambda m=mesh, r=resolution: build_graph(m, r),
+            "recipe": lambda m=mesh, r=resolution: recipe.build_graph(m, r, _caster()),
+            "copy of the result": lambda a=arrays: [x.copy() for x in a],
+        }
+        sheet.add(character.name, resolution, _timed(ways, options))
+    return sheet.finish()
+
+
+def rays_table(characters: list[Character], options: argparse.Namespace) -> Table:
+    """Time ray casting against Open3D and Embree."""
+    sheet = Sheet(
+        "Ray casting, all hits",
+        "cutcell",
+        ["Open3D list_intersections", "Embree"],
+        ["Open3D list_intersections", "Embree"],
+        "3 R^2 rays through a welded mesh in the unit cube. Peers compute in float32 and "
+        "include building their scenes; Embree's rays start again behind each hit.",
+    )
+    for character, resolution in _each(characters, options):
+        mesh = prepare(character.rig.mesh, resolution)
+        shape = (mesh.vertices, mesh.faces, resolution)
+        ways: dict[str, Callable[[], object]] = {"cutcell": lambda p=mesh: cast(p)}
+        if has_open3d():
+            ways["Open3D list_intersections"] = lambda s=shape: [
+                recipe.hits_open3d(*s, axis) for axis in range(3)
+            ]
+        ways["Embree"] = lambda s=shape: [recipe.hits_embree(*s, axis) for axis in range(3)]
+        sheet.add(character.name, resolution, _timed(ways, options))
+    return sheet.finish()
+
+
+def winding_table(characters: list[Character], options: argparse.Namespace) -> Table:
+    """Time the decision inside or outside against libigl's fast winding number."""
+    sheet = Sheet(
+        "Inside or outside, all segments",
+        "cutcell",
+        ["libigl fast winding number"],
+        ["libigl fast winding number"],
+        "From crossings to kept segments, exactly; against libigl's approximation at the "
+        "midpoints between the first and last crossing of each ray.",
+    )
+    for character, resolution in _each(characters, options):
+        mesh = prepare(character.rig.mesh, resolution)
+        crossings = cast(mesh)
+        points, faces = midpoints(mesh, crossings), mesh.faces.astype(np.int64)
+        ways: dict[str, Callable[[], object]] = {
+            "cutcell": lambda p=mesh, c=crossings: decide(p, c),
+            "libigl fast winding number": lambda v=mesh.vertices, f=faces, q=points: (
+                igl.fast_winding_number(v, f, q)
+            ),
+        }
+        sheet.add(character.name, resolution, _timed(ways, options))
+    return sheet.finish()
+
+
+def distances_table(characters: list[Character], options: argparse.Namespace) -> Table:
+    """Time distances of all bones against scipy's Dijkstra on the same graph."""
+    sheet = Sheet(
+        "Distances of all bones to all vertices",
+        "cutcell",
+        ["scipy Dijkstra"],
+        ["scipy Dijkstra"],
+        "On the same graph, connectivity 6, from the same sources. scipy gets its matrix "
+        "ready-made, cutcell's time holds all of `bone_distances`. The distances differ by "
+        "less than 1e-6 (relative), or this table says so.",
+    )
+    worst = 0.0
+    for character, resolution in _each(characters, options):
+        skeleton = character.rig.skeleton
+        graph = build_graph(character.rig.mesh, resolution)
+        found = bone_distances(graph, skeleton)
+        count = len(found.bone)
+        augmented = recipe.with_bones(
+            graph.csr(), found.source_bone, found.source_node, found.source_distance, count
+        )
+        targets = graph.vertex_node
+        ways: dict[str, Callable[[], object]] = {
+            "cutcell": lambda g=graph, s=skeleton: bone_distances(g, s),
+            "scipy Dijkstra": lambda a=augmented, b=count, t=targets: recipe.scipy_distances(
+                a, b, t
+            ),
+        }
+        sheet.add(character.name, resolution, _timed(ways, options))
+        reached = found.fallback == 0
+        exact = recipe.scipy_distances(augmented, count, targets)[:, reached]
+        worst = max(worst, _difference(found.bone[:, reached], exact))
+    table = sheet.finish()
+    table.note += f" Largest relative difference seen: {worst:.1e}."
+    if worst > 1e-6:
+        table.note += " **That is too much.**"
+    return table
+
+
+def _difference(found: np.ndarray, exact: np.ndarray) -> float:
+    known = np.isfinite(exact)
+    if (np.isfinite(found) != known).any():
+        return np.inf
+    scale = np.maximum(exact[known], 1e-9)
+    return float((np.abs(found[known] - exact[known]) / scale).max(initial=0))
+
+
+def bind_table(characters: list[Character], options: argparse.Namespace) -> Table:
+    """Time the whole way from rig to weights."""
+    blender = "Blender bone heat, elsewhere"
+    sheet = Sheet(
+        "Rig to weights",
+        "cutcell, paper",
+        ["cutcell, default", "recipe", blender],
+        ["recipe", blender],
+        '`bind`, warm, at R=64: `connectivity=6, falloff="paper"`, as the recipe does it, and '
+        "with the defaults. Blender's seconds came with the reference weights; they were "
+        "measured elsewhere, on another machine.",
+    )
+    for character in characters:
+        rig = character.rig
+        ways: dict[str, Callable[[], object]] = {
+            "cutcell, paper": lambda r=rig: cutcell.bind(r, 64, connectivity=6, falloff="paper"),
+            "cutcell, default": lambda r=rig: cutcell.bind(r, 64),
+            "recipe": lambda r=rig: recipe.bind(r, 64, _caster()),
+        }
+        times: dict[str, Times | None] = dict(_timed(ways, options))
+        if character.blender_seconds is not None:
+            times[blender] = Times((character.blender_seconds,))
+        sheet.add(f"{character.name} ({character.size})", 64, times)
+    return sheet.finish()
+
+
+TABLES = {
+    "graph": graph_table,
+    "rays": rays_table,
+    "winding": winding_table,
+    "distances": distances_table,
+    "bind": bind_table,
+    "meshers": meshers.meshers_table,
+    "start": start_up.start_up_table,
+}
+
+
+def has_open3d() -> bool:
+    """Tell whether Open3D can be loaded."""
+    try:
+        import open3d  # noqa: F401
+    except (ImportError, OSError):
+        return False
+    return True
+
+
+_chosen: list[Callable] = []
+
+
+def _caster() -> Callable:
+    """Choose the faster ray caster for the recipe: tried once, on a torus at R = 64."""
+    if not _chosen:
+        ways = {recipe.hits_embree.__name__: recipe.hits_embree}
+        if has_open3d():
+            ways[recipe.hits_open3d.__name__] = recipe.hits_open3d
+        shape = _torus()
+        times = in_turn({name: lambda c=call: c(*shape, 64, 0) for name, call in ways.items()}, 3)
+        _chosen.append(ways[min(times, key=lambda name: times[name].median)])
+    return _chosen[0]
+
+
+def _cast_name() -> str:
+    return {"hits_embree": "Embree", "hits_open3d": "Open3D"}[_caster().__name__]
+
+
+def _torus() -> tuple[np.ndarray, np.ndarray]:
+    import trimesh
+
+    mesh = trimesh.creation.torus(0.33, 0.13, major_sections=96, minor_sections=32)
+    return np.array(mesh.vertices) + 0.5, np.array(mesh.faces, np.int32)
+
+
+def _each(characters, options):
+    return [(c, r) for r in options.resolutions for c in characters]
+
+
+def _timed(ways, options) -> dict[str, Times]:
+    return in_turn(ways, options.repeats, options.patience)
+
+
+def arguments(given: Sequence[str] | None = None) -> argparse.Namespace:
+    """Read the command line."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.speed", description=__doc__)
+    parser.add_argument("rigs", nargs="*", metavar="RIG", help="all at hand when left out")
+    parser.add_argument("--resolutions", type=int, nargs="+", default=[64, 128], metavar="R")
+    parser.add_argument("--repeats", type=int, default=5)
+    parser.add_argument("--patience", type=float, default=30, help="seconds for one peer and rig")
+    parser.add_argument("--tables", nargs="+", choices=TABLES, default=list(TABLES))
+    parser.add_argument("--mesher-python", default=sys.executable, help="has pytetwild, tetgen")
+    parser.add_argument("--mesher-limit", type=float, default=120, help="seconds for one mesh")
+    parser.add_argument("--cold", action="store_true", help="also time the very first compile")
+    parser.add_argument("--markdown", type=Path, metavar="OUT")
+    return parser.parse_args(given)
+
+
+def tables(options: argparse.Namespace) -> list[Table]:
+    """Measure what was asked for."""
+    characters = load_characters(options.rigs)
+    return [TABLES[name](characters, options) for name in options.tables]
+
+
+def main(given: Sequence[str] | None = None) -> None:
+    """Print the tables, and write them too if a file is named."""
+    options = arguments(given)
+    text = "\n\n".join(table.markdown() for table in tables(options))
+    print(text)
+    if options.markdown:
+        options.markdown.write_text(text + "\n")
+
+
+if __name__ == "__main__":
+    main()
