@@ -107,6 +107,7 @@ def wants_field(state: State) -> bool:
     """Whether the graph inside would be coloured by a distance field, were it there."""
     return (
         state.binding is not None
+        and bool(state.rig.skeleton.deform[state.joint])
         and state.coloring == "distance"
         and state.interior_edges
         and not state.posed

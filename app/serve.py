@@ -55,7 +55,7 @@ def serve(
         {"/": lambda: page(path)},
         port=chosen,
         address=None if address == "localhost" else address,
-        websocket_origin=_origins(address, chosen),
+        websocket_origin=allowed_origins(address, chosen),
         websocket_max_message_size=MAX_MESSAGE,
         title="cutcell",
         show=show,
@@ -90,7 +90,8 @@ def free_port(port: int, address: str = "localhost") -> int:
     raise OSError(errno.EADDRINUSE, f"the ports {port} to {port + PORTS_TRIED - 1} are taken")
 
 
-def _origins(address: str, port: int) -> list[str]:
+def allowed_origins(address: str, port: int) -> list[str]:
+    """Return the hosts, with their port, under which a browser may know this server."""
     if address in LOCAL:
         return [f"localhost:{port}", f"127.0.0.1:{port}"]
     names = {address, "localhost", "127.0.0.1", socket.gethostname(), socket.getfqdn()}

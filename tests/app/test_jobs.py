@@ -1,0 +1,172 @@
+"""Work off the event loop: results, progress, errors; stopped and superseded work."""
+
+import threading
+
+import pytest
+
+from app.jobs import Gate, Jobs
+from tests.app.loop import Loop
+
+
+@pytest.fixture
+def loop():
+    return Loop()
+
+
+@pytest.fixture
+def told():
+    return []
+
+
+@pytest.fixture
+def start(loop, told):
+    jobs = Jobs(loop)
+
+    def begin(work):
+        return jobs.start(
+            work,
+            lambda result: told.append(("done", result, threading.current_thread())),
+            lambda error: told.append(("failed", error, threading.current_thread())),
+            lambda stage, fraction: told.append(("progress", stage, fraction)),
+        )
+
+    begin.jobs = jobs
+    yield begin
+    jobs.close()
+
+
+def endless(started):
+    """Work that goes on until it is stopped."""
+
+    def work(progress):
+        started.set()
+        while True:
+            progress("on and on", 0.5)
+
+    return work
+
+
+def test_work_runs_in_another_thread_and_is_told_of_in_this(loop, told, start):
+    start(lambda progress: threading.current_thread())
+    loop.run_until(lambda: len(told) == 1)
+    what, worker, teller = told[0]
+    assert what == "done"
+    assert worker is not threading.current_thread()
+    assert teller is threading.current_thread()
+    assert not start.jobs.running
+
+
+def test_progress_arrives_before_the_result(loop, told, start):
+    def work(progress):
+        for stage in ("one", "two"):
+            progress(stage, 0.25)
+        return 3
+
+    start(work)
+    loop.run_until(lambda: any(t[0] == "done" for t in told))
+    assert [t[:2] for t in told] == [("progress", "one"), ("progress", "two"), ("done", 3)]
+
+
+def test_progress_is_thinned_out(loop, told, start):
+    start(lambda progress: [progress("many", i / 10000) for i in range(10000)] and None)
+    loop.run_until(lambda: any(t[0] == "done" for t in told))
+    assert len(told) < 200
+
+
+def test_errors_are_told(loop, told, start):
+    def work(progress):
+        raise ValueError("no")
+
+    start(work)
+    loop.run_until(lambda: bool(told))
+    assert told[0][0] == "failed"
+    assert str(told[0][1]) == "no"
+
+
+def test_newer_work_supersedes_what_runs(loop, told, start):
+    started = threading.Event()
+    old = start(endless(started))
+    assert started.wait(10)
+    start(lambda progress: "new")
+    loop.run_until(lambda: any(t[0] == "done" for t in told))
+    assert old.cancelled.is_set()
+    loop.run_for(0.2)
+    assert [t[1] for t in told if t[0] != "progress"] == ["new"]
+
+
+def test_a_result_that_comes_too_late_is_dropped(loop, told, start):
+    held, go = threading.Event(), threading.Event()
+
+    def deaf(progress):  # asks for no permission to go on, as a numeric kernel does
+        held.set()
+        assert go.wait(10)
+        return "old"
+
+    start(deaf)
+    assert held.wait(10)
+    start(lambda progress: "new")
+    go.set()
+    loop.run_until(lambda: any(t[0] == "done" for t in told))
+    loop.run_for(0.2)
+    assert [t[1] for t in told if t[0] == "done"] == ["new"]
+
+
+def test_cancelling_stops_without_a_word(loop, told, start):
+    started = threading.Event()
+    start(endless(started))
+    assert started.wait(10)
+    assert start.jobs.cancel()
+    assert not start.jobs.cancel()
+    loop.run_for(0.2)
+    assert [t for t in told if t[0] != "progress"] == []
+
+
+def test_a_closed_session_starts_nothing(loop, told, start):
+    start.jobs.close()
+    assert start(lambda progress: 1) is None
+    loop.run_for(0.1)
+    assert told == []
+
+
+def test_sessions_compute_in_turn(loop):
+    busy, most = [], []
+
+    def work(progress):
+        busy.append(1)
+        most.append(len(busy))
+        threading.Event().wait(0.05)
+        busy.pop()
+
+    done = []
+    for _ in range(3):
+        Jobs(loop).start(work, done.append, done.append, lambda stage, fraction: None)
+    loop.run_until(lambda: len(done) == 3)
+    assert max(most) == 1
+
+
+def test_waiting_for_a_turn_can_be_cancelled(loop):
+    started, told = threading.Event(), []
+    first, second = Jobs(loop), Jobs(loop)
+    first.start(endless(started), told.append, told.append, lambda stage, fraction: None)
+    assert started.wait(10)
+    stages = []
+    second.start(lambda p: "never", told.append, told.append, lambda stage, f: stages.append(stage))
+    loop.run_until(lambda: bool(stages))
+    assert "waiting" in stages[0]
+    second.close()
+    first.close()
+    loop.run_for(0.3)
+    assert told == []
+
+
+def test_a_gate_holds_actions_back_and_keeps_their_order(loop):
+    told = []
+    gate = Gate(loop)
+    for i in range(3):
+        gate(lambda i=i: told.append(i))
+    loop.run_for(0.1)
+    assert told == []
+    gate.open()
+    gate(lambda: told.append(3))
+    loop.run_until(lambda: len(told) == 4)
+    assert told == [0, 1, 2, 3]

@@ -1,0 +1,214 @@
+"""From state to scene, without a browser."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import cutcell
+from app.resolve import (
+    SEE_THROUGH,
+    Memo,
+    bones_part,
+    clip_of,
+    clip_part,
+    field_of,
+    first_joint,
+    pose_of,
+    resolve,
+    slab_of,
+    wants_field,
+)
+from app.state import LAYERS, State
+from tests.viewers.arm import arm_rig
+from viewers.palette import DARK, LIGHT
+
+
+@pytest.fixture(scope="module")
+def rig():
+    return arm_rig()
+
+
+@pytest.fixture(scope="module")
+def binding(rig):
+    return cutcell.bind(rig, 16)
+
+
+@pytest.fixture
+def state(rig, binding):
+    return State(rig=rig, binding=binding, joint=1)
+
+
+def visible(state):
+    return {name for name, actor in resolve(state).actors.items() if actor.visible}
+
+
+def test_without_a_character_there_is_an_empty_scene():
+    assert resolve(State()).actors == {}
+
+
+def test_before_anything_is_computed_the_character_stands_there_plain(rig):
+    scene = resolve(State(rig=rig, coloring="weights"))
+    assert set(scene.actors) == {"body", "bones", "attachment 0"}
+    assert scene.actors["body"].scalars is None
+    assert scene.actors["body"].colors is None
+    assert scene.legend is None
+
+
+@pytest.mark.parametrize("layer", LAYERS)
+def test_each_layer_is_switched_by_its_own_name(state, layer):
+    setattr(state, layer, False)
+    before = visible(state)
+    setattr(state, layer, True)
+    assert visible(state) - before >= {LAYERS[layer]}
+
+
+def test_what_hangs_on_the_body_is_hidden_with_it(state):
+    state.body = False
+    assert "attachment 0" not in visible(state)
+
+
+def test_colours_follow_the_choice(state, binding):
+    body = resolve(state).actors["body"]
+    assert body.colors is not None
+    state.coloring = "weights"
+    scene = resolve(state)
+    np.testing.assert_allclose(scene.actors["body"].scalars, binding.weights[:, 1], atol=1e-6)
+    assert scene.legend is not None
+    assert "elbow" in scene.legend.title
+    state.coloring = "distance"
+    scene = resolve(state)
+    np.testing.assert_allclose(
+        scene.actors["body"].scalars, binding.distances.joint[1], rtol=1e-5, atol=1e-6
+    )
+    state.coloring = "plain"
+    scene = resolve(state)
+    assert scene.actors["body"].scalars is None
+    assert scene.legend is None
+
+
+def test_the_body_is_see_through_only_where_it_would_hide_the_graph(state):
+    def opacity():
+        return resolve(state).actors["body"].opacity
+
+    assert opacity() == 1
+    state.interior_edges = True
+    assert opacity() == SEE_THROUGH
+    state.cut_axis = "x"
+    assert opacity() == 1
+    state.param.update(cut_axis="off", turns={1: (30, 0, 0)})
+    assert opacity() == 1
+
+
+def test_the_cut_and_its_slab(state):
+    assert resolve(state).cut is None
+    state.param.update(cut_axis="x", cut_position=1.0)
+    scene = resolve(state)
+    assert scene.cut.origin[0] == pytest.approx(1.5)
+    assert scene.actors["interior edges"].slab == pytest.approx(3 * 3.0 / 16)
+    assert scene.actors["interior edges"].slab == slab_of(state)
+    assert scene.actors["mesh edges"].slab == 0
+    state.thin = False
+    assert resolve(state).actors["interior edges"].slab == 0
+
+
+def test_the_graph_hides_while_the_character_is_posed(state):
+    state.param.update(mesh_edges=True, interior_edges=True, surface_edges=True)
+    graph = {"mesh edges", "interior edges", "surface edges"}
+    assert visible(state) >= graph
+    state.turns = {1: (0, 0, 45)}
+    assert not visible(state) & graph
+    state.turns = {1: (0, 0, 0)}
+    assert visible(state) >= graph
+    state.moving = True
+    assert not visible(state) & graph
+
+
+def test_turned_joints_make_a_pose(state, rig):
+    assert pose_of(state) is None
+    state.turns = {1: (0, 90, 0)}
+    pose = pose_of(state)
+    np.testing.assert_allclose(pose[0], np.eye(4), atol=1e-12)
+    np.testing.assert_allclose(pose[2], pose[1], atol=1e-12)
+    wrist = pose[1] @ [1, 0, 0, 1]
+    np.testing.assert_allclose(wrist, [0, 0, -1, 1], atol=1e-12)
+    state.moving = True
+    assert pose_of(state) is None
+
+
+def test_motions_are_the_rigs_or_a_swing(state, rig):
+    assert clip_of(state) is None
+    state.param.update(moving=True, clip=0)
+    assert clip_of(state) is rig.clips[0]
+    state.clip = -1
+    assert clip_of(state).name == "swing"
+    part = clip_part(state, clip_of(state))
+    assert part["matrices"].shape == (len(part["times"]) * 3 * 16,)
+    assert part["matrices"].dtype == np.float32
+    assert clip_part(state, None) is None
+    empty = cutcell.Clip("empty", np.zeros(0), np.zeros((0, 3, 4, 4)))
+    assert clip_part(state, empty) is None
+
+
+def test_the_field_is_used_only_for_its_own_joint_and_binding(state, binding):
+    assert not wants_field(state)
+    state.param.update(coloring="distance", interior_edges=True)
+    assert wants_field(state)
+    assert field_of(state) is None
+    field = binding.distances.field(1)
+    state.field = (binding, 1, field)
+    assert field_of(state) is field
+    assert resolve(state).actors["interior edges"].scalars is not None
+    state.joint = 2
+    assert field_of(state) is None
+    assert resolve(state).actors["interior edges"].scalars is None
+
+
+def test_a_joint_without_weight_has_no_field(state, rig):
+    skeleton = replace(rig.skeleton, deform=np.array([True, False, True]))
+    state.param.update(
+        rig=replace(rig, skeleton=skeleton), coloring="distance", interior_edges=True
+    )
+    assert not wants_field(state)
+
+
+def test_the_theme_changes_the_ink_of_the_mesh(state):
+    assert resolve(state).actors["mesh edges"].color == LIGHT.mesh_edge
+    state.dark = True
+    assert resolve(state).actors["mesh edges"].color == DARK.mesh_edge
+
+
+def test_a_memo_changes_nothing_and_makes_nothing_twice(state):
+    memo = Memo()
+    once = resolve(state, memo)
+    state.cut_axis = "z"
+    again = resolve(state, memo)
+    for name in once.actors:
+        assert again.actors[name].points is once.actors[name].points
+        fresh = resolve(state).actors[name]
+        np.testing.assert_array_equal(again.actors[name].points, fresh.points)
+        np.testing.assert_array_equal(again.actors[name].cells, fresh.cells)
+
+
+def test_a_memo_tells_inputs_apart():
+    memo = Memo()
+    array = np.zeros(3)
+    assert memo("a", (array, 1), lambda: "first") == "first"
+    assert memo("a", (array, 1), lambda: "second") == "first"
+    assert memo("a", (array, True), lambda: "second") == "second"
+    assert memo("a", (array.copy(), True), lambda: "third") == "third"
+    assert memo("b", (array.copy(), True), lambda: "fourth") == "fourth"
+
+
+def test_bones_can_be_picked_where_they_are_drawn(state):
+    part = bones_part(state)
+    assert part["names"] == ["shoulder", "elbow", "wrist"]
+    assert part["start"].shape == part["end"].shape == (9,)
+    assert part["joint"].tolist() == [0, 1, 2]
+
+
+def test_the_first_joint_is_an_arm_or_a_long_bone(state, rig):
+    assert first_joint(state) == 1
+    names = ("root", "LeftForeArm", "hand")
+    state.rig = replace(rig, skeleton=replace(rig.skeleton, names=names))
+    assert first_joint(state) == 1

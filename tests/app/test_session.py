@@ -1,0 +1,231 @@
+"""A session without a browser: opening, binding, failing, cancelling, taking along."""
+
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import cutcell
+from app.session import Session, sentence
+from app.status import stage_text, summary, warning
+from tests.app.loop import Loop
+from tests.viewers.arm import arm_rig
+
+
+@pytest.fixture
+def loop():
+    return Loop()
+
+
+@pytest.fixture
+def session(loop):
+    session = Session(loop)
+    yield session
+    session.close()
+
+
+@pytest.fixture
+def bound(session, loop):
+    session.state.resolution = 16
+    session.open_rig(arm_rig())
+    loop.run_until(lambda: session.state.binding is not None)
+    return session
+
+
+def test_a_demo_stands_there_first_and_is_bound_then(session, loop):
+    seen = []
+    session.state.param.watch(lambda e: seen.append(e.name), ["rig", "binding"])
+    session.open_demo("robot")
+    assert session.state.busy
+    loop.run_until(lambda: session.state.binding is not None)
+    assert [name for name in seen if name == "rig"] == ["rig"]
+    assert seen[-1] == "binding"
+    assert not session.state.busy
+    assert session.state.demo == "robot"
+    assert warning(session.state)[0] == "warning"  # its ring is reached by no bone
+    assert "52" in summary(session.state) or "joints" in summary(session.state)
+
+
+def test_another_resolution_binds_again(bound, loop):
+    before = bound.state.binding
+    bound.state.resolution = 24
+    assert bound.state.busy
+    loop.run_until(lambda: bound.state.binding is not before)
+    assert bound.state.binding.graph.lattice.resolution == 24
+
+
+@pytest.mark.parametrize("resolution", [1, 10_000])
+def test_an_impossible_resolution_is_told_and_changes_nothing(bound, loop, resolution):
+    before = bound.state.binding
+    bound.state.resolution = resolution
+    loop.run_until(lambda: bound.state.message is not None)
+    severity, text = bound.state.message
+    assert severity == "error"
+    assert "resolution" in text.lower()
+    assert bound.state.binding is before
+    assert not bound.state.busy
+
+
+def test_a_bad_file_is_told_and_the_old_character_stays(bound, loop, tmp_path):
+    before = bound.state.rig
+    bad = tmp_path / "bad.glb"
+    bad.write_text("this is a text file")
+    bound.open_files([bad])
+    loop.run_until(lambda: bound.state.message is not None)
+    assert "bad.glb" in bound.state.message[1]
+    assert bound.state.rig is before
+    assert bound.state.binding is not None
+
+
+def test_files_without_a_character_are_told(bound, tmp_path):
+    bound.open_files([tmp_path / "notes.txt"])
+    assert "notes.txt" in bound.state.message[1]
+
+
+def test_unexpected_errors_are_told_kindly_and_logged(bound, loop, monkeypatch, caplog):
+    def broken(*args, **kwargs):
+        raise RuntimeError("the sky fell")
+
+    monkeypatch.setattr(cutcell, "bind", broken)
+    bound.bind()
+    loop.run_until(lambda: bound.state.message is not None)
+    assert "unexpected" in bound.state.message[1]
+    assert "the sky fell" in caplog.text
+
+
+def test_cancelling_keeps_what_was_there(bound, loop, monkeypatch):
+    def endless(rig, resolution, progress):
+        while True:
+            progress("graph", 0.5)
+
+    monkeypatch.setattr(cutcell, "bind", endless)
+    before = bound.state.binding
+    bound.bind()
+    loop.run_until(lambda: bound.state.stage == "graph")
+    bound.cancel()
+    assert not bound.state.busy
+    assert bound.state.binding is before
+    assert bound.state.message[0] == "info"
+    bound.state.message = None
+    bound.cancel()
+    assert bound.state.message is None
+
+
+def test_another_character_supersedes_a_running_computation(bound, loop, monkeypatch):
+    real = cutcell.bind
+
+    def slow(rig, resolution, progress):
+        while rig is not other:
+            progress("graph", 0.5)
+        return real(rig, resolution, progress=progress)
+
+    monkeypatch.setattr(cutcell, "bind", slow)
+    other = arm_rig()
+    bound.bind()
+    loop.run_until(lambda: bound.state.stage == "graph")
+    bound.open_rig(other)
+    loop.run_until(lambda: bound.state.binding is not None)
+    assert bound.state.rig is other
+    assert len(bound.state.binding.weights) == len(other.mesh.vertices)
+
+
+def test_picking_a_bone_shows_its_weights(bound):
+    bound.pick(2)
+    assert (bound.state.joint, bound.state.coloring) == (2, "weights")
+    bound.state.coloring = "distance"
+    bound.pick(1)
+    assert (bound.state.joint, bound.state.coloring) == (1, "distance")
+    bound.pick(99)
+    assert bound.state.joint == 1
+
+
+def test_the_field_is_fetched_when_it_is_wanted(bound, loop):
+    bound.state.param.update(coloring="distance", interior_edges=True, joint=1)
+    loop.run_until(lambda: bound.state.field is not None)
+    assert bound.state.field[:2] == (bound.state.binding, 1)
+    np.testing.assert_allclose(bound.state.field[2], bound.state.binding.distances.field(1))
+
+
+def test_the_bound_character_can_be_taken_along(bound, loop, tmp_path):
+    got = []
+    bound.bound_file(lambda name, content: got.append((name, content)))
+    loop.run_until(lambda: bool(got))
+    name, content = got[0]
+    assert name == "arm-bound.glb"
+    path = tmp_path / name
+    path.write_bytes(content)
+    loaded = cutcell.load(path)
+    np.testing.assert_allclose(loaded.weights, bound.state.binding.weights, atol=1e-6)
+
+
+def test_nothing_to_take_along_is_told(session):
+    session.bound_file(lambda name, content: None)
+    assert session.state.message[0] == "info"
+
+
+@pytest.mark.parametrize("motion", [{}, {"turns": {1: (0, 0, 60)}}, {"moving": True, "clip": 0}])
+def test_the_picture_is_a_png(bound, motion):
+    bound.state.param.update(**motion)
+    bound.view.time = 0.5
+    content = bound.picture((160, 120))
+    assert content.startswith(b"\x89PNG")
+
+
+def test_pictures_show_the_pose(bound):
+    rest = bound.picture((160, 120))
+    bound.state.turns = {1: (0, 0, 60)}
+    assert bound.picture((160, 120)) != rest
+
+
+def test_a_new_character_starts_at_rest(bound, loop):
+    bound.state.param.update(turns={1: (0, 0, 60)}, moving=True, playing=True)
+    bound.open_rig(arm_rig())
+    assert not bound.state.posed
+    assert bound.state.clip == 0
+    loop.run_until(lambda: bound.state.binding is not None)
+
+
+def test_the_end_of_a_session_leaves_nothing_behind(loop):
+    session = Session(loop)
+    folder = session.folder
+    (folder / "upload").mkdir()
+    (folder / "upload" / "a.glb").write_bytes(b"1")
+    session.bind()
+    session.close()
+    assert not folder.exists()
+    session.close()
+
+
+def test_two_sessions_share_nothing_that_changes(loop):
+    one, other = Session(loop), Session(loop)
+    try:
+        assert one.folder != other.folder
+        one.state.param.update(resolution=16, turns={0: (1, 2, 3)})
+        assert other.state.resolution == 64
+        assert other.state.turns == {}
+        one.open_rig(arm_rig())
+        assert other.state.rig is None
+    finally:
+        one.close()
+        other.close()
+
+
+def test_real_characters_open(session, loop, rigs):
+    path = next(path for path in rigs if path.stem == "khronos_CesiumMan")
+    copy = session.folder / path.name
+    shutil.copy(path, copy)
+    session.open_files([Path(copy)])
+    loop.run_until(lambda: session.state.binding is not None)
+    np.testing.assert_allclose(session.state.binding.weights.sum(axis=1), 1, atol=1e-6)
+
+
+def test_what_is_told_reads_well(session):
+    assert sentence("it failed") == "It failed."
+    assert sentence("Done!") == "Done!"
+    assert sentence("bad.glb: not a file") == "bad.glb: not a file."
+    assert stage_text("graph") == "Building the graph"
+    assert stage_text("opening a.glb") == "Opening a.glb"
+    assert stage_text("") == "Starting"
+    assert summary(session.state) == ""
+    assert warning(session.state) is None
