@@ -1,0 +1,26 @@
+"""How good weights are, compared with an artist's (paper section 4.1)."""
+
+from .clips import ClipError, clip_error
+from .counting import COUNTS, vertex_shares
+from .crosstalk import Crosstalk, crosstalk, find_gaps
+from .deformation import DeformationError, Turn, deformation_error
+from .per_joint import JointRow, joint_table
+from .weight_error import precision_recall, unweighted, weight_l1
+
+__all__ = [
+    "COUNTS",
+    "ClipError",
+    "Crosstalk",
+    "DeformationError",
+    "JointRow",
+    "Turn",
+    "clip_error",
+    "crosstalk",
+    "deformation_error",
+    "find_gaps",
+    "joint_table",
+    "precision_recall",
+    "unweighted",
+    "vertex_shares",
+    "weight_l1",
+]

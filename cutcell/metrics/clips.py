@@ -1,0 +1,92 @@
+"""The error over a character's own motions."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..checks import check_integer
+from ..pose import linear_blend_skinning
+from ..rig import Rig
+from .counting import vertex_shares
+from .deformation import CM2, check_fit, longest_side
+from .weight_error import checked_pair
+
+
+@dataclass(frozen=True)
+class ClipError:
+    """How far two sets of weights part while a clip plays; cm², the longest side being 1 m.
+
+    Parameters
+    ----------
+    name : str
+        Of the clip.
+    frames : int
+        How many frames were compared.
+    mean : float
+        Squared distance, averaged over frames and vertices.
+    largest : float
+        The greatest over the frames of each vertex, averaged over the vertices: the measure
+        of the deformation error.
+    """
+
+    name: str
+    frames: int
+    mean: float
+    largest: float
+
+
+def clip_error(
+    rig: Rig,
+    predicted: ArrayLike,
+    reference: ArrayLike,
+    *,
+    frames: int = 24,
+    count: str = "places",
+) -> tuple[ClipError, ...]:
+    """Play every clip of a rig with both weights and compare where the skin goes.
+
+    Parameters
+    ----------
+    rig : Rig
+    predicted, reference : array_like, shape (n, j)
+        Rows sum to one, or to zero: such vertices stay at their rest position.
+    frames : int
+        Frames compared of each clip, evenly spread, at most.
+    count : {"places", "vertices"}
+        See `vertex_shares`.
+
+    Returns
+    -------
+    tuple of ClipError
+        One a clip, in their order; empty where the rig has none.
+
+    Raises
+    ------
+    WeightsError
+        Weights that do not fit the rig or each other.
+    ParameterError
+        `frames` out of range, or an unknown `count`.
+    """
+    ours, theirs = checked_pair(predicted, reference)
+    check_fit(ours, rig.mesh, rig.skeleton)
+    frames = check_integer("frames", frames, 1, 100_000)
+    share = vertex_shares(rig.mesh, count)
+    unit = CM2 / longest_side(rig.mesh) ** 2
+    errors = []
+    for clip in rig.clips:
+        chosen = np.unique(np.linspace(0, len(clip.times) - 1, frames).round().astype(int))
+        chosen = chosen[chosen >= 0]
+        largest, total = np.zeros(len(ours)), 0.0
+        for frame in chosen:
+            transforms = clip.transforms[frame]
+            apart = linear_blend_skinning(rig.mesh.vertices, ours, transforms)
+            apart -= linear_blend_skinning(rig.mesh.vertices, theirs, transforms)
+            squared = unit * (apart * apart).sum(axis=1)
+            largest = np.maximum(largest, squared)
+            total += float(share @ squared)
+        mean = total / max(len(chosen), 1)
+        errors.append(ClipError(clip.name, len(chosen), mean, float(share @ largest)))
+    return tuple(errors)

@@ -1,0 +1,198 @@
+"""The error that is seen when joints turn (paper section 4.1.1, "Rest-Pose Deformation Error")."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..checks import check_number
+from ..errors import ParameterError, WeightsError
+from ..rig import Rig, Skeleton, TriangleMesh
+from .counting import vertex_shares
+from .weight_error import checked_pair
+
+AXES = ("x", "y", "z")
+CM2 = 1e4
+"""Square centimetres in a square metre: the longest side of a mesh counts as 1 m."""
+BLOCK = 1 << 20
+"""Numbers held at once for each array of a block of vertices: 8 MB."""
+
+
+@dataclass(frozen=True)
+class Turn:
+    """What turning one joint about one axis shows.
+
+    Parameters
+    ----------
+    joint : int
+    name : str
+    axis : str
+        "x", "y" or "z", of the rig's space.
+    mean : float
+        Squared distance averaged over the vertices, cm².
+    largest : float
+        The greatest of any vertex, cm².
+    """
+
+    joint: int
+    name: str
+    axis: str
+    mean: float
+    largest: float
+
+
+@dataclass(frozen=True, eq=False)
+class DeformationError:
+    """The deformation error, whole and in parts; all in cm², the longest side being 1 m.
+
+    Parameters
+    ----------
+    mean : float
+        E_def: over the vertices, the mean of `vertex`.
+    vertex : array, shape (n,)
+        The greatest squared distance over all turned joints and axes.
+    joint : array, shape (n,), int32
+        The joint whose turn does that.
+    turn_mean, turn_largest : arrays, shape (j, 3)
+        For each joint and axis the mean and the greatest over the vertices; zero for
+        joints that were not turned.
+    names : tuple of str
+    """
+
+    mean: float
+    vertex: NDArray[np.float64]
+    joint: NDArray[np.int32]
+    turn_mean: NDArray[np.float64]
+    turn_largest: NDArray[np.float64]
+    names: tuple[str, ...]
+
+    def worst(self, count: int = 5) -> list[Turn]:
+        """List the turns with the greatest mean error, worst first; at most `count`."""
+        order = np.argsort(-self.turn_mean, axis=None, kind="stable")[:count]
+        return [
+            Turn(
+                int(at) // 3,
+                self.names[at // 3],
+                AXES[at % 3],
+                float(self.turn_mean.flat[at]),
+                float(self.turn_largest.flat[at]),
+            )
+            for at in order
+            if self.turn_mean.flat[at] > 0
+        ]
+
+
+def deformation_error(
+    rig: Rig | tuple[TriangleMesh, Skeleton],
+    predicted: ArrayLike,
+    reference: ArrayLike,
+    degrees: float = 30.0,
+    *,
+    joints: ArrayLike | None = None,
+    count: str = "places",
+) -> DeformationError:
+    """Turn every joint about x, y and z and compare where two sets of weights put the skin.
+
+    Turning joint j moves a vertex v by (R - I)(v - p_j) times the weight S_j that it gives
+    to j and all joints below. About the x axis that difference has the squared length
+
+        2 (1 - cos θ) (q_y² + q_z²) (S_j - S_j')²,   q = v - p_j
+
+    so no vertex needs to be moved. A vertex without weight stays where it is.
+
+    Parameters
+    ----------
+    rig : Rig, or pair of TriangleMesh and Skeleton
+    predicted, reference : array_like, shape (n, j)
+        Rows sum to one, or to zero.
+    degrees : float
+        θ, how far each joint turns, 0 to 180.
+    joints : array_like of int, optional
+        The joints to turn; those that may carry weight (`Skeleton.deform`) when left out.
+    count : {"places", "vertices"}
+        See `vertex_shares`.
+
+    Returns
+    -------
+    DeformationError
+
+    Raises
+    ------
+    WeightsError
+        Weights that do not fit the rig or each other.
+    ParameterError
+        An angle out of range, or joints that the skeleton does not have.
+
+    References
+    ----------
+    Paper section 4.1.1.
+    """
+    mesh, skeleton = parts_of(rig)
+    ours, theirs = checked_pair(predicted, reference)
+    check_fit(ours, mesh, skeleton)
+    degrees = check_number("degrees", degrees, 0, 180)
+    turned = _checked_joints(joints, skeleton)
+    share = vertex_shares(mesh, count)
+
+    unit = CM2 / longest_side(mesh) ** 2
+    chord = 2 * (1 - np.cos(np.radians(degrees))) * unit
+    vertex = np.zeros(len(ours))
+    joint = np.full(len(ours), turned[0], np.int32)
+    turn_mean = np.zeros((len(skeleton.joints), 3))
+    turn_largest = np.zeros((len(skeleton.joints), 3))
+    below = skeleton.subtree[turned].T.astype(np.float64)
+    step = max(1, BLOCK // len(skeleton.joints))
+    for first in range(0, len(ours), step):
+        part = slice(first, first + step)
+        moved = (ours[part] - theirs[part]) @ below  # (block, turned): S - S'
+        for k, j in enumerate(turned):
+            arm = (mesh.vertices[part] - skeleton.joints[j]) ** 2
+            off_axis = arm.sum(axis=1, keepdims=True) - arm  # (block, 3 axes)
+            error = chord * off_axis * (moved[:, k, None] ** 2)
+            turn_mean[j] += share[part] @ error
+            counted = error * (share[part, None] > 0)
+            turn_largest[j] = np.maximum(turn_largest[j], counted.max(axis=0))
+            largest = error.max(axis=1)
+            higher = largest > vertex[part]
+            vertex[part][higher] = largest[higher]
+            joint[part][higher] = j
+    return DeformationError(
+        float(share @ vertex), vertex, joint, turn_mean, turn_largest, skeleton.names
+    )
+
+
+def parts_of(rig: Rig | tuple[TriangleMesh, Skeleton]) -> tuple[TriangleMesh, Skeleton]:
+    """Return mesh and skeleton of a rig, or of such a pair."""
+    if isinstance(rig, Rig):
+        return rig.mesh, rig.skeleton
+    return rig
+
+
+def check_fit(weights: NDArray[np.float64], mesh: TriangleMesh, skeleton: Skeleton) -> None:
+    """Raise WeightsError unless the weights are for these vertices and joints."""
+    expected = (len(mesh.vertices), len(skeleton.joints))
+    if weights.shape != expected:
+        raise WeightsError(
+            f"the weights have the shape {weights.shape}, but the rig has {expected[0]} "
+            f"vertices and {expected[1]} joints"
+        )
+
+
+def longest_side(mesh: TriangleMesh) -> float:
+    """Return the longest side of the bounding box, in the file's units."""
+    low, high = mesh.bounds
+    return float((high - low).max())
+
+
+def _checked_joints(joints: ArrayLike | None, skeleton: Skeleton) -> NDArray[np.intp]:
+    if joints is None:
+        return np.flatnonzero(skeleton.deform)
+    turned = np.atleast_1d(np.asarray(joints))
+    whole = np.issubdtype(turned.dtype, np.integer) and turned.ndim == 1 and turned.size > 0
+    if not whole or turned.min() < 0 or turned.max() >= len(skeleton.joints):
+        raise ParameterError(
+            f"joints must be a list of numbers from 0 to {len(skeleton.joints) - 1}"
+        )
+    return turned

@@ -1,0 +1,333 @@
+"""Errors of weights, against plain loops and numbers that can be checked by hand."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import cutcell
+from cutcell import ParameterError, Rig, Skeleton, TriangleMesh, WeightsError
+from cutcell.graph import build_graph
+from cutcell.metrics import (
+    clip_error,
+    crosstalk,
+    deformation_error,
+    find_gaps,
+    joint_table,
+    precision_recall,
+    unweighted,
+    vertex_shares,
+    weight_l1,
+)
+from cutcell.pose import linear_blend_skinning, rotate_joint, swing
+from tests import meshes
+
+NAN = float("nan")
+
+
+def chain(seed=0, clips=False):
+    """Make a ball with four joints in a branching chain, far from symmetric."""
+    vertices, faces = meshes.ball(1)
+    vertices = vertices * [2.0, 1.0, 0.5] + [3.0, -1.0, 0.2]
+    joints = np.array([[3.2, -0.5, 0.4], [3.8, -0.4, 0.5], [4.4, -0.6, 0.4], [4.0, -0.3, 0.3]])
+    skeleton = Skeleton(joints, [-1, 0, 1, 1], names=("root", "arm", "hand", "thumb"))
+    motion = (swing(skeleton, 1, "z", 40), swing(skeleton, 2, "x", 10)) if clips else ()
+    return Rig(TriangleMesh(vertices, faces), skeleton, clips=motion)
+
+
+def random_weights(rig, seed):
+    rng = np.random.default_rng(seed)
+    weights = rng.random((len(rig.mesh.vertices), len(rig.skeleton.joints))) ** 4
+    return weights / weights.sum(axis=1, keepdims=True)
+
+
+def split(rig):
+    """Give every triangle vertices of its own, as an exporter does along seams."""
+    corners = rig.mesh.faces.ravel()
+    mesh = TriangleMesh(rig.mesh.vertices[corners], np.arange(len(corners)).reshape(-1, 3))
+    return Rig(mesh, rig.skeleton), corners
+
+
+def slow_deformation_error(rig, ours, theirs, degrees):
+    """Move the whole mesh for each joint and axis, and compare (paper section 4.1.1)."""
+    scale = 100 / np.ptp(rig.mesh.vertices, axis=0).max()
+    errors = []
+    for joint in np.flatnonzero(rig.skeleton.deform):
+        for axis in "xyz":
+            pose = rotate_joint(rig.skeleton, joint, axis, degrees)
+            apart = linear_blend_skinning(rig.mesh.vertices, ours, pose)
+            apart -= linear_blend_skinning(rig.mesh.vertices, theirs, pose)
+            errors.append(((scale * apart) ** 2).sum(axis=1))
+    return np.array(errors)
+
+
+# Weights themselves
+
+
+def test_l1_by_hand():
+    ours = [[1, 0, 0], [0.5, 0.5, 0], [0, 0, 1]]
+    theirs = [[1, 0, 0], [0, 1, 0], [1, 0, 0]]
+    assert weight_l1(ours, theirs) == pytest.approx((0 + 1 + 2) / 3)
+    assert weight_l1(ours, theirs, [1, 1, 0]) == pytest.approx(0.5)
+    assert weight_l1(ours, ours) == 0
+
+
+def test_precision_and_recall_by_hand():
+    ours = [[0.5, 0.5, 0], [1, 0, 0]]
+    theirs = [[1, 0, 0], [0, 0.9995, 0.0005]]
+    assert precision_recall(ours, theirs) == (pytest.approx(1 / 3), pytest.approx(1 / 2))
+    # The small weight counts once the threshold lies below it.
+    assert precision_recall(ours, theirs, 0.0001)[1] == pytest.approx(1 / 3)
+    assert precision_recall(ours, ours) == (1, 1)
+
+
+def test_precision_without_any_weight_is_no_number():
+    precision, recall = precision_recall(np.zeros((2, 3)), [[1, 0, 0]] * 2)
+    assert np.isnan(precision)
+    assert recall == 0
+
+
+def test_the_unweighted_are_counted():
+    assert unweighted([[1, 0], [0, 0], [0.5, 0.5], [0, 0]]) == 0.5
+    assert unweighted([[1, 0], [0, 0]], [3, 1]) == 0.25
+
+
+@given(st.integers(0, 1000), st.integers(0, 1000))
+@settings(max_examples=20, deadline=None)
+def test_l1_is_a_distance(a, b):
+    rig = chain()
+    first, second, third = (random_weights(rig, seed) for seed in (a, b, 7))
+    assert weight_l1(first, second) == weight_l1(second, first)
+    assert 0 <= weight_l1(first, second) <= 2
+    assert weight_l1(first, second) <= weight_l1(first, third) + weight_l1(third, second) + 1e-12
+
+
+# Deformation
+
+
+@pytest.mark.parametrize("degrees", [30, 90])
+def test_the_closed_form_equals_moving_the_mesh(degrees):
+    rig = chain()
+    ours, theirs = random_weights(rig, 1), random_weights(rig, 2)
+    ours[5] = 0  # stays where it is
+    slow = slow_deformation_error(rig, ours, theirs, degrees)
+    fast = deformation_error(rig, ours, theirs, degrees)
+    np.testing.assert_allclose(fast.vertex, slow.max(axis=0), rtol=1e-9)
+    np.testing.assert_array_equal(fast.joint, slow.argmax(axis=0) // 3)
+    assert fast.mean == pytest.approx(slow.max(axis=0).mean())
+    np.testing.assert_allclose(fast.turn_mean.ravel(), slow.mean(axis=1), rtol=1e-9)
+    np.testing.assert_allclose(fast.turn_largest.ravel(), slow.max(axis=1), rtol=1e-9)
+
+
+def test_blocks_change_nothing(monkeypatch):
+    rig = chain()
+    ours, theirs = random_weights(rig, 1), random_weights(rig, 2)
+    whole = deformation_error(rig, ours, theirs)
+    monkeypatch.setattr("cutcell.metrics.deformation.BLOCK", 20)
+    parts = deformation_error(rig, ours, theirs)
+    np.testing.assert_array_equal(whole.vertex, parts.vertex)
+    np.testing.assert_allclose(whole.turn_mean, parts.turn_mean)
+
+
+def test_a_bar_by_hand():
+    """All weight on the wrong joint: the tip of a 1 m bar swings by its whole chord."""
+    vertices = [[0, 0, 0], [1, 0, 0], [0, 0.01, 0]]
+    rig = (TriangleMesh(vertices, [[0, 1, 2]]), Skeleton([[0, 0, 0], [0.5, 0, 0]], [-1, 0]))
+    right, wrong = np.array([[1, 0], [0, 1], [1, 0]]), np.array([[1, 0], [1, 0], [1, 0]])
+    error = deformation_error(rig, wrong, right)
+    chord = 50**2 * 2 * (1 - np.cos(np.pi / 6))
+    assert error.mean == pytest.approx(chord / 3)
+    worst = error.worst(1)[0]
+    assert (worst.joint, worst.name, worst.axis) == (1, "joint 1", "y")
+    assert worst.largest == pytest.approx(chord)
+    assert len(error.worst(9)) == 2  # about x nothing moves, the root moves all alike
+
+
+def test_only_the_turned_joints_count():
+    rig = chain()
+    ours, theirs = random_weights(rig, 1), random_weights(rig, 2)
+    some = deformation_error(rig, ours, theirs, joints=[2])
+    assert set(some.joint) == {2}
+    assert some.mean < deformation_error(rig, ours, theirs).mean
+    assert not some.turn_mean[[0, 1, 3]].any()
+
+
+def test_units_and_place_do_not_matter():
+    rig = chain()
+    ours, theirs = random_weights(rig, 1), random_weights(rig, 2)
+    moved = (
+        TriangleMesh(rig.mesh.vertices * 40 + 5, rig.mesh.faces),
+        Skeleton(rig.skeleton.joints * 40 + 5, rig.skeleton.parents),
+    )
+    expected = deformation_error(rig, ours, theirs).mean
+    assert deformation_error(moved, ours, theirs).mean == pytest.approx(expected)
+
+
+def test_seams_do_not_count_twice():
+    rig = chain()
+    ours, theirs = random_weights(rig, 1), random_weights(rig, 2)
+    torn, corners = split(rig)
+    expected = deformation_error(rig, ours, theirs).mean
+    found = deformation_error(torn, ours[corners], theirs[corners])
+    assert found.mean == pytest.approx(expected)
+    by_vertex = deformation_error(torn, ours[corners], theirs[corners], count="vertices")
+    assert by_vertex.mean != pytest.approx(expected)
+    share = vertex_shares(torn.mesh)
+    np.testing.assert_allclose(share @ (ours[corners]), ours.mean(axis=0))
+
+
+def test_vertices_without_face_count_nothing():
+    mesh = TriangleMesh([[0, 0, 0], [1, 0, 0], [0, 1, 0], [9, 9, 9]], [[0, 1, 2]])
+    for count in ("places", "vertices"):
+        np.testing.assert_allclose(vertex_shares(mesh, count), [1 / 3, 1 / 3, 1 / 3, 0])
+
+
+# Clips, joints, gaps
+
+
+def test_clips_are_compared_frame_by_frame():
+    rig = chain(clips=True)
+    ours, theirs = random_weights(rig, 1), random_weights(rig, 2)
+    clip = rig.clips[0]
+    scale = 100 / np.ptp(rig.mesh.vertices, axis=0).max()
+    slow = [
+        scale**2
+        * np.sum(
+            (
+                linear_blend_skinning(rig.mesh.vertices, ours, pose)
+                - linear_blend_skinning(rig.mesh.vertices, theirs, pose)
+            )
+            ** 2,
+            axis=1,
+        )
+        for pose in clip.transforms
+    ]
+    found = clip_error(rig, ours, theirs, frames=1000)
+    assert [error.name for error in found] == ["swing arm", "swing hand"]
+    assert found[0].frames == len(clip.times)
+    assert found[0].mean == pytest.approx(np.mean(slow))
+    assert found[0].largest == pytest.approx(np.max(slow, axis=0).mean())
+    assert clip_error(rig, ours, theirs, frames=5)[0].frames == 5
+    assert clip_error(chain(), ours, theirs) == ()
+
+
+def test_the_table_of_joints_adds_up():
+    rig = chain()
+    ours, theirs = random_weights(rig, 1), random_weights(rig, 2)
+    rows = joint_table(rig, ours, theirs)
+    assert sorted(row.name for row in rows) == ["arm", "hand", "root", "thumb"]
+    assert sum(row.missing + row.extra for row in rows) == pytest.approx(weight_l1(ours, theirs))
+    assert sum(row.predicted for row in rows) == pytest.approx(1)
+    for row in rows:
+        assert row.predicted - row.reference == pytest.approx(row.extra - row.missing)
+    error = deformation_error(rig, ours, theirs)
+    assert rows[0].deformation == error.worst(1)[0].mean
+    assert rows[0].axis == error.worst(1)[0].axis
+
+
+def horseshoe(gap=0.02):
+    """Make a U of boxes whose arms nearly touch, 0.8 long."""
+    cells = {}
+    xs, ys = np.linspace(0, 1, 21), [0, 0.1, 0.1 + gap, 0.2 + gap]
+    solid = np.ones((20, 3), bool)
+    solid[2:, 1] = False
+    quads = []
+
+    def corner(i, j, k):
+        return cells.setdefault((i, j, k), len(cells))
+
+    for i, j in np.argwhere(solid):
+        for k, flip in ((0, True), (1, False)):
+            quad = [(i, j, k), (i + 1, j, k), (i + 1, j + 1, k), (i, j + 1, k)]
+            quads.append(quad[::-1] if flip else quad)
+        for (di, dj), (a, b) in {
+            (-1, 0): ((0, 1), (0, 0)),
+            (1, 0): ((1, 0), (1, 1)),
+            (0, -1): ((0, 0), (1, 0)),
+            (0, 1): ((1, 1), (0, 1)),
+        }.items():
+            u, v = i + di, j + dj
+            if 0 <= u < 20 and 0 <= v < 3 and solid[u, v]:
+                continue
+            p, q = (i + a[0], j + a[1]), (i + b[0], j + b[1])
+            quads.append([(*p, 0), (*q, 0), (*q, 1), (*p, 1)])
+    faces = []
+    for quad in quads:
+        a, b, c, d = (corner(*at) for at in quad)
+        faces += [[a, b, c], [a, c, d]]
+    vertices = np.array([[xs[i], ys[j], 0.3 * k] for i, j, k in cells])
+    return TriangleMesh(vertices, faces)
+
+
+def test_gaps_are_found_where_arms_nearly_touch():
+    mesh = horseshoe()
+    graph = build_graph(mesh, 64)
+    assert graph.is_closed
+    pairs = find_gaps(graph, near=0.03, far=0.3)
+    assert len(pairs) > 10
+    sides = mesh.vertices[pairs][:, :, 1]
+    assert ((sides.min(axis=1) <= 0.1 + 1e-9) & (sides.max(axis=1) >= 0.12 - 1e-9)).all()
+    assert mesh.vertices[pairs][:, :, 0].min() > 0.15  # where the arms meet is no gap
+
+    upper = mesh.vertices[:, 1] > 0.11
+    apart = np.stack([upper, ~upper], axis=1).astype(float)
+    assert crosstalk(apart, pairs).mean == 0
+    assert crosstalk(np.full((len(upper), 2), 0.5), pairs).mean == pytest.approx(1)
+    few = find_gaps(graph, near=0.03, far=0.3, searches=3)
+    assert 0 < len(few) < len(pairs)
+
+
+def test_a_ball_has_no_gap():
+    pairs = find_gaps(build_graph(TriangleMesh(*meshes.ball(2)), 16))
+    assert pairs.shape == (0, 2)
+    assert np.isnan(crosstalk(np.ones((162, 1)), pairs).mean)
+
+
+# Bad input
+
+
+@pytest.mark.parametrize(
+    ("call", "error", "words"),
+    [
+        (lambda w: weight_l1(w, w[:-1]), WeightsError, "same vertices"),
+        (lambda w: weight_l1(w * 2, w), WeightsError, "predicted weights of vertex 0"),
+        (lambda w: weight_l1(w, -w), WeightsError, "reference weights of vertex 0"),
+        (lambda w: weight_l1(w * NAN, w), WeightsError, "not finite"),
+        (lambda w: weight_l1("none", w), WeightsError, "array of numbers"),
+        (lambda w: weight_l1(w[0], w), WeightsError, "expected \\(n, j\\)"),
+        (lambda w: weight_l1(w, w, [1, 2]), ParameterError, "shares have the shape"),
+        (lambda w: weight_l1(w, w, 0 * w[:, 0]), ParameterError, "not all zero"),
+        (lambda w: precision_recall(w, w, 2), ParameterError, "threshold"),
+        (lambda w: deformation_error(chain(), w[:, :2] * 0, w[:, :2] * 0), WeightsError, "joints"),
+        (lambda w: deformation_error(chain(), w, w, 200), ParameterError, "degrees"),
+        (lambda w: deformation_error(chain(), w, w, joints=[4]), ParameterError, "0 to 3"),
+        (lambda w: deformation_error(chain(), w, w, joints=[0.5]), ParameterError, "0 to 3"),
+        (lambda w: deformation_error(chain(), w, w, count="?"), ParameterError, "count"),
+        (lambda w: clip_error(chain(), w, w, frames=0), ParameterError, "frames"),
+        (lambda w: crosstalk(w, [[0, 1, 2]]), ParameterError, "expected \\(p, 2\\)"),
+        (lambda w: crosstalk(w, [[0, 99]]), ParameterError, "beyond"),
+    ],
+)
+def test_what_cannot_be_compared_is_refused(call, error, words):
+    with pytest.raises(error, match=words):
+        call(random_weights(chain(), 0))
+
+
+def test_a_search_for_gaps_needs_sense():
+    graph = build_graph(TriangleMesh(*meshes.ball(1)), 8)
+    with pytest.raises(ParameterError, match="far must be"):
+        find_gaps(graph, near=0.5, far=0.1)
+
+
+# Real characters
+
+
+def test_the_artists_weights_have_no_error(rigs):
+    for path in rigs[:4]:
+        rig = cutcell.load(path)
+        share = vertex_shares(rig.mesh)
+        assert weight_l1(rig.weights, rig.weights, share) == 0
+        assert deformation_error(rig, rig.weights, rig.weights).mean == 0
+        bad = cutcell.bind(rig, 16).weights
+        slow = slow_deformation_error(rig, bad, rig.weights, 30).max(axis=0)
+        assert deformation_error(rig, bad, rig.weights).mean == pytest.approx(share @ slow)
