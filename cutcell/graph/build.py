@@ -11,6 +11,7 @@ from ..progress import Progress, silent
 from ..rig import TriangleMesh
 from .caps import cap_holes
 from .cutcell_graph import INTERIOR, MESH, SURFACE, CutCellGraph
+from .holes import find_needs
 from .inside_edges import diagonal_edges, segment_edges
 from .interior import interior_points
 from .lattice import Lattice
@@ -67,12 +68,15 @@ def build_graph(
     faces = vertex_node[mesh.faces]
     boundary = find_boundary(faces)
     caps = cap_holes(vertices, boundary)
+    needs = find_needs(caps, resolution, winding_threshold)
     crossings, runs = [], []
     for axis in range(3):
         progress("graph", 0.1 + 0.25 * axis)
         found = cast_rays(vertices, faces, resolution, axis)
         crossings.append(found)
-        runs.append(find_runs(vertices, found, boundary, caps, resolution, axis, winding_threshold))
+        runs.append(
+            find_runs(vertices, found, boundary, caps, needs, resolution, axis, winding_threshold)
+        )
     progress("graph", 0.85)
     graph = _assemble(
         vertices, vertex_node, faces, boundary, crossings, runs, lattice, connectivity

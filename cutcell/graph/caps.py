@@ -24,6 +24,9 @@ class Caps:
     vertices : array, shape (n + k, 3)
         The mesh's vertices, then the apex of each of the k fans.
     faces : array, shape (e, 3), int32
+        Ordered by fan.
+    start : array, shape (k + 1,), int64
+        The triangles of fan i are those from start[i] to start[i + 1].
     count : array, shape (e,), int64
         How often each triangle must be laid; negative when turned round.
     centre : array, shape (k, 3)
@@ -35,6 +38,7 @@ class Caps:
 
     vertices: NDArray[np.float64]
     faces: NDArray[np.int32]
+    start: NDArray[np.int64]
     count: NDArray[np.int64]
     centre: NDArray[np.float64]
     radius: NDArray[np.float64]
@@ -43,7 +47,9 @@ class Caps:
 
 def cap_holes(vertices: NDArray[np.float64], boundary: Boundary) -> Caps:
     """Close each component of a boundary by a fan around the mean of its edges' ends."""
-    edges, component = boundary.edges, boundary.component
+    order = np.argsort(boundary.component, kind="stable")
+    edges, component = boundary.edges[order], boundary.component[order]
+    count = boundary.count[order]
     size = int(component.max()) + 1 if len(edges) else 0
     ends = vertices[edges]
     uses = np.bincount(component, minlength=size)
@@ -58,11 +64,12 @@ def cap_holes(vertices: NDArray[np.float64], boundary: Boundary) -> Caps:
     faces = np.stack([edges[:, 1], edges[:, 0], len(vertices) + component], axis=1)
     apex = centre[component]
     cross = np.cross(ends[:, 0] - apex, ends[:, 1] - apex)
-    area = np.bincount(component, np.abs(boundary.count) * np.linalg.norm(cross, axis=1) / 2, size)
+    area = np.bincount(component, np.abs(count) * np.linalg.norm(cross, axis=1) / 2, size)
     return Caps(
         np.concatenate([vertices, centre]),
         faces.astype(np.int32),
-        boundary.count.astype(np.int64),
+        np.searchsorted(component, np.arange(size + 1)),
+        count.astype(np.int64),
         centre,
         radius,
         area,

@@ -7,14 +7,16 @@ stored as a run, so memory grows with the surface, not with the volume.
 
 from __future__ import annotations
 
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit, prange
+from numba import get_num_threads, njit
 from numpy.typing import NDArray
 
 from .caps import Caps
-from .rays import AXES, Crossings, cast_rays
+from .holes import BLOCK, UNSURE, Needs
+from .rays import AXES, STRIPS, Crossings, cast_rays, first_at_least
 from .winding import Boundary, boundary_turns
 
 NONE = -1
@@ -46,6 +48,7 @@ def find_runs(
     crossings: Crossings,
     boundary: Boundary,
     caps: Caps,
+    needs: Needs,
     resolution: int,
     axis: int,
     winding_threshold: float,
@@ -61,6 +64,8 @@ def find_runs(
     boundary : Boundary
     caps : Caps
         Of that boundary.
+    needs : Needs
+        Of those caps.
     resolution, axis : int
     winding_threshold : float
         tau: segments with at least this winding number are kept.
@@ -69,37 +74,36 @@ def find_runs(
     closing = cast_rays(caps.vertices, caps.faces, resolution, axis)
     weight = closing.sign * caps.count[closing.triangle]
     projected = np.ascontiguousarray(vertices[:, [u, v, along]])
-    spheres = (np.ascontiguousarray(caps.centre[:, [u, v, along]]), caps.radius, caps.area)
-    turn = -1.0 if axis == 1 else 1.0
+    # The blocks as this family of rays sees them: by u, v, and along.
+    blocks = (needs.coarse.transpose(u, v, along), needs.row.transpose(u, v, along))
+    turn = -1.0 if axis == 1 else 1.0  # (x, z, y) is left-handed
     inputs = (
         (resolution, winding_threshold, turn, projected, boundary.edges, boundary.count),
-        spheres,
+        (*blocks, needs.fine.transpose(0, u + 1, v + 1, along + 1)),
         (crossings.start, crossings.position, crossings.sign),
         (closing.start, closing.position, weight),
     )
-    counts = np.zeros(resolution**2 + 1, np.int64)
-    nothing = np.empty(0, np.int32), np.empty(0, np.int64)
-    _walk_rays(*inputs, False, counts[1:], *nothing[:1] * 3, *nothing[1:] * 2)
-    start = np.cumsum(counts)
-    ray, first, last = (np.empty(start[-1], np.int32) for _ in range(3))
-    low, high = (np.empty(start[-1], np.int64) for _ in range(2))
-    _walk_rays(*inputs, True, start[:-1].copy(), ray, first, last, low, high)
-    return Runs(ray, first, last, low, high)
+    strips = np.linspace(0, resolution**2, STRIPS + 1).astype(np.int64)
+    with ThreadPoolExecutor(get_num_threads()) as pool:
+        parts = pool.map(lambda k: _walk_rays(*inputs, strips[k], strips[k + 1]), range(STRIPS))
+        ray, first, last, low, high = np.concatenate(list(parts)).T
+    return Runs(*(a.astype(np.int32) for a in (ray, first, last)), low.copy(), high.copy())
 
 
-@njit(cache=True, parallel=True)
-def _walk_rays(surface, spheres, crossings, closing, store, cursor, ray, first, last, low, high):
-    """Count the runs of each ray in `cursor`; or store them there, moving it on."""
+@njit(cache=True, nogil=True)
+def _walk_rays(surface, needs, crossings, closing, first_ray, last_ray):
+    """List the runs of a strip of rays, as rows (ray, first, last, low, high)."""
     resolution = surface[0]
-    for r in prange(resolution * resolution):
+    closed = len(surface[4]) == 0
+    rows = np.empty((256, 5), np.int64)
+    count = 0
+    for r in range(first_ray, last_ray):
         begin, end = crossings[0][r], crossings[0][r + 1]
-        closed = len(spheres[1]) == 0
         if closed and begin == end:
             continue
         chi = 0
         for c in range(begin, end):
             chi += crossings[2][c]
-        open_low, open_first, is_open = NONE, 0, False
         k = 0
         # Gap by gap: from the crossing c - 1 (or the cube's wall) to the crossing c.
         for c in range(begin, end + 1):
@@ -107,68 +111,68 @@ def _walk_rays(surface, spheres, crossings, closing, store, cursor, ray, first, 
                 chi -= crossings[2][c - 1]
             before = crossings[1][c - 1] if c > begin else 0.0
             after = crossings[1][c] if c < end else 1.0
-            beyond = k  # the first lattice point that is not in the gap
-            if c < end:
-                while beyond < resolution and (beyond + 0.5) / resolution < after:
-                    beyond += 1
-            else:
-                beyond = resolution
-            # Segments of the gap: s ends at lattice point s; s = beyond ends at crossing c.
+            beyond = first_at_least(after, resolution) if c < end else resolution
+            if closed:
+                if chi >= surface[1]:
+                    rows = _grown(rows, count)
+                    rows[count] = r, k, beyond - 1, c - 1, c
+                    count += 1
+                k = beyond
+                continue
+            # Segment s of the gap ends at lattice point s; the last one at crossing c.
+            is_open = False
             for s in range(k, beyond + 1):
-                left = before if s == k else (s - 0.5) / resolution
-                right = after if s == beyond else (s + 0.5) / resolution
-                from_wall = s == k and c == begin
-                to_wall = s == beyond and c == end
                 kept = False
-                if not (from_wall or to_wall):
-                    kept = _is_inside(surface, spheres, closing, r, chi, 0.5 * (left + right))
+                if (s > k or c > begin) and (s < beyond or c < end):  # not to a wall
+                    left = before if s == k else (s - 0.5) / resolution
+                    right = after if s == beyond else (s + 0.5) / resolution
+                    kept = _is_inside(surface, needs, closing, r, chi, 0.5 * (left + right))
                 if kept and not is_open:
-                    is_open = True
-                    open_low = c - 1 if s == k else NONE
-                    open_first = k if s == k else s - 1
+                    rows = _grown(rows, count)
+                    rows[count, 0] = r
+                    rows[count, 1] = k if s == k else s - 1
+                    rows[count, 3] = c - 1 if s == k else NONE
                 # A run ends before a dropped segment, and at every crossing: what follows
                 # starts from the same node as a run of its own.
-                if is_open and (not kept or s == beyond):
-                    if store:
-                        n = cursor[r]
-                        ray[n], low[n], first[n] = r, open_low, open_first
-                        high[n] = c if kept else NONE
-                        last[n] = s - 1
-                    cursor[r] += 1
-                    is_open = False
+                if (is_open and not kept) or (kept and s == beyond):
+                    rows[count, 2] = s - 1
+                    rows[count, 4] = c if kept else NONE
+                    count += 1
+                is_open = kept
             k = beyond
+    return rows[:count]
 
 
 @njit(cache=True)
-def _is_inside(surface, spheres, closing, r, chi, height):
+def _grown(rows, count):
+    if count < len(rows):
+        return rows
+    larger = np.empty((2 * count, 5), np.int64)
+    larger[:count] = rows
+    return larger
+
+
+@njit(cache=True)
+def _is_inside(surface, needs, closing, r, chi, height):
     """Tell whether the winding number at a height on ray r is at least tau.
 
     chi counts the mesh's own crossings ahead.
     """
     resolution, tau, turn, vertices, edges, count = surface
-    centre, radius, area = spheres
-    if len(radius) == 0:
+    if len(edges) == 0:
         return chi >= tau
-    pu = (r // resolution + 0.5) / resolution
-    pv = (r % resolution + 0.5) / resolution
+    i, j, k = r // resolution, r % resolution, min(int(height * resolution), resolution - 1)
+    coarse, row, fine = needs
+    need = coarse[i // BLOCK, j // BLOCK, k // BLOCK]
+    if need == UNSURE:
+        block = row[i // BLOCK, j // BLOCK, k // BLOCK]
+        need = fine[block, i % BLOCK, j % BLOCK, k % BLOCK]
+    pu, pv = (i + 0.5) / resolution, (j + 0.5) / resolution
+    if need == UNSURE:
+        return chi + turn * boundary_turns(vertices, edges, count, pu, pv, height) >= tau
     capped = chi
     for c in range(closing[0][r + 1] - 1, closing[0][r] - 1, -1):
         if closing[1][c] <= height:
             break
         capped += closing[2][c]
-    # A fan of area A whose points are all at least d away covers at most A / d^2 of the
-    # sphere's 4 pi: seen from p, each piece of it shrinks by cos / distance^2 <= 1 / d^2.
-    margin = abs(capped - tau)
-    error = 0.0
-    for k in range(len(radius)):
-        du, dv, dw = centre[k, 0] - pu, centre[k, 1] - pv, centre[k, 2] - height
-        distance = np.sqrt(du * du + dv * dv + dw * dw) - radius[k]
-        if distance <= 0:
-            error = np.inf
-            break
-        error += area[k] / (4 * np.pi * distance * distance)
-        if error >= margin:
-            break
-    if error < margin:
-        return capped >= tau
-    return chi + turn * boundary_turns(vertices, edges, count, pu, pv, height) >= tau
+    return capped >= need
