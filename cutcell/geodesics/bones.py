@@ -111,7 +111,8 @@ def find_sources(graph: CutCellGraph, bones: Bones, samples: int) -> Sources:
     bones : Bones
         In the unit cube.
     samples : int
-        N, points a bone, both ends included; a single one lies in the middle.
+        N, points a bone, both ends included; a single one lies in the middle. With
+        connectivity "any" at least one a lattice cell.
 
     Raises
     ------
@@ -121,12 +122,18 @@ def find_sources(graph: CutCellGraph, bones: Bones, samples: int) -> Sources:
     connected = np.flatnonzero(graph.degree > 0)
     if len(connected) == 0:
         raise MeshError("every triangle of the mesh has collapsed into a point")
-    spots = np.linspace(0, 1, samples) if samples > 1 else np.array([0.5])
-    points = bones.start[:, None] + spots[:, None] * (bones.end - bones.start)[:, None]
+    counts = np.full(len(bones.joint), samples)
+    if graph.connectivity == "any":
+        # Every lattice point along the bone is to see it.
+        length = np.linalg.norm(bones.end - bones.start, axis=1)
+        counts = np.maximum(counts, np.ceil(length * graph.lattice.resolution).astype(int) + 1)
+    bone = np.repeat(np.arange(len(counts)), counts)
+    place_on_bone = np.concatenate([np.linspace(0, 1, n) if n > 1 else [0.5] for n in counts])
+    points = bones.start[bone] + place_on_bone[:, None] * (bones.end - bones.start)[bone]
     near = min(8, len(connected))
     distance, place = cKDTree(graph.nodes[connected]).query(points, k=list(range(1, near + 1)))
-    chosen = distance <= distance[..., :1] * (1 + TIE)
-    bone = np.broadcast_to(np.arange(len(points))[:, None, None], chosen.shape)[chosen]
+    chosen = distance <= distance[:, :1] * (1 + TIE)
+    bone = np.broadcast_to(bone[:, None], chosen.shape)[chosen]
     pairs = np.unique(np.stack([bone, connected[place[chosen]]], axis=1), axis=0)
     bone, node = pairs.T.astype(np.int32)
     straight = distance_to_segment(graph.nodes[node], bones.start[bone], bones.end[bone])

@@ -12,6 +12,7 @@ from ..errors import ParameterError, WeightsError
 from ..graph import CutCellGraph
 from ..progress import Progress, silent
 from ..rig import Skeleton
+from .any_angle import any_angle_paths
 from .bones import Bones, Sources, bone_segments, find_sources
 from .fallback import NOT_ALLOWED, REACHED, UNREACHED, UNUSED, straight_to_nearest
 from .shortest_paths import shortest_paths
@@ -74,7 +75,13 @@ class BoneDistances:
             self.sources.node[mine], np.zeros(len(mine), np.int32), self.sources.distance[mine]
         )
         everywhere = np.arange(len(self.graph.nodes), dtype=np.int32)
-        return shortest_paths(self.graph, sources, 1, everywhere)[0]
+        if self.graph.connectivity != "any":
+            return shortest_paths(self.graph, sources, 1, everywhere)[0]
+        # Each bone is an anchor of its own.
+        own = np.flatnonzero(self.bones.joint == joint)
+        bones = Bones(self.bones.start[own], self.bones.end[own], self.bones.joint[own])
+        sources = replace(sources, bone=(self.sources.bone[mine] - own[0]).astype(np.int32))
+        return any_angle_paths(self.graph, sources, bones, everywhere).min(axis=0)
 
 
 def bone_distances(
@@ -134,9 +141,11 @@ def bone_distances(
 
     # Mesh vertices are the graph's first nodes; the file's own vertices share them.
     welded = int(graph.vertex_node.max()) + 1
-    by_node = shortest_paths(
-        graph, sources, len(bones.joint), np.arange(welded, dtype=np.int32), progress
-    )
+    targets = np.arange(welded, dtype=np.int32)
+    if graph.connectivity == "any":
+        by_node = any_angle_paths(graph, sources, bones, targets, progress)
+    else:
+        by_node = shortest_paths(graph, sources, len(bones.joint), targets, progress)
     bone = by_node[:, graph.vertex_node]
     fallback = np.where(np.isfinite(bone).any(axis=0), REACHED, UNREACHED).astype(np.uint8)
     fallback[graph.degree[graph.vertex_node] == 0] = UNUSED

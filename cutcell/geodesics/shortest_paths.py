@@ -1,4 +1,12 @@
-"""Shortest paths from many bones at once (paper section 3.2, algorithm 2)."""
+"""Shortest paths along the graph's edges from all bones (paper section 3.2, algorithm 2).
+
+Bones are worked off LANES at a time: all of them share each visit of a node and each edge
+read from memory, and one vector instruction relaxes the edge for all. Nodes are visited in
+sweeps, sorted by position once in each direction of the lattice, as in fast sweeping: a
+path that never turns back is found in one sweep. Only nodes next to a change are visited
+again, until nothing changes. Then every distance is the least over its neighbours' plus
+the edge, which is what Dijkstra's algorithm arrives at, too.
+"""
 
 from __future__ import annotations
 
@@ -10,8 +18,7 @@ from ..graph import CutCellGraph
 from ..progress import Progress, silent
 from .bones import Sources
 
-ROUNDS = 4
-"""Bones a thread works off between two reports of progress."""
+LANES = 8
 
 
 def shortest_paths(
@@ -23,13 +30,11 @@ def shortest_paths(
 ) -> NDArray[np.float64]:
     """Compute the length of the shortest path from each bone to each target node.
 
-    Dijkstra's algorithm from all sources of a bone together, each starting at its own
-    distance to the bone; bones run in parallel.
-
     Parameters
     ----------
     graph : CutCellGraph
     sources : Sources
+        Paths of a bone begin at its sources, each at its own distance to the bone.
     bones : int
         b, the number of bones.
     targets : array, shape (t,), int32
@@ -42,94 +47,81 @@ def shortest_paths(
     array, shape (b, t), float64
         Infinite where no path leads.
     """
-    indptr, indices, lengths = graph.adjacency
-    start = np.searchsorted(sources.bone, np.arange(bones + 1))
-    result = np.empty((bones, len(targets)))
-    step = ROUNDS * get_num_threads()
-    for first in range(0, bones, step):
-        progress("distances", first / bones)
-        part = start[first : first + step + 1]
-        _all_bones(
-            indptr,
-            indices,
-            lengths,
-            part,
-            sources.node,
-            sources.distance,
-            targets,
-            result[first : first + step],
-        )
+    orders = _sweep_orders(graph.nodes)
+    blocks = -(-bones // LANES)
+    result = np.empty((blocks * LANES, len(targets)))
+    step = get_num_threads()
+    for first in range(0, blocks, step):
+        progress("distances", first / blocks)
+        last = min(first + step, blocks)
+        distance = np.full((last - first, len(graph.nodes), LANES), np.inf)
+        mine = (sources.bone >= first * LANES) & (sources.bone < last * LANES)
+        bone = sources.bone[mine] - first * LANES
+        distance[bone // LANES, sources.node[mine], bone % LANES] = sources.distance[mine]
+        _relax_blocks(*graph.adjacency, orders, distance)
+        found = distance[:, targets].transpose(0, 2, 1).reshape(-1, len(targets))
+        result[first * LANES : last * LANES] = found
     progress("distances", 1.0)
-    return result
+    return result[:bones]
+
+
+def _sweep_orders(nodes: NDArray[np.float64]) -> NDArray[np.int32]:
+    """Sort the nodes by x, y, z for each sign of y and z; reversed, these are all eight."""
+    x, y, z = nodes.T
+    signs = [(1, 1), (1, -1), (-1, 1), (-1, -1)]
+    return np.stack([np.lexsort((c * z, b * y, x)) for b, c in signs]).astype(np.int32)
 
 
 @njit(cache=True, parallel=True)
-def _all_bones(indptr, indices, lengths, start, source, source_distance, targets, result):
-    for bone in prange(len(start) - 1):
-        mine = slice(start[bone], start[bone + 1])
-        distance = _dijkstra(indptr, indices, lengths, source[mine], source_distance[mine])
-        for t in range(len(targets)):
-            result[bone, t] = distance[targets[t]]
+def _relax_blocks(indptr, indices, lengths, orders, distance):
+    for block in prange(len(distance)):
+        _relax(indptr, indices, lengths, orders, distance[block])
 
 
 @njit(cache=True)
-def _dijkstra(indptr, indices, lengths, source, source_distance):
-    distance = np.full(len(indptr) - 1, np.inf)
-    keys = np.empty(1024)
-    nodes = np.empty(1024, np.int32)
-    size = 0
-    for s in range(len(source)):
-        distance[source[s]] = source_distance[s]
-        keys, nodes, size = _push(keys, nodes, size, source_distance[s], source[s])
-    while size > 0:
-        key, node = keys[0], nodes[0]
-        size = _pop(keys, nodes, size)
-        if key > distance[node]:
-            continue  # reached on a shorter path since
-        for e in range(indptr[node], indptr[node + 1]):
-            reached = key + lengths[e]
-            if reached < distance[indices[e]]:
-                distance[indices[e]] = reached
-                keys, nodes, size = _push(keys, nodes, size, reached, indices[e])
-    return distance
-
-
-@njit(cache=True)
-def _push(keys, nodes, size, key, node):
-    if size == len(keys):
-        keys, nodes = _doubled(keys), _doubled(nodes)
-    place = size
-    while place > 0:
-        above = (place - 1) // 2
-        if keys[above] <= key:
-            break
-        keys[place], nodes[place] = keys[above], nodes[above]
-        place = above
-    keys[place], nodes[place] = key, node
-    return keys, nodes, size + 1
-
-
-@njit(cache=True)
-def _doubled(array):
-    larger = np.empty(2 * len(array), array.dtype)
-    larger[: len(array)] = array
-    return larger
+def _relax(indptr, indices, lengths, orders, distance):
+    waiting = np.zeros(len(indptr) - 1, np.bool_)
+    for node in range(len(waiting)):
+        if distance[node].min() < np.inf:
+            waiting[indices[indptr[node] : indptr[node + 1]]] = True
+    sweep = 0
+    while waiting.any():
+        order = orders[sweep // 2 % len(orders)]
+        for k in range(len(order)):
+            node = order[k] if sweep % 2 == 0 else order[len(order) - 1 - k]
+            if waiting[node]:
+                waiting[node] = False
+                if _relax_node(indptr, indices, lengths, distance, node):
+                    for e in range(indptr[node], indptr[node + 1]):
+                        waiting[indices[e]] = True
+        sweep += 1
 
 
 @njit(cache=True, inline="always")
-def _pop(keys, nodes, size):
-    size -= 1
-    key, node = keys[size], nodes[size]
-    place = 0
-    while True:
-        below = 2 * place + 1
-        if below >= size:
-            break
-        if below + 1 < size and keys[below + 1] < keys[below]:
-            below += 1
-        if keys[below] >= key:
-            break
-        keys[place], nodes[place] = keys[below], nodes[below]
-        place = below
-    keys[place], nodes[place] = key, node
-    return size
+def _relax_node(indptr, indices, lengths, distance, v):
+    """Lower a node's distances to the least over its neighbours; tell whether any fell.
+
+    The lanes are written out so that they stay in vector registers.
+    """
+    d0, d1, d2, d3 = distance[v, 0], distance[v, 1], distance[v, 2], distance[v, 3]
+    d4, d5, d6, d7 = distance[v, 4], distance[v, 5], distance[v, 6], distance[v, 7]
+    for e in range(indptr[v], indptr[v + 1]):
+        u, step = np.uint32(indices[e]), lengths[e]
+        d0, d1 = min(d0, distance[u, 0] + step), min(d1, distance[u, 1] + step)
+        d2, d3 = min(d2, distance[u, 2] + step), min(d3, distance[u, 3] + step)
+        d4, d5 = min(d4, distance[u, 4] + step), min(d5, distance[u, 5] + step)
+        d6, d7 = min(d6, distance[u, 6] + step), min(d7, distance[u, 7] + step)
+    fell = (
+        (d0 < distance[v, 0])
+        | (d1 < distance[v, 1])
+        | (d2 < distance[v, 2])
+        | (d3 < distance[v, 3])
+        | (d4 < distance[v, 4])
+        | (d5 < distance[v, 5])
+        | (d6 < distance[v, 6])
+        | (d7 < distance[v, 7])
+    )
+    if fell:
+        distance[v, 0], distance[v, 1], distance[v, 2], distance[v, 3] = d0, d1, d2, d3
+        distance[v, 4], distance[v, 5], distance[v, 6], distance[v, 7] = d4, d5, d6, d7
+    return fell

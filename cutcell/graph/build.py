@@ -26,7 +26,7 @@ def build_graph(
     resolution: int = 64,
     *,
     winding_threshold: float = 0.5,
-    connectivity: int = 6,
+    connectivity: int | str = 6,
     progress: Progress = silent,
 ) -> CutCellGraph:
     """Cut a lattice with a mesh and connect what lies inside.
@@ -39,9 +39,11 @@ def build_graph(
         R, rays along each side of the unit cube, 2 to 1024.
     winding_threshold : float
         tau: pieces of rays with at least this winding number count as inside, 0 to 1.
-    connectivity : {6, 26}
+    connectivity : {6, 26, "any"}
         6 is the paper's graph, whose paths inside run along the axes. 26 adds the
         diagonals of lattice cells that lie inside altogether: straighter, shorter paths.
+        "any" has the edges of 6, but lets paths leave them where they see far: distances
+        then converge to the geodesic ones, see `geodesics.any_angle`.
     progress : callable
         See `cutcell.progress`; the stage is called "graph".
 
@@ -61,7 +63,7 @@ def build_graph(
     lattice = Lattice.around(mesh, resolution)
     resolution = lattice.resolution
     winding_threshold = check_number("winding_threshold", winding_threshold, 0, 1)
-    check_choice("connectivity", connectivity, (6, 26))
+    check_choice("connectivity", connectivity, (6, 26, "any"))
 
     progress("graph", 0.0)
     vertices, vertex_node = weld(lattice.to_unit(mesh.vertices))

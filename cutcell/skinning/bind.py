@@ -42,7 +42,7 @@ def bind(
     rig: Rig,
     resolution: int = 64,
     *,
-    connectivity: int = 6,
+    connectivity: int | str = "any",
     winding_threshold: float = 0.5,
     samples: int = 5,
     leaf: str = "point",
@@ -60,7 +60,8 @@ def bind(
         Its own weights are not used, except that joints without any stay without
         (`Skeleton.deform`).
     resolution, connectivity, winding_threshold
-        See `build_graph`.
+        See `build_graph`. The default measures geodesic distances; connectivity 6 is the
+        paper's, whose paths inside follow the axes.
     samples, leaf
         See `bone_distances`.
     falloff, alpha, max_influences, threshold

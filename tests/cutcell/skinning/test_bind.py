@@ -22,7 +22,7 @@ def moved(rig, change):
     return Rig(mesh, Skeleton(change(rig.skeleton.joints), rig.skeleton.parents))
 
 
-@pytest.mark.parametrize("connectivity", [6, 26])
+@pytest.mark.parametrize("connectivity", [6, 26, "any"])
 @pytest.mark.parametrize("leaf", ["point", "extend"])
 def test_translation_and_scale_change_nothing(connectivity, leaf):
     rig = figure()
@@ -40,13 +40,15 @@ def test_translation_and_scale_change_nothing(connectivity, leaf):
         np.testing.assert_allclose(found, weights, atol=1e-9)
 
 
+@pytest.mark.parametrize("connectivity", [6, 26, "any"])
 @pytest.mark.parametrize("make", [meshes.torus, meshes.ball_with_holes, meshes.grid_soup])
-def test_numbering_changes_nothing(make):
+def test_numbering_changes_nothing(make, connectivity):
     vertices, faces = make()
     joints = np.array([[0.2, 0.5, 0.5], [0.5, 0.5, 0.5], [0.8, 0.5, 0.5], [0.5, 0.8, 0.5]])
     skeleton = Skeleton(joints, [-1, 0, 1, 1])
     rig = Rig(TriangleMesh(vertices, faces), skeleton)
-    weights = bind(rig, 16, max_influences=2).weights
+    options = dict(max_influences=2, connectivity=connectivity)
+    weights = bind(rig, 16, **options).weights
 
     rng = np.random.default_rng(0)
     order, shuffle, swap = (rng.permutation(len(x)) for x in (vertices, faces, joints))
@@ -54,7 +56,7 @@ def test_numbering_changes_nothing(make):
     turned = np.stack([np.roll(f, rng.integers(3)) for f in place[faces[shuffle]]])
     parents = np.array([np.argsort(swap)[p] if p >= 0 else -1 for p in skeleton.parents[swap]])
     other = Rig(TriangleMesh(vertices[order], turned), Skeleton(joints[swap], parents))
-    found = bind(other, 16, max_influences=2).weights
+    found = bind(other, 16, **options).weights
     np.testing.assert_allclose(found, weights[order][:, swap], atol=1e-9)
 
 
@@ -127,8 +129,9 @@ def rotation_change(resolution, connectivity):
     return np.abs(again - once).sum(axis=1).mean()
 
 
-@pytest.mark.parametrize("connectivity", [6, 26])
+@pytest.mark.parametrize("connectivity", [6, 26, "any"])
 def test_rotation_changes_less_on_a_finer_lattice(connectivity):
     coarse, middle, fine = (rotation_change(r, connectivity) for r in (8, 24, 72))
     assert coarse > middle > fine
-    assert fine < 0.1
+    # Along lattice edges something remains at every resolution: their paths are too long.
+    assert fine < {6: 0.1, 26: 0.05, "any": 0.01}[connectivity]

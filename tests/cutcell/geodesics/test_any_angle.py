@@ -1,0 +1,98 @@
+"""Any-angle distances are the geodesic ones: in the open, around corners, beside walls."""
+
+import numpy as np
+import pytest
+import trimesh
+
+from cutcell import Skeleton, TriangleMesh, bone_distances, build_graph
+from cutcell.geodesics import distance_to_segment
+from tests import meshes
+
+
+def l_bar():
+    """Extrude an L, its reflex corner at (1/4, 1/4), and split its triangles up."""
+    outline = [[0, 0], [1, 0], [1, 0.25], [0.25, 0.25], [0.25, 1], [0, 1]]
+    bottom = [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 5]]
+    vertices = [[x, y, z] for z in (0, 0.25) for x, y in outline]
+    faces = [[a, c, b] for a, b, c in bottom] + [[a + 6, b + 6, c + 6] for a, b, c in bottom]
+    for i in range(6):
+        j = (i + 1) % 6
+        faces += [[i, j, j + 6], [i, j + 6, i + 6]]
+    mesh = trimesh.Trimesh(vertices, faces, process=False)
+    for _ in range(4):
+        mesh = mesh.subdivide()
+    return np.array(mesh.vertices), np.array(mesh.faces, np.int32)
+
+
+def along_the_l(points, start):
+    """Measure geodesics in the L-bar: straight, or bent at the reflex edge, unrolled flat."""
+    corner = np.array([0.25, 0.25])
+    a, b = start[:2] - corner, points[:, :2] - corner
+    # The start lies in the lower arm; the corner hides what lies beyond the line through it.
+    hidden = (b[:, 1] > 0) & (a[0] * b[:, 1] - a[1] * b[:, 0] > 0)
+    bent = np.linalg.norm(a) + np.linalg.norm(b, axis=1)
+    straight = np.linalg.norm(a - b, axis=1)
+    return np.hypot(np.where(hidden, bent, straight), points[:, 2] - start[2])
+
+
+def distances_from(vertices, faces, start, end, resolution, connectivity="any"):
+    graph = build_graph(TriangleMesh(vertices, faces), resolution, connectivity=connectivity)
+    skeleton = Skeleton([start, end], [-1, 0], deform=[True, False])
+    return bone_distances(graph, skeleton).joint[0] * graph.lattice.size
+
+
+def test_what_sees_a_bone_has_its_straight_distance():
+    vertices, faces = meshes.ball(4)
+    start, end = np.array([0.4, 0.45, 0.3]), np.array([0.6, 0.5, 0.65])
+    found = distances_from(vertices, faces, start, end, 32)
+    np.testing.assert_allclose(found, distance_to_segment(vertices, start, end), rtol=1e-9)
+
+
+def test_errors_around_a_corner_shrink_with_the_lattice():
+    vertices, faces = l_bar()
+    start = np.array([0.9, 0.1, 0.12])
+    truth = along_the_l(vertices, start)
+    errors = []
+    for resolution in (16, 32, 64):
+        found = distances_from(vertices, faces, start, start, resolution)
+        far = truth > 2 / resolution
+        errors.append(np.abs(found[far] / truth[far] - 1).mean())
+    assert errors[0] > errors[1] > errors[2]
+    assert errors[2] < 0.01
+    six = distances_from(vertices, faces, start, start, 64, connectivity=6)
+    assert np.abs(six[far] / truth[far] - 1).mean() > 0.2
+
+
+@pytest.mark.parametrize("name", meshes.ALL)
+def test_between_straight_and_along_the_edges(name):
+    vertices, faces = meshes.ALL[name]()
+    start, end = np.array([0.5, 0.5, 0.35]), np.array([0.55, 0.5, 0.6])
+    edges = distances_from(vertices, faces, start, end, 24, connectivity=6)
+    found = distances_from(vertices, faces, start, end, 24)
+    np.testing.assert_array_equal(np.isfinite(found), np.isfinite(edges))
+    reached = np.isfinite(found)
+    straight = distance_to_segment(vertices, start, end)
+    assert (found[reached] >= straight[reached] * (1 - 1e-12)).all()
+    # Paths start from more points of the bone, and need no more than the edges' length.
+    assert (found[reached] <= edges[reached] * (1 + 1e-12)).mean() > 0.99
+
+
+def test_walls_are_not_seen_through():
+    # A bar folded double: its ends lie next to each other, the way round is long.
+    vertices, faces = l_bar()
+    folded = np.array(
+        [[0, 0], [1, 0], [1, 0.45], [0.2, 0.45], [0.2, 0.55], [1, 0.55], [1, 1], [0, 1]]
+    )
+    path = trimesh.creation.extrude_triangulation(
+        folded,
+        np.array([[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 7], [4, 5, 6], [4, 6, 7]]),
+        height=0.3,
+    )
+    for _ in range(3):
+        path = path.subdivide()
+    vertices, faces = np.array(path.vertices), np.array(path.faces, np.int32)
+    start = np.array([0.95, 0.4, 0.15])
+    found = distances_from(vertices, faces, start, start, 48)
+    across = (vertices[:, 1] > 0.6) & (vertices[:, 0] > 0.8)
+    way_round = 0.75 + 0.6  # to the inner corner and back, at the very least
+    assert found[across].min() > way_round
