@@ -1,0 +1,69 @@
+"""A rig as the methods see it: welded, in the unit cube, with its bones."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..geodesics import Bones, bone_segments, distance_to_segment
+from ..graph import Lattice
+from ..graph.weld import weld
+from ..rig import Rig
+
+
+@dataclass(frozen=True, eq=False)
+class Body:
+    """A welded mesh and its bones, in the unit cube.
+
+    Parameters
+    ----------
+    points : array, shape (k, 3), float64
+        Places, sorted by coordinates.
+    faces : array, shape (m, 3), int32
+        Triangles with three different corners.
+    index : array, shape (n,), int32
+        The place of each vertex of the file.
+    bones : Bones
+    joints : int
+        j, the joints of the skeleton, with or without bones.
+    lattice : Lattice
+        The way from the file's units into the unit cube and back.
+    """
+
+    points: NDArray[np.float64]
+    faces: NDArray[np.int32]
+    index: NDArray[np.int32]
+    bones: Bones
+    joints: int
+    lattice: Lattice
+
+    @classmethod
+    def of(cls, rig: Rig, leaf: str = "point", resolution: int = 64) -> Body:
+        """Prepare a rig; see `bone_segments` for `leaf`, `Lattice.around` for `resolution`.
+
+        Raises
+        ------
+        ParameterError
+            An unknown `leaf`, or a resolution out of range.
+        """
+        lattice = Lattice.around(rig.mesh, resolution)
+        points, index = weld(lattice.to_unit(rig.mesh.vertices))
+        faces = index[rig.mesh.faces]
+        faces = faces[(faces != np.roll(faces, 1, axis=1)).all(axis=1)]
+        bones = bone_segments(rig.skeleton, leaf)
+        bones = replace(bones, start=lattice.to_unit(bones.start), end=lattice.to_unit(bones.end))
+        return cls(points, faces, index, bones, len(rig.skeleton.joints), lattice)
+
+    def straight(self) -> NDArray[np.float64]:
+        """Measure from every bone straight to every place, shape (b, k)."""
+        ends = zip(self.bones.start, self.bones.end, strict=True)
+        return np.stack([distance_to_segment(self.points, start, end) for start, end in ends])
+
+    def joint_minimum(self, distance: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Take the least over the bones of each joint: (b, k) to (j, k), else infinite."""
+        joint = np.full((self.joints, distance.shape[1]), np.inf)
+        first = np.flatnonzero(np.diff(self.bones.joint, prepend=-1))
+        joint[self.bones.joint[first]] = np.minimum.reduceat(distance, first, axis=0)
+        return joint

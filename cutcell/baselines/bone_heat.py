@@ -1,0 +1,166 @@
+"""Bone heat: bones warm the skin that sees them, and the skin conducts (Baran & Popović 2007)."""
+
+from __future__ import annotations
+
+from time import perf_counter
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array, diags_array
+from scipy.sparse.csgraph import connected_components
+from scipy.sparse.linalg import splu
+
+from ..checks import check_number
+from ..rig import Rig
+from .body import Body
+from .laplacian import cotangent_laplacian, vertex_areas, vertex_normals
+from .result import BaselineBinding, finish
+from .visibility import Blockers
+
+TIE = 1e-4
+"""Relative: bones this nearly as near as the nearest warm a place as well."""
+LEAST_DISTANCE = 1e-4
+"""Of the longest side; a place on a bone itself would be infinitely warm."""
+FACING = 1.001
+"""Distance is divided by half of this plus the cosine between normal and bone: skin that
+looks away from a bone, as it does around a limb, is nearer than skin that looks at it."""
+FADE = (0.025, 0.05)
+"""Weights fade out between these, as in Blender; each place keeps its largest."""
+
+
+def bone_heat(
+    rig: Rig,
+    *,
+    heat: float = 1.0,
+    leaf: str = "extend",
+    max_influences: int | None = None,
+    threshold: float = 0.0,
+) -> BaselineBinding:
+    """Bind by the heat equilibrium on the surface.
+
+        (M⁻¹ L + H) w_i = H p_i
+
+    L is the cotangent Laplacian, M the area of each vertex; H = c / d² of the nearest bone
+    that a place sees, and p_i is 1 where that is bone i. A piece of the mesh that no bone
+    sees is warmed by its nearest bones straight through the surface.
+
+    Parameters
+    ----------
+    rig : Rig
+    heat : float
+        c: larger makes weights sharper.
+    leaf
+        See `bone_segments`.
+    max_influences, threshold
+        See `skinning_weights`.
+
+    Returns
+    -------
+    BaselineBinding
+        Stages "heat", "weights".
+
+    Raises
+    ------
+    ParameterError
+        A parameter is out of its range.
+
+    References
+    ----------
+    Baran & Popović 2007, "Automatic rigging and animation of 3D characters", section 4; the
+    measure of nearness by normals is that of Blender's automatic weights.
+    """
+    heat = check_number("heat", heat, 1e-6, 1e6)
+    begin = perf_counter()
+    body = Body.of(rig, leaf)
+    distance, share, unseen = _warmth(body)
+    middle = perf_counter()
+    weights = _equilibrium(body, heat / np.maximum(distance, LEAST_DISTANCE) ** 2, share)
+    weights, warnings = finish(
+        rig, body, _faded(weights), max_influences=max_influences, threshold=threshold
+    )
+    if unseen:
+        warnings += (
+            f"{unseen} of {len(body.points)} places lie on pieces of the mesh that no bone "
+            "sees; their nearest bones warm them through the surface",
+        )
+    seconds = {"heat": middle - begin, "weights": perf_counter() - middle}
+    return BaselineBinding(weights, seconds, warnings)
+
+
+def _warmth(body: Body) -> tuple[NDArray[np.float64], NDArray[np.float64], int]:
+    """Find the bones that warm each place.
+
+    Returns the distance (k,) to them, infinite where there is none, the share of each joint
+    (k, j), and how many places lie on pieces that no bone sees.
+    """
+    nearness, closest = _nearness(body)
+    order = np.argsort(nearness, axis=0, kind="stable")
+    count = len(body.points)
+    distance = np.full(count, np.inf)
+    sees = np.zeros(nearness.shape, bool)
+    blockers = Blockers(body.points, body.faces)
+    looking = np.arange(count)
+    for rank in range(len(order)):
+        bone = order[rank, looking]
+        # Once a bone is seen, only ties with it matter.
+        hopeful = nearness[bone, looking] <= distance[looking] * (1 + TIE)
+        looking, bone = looking[hopeful], bone[hopeful]
+        if len(looking) == 0:
+            break
+        free = ~blockers.blocked(looking, closest[bone, looking])
+        sees[bone[free], looking[free]] = True
+        distance[looking[free]] = np.minimum(
+            distance[looking[free]], nearness[bone[free], looking[free]]
+        )
+    dark = _dark_pieces(body, np.isfinite(distance))
+    distance[dark] = nearness[:, dark].min(axis=0)
+    sees[:, dark] = nearness[:, dark] <= distance[dark] * (1 + TIE)
+    share = np.zeros((count, body.joints))
+    for b, joint in enumerate(body.bones.joint):
+        share[:, joint] = np.maximum(share[:, joint], sees[b])
+    share /= np.maximum(share.sum(axis=1, keepdims=True), 1)
+    return distance, share, len(dark)
+
+
+def _nearness(body: Body) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return how near each bone is to each place, (b, k), and its closest point, (b, k, 3)."""
+    normals = vertex_normals(body.points, body.faces)
+    nearness = np.empty((len(body.bones.joint), len(body.points)))
+    closest = np.empty((*nearness.shape, 3))
+    for b, (start, end) in enumerate(zip(body.bones.start, body.bones.end, strict=True)):
+        along = end - start
+        squared = along @ along
+        travel = (body.points - start) @ along / squared if squared > 0 else np.zeros(1)
+        closest[b] = start + np.clip(travel, 0, 1)[:, None] * along
+        away = body.points - closest[b]
+        length = np.linalg.norm(away, axis=1)
+        cosine = (away * normals).sum(axis=1) / np.where(length > 0, length, 1)
+        nearness[b] = length / (0.5 * (cosine + FACING))
+    return nearness, closest
+
+
+def _dark_pieces(body: Body, warm: NDArray[np.bool_]) -> NDArray[np.intp]:
+    """List the places on pieces of the mesh without any warm place."""
+    count = len(body.points)
+    links = np.concatenate([body.faces[:, [0, 1]], body.faces[:, [1, 2]]])
+    matrix = coo_array((np.ones(len(links)), links.T), shape=(count, count))
+    piece = connected_components(matrix, directed=False)[1]
+    return np.flatnonzero(~(np.bincount(piece, warm) > 0)[piece])
+
+
+def _equilibrium(
+    body: Body, heat: NDArray[np.float64], share: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Solve for all joints at once: (L + M H) w = M H p."""
+    areas = vertex_areas(body.points, body.faces)
+    # A place without area conducts nothing; any positive number lets it keep its own heat.
+    warming = np.where(areas > 0, areas, 1e-12) * heat
+    system = cotangent_laplacian(body.points, body.faces) + diags_array(warming)
+    return splu(system.tocsc()).solve(warming[:, None] * share)
+
+
+def _faded(weights: NDArray[np.float64]) -> NDArray[np.float64]:
+    low, high = FADE
+    kept = np.clip((weights - low) / (high - low), 0, 1) * np.maximum(weights, 0)
+    empty = kept.sum(axis=1) <= 0
+    return np.where(empty[:, None], weights, kept)

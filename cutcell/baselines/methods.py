@@ -1,0 +1,44 @@
+"""The register of methods, and the two that are no baseline: ours and the artist."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from time import perf_counter
+from typing import Any
+
+from ..rig import Rig
+from ..skinning import bind
+from .bone_heat import bone_heat
+from .euclidean import euclidean
+from .result import BaselineBinding
+from .voxel_binding import voxel, voxel_unirig
+
+Method = Callable[..., BaselineBinding]
+
+
+def cutcell(rig: Rig, resolution: int = 64, **options: Any) -> BaselineBinding:
+    """Bind by the paper's method; `options` are those of `cutcell.bind`.
+
+    No limit on the influences unless asked for, like all methods here.
+    """
+    binding = bind(rig, resolution, **{"max_influences": None, **options})
+    return BaselineBinding(binding.weights, binding.seconds, binding.warnings)
+
+
+def artist(rig: Rig) -> BaselineBinding:
+    """Return the weights that the file came with."""
+    begin = perf_counter()
+    if rig.weights is None:
+        return BaselineBinding(None, failed="the file holds no weights")
+    return BaselineBinding(rig.weights, {"weights": perf_counter() - begin})
+
+
+METHODS: dict[str, Method] = {
+    "artist": artist,
+    "bone_heat": bone_heat,
+    "cutcell": cutcell,
+    "euclidean": euclidean,
+    "voxel": voxel,
+    "voxel_unirig": voxel_unirig,
+}
+"""Every method by name: `method(rig, **options) -> BaselineBinding`."""

@@ -1,0 +1,136 @@
+"""Whether the surface blocks the way from a place on it to a point."""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit, prange
+from numpy.typing import NDArray
+
+LEAF = 4
+"""Triangles in a leaf of the tree, at most."""
+DEPTH = 64
+"""Nodes that wait while a tree is walked; a tree of halves never needs more."""
+
+
+class Blockers:
+    """A tree of boxes around triangles that answers what a segment meets.
+
+    Parameters
+    ----------
+    points : array, shape (k, 3), float64
+    faces : array, shape (m, 3), int32
+    """
+
+    def __init__(self, points: NDArray[np.float64], faces: NDArray[np.int32]) -> None:
+        self.points = np.ascontiguousarray(points)
+        self.faces, self.low, self.high, self.child, self.first = _build(points, faces)
+
+    def blocked(
+        self, vertex: NDArray[np.integer], target: NDArray[np.float64]
+    ) -> NDArray[np.bool_]:
+        """Tell which segments meet a triangle that does not have their first end as a corner.
+
+        Parameters
+        ----------
+        vertex : array, shape (q,), int
+            The places where the segments begin.
+        target : array, shape (q, 3), float64
+            Where they end; a triangle right there does not block.
+
+        Returns
+        -------
+        array, shape (q,), bool
+        """
+        tree = (self.faces, self.low, self.high, self.child, self.first)
+        return _blocked(self.points, *tree, vertex.astype(np.int64), target)
+
+
+def _build(points, faces):
+    """Halve the triangles by their middles along the longest side, again and again."""
+    corners = points[faces]
+    middle, least, most = corners.mean(axis=1), corners.min(axis=1), corners.max(axis=1)
+    order = np.arange(len(faces))
+    low, high, child, first = [], [], [], []
+
+    def add(begin: int, end: int) -> int:
+        own = order[begin:end]
+        low.append(least[own].min(axis=0))
+        high.append(most[own].max(axis=0))
+        child.append((-1, -1))
+        first.append((begin, end))
+        return len(low) - 1
+
+    waiting = [(add(0, len(faces)), 0, len(faces))]
+    while waiting:
+        node, begin, end = waiting.pop()
+        if end - begin <= LEAF:
+            continue
+        axis = int(np.ptp(middle[order[begin:end]], axis=0).argmax())
+        half = (end - begin) // 2
+        part = order[begin:end]
+        order[begin:end] = part[np.argpartition(middle[part, axis], half)]
+        left, right = add(begin, begin + half), add(begin + half, end)
+        child[node] = (left, right)
+        waiting += [(left, begin, begin + half), (right, begin + half, end)]
+    return (
+        np.ascontiguousarray(faces[order]),
+        np.array(low),
+        np.array(high),
+        np.array(child),
+        np.array(first),
+    )
+
+
+@njit(cache=True, parallel=True)
+def _blocked(points, faces, low, high, child, first, vertex, target):
+    result = np.zeros(len(vertex), np.bool_)
+    for q in prange(len(vertex)):
+        start = points[vertex[q]]
+        way = target[q] - start
+        stack = np.empty(DEPTH, np.int64)
+        stack[0], size = 0, 1
+        while size > 0 and not result[q]:
+            size -= 1
+            node = stack[size]
+            if not _meets_box(start, way, low[node], high[node]):
+                continue
+            if child[node, 0] >= 0:
+                stack[size], stack[size + 1] = child[node, 0], child[node, 1]
+                size += 2
+                continue
+            for f in range(first[node, 0], first[node, 1]):
+                a, b, c = faces[f]
+                if vertex[q] in (a, b, c):
+                    continue
+                if _meets_triangle(start, way, points[a], points[b], points[c]):
+                    result[q] = True
+                    break
+    return result
+
+
+@njit(cache=True)
+def _meets_box(start, way, low, high):
+    enter, leave = 0.0, 1.0
+    for axis in range(3):
+        if way[axis] == 0:
+            if start[axis] < low[axis] or start[axis] > high[axis]:
+                return False
+            continue
+        a, b = (low[axis] - start[axis]) / way[axis], (high[axis] - start[axis]) / way[axis]
+        enter, leave = max(enter, min(a, b) - 1e-12), min(leave, max(a, b) + 1e-12)
+    return enter <= leave
+
+
+@njit(cache=True)
+def _meets_triangle(start, way, a, b, c):
+    """Whether the segment meets the triangle strictly between its ends (Möller & Trumbore)."""
+    side, other, away = b - a, c - a, start - a
+    p = np.cross(way, other)
+    volume = np.dot(side, p)
+    if volume == 0:
+        return False
+    u = np.dot(away, p) / volume
+    q = np.cross(away, side)
+    v = np.dot(way, q) / volume
+    t = np.dot(other, q) / volume
+    return u >= 0 and v >= 0 and u + v <= 1 and 1e-9 < t < 1 - 1e-9
