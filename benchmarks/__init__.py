@@ -1,1 +1,7 @@
 """Side-by-side measurements that print the tables in docs/."""
+
+from numba import get_num_threads
+
+# Numba looks for its threads' library when they are first needed. Embree and Open3D bring a
+# TBB that is too old for it, and it warns if that one is there already: be first.
+get_num_threads()

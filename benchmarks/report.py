@@ -85,7 +85,8 @@ def _accuracy(options: argparse.Namespace) -> list:
 
 
 def _growth(options: argparse.Namespace) -> list:
-    quick = "--resolutions 16 32 64 --faces 1280 5120 --bones 1 4 --limit 60".split()
+    few = {"--resolutions": ["16", "32", "64"], "--faces": ["1280", "5120"], "--bones": ["1", "4"]}
+    quick = [word for option, sizes in few.items() for word in (option, *sizes)]
     return growth.tables(growth.arguments(quick if options.quick else []))
 
 

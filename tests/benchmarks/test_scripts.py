@@ -1,0 +1,141 @@
+"""Every script runs, in a tiny configuration, and prints tables that can be read."""
+
+import sys
+
+import numpy as np
+import pytest
+
+from benchmarks import accuracy, growth, meshers, report, speed, tables, timing
+from benchmarks.rigs import ROOT, load_characters
+from tests.benchmarks.markdown import read_tables
+
+DEMO = str(ROOT / "assets" / "robot.glb")
+TINY = [DEMO, "--resolutions", "8", "--repeats", "1", "--mesher-limit", "1"]
+
+# Open3D and its companions warn while they are loaded.
+pytestmark = pytest.mark.filterwarnings("ignore::DeprecationWarning")
+
+
+@pytest.mark.parametrize("name", [name for name in speed.TABLES if name not in ("bind", "start")])
+def test_speed(name, capsys, tmp_path):
+    out = tmp_path / "speed.md"
+    speed.main([*TINY, "--tables", name, "--markdown", str(out)])
+    printed = capsys.readouterr().out
+    assert out.read_text() == printed
+    (rows,) = read_tables(printed).values()
+    assert "robot" in rows[0]["rig"]
+
+
+def test_speed_of_binding(capsys):
+    speed.main([*TINY, "--tables", "bind"])
+    (rows,) = read_tables(capsys.readouterr().out).values()
+    assert [row["rig"][:5] for row in rows] == ["robot", "**med"]
+    assert rows[0]["Blender bone heat, elsewhere"] == "-"
+    assert rows[0]["cutcell, paper vs recipe"].endswith("x")
+
+
+def test_start_up(capsys, monkeypatch):
+    monkeypatch.setattr("benchmarks.start_up.BIND", "import cutcell.rig")
+    speed.main([*TINY, "--tables", "start", "--cold"])
+    (rows,) = read_tables(capsys.readouterr().out).values()
+    assert len(rows) == 4
+
+
+def test_accuracy(capsys, tmp_path):
+    out = tmp_path / "accuracy.md"
+    given = ["--resolutions", "6", "8", "--shapes", "ball", "box", "L-bar"]
+    accuracy.main([*given, "--markdown", str(out)])
+    found = read_tables(capsys.readouterr().out)
+    assert found == read_tables(out.read_text())
+    rows = found["Accuracy of distances"]
+    assert [row["connectivity"] for row in rows[:2]] == ["6", "26"]
+    assert {"ball", "box", "L-bar", "**all**"} == {row["shape"] for row in rows}
+
+
+def test_a_connectivity_that_is_not_there_is_said(capsys, monkeypatch):
+    monkeypatch.setattr(accuracy, "CONNECTIVITIES", (6, 7))
+    accuracy.main(["--resolutions", "6", "--shapes", "box"])
+    assert "Connectivity 7 is not there yet" in capsys.readouterr().out
+
+
+def test_convergence_order():
+    assert accuracy.order([10, 20, 40], [0.4, 0.2, 0.1]) == "1.00"
+    assert accuracy.order([10, 20, 40], [0.4, 0.2, 1e-9]) == "exact"
+    assert accuracy.order([10], [0.4]) == "-"
+
+
+def test_growth(capsys, tmp_path):
+    out = tmp_path / "growth.md"
+    sizes = ["--resolutions", "8", "16", "--faces", "80", "--bones", "2"]
+    growth.main([*sizes, "--rig", DEMO, "--markdown", str(out)])
+    found = read_tables(capsys.readouterr().out)
+    assert len(found) == 3
+    rows = found["Growth with the resolution"]
+    assert [row["resolution"] for row in rows] == ["8", "16", "**slope**"]
+    assert all(row["peak memory"].endswith(" MB") for row in rows[:-1])
+    assert found["Growth with the faces"][0]["faces"] == "80"
+    assert found["Growth with the bones"][0]["bones"] == "2"
+
+
+def test_growth_says_what_failed(capsys):
+    options = growth.arguments(["--rig", "nowhere.glb", "--limit", "60"])
+    case = {"rig": "nowhere.glb", "connectivity": 6, "resolution": 8}
+    assert "nowhere.glb" in growth.run(case, options)
+    options.limit = 0.01
+    assert growth.run(case, options) == "over 0.01 s"
+
+
+def test_slopes():
+    sizes = [1, 2, 4, 8, 16]
+    assert growth.slope(sizes, [7, 3, 16, 64, 256]) == pytest.approx(2)
+    assert np.isnan(growth.slope([1], [1]))
+
+
+def test_report(tmp_path):
+    out = tmp_path / "performance.md"
+    report.main(["--quick", "--rigs", DEMO, "--parts", "accuracy", "--out", str(out)])
+    text = out.read_text()
+    assert "## Accuracy" in text
+    assert "cores" in text
+    assert read_tables(text)["Accuracy of distances"]
+
+
+@pytest.mark.parametrize(
+    ("code", "expected"),
+    [
+        ('print(\'{"missing": "x"}\')', "not installed"),
+        ("print('chatter'); print('{\"seconds\": 1.5, \"cells\": 7000}')", "1.5 s (7,000 tets)"),
+        ("import os, signal; os.kill(os.getpid(), signal.SIGSEGV)", "crashed (signal 11)"),
+        ("raise SystemExit(3)", "failed"),
+        ("while True: pass", "over 1 s"),
+    ],
+)
+def test_whatever_meshers_do_is_put_into_words(code, expected, tmp_path, monkeypatch):
+    script = tmp_path / "mesher.py"
+    script.write_text(code)
+    monkeypatch.setattr(meshers, "SCRIPT", script)
+    options = speed.arguments([DEMO, "--mesher-limit", "1", "--mesher-python", sys.executable])
+    if expected != "over 1 s":
+        options.mesher_limit = 60
+    (character,) = load_characters([DEMO])
+    assert meshers.run_mesher("any", character, options) == expected
+
+
+def test_times_are_taken_in_turn():
+    order = []
+    ways = {name: lambda n=name: order.append(n) for name in "AB"}
+    times = timing.in_turn(ways, repeats=2)
+    assert order == ["A", "B"] * 3
+    assert [len(times[name].seconds) for name in "AB"] == [2, 2]
+    timing.in_turn(ways, repeats=5, patience=0)
+    assert order == ["A", "B"] * 4
+
+
+def test_a_row_must_fit_its_table():
+    with pytest.raises(ValueError, match="2 cells for 1 columns"):
+        tables.Table("T", ["a"]).add(1, 2)
+
+
+def test_numbers_are_short():
+    assert [tables.seconds(x) for x in (2e-5, 0.0123, 4.5)] == ["20 us", "12.3 ms", "4.5 s"]
+    assert [tables.ratio(x) for x in (3.14, 31.4)] == ["3.1x", "31x"]
