@@ -116,9 +116,11 @@ def open_page(
 @app.command(
     epilog="""Examples:
 
-- `cutcell bind character.glb bound.glb`  (the paper's own choices)
+- `cutcell bind character.glb bound.glb`
 
-- `cutcell bind character.glb bound.glb -r 128 --connectivity 26`  (finer, truer distances)
+- `cutcell bind character.glb bound.glb -r 128`  (a finer lattice: close parts are told apart)
+
+- `cutcell bind character.glb bound.glb --connectivity 6`  (just as in the paper)
 
 - `cutcell bind body.obj bound.glb --skeleton body.json`  (a bare mesh)
 
@@ -135,7 +137,7 @@ def bind(
         ),
     ],
     resolution: Resolution = 64,
-    connectivity: Connectivity = 6,
+    connectivity: Connectivity = "any",
     winding_threshold: WindingThreshold = 0.5,
     samples: Samples = 5,
     leaf: Leaf = "point",
@@ -159,7 +161,7 @@ def bind(
 
     parameters: dict[str, Any] = {
         "resolution": resolution,
-        "connectivity": connectivity,
+        "connectivity": _neighbours(connectivity),
         "winding_threshold": winding_threshold,
         "samples": samples,
         "leaf": leaf,
@@ -207,7 +209,7 @@ def bind(
 def graph(
     rig: RigFile,
     resolution: Resolution = 64,
-    connectivity: Connectivity = 6,
+    connectivity: Connectivity = "6",
     winding_threshold: WindingThreshold = 0.5,
     samples: Samples = 5,
     leaf: Leaf = "point",
@@ -230,7 +232,7 @@ def graph(
         built = build_graph(
             mesh,
             resolution,
-            connectivity=connectivity,
+            connectivity=_neighbours(connectivity),
             winding_threshold=winding_threshold,
             progress=progress,
         )
@@ -251,7 +253,7 @@ def graph(
         "input": str(rig),
         "parameters": {
             "resolution": resolution,
-            "connectivity": connectivity,
+            "connectivity": _neighbours(connectivity),
             "winding_threshold": winding_threshold,
             "samples": samples,
             "leaf": leaf,
@@ -282,6 +284,10 @@ def _page() -> Any:
             f"the page needs libraries that are not installed ({error.name} is missing); "
             "install them by: pip install 'cutcell[app]'"
         ) from None
+
+
+def _neighbours(text: str) -> int | str:
+    return int(text) if text.isdecimal() else text
 
 
 def _load(path: Path, skeleton: Path | None) -> Rig:

@@ -46,12 +46,12 @@ Resolution = Annotated[
     ),
 ]
 Connectivity = Annotated[
-    int,
+    str,
     typer.Option(
         "--connectivity",
-        metavar="6|26",
-        help="Neighbours of a point inside. 6: the paper's, paths along the axes only. 26: also"
-        " diagonals, so distances are truer.",
+        metavar="6|26|any",
+        help="How paths run inside. 6: along the axes, as in the paper. 26: along diagonals too."
+        " any: at any angle, so that distances are geodesic.",
         rich_help_panel=METHOD,
     ),
 ]

@@ -8,7 +8,7 @@ import pytest
 
 import cutcell
 
-PACKAGES = ["io", "graph", "geodesics", "skinning", "pose"]
+PACKAGES = ["io", "graph", "geodesics", "skinning", "pose", "metrics", "baselines"]
 ROOT_FUNCTIONS = sorted(
     name
     for name in cutcell.__all__

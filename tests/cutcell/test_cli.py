@@ -237,7 +237,13 @@ class TestWrongInput:
 
     @pytest.mark.parametrize(
         ("option", "value"),
-        [("connectivity", 7), ("winding-threshold", 1.5), ("samples", 0), ("leaf", "twig")],
+        [
+            ("connectivity", 7),
+            ("connectivity", "all"),
+            ("winding-threshold", 1.5),
+            ("samples", 0),
+            ("leaf", "twig"),
+        ],
     )
     def test_parameter_out_of_range(self, run, bar, tmp_path, command, option, value):
         told = refused(run(*self.words(command, bar, tmp_path), f"--{option}", value))
