@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit, prange
+from numba import njit
 from numpy.typing import NDArray
 
 from ..checks import check_choice, check_number
@@ -155,10 +155,10 @@ def _crossing_positions(
     return positions
 
 
-@njit(cache=True, parallel=True)
+@njit(cache=True)
 def _lengths(nodes, edges):
     lengths = np.empty(len(edges))
-    for e in prange(len(edges)):
+    for e in range(len(edges)):
         a, b = edges[e, 0], edges[e, 1]
         x, y, z = nodes[a, 0] - nodes[b, 0], nodes[a, 1] - nodes[b, 1], nodes[a, 2] - nodes[b, 2]
         lengths[e] = np.sqrt(x * x + y * y + z * z)

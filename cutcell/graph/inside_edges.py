@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit, prange
+from numba import njit
 from numpy.typing import NDArray
 
 from .interior import OUTSIDE, InteriorPoints, place_on_ray, point_number
@@ -55,7 +55,7 @@ def segment_edges(
     return edges
 
 
-@njit(cache=True, parallel=True)
+@njit(cache=True)
 def _list_segments(
     ray,
     first_k,
@@ -74,7 +74,7 @@ def _list_segments(
     edges,
     whole,
 ):
-    for r in prange(len(ray)):
+    for r in range(len(ray)):
         e = run_start[r]
         previous = crossing_node[low[r]] if low[r] != NONE else np.int32(NONE)
         before = OUTSIDE
@@ -128,10 +128,10 @@ def _at(resolution, start, first, last, number, x, y, z):
     return point_number(start, first, last, number, x * resolution + y, z)
 
 
-@njit(cache=True, parallel=True)
+@njit(cache=True)
 def _mark_cells(resolution, start, first, last, number, whole, cell):
     """Mark the points that are the lowest corner of a cell inside."""
-    for column in prange(resolution * resolution):
+    for column in range(resolution * resolution):
         x, y = column // resolution, column % resolution
         for s in range(start[column], start[column + 1]):
             for z in range(first[s], last[s] + 1):
@@ -147,10 +147,10 @@ def _mark_cells(resolution, start, first, last, number, whole, cell):
                 cell[number[s] + z - first[s]] = inside
 
 
-@njit(cache=True, parallel=True)
+@njit(cache=True)
 def _list_diagonals(resolution, start, first, last, number, cell, first_point, cursor, edges):
     """Count the diagonals that start in each column in `cursor`; or list them."""
-    for column in prange(resolution * resolution):
+    for column in range(resolution * resolution):
         x, y = column // resolution, column % resolution
         for s in range(start[column], start[column + 1]):
             for z in range(first[s], last[s] + 1):

@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit, prange
+from numba import njit
 from numpy.typing import NDArray
 
 from .segments import Runs
@@ -122,9 +122,9 @@ def _find_missed(ray, first_k, last_k, axis, resolution, start, first, last, num
     return count
 
 
-@njit(cache=True, parallel=True)
+@njit(cache=True)
 def _list_points(resolution, start, first, last, number, index):
-    for column in prange(resolution * resolution):
+    for column in range(resolution * resolution):
         for s in range(start[column], start[column + 1]):
             for z in range(first[s], last[s] + 1):
                 n = number[s] + z - first[s]

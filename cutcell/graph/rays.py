@@ -16,10 +16,11 @@ so the three families of rays see one and the same movement.
 
 from __future__ import annotations
 
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit, prange
+from numba import get_num_threads, njit
 from numpy.typing import NDArray
 
 AXES = ((1, 2, 0), (0, 2, 1), (0, 1, 2))
@@ -74,45 +75,72 @@ def cast_rays(
     u, v, along = AXES[axis]
     projected = np.ascontiguousarray(vertices[:, [u, v, along]])
     flip = -1 if axis == 1 else 1  # x cross z points along -y
-    counts = np.zeros(resolution**2 + 1, np.int64)
-    nothing = (np.empty(0), np.empty(0, np.int32), np.empty(0, np.int8))
-    _draw(projected, faces, resolution, flip, False, counts[1:], *nothing)
-    start = np.cumsum(counts)
-    total = int(start[-1])
-    found = (np.empty(total), np.empty(total, np.int32), np.empty(total, np.int8))
-    _draw(projected, faces, resolution, flip, True, start[:-1].copy(), *found)
-    _sort_rays(start, *found)
-    return Crossings(start, *found)
-
-
-@njit(cache=True, parallel=True)
-def _draw(vertices, faces, resolution, flip, store, cursor, position, triangle, sign):
-    """Count the crossings of each ray in `cursor`; or store them there, moving it on."""
-    for strip in prange(STRIPS):
-        first = strip * resolution // STRIPS
-        last = (strip + 1) * resolution // STRIPS - 1
-        for f in range(len(faces)):
-            u0, u1, u2 = (
-                vertices[faces[f, 0], 0],
-                vertices[faces[f, 1], 0],
-                vertices[faces[f, 2], 0],
+    bounds = np.arange(STRIPS + 1) * resolution // STRIPS
+    with ThreadPoolExecutor(get_num_threads()) as pool:
+        strips = list(
+            pool.map(
+                lambda k: _draw_strip(projected, faces, resolution, flip, *bounds[k : k + 2]),
+                range(STRIPS),
             )
-            begin = max(first, first_at_least(min(u0, u1, u2), resolution))
-            end = min(last, first_at_least(max(u0, u1, u2), resolution) - 1)
-            for i in range(begin, end + 1):
-                pu = (i + 0.5) / resolution
-                low_v, low_a, high_v, high_a, side = column_span(vertices, faces, f, pu)
-                j = first_at_least(low_v, resolution)
-                while j < resolution and (j + 0.5) / resolution < high_v:
-                    ray = i * resolution + j
-                    if store:
-                        k = cursor[ray]
-                        pv = (j + 0.5) / resolution
-                        position[k] = height_between(low_v, low_a, high_v, high_a, pv)
-                        triangle[k] = f
-                        sign[k] = flip * side
-                    cursor[ray] += 1
-                    j += 1
+        )
+    counts, position, triangle, sign = (
+        np.concatenate(parts) for parts in zip(*strips, strict=True)
+    )
+    return Crossings(np.concatenate([[0], np.cumsum(counts)]), position, triangle, sign)
+
+
+@njit(cache=True, nogil=True)
+def _draw_strip(vertices, faces, resolution, flip, first, last):
+    """Draw the triangles on the columns first <= i < last.
+
+    Returns how many crossings each ray has, then position, triangle and sign of each
+    crossing, ray by ray.
+    """
+    place, hits, size = np.empty(256), np.empty((256, 3), np.int32), 0
+    for f in range(len(faces)):
+        u0, u1, u2 = vertices[faces[f, 0], 0], vertices[faces[f, 1], 0], vertices[faces[f, 2], 0]
+        if max(u0, u1, u2) * resolution < first or min(u0, u1, u2) * resolution > last:
+            continue
+        begin = max(first, first_at_least(min(u0, u1, u2), resolution))
+        end = min(last, first_at_least(max(u0, u1, u2), resolution))
+        for i in range(begin, end):
+            pu = (i + 0.5) / resolution
+            low_v, low_a, high_v, high_a, side = column_span(vertices, faces, f, pu)
+            j = first_at_least(low_v, resolution)
+            while j < resolution and (j + 0.5) / resolution < high_v:
+                if size == len(place):
+                    place, hits = grown(place), grown(hits)
+                pv = (j + 0.5) / resolution
+                place[size] = height_between(low_v, low_a, high_v, high_a, pv)
+                hits[size, 0] = (i - first) * resolution + j
+                hits[size, 1], hits[size, 2] = f, flip * side
+                size += 1
+                j += 1
+    return _by_ray(place[:size], hits[:size], (last - first) * resolution)
+
+
+@njit(cache=True)
+def _by_ray(place, hits, rays):
+    counts = np.zeros(rays, np.int64)
+    for k in range(len(hits)):
+        counts[hits[k, 0]] += 1
+    cursor = np.cumsum(counts) - counts
+    position = np.empty(len(hits))
+    triangle, sign = np.empty(len(hits), np.int32), np.empty(len(hits), np.int8)
+    for k in range(len(hits)):
+        n = cursor[hits[k, 0]]
+        position[n], triangle[n], sign[n] = place[k], hits[k, 1], hits[k, 2]
+        cursor[hits[k, 0]] += 1
+    _sort_rays(counts, position, triangle, sign)
+    return counts, position, triangle, sign
+
+
+@njit(cache=True)
+def grown(array):
+    """Return a copy of an array with room for twice as many rows."""
+    larger = np.empty((2 * array.shape[0], *array.shape[1:]), array.dtype)
+    larger[: array.shape[0]] = array
+    return larger
 
 
 @njit(cache=True, inline="always")
@@ -167,10 +195,11 @@ def height_between(low_v, low_a, high_v, high_a, pv):
     return min(max(along, min(low_a, high_a)), max(low_a, high_a))
 
 
-@njit(cache=True, parallel=True)
-def _sort_rays(start, position, triangle, sign):
-    for ray in prange(len(start) - 1):
-        begin, end = start[ray], start[ray + 1]
+@njit(cache=True)
+def _sort_rays(counts, position, triangle, sign):
+    end = 0
+    for ray in range(len(counts)):
+        begin, end = end, end + counts[ray]
         if end - begin > 64:  # a soup of many layers: leave little to the insertions below
             order = begin + np.argsort(position[begin:end])
             position[begin:end] = position[order]

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from .caps import Caps
 from .holes import BLOCK, UNSURE, Needs
-from .rays import AXES, STRIPS, Crossings, cast_rays, first_at_least
+from .rays import AXES, STRIPS, Crossings, cast_rays, first_at_least, grown
 from .winding import Boundary, boundary_turns
 
 NONE = -1
@@ -76,10 +76,12 @@ def find_runs(
     projected = np.ascontiguousarray(vertices[:, [u, v, along]])
     # The blocks as this family of rays sees them: by u, v, and along.
     blocks = (needs.coarse.transpose(u, v, along), needs.row.transpose(u, v, along))
+    lowest, highest = blocks[0].min(axis=2), blocks[0].max(axis=2)
+    calm = np.where((lowest == highest) & (highest < UNSURE), lowest, np.int8(UNSURE))
     turn = -1.0 if axis == 1 else 1.0  # (x, z, y) is left-handed
     inputs = (
         (resolution, winding_threshold, turn, projected, boundary.edges, boundary.count),
-        (*blocks, needs.fine.transpose(0, u + 1, v + 1, along + 1)),
+        (calm, *blocks, needs.fine.transpose(0, u + 1, v + 1, along + 1)),
         (crossings.start, crossings.position, crossings.sign),
         (closing.start, closing.position, weight),
     )
@@ -94,16 +96,18 @@ def find_runs(
 def _walk_rays(surface, needs, crossings, closing, first_ray, last_ray):
     """List the runs of a strip of rays, as rows (ray, first, last, low, high)."""
     resolution = surface[0]
-    closed = len(surface[4]) == 0
     rows = np.empty((256, 5), np.int64)
     count = 0
     for r in range(first_ray, last_ray):
         begin, end = crossings[0][r], crossings[0][r + 1]
-        if closed and begin == end:
-            continue
         chi = 0
         for c in range(begin, end):
             chi += crossings[2][c]
+        # Far from holes, no winding number changes between two crossings.
+        need = needs[0][r // resolution // BLOCK, r % resolution // BLOCK]
+        calm = need < UNSURE and closing[0][r] == closing[0][r + 1]
+        if calm and begin == end and chi < need:
+            continue
         k = 0
         # Gap by gap: from the crossing c - 1 (or the cube's wall) to the crossing c.
         for c in range(begin, end + 1):
@@ -112,10 +116,14 @@ def _walk_rays(surface, needs, crossings, closing, first_ray, last_ray):
             before = crossings[1][c - 1] if c > begin else 0.0
             after = crossings[1][c] if c < end else 1.0
             beyond = first_at_least(after, resolution) if c < end else resolution
-            if closed:
-                if chi >= surface[1]:
-                    rows = _grown(rows, count)
-                    rows[count] = r, k, beyond - 1, c - 1, c
+            if calm:
+                # From the wall straight to a crossing there is no segment.
+                if chi >= need and (beyond > k or begin < c < end):
+                    if count == len(rows):
+                        rows = grown(rows)
+                    rows[count, 0], rows[count, 1], rows[count, 2] = r, k, beyond - 1
+                    rows[count, 3] = c - 1 if c > begin else NONE
+                    rows[count, 4] = c if c < end else NONE
                     count += 1
                 k = beyond
                 continue
@@ -128,7 +136,8 @@ def _walk_rays(surface, needs, crossings, closing, first_ray, last_ray):
                     right = after if s == beyond else (s + 0.5) / resolution
                     kept = _is_inside(surface, needs, closing, r, chi, 0.5 * (left + right))
                 if kept and not is_open:
-                    rows = _grown(rows, count)
+                    if count == len(rows):
+                        rows = grown(rows)
                     rows[count, 0] = r
                     rows[count, 1] = k if s == k else s - 1
                     rows[count, 3] = c - 1 if s == k else NONE
@@ -144,25 +153,14 @@ def _walk_rays(surface, needs, crossings, closing, first_ray, last_ray):
 
 
 @njit(cache=True)
-def _grown(rows, count):
-    if count < len(rows):
-        return rows
-    larger = np.empty((2 * count, 5), np.int64)
-    larger[:count] = rows
-    return larger
-
-
-@njit(cache=True)
 def _is_inside(surface, needs, closing, r, chi, height):
     """Tell whether the winding number at a height on ray r is at least tau.
 
     chi counts the mesh's own crossings ahead.
     """
     resolution, tau, turn, vertices, edges, count = surface
-    if len(edges) == 0:
-        return chi >= tau
     i, j, k = r // resolution, r % resolution, min(int(height * resolution), resolution - 1)
-    coarse, row, fine = needs
+    _, coarse, row, fine = needs
     need = coarse[i // BLOCK, j // BLOCK, k // BLOCK]
     if need == UNSURE:
         block = row[i // BLOCK, j // BLOCK, k // BLOCK]
