@@ -11,6 +11,7 @@ from ..skinning import bind
 from .bone_heat import bone_heat
 from .euclidean import euclidean
 from .result import BaselineBinding
+from .volume import bbw, biharmonic
 from .voxel_binding import voxel, voxel_unirig
 
 Method = Callable[..., BaselineBinding]
@@ -35,6 +36,8 @@ def artist(rig: Rig) -> BaselineBinding:
 
 METHODS: dict[str, Method] = {
     "artist": artist,
+    "bbw": bbw,
+    "biharmonic": biharmonic,
     "bone_heat": bone_heat,
     "cutcell": cutcell,
     "euclidean": euclidean,

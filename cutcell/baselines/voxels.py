@@ -11,8 +11,8 @@ from scipy.ndimage import label
 
 from .body import Body
 
-PAD = 1
-"""Empty voxels around the unit cube, through which the flood runs."""
+PAD = 2
+"""Voxels around the unit cube: one that its faces may touch, one through which the flood runs."""
 
 HALF = 0.5 + 1e-9
 """Half a voxel, and a little: a triangle that lies on the side between two marks both."""
@@ -29,8 +29,8 @@ class Voxels:
 
     Parameters
     ----------
-    solid : array, shape (R + 2, R + 2, R + 2), bool
-        With one empty layer around the unit cube.
+    solid : array, shape (R + 4, R + 4, R + 4), bool
+        With two layers around the unit cube, the outer one empty.
     number : array, same shape, int32
         Counts the solid voxels; -1 elsewhere.
     centres : array, shape (s, 3), float64
@@ -55,9 +55,9 @@ class Voxels:
     def links(self) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
         """List neighbours that share a face, an edge or a corner: (e, 2), and distances (e,)."""
         pairs, lengths = [], []
-        inner = self.number[PAD:-PAD, PAD:-PAD, PAD:-PAD]
+        inner = self.number[1:-1, 1:-1, 1:-1]
         for step in NEIGHBOURS:
-            shifted = np.roll(self.number, -step, axis=(0, 1, 2))[PAD:-PAD, PAD:-PAD, PAD:-PAD]
+            shifted = np.roll(self.number, -step, axis=(0, 1, 2))[1:-1, 1:-1, 1:-1]
             both = (inner >= 0) & (shifted >= 0)
             pairs.append(np.stack([inner[both], shifted[both]], axis=1))
             lengths.append(np.full(len(pairs[-1]), np.linalg.norm(step) / self.resolution))

@@ -1,0 +1,415 @@
+"""Each method against a closed form, another library, or a slow loop."""
+
+import re
+from itertools import product
+
+import igl
+import numpy as np
+import pytest
+import trimesh
+from scipy.optimize import lsq_linear
+from scipy.sparse import csr_array
+from scipy.sparse.csgraph import dijkstra
+from scipy.spatial import cKDTree
+
+import cutcell
+from cutcell import ParameterError, Rig, Skeleton, TriangleMesh
+from cutcell.baselines import METHODS, BaselineBinding, volume
+from cutcell.baselines import volume_worker as worker
+from cutcell.baselines.body import Body
+from cutcell.baselines.laplacian import cotangent_laplacian, vertex_areas, vertex_normals
+from cutcell.baselines.paths import path_lengths
+from cutcell.baselines.visibility import Blockers
+from cutcell.baselines.voxels import PAD, voxelize
+from cutcell.metrics import vertex_shares, weight_l1
+from tests import meshes
+from tests.conftest import SHARED_RIGS
+
+
+def grid_box(nx, ny=2, nz=2, size=(1.0, 0.2, 0.2)):
+    """Make a closed box of small squares, from the origin to `size`."""
+    number, faces = {}, []
+
+    def at(*key):
+        return number.setdefault(key, len(number))
+
+    n = (nx, ny, nz)
+    for axis in range(3):
+        u, v = (axis + 1) % 3, (axis + 2) % 3
+        for side, i, j in product((0, n[axis]), range(n[u]), range(n[v])):
+            corners = []
+            for a, b in ((0, 0), (1, 0), (1, 1), (0, 1)):
+                key = [0, 0, 0]
+                key[axis], key[u], key[v] = side, i + a, j + b
+                corners.append(at(*key))
+            if side == 0:
+                corners = corners[::-1]
+            faces += [[corners[0], *corners[1:3]], [corners[0], *corners[2:4]]]
+    return np.array(list(number)) / n * np.array(size), np.array(faces)
+
+
+def bar(nx=20, joints=3):
+    vertices, faces = grid_box(nx)
+    x = np.linspace(0.05, 0.95, joints)
+    skeleton = Skeleton(
+        np.stack([x, 0 * x + 0.1, 0 * x + 0.1], axis=1),
+        np.arange(joints) - 1,
+        deform=np.arange(joints) < joints - 1,
+    )
+    return Rig(TriangleMesh(vertices, faces), skeleton)
+
+
+def open_tube(radius=0.05, along=160, around=24):
+    turn = 2 * np.pi * np.arange(around) / around
+    ring = radius * np.stack([np.cos(turn), np.sin(turn)], axis=1)
+    x = np.linspace(0, 1, along + 1)
+    vertices = [[xi, *p] for xi in x for p in ring]
+    faces = []
+    for i, k in product(range(along), range(around)):
+        a, b = i * around + k, i * around + (k + 1) % around
+        faces += [[a, b, b + around], [a, b + around, a + around]]
+    return np.array(vertices), np.array(faces)
+
+
+def check_weights(rig, found):
+    assert found.failed == ""
+    assert found.weights.shape == (len(rig.mesh.vertices), len(rig.skeleton.joints))
+    assert (found.weights >= 0).all()
+    np.testing.assert_allclose(found.weights.sum(axis=1), 1, atol=1e-9)
+    assert not found.weights[:, ~rig.skeleton.deform].any()
+    assert all(value >= 0 for value in found.seconds.values())
+
+
+# All of them
+
+
+@pytest.mark.parametrize("name", sorted(set(METHODS) - {"artist"}))
+def test_every_method_binds_a_bar(name):
+    rig = bar()
+    found = METHODS[name](rig)
+    check_weights(rig, found)
+    x = rig.mesh.vertices[:, 0]
+    assert found.warnings == ()
+    assert (found.weights[x < 0.2].argmax(axis=1) == 0).all()
+    assert (found.weights[x > 0.8].argmax(axis=1) == 1).all()
+    few = METHODS[name](rig, max_influences=1).weights
+    np.testing.assert_array_equal((few > 0).sum(axis=1), 1)
+
+
+@pytest.mark.parametrize("name", sorted(set(METHODS) - {"artist", "bbw", "biharmonic"}))
+@pytest.mark.parametrize("make", [meshes.ball_with_holes, meshes.grid_soup, meshes.non_manifold])
+def test_robust_methods_bind_anything(name, make):
+    vertices, faces = make()
+    vertices = np.concatenate([vertices, [[3, 3, 3]]])  # that no face uses
+    joints = [[0.2, 0.5, 0.5], [0.5, 0.5, 0.5], [0.8, 0.5, 0.5], [0.8, 0.6, 0.5]]
+    skeleton = Skeleton(joints, [-1, 0, 1, 1], deform=[True, True, False, True])
+    rig = Rig(TriangleMesh(vertices, faces), skeleton)
+    check_weights(rig, METHODS[name](rig))
+
+
+@pytest.mark.parametrize("name", sorted(set(METHODS) - {"artist", "cutcell"}))
+def test_weights_that_a_file_cannot_store_are_not_given(name):
+    rig = bar()
+    allowed = np.ones((len(rig.mesh.vertices), 3), bool)
+    allowed[:5, 0] = False
+    allowed[5:10, 1] = False
+    rig = Rig(rig.mesh, rig.skeleton, allowed=allowed)
+    found = METHODS[name](rig)
+    check_weights(rig, found)
+    assert not found.weights[~allowed].any()
+
+
+def test_the_artists_weights_are_the_files():
+    rig = bar()
+    assert METHODS["artist"](rig).failed == "the file holds no weights"
+    weights = np.tile([1.0, 0, 0], (len(rig.mesh.vertices), 1))
+    np.testing.assert_array_equal(METHODS["artist"](rig.with_weights(weights)).weights, weights)
+
+
+def test_a_result_says_what_it_is():
+    assert BaselineBinding(None, failed="no").failed == "no"
+    assert BaselineBinding(np.eye(2)).warnings == ()
+
+
+@pytest.mark.parametrize(
+    ("name", "options"),
+    [
+        ("euclidean", {"alpha": 2}),
+        ("euclidean", {"leaf": "?"}),
+        ("euclidean", {"max_influences": 0}),
+        ("euclidean", {"threshold": -1}),
+        ("voxel", {"resolution": 1}),
+        ("voxel", {"alpha": "x"}),
+        ("voxel_unirig", {"alpha": -1}),
+        ("bone_heat", {"heat": 0}),
+        ("bbw", {"iterations": 0}),
+        ("bbw", {"limit": -1}),
+        ("biharmonic", {"limit": "soon"}),
+    ],
+)
+def test_parameters_out_of_range_are_refused(name, options):
+    with pytest.raises(ParameterError, match=next(iter(options))):
+        METHODS[name](bar(4), **options)
+
+
+# Straight and voxel distances
+
+
+def test_euclidean_weights_by_hand():
+    rig = bar()
+    diagonal = np.linalg.norm([1, 0.2, 0.2])
+    near = rig.mesh.vertices - [0, 0.1, 0.1]
+    inverse = []
+    for low, high in ((0.05, 0.5), (0.5, 0.95)):
+        away = near - np.clip(near[:, 0], low, high)[:, None] * [1, 0, 0]
+        d = np.linalg.norm(away, axis=1) / diagonal
+        inverse.append((0.5 * d + 0.5 * d**2) ** -2)
+    expected = np.array(inverse) / np.sum(inverse, axis=0)
+    np.testing.assert_allclose(METHODS["euclidean"](rig).weights[:, :2], expected.T, atol=1e-12)
+
+
+@pytest.mark.parametrize("make", [meshes.ball, meshes.grid_soup, meshes.random_soup, meshes.torus])
+def test_no_voxel_that_the_surface_touches_is_missed(make):
+    vertices, faces = make()
+    rig = Rig(TriangleMesh(vertices, faces), Skeleton([[0.5, 0.5, 0.5]], [-1]))
+    body = Body.of(rig, resolution=16)
+    voxels = voxelize(body)
+    rng = np.random.default_rng(0)
+    spots = rng.dirichlet(np.ones(3), 2000)
+    points = np.einsum("sc,mcx->msx", spots, body.points[body.faces]).reshape(-1, 3)
+    assert (voxels.at(points) >= 0).all()
+    assert (voxels.at(body.points[np.unique(body.faces)]) >= 0).all()
+    # What is solid is near the surface or inside.
+    surface = cKDTree(points).query(voxels.centres)[0] <= np.sqrt(3) / 2 / 16 + 0.01
+    inside = cutcell.winding_number(TriangleMesh(body.points, body.faces), voxels.centres[~surface])
+    if make in (meshes.ball, meshes.torus):
+        np.testing.assert_allclose(inside, 1, atol=1e-6)
+
+
+def test_a_box_is_filled_and_a_hollow_stays_outside():
+    vertices, faces = meshes.box(0, 1)
+    rig = Rig(TriangleMesh(vertices * 0.9, faces), Skeleton([[0.5, 0.5, 0.5]], [-1]))
+    voxels = voxelize(Body.of(rig, resolution=8))
+    assert voxels.solid[PAD:-PAD, PAD:-PAD, PAD:-PAD].all()
+    ring = Rig(TriangleMesh(*meshes.torus()), rig.skeleton)
+    assert voxelize(Body.of(ring, resolution=32)).at(np.array([[0.5, 0.5, 0.5]]))[0] == -1
+
+
+def test_paths_equal_scipys():
+    rng = np.random.default_rng(1)
+    links = np.unique(np.sort(rng.integers(0, 60, (200, 2)), axis=1), axis=0)
+    links = links[links[:, 0] != links[:, 1]]
+    lengths = rng.random(len(links)) + 0.01
+    matrix = csr_array((lengths, links.T), shape=(70, 70))
+    found = path_lengths(
+        70, links, lengths, [np.array([3]), np.array([8, 9])], [np.zeros(1), np.zeros(2)]
+    )
+    np.testing.assert_allclose(found[0], dijkstra(matrix, directed=False, indices=3))
+    expected = dijkstra(matrix, directed=False, indices=[8, 9]).min(axis=0)
+    np.testing.assert_allclose(found[1], expected)
+    assert np.isinf(found[:, 60:]).all()
+
+
+def test_voxel_paths_on_a_bar_are_as_long_as_the_bar():
+    """One joint point at each end: along the axis voxel paths are straight."""
+    rig = bar()
+    ends = Skeleton([[0.0, 0.1, 0.1], [1.0, 0.1, 0.1]], [-1, -1])
+    x = rig.mesh.vertices[:, 0]
+    found = METHODS["voxel"](Rig(rig.mesh, ends), 60, alpha=0).weights
+    # alpha = 0: the ratio of the weights is that of the squared distances.
+    middle = (x > 0.3) & (x < 0.7)
+    ratio = np.sqrt(found[middle, 1] / found[middle, 0])
+    np.testing.assert_allclose(ratio, x[middle] / (1 - x[middle]), rtol=0.25)
+    centre = np.isclose(x, 0.5)
+    np.testing.assert_allclose(found[centre], 0.5, atol=0.02)
+
+
+def test_voxels_leak_across_gaps_narrower_than_themselves():
+    """Two bars side by side, a gap of 0.01: at R = 16 they are one to voxels, not to us."""
+    vertices, faces = grid_box(20, size=(1.0, 0.2, 0.2))
+    other = vertices + np.array([0, 0.21, 0])
+    mesh = TriangleMesh(
+        np.concatenate([vertices, other]), np.concatenate([faces, faces + len(vertices)])
+    )
+    skeleton = Skeleton([[0.5, 0.1, 0.1], [0.5, 0.31, 0.1]], [-1, -1])
+    rig = Rig(mesh, skeleton)
+    lower = np.arange(len(mesh.vertices)) < len(vertices)
+    # Side by side every voxel path crosses freely: weights bleed over.
+    leaked = METHODS["voxel"](rig, 16).weights[lower, 1].mean()
+    assert leaked > 0.1
+    assert METHODS["cutcell"](rig, 16).weights[lower, 1].max() == 0
+
+
+# Bone heat
+
+
+@pytest.mark.parametrize("make", [meshes.ball, meshes.torus, meshes.ball_with_holes])
+def test_laplacian_and_areas_equal_libigls(make):
+    vertices, faces = make()
+    laplacian = cotangent_laplacian(vertices, faces)
+    expected = -igl.cotmatrix(vertices, faces.astype(np.int64)).toarray()
+    np.testing.assert_allclose(laplacian.toarray(), expected, atol=1e-9)
+    kind = igl.MASSMATRIX_TYPE_VORONOI
+    mass = igl.massmatrix(vertices, faces.astype(np.int64), kind).diagonal()
+    np.testing.assert_allclose(vertex_areas(vertices, faces), mass, atol=1e-12)
+
+
+def test_normals_of_a_ball_point_away_from_its_middle():
+    vertices, faces = meshes.ball(3)
+    away = (vertices - 0.5) / 0.45
+    assert ((vertex_normals(vertices, faces) * away).sum(axis=1) > 0.99).all()
+
+
+def test_what_blocks_the_view_equals_a_slow_loop():
+    vertices, faces = meshes.torus()
+    rng = np.random.default_rng(0)
+    vertex, target = rng.integers(0, len(vertices), 300), rng.uniform(0, 1, (300, 3))
+    found = Blockers(vertices, faces).blocked(vertex, target)
+    for q in range(300):
+        start, way, slow = vertices[vertex[q]], target[q] - vertices[vertex[q]], False
+        for face in faces:
+            if vertex[q] in face:
+                continue
+            a, b, c = vertices[face]
+            matrix = np.stack([b - a, c - a, -way], axis=1)
+            if abs(np.linalg.det(matrix)) < 1e-15:
+                continue
+            u, v, t = np.linalg.solve(matrix, start - a)
+            slow |= u >= 0 and v >= 0 and u + v <= 1 and 1e-9 < t < 1 - 1e-9
+        assert found[q] == slow
+    assert 0.1 < found.mean() < 0.9
+
+
+@pytest.mark.parametrize("heat", [0.2, 1.0])
+def test_heat_along_a_tube_falls_off_as_it_should(heat):
+    """In one dimension: -w'' + h w = h p, so w = 1 - cosh(k x) / (2 cosh(k L / 2))."""
+    radius = 0.05
+    rig = Rig(
+        TriangleMesh(*open_tube(radius)),
+        Skeleton([[0, 0, 0], [0.5, 0, 0], [1, 0, 0]], [-1, 0, 1], deform=[True, True, False]),
+    )
+    found = METHODS["bone_heat"](rig, heat=heat)
+    check_weights(rig, found)
+    x = rig.mesh.vertices[:, 0]
+    k = np.sqrt(heat) / radius
+    left = 1 - np.cosh(k * x) / (2 * np.cosh(k / 2))
+    mixed = (x < 0.499) & (left < 0.94)  # beyond it the smaller weight fades out
+    assert mixed.sum() > 100
+    np.testing.assert_allclose(found.weights[mixed, 0], left[mixed], atol=0.02)
+    assert (found.weights[(x < 0.5) & (left > 0.98), 0] == 1).all()
+
+
+def test_pieces_that_no_bone_sees_get_weights_too():
+    rig = bar()
+    inner, faces = meshes.ball(1)
+    shell = trimesh.creation.box(extents=(0.5, 0.5, 0.5))  # neither sees into the bar
+    vertices = np.concatenate(
+        [
+            rig.mesh.vertices,
+            inner * 0.2 + [0.2, 1.0, 0.0],
+            shell.vertices + np.array([0.3, 1.1, 0.1]),
+        ]
+    )
+    n, m = len(rig.mesh.vertices), len(inner)
+    mesh = TriangleMesh(vertices, np.concatenate([rig.mesh.faces, faces + n, shell.faces + n + m]))
+    hidden = Rig(mesh, rig.skeleton)
+    found = METHODS["bone_heat"](hidden)
+    check_weights(hidden, found)
+    assert f"{m + 8} of {len(vertices)} places lie on pieces" in found.warnings[0]
+
+
+@pytest.mark.parametrize(
+    ("name", "limit"),
+    [("khronos_CesiumMan", 0.35), ("khronos_Fox", 0.45), ("makehuman_clothed_mixamo", 0.4)],
+)
+def test_bone_heat_is_near_to_blenders(name, limit):
+    """Not equal: Blender's bones have one end each, which its importer guesses."""
+    path = SHARED_RIGS.parent / "bone_heat" / f"{name}.npz"
+    if not path.exists():
+        pytest.skip(f"there is no {path}; it is not part of the project")
+    rig = cutcell.load(SHARED_RIGS / f"{name}.glb")
+    data = np.load(path)
+    away, row = cKDTree(data["vertices"]).query(rig.mesh.vertices)
+    assert away.max() < 1e-6
+    column = [list(data["joint_names"]).index(joint) for joint in rig.skeleton.names]
+    theirs = data["weights"][row][:, column].astype(float)
+    held = theirs.sum(axis=1) > 0
+    theirs = theirs[held] / theirs[held].sum(axis=1, keepdims=True)
+    share = vertex_shares(rig.mesh)[held]
+    ours = METHODS["bone_heat"](rig).weights[held]
+    assert weight_l1(ours, theirs, share) < limit
+    assert weight_l1(METHODS["euclidean"](rig).weights[held], theirs, share) > 2 * limit
+
+
+# Weights in the volume
+
+
+def tetrahedra():
+    points, faces = grid_box(6)
+    handles = np.array([[0.1, 0.1, 0.1], [0.3, 0.1, 0.1], [0.7, 0.1, 0.1], [0.9, 0.1, 0.1]])
+    nodes, tets = worker.tetrahedralize(points, faces.astype(np.int64), handles)
+    fixed, values = worker.constraints(cKDTree(nodes), handles, np.array([0, 0, 1, 1]))
+    return nodes, tets, fixed, values
+
+
+def test_biharmonic_weights_equal_libigls():
+    nodes, tets, fixed, values = tetrahedra()
+    assert len(fixed) == 4
+    found = worker.unbounded(nodes, tets, fixed, values, 1)
+    expected = igl.harmonic(nodes, tets, fixed, values, 2)
+    np.testing.assert_allclose(found, expected, atol=1e-6)
+    np.testing.assert_allclose(found.sum(axis=1), 1, atol=1e-6)
+
+
+def test_bounded_weights_equal_scipys_least_squares():
+    nodes, tets, fixed, values = tetrahedra()
+    found = worker.bounded(nodes, tets, fixed, values, 50)
+    stiffness = igl.cotmatrix(nodes, tets).toarray()
+    mass = igl.massmatrix(nodes, tets, igl.MASSMATRIX_TYPE_DEFAULT).diagonal()
+    root = stiffness / np.sqrt(mass)[:, None]
+    free = np.setdiff1d(np.arange(len(nodes)), fixed)
+    for column in range(2):
+        right = -root[:, fixed] @ values[:, column]
+        best = lsq_linear(root[:, free], right, (0, 1), tol=1e-12)
+        np.testing.assert_allclose(found[free, column], best.x, atol=2e-3)
+    assert worker.unbounded(nodes, tets, fixed, values, 1).max() > 1.001  # bounds do matter
+
+
+def test_bounded_weights_on_a_bar_mirror_each_other():
+    rig = bar()
+    found = METHODS["bbw"](rig).weights
+    x = rig.mesh.vertices[:, 0]
+    assert found[np.isclose(x, 0.5), 0].mean() == pytest.approx(0.5, abs=0.03)
+    means = [found[np.isclose(x, at), 0].mean() for at in np.unique(x)]
+    assert (np.diff(means) < 0.02).all()
+
+
+def test_surfaces_that_cannot_be_filled_say_so():
+    rig = Rig(TriangleMesh(*meshes.tube()), Skeleton([[0.5, 0.5, 0.5]], [-1]))
+    for name in ("bbw", "biharmonic"):
+        found = METHODS[name](rig)
+        assert found.weights is None
+        assert "TetGen" in found.failed
+
+
+@pytest.mark.parametrize(
+    ("code", "words"),
+    [
+        ("import os, signal; os.kill(os.getpid(), signal.SIGSEGV)", "crashed \\(signal 11\\)"),
+        ("import time; time.sleep(60)", "longer than 0.5 seconds"),
+        ("raise SystemExit('no space left')", "exit code 1: no space left"),
+        ("import sys; sys.exit(3)", "exit code 3: it said nothing"),
+    ],
+)
+def test_a_solver_that_dies_takes_nothing_along(monkeypatch, tmp_path, code, words):
+    script = tmp_path / "worker.py"
+    script.write_text(code)
+    monkeypatch.setattr(volume, "WORKER", script)
+    found = METHODS["bbw"](bar(4), limit=0.5 if "sleep" in code else 60)
+    assert found.weights is None
+    assert re.search(words, found.failed)
+
+
+def test_without_libigl_the_result_says_so(monkeypatch):
+    monkeypatch.setattr(volume, "find_spec", lambda name: None)
+    assert "pip install libigl" in METHODS["bbw"](bar(4)).failed
