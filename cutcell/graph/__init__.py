@@ -3,6 +3,7 @@
 from .build import build_graph
 from .cutcell_graph import INTERIOR, MESH, SURFACE, CutCellGraph
 from .lattice import Lattice
+from .segments import kernels_are_compiled
 from .winding import winding_number
 
 __all__ = [
@@ -12,5 +13,6 @@ __all__ = [
     "CutCellGraph",
     "Lattice",
     "build_graph",
+    "kernels_are_compiled",
     "winding_number",
 ]

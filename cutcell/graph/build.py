@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from ..checks import check_choice, check_number
 from ..progress import Progress, silent
 from ..rig import TriangleMesh
+from .backends import cast_rays_embree, cast_rays_open3d, find_runs_fast
 from .caps import cap_holes
 from .cutcell_graph import INTERIOR, MESH, SURFACE, CutCellGraph
 from .holes import find_needs
@@ -20,6 +21,8 @@ from .segments import NONE, find_runs
 from .weld import weld
 from .winding import find_boundary
 
+CASTERS = {"raster": cast_rays, "open3d": cast_rays_open3d, "embree": cast_rays_embree}
+
 
 def build_graph(
     mesh: TriangleMesh,
@@ -27,6 +30,8 @@ def build_graph(
     *,
     winding_threshold: float = 0.5,
     connectivity: int | str = 6,
+    rays: str = "raster",
+    winding: str = "exact",
     progress: Progress = silent,
 ) -> CutCellGraph:
     """Cut a lattice with a mesh and connect what lies inside.
@@ -44,6 +49,11 @@ def build_graph(
         diagonals of lattice cells that lie inside altogether: straighter, shorter paths.
         "any" has the edges of 6, but lets paths leave them where they see far: distances
         then converge to the geodesic ones, see `geodesics.any_angle`.
+    rays : {"raster", "open3d", "embree"}
+        What casts the rays: our own kernel in double precision, or a ray tracer in single.
+    winding : {"exact", "fast"}
+        What decides which pieces are inside: exact winding numbers, or libigl's
+        approximation at every midpoint. This and `rays` are for comparing.
     progress : callable
         See `cutcell.progress`; the stage is called "graph".
 
@@ -55,6 +65,8 @@ def build_graph(
     ------
     ParameterError
         A parameter is out of its range.
+    MissingLibraryError
+        `rays` or `winding` names a library that is not installed.
 
     References
     ----------
@@ -64,6 +76,8 @@ def build_graph(
     resolution = lattice.resolution
     winding_threshold = check_number("winding_threshold", winding_threshold, 0, 1)
     check_choice("connectivity", connectivity, (6, 26, "any"))
+    cast = CASTERS[check_choice("rays", rays, tuple(CASTERS))]
+    check_choice("winding", winding, ("exact", "fast"))
 
     progress("graph", 0.0)
     vertices, vertex_node = weld(lattice.to_unit(mesh.vertices))
@@ -74,11 +88,15 @@ def build_graph(
     crossings, runs = [], []
     for axis in range(3):
         progress("graph", 0.1 + 0.25 * axis)
-        found = cast_rays(vertices, faces, resolution, axis)
+        found = cast(vertices, faces, resolution, axis)
         crossings.append(found)
-        runs.append(
-            find_runs(vertices, found, boundary, caps, needs, resolution, axis, winding_threshold)
-        )
+        if winding == "fast":
+            inside = find_runs_fast(vertices, faces, found, resolution, axis, winding_threshold)
+        else:
+            inside = find_runs(
+                vertices, found, boundary, caps, needs, resolution, axis, winding_threshold
+            )
+        runs.append(inside)
     progress("graph", 0.85)
     graph = _assemble(
         vertices, vertex_node, faces, boundary, crossings, runs, lattice, connectivity

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 from numba import get_num_threads, njit
@@ -43,6 +44,12 @@ class Runs:
     high: NDArray[np.int64]
 
 
+def kernels_are_compiled() -> bool:
+    """Tell whether this machine has compiled the kernels before, in any process."""
+    name = f"segments.{_walk_rays.__name__}*.nbc"
+    return any(Path(_walk_rays.stats.cache_path).glob(name))
+
+
 def find_runs(
     vertices: NDArray[np.float64],
     crossings: Crossings,
@@ -75,13 +82,20 @@ def find_runs(
     weight = closing.sign * caps.count[closing.triangle]
     projected = np.ascontiguousarray(vertices[:, [u, v, along]])
     # The blocks as this family of rays sees them: by u, v, and along.
-    blocks = (needs.coarse.transpose(u, v, along), needs.row.transpose(u, v, along))
-    lowest, highest = blocks[0].min(axis=2), blocks[0].max(axis=2)
+    seen = [
+        np.ascontiguousarray(a)
+        for a in (
+            needs.coarse.transpose(u, v, along),
+            needs.row.transpose(u, v, along),
+            needs.fine.transpose(0, u + 1, v + 1, along + 1),
+        )
+    ]
+    lowest, highest = seen[0].min(axis=2), seen[0].max(axis=2)
     calm = np.where((lowest == highest) & (highest < UNSURE), lowest, np.int8(UNSURE))
     turn = -1.0 if axis == 1 else 1.0  # (x, z, y) is left-handed
     inputs = (
         (resolution, winding_threshold, turn, projected, boundary.edges, boundary.count),
-        (calm, *blocks, needs.fine.transpose(0, u + 1, v + 1, along + 1)),
+        (calm, *seen),
         (crossings.start, crossings.position, crossings.sign),
         (closing.start, closing.position, weight),
     )

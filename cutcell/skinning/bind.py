@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..geodesics import FALLBACK_REASONS, BoneDistances, bone_distances
-from ..graph import CutCellGraph, build_graph
+from ..graph import CutCellGraph, build_graph, kernels_are_compiled
 from ..progress import Progress, silent
 from ..rig import Rig
 from .weights import skinning_weights
@@ -67,7 +67,8 @@ def bind(
     falloff, alpha, max_influences, threshold
         See `skinning_weights`.
     progress : callable
-        See `cutcell.progress`; stages are "graph", "distances", "weights".
+        See `cutcell.progress`; stages are "graph", "distances", "weights", and
+        before them "compile" the very first time on a machine.
 
     Returns
     -------
@@ -86,6 +87,8 @@ def bind(
     >>> binding = cutcell.bind(rig)  # doctest: +SKIP
     >>> cutcell.save("bound.glb", rig.with_weights(binding.weights))  # doctest: +SKIP
     """
+    if not kernels_are_compiled():
+        progress("compile", 0.0)  # happens within the stages below, and takes a while
     ticks = [perf_counter()]
     graph = build_graph(
         rig.mesh,

@@ -155,6 +155,20 @@ def test_other_parameters_are_checked():
         build_graph(mesh, 8, winding_threshold=2)
     with pytest.raises(ParameterError, match="connectivity must be one of 6, 26, 'any'"):
         build_graph(mesh, 8, connectivity=18)
+    with pytest.raises(ParameterError, match="rays must be one of 'raster', 'open3d', 'embree'"):
+        build_graph(mesh, 8, rays="x")
+    with pytest.raises(ParameterError, match="winding must be one of 'exact', 'fast'"):
+        build_graph(mesh, 8, winding="x")
+
+
+@pytest.mark.parametrize("options", [{"rays": "embree"}, {"winding": "fast"}])
+def test_other_backends_build_the_same_graph(options):
+    vertices, faces = meshes.ball(3)
+    turned = vertices @ np.linalg.qr(np.random.default_rng(0).normal(size=(3, 3)))[0]
+    mesh = TriangleMesh(turned, faces)
+    graph, other = build_graph(mesh, 16), build_graph(mesh, 16, **options)
+    np.testing.assert_array_equal(other.edges, graph.edges)
+    np.testing.assert_allclose(other.nodes, graph.nodes, atol=1e-5)
 
 
 def test_progress_ascends_and_can_cancel():

@@ -81,7 +81,8 @@ def test_mirrored_figures_have_mirrored_weights():
 def test_every_stage_reports_and_each_can_be_cancelled():
     seen = []
     binding = bind(figure(), 8, progress=lambda stage, fraction: seen.append(stage))
-    assert list(dict.fromkeys(seen)) == ["graph", "distances", "weights"]
+    stages = [stage for stage in dict.fromkeys(seen) if stage != "compile"]
+    assert stages == ["graph", "distances", "weights"]
     assert list(binding.seconds) == ["graph", "distances", "weights"]
     assert all(s >= 0 for s in binding.seconds.values())
     for stop in binding.seconds:
