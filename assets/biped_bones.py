@@ -1,4 +1,4 @@
-"""The walker's joints: 50 of them, fifteen in each hand."""
+"""The walker's joints: 52 of them, fifteen in each hand."""
 
 from __future__ import annotations
 

@@ -21,16 +21,18 @@ def closed_character(
     materials: dict[str, Material],
     motion: Motion,
     detail: float = 1.0,
+    smoothing: int = 12,
 ) -> Character:
     """Mesh the body inside the box (2, 3), weight it, and part it by material.
 
-    `spacing` and `detail` are those of `mesh_of`. Vertices on the border of two materials
-    are there twice, as in any GLB file; welded, the mesh is closed.
+    `spacing` and `detail` are those of `mesh_of`, `smoothing` that of `from_parts`.
+    Vertices on the border of two materials are there twice, as in any GLB file; welded, the
+    mesh is closed.
     """
     lower, upper = np.asarray(box, float)
     vertices, faces = mesh_of(body, lower, upper, spacing, detail)
     vertices, faces, colours = with_seams(body, vertices, faces, detail)
-    weights = from_parts(body, bones, vertices, faces)
+    weights = from_parts(body, bones, vertices, faces, smoothing=smoothing)
     normals = normals_of(body, vertices)
     surfaces = []
     for colour, material in materials.items():

@@ -83,9 +83,8 @@ def _face(body: Body) -> None:
     pupil = centre + unit([0.06, 0.02, 1]) * 0.078
     body.colour(ellipsoid(pupil, [0.031, 0.04, 0.035]), "eye", 0.01, both=True)
     for side in (1, -1):
-        body.colour(
-            ball(shifted(pupil * [side, 1, 1], 0.009, 0.014, 0.006), 0.0125), "light", 0.006
-        )
+        glint = shifted(pupil * [side, 1, 1], 0.005, 0.014, 0.006)
+        body.colour(ball(glint, 0.0115), "light", 0.006)
     smile = [[-0.075, 0.345], [-0.04, 0.318], [0, 0.309], [0.04, 0.318], [0.075, 0.345]]
     line = [[x, y, _front(body, x, y)] for x, y in smile]
     mouth = chain(line, [0.005, 0.011, 0.013, 0.011, 0.005])

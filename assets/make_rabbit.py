@@ -54,7 +54,7 @@ def make() -> Character:
     _hind_leg(body, bones)
     _ear(body, ear)
     box = [[-0.36, -0.02, -0.78], [0.36, 1.02, 0.78]]
-    return closed_character("Rabbit", bones, body, box, 0.006, MATERIALS, _hop())
+    return closed_character("Rabbit", bones, body, box, 0.006, MATERIALS, _hop(), smoothing=24)
 
 
 def _skeleton(ear: NDArray) -> Bones:
@@ -70,7 +70,7 @@ def _skeleton(ear: NDArray) -> Bones:
     bones.add("forearm.L", "upper_arm.L", [0.135, 0.27, 0.18], both=True)
     bones.add("paw.L", "forearm.L", [0.135, 0.09, 0.26], both=True)
     bones.add("thigh.L", "hips", [0.15, 0.44, -0.31], both=True)
-    bones.add("shin.L", "thigh.L", [0.205, 0.30, -0.10], both=True)
+    bones.add("shin.L", "thigh.L", [0.222, 0.272, -0.09], both=True)
     bones.add("foot.L", "shin.L", [0.215, 0.11, -0.44], both=True)
     bones.add("toe.L", "foot.L", [0.218, 0.05, -0.18], both=True)
     return bones
@@ -202,8 +202,11 @@ def _hind_leg(body: Body, bones: Bones) -> None:
     fur = {"both": True, "colour": "fur"}
     thigh = ellipsoid([0.188, 0.40, -0.245], [0.098, 0.18, 0.19])
     body.add(thigh, "thigh.L", at=hip, reach=0.4, blend=0.05, edge=0.028, **fur)
-    shin = round_cone(knee, heel, 0.066, 0.046)
-    body.add(shin, "shin.L", at=knee, reach=0.13, blend=0.04, edge=0.022, **fur)
+    # The knee stands clear of the belly, which is not the thigh's neighbour.
+    front = round_cone([0.188, 0.38, -0.23], knee, 0.1, 0.064)
+    body.add(front, "thigh.L", at=hip, reach=0.3, blend=0.03, edge=0.026, **fur)
+    shin = round_cone(knee, heel, 0.062, 0.046)
+    body.add(shin, "shin.L", at=knee, reach=0.1, blend=0.008, edge=0.022, **fur)
     ground = half_space([0, 0, 0], [0, -1, 0])
     foot = round_cone(heel - Y * 0.055, toe, 0.056, 0.054)
     body.add(
@@ -247,8 +250,8 @@ def _hop() -> Motion:
         rotate(motion, f"upper_arm.{side}", turn(X, curve(t, [0, 6, -6, 24, 10, -34, -14, -2])))
         rotate(motion, f"forearm.{side}", turn(X, curve(t, [0, -16, -14, -40, -40, -6, -6, -3])))
         rotate(motion, f"paw.{side}", turn(X, curve(t, [0, 6, 30, 40, 30, 10, 0, 0])))
-        rotate(motion, f"thigh.{side}", turn(X, curve(t, [0, -10, 30, 44, 16, -14, -12, -4])))
-        rotate(motion, f"shin.{side}", turn(X, curve(t, [0, 16, -30, -44, -10, 10, 10, 4])))
+        rotate(motion, f"thigh.{side}", turn(X, curve(t, [0, -10, 24, 36, 14, -12, -10, -4])))
+        rotate(motion, f"shin.{side}", turn(X, curve(t, [0, 14, -26, -38, -10, 8, 8, 4])))
         rotate(motion, f"foot.{side}", turn(X, curve(t, [0, -8, 40, 64, 30, -4, -8, -2])))
         rotate(motion, f"toe.{side}", turn(X, curve(t, [0, 0, -30, 10, 6, 0, 0, 0])))
     return motion

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy import sparse
+from scipy.sparse.csgraph import connected_components
 
 from .character import Bones
 from .sdf import Body
@@ -33,10 +35,10 @@ def from_parts(
         At most 4 joints a vertex; rows sum to 1.
     """
     distances = body.joint_distances(vertices, bones.names)
-    home = distances.argmin(axis=1)
+    home = _homes(distances, faces, bones)
     width = softness * _limb_radii(body, bones)[home]
-    excess = distances - distances.min(axis=1, keepdims=True)
-    share = np.maximum(1 - excess / width[:, None], 0)
+    excess = distances - distances[np.arange(len(home)), home][:, None]
+    share = np.clip(1 - excess / width[:, None], 0, 1)
     share = share * share * bones.neighbours()[home]
     share /= share.sum(axis=1, keepdims=True)
     return quantised(_averaged(share, faces, smoothing))
@@ -59,6 +61,37 @@ def rigid(count: int, bones: Bones, joint: str) -> NDArray:
     weights = np.zeros((count, len(bones.names)))
     weights[:, bones.names.index(joint)] = 1
     return weights
+
+
+def _homes(distances: NDArray, faces: NDArray, bones: Bones) -> NDArray:
+    """Return each vertex's nearest joint, not counting limbs that only lie close by.
+
+    Where parts melt, the surface stands off from all of them, and the ear above the back can
+    be nearer than the back's own parts. But that patch is away from the rest of the ear: a
+    joint's patches count if they touch its largest one, or that of a parent or child.
+    """
+    distances, neighbours = distances.copy(), bones.neighbours()
+    start, end = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
+    while True:
+        home = distances.argmin(axis=1)
+        inner = home[start] == home[end]
+        links = sparse.coo_array(
+            (np.ones(inner.sum()), (start[inner], end[inner])), shape=(len(home),) * 2
+        )
+        count, patch = connected_components(links, directed=False)
+        size = np.bincount(patch)
+        joint = np.zeros(count, int)
+        joint[patch] = home
+        main = np.zeros(count, bool)
+        order = np.lexsort((size, joint))
+        main[order[np.diff(joint[order], append=-1) != 0]] = True
+        a, b = patch[start], patch[end]
+        kept = main.copy()
+        kept[a[main[b] & neighbours[joint[a], joint[b]]]] = True
+        stray = ~kept[patch]
+        if not stray.any():
+            return home
+        distances[stray, home[stray]] = np.inf
 
 
 def _limb_radii(body: Body, bones: Bones) -> NDArray:

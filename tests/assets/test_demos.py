@@ -10,6 +10,8 @@ import numpy as np
 import pygltflib
 import pytest
 import trimesh
+from scipy import sparse
+from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from assets import DEMOS, demo_path
@@ -111,7 +113,7 @@ def test_motion_stretches_no_edge_far(id):
         posed = np.einsum("nab,nb->na", matrices, points)[:, :3]
         span = np.linalg.norm(np.subtract(*posed[edges].transpose(1, 0, 2)), axis=1)
         assert np.quantile(span / rest, 0.999) < 2.5
-        assert (span - rest).max() < 0.04
+        assert (span - rest).max() < 0.05  # metres
 
 
 def test_closed_characters_are_one_closed_ball(closed):
@@ -147,12 +149,27 @@ def test_normals_point_out_of_the_triangles(id):
     assert (agree > 0.5).mean() > 0.995
 
 
+def test_each_joint_holds_one_piece_of_the_skin(closed):
+    # The back must not follow the ears that lie on it, nor a finger its neighbour.
+    start = closed.faces[:, [0, 1, 2]].ravel()
+    end = closed.faces[:, [1, 2, 0]].ravel()
+    for name, weight in zip(closed.rig.skeleton.names, closed.weights.T, strict=True):
+        held = weight > 0
+        inside = held[start] & held[end]
+        links = sparse.coo_array(
+            (np.ones(inside.sum()), (start[inside], end[inside])), shape=(len(held),) * 2
+        )
+        pieces = np.bincount(connected_components(links, directed=False)[1][held])
+        assert held.sum() > 10, name
+        assert pieces.max() > 0.9 * held.sum(), name
+
+
 def test_the_walker_has_five_fingers_a_hand():
     names = load("biped").rig.skeleton.names
     for side in "LR":
         for finger in ("thumb", "index", "middle", "ring", "pinky"):
             assert {f"{finger}{k}.{side}" for k in (1, 2, 3)} <= set(names)
-    assert len(names) == 50
+    assert len(names) == 52
 
 
 @pytest.mark.parametrize("side", ["L", "R"])
