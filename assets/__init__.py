@@ -68,7 +68,7 @@ DEMOS: tuple[Demo, ...] = (
     Demo(
         "biped_cape",
         "Walker in a cape",
-        "The cape is one open sheet of triangles: a surface with no inside at all.",
+        "The cape is one open sheet that touches nothing: it has no inside for a bone to reach.",
     ),
 )
 """All demo characters in the order to show them; the first one greets the user."""

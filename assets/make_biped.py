@@ -44,15 +44,22 @@ MATERIALS = {
 @cache
 def make(detail: float = 1.0) -> Character:
     """Return the walker, its triangles `detail` times as large as designed."""
-    bones, body = skeleton(), Body()
+    bones = skeleton()
+    body = shape_around(bones)
+    box = [[-0.29, -0.02, -0.24], [0.29, 1.64, 0.22]]
+    return closed_character("Walker", bones, body, box, 0.003, MATERIALS, walk(), detail)
+
+
+def shape_around(bones: Bones) -> Body:
+    """Return the walker's body."""
+    body = Body()
     _torso(body)
     _head(body)
     _arm(body, bones)
     _hand(body, bones["hand.L"])
     _leg(body, bones)
     _shoe(body, bones["foot.L"])
-    box = [[-0.29, -0.02, -0.24], [0.29, 1.64, 0.22]]
-    return closed_character("Walker", bones, body, box, 0.003, MATERIALS, walk(), detail)
+    return body
 
 
 def _torso(body: Body) -> None:

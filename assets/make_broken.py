@@ -8,6 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .character import Bones, Character, Material, Surface
+from .make_biped import shape_around
+from .meshing import normals_of
+from .sdf import Body
 from .weights import quantised
 
 HOLES = (
@@ -76,7 +79,7 @@ def _cape(bones: Bones, across: int = 26, down: int = 34) -> Surface:
     x = (wide + fold) * np.sin(angle)
     z = -(deep + fold) * np.cos(angle) - 0.01
     y = 1.172 - 0.70 * v - 0.035 * _ease(v / 0.2) * np.abs(np.sin(angle)) ** 2
-    vertices = np.round(np.stack([x, y, z], axis=-1).reshape(-1, 3), 6)
+    vertices = _clear_of(shape_around(bones), np.stack([x, y, z], axis=-1).reshape(-1, 3))
     row = np.arange(len(vertices)).reshape(across + 1, down + 1)
     a, b = row[:-1, :-1].ravel(), row[1:, :-1].ravel()
     c, d = row[1:, 1:].ravel(), row[:-1, 1:].ravel()
@@ -84,6 +87,15 @@ def _cape(bones: Bones, across: int = 26, down: int = 34) -> Surface:
     material = Material("cape", "#c8434f", roughness=0.85, both_sides=True)
     weights = _cape_weights(bones, u.ravel(), v.ravel())
     return Surface(vertices, faces, _normals(vertices, faces), weights, material)
+
+
+def _clear_of(body: Body, points: NDArray, air: float = 0.016) -> NDArray:
+    """Return the points pushed out of the body, and a bit further."""
+    for _ in range(6):
+        points = (
+            points + normals_of(body, points) * np.maximum(air - body.distance(points), 0)[:, None]
+        )
+    return np.round(points, 6)
 
 
 def _cape_weights(bones: Bones, u: NDArray, v: NDArray) -> NDArray:

@@ -15,6 +15,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from assets import DEMOS, demo_path
+from tests.gltf_validator.validator import errors, reports
 
 from .conftest import load
 
@@ -24,6 +25,12 @@ IDS = [demo.id for demo in DEMOS]
 def gap(a, b):
     """Return the least distance between two sets of vertices."""
     return cKDTree(a).query(b)[0].min()
+
+
+def test_khronos_validator_finds_no_error():
+    for id, report in zip(IDS, reports(*map(demo_path, IDS)), strict=True):
+        assert not errors(report), id
+        assert report["issues"]["numWarnings"] == 0, id
 
 
 def read(document, accessor):
