@@ -110,8 +110,10 @@ def find_runs(
 def _walk_rays(surface, needs, crossings, closing, first_ray, last_ray):
     """List the runs of a strip of rays, as rows (ray, first, last, low, high)."""
     resolution = surface[0]
+    tau = surface[1]
     rows = np.empty((256, 5), np.int64)
     count = 0
+    line = np.empty(resolution, np.int8)
     for r in range(first_ray, last_ray):
         begin, end = crossings[0][r], crossings[0][r + 1]
         chi = 0
@@ -122,6 +124,12 @@ def _walk_rays(surface, needs, crossings, closing, first_ray, last_ray):
         calm = need < UNSURE and closing[0][r] == closing[0][r + 1]
         if calm and begin == end and chi < need:
             continue
+        if not calm:
+            _needs_along(needs, r, line)
+        passed = closing[0][r]
+        lid = 0  # crossings ahead with the caps, counted like chi
+        for c in range(passed, closing[0][r + 1]):
+            lid += closing[2][c]
         k = 0
         # Gap by gap: from the crossing c - 1 (or the cube's wall) to the crossing c.
         for c in range(begin, end + 1):
@@ -148,7 +156,15 @@ def _walk_rays(surface, needs, crossings, closing, first_ray, last_ray):
                 if (s > k or c > begin) and (s < beyond or c < end):  # not to a wall
                     left = before if s == k else (s - 0.5) / resolution
                     right = after if s == beyond else (s + 0.5) / resolution
-                    kept = _is_inside(surface, needs, closing, r, chi, 0.5 * (left + right))
+                    middle = 0.5 * (left + right)
+                    while passed < closing[0][r + 1] and closing[1][passed] <= middle:
+                        lid -= closing[2][passed]
+                        passed += 1
+                    need = line[min(int(middle * resolution), resolution - 1)]
+                    if need < UNSURE:
+                        kept = chi + lid >= need
+                    else:
+                        kept = chi + _boundary_turns(surface, r, middle) >= tau
                 if kept and not is_open:
                     if count == len(rows):
                         rows = grown(rows)
@@ -167,24 +183,20 @@ def _walk_rays(surface, needs, crossings, closing, first_ray, last_ray):
 
 
 @njit(cache=True)
-def _is_inside(surface, needs, closing, r, chi, height):
-    """Tell whether the winding number at a height on ray r is at least tau.
-
-    chi counts the mesh's own crossings ahead.
-    """
-    resolution, tau, turn, vertices, edges, count = surface
-    i, j, k = r // resolution, r % resolution, min(int(height * resolution), resolution - 1)
+def _needs_along(needs, r, line):
+    """Put what each cell along ray r needs into `line`."""
     _, coarse, row, fine = needs
-    need = coarse[i // BLOCK, j // BLOCK, k // BLOCK]
-    if need == UNSURE:
-        block = row[i // BLOCK, j // BLOCK, k // BLOCK]
-        need = fine[block, i % BLOCK, j % BLOCK, k % BLOCK]
-    pu, pv = (i + 0.5) / resolution, (j + 0.5) / resolution
-    if need == UNSURE:
-        return chi + turn * boundary_turns(vertices, edges, count, pu, pv, height) >= tau
-    capped = chi
-    for c in range(closing[0][r + 1] - 1, closing[0][r] - 1, -1):
-        if closing[1][c] <= height:
-            break
-        capped += closing[2][c]
-    return capped >= need
+    resolution = len(line)
+    i, j = r // resolution, r % resolution
+    for k in range(resolution):
+        line[k] = coarse[i // BLOCK, j // BLOCK, k // BLOCK]
+        if line[k] == UNSURE:
+            block = row[i // BLOCK, j // BLOCK, k // BLOCK]
+            line[k] = fine[block, i % BLOCK, j % BLOCK, k % BLOCK]
+
+
+@njit(cache=True)
+def _boundary_turns(surface, r, height):
+    resolution, _, turn, vertices, edges, count = surface
+    pu, pv = (r // resolution + 0.5) / resolution, (r % resolution + 0.5) / resolution
+    return turn * boundary_turns(vertices, edges, count, pu, pv, height)
