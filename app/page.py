@@ -38,6 +38,7 @@ def page(path: Path | None = None) -> pmui.Page:
     pn.state.onload(gate.open)
     session = Session(gate)
     document.on_session_destroyed(functools.partial(_close, session))
+    pn.config.exception_handler = session.fail
     result = layout(session)
     if path is None:
         session.open_demo(next(demo.id for demo in DEMOS if demo.path.exists()))
@@ -63,7 +64,7 @@ def layout(session: Session) -> pmui.Page:
         status_line(session),
         sizing_mode="stretch_both",
         margin=0,
-        sx={"gap": 0},
+        styles={"position": "relative"},
     )
     panels = [character, bone, pose, graph, export]
     result = pmui.Page(

@@ -3,17 +3,13 @@
 from __future__ import annotations
 
 import errno
-import logging
 import socket
 from pathlib import Path
-from typing import Any
 
 import panel as pn
 import panel_material_ui  # noqa: F401  its components must be known before a page is served
 
 from .page import page
-
-logger = logging.getLogger("cutcell.app")
 
 PORTS_TRIED = 20
 MAX_MESSAGE = 32 * 1024 * 1024
@@ -50,7 +46,6 @@ def serve(
         print(f"Port {port} is taken.", flush=True)
     host = "localhost" if address in ("0.0.0.0", "::", *LOCAL) else address
     print(f"The page is at http://{host}:{chosen} (stop with Ctrl+C)", flush=True)
-    pn.config.exception_handler = _tell
     pn.serve(
         {"/": lambda: page(path)},
         port=chosen,
@@ -99,7 +94,3 @@ def allowed_origins(address: str, port: int) -> list[str]:
         for info in socket.getaddrinfo(socket.gethostname(), None):
             names.add(str(info[4][0]))
     return [f"{name}:{port}" for name in sorted(names)]
-
-
-def _tell(error: Exception) -> Any:
-    logger.error("unexpected error on the page", exc_info=error)

@@ -60,17 +60,28 @@ class Session:
 
     def __init__(self, schedule: Schedule) -> None:
         self.state = State()
-        self.later = schedule
+        self._schedule = schedule
         self.folder = Path(tempfile.mkdtemp(prefix="cutcell-"))
         self.view = SceneView(self.pick, self.receiver(), sizing_mode="stretch_both")
-        self._jobs = Jobs(schedule)
-        self._fields = Jobs(schedule)
+        self._jobs = Jobs(self.later)
+        self._fields = Jobs(self.later)
         self._memo = Memo()
         self.state.param.watch(self._refresh, SEEN)
         self.state.param.watch(self._move, ["rig", "moving", "playing", "clip", "joint", "axis"])
         self.state.param.watch(self._theme, "dark")
         self.state.param.watch(lambda event: self.bind(), "resolution")
         self._theme()
+
+    def later(self, action: Callable[[], Any]) -> None:
+        """Run an action on the page's own thread; what goes wrong in it is told."""
+
+        def guarded() -> None:
+            try:
+                action()
+            except Exception as error:
+                self.fail(error)
+
+        self._schedule(guarded)
 
     # Opening
 

@@ -72,7 +72,11 @@ def messages(session: Session) -> pmui.Column:
     """Return the place over the canvas where errors and warnings are shown."""
     state = session.state
     # The sentence is the title: titles are shown as they are, never read as HTML.
-    look = {"borderRadius": 0, "& .MuiAlertTitle-root": {"fontSize": 13, "fontWeight": 400, "m": 0}}
+    look = {
+        "bgcolor": "background.paper",
+        "boxShadow": "0 4px 18px rgba(10, 20, 40, .16)",
+        "& .MuiAlertTitle-root": {"fontSize": 13, "fontWeight": 400, "m": 0},
+    }
     alert = pmui.Alert(
         closeable=True, margin=0, sizing_mode="stretch_width", visible=False, sx=look,
         variant="outlined",
@@ -88,7 +92,14 @@ def messages(session: Session) -> pmui.Column:
 
     state.param.watch(told, ["message", "binding"])
     alert.param.watch(closed, "closed")
-    return pmui.Column(alert, margin=0, sizing_mode="stretch_width")
+    # Over the canvas, not above it: the character stays where it is.
+    place = {"position": "absolute", "top": "14px", "left": "16px", "z-index": "5"}
+    return pmui.Column(
+        alert,
+        margin=0,
+        sizing_mode="stretch_width",
+        styles={**place, "max-width": "calc(100% - 32px)"},
+    )
 
 
 def warning(state: State) -> tuple[str, str] | None:

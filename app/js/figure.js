@@ -101,9 +101,7 @@ class Figure {
 
   setScalars(values, table, limits) {
     this.setArray(values, 1)
-    const {vtkLookupTable, vtkDataArray} = {
-      ...this.vtk.Common.Core,
-    }
+    const {vtkLookupTable, vtkDataArray} = this.vtk.Common.Core
     const size = table.length / 3
     const rgba = new Uint8Array(size * 4).fill(255)
     for (let i = 0; i < size; i++) { rgba.set(table.subarray(3 * i, 3 * i + 3), 4 * i) }
@@ -137,7 +135,6 @@ class Figure {
       if (!this.restNormals) { look.setInterpolationToFlat() }
       mapper.setScalarVisibility(coloured)
       if (this.kind === "lines") {
-        mapper.setResolveCoincidentTopologyToPolygonOffset()
         mapper.setRelativeCoincidentTopologyLineOffsetParameters(0, -4)
       }
     }

@@ -16,6 +16,8 @@ class Stage {
   constructor(vtk, element) {
     this.vtk = vtk
     this.element = element
+    // Lines that lie in a surface win over it. A switch of all of vtk.js, so set it at once.
+    vtk.Rendering.Core.vtkMapper.setResolveCoincidentTopologyToPolygonOffset()
     const {vtkRenderWindow, vtkRenderer, vtkLight} = vtk.Rendering.Core
     this.window = vtkRenderWindow.newInstance()
     this.base = vtkRenderer.newInstance()

@@ -67,7 +67,7 @@ def graph(session: Session) -> pmui.Column:
     )
     thin = pmui.Switch.from_param(
         state.param.thin, label="Thin slice of the interior", size="small", visible=cutting,
-        margin=GAP,
+        margin=GAP, description="",
     )  # fmt: skip
     return section(
         "Graph",

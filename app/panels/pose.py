@@ -15,7 +15,7 @@ AXES = ("x", "y", "z")
 def pose(session: Session) -> pmui.Column:
     """Return the section that moves the character."""
     state = session.state
-    axis = choice(state.param.axis, {"X": "x", "Y": "y", "Z": "z"})
+    axis = choice(state.param.axis, {"about X": "x", "about Y": "y", "about Z": "z"})
     motion = pmui.Select(
         label="Motion", options={}, size="small", margin=GAP, sizing_mode="stretch_width"
     )

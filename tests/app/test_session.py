@@ -94,6 +94,12 @@ def test_unexpected_errors_are_told_kindly_and_logged(bound, loop, monkeypatch, 
     assert "the sky fell" in caplog.text
 
 
+def test_what_goes_wrong_on_the_pages_own_thread_is_told_too(session, loop):
+    session.later(lambda: [].pop())
+    loop.run_until(lambda: session.state.message is not None)
+    assert "unexpected" in session.state.message[1]
+
+
 def test_cancelling_keeps_what_was_there(bound, loop, monkeypatch):
     def endless(rig, resolution, progress):
         while True:

@@ -1,0 +1,294 @@
+"""The page in a browser, used as a person uses it."""
+
+import re
+import shutil
+
+import numpy as np
+import pytest
+from playwright.sync_api import sync_playwright
+
+import cutcell
+from assets import demo_path
+from scripts.get_chromium import FLAGS
+from tests.app.browser import LOAD_MS, Visit, changed, served
+from viewers.character import pose_in_scene, to_scene
+from viewers.pose_scene import joint_turns, turn
+
+LAYERS = ["Surface", "Skeleton", "Mesh edges", "Interior edges", "Surface edges"]
+ROBOT = demo_path("robot")
+
+
+@pytest.fixture(scope="module")
+def browser(chromium):
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=chromium, args=list(FLAGS))
+        yield browser
+        browser.close()
+
+
+@pytest.fixture(scope="module")
+def url():
+    # The robot is the smallest demo: software rendering is slow.
+    with served(str(ROBOT)) as url:
+        yield url
+
+
+@pytest.fixture
+def visit(browser, url):
+    visit = Visit(browser, url)
+    visit.wait_until_bound()
+    visit.expect_text("nearest bones")  # the robot's ring, which no bone reaches
+    visit.dismiss()
+    yield visit
+    visit.close()
+
+
+@pytest.fixture(scope="module")
+def robot():
+    return cutcell.load(ROBOT)
+
+
+def test_the_first_demo_stands_there_without_a_click(browser):
+    with served() as url:
+        visit = Visit(browser, url)
+        visit.page.wait_for_function("window.__cutcell?.report().actors.body", timeout=LOAD_MS)
+        visit.wait_until_bound()
+        seen = visit.look()
+        assert visit.page.get_by_role("combobox", name="Demo character").inner_text() == "Walker"
+        assert visit.report()["actors"]["body"]["visible"]
+        assert len(np.unique(seen.reshape(-1, 3), axis=0)) > 2000
+        visit.switch("Surface")
+        visit.switch("Skeleton")
+        assert changed(seen, visit.look()) > 0.05
+        visit.close()
+
+
+def test_every_layer_can_be_switched(visit):
+    for name in LAYERS:
+        before = visit.look()
+        visit.switch(name)
+        after = visit.look()
+        assert changed(before, after) > 0.002, name
+        visit.switch(name)
+        assert changed(before, visit.look()) < 0.001, name
+
+
+def test_the_cutting_plane_moves_through_the_body(visit):
+    whole = visit.look()
+    visit.button("X").click()
+    half = visit.look()
+    assert changed(whole, half) > 0.01
+    visit.slide("Where the cut lies", "ArrowLeft", 30)
+    less = visit.look()
+    assert changed(half, less) > 0.001
+    visit.switch("Interior edges")
+    slice_ = visit.look()
+    assert changed(less, slice_) > 0.001
+    visit.switch("Thin slice of the interior")
+    assert changed(slice_, visit.look()) > 0.0005
+    visit.button("Off").click()
+    visit.switch("Interior edges")
+    assert changed(whole, visit.look()) < 0.001
+
+
+def test_a_bone_is_picked_by_clicking_it(visit, robot):
+    names = robot.skeleton.names
+    chosen = visit.page.get_by_role("combobox", name="Bone")
+    other = next(
+        j
+        for j in range(len(names))
+        if names[j] != chosen.inner_text() and len(robot.skeleton.children[j])
+    )
+    before = visit.look()
+    visit.click_bone(other)
+    visit.expect_text(re.compile("Weight of"))
+    visit.settle()
+    # Bones may cover each other: one that passes there is chosen, and shown as chosen.
+    picked = chosen.inner_text()
+    assert picked in names
+    visit.expect_text(f"Weight of {picked}")
+    assert changed(before, visit.look()) > 0.01
+    weights = visit.look()
+    visit.button("Distance").click()
+    visit.expect_text(f"Distance from {picked}")
+    assert changed(weights, visit.look()) > 0.01
+    visit.choose("Bone", names[0])
+    visit.expect_text(f"Distance from {names[0]}")
+
+
+def test_dragging_turns_the_character_and_picks_nothing(visit):
+    before = visit.look()
+    box = visit.page.get_by_role("application").bounding_box()
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    visit.page.mouse.move(x, y)
+    visit.page.mouse.down()
+    visit.page.mouse.move(x + 120, y + 30, steps=6)
+    visit.page.mouse.up()
+    turned = visit.look()
+    assert changed(before, turned) > 0.02
+    visit.page.mouse.move(x, y)
+    visit.page.mouse.wheel(0, -400)
+    assert changed(turned, visit.look()) > 0.02
+    visit.page.mouse.dblclick(box["x"] + 20, box["y"] + 20)
+    assert changed(before, visit.look()) < 0.002
+    assert visit.page.get_by_text("Weight of").count() == 0
+    visit.page.get_by_role("application").focus()
+    visit.page.keyboard.press("ArrowLeft")
+    assert changed(before, visit.look()) > 0.01
+
+
+def test_another_resolution_makes_another_graph(visit):
+    status = visit.page.get_by_text(re.compile(r"interior, .* surface"))
+    before = status.inner_text()
+    visit.slide("Resolution", "ArrowRight", 2)
+    visit.page.wait_for_function(
+        "([before]) => !document.body.innerText.includes(before)", arg=[before], timeout=LOAD_MS
+    )
+    visit.wait_until_bound()
+    assert status.inner_text() != before
+
+
+def test_an_impossible_resolution_is_told_and_the_page_lives_on(visit):
+    before = visit.look()
+    for value in ("1", "10000"):
+        box = visit.page.get_by_role("textbox")
+        box.fill(value)
+        box.press("Enter")
+        visit.expect_text(re.compile(r"resolution must be", re.IGNORECASE))
+        visit.dismiss()
+        visit.settle()
+    assert changed(before, visit.look()) < 0.001
+    visit.button("Weights").click()
+    assert changed(before, visit.look()) > 0.01
+
+
+def test_a_joint_is_turned_as_the_core_turns_it(visit, robot):
+    rest = visit.points()
+    np.testing.assert_allclose(rest, to_scene(robot, robot.mesh.vertices), atol=1e-5)
+    before = visit.look()
+    visit.slide("Angle", "ArrowRight", 25)
+    after = visit.look()
+    assert changed(before, after) > 0.002
+    joint = robot.skeleton.names.index(visit.page.get_by_role("combobox", name="Bone").inner_text())
+    weights = cutcell.bind(robot).weights
+    transforms = cutcell.forward_kinematics(
+        robot.skeleton, joint_turns(robot, {joint: turn("z", 25)})
+    )
+    scene = pose_in_scene(robot, transforms)
+    expected = cutcell.linear_blend_skinning(rest, weights, scene)
+    np.testing.assert_allclose(visit.points(), expected, atol=1e-4)
+    visit.button("Rest pose").click()
+    visit.settle()
+    np.testing.assert_allclose(visit.points(), rest, atol=1e-6)
+
+
+def test_the_motion_plays_and_halts(visit):
+    rest = visit.points()
+    visit.page.get_by_role("button", name="Play").click()
+    visit.page.wait_for_function("__cutcell.report().time > 0.3", timeout=LOAD_MS)
+    moving = visit.points()
+    assert np.abs(moving - rest).max() > 0.01
+    visit.page.get_by_role("button", name="Pause").click()
+    visit.page.wait_for_function("!__cutcell.report().playing", timeout=LOAD_MS)
+    visit.settle()
+    halted = visit.points()
+    visit.page.wait_for_timeout(300)
+    np.testing.assert_array_equal(visit.points(), halted)
+    visit.choose("Motion", "Swing the bone")
+    visit.page.get_by_role("button", name="Play").click()
+    visit.page.wait_for_function("__cutcell.report().playing", timeout=LOAD_MS)
+    visit.page.wait_for_timeout(600)
+    assert np.abs(visit.points() - halted).max() > 1e-3
+    visit.button("Rest pose").click()
+    visit.page.wait_for_function("!__cutcell.report().playing", timeout=LOAD_MS)
+    visit.settle()
+    np.testing.assert_allclose(visit.points(), rest, atol=1e-6)
+
+
+def test_a_file_goes_in_and_the_bound_one_comes_out(visit, request, tmp_path):
+    from tests.conftest import SHARED_RIGS
+
+    real = SHARED_RIGS / "khronos_CesiumMan.glb"
+    source = real if real.exists() else demo_path("rabbit")
+    path = tmp_path / "my character.glb"
+    shutil.copy(source, path)
+    before = visit.look()
+    visit.drop(path)
+    rig = cutcell.load(path)
+    visit.expect_text(re.compile(f"^{len(rig.mesh.vertices):,} vertices"))
+    visit.wait_until_bound()
+    assert changed(before, visit.look()) > 0.02
+    with visit.page.expect_download(timeout=LOAD_MS) as download:
+        visit.button("Download the bound GLB", exact=False).click()
+    bound = tmp_path / download.value.suggested_filename
+    assert bound.name == "my character-bound.glb"
+    download.value.save_as(bound)
+    loaded = cutcell.load(bound)
+    np.testing.assert_array_equal(loaded.mesh.vertices, rig.mesh.vertices)
+    expected = cutcell.bind(rig).weights
+    np.testing.assert_allclose(loaded.weights, expected, atol=1e-6)
+
+
+def test_the_picture_comes_out_as_a_png(visit, tmp_path):
+    with visit.page.expect_download(timeout=LOAD_MS) as download:
+        visit.button("Picture", exact=False).click()
+    path = tmp_path / "picture.png"
+    download.value.save_as(path)
+    assert path.read_bytes().startswith(b"\x89PNG")
+
+
+def test_a_text_file_named_glb_is_told_and_the_old_character_stays(visit, tmp_path):
+    bad = tmp_path / "bad.glb"
+    bad.write_text("this is not a character")
+    before = visit.look()
+    points = visit.points()
+    visit.drop(bad)
+    visit.expect_text(re.compile(r"bad\.glb"))
+    visit.dismiss()
+    np.testing.assert_array_equal(visit.points(), points)
+    assert changed(before, visit.look()) < 0.001
+    visit.choose("Demo character", "Rabbit")
+    visit.page.wait_for_function(
+        "n => __cutcell.report().actors.body.points !== n", arg=len(points), timeout=LOAD_MS
+    )
+    visit.wait_until_bound()
+
+
+def test_light_and_dark(visit):
+    light = visit.look()
+    visit.button("Toggle theme").click()
+    visit.page.wait_for_timeout(600)
+    dark = visit.look()
+    assert light[2, 2].min() > 200
+    assert dark[2, 2].max() < 80
+
+
+def test_a_narrow_window_shows_the_canvas_first(browser, url):
+    visit = Visit(browser, url, viewport={"width": 420, "height": 800})
+    visit.wait_until_bound()
+    visit.button("Open drawer").wait_for(timeout=LOAD_MS)
+    visit.page.wait_for_timeout(500)
+    box = visit.page.get_by_role("application").bounding_box()
+    assert box["width"] > 400
+    assert box["height"] > 400
+    visit.button("Open drawer").click()
+    visit.page.get_by_role("switch", name="Mesh edges").wait_for(timeout=LOAD_MS)
+    visit.close()
+
+
+def test_two_browsers_share_nothing(browser, url, visit):
+    other = Visit(browser, url)
+    other.wait_until_bound()
+    before = other.look()
+    visit.switch("Mesh edges")
+    visit.button("Weights").click()
+    visit.choose("Demo character", "Rabbit")
+    visit.page.wait_for_function(
+        "n => __cutcell.report().actors.body.points !== n",
+        arg=other.report()["actors"]["body"]["points"],
+        timeout=LOAD_MS,
+    )
+    visit.wait_until_bound()
+    assert changed(before, other.look()) == 0
+    assert other.page.get_by_text("Weight of").count() == 0
+    other.close()
