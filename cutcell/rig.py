@@ -227,7 +227,7 @@ class Rig:
 
     def with_weights(self, weights: ArrayLike) -> Rig:
         """Return the same rig with other weights, shape (n, j)."""
-        return replace(self, weights=weights)
+        return replace(self, weights=np.asarray(weights, np.float64))
 
     def _check_units(self) -> None:
         low, high = self.mesh.bounds
@@ -251,9 +251,9 @@ def _array(value: Any, dtype: Any, shape: tuple, name: str, error: type) -> NDAr
         array = np.asarray(value)
         if array.size == 0:
             array = np.zeros([0 if s is None else s for s in shape] if None in shape else shape)
-        if np.issubdtype(dtype, np.integer) and not np.issubdtype(array.dtype, np.integer):
-            if not np.array_equal(array, np.round(array)):
-                raise error(f"{name} must be whole numbers")
+        fractions = np.issubdtype(dtype, np.integer) and np.issubdtype(array.dtype, np.floating)
+        if fractions and not np.array_equal(array, np.round(array)):
+            raise error(f"{name} must be whole numbers")
         array = np.array(array, dtype=dtype)
     except (TypeError, ValueError) as e:
         if isinstance(e, error):

@@ -167,7 +167,9 @@ def bone_distances(
     return BoneDistances(joint, bone, bones, sources, fallback, graph)
 
 
-def _allowed_bones(graph, skeleton, bones, allowed) -> NDArray[np.bool_] | None:
+def _allowed_bones(
+    graph: CutCellGraph, skeleton: Skeleton, bones: Bones, allowed: NDArray[np.bool_] | None
+) -> NDArray[np.bool_] | None:
     """Turn joints allowed for each vertex into bones allowed, shape (n, b)."""
     if allowed is None:
         return None

@@ -16,8 +16,9 @@ from .holes import find_needs
 from .inside_edges import diagonal_edges, segment_edges
 from .interior import interior_points
 from .lattice import Lattice
+from .memory import check_memory
 from .rays import AXES, Crossings, cast_rays
-from .segments import NONE, find_runs
+from .segments import NONE, Runs, find_runs
 from .weld import weld
 from .winding import find_boundary
 
@@ -64,7 +65,7 @@ def build_graph(
     Raises
     ------
     ParameterError
-        A parameter is out of its range.
+        A parameter is out of its range, or the graph would not fit in memory.
     MissingLibraryError
         `rays` or `winding` names a library that is not installed.
 
@@ -99,17 +100,26 @@ def build_graph(
         runs.append(inside)
     progress("graph", 0.85)
     graph = _assemble(
-        vertices, vertex_node, faces, boundary, crossings, runs, lattice, connectivity
+        vertices, vertex_node, faces, len(caps.faces) == 0, crossings, runs, lattice, connectivity
     )
     progress("graph", 1.0)
     return graph
 
 
 def _assemble(
-    vertices, vertex_node, faces, boundary, crossings, runs, lattice, connectivity
+    vertices: NDArray[np.float64],
+    vertex_node: NDArray[np.int32],
+    faces: NDArray[np.int32],
+    is_closed: bool,
+    crossings: list[Crossings],
+    runs: list[Runs],
+    lattice: Lattice,
+    connectivity: int | str,
 ) -> CutCellGraph:
     """Give each node its number and list the edges."""
     points = interior_points(runs, lattice.resolution)
+    crossed = sum(len(c.position) for c in crossings)
+    check_memory(len(vertices), len(points), crossed, lattice.resolution, connectivity)
     first_point = len(vertices)
     first_crossing = first_point + len(points)
 
@@ -149,7 +159,7 @@ def _assemble(
         triangle=triangle,
         vertex_node=vertex_node,
         lattice=lattice,
-        is_closed=len(boundary.edges) == 0,
+        is_closed=is_closed,
         connectivity=connectivity,
         interior=points,
         whole=whole,

@@ -64,7 +64,8 @@ def cap_holes(vertices: NDArray[np.float64], boundary: Boundary) -> Caps:
     faces = np.stack([edges[:, 1], edges[:, 0], len(vertices) + component], axis=1)
     apex = centre[component]
     cross = np.cross(ends[:, 0] - apex, ends[:, 1] - apex)
-    area = np.bincount(component, np.abs(count) * np.linalg.norm(cross, axis=1) / 2, size)
+    each = np.abs(count) * np.linalg.norm(cross, axis=1) / 2
+    area = np.bincount(component, each, size).astype(np.float64)
     return Caps(
         np.concatenate([vertices, centre]),
         faces.astype(np.int32),

@@ -6,6 +6,7 @@ of a point is that of its run's first point plus the way to it.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -54,7 +55,7 @@ class InteriorPoints:
         return (index + 0.5) / self.resolution
 
 
-def interior_points(runs: tuple[Runs, Runs, Runs], resolution: int) -> InteriorPoints:
+def interior_points(runs: Sequence[Runs], resolution: int) -> InteriorPoints:
     """Collect the lattice points of the runs along x, y and z."""
     along_z = runs[2]
     filled = along_z.first <= along_z.last
@@ -73,7 +74,7 @@ def interior_points(runs: tuple[Runs, Runs, Runs], resolution: int) -> InteriorP
     return _numbered(column[order], first[order], last[order], resolution)
 
 
-def _numbered(column, first, last, resolution) -> InteriorPoints:
+def _numbered(column: NDArray, first: NDArray, last: NDArray, resolution: int) -> InteriorPoints:
     start = np.searchsorted(column, np.arange(resolution**2 + 1))
     number = np.concatenate([[0], np.cumsum(last.astype(np.int64) - first + 1)])
     return InteriorPoints(resolution, start, first, last, number)

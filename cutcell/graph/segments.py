@@ -46,8 +46,7 @@ class Runs:
 
 def kernels_are_compiled() -> bool:
     """Tell whether this machine has compiled the kernels before, in any process."""
-    name = f"segments.{_walk_rays.__name__}*.nbc"
-    return any(Path(_walk_rays.stats.cache_path).glob(name))
+    return any(Path(str(_walk_rays.stats.cache_path)).glob("segments._walk_rays*.nbc"))
 
 
 def find_runs(
@@ -103,7 +102,8 @@ def find_runs(
     with ThreadPoolExecutor(get_num_threads()) as pool:
         parts = pool.map(lambda k: _walk_rays(*inputs, strips[k], strips[k + 1]), range(STRIPS))
         ray, first, last, low, high = np.concatenate(list(parts)).T
-    return Runs(*(a.astype(np.int32) for a in (ray, first, last)), low.copy(), high.copy())
+    ray, first, last = (a.astype(np.int32) for a in (ray, first, last))
+    return Runs(ray, first, last, low.copy(), high.copy())
 
 
 @njit(cache=True, nogil=True)

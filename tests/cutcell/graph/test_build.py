@@ -1,5 +1,7 @@
 """The graph equals a slow one, segment by segment."""
 
+import re
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -147,6 +149,15 @@ def test_vertex_nodes_lead_back_to_the_file():
 def test_resolutions_out_of_range_are_refused(resolution):
     with pytest.raises(ParameterError, match="resolution must be a whole number from 2 to 1,024"):
         build_graph(TriangleMesh(*meshes.box()), resolution)
+
+
+def test_a_graph_that_does_not_fit_is_refused(monkeypatch):
+    monkeypatch.setattr("cutcell.graph.memory.available_memory", lambda: 10**7)
+    sentence = r"resolution 64 needs about [\d.]+ GB, .* a resolution of (\d+) would fit"
+    with pytest.raises(ParameterError, match=sentence) as refusal:
+        build_graph(TriangleMesh(*meshes.ball()), 64)
+    fits = int(re.search(sentence, str(refusal.value))[1])
+    assert build_graph(TriangleMesh(*meshes.ball()), fits).lattice.resolution == fits
 
 
 def test_other_parameters_are_checked():
