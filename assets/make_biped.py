@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
+from typing import Any
 
 import numpy as np
 
@@ -82,16 +83,16 @@ def _torso(body: Body) -> None:
 
 
 def _head(body: Body) -> None:
-    skin = {"joint": "head", "edge": 0.012}
+    skin: dict[str, Any] = {"joint": "head", "edge": 0.012}
     neck = round_cone([0, 1.195, -0.01], [0, 1.23, -0.004], 0.044, 0.04)
     body.add(neck, "neck", blend=0.006, edge=0.012)
-    throat = {"at": np.array([0, 1.25, 0]), "reach": 0.09}
+    throat: dict[str, Any] = {"at": np.array([0, 1.25, 0]), "reach": 0.09}
     body.add(ellipsoid([0, 1.39, 0.005], [0.13, 0.132, 0.133]), blend=0.02, **throat, **skin)
-    jaw = {"at": np.array([0, 1.33, 0.05]), "reach": 0.2}
+    jaw: dict[str, Any] = {"at": np.array([0, 1.33, 0.05]), "reach": 0.2}
     body.add(ellipsoid([0, 1.317, 0.032], [0.094, 0.07, 0.088]), blend=0.05, **jaw, **skin)
     body.add(ball([0.056, 1.328, 0.078], 0.044), both=True, blend=0.03, **skin)
     # Ears, dished.
-    ear = {"joint": "head", "both": True}
+    ear: dict[str, Any] = {"joint": "head", "both": True}
     body.add(
         ellipsoid([0.131, 1.362, -0.002], [0.019, 0.036, 0.026]), blend=0.01, edge=0.008, **ear
     )
@@ -128,7 +129,7 @@ def _face(body: Body) -> None:
 
 
 def _hair(body: Body) -> None:
-    hair = {"joint": "head", "colour": "hair", "edge": 0.012}
+    hair: dict[str, Any] = {"joint": "head", "colour": "hair", "edge": 0.012}
     cap = common(
         ellipsoid([0, 1.398, -0.006], [0.143, 0.141, 0.145]),
         half_space([0, 1.447, 0.11], [0, -0.85, 0.53]),

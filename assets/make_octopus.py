@@ -48,7 +48,7 @@ def make() -> Character:
         line, _, _ = _arm_line(k)
         bones.add_chain(f"arm{'ABCDEFGH'[k]}", "body", line[:: STEPS // JOINTS][:JOINTS])
         _arm(body, k)
-    box = [[-1, -0.03, -1], [1, 1, 1]]
+    box = [[-1.0, -0.03, -1.0], [1.0, 1.0, 1.0]]
     return closed_character("Octopus", bones, body, box, 0.006, MATERIALS, _sway())
 
 
@@ -130,8 +130,8 @@ def _arm_line(k: int) -> tuple[NDArray, NDArray, NDArray]:
         ahead = np.cos(h) * out + np.sin(h) * side
         line.append(line[-1] + step * (np.cos(p) * ahead + np.sin(p) * Y))
         under.append(np.sin(p) * ahead - np.cos(p) * Y)
-    s = np.linspace(0, 1, STEPS + 1)
-    radii = 0.076 * (1 - s) + 0.013 * s
+    along = np.linspace(0, 1, STEPS + 1)
+    radii = 0.076 * (1 - along) + 0.013 * along
     places = np.array(line[:-1])
     places[:, 1] += radii - radii[0]
     places[:, 1] -= (places[:, 1] - radii).min() - 0.004

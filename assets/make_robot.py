@@ -72,7 +72,7 @@ def _skeleton() -> Bones:
     bones.add("hand.L", "forearm.L", [0.348, 0.655, 0.02], both=True)
     for name, place in _CLAWS.items():
         tip = shifted(place, 0, -0.055, 0)
-        bones.add_chain(f"{name}.L", "hand.L", [place, tip], both=True)
+        bones.add_chain(f"{name}.L", "hand.L", np.array([place, tip]), both=True)
     bones.add("thigh.L", "hips", [0.115, 0.61, 0], both=True)
     bones.add("shin.L", "thigh.L", [0.12, 0.355, 0.005], both=True)
     bones.add("foot.L", "shin.L", [0.125, 0.10, -0.005], both=True)

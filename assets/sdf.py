@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -212,18 +213,18 @@ class Body:
     parts: list[Part] = field(default_factory=list)
     paint: list[tuple[Shape, str, float]] = field(default_factory=list)
 
-    def add(self, shape: Shape, joint: str, both: bool = False, **options: object) -> None:
+    def add(self, shape: Shape, joint: str, both: Any = False, **options: Any) -> None:
         """Add a part; with `both`, also its reflection on the right-hand side.
 
         A joint named "x.L" becomes "x.R" there.
         """
-        self.parts.append(Part(shape, joint, **options))  # type: ignore[arg-type]
+        self.parts.append(Part(shape, joint, **options))
         if both:
             at = options.get("at")
             if at is not None:
                 options = {**options, "at": np.asarray(at) * [-1, 1, 1]}
             other = joint.replace(".L", ".R")
-            self.parts.append(Part(mirrored(shape), other, **options))  # type: ignore[arg-type]
+            self.parts.append(Part(mirrored(shape), other, **options))
 
     def colour(self, shape: Shape, colour: str, edge: float, both: bool = False) -> None:
         """Paint all that lies inside the shape, with mesh edges of the length `edge`."""
