@@ -20,10 +20,16 @@ Method = Callable[..., BaselineBinding]
 def cutcell(rig: Rig, resolution: int = 64, **options: Any) -> BaselineBinding:
     """Bind by the paper's method; `options` are those of `cutcell.bind`.
 
-    No limit on the influences unless asked for, like all methods here.
+    Unless asked for otherwise, paths inside run along the axes as the paper's do, and
+    nothing limits the influences, as for all methods here.
     """
-    binding = bind(rig, resolution, **{"max_influences": None, **options})
+    binding = bind(rig, resolution, **{"connectivity": 6, "max_influences": None, **options})
     return BaselineBinding(binding.weights, binding.seconds, binding.warnings)
+
+
+def cutcell_any(rig: Rig, resolution: int = 64, **options: Any) -> BaselineBinding:
+    """Bind by the paper's falloff on true distances: paths inside may run at any angle."""
+    return cutcell(rig, resolution, **{"connectivity": "any", **options})
 
 
 def artist(rig: Rig) -> BaselineBinding:
@@ -40,6 +46,7 @@ METHODS: dict[str, Method] = {
     "biharmonic": biharmonic,
     "bone_heat": bone_heat,
     "cutcell": cutcell,
+    "cutcell_any": cutcell_any,
     "euclidean": euclidean,
     "voxel": voxel,
     "voxel_unirig": voxel_unirig,

@@ -14,7 +14,7 @@ from ..errors import ParameterError
 from ..graph import CutCellGraph
 from .weight_error import checked_weights
 
-NEAR = 0.03
+NEAR = 0.05
 """Of the longest side: vertices within it face each other across a gap."""
 FAR = 0.25
 """Of the longest side: a way through the body at least this long makes it a gap."""
