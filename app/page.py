@@ -11,6 +11,7 @@ import panel_material_ui as pmui
 
 from assets import DEMOS
 
+from .favicon import FAVICON
 from .jobs import Gate
 from .panels.bone import bone
 from .panels.character import character
@@ -59,12 +60,16 @@ def layout(session: Session) -> pmui.Page:
         margin=(2, 0, 0, 16),
     )
     main = pmui.Column(
-        messages(session),
-        session.view,
+        pmui.Column(
+            session.view,
+            messages(session),
+            sizing_mode="stretch_both",
+            margin=0,
+            styles={"position": "relative"},
+        ),
         status_line(session),
         sizing_mode="stretch_both",
         margin=0,
-        styles={"position": "relative"},
     )
     panels = [character, bone, pose, graph, export]
     result = pmui.Page(
@@ -79,7 +84,7 @@ def layout(session: Session) -> pmui.Page:
         raw_css=[LOADER_STYLE],
         theme_config=THEME,
         sx=PAGE_STYLE,
-        favicon=Path(__file__).parent / "favicon.svg",
+        favicon=FAVICON,
     )
 
     def themed(event: Any) -> None:

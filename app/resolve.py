@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from cutcell.rig import Clip
+from cutcell.rig import Clip, Rig
 from viewers.character import attachments, body, bones, drawn_segments, pose_in_scene
 from viewers.description import Actor, Cut, Description, Legend
 from viewers.distance_scene import distance_colors
@@ -197,10 +197,10 @@ def bones_part(state: State) -> dict[str, Any]:
     }
 
 
-def first_joint(state: State) -> int:
+def first_joint(rig: Rig) -> int:
     """Return the joint to begin with: an arm if there is one, else the longest bone."""
-    skeleton = state.rig.skeleton
-    start, end, joint = drawn_segments(state.rig)
+    skeleton = rig.skeleton
+    start, end, joint = drawn_segments(rig)
     inner = np.array([len(skeleton.children[j]) > 0 for j in joint])
     useful = skeleton.deform[joint] & inner & (skeleton.parents[joint] >= 0)
     arm = np.array([bool(_ARM.search(skeleton.names[j])) for j in joint])

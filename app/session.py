@@ -125,9 +125,8 @@ class Session:
         self._fields.cancel()
         state.param.update(
             rig=rig, binding=None, field=None, turns={}, moving=False, playing=False,
-            clip=0 if rig.clips else -1, message=None, joint=0,
+            clip=0 if rig.clips else -1, message=None, joint=first_joint(rig),
         )  # fmt: skip
-        state.joint = first_joint(state)
         self.view.camera = framing(bounds_of(state), 1.2)
         self.view.tell(bones=bones_part(state), camera=camera_part(self.view.camera))
         self.bind()

@@ -92,14 +92,16 @@ def messages(session: Session) -> pmui.Column:
 
     state.param.watch(told, ["message", "binding"])
     alert.param.watch(closed, "closed")
-    # Over the canvas, not above it: the character stays where it is.
-    place = {"position": "absolute", "top": "14px", "left": "16px", "z-index": "5"}
-    return pmui.Column(
-        alert,
-        margin=0,
-        sizing_mode="stretch_width",
-        styles={**place, "max-width": "calc(100% - 32px)"},
-    )
+    return pmui.Column(alert, margin=0, sizing_mode="stretch_width", stylesheets=[_PLACE])
+
+
+# Over the canvas, so that the character stays where it is; at its foot, beside the legend.
+_PLACE = """
+:host { position: absolute; z-index: 5; bottom: 16px; left: 240px !important;
+  width: auto !important; max-width: min(760px, calc(100% - 256px)) !important; }
+@media (max-width: 900px) { :host { left: 8px !important; bottom: 8px;
+  max-width: calc(100% - 16px) !important; } }
+"""
 
 
 def warning(state: State) -> tuple[str, str] | None:

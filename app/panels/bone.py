@@ -32,11 +32,7 @@ def bone(session: Session) -> pmui.Column:
         if event.new is not None:
             state.joint = event.new
 
-    def shown(event: Any) -> None:
-        select.value = event.new
-
-    state.param.watch(listed, "rig")
-    state.param.watch(shown, "joint")
+    state.param.watch(listed, ["rig", "joint"])
     select.param.watch(chosen, "value")
     listed()
     return section("Bone", select, choice(state.param.coloring, SHOWN))

@@ -29,8 +29,7 @@ def pose(session: Session) -> pmui.Column:
         if event.new is not None:
             state.clip = event.new
 
-    state.param.watch(listed, "rig")
-    state.param.watch(lambda event: motion.param.update(value=event.new), "clip")
+    state.param.watch(listed, ["rig", "clip"])
     motion.param.watch(chosen, "value")
     listed()
 

@@ -84,7 +84,7 @@ class Visit:
 
     def __init__(self, browser: Browser, url: str, **context: Any) -> None:
         self.context = browser.new_context(
-            **{"viewport": {"width": 1280, "height": 860}, "accept_downloads": True, **context}
+            **{"viewport": {"width": 1100, "height": 720}, "accept_downloads": True, **context}
         )
         self.page: Page = self.context.new_page()
         self.requests: list[str] = []

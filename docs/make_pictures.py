@@ -1,0 +1,129 @@
+"""Makes the pictures of the README and the docs: `python docs/make_pictures.py`.
+
+Those of the page need a Chromium; see scripts/get_chromium.py.
+"""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from PIL import Image
+from playwright.sync_api import sync_playwright
+
+ROOT = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT))
+
+import cutcell  # noqa: E402
+from assets import demo_path  # noqa: E402
+from cutcell.rig import Rig  # noqa: E402
+from scripts.get_chromium import FLAGS, find  # noqa: E402
+from tests.app.browser import Visit, served  # noqa: E402
+from viewers.character import body  # noqa: E402
+from viewers.description import Description  # noqa: E402
+from viewers.distance_scene import distance_scene  # noqa: E402
+from viewers.graph_scene import cut_at, graph_scene  # noqa: E402
+from viewers.palette import DARK, LIGHT  # noqa: E402
+from viewers.pose_scene import pose_scene  # noqa: E402
+from viewers.scene import Camera, framing, render_png  # noqa: E402
+from viewers.weights_scene import weights_scene  # noqa: E402
+
+PICTURES = ROOT / "docs" / "pictures"
+SIZE = (1080, 810)
+SHELL = (0.13, 0.16, 0.21)
+COLORS = 256
+MAX_BYTES = 390_000
+OCTOPUS_ARM = "armA4"
+
+
+def main() -> None:
+    """Make all pictures."""
+    PICTURES.mkdir(exist_ok=True)
+    scenes()
+    page()
+    for path in sorted(PICTURES.glob("*.png")):
+        shrink(path)
+        print(f"{path.relative_to(ROOT)}  {path.stat().st_size // 1024} kB")
+
+
+def scenes() -> None:
+    """Draw one picture of each scene, off-screen."""
+    walker, octopus = cutcell.load(demo_path("biped")), cutcell.load(demo_path("octopus"))
+    bound, held = cutcell.bind(walker, 64), cutcell.bind(octopus, 96)
+    write("graph", cutaway(walker, 48), closer(walker, 0.4, 0.76), DARK)
+    arm = octopus.skeleton.names.index(OCTOPUS_ARM)
+    distance = distance_scene(octopus, held.distances.joint[arm], arm)
+    write("distance", distance, closer(octopus, 0.8), LIGHT)
+    thigh = walker.skeleton.names.index("thigh.L")
+    write("weights", weights_scene(walker, bound.weights, thigh), closer(walker, 0.62, 0.42), DARK)
+    write("bones", weights_scene(octopus, held.weights), closer(octopus, 0.8), LIGHT)
+    clip = walker.clips[0]
+    transforms = clip.transforms[len(clip.times) // 4]
+    pose = pose_scene(walker, bound.weights, transforms)
+    write("pose", pose, closer(walker, 0.9), LIGHT)
+
+
+def cutaway(rig: Rig, resolution: int) -> Description:
+    """Return the graph, cut open from the front."""
+    shell = body(rig, color=SHELL)
+    bounds = np.stack([shell.points.min(axis=0), shell.points.max(axis=0)])
+    slab = 2.5 * float(np.ptp(bounds, axis=0).max()) / resolution
+    graph = graph_scene(
+        rig,
+        cutcell.build_graph(rig.mesh, resolution),
+        cut=cut_at(bounds, "z", 0.6),
+        slab=slab,
+        theme=DARK,
+    )
+    widths = {"mesh edges": 1.0, "interior edges": 2.4, "surface edges": 1.6}
+    lines = {name: replace(graph.actors[name], width=width) for name, width in widths.items()}
+    return replace(graph, actors={"body": shell, **lines})
+
+
+def closer(rig: Rig, reach: float, height: float = 0.5) -> Camera:
+    """Return a camera that comes closer to a character, at some part of its height."""
+    points = body(rig).points
+    bounds = np.stack([points.min(axis=0), points.max(axis=0)]).astype(float)
+    whole = framing(bounds, SIZE[0] / SIZE[1])
+    target = np.array(whole.focal_point)
+    offset = np.array(whole.position) - target
+    target[1] = bounds[0, 1] + height * (bounds[1, 1] - bounds[0, 1])
+    return Camera(tuple(target + reach * offset), tuple(target))
+
+
+def write(name: str, scene: Description, camera: Camera | None, theme: object) -> None:
+    """Draw a scene into a file."""
+    render_png(scene, PICTURES / f"{name}.png", theme=theme, size=SIZE, camera=camera)
+
+
+def page() -> None:
+    """Take pictures of the page, light and dark."""
+    chromium = find()
+    with sync_playwright() as playwright, served() as url:
+        browser = playwright.chromium.launch(executable_path=chromium, args=list(FLAGS))
+        visit = Visit(browser, url, viewport={"width": 1440, "height": 900})
+        visit.wait_until_bound()
+        visit.page.mouse.move(700, 895)
+        for name in ("light", "dark"):
+            visit.settle()
+            visit.page.wait_for_timeout(800)
+            visit.page.screenshot(path=PICTURES / f"page-{name}.png")
+            visit.button("Toggle theme").click()
+            visit.page.mouse.move(700, 895)
+        visit.close()
+        browser.close()
+
+
+def shrink(path: Path) -> None:
+    """Store a picture in as few bytes as it takes; with fewer colours if they are too many."""
+    with Image.open(path) as image:
+        whole = image.convert("RGB")
+    whole.save(path, optimize=True)
+    if path.stat().st_size > MAX_BYTES:
+        whole.quantize(COLORS, dither=Image.Dither.FLOYDSTEINBERG).save(path, optimize=True)
+
+
+if __name__ == "__main__":
+    main()
