@@ -49,7 +49,7 @@ class TriangleMesh:
         if len(bad):
             raise MeshError(
                 f"face {bad[0]} uses the vertices {faces[bad[0]].tolist()}, but the mesh has "
-                f"only {len(vertices)} (numbered from 0); {len(bad)} faces are out of range"
+                f"only {len(vertices)} (numbered from 0); faces out of range: {len(bad)}"
             )
         used = vertices[np.unique(faces)]
         if np.ptp(used, axis=0).max() == 0:
@@ -242,7 +242,7 @@ class Rig:
             raise SkeletonError(
                 f'joint "{self.skeleton.names[worst]}" at ({position}) lies '
                 f"{distance[worst] / diagonal:.0f} times the mesh's size away from it "
-                f"({len(far)} joints lie too far); are skeleton and mesh in the same units?"
+                f"(joints too far: {len(far)}); are skeleton and mesh in the same units?"
             )
 
 

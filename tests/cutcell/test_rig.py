@@ -54,7 +54,7 @@ class TestMesh:
             (with_value(CORNERS, (2, 1), np.nan), TETRAHEDRON, "vertex 2 .* not a finite number"),
             (with_value(CORNERS, (1, 0), np.inf), TETRAHEDRON, "vertex 1 .* 1 of 4"),
             (CORNERS, [[0, 1, 4]], r"face 0 uses the vertices \[0, 1, 4\]"),
-            (CORNERS, [[0, 1, 2], [-1, 1, 2]], "face 1 uses .* 1 faces are out of range"),
+            (CORNERS, [[0, 1, 2], [-1, 1, 2]], "face 1 uses .* faces out of range: 1"),
             (np.ones((4, 3)), TETRAHEDRON, "all faces of the mesh lie in one point"),
             (CORNERS[:, :2], TETRAHEDRON, r"vertices has the shape \(4, 2\), expected \(any, 3\)"),
             (CORNERS, [[0, 1, 2, 3]], r"faces has the shape \(1, 4\)"),
