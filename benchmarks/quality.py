@@ -1,6 +1,7 @@
 """Measure every method on real characters, and print the tables of docs/quality.md.
 
-    python -m benchmarks.quality [RIG...] [--methods NAME,...] [--json FILE] [--markdown FILE]
+    python -m benchmarks.quality [RIG...] [--methods NAME,...]
+        [--resolution R] [--json FILE] [--markdown FILE]
 
 Without rigs: all in ../shared/data/rigs. Where ../shared/data/bone_heat holds Blender's
 automatic weights of a rig, they are a column of their own.
@@ -78,6 +79,7 @@ def main(given: Sequence[str] | None = None) -> None:
     )
     parser.add_argument("rigs", nargs="*", type=Path)
     parser.add_argument("--methods", help="names with commas between; all when left out")
+    parser.add_argument("--resolution", type=int, default=64, help="R; 64 when left out")
     parser.add_argument("--json", type=Path, help="write all numbers to this file")
     parser.add_argument("--markdown", type=Path, help="write the tables to this file")
     options = parser.parse_args(given)
@@ -91,7 +93,7 @@ def main(given: Sequence[str] | None = None) -> None:
             sys.exit(f"unknown: {', '.join(unknown)}; known: {', '.join(methods)}")
         methods = {name: methods[name] for name in names}
     warmed(rigs, methods)
-    comparison = compare(loaded(rigs), methods)
+    comparison = compare(loaded(rigs), methods, resolution=options.resolution)
     text = comparison_markdown(comparison)
     print(text)
     if options.markdown:
