@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import errno
+import signal
 import socket
+import sys
+import threading
 from pathlib import Path
 
 import panel as pn
@@ -46,6 +49,9 @@ def serve(
         print(f"Port {port} is taken.", flush=True)
     host = "localhost" if address in ("0.0.0.0", "::", *LOCAL) else address
     print(f"The page is at http://{host}:{chosen} (stop with Ctrl+C)", flush=True)
+    if threading.current_thread() is threading.main_thread():
+        # An orderly end, so that what was uploaded is removed.
+        signal.signal(signal.SIGTERM, lambda number, frame: sys.exit(0))
     pn.serve(
         {"/": lambda: page(path)},
         port=chosen,

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import functools
 import logging
-import shutil
 import tempfile
 from collections.abc import Callable
 from dataclasses import replace
@@ -17,6 +16,7 @@ from cutcell.errors import CutcellError, FileError
 from cutcell.progress import Progress
 from cutcell.rig import Rig
 from viewers.description import Description
+from viewers.opengl import require_opengl
 from viewers.pose_scene import pose_at
 from viewers.scene import Scene, framing
 
@@ -61,7 +61,8 @@ class Session:
     def __init__(self, schedule: Schedule) -> None:
         self.state = State()
         self._schedule = schedule
-        self.folder = Path(tempfile.mkdtemp(prefix="cutcell-"))
+        self._files = tempfile.TemporaryDirectory(prefix="cutcell-", ignore_cleanup_errors=True)
+        self.folder = Path(self._files.name)
         self.view = SceneView(self.pick, self.receiver(), sizing_mode="stretch_both")
         self._jobs = Jobs(self.later)
         self._fields = Jobs(self.later)
@@ -189,6 +190,15 @@ class Session:
         coloring = "weights" if state.coloring in ("bones", "plain") else state.coloring
         state.param.update(joint=joint, coloring=coloring)
 
+    def take_picture(self, done: Callable[[str, bytes], None]) -> None:
+        """Draw what is seen, if this machine can, and hand over a name and the PNG."""
+
+        def work(progress: Progress) -> None:
+            progress("drawing the picture", 0.0)
+            require_opengl()
+
+        self._start(work, lambda _: done("cutcell.png", self.picture()))
+
     def picture(self, size: tuple[int, int] = (1600, 1200)) -> bytes:
         """Return what is seen as a PNG, drawn off-screen with the view's camera."""
         path = self.folder / "picture.png"
@@ -258,7 +268,7 @@ class Session:
         """Stop all work and remove what was uploaded."""
         self._jobs.close()
         self._fields.close()
-        shutil.rmtree(self.folder, ignore_errors=True)
+        self._files.cleanup()
 
 
 @functools.cache

@@ -22,7 +22,12 @@ from .progress import Progress, silent
 WRONG_INPUT = 2
 INTERRUPTED = 130
 
-STAGES = {"graph": "Building the graph", "distances": "Finding distances", "weights": "Weighting"}
+STAGES = {
+    "compile": "Compiling, once on this machine",
+    "graph": "Building the graph",
+    "distances": "Finding distances",
+    "weights": "Weighting",
+}
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 

@@ -18,7 +18,7 @@ def export(session: Session) -> pmui.Column:
         session.bound_file(session.view.offer)
 
     def picture(event: Any) -> None:
-        session.view.offer("cutcell.png", session.picture())
+        session.take_picture(session.view.offer)
 
     def button(label: str, act: Any, needed: Any, **params: Any) -> pmui.Button:
         return pmui.Button(

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ..geodesics import FALLBACK_REASONS, BoneDistances, bone_distances
 from ..graph import CutCellGraph, build_graph, kernels_are_compiled
 from ..progress import Progress, silent
-from ..rig import Rig
+from ..rig import Rig, Skeleton, TriangleMesh
 from .weights import skinning_weights
 
 
@@ -88,7 +88,9 @@ def bind(
     >>> cutcell.save("bound.glb", rig.with_weights(binding.weights))  # doctest: +SKIP
     """
     if not kernels_are_compiled():
-        progress("compile", 0.0)  # happens within the stages below, and takes a while
+        progress("compile", 0.0)
+        _compile(connectivity)
+        progress("compile", 1.0)
     ticks = [perf_counter()]
     graph = build_graph(
         rig.mesh,
@@ -114,6 +116,14 @@ def bind(
     ticks.append(perf_counter())
     seconds = dict(zip(("graph", "distances", "weights"), np.diff(ticks).tolist(), strict=True))
     return Binding(weights, graph, distances, seconds, _warnings(graph, distances))
+
+
+def _compile(connectivity: int | str) -> None:
+    """Run every kernel on a tetrahedron: compiled once, they are kept on disk."""
+    corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
+    mesh = TriangleMesh(np.array(corners), np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]))
+    graph = build_graph(mesh, 4, connectivity=connectivity)
+    bone_distances(graph, Skeleton(np.full((1, 3), 0.2), np.array([-1])))
 
 
 def _warnings(graph: CutCellGraph, distances: BoneDistances) -> tuple[str, ...]:

@@ -292,3 +292,36 @@ def test_two_browsers_share_nothing(browser, url, visit):
     assert changed(before, other.look()) == 0
     assert other.page.get_by_text("Weight of").count() == 0
     other.close()
+
+
+def test_a_long_computation_can_be_cancelled(visit):
+    before = visit.look()
+    box = visit.page.get_by_role("textbox")
+    box.fill("320")
+    box.press("Enter")
+    visit.button("Cancel").click(timeout=LOAD_MS)
+    visit.expect_text("Cancelled. The page keeps what it had.")
+    visit.dismiss()
+    visit.wait_until_bound()
+    assert changed(before, visit.look()) < 0.001
+
+
+def test_a_file_can_be_dropped_on_the_canvas(visit):
+    points = len(visit.points())
+    content = list(demo_path("rabbit").read_bytes())
+    visit.page.get_by_role("application").evaluate(
+        """(canvas, content) => {
+          const files = new DataTransfer()
+          files.items.add(new File([new Uint8Array(content)], "dropped.glb"))
+          for (const type of ["dragenter", "dragover", "drop"]) {
+            const options = {dataTransfer: files, bubbles: true, cancelable: true}
+            canvas.dispatchEvent(new DragEvent(type, options))
+          }
+        }""",
+        content,
+    )
+    visit.page.wait_for_function(
+        "n => __cutcell.report().actors.body.points !== n", arg=points, timeout=LOAD_MS
+    )
+    visit.wait_until_bound()
+    visit.expect_text("dropped")

@@ -178,6 +178,19 @@ def test_the_picture_is_a_png(bound, motion):
     assert content.startswith(b"\x89PNG")
 
 
+def test_a_machine_that_cannot_draw_is_told_so(bound, loop, monkeypatch):
+    taken = []
+    bound.take_picture(lambda name, content: taken.append((name, content[:4])))
+    loop.run_until(lambda: taken)
+    assert taken == [("cutcell.png", b"\x89PNG")]
+    monkeypatch.setattr("viewers.opengl._can_draw", lambda: False)
+    bound.take_picture(lambda name, content: taken.append(name))
+    loop.run_until(lambda: bound.state.message is not None)
+    assert "no OpenGL" in bound.state.message[1]
+    assert len(taken) == 1
+    assert bound.state.binding is not None
+
+
 def test_pictures_show_the_pose(bound):
     rest = bound.picture((160, 120))
     bound.state.turns = {1: (0, 0, 60)}

@@ -1,0 +1,38 @@
+"""Whether this machine can draw pictures."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from functools import cache
+
+from cutcell.errors import MissingLibraryError
+
+TRIAL = """
+import viewers.scene, pyvista
+plotter = pyvista.Plotter(off_screen=True, window_size=(16, 16))
+plotter.add_mesh(pyvista.Sphere())
+plotter.screenshot(return_img=True)
+"""
+
+
+def require_opengl() -> None:
+    """Make sure that VTK can draw without a screen.
+
+    Raises
+    ------
+    MissingLibraryError
+        It cannot; the sentence says what to install.
+    """
+    if not _can_draw():
+        raise MissingLibraryError(
+            "this machine has no OpenGL to draw a picture with; on Debian or Ubuntu install "
+            "it by: apt-get install libegl1 libgl1-mesa-dri"
+        )
+
+
+@cache
+def _can_draw() -> bool:
+    # Without OpenGL VTK does not raise, the process dies: so another one is asked, once.
+    command = [sys.executable, "-c", TRIAL]
+    return subprocess.run(command, capture_output=True, timeout=120).returncode == 0
