@@ -35,7 +35,7 @@ ORDER = [
     {"pose"},
     {"metrics"},
     {"baselines", "diagnose", "dataset"},
-    {"summary"},
+    {"summary", "compare"},
     {"options", "console", "report", "cli", "__main__"},
 ]
 RANK = {part: rank for rank, parts in enumerate(ORDER) for part in parts}

@@ -388,3 +388,22 @@ def test_real_characters_bind_and_stay_in_order(run, rigs, tmp_path):
 def test_demo_characters_have_a_graph(run, demo_paths):
     document = json.loads(run("graph", demo_paths[0], "-r", 16, "--json").stdout)
     assert document["graph"]["nodes"]["total"] > 0
+
+
+class TestCompare:
+    def test_measures_each_method_on_each_rig(self, run, bar, tmp_path):
+        rigged = tmp_path / "rigged.glb"
+        assert run("bind", bar, rigged, "-r", 8).exit_code == 0
+        options = ("--methods", "cutcell_any, euclidean", "-r", 8)
+        result = run("compare", rigged, *options, "--json")
+        assert result.exit_code == 0
+        document = json.loads(result.stdout)
+        assert document["methods"] == ["cutcell_any", "euclidean"]
+        assert document["summary"]["cutcell_any"]["l1"]["median"] < 1e-6
+        table = run("compare", rigged, *options).stdout
+        assert "| cutcell_any |" in table
+        assert "| rigged |" in table
+
+    def test_unknown_methods_and_rigs_without_weights_are_told(self, run, bar, tmp_path):
+        assert "'bone_heat'" in refused(run("compare", bar, "--methods", "magic"))
+        assert "weights" in refused(run("compare", bar, "--methods", "euclidean"))
