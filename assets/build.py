@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from .body import Body
 from .character import Bones, Character, Material, Motion, Surface
 from .meshing import mesh_of, normals_of
-from .sdf import Body
 from .seams import with_seams
 from .weights import from_parts
 

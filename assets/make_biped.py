@@ -9,11 +9,11 @@ import numpy as np
 
 from .biped_bones import DOWN, FINGERS, finger_places, skeleton
 from .biped_walk import walk
+from .body import Body
 from .build import closed_character
 from .character import Bones, Character, Material
 from .motion import Z
 from .sdf import (
-    Body,
     Points,
     ball,
     chain,

@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from .body import Body
 from .character import Bones, Character, Material, Surface
 from .make_biped import shape_around
 from .meshing import normals_of
-from .sdf import Body
 from .weights import quantised
 
 HOLES = (

@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from .body import Body
 from .build import closed_character
 from .character import Bones, Character, Material, Motion
 from .motion import X, Y, Z, loop, move, phase, rotate, turn, wave
-from .sdf import Body, ball, chain, common, ellipsoid, half_space, shell, shifted, unit
+from .sdf import ball, chain, common, ellipsoid, half_space, shell, shifted, unit
 
 MATERIALS = {
     "skin": Material("skin", "#d9627a", roughness=0.45),

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from .body import Body
 from .build import closed_character
 from .character import Bones, Character, Material, Motion
 from .motion import X, Y, Z, curve, loop, move, phase, rotate, turn
 from .sdf import (
-    Body,
     Shape,
     ball,
     common,

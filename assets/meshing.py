@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 
+from .body import Body, neighbourhoods
 from .remesh import collapse_short_edges, flip_edges, split_long_edges
-from .sdf import Body, neighbourhoods
 
 BLOCK = 16
 """Lattice points along a side of the blocks that are sampled, or skipped, as one."""

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from .body import Body
 from .meshing import onto_surface, relaxed
 from .remesh import collapse_short_edges, edges_of, flip_thin
-from .sdf import Body
 
 
 def with_seams(

@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 
+from .body import Body
 from .character import Bones
-from .sdf import Body
 
 STEP = 4096
 """Weights are whole multiples of 1/4096: exact in float32, and their sums are exactly 1."""

@@ -5,11 +5,12 @@ import pytest
 
 from assets import __main__ as command
 from assets import demo_path, glb
+from assets.body import Body
 from assets.character import Bones
 from assets.meshing import mesh_of
 from assets.plates import barrel, box, globe
 from assets.remesh import edges_of
-from assets.sdf import Body, ball, ellipsoid, round_cone, smooth_min
+from assets.sdf import ball, ellipsoid, round_cone, smooth_min
 from assets.seams import with_seams
 from assets.weights import from_parts, quantised
 
