@@ -10,7 +10,7 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from .errors import MeshError, SkeletonError, WeightsError
 
@@ -225,9 +225,9 @@ class Rig:
             object.__setattr__(self, "allowed", _frozen(allowed))
         self._check_units()
 
-    def with_weights(self, weights: ArrayLike) -> Rig:
-        """Return the same rig with other weights, shape (n, j)."""
-        return replace(self, weights=np.asarray(weights, np.float64))
+    def with_weights(self, weights: NDArray[np.float64] | None) -> Rig:
+        """Return the same rig with other weights, shape (n, j), or with none."""
+        return replace(self, weights=weights)
 
     def _check_units(self) -> None:
         low, high = self.mesh.bounds
