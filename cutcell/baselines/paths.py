@@ -5,9 +5,11 @@ from __future__ import annotations
 from heapq import heappop, heappush
 
 import numpy as np
-from numba import njit, prange
+from numba import njit
 from numpy.typing import NDArray
 from scipy.sparse import coo_array
+
+from ..threads import in_threads, parts
 
 
 def path_lengths(
@@ -39,20 +41,20 @@ def path_lengths(
     both = (np.concatenate([a, b]), np.concatenate([b, a]))
     matrix = coo_array((np.concatenate([lengths, lengths]), both), shape=(count, count)).tocsr()
     first = np.cumsum([0, *(len(nodes) for nodes in sources)])
-    return _search(
-        matrix.indptr.astype(np.int64),
-        matrix.indices.astype(np.int64),
-        matrix.data,
-        first,
-        np.concatenate(sources).astype(np.int64),
-        np.concatenate(starts).astype(np.float64),
+    graph = matrix.indptr.astype(np.int64), matrix.indices.astype(np.int64), matrix.data
+    source = np.concatenate(sources).astype(np.int64)
+    start = np.concatenate(starts).astype(np.float64)
+    found = in_threads(
+        lambda part: _search(*graph, first[part.start : part.stop + 1], source, start),
+        parts(len(sources)),
     )
+    return np.concatenate(found)
 
 
-@njit(cache=True, parallel=True)
+@njit(cache=True, nogil=True)
 def _search(indptr, indices, lengths, first, source, start):
     result = np.full((len(first) - 1, len(indptr) - 1), np.inf)
-    for one in prange(len(first) - 1):
+    for one in range(len(first) - 1):
         distance = result[one]
         queue = [(np.inf, -1)]
         for s in range(first[one], first[one + 1]):

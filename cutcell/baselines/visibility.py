@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit, prange
+from numba import njit
 from numpy.typing import NDArray
+
+from ..threads import in_threads, parts
 
 LEAF = 4
 """Triangles in a leaf of the tree, at most."""
@@ -42,7 +44,12 @@ class Blockers:
         array, shape (q,), bool
         """
         tree = (self.faces, self.low, self.high, self.child, self.first)
-        return _blocked(self.points, *tree, vertex.astype(np.int64), target)
+        vertex = vertex.astype(np.int64)
+        found = in_threads(
+            lambda part: _blocked(self.points, *tree, vertex[part], target[part]),
+            parts(len(vertex)),
+        )
+        return np.concatenate(found)
 
 
 def _build(points, faces):
@@ -81,10 +88,10 @@ def _build(points, faces):
     )
 
 
-@njit(cache=True, parallel=True)
+@njit(cache=True, nogil=True)
 def _blocked(points, faces, low, high, child, first, vertex, target):
     result = np.zeros(len(vertex), np.bool_)
-    for q in prange(len(vertex)):
+    for q in range(len(vertex)):
         start = points[vertex[q]]
         way = target[q] - start
         stack = np.empty(DEPTH, np.int64)

@@ -13,15 +13,14 @@ Where that neighbour follows another anchor, the line itself is walked.
 
 from __future__ import annotations
 
-from concurrent.futures import ThreadPoolExecutor
-
 import numpy as np
-from numba import get_num_threads, njit
+from numba import njit
 from numpy.typing import NDArray
 
 from ..graph import CutCellGraph
 from ..graph.interior import OUTSIDE, point_number
 from ..progress import Progress, silent
+from ..threads import in_threads, threads
 from .bones import Bones, Sources
 from .heap import heap_pop, heap_push
 
@@ -78,12 +77,11 @@ def any_angle_paths(
         return _paths(graph.adjacency, body, node, distance, *ends)[targets]
 
     result = np.empty((count, len(targets)))
-    with ThreadPoolExecutor(get_num_threads()) as pool:
-        step = 2 * get_num_threads()
-        for first in range(0, count, step):
-            progress("distances", first / count)
-            part = range(first, min(first + step, count))
-            result[part.start : part.stop] = list(pool.map(one_bone, part))
+    step = 4 * threads()
+    for first in range(0, count, step):
+        progress("distances", first / count)
+        part = range(first, min(first + step, count))
+        result[part.start : part.stop] = in_threads(one_bone, part)
     progress("distances", 1.0)
     return result
 

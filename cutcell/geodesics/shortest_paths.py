@@ -11,11 +11,12 @@ the edge, which is what Dijkstra's algorithm arrives at, too.
 from __future__ import annotations
 
 import numpy as np
-from numba import get_num_threads, njit, prange
+from numba import njit
 from numpy.typing import NDArray
 
 from ..graph import CutCellGraph
 from ..progress import Progress, silent
+from ..threads import in_threads, threads
 from .bones import Sources
 
 LANES = 8
@@ -50,7 +51,7 @@ def shortest_paths(
     orders = _sweep_orders(graph.nodes)
     blocks = -(-bones // LANES)
     result = np.empty((blocks * LANES, len(targets)))
-    step = get_num_threads()
+    step = threads()
     for first in range(0, blocks, step):
         progress("distances", first / blocks)
         last = min(first + step, blocks)
@@ -58,7 +59,7 @@ def shortest_paths(
         mine = (sources.bone >= first * LANES) & (sources.bone < last * LANES)
         bone = sources.bone[mine] - first * LANES
         distance[bone // LANES, sources.node[mine], bone % LANES] = sources.distance[mine]
-        _relax_blocks(*graph.adjacency, orders, distance)
+        in_threads(lambda block: _relax(*graph.adjacency, orders, block), distance)
         found = distance[:, targets].transpose(0, 2, 1).reshape(-1, len(targets))
         result[first * LANES : last * LANES] = found
     progress("distances", 1.0)
@@ -72,13 +73,7 @@ def _sweep_orders(nodes: NDArray[np.float64]) -> NDArray[np.int32]:
     return np.stack([np.lexsort((c * z, b * y, x)) for b, c in signs]).astype(np.int32)
 
 
-@njit(cache=True, parallel=True)
-def _relax_blocks(indptr, indices, lengths, orders, distance):
-    for block in prange(len(distance)):
-        _relax(indptr, indices, lengths, orders, distance[block])
-
-
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _relax(indptr, indices, lengths, orders, distance):
     waiting = np.zeros(len(indptr) - 1, np.bool_)
     for node in range(len(waiting)):

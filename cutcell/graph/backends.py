@@ -13,7 +13,6 @@ from types import ModuleType
 from typing import Any
 
 import numpy as np
-from numba import get_num_threads
 from numpy.typing import NDArray
 
 from ..errors import MissingLibraryError
@@ -155,9 +154,6 @@ def find_runs_fast(
 
 
 def _import(module: str, option: str, package: str) -> ModuleType:
-    # Embree and Open3D bring a TBB that is too old for numba, which warns when it meets it
-    # while it chooses how to run threads: have it choose first.
-    get_num_threads()
     try:
         return import_module(module)
     except ModuleNotFoundError as error:

@@ -24,9 +24,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit, prange
+from numba import njit
 from numpy.typing import NDArray
 
+from ..threads import in_threads, parts
 from .caps import Caps
 
 BLOCK = 8
@@ -80,28 +81,34 @@ def find_needs(caps: Caps, resolution: int, winding_threshold: float) -> Needs:
         winding_threshold,
     )
     if len(caps.faces):
-        _decide_blocks(fans, 1 / resolution, coarse)
+        cells = coarse.reshape(-1)
+        in_threads(
+            lambda part: _decide_blocks(fans, 1 / resolution, blocks, part.start, part.stop, cells),
+            parts(len(cells)),
+        )
     unsure = np.argwhere(coarse == UNSURE)
     row[tuple(unsure.T)] = np.arange(len(unsure))
     fine = np.full((len(unsure), BLOCK, BLOCK, BLOCK), UNSURE, np.int8)
     if len(unsure):
-        _refine_blocks(fans, 1 / resolution, unsure, fine)
+        in_threads(
+            lambda part: _refine_blocks(fans, 1 / resolution, unsure[part], fine[part]),
+            parts(len(unsure), len(unsure) // 4 + 1),
+        )
     return Needs(coarse, row, fine)
 
 
-@njit(cache=True, parallel=True)
-def _decide_blocks(fans, cell, coarse):
-    blocks = coarse.shape[0]
+@njit(cache=True, nogil=True)
+def _decide_blocks(fans, cell, blocks, first, last, coarse):
     half = BLOCK * cell / 2
-    for b in prange(blocks**3):
+    for b in range(first, last):
         x, y, z = b // blocks**2, b // blocks % blocks, b % blocks
         q = np.array([(2 * x + 1) * half, (2 * y + 1) * half, (2 * z + 1) * half])
-        coarse[x, y, z] = _need(fans, q, half * np.sqrt(3))
+        coarse[b] = _need(fans, q, half * np.sqrt(3))
 
 
-@njit(cache=True, parallel=True)
+@njit(cache=True, nogil=True)
 def _refine_blocks(fans, cell, unsure, fine):
-    for u in prange(len(unsure)):
+    for u in range(len(unsure)):
         corner = unsure[u] * BLOCK * cell
         for size in (4, 2, 1):
             half = size * cell / 2

@@ -16,12 +16,13 @@ so the three families of rays see one and the same movement.
 
 from __future__ import annotations
 
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
-from numba import get_num_threads, njit
+from numba import njit
 from numpy.typing import NDArray
+
+from ..threads import in_threads
 
 AXES = ((1, 2, 0), (0, 2, 1), (0, 1, 2))
 """For rays along x, y, z: the two axes (u, v) of the plane they cross, and their own."""
@@ -76,13 +77,10 @@ def cast_rays(
     projected = np.ascontiguousarray(vertices[:, [u, v, along]])
     flip = -1 if axis == 1 else 1  # x cross z points along -y
     bounds = np.arange(STRIPS + 1) * resolution // STRIPS
-    with ThreadPoolExecutor(get_num_threads()) as pool:
-        strips = list(
-            pool.map(
-                lambda k: _draw_strip(projected, faces, resolution, flip, *bounds[k : k + 2]),
-                range(STRIPS),
-            )
-        )
+    strips = in_threads(
+        lambda k: _draw_strip(projected, faces, resolution, flip, *bounds[k : k + 2]),
+        range(STRIPS),
+    )
     counts, position, triangle, sign = (
         np.concatenate(parts) for parts in zip(*strips, strict=True)
     )

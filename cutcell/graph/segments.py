@@ -7,14 +7,14 @@ stored as a run, so memory grows with the surface, not with the volume.
 
 from __future__ import annotations
 
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numba import get_num_threads, njit
+from numba import njit
 from numpy.typing import NDArray
 
+from ..threads import in_threads
 from .caps import Caps
 from .holes import BLOCK, UNSURE, Needs
 from .rays import AXES, STRIPS, Crossings, cast_rays, first_at_least, grown
@@ -99,9 +99,8 @@ def find_runs(
         (closing.start, closing.position, weight),
     )
     strips = np.linspace(0, resolution**2, STRIPS + 1).astype(np.int64)
-    with ThreadPoolExecutor(get_num_threads()) as pool:
-        parts = pool.map(lambda k: _walk_rays(*inputs, strips[k], strips[k + 1]), range(STRIPS))
-        ray, first, last, low, high = np.concatenate(list(parts)).T
+    rows = in_threads(lambda k: _walk_rays(*inputs, strips[k], strips[k + 1]), range(STRIPS))
+    ray, first, last, low, high = np.concatenate(rows).T
     ray, first, last = (a.astype(np.int32) for a in (ray, first, last))
     return Runs(ray, first, last, low.copy(), high.copy())
 

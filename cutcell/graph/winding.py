@@ -18,13 +18,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit, prange
+from numba import njit
 from numpy.typing import ArrayLike, NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from ..errors import ParameterError
 from ..rig import TriangleMesh
+from ..threads import in_threads, parts
 from .lattice import Lattice
 from .rays import column_span, edge_height, height_between
 from .weld import weld
@@ -106,11 +107,10 @@ def winding_number(mesh: TriangleMesh, points: ArrayLike) -> NDArray[np.float64]
     boundary = find_boundary(faces)
     points = lattice.to_unit(points)
     cells, start, listed = _bin_faces(vertices, faces)
-    number = np.empty(len(points))
-    _number_at(
-        points, vertices, faces, cells, start, listed, boundary.edges, boundary.count, number
+    surface = vertices, faces, cells, start, listed, boundary.edges, boundary.count
+    return np.concatenate(
+        in_threads(lambda part: _number_at(points[part], *surface), parts(len(points)))
     )
-    return number
 
 
 def _bin_faces(vertices, faces):
@@ -137,9 +137,10 @@ def _list_faces(low, high, cells, cursor, listed):
                 cursor[i * cells + j] += 1
 
 
-@njit(cache=True, parallel=True)
-def _number_at(points, vertices, faces, cells, start, listed, edges, count, number):
-    for q in prange(len(points)):
+@njit(cache=True, nogil=True)
+def _number_at(points, vertices, faces, cells, start, listed, edges, count):
+    number = np.empty(len(points))
+    for q in range(len(points)):
         pu, pv, height = points[q, 0], points[q, 1], points[q, 2]
         chi = 0
         if 0 <= pu <= 1 and 0 <= pv <= 1:
@@ -151,6 +152,7 @@ def _number_at(points, vertices, faces, cells, start, listed, edges, count, numb
                 if height_between(low_v, low_a, high_v, high_a, pv) > height:
                     chi += side
         number[q] = chi + boundary_turns(vertices, edges, count, pu, pv, height)
+    return number
 
 
 @njit(cache=True)
