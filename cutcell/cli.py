@@ -21,12 +21,15 @@ from .options import (
     Falloff,
     Json,
     Leaf,
+    Lock,
     MaxInfluences,
     Quiet,
     Resolution,
     RigFile,
     Samples,
     SkeletonFile,
+    Smoothing,
+    Symmetric,
     Threshold,
     WindingThreshold,
 )
@@ -122,6 +125,8 @@ def open_page(
 
 - `cutcell bind character.glb bound.glb --connectivity 6`  (just as in the paper)
 
+- `cutcell bind character.glb bound.glb --lock Jaw --lock Eye.L --symmetric`  (keep these two)
+
 - `cutcell bind body.obj bound.glb --skeleton body.json`  (a bare mesh)
 
 - `cutcell bind character.glb bound.glb --json | jq .seconds`  (for a script)"""
@@ -145,6 +150,9 @@ def bind(
     alpha: Alpha = 0.5,
     max_influences: MaxInfluences = 4,
     threshold: Threshold = 0.0,
+    smoothing: Smoothing = 0,
+    symmetric: Symmetric = False,
+    lock: Lock = None,
     skeleton: SkeletonFile = None,
     json: Json = False,
     quiet: Quiet = False,
@@ -169,6 +177,9 @@ def bind(
         "alpha": alpha,
         "max_influences": max_influences,
         "threshold": threshold,
+        "smoothing": smoothing,
+        "symmetric": symmetric,
+        "locked": lock or [],
     }
     _check_output(out)
     loaded = _load(rig, skeleton)

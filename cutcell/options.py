@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 METHOD = "The method"
+TOUCH = "Touching up"
 FILES = "Files and output"
 
 RigFile = Annotated[
@@ -119,5 +120,32 @@ Threshold = Annotated[
         metavar="W",
         help="Weights below this are dropped and the rest made to sum to 1 again.",
         rich_help_panel=METHOD,
+    ),
+]
+Smoothing = Annotated[
+    int,
+    typer.Option(
+        "--smoothing",
+        metavar="N",
+        help="Average the weights along mesh edges N times.",
+        rich_help_panel=TOUCH,
+    ),
+]
+Symmetric = Annotated[
+    bool,
+    typer.Option(
+        "--symmetric",
+        help="Give left and right the same weights, where the mesh is mirrored.",
+        rich_help_panel=TOUCH,
+    ),
+]
+Lock = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--lock",
+        metavar="JOINT",
+        help="A joint that keeps the file's own weights; the rest is filled in. May be given"
+        " several times.",
+        rich_help_panel=TOUCH,
     ),
 ]

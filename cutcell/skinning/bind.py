@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from time import perf_counter
 
@@ -12,6 +13,7 @@ from ..geodesics import FALLBACK_REASONS, BoneDistances, bone_distances
 from ..graph import CutCellGraph, build_graph, kernels_are_compiled
 from ..progress import Progress, silent
 from ..rig import Rig, Skeleton, TriangleMesh
+from .refine import refine_weights
 from .weights import skinning_weights
 
 
@@ -50,6 +52,9 @@ def bind(
     alpha: float = 0.5,
     max_influences: int | None = 4,
     threshold: float = 0.0,
+    smoothing: int = 0,
+    symmetric: bool = False,
+    locked: Sequence[int | str] = (),
     progress: Progress = silent,
 ) -> Binding:
     """Compute skinning weights for a rig.
@@ -66,6 +71,8 @@ def bind(
         See `bone_distances`.
     falloff, alpha, max_influences, threshold
         See `skinning_weights`.
+    smoothing, symmetric, locked
+        See `refine_weights`.
     progress : callable
         See `cutcell.progress`; stages are "graph", "distances", "weights", and
         before them "compile" the very first time on a machine.
@@ -109,6 +116,15 @@ def bind(
         distances,
         falloff=falloff,
         alpha=alpha,
+        max_influences=max_influences,
+        threshold=threshold,
+    )
+    weights = refine_weights(
+        rig,
+        weights,
+        smoothing=smoothing,
+        symmetric=symmetric,
+        locked=locked,
         max_influences=max_influences,
         threshold=threshold,
     )

@@ -92,11 +92,12 @@ class TestBind:
             "alpha": 0.75,
             "max_influences": 1,
             "threshold": 0.125,
+            "smoothing": 3,
         }
         words = [w for k, v in options.items() for w in (f"--{k.replace('_', '-')}", v)]
         result = run("bind", bar, tmp_path / "bound.glb", *words, "--json")
         document = json.loads(result.stdout)
-        assert document["parameters"] == options
+        assert document["parameters"] == {**options, "symmetric": False, "locked": []}
         assert document["influences"] == {"mean": 1.0, "most": 1}
         assert set(document["seconds"]) == {"graph", "distances", "weights"}
 
@@ -104,7 +105,13 @@ class TestBind:
         document = json.loads(run("bind", bar, tmp_path / "bound.glb", "--json").stdout)
         defaults = {**cutcell.bind.__kwdefaults__, "resolution": cutcell.bind.__defaults__[0]}
         del defaults["progress"]
-        assert document["parameters"] == defaults
+        assert document["parameters"] == {**defaults, "locked": list(defaults["locked"])}
+
+    def test_touching_up_reaches_the_library(self, run, bar, tmp_path):
+        result = run("bind", bar, tmp_path / "bound.glb", "--symmetric")
+        assert "is not mirrored across x, y or z" in refused(result)
+        result = run("bind", bar, tmp_path / "bound.glb", "--lock", "tip", "--lock", "toe")
+        assert 'there is no joint "toe"' in refused(result)
 
     def test_quiet_says_nothing(self, run, bar, tmp_path):
         result = run("bind", bar, tmp_path / "bound.glb", "-r", 8, "--quiet")

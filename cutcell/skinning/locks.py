@@ -1,0 +1,101 @@
+"""Lock joints: keep an artist's weights of some joints and fill in the rest."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from difflib import get_close_matches
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import ParameterError, WeightsError
+from ..rig import Rig, Skeleton
+
+
+def lock_joints(
+    rig: Rig,
+    weights: NDArray[np.float64],
+    locked: Sequence[int | str],
+    max_influences: int | None = None,
+) -> NDArray[np.float64]:
+    """Put back the rig's own weights of some joints; the others share what these leave.
+
+    Parameters
+    ----------
+    rig : Rig
+        With the weights to keep.
+    weights : array, shape (n, j)
+        What was computed; rows sum to one.
+    locked : sequence of int or str
+        Joints by index or by name.
+    max_influences : int or None
+        Joints a vertex may follow. Locked ones come first; where they leave no room, or no
+        other joint has weight, they are scaled to sum to one.
+
+    Returns
+    -------
+    array, shape (n, j)
+        Rows sum to one. A vertex that no locked joint holds, and that has weight of locked
+        joints only, keeps what was computed.
+
+    Raises
+    ------
+    ParameterError
+        There is no such joint; the sentence names those that sound alike.
+    WeightsError
+        The rig has no weights to keep.
+    """
+    held = _mask(rig.skeleton, locked)
+    if not held.any():
+        return weights
+    if rig.weights is None:
+        raise WeightsError(
+            f"{rig.name} has no weights of its own, so no joint of it can be locked; "
+            "leave out the locked joints"
+        )
+    kept = np.where(held, rig.weights, 0.0)
+    free = np.where(held, 0.0, weights)
+    if max_influences is not None:
+        free = _largest(free, max_influences - (kept > 0).sum(axis=1))
+    share = free.sum(axis=1, keepdims=True)
+    rest = np.maximum(1 - kept.sum(axis=1, keepdims=True), 0)
+    result = kept + np.divide(free * rest, share, out=np.zeros_like(free), where=share > 0)
+    total = result.sum(axis=1, keepdims=True)
+    return np.divide(result, total, out=weights.copy(), where=total > 0)
+
+
+def _mask(skeleton: Skeleton, locked: Sequence[int | str]) -> NDArray[np.bool_]:
+    held = np.zeros(len(skeleton.names), bool)
+    for joint in locked:
+        held[joint_index(skeleton, joint)] = True
+    return held
+
+
+def joint_index(skeleton: Skeleton, joint: int | str) -> int:
+    """Return the index of a joint that is given by its index or its name.
+
+    Raises
+    ------
+    ParameterError
+        There is no such joint.
+    """
+    names = list(skeleton.names)
+    if isinstance(joint, str):
+        if joint in names:
+            return names.index(joint)
+        close = get_close_matches(joint, names, n=3, cutoff=0.4) or names[:3]
+        raise ParameterError(
+            f'there is no joint "{joint}" among the {len(names)} of the skeleton; there is '
+            + ", ".join(f'"{name}"' for name in close)
+        )
+    if not 0 <= joint < len(names):
+        raise ParameterError(f"there is no joint {joint}; joints go from 0 to {len(names) - 1}")
+    return int(joint)
+
+
+def _largest(weights: NDArray[np.float64], room: NDArray[np.intp]) -> NDArray[np.float64]:
+    """Keep the `room` largest weights of each row; ties go to the lower index."""
+    order = np.argsort(-weights, axis=1, kind="stable")
+    rank = np.empty_like(order)
+    np.put_along_axis(rank, order, np.arange(weights.shape[1])[None, :], axis=1)
+    return np.where(rank < room[:, None], weights, 0.0)

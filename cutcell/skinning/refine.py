@@ -1,0 +1,71 @@
+"""What a person may ask of weights beyond the method: smooth, mirrored, partly the artist's."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..rig import Rig
+from .locks import lock_joints
+from .prune import prune
+from .smoothing import smooth_weights
+from .symmetry import balance, find_mirror, mirror_weights
+
+
+def refine_weights(
+    rig: Rig,
+    weights: NDArray[np.float64],
+    *,
+    smoothing: int = 0,
+    symmetric: bool = False,
+    locked: Sequence[int | str] = (),
+    max_influences: int | None = 4,
+    threshold: float = 0.0,
+) -> NDArray[np.float64]:
+    """Smooth weights, mirror them, and put back those of locked joints: in this order.
+
+    Parameters
+    ----------
+    rig : Rig
+    weights : array, shape (n, j)
+        Rows sum to one.
+    smoothing : int
+        Passes over the mesh; see `smooth_weights`.
+    symmetric : bool
+        Left and right get the same; see `find_mirror`.
+    locked : sequence of int or str
+        Joints that keep the rig's own weights; see `lock_joints`.
+    max_influences, threshold
+        See `skinning_weights`; held again after smoothing and mirroring.
+
+    Returns
+    -------
+    array, shape (n, j)
+        Rows sum to one; `weights` itself when nothing is asked.
+
+    Raises
+    ------
+    ParameterError, MeshError, WeightsError
+        What is asked is out of range, or the rig is not made for it.
+    """
+    if smoothing or symmetric:
+        mirror = find_mirror(rig) if symmetric else None
+        weights = smooth_weights(rig.mesh, weights, smoothing)
+        if mirror is not None:
+            weights = mirror_weights(weights, mirror)
+        weights = _permitted(rig, weights)
+        weights = prune(weights, max_influences, threshold, np.lexsort(rig.skeleton.joints.T))
+        if mirror is not None:
+            weights = balance(weights, mirror)
+    return lock_joints(rig, weights, locked, max_influences)
+
+
+def _permitted(rig: Rig, weights: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Take away what the file cannot store, unless a row would be left empty."""
+    if rig.allowed is None:
+        return weights
+    kept = np.where(rig.allowed, weights, 0.0)
+    total = kept.sum(axis=1, keepdims=True)
+    return np.divide(kept, total, out=weights.copy(), where=total > 0)
