@@ -64,7 +64,7 @@ def find_mirror(rig: Rig) -> Mirror:
         middle = float(rig.mesh.bounds[:, axis].mean())
         for position in {middle, float(np.median(rig.skeleton.joints[:, axis])), 0.0}:
             joint = _joint_partners(rig.skeleton, axis, position, JOINT_TOLERANCE * diagonal)
-            if not (joint != np.arange(len(joint)))[joint >= 0].any():
+            if not np.any((joint >= 0) & (joint != np.arange(len(joint)))):
                 continue
             vertex = _vertex_partners(rig.mesh.vertices, axis, position, diagonal)
             found = float((vertex[used] >= 0).mean()) * float((joint >= 0).mean())
@@ -156,14 +156,14 @@ def _vertex_partners(
 def _joint_partners(
     skeleton: Skeleton, axis: int, position: float, tolerance: float
 ) -> NDArray[np.intp]:
-    """Pair joints by place; of several at one place, those of equal rank in the tree."""
+    """Pair joints by place; of several at one place, those whose branches lie alike."""
     joints = skeleton.joints
+    branch = skeleton.subtree @ joints / skeleton.subtree.sum(axis=1, keepdims=True)
     gap = cdist(_reflected(joints, axis, position), joints)
-    below = skeleton.subtree.sum(axis=1)
-    above = skeleton.subtree.sum(axis=0)
-    rank = np.stack([below, above, skeleton.deform], axis=1).astype(float)
-    unlike = cdist(rank, rank, "cityblock")
-    cost = np.where(gap <= tolerance, gap / tolerance + unlike / (1 + unlike.max()), 1e3)
+    branch_gap = cdist(_reflected(branch, axis, position), branch)
+    depth = skeleton.subtree.sum(axis=0)
+    unlike = np.abs(depth[:, None] - depth) / len(joints)
+    cost = np.where(gap <= tolerance, (gap + branch_gap) / tolerance + unlike, 1e6)
     cost = (cost + cost.T) / 2  # a pair is one from either side
     partner = linear_sum_assignment(cost)[1]
     near = gap[np.arange(len(joints)), partner] <= tolerance

@@ -123,7 +123,7 @@ def test_symmetric_weights_are_mirrored(influences):
         np.testing.assert_allclose(found[paired], other, atol=1e-12)
 
 
-def test_joints_at_one_place_are_paired_by_their_rank():
+def test_joints_at_one_place_are_paired_by_their_branches():
     base = mirrored_rig()
     joints = np.concatenate([base.skeleton.joints, base.skeleton.joints[[2, 1]]])
     skeleton = Skeleton(joints, [-1, 0, 0, 0, 2, 1])
