@@ -97,7 +97,7 @@ def mirror_weights(weights: NDArray[np.float64], mirror: Mirror) -> NDArray[np.f
     """
     alone = mirror.joint < 0
     partner = mirror.vertex
-    follows_alone = (weights[:, alone] > 0).any(axis=1)
+    follows_alone: NDArray[np.bool_] = np.asarray((weights[:, alone] > 0).any(axis=1))
     paired = (partner >= 0) & ~follows_alone & ~follows_alone[partner]
     result = weights.copy()
     swap = np.where(alone, np.arange(len(alone)), mirror.joint)
