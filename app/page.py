@@ -13,12 +13,8 @@ from assets import DEMOS
 
 from .favicon import FAVICON
 from .jobs import Gate
-from .panels.bone import bone
-from .panels.character import character
-from .panels.export import export
-from .panels.graph import graph
-from .panels.pose import pose
 from .session import Session
+from .sidebar import sidebar
 from .status import messages, status_line
 from .theme import LOADER_STYLE, PAGE_STYLE, THEME
 
@@ -71,11 +67,10 @@ def layout(session: Session) -> pmui.Page:
         sizing_mode="stretch_both",
         margin=0,
     )
-    panels = [character, bone, pose, graph, export]
     result = pmui.Page(
         title="cutcell",
         header=[tagline],
-        sidebar=[panel(session) for panel in panels],
+        sidebar=sidebar(session),
         sidebar_width=320,
         sidebar_variant="auto",
         sidebar_open="Mobi" not in (pn.state.headers or {}).get("User-Agent", ""),

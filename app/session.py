@@ -6,7 +6,6 @@ import functools
 import logging
 import tempfile
 from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -15,35 +14,17 @@ from assets import DEMOS, demo_path
 from cutcell.errors import CutcellError, FileError
 from cutcell.progress import Progress
 from cutcell.rig import Rig
-from viewers.description import Description
-from viewers.opengl import require_opengl
-from viewers.pose_scene import pose_at
-from viewers.scene import Scene, framing
+from viewers.scene import framing
 
+from .actions import WATCHERS
 from .jobs import Jobs, Schedule
-from .resolve import (
-    Memo,
-    bones_part,
-    bounds_of,
-    clip_of,
-    clip_part,
-    first_joint,
-    resolve,
-    theme_of,
-    wants_field,
-)
-from .state import State
+from .scenes import Memo, resolve
+from .scenes.common import bones_part, bounds_of, first_joint, theme_of
+from .state import UNSEEN, State
 from .upload import Receiver
 from .view import SceneView, camera_part, theme_part
 
 logger = logging.getLogger("cutcell.app")
-
-SEEN = [
-    "rig", "binding", "field", "body", "mesh_edges", "interior_edges", "surface_edges",
-    "skeleton", "cut_axis", "cut_position", "thin", "coloring", "joint", "turns", "moving",
-    "dark",
-]  # fmt: skip
-"""The parts of the state that the scene depends on."""
 
 COMPANIONS = {".txt", ".json", ".mtl", ".bin", ".png", ".jpg", ".jpeg"}
 """Files that come along with the one that is opened."""
@@ -64,11 +45,13 @@ class Session:
         self._files = tempfile.TemporaryDirectory(prefix="cutcell-", ignore_cleanup_errors=True)
         self.folder = Path(self._files.name)
         self.view = SceneView(self.pick, self.receiver(), sizing_mode="stretch_both")
-        self._jobs = Jobs(self.later)
-        self._fields = Jobs(self.later)
-        self._memo = Memo()
-        self.state.param.watch(self._refresh, SEEN)
-        self.state.param.watch(self._move, ["rig", "moving", "playing", "clip", "joint", "axis"])
+        self._jobs: dict[str, Jobs] = {}
+        self._closed = False
+        self.memo = Memo()
+        seen = [name for name in self.state.param if name not in UNSEEN]
+        self.state.param.watch(self._refresh, seen)
+        for watch in WATCHERS:
+            watch(self)
         self.state.param.watch(self._theme, "dark")
         self.state.param.watch(lambda event: self.bind(), "resolution")
         self._theme()
@@ -83,6 +66,14 @@ class Session:
                 self.fail(error)
 
         self._schedule(guarded)
+
+    def jobs(self, name: str) -> Jobs:
+        """Return the work of one name: a newer piece of it stops the one before."""
+        if name not in self._jobs:
+            self._jobs[name] = Jobs(self.later)
+            if self._closed:
+                self._jobs[name].close()
+        return self._jobs[name]
 
     # Opening
 
@@ -119,11 +110,11 @@ class Session:
             self.state.param.update(**then)
             self._stand(rig)
 
-        self._start(work, done)
+        self.start(work, done)
 
     def _stand(self, rig: Rig) -> None:
         state = self.state
-        self._fields.cancel()
+        self.jobs("field").cancel()
         state.param.update(
             rig=rig, binding=None, field=None, turns={}, moving=False, playing=False,
             clip=0 if rig.clips else -1, message=None, joint=first_joint(rig),
@@ -144,18 +135,20 @@ class Session:
         def done(binding: Any) -> None:
             state.param.update(binding=binding, field=None, message=None)
 
-        self._start(lambda progress: cutcell.bind(rig, resolution, progress=progress), done)
+        self.start(lambda progress: cutcell.bind(rig, resolution, progress=progress), done)
 
     def cancel(self) -> None:
         """Stop computing; what was there stays."""
-        if self._jobs.cancel():
+        if self.jobs("main").cancel():
             self.state.param.update(
                 busy=False, message=("info", "Cancelled. The page keeps what it had.")
             )
 
-    def _start(self, work: Callable[[Progress], Any], done: Callable[[Any], None]) -> None:
+    def start(self, work: Callable[[Progress], Any], done: Callable[[Any], None]) -> None:
+        """Do some work that the page shows progress of; it stops what went on before."""
+
         def finish(result: Any) -> None:
-            self.state.busy = self._jobs.running
+            self.state.busy = self.jobs("main").running
             done(result)
 
         def failed(error: Exception) -> None:
@@ -163,7 +156,7 @@ class Session:
             self.fail(error)
 
         self.state.param.update(busy=True, stage="", fraction=0.0)
-        self._jobs.start(work, finish, failed, self._report)
+        self.jobs("main").start(work, finish, failed, self._report)
 
     def _report(self, stage: str, fraction: float) -> None:
         self.state.param.update(stage=stage, fraction=fraction)
@@ -187,87 +180,19 @@ class Session:
         state = self.state
         if state.rig is None or not 0 <= joint < len(state.rig.skeleton.joints):
             return
-        coloring = "weights" if state.coloring in ("bones", "plain") else state.coloring
-        state.param.update(joint=joint, coloring=coloring)
-
-    def take_picture(self, done: Callable[[str, bytes], None]) -> None:
-        """Draw what is seen, if this machine can, and hand over a name and the PNG."""
-
-        def work(progress: Progress) -> None:
-            progress("drawing the picture", 0.0)
-            require_opengl()
-
-        self._start(work, lambda _: done("cutcell.png", self.picture()))
-
-    def picture(self, size: tuple[int, int] = (1600, 1200)) -> bytes:
-        """Return what is seen as a PNG, drawn off-screen with the view's camera."""
-        path = self.folder / "picture.png"
-        scene = Scene(theme_of(self.state), size)
-        try:
-            scene.show(self._snapshot())
-            scene.look(self.view.camera or framing(bounds_of(self.state), size[0] / size[1]))
-            scene.render_png(path)
-        finally:
-            scene.close()
-        return path.read_bytes()
-
-    def _snapshot(self) -> Description:
-        description = resolve(self.state, self._memo)
-        clip = clip_of(self.state)
-        if clip is None or not len(clip.times):
-            return description
-        return replace(description, pose=pose_at(self.state.rig, clip, self.view.time))
-
-    def bound_file(self, done: Callable[[str, bytes], None]) -> None:
-        """Write the character with its new weights, and hand over its name and content."""
-        state = self.state
-        if state.binding is None:
-            state.message = ("info", "There are no weights to download yet.")
-            return
-        rig = state.rig.with_weights(state.binding.weights)
-        path = self.folder / f"{Path(rig.name).stem or 'character'}-bound.glb"
-
-        def work(progress: Progress) -> tuple[str, bytes]:
-            progress("writing the file", 0.0)
-            cutcell.save(path, rig)
-            return path.name, path.read_bytes()
-
-        self._start(work, lambda result: done(*result))
+        state.param.update(joint=joint, weights_shown="bone")
 
     def _refresh(self, *events: Any) -> None:
-        self._find_field()
-        self.view.present(resolve(self.state, self._memo))
-
-    def _move(self, *events: Any) -> None:
-        state = self.state
-        swings = f"{state.joint} {state.axis}" if state.clip < 0 else ""
-        inputs = (state.rig, state.moving, state.clip, swings)
-        clip = self._memo("clip", inputs, lambda: clip_part(state, clip_of(state)))
-        self.view.tell(clip=clip, playing=state.playing and clip is not None)
+        self.view.present(resolve(self.state, self.memo))
 
     def _theme(self, *events: Any) -> None:
         self.view.tell(theme=theme_part(theme_of(self.state)))
 
-    def _find_field(self) -> None:
-        state = self.state
-        binding, joint = state.binding, state.joint
-        if not wants_field(state):
-            return
-        if state.field is not None and state.field[0] is binding and state.field[1] == joint:
-            return
-
-        def work(progress: Progress) -> Any:
-            return binding.distances.field(joint)
-
-        def done(field: Any) -> None:
-            state.field = (binding, joint, field)
-
-        self._fields.start(work, done, self.fail, lambda stage, fraction: None)
-
     def close(self) -> None:
         """Stop all work and remove what was uploaded."""
-        self._jobs.close()
-        self._fields.close()
+        self._closed = True
+        for jobs in self._jobs.values():
+            jobs.close()
         self._files.cleanup()
 
 

@@ -2,13 +2,13 @@
 
 const DROP_STYLE = `
 :host { display: block; }
-label { display: block; box-sizing: border-box; width: 100%; padding: 14px 12px; cursor: pointer;
+label { display: block; box-sizing: border-box; width: 100%; padding: 7px 12px 8px; cursor: pointer;
   border: 1.5px dashed var(--mui-palette-divider, #8888); border-radius: 10px; text-align: center;
-  font: 14px/1.4 Roboto, system-ui, sans-serif; color: var(--mui-palette-text-primary, #333);
+  font: 13px/1.4 Roboto, system-ui, sans-serif; color: var(--mui-palette-text-primary, #333);
   position: relative; overflow: hidden; transition: border-color .15s, background .15s; }
 label:hover, label.over, label:focus-within { border-color: var(--mui-palette-primary-main, #147);
   background: color-mix(in srgb, var(--mui-palette-primary-main, #147) 7%, transparent); }
-small { display: block; font-size: 12px; margin-top: 3px;
+small { display: block; font-size: 11.5px; margin-top: 1px;
   color: var(--mui-palette-text-secondary, #777); }
 input { position: absolute; width: 1px; height: 1px; opacity: 0; }
 i { position: absolute; left: 0; bottom: 0; height: 3px; width: 0;

@@ -1,4 +1,4 @@
-"""Choose a bone, and what the colours tell of it."""
+"""Choose a bone."""
 
 from __future__ import annotations
 
@@ -7,9 +7,7 @@ from typing import Any
 import panel_material_ui as pmui
 
 from ..session import Session
-from .parts import GAP, choice, section
-
-SHOWN = {"All bones": "bones", "Weights": "weights", "Distance": "distance", "Plain": "plain"}
+from .parts import GAP, section
 
 
 def bone(session: Session) -> pmui.Column:
@@ -35,7 +33,7 @@ def bone(session: Session) -> pmui.Column:
     state.param.watch(listed, ["rig", "joint"])
     select.param.watch(chosen, "value")
     listed()
-    return section("Bone", select, choice(state.param.coloring, SHOWN))
+    return section("", select, margin=(2, 20, 4, 20))
 
 
 def unique_options(names: tuple[str, ...]) -> dict[str, int]:

@@ -14,7 +14,7 @@ from ..upload import FileDrop
 from .parts import GAP, caption, section
 
 OWN = "Your own"
-HINT = f"GLB, glTF, OBJ + TXT, NPZ, mesh + JSON · up to {MAX_UPLOAD // 2**20} MB"
+HINT = f"GLB, glTF, OBJ, NPZ, … · up to {MAX_UPLOAD // 2**20} MB"
 
 
 def character(session: Session) -> pmui.Column:
@@ -45,4 +45,4 @@ def character(session: Session) -> pmui.Column:
     state.param.watch(shown, ["demo", "rig"])
     shown()
     drop = FileDrop(session.receiver(), hint=HINT, sizing_mode="stretch_width", margin=GAP)
-    return section("Character", select, lesson, drop)
+    return section("", select, lesson, drop, margin=(16, 20, 4, 20))

@@ -8,8 +8,9 @@ import panel as pn
 import panel_material_ui as pmui
 
 from ..session import Session
+from ..state import LAYERS
 from ..theme import LAYER_COLORS
-from .parts import GAP, caption, choice, section, when
+from .parts import GAP, cutting, section, when
 
 
 def graph(session: Session) -> pmui.Column:
@@ -45,41 +46,17 @@ def graph(session: Session) -> pmui.Column:
         ),
     )
     layers = pn.GridBox(
-        *[_layer(state, name) for name in ("body", "skeleton", *LAYER_COLORS)],
+        *[_layer(state, name) for name in LAYERS],
         ncols=2,
         sizing_mode="stretch_width",
         margin=GAP,
     )
-    rest = caption(
-        "The graph is of the resting character: it hides while the character is posed.",
-        visible=when(lambda *_: state.posed, state.param.turns, state.param.moving),
-    )
-    cutting = when(lambda axis: axis != "off", state.param.cut_axis)
-    position = pmui.FloatSlider.from_param(
-        state.param.cut_position,
-        label="Where the cut lies",
-        step=0.005,
-        format="0.00",
-        size="small",
-        margin=GAP,
-        sizing_mode="stretch_width",
-        visible=cutting,
-    )
+    cut = when(lambda axis: axis != "off", state.param.cut_axis)
     thin = pmui.Switch.from_param(
-        state.param.thin, label="Thin slice of the interior", size="small", visible=cutting,
+        state.param.thin, label="Thin slice of the interior", size="small", visible=cut,
         margin=GAP, description="",
     )  # fmt: skip
-    return section(
-        "Graph",
-        resolution,
-        again,
-        layers,
-        rest,
-        caption("Cutting plane", margin=(8, 0, 0, 0)),
-        choice(state.param.cut_axis, {"Off": "off", "X": "x", "Y": "y", "Z": "z"}),
-        position,
-        thin,
-    )
+    return section("Graph", resolution, again, layers, *cutting(state), thin)
 
 
 def _layer(state: Any, name: str) -> pmui.Switch:

@@ -12,15 +12,18 @@ GAP = (4, 0)
 """Space above and below a widget, and beside it."""
 
 
-def section(title: str, *objects: Any) -> pmui.Column:
-    """Return a titled section of the sidebar."""
+def section(title: str, *objects: Any, **params: Any) -> pmui.Column:
+    """Return a section of the sidebar, with a heading if it has a title."""
+    params = {"margin": (14, 20, 4, 20), "sizing_mode": "stretch_width", **params}
+    if not title:
+        return pmui.Column(*objects, **params)
     heading = pmui.Typography(
         title,
         variant="overline",
         margin=(0, 0, 2, 0),
         sx={"fontWeight": 600, "letterSpacing": "0.08em", "color": "text.secondary"},
     )
-    return pmui.Column(heading, *objects, margin=(14, 20, 4, 20), sizing_mode="stretch_width")
+    return pmui.Column(heading, *objects, **params)
 
 
 def caption(text: Any = "", **params: Any) -> pmui.Typography:
@@ -47,3 +50,19 @@ def choice(parameter: Any, options: dict[str, Any], **params: Any) -> pmui.Radio
         sx={"width": "100%", "& .MuiToggleButton-root": {"flex": 1, "py": "5px"}},
         **params,
     )
+
+
+def cutting(state: Any) -> list[Any]:
+    """Return the choice of a cutting plane and the slider that moves it."""
+    position = pmui.FloatSlider.from_param(
+        state.param.cut_position,
+        label="Where the cut lies",
+        step=0.005,
+        format="0.00",
+        size="small",
+        margin=GAP,
+        sizing_mode="stretch_width",
+        visible=when(lambda axis: axis != "off", state.param.cut_axis),
+    )
+    axes = {"Whole": "off", "Cut X": "x", "Cut Y": "y", "Cut Z": "z"}
+    return [choice(state.param.cut_axis, axes), position]

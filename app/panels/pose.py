@@ -13,7 +13,7 @@ AXES = ("x", "y", "z")
 
 
 def pose(session: Session) -> pmui.Column:
-    """Return the section that moves the character."""
+    """Return the controls of the panel Pose."""
     state = session.state
     axis = choice(state.param.axis, {"about X": "x", "about Y": "y", "about Z": "z"})
     motion = pmui.Select(

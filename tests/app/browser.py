@@ -143,6 +143,11 @@ class Visit:
         """Return a button."""
         return self.page.get_by_role("button", name=name, exact=exact)
 
+    def panel(self, title: str) -> None:
+        """Choose a panel."""
+        self.page.get_by_role("tab", name=title, exact=True).click()
+        self.settle()
+
     def switch(self, name: str) -> None:
         """Turn a switch over."""
         self.page.get_by_role("switch", name=name, exact=True).click()

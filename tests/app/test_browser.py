@@ -14,7 +14,7 @@ from tests.app.browser import LOAD_MS, Visit, changed, served
 from viewers.character import pose_in_scene, to_scene
 from viewers.pose_scene import joint_turns, turn
 
-LAYERS = ["Surface", "Skeleton", "Mesh edges", "Interior edges", "Surface edges"]
+LAYERS = ["Surface", "Mesh edges", "Interior edges", "Surface edges"]
 ROBOT = demo_path("robot")
 
 
@@ -57,13 +57,13 @@ def test_the_first_demo_stands_there_without_a_click(browser):
         assert visit.page.get_by_role("combobox", name="Demo character").inner_text() == "Walker"
         assert visit.report()["actors"]["body"]["visible"]
         assert len(np.unique(seen.reshape(-1, 3), axis=0)) > 2000
-        visit.switch("Surface")
-        visit.switch("Skeleton")
+        visit.panel("Graph")
         assert changed(seen, visit.look()) > 0.05
         visit.close()
 
 
 def test_every_layer_can_be_switched(visit):
+    visit.panel("Graph")
     for name in LAYERS:
         before = visit.look()
         visit.switch(name)
@@ -74,20 +74,21 @@ def test_every_layer_can_be_switched(visit):
 
 
 def test_the_cutting_plane_moves_through_the_body(visit):
+    visit.panel("Graph")
     whole = visit.look()
-    visit.button("X").click()
+    visit.button("Cut X").click()
     half = visit.look()
     assert changed(whole, half) > 0.01
     visit.slide("Where the cut lies", "ArrowLeft", 30)
     less = visit.look()
     assert changed(half, less) > 0.001
-    visit.switch("Interior edges")
-    slice_ = visit.look()
-    assert changed(less, slice_) > 0.001
     visit.switch("Thin slice of the interior")
-    assert changed(slice_, visit.look()) > 0.0005
-    visit.button("Off").click()
+    thick = visit.look()
+    assert changed(less, thick) > 0.0005
     visit.switch("Interior edges")
+    assert changed(thick, visit.look()) > 0.001
+    visit.switch("Interior edges")
+    visit.button("Whole").click()
     assert changed(whole, visit.look()) < 0.001
 
 
@@ -109,7 +110,7 @@ def test_a_bone_is_picked_by_clicking_it(visit, robot):
     visit.expect_text(f"Weight of {picked}")
     assert changed(before, visit.look()) > 0.01
     weights = visit.look()
-    visit.button("Distance").click()
+    visit.panel("Distance")
     visit.expect_text(f"Distance from {picked}")
     assert changed(weights, visit.look()) > 0.01
     visit.choose("Bone", names[0])
@@ -138,6 +139,7 @@ def test_dragging_turns_the_character_and_picks_nothing(visit):
 
 
 def test_another_resolution_makes_another_graph(visit):
+    visit.panel("Graph")
     status = visit.page.get_by_text(re.compile(r"interior, .* surface"))
     before = status.inner_text()
     visit.slide("Resolution", "ArrowRight", 2)
@@ -149,6 +151,7 @@ def test_another_resolution_makes_another_graph(visit):
 
 
 def test_an_impossible_resolution_is_told_and_the_page_lives_on(visit):
+    visit.panel("Graph")
     before = visit.look()
     for value in ("1", "10000"):
         box = visit.page.get_by_role("textbox")
@@ -158,11 +161,12 @@ def test_an_impossible_resolution_is_told_and_the_page_lives_on(visit):
         visit.dismiss()
         visit.settle()
     assert changed(before, visit.look()) < 0.001
-    visit.button("Weights").click()
+    visit.panel("Weights")
     assert changed(before, visit.look()) > 0.01
 
 
 def test_a_joint_is_turned_as_the_core_turns_it(visit, robot):
+    visit.panel("Pose")
     rest = visit.points()
     np.testing.assert_allclose(rest, to_scene(robot, robot.mesh.vertices), atol=1e-5)
     before = visit.look()
@@ -183,6 +187,7 @@ def test_a_joint_is_turned_as_the_core_turns_it(visit, robot):
 
 
 def test_the_motion_plays_and_halts(visit):
+    visit.panel("Pose")
     rest = visit.points()
     visit.page.get_by_role("button", name="Play").click()
     visit.page.wait_for_function("__cutcell.report().time > 0.3", timeout=LOAD_MS)
@@ -272,6 +277,7 @@ def test_a_narrow_window_shows_the_canvas_first(browser, url):
     assert box["width"] > 400
     assert box["height"] > 400
     visit.button("Open drawer").click()
+    visit.panel("Graph")
     visit.page.get_by_role("switch", name="Mesh edges").wait_for(timeout=LOAD_MS)
     visit.close()
 
@@ -280,8 +286,8 @@ def test_two_browsers_share_nothing(browser, url, visit):
     other = Visit(browser, url)
     other.wait_until_bound()
     before = other.look()
+    visit.panel("Graph")
     visit.switch("Mesh edges")
-    visit.button("Weights").click()
     visit.choose("Demo character", "Rabbit")
     visit.page.wait_for_function(
         "n => __cutcell.report().actors.body.points !== n",
@@ -295,6 +301,7 @@ def test_two_browsers_share_nothing(browser, url, visit):
 
 
 def test_a_long_computation_can_be_cancelled(visit):
+    visit.panel("Graph")
     before = visit.look()
     box = visit.page.get_by_role("textbox")
     box.fill("320")

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import cutcell
+from app.actions.take_along import bound_file, picture, take_picture
 from app.session import Session, sentence
 from app.status import stage_text, summary, warning
 from tests.app.loop import Loop
@@ -138,16 +139,13 @@ def test_another_character_supersedes_a_running_computation(bound, loop, monkeyp
 
 def test_picking_a_bone_shows_its_weights(bound):
     bound.pick(2)
-    assert (bound.state.joint, bound.state.coloring) == (2, "weights")
-    bound.state.coloring = "distance"
-    bound.pick(1)
-    assert (bound.state.joint, bound.state.coloring) == (1, "distance")
+    assert (bound.state.joint, bound.state.weights_shown) == (2, "bone")
     bound.pick(99)
-    assert bound.state.joint == 1
+    assert bound.state.joint == 2
 
 
 def test_the_field_is_fetched_when_it_is_wanted(bound, loop):
-    bound.state.param.update(coloring="distance", interior_edges=True, joint=1)
+    bound.state.param.update(panel="geodesics", cut_axis="x", joint=1)
     loop.run_until(lambda: bound.state.field is not None)
     assert bound.state.field[:2] == (bound.state.binding, 1)
     np.testing.assert_allclose(bound.state.field[2], bound.state.binding.distances.field(1))
@@ -155,7 +153,7 @@ def test_the_field_is_fetched_when_it_is_wanted(bound, loop):
 
 def test_the_bound_character_can_be_taken_along(bound, loop, tmp_path):
     got = []
-    bound.bound_file(lambda name, content: got.append((name, content)))
+    bound_file(bound, lambda name, content: got.append((name, content)))
     loop.run_until(lambda: bool(got))
     name, content = got[0]
     assert name == "arm-bound.glb"
@@ -166,25 +164,25 @@ def test_the_bound_character_can_be_taken_along(bound, loop, tmp_path):
 
 
 def test_nothing_to_take_along_is_told(session):
-    session.bound_file(lambda name, content: None)
+    bound_file(session, lambda name, content: None)
     assert session.state.message[0] == "info"
 
 
 @pytest.mark.parametrize("motion", [{}, {"turns": {1: (0, 0, 60)}}, {"moving": True, "clip": 0}])
 def test_the_picture_is_a_png(bound, motion):
-    bound.state.param.update(**motion)
+    bound.state.param.update(panel="pose", **motion)
     bound.view.time = 0.5
-    content = bound.picture((160, 120))
+    content = picture(bound, (160, 120))
     assert content.startswith(b"\x89PNG")
 
 
 def test_a_machine_that_cannot_draw_is_told_so(bound, loop, monkeypatch):
     taken = []
-    bound.take_picture(lambda name, content: taken.append((name, content[:4])))
+    take_picture(bound, lambda name, content: taken.append((name, content[:4])))
     loop.run_until(lambda: taken)
     assert taken == [("cutcell.png", b"\x89PNG")]
     monkeypatch.setattr("viewers.opengl._can_draw", lambda: False)
-    bound.take_picture(lambda name, content: taken.append(name))
+    take_picture(bound, lambda name, content: taken.append(name))
     loop.run_until(lambda: bound.state.message is not None)
     assert "no OpenGL" in bound.state.message[1]
     assert len(taken) == 1
@@ -192,9 +190,10 @@ def test_a_machine_that_cannot_draw_is_told_so(bound, loop, monkeypatch):
 
 
 def test_pictures_show_the_pose(bound):
-    rest = bound.picture((160, 120))
+    bound.state.panel = "pose"
+    rest = picture(bound, (160, 120))
     bound.state.turns = {1: (0, 0, 60)}
-    assert bound.picture((160, 120)) != rest
+    assert picture(bound, (160, 120)) != rest
 
 
 def test_a_new_character_starts_at_rest(bound, loop):

@@ -6,19 +6,20 @@ from typing import Any
 
 import panel_material_ui as pmui
 
+from ..actions import take_along as actions
 from ..session import Session
 from .parts import GAP, caption, section, when
 
 
-def export(session: Session) -> pmui.Column:
+def take_along(session: Session) -> pmui.Column:
     """Return the section of the downloads."""
     state = session.state
 
     def bound(event: Any) -> None:
-        session.bound_file(session.view.offer)
+        actions.bound_file(session, session.view.offer)
 
     def picture(event: Any) -> None:
-        session.take_picture(session.view.offer)
+        actions.take_picture(session, session.view.offer)
 
     def button(label: str, act: Any, needed: Any, **params: Any) -> pmui.Button:
         return pmui.Button(

@@ -6,20 +6,11 @@ import numpy as np
 import pytest
 
 import cutcell
-from app.resolve import (
-    SEE_THROUGH,
-    Memo,
-    bones_part,
-    clip_of,
-    clip_part,
-    field_of,
-    first_joint,
-    pose_of,
-    resolve,
-    slab_of,
-    wants_field,
-)
-from app.state import LAYERS, State
+from app.scenes import Memo, resolve
+from app.scenes.common import SEE_THROUGH, bones_part, cells_of, first_joint
+from app.scenes.geodesics import field_of, wants_field
+from app.scenes.pose import clip_of, clip_part, pose_of
+from app.state import LAYERS, PANELS, State
 from tests.viewers.arm import arm_rig
 from viewers.palette import DARK, LIGHT
 
@@ -47,8 +38,9 @@ def test_without_a_character_there_is_an_empty_scene():
     assert resolve(State()).actors == {}
 
 
-def test_before_anything_is_computed_the_character_stands_there_plain(rig):
-    scene = resolve(State(rig=rig, coloring="weights"))
+@pytest.mark.parametrize("panel", PANELS)
+def test_before_anything_is_computed_the_character_stands_there_plain(rig, panel):
+    scene = resolve(State(rig=rig, panel=panel))
     assert set(scene.actors) == {"body", "bones", "attachment 0"}
     assert scene.actors["body"].scalars is None
     assert scene.actors["body"].colors is None
@@ -56,72 +48,16 @@ def test_before_anything_is_computed_the_character_stands_there_plain(rig):
 
 
 @pytest.mark.parametrize("layer", LAYERS)
-def test_each_layer_is_switched_by_its_own_name(state, layer):
-    setattr(state, layer, False)
+def test_each_layer_of_the_graph_is_switched_by_its_own_name(state, layer):
+    state.param.update(panel="graph", **{layer: False})
     before = visible(state)
     setattr(state, layer, True)
     assert visible(state) - before >= {LAYERS[layer]}
 
 
 def test_what_hangs_on_the_body_is_hidden_with_it(state):
-    state.body = False
+    state.param.update(panel="graph", body=False)
     assert "attachment 0" not in visible(state)
-
-
-def test_colours_follow_the_choice(state, binding):
-    body = resolve(state).actors["body"]
-    assert body.colors is not None
-    state.coloring = "weights"
-    scene = resolve(state)
-    np.testing.assert_allclose(scene.actors["body"].scalars, binding.weights[:, 1], atol=1e-6)
-    assert scene.legend is not None
-    assert "elbow" in scene.legend.title
-    state.coloring = "distance"
-    scene = resolve(state)
-    np.testing.assert_allclose(
-        scene.actors["body"].scalars, binding.distances.joint[1], rtol=1e-5, atol=1e-6
-    )
-    state.coloring = "plain"
-    scene = resolve(state)
-    assert scene.actors["body"].scalars is None
-    assert scene.legend is None
-
-
-def test_the_body_is_see_through_only_where_it_would_hide_the_graph(state):
-    def opacity():
-        return resolve(state).actors["body"].opacity
-
-    assert opacity() == 1
-    state.interior_edges = True
-    assert opacity() == SEE_THROUGH
-    state.cut_axis = "x"
-    assert opacity() == 1
-    state.param.update(cut_axis="off", turns={1: (30, 0, 0)})
-    assert opacity() == 1
-
-
-def test_the_cut_and_its_slab(state):
-    assert resolve(state).cut is None
-    state.param.update(cut_axis="x", cut_position=1.0)
-    scene = resolve(state)
-    assert scene.cut.origin[0] == pytest.approx(1.5)
-    assert scene.actors["interior edges"].slab == pytest.approx(3 * 3.0 / 16)
-    assert scene.actors["interior edges"].slab == slab_of(state)
-    assert scene.actors["mesh edges"].slab == 0
-    state.thin = False
-    assert resolve(state).actors["interior edges"].slab == 0
-
-
-def test_the_graph_hides_while_the_character_is_posed(state):
-    state.param.update(mesh_edges=True, interior_edges=True, surface_edges=True)
-    graph = {"mesh edges", "interior edges", "surface edges"}
-    assert visible(state) >= graph
-    state.turns = {1: (0, 0, 45)}
-    assert not visible(state) & graph
-    state.turns = {1: (0, 0, 0)}
-    assert visible(state) >= graph
-    state.moving = True
-    assert not visible(state) & graph
 
 
 def test_turned_joints_make_a_pose(state, rig):
@@ -137,8 +73,9 @@ def test_turned_joints_make_a_pose(state, rig):
 
 
 def test_motions_are_the_rigs_or_a_swing(state, rig):
-    assert clip_of(state) is None
     state.param.update(moving=True, clip=0)
+    assert clip_of(state) is None
+    state.panel = "pose"
     assert clip_of(state) is rig.clips[0]
     state.clip = -1
     assert clip_of(state).name == "swing"
@@ -150,35 +87,15 @@ def test_motions_are_the_rigs_or_a_swing(state, rig):
     assert clip_part(state, empty) is None
 
 
-def test_the_field_is_used_only_for_its_own_joint_and_binding(state, binding):
-    assert not wants_field(state)
-    state.param.update(coloring="distance", interior_edges=True)
-    assert wants_field(state)
-    assert field_of(state) is None
-    field = binding.distances.field(1)
-    state.field = (binding, 1, field)
-    assert field_of(state) is field
-    assert resolve(state).actors["interior edges"].scalars is not None
-    state.joint = 2
-    assert field_of(state) is None
-    assert resolve(state).actors["interior edges"].scalars is None
-
-
-def test_a_joint_without_weight_has_no_field(state, rig):
-    skeleton = replace(rig.skeleton, deform=np.array([True, False, True]))
-    state.param.update(
-        rig=replace(rig, skeleton=skeleton), coloring="distance", interior_edges=True
-    )
-    assert not wants_field(state)
-
-
 def test_the_theme_changes_the_ink_of_the_mesh(state):
+    state.panel = "graph"
     assert resolve(state).actors["mesh edges"].color == LIGHT.mesh_edge
     state.dark = True
     assert resolve(state).actors["mesh edges"].color == DARK.mesh_edge
 
 
 def test_a_memo_changes_nothing_and_makes_nothing_twice(state):
+    state.panel = "graph"
     memo = Memo()
     once = resolve(state, memo)
     state.cut_axis = "z"
@@ -211,3 +128,77 @@ def test_the_first_joint_is_an_arm_or_a_long_bone(rig):
     assert first_joint(rig) == 1
     names = ("root", "LeftForeArm", "hand")
     assert first_joint(replace(rig, skeleton=replace(rig.skeleton, names=names))) == 1
+
+
+def test_the_weights_of_all_bones_or_of_one(state, binding):
+    state.panel = "weights"
+    assert resolve(state).actors["body"].colors is not None
+    state.weights_shown = "bone"
+    scene = resolve(state)
+    np.testing.assert_allclose(scene.actors["body"].scalars, binding.weights[:, 1], atol=1e-6)
+    assert "elbow" in scene.legend.title
+
+
+def test_the_distance_on_the_surface(state, binding):
+    state.panel = "geodesics"
+    scene = resolve(state)
+    distance = binding.distances.joint[1]
+    np.testing.assert_allclose(scene.actors["body"].scalars, distance, rtol=1e-5, atol=1e-6)
+    assert "elbow" in scene.legend.title
+
+
+def test_the_body_is_see_through_only_where_it_would_hide_the_graph(state):
+    def opacity():
+        return resolve(state).actors["body"].opacity
+
+    state.param.update(panel="graph", interior_edges=False)
+    assert opacity() == 1
+    state.interior_edges = True
+    assert opacity() == SEE_THROUGH
+    state.cut_axis = "x"
+    assert opacity() == 1
+    state.param.update(cut_axis="off", panel="weights")
+    assert opacity() == 1
+
+
+def test_the_cut_and_its_slab(state):
+    state.panel = "graph"
+    assert resolve(state).cut is None
+    state.param.update(cut_axis="x", cut_position=1.0)
+    scene = resolve(state)
+    assert scene.cut.origin[0] == pytest.approx(1.5)
+    assert scene.actors["interior edges"].slab == pytest.approx(3 * 3.0 / 16)
+    assert scene.actors["interior edges"].slab == cells_of(state, 3)
+    assert scene.actors["mesh edges"].slab == 0
+    state.thin = False
+    assert resolve(state).actors["interior edges"].slab == 0
+
+
+@pytest.mark.parametrize("panel", ["graph", "geodesics", "weights"])
+def test_the_character_rests_where_it_is_not_posed(state, panel):
+    state.param.update(panel="pose", turns={1: (0, 0, 45)})
+    assert resolve(state).pose is not None
+    state.panel = panel
+    assert resolve(state).pose is None
+
+
+def test_the_field_is_used_only_for_its_own_joint_and_binding(state, binding):
+    state.panel = "geodesics"
+    assert not wants_field(state)
+    state.cut_axis = "x"
+    assert wants_field(state)
+    assert field_of(state) is None
+    field = binding.distances.field(1)
+    state.field = (binding, 1, field)
+    assert field_of(state) is field
+    assert resolve(state).actors["interior edges"].scalars is not None
+    state.joint = 2
+    assert field_of(state) is None
+    assert "interior edges" not in resolve(state).actors
+
+
+def test_a_joint_without_weight_has_no_field(state, rig):
+    skeleton = replace(rig.skeleton, deform=np.array([True, False, True]))
+    state.param.update(rig=replace(rig, skeleton=skeleton), panel="geodesics", cut_axis="x")
+    assert not wants_field(state)
+    assert resolve(state).actors["body"].scalars is None

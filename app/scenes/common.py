@@ -1,0 +1,104 @@
+"""What the scenes of all panels have in common: body, bones, cut, theme."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from cutcell.rig import Rig
+from viewers.character import attachments, body, bones, drawn_segments
+from viewers.description import Actor, Cut, Description
+from viewers.graph_scene import cut_at
+from viewers.palette import THEMES, Theme
+
+from ..state import State
+from .memo import Memo
+
+SEE_THROUGH = 0.22
+"""How opaque the body is while what lies inside is looked at."""
+
+
+def character(state: State, memo: Memo, **look: Any) -> dict[str, Actor]:
+    """Return the body, what hangs on it, and the bones.
+
+    Parameters
+    ----------
+    state : State
+        With a rig.
+    memo : Memo
+    **look
+        Fields of the body's `Actor`; those that say how it is seen hold for what hangs on
+        it as well.
+    """
+    rig = state.rig
+    plain = memo("body", (rig, state.weights), lambda: body(rig, state.weights))
+    hung = memo("attachments", (rig,), lambda: attachments(rig))
+    seen = {name: look[name] for name in ("visible", "opacity", "clipped") if name in look}
+    return {
+        "body": replace(plain, **look),
+        **{name: replace(actor, **seen) for name, actor in hung.items()},
+        "bones": memo(
+            "bones",
+            (rig, state.joint, state.skeleton),
+            lambda: bones(rig, state.joint, state.skeleton),
+        ),
+    }
+
+
+def plain(state: State, memo: Memo) -> Description:
+    """Return the scene of the character alone."""
+    return Description(character(state, memo))
+
+
+def cut_of(state: State) -> Cut | None:
+    """Return the cutting plane, across the box of the body."""
+    if state.cut_axis == "off":
+        return None
+    return cut_at(bounds_of(state), state.cut_axis, state.cut_position)
+
+
+def cells_of(state: State, count: float) -> float:
+    """Return the length of some cells of the lattice, in the scene's units."""
+    resolution = state.binding.graph.lattice.resolution
+    return count * float(np.ptp(bounds_of(state), axis=0).max()) / resolution
+
+
+def bounds_of(state: State) -> np.ndarray:
+    """Return the lowest and highest corner of the body at rest, shape (2, 3)."""
+    rig = state.rig
+    points = rig.mesh.vertices[np.unique(rig.mesh.faces)] @ rig.world[:3, :3].T
+    points += rig.world[:3, 3]
+    return np.stack([points.min(axis=0), points.max(axis=0)])
+
+
+def theme_of(state: State) -> Theme:
+    """Return the theme that the state asks for."""
+    return THEMES["dark" if state.dark else "light"]
+
+
+def bones_part(state: State) -> dict[str, Any]:
+    """Return the bones as the view needs them for picking."""
+    start, end, joint = drawn_segments(state.rig)
+    return {
+        "start": start.ravel(),
+        "end": end.ravel(),
+        "joint": joint.astype(np.int32),
+        "names": list(state.rig.skeleton.names),
+    }
+
+
+def first_joint(rig: Rig) -> int:
+    """Return the joint to begin with: an arm if there is one, else the longest bone."""
+    skeleton = rig.skeleton
+    start, end, joint = drawn_segments(rig)
+    inner = np.array([len(skeleton.children[j]) > 0 for j in joint])
+    useful = skeleton.deform[joint] & inner & (skeleton.parents[joint] >= 0)
+    arm = np.array([bool(_ARM.search(skeleton.names[j])) for j in joint])
+    score = np.linalg.norm(end - start, axis=1) * (useful + 1e-6) * (1 + 100 * arm)
+    return int(joint[np.argmax(score)])
+
+
+_ARM = re.compile(r"arm", re.IGNORECASE)

@@ -1,0 +1,30 @@
+"""The last result of each costly step."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+
+class Memo:
+    """Keeps the last result of each costly step, for as long as its inputs are the same."""
+
+    def __init__(self) -> None:
+        self._kept: dict[str, tuple[tuple[Any, ...], Any]] = {}
+
+    def __call__(self, name: str, inputs: tuple[Any, ...], make: Callable[[], Any]) -> Any:
+        """Return what `make` returned when it was last called with the same inputs.
+
+        Numbers and texts are compared by value, all else by identity.
+        """
+        kept = self._kept.get(name)
+        if kept is None or not _same_inputs(kept[0], inputs):
+            kept = self._kept[name] = (inputs, make())
+        return kept[1]
+
+
+def _same_inputs(a: tuple[Any, ...], b: tuple[Any, ...]) -> bool:
+    return len(a) == len(b) and all(
+        x is y or (isinstance(x, int | float | str) and type(x) is type(y) and x == y)
+        for x, y in zip(a, b, strict=True)
+    )

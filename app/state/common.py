@@ -1,0 +1,44 @@
+"""What every panel shares: the character, the chosen bone and vertex, and how work goes on."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import param
+
+PANELS = ("graph", "geodesics", "weights", "pose", "compare", "learn")
+"""The ids of the panels, in the order in which they are offered."""
+
+
+class Common(param.Parameterized):
+    """The part of the state that belongs to no panel."""
+
+    panel: Any = param.Selector(default="weights", objects=list(PANELS))
+
+    demo: Any = param.String("", doc="Id of the demo character that was chosen; else empty.")
+    rig: Any = param.Parameter(None, doc="The character: a cutcell.Rig, or None at first.")
+    binding: Any = param.Parameter(None, doc="What was computed for it, or None so far.")
+
+    joint: Any = param.Integer(0, doc="The chosen joint.")
+    skeleton: Any = param.Boolean(True, label="Skeleton")
+
+    cut_axis: Any = param.Selector(default="off", objects=["off", "x", "y", "z"])
+    cut_position: Any = param.Number(0.5, bounds=(0, 1))
+
+    dark: Any = param.Boolean(False)
+
+    busy: Any = param.Boolean(False, doc="Whether something is being computed.")
+    stage: Any = param.String("", doc="What is being computed.")
+    fraction: Any = param.Number(0.0, doc="How much of the stage is done, from 0 to 1.")
+    message: Any = param.Parameter(None, doc="(severity, sentence) to show, or None.")
+
+    @property
+    def weights(self) -> Any:
+        """What the character is posed with: what was computed, else the file's own."""
+        if self.binding is not None:
+            return self.binding.weights
+        return None if self.rig is None else self.rig.weights
+
+
+UNSEEN = frozenset({"name", "demo", "busy", "stage", "fraction", "message"})
+"""What the scene does not depend on."""
