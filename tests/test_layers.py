@@ -34,6 +34,7 @@ ORDER = [
     {"skinning"},
     {"pose"},
     {"metrics"},
+    {"workers"},
     {"baselines", "diagnose", "dataset"},
     {"summary", "compare"},
     {"options", "console", "report", "cli", "__main__"},

@@ -11,7 +11,7 @@ from ..skinning import bind
 from .bone_heat import bone_heat
 from .euclidean import euclidean
 from .result import BaselineBinding
-from .volume import bbw, biharmonic
+from .volume import bbw, biharmonic, quasi_harmonic
 from .voxel_binding import voxel, voxel_unirig
 
 Method = Callable[..., BaselineBinding]
@@ -48,6 +48,7 @@ METHODS: dict[str, Method] = {
     "cutcell": cutcell,
     "cutcell_any": cutcell_any,
     "euclidean": euclidean,
+    "quasi_harmonic": quasi_harmonic,
     "voxel": voxel,
     "voxel_unirig": voxel_unirig,
 }

@@ -1,21 +1,18 @@
 """Each method against a closed form, another library, or a slow loop."""
 
-import re
 from itertools import product
 
 import igl
 import numpy as np
 import pytest
 import trimesh
-from scipy.optimize import lsq_linear
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import cKDTree
 
 import cutcell
 from cutcell import ParameterError, Rig, Skeleton, TriangleMesh
-from cutcell.baselines import METHODS, BaselineBinding, volume
-from cutcell.baselines import volume_worker as worker
+from cutcell.baselines import METHODS, BaselineBinding
 from cutcell.baselines.body import Body
 from cutcell.baselines.laplacian import cotangent_laplacian, vertex_areas, vertex_normals
 from cutcell.baselines.paths import path_lengths
@@ -23,40 +20,8 @@ from cutcell.baselines.visibility import Blockers
 from cutcell.baselines.voxels import PAD, voxelize
 from cutcell.metrics import vertex_shares, weight_l1
 from tests import meshes
+from tests.bars import bar, check_weights, grid_box
 from tests.conftest import SHARED_RIGS
-
-
-def grid_box(nx, ny=2, nz=2, size=(1.0, 0.2, 0.2)):
-    """Make a closed box of small squares, from the origin to `size`."""
-    number, faces = {}, []
-
-    def at(*key):
-        return number.setdefault(key, len(number))
-
-    n = (nx, ny, nz)
-    for axis in range(3):
-        u, v = (axis + 1) % 3, (axis + 2) % 3
-        for side, i, j in product((0, n[axis]), range(n[u]), range(n[v])):
-            corners = []
-            for a, b in ((0, 0), (1, 0), (1, 1), (0, 1)):
-                key = [0, 0, 0]
-                key[axis], key[u], key[v] = side, i + a, j + b
-                corners.append(at(*key))
-            if side == 0:
-                corners = corners[::-1]
-            faces += [[corners[0], *corners[1:3]], [corners[0], *corners[2:4]]]
-    return np.array(list(number)) / n * np.array(size), np.array(faces)
-
-
-def bar(nx=20, joints=3):
-    vertices, faces = grid_box(nx)
-    x = np.linspace(0.05, 0.95, joints)
-    skeleton = Skeleton(
-        np.stack([x, 0 * x + 0.1, 0 * x + 0.1], axis=1),
-        np.arange(joints) - 1,
-        deform=np.arange(joints) < joints - 1,
-    )
-    return Rig(TriangleMesh(vertices, faces), skeleton)
 
 
 def open_tube(radius=0.05, along=160, around=24):
@@ -69,15 +34,6 @@ def open_tube(radius=0.05, along=160, around=24):
         a, b = i * around + k, i * around + (k + 1) % around
         faces += [[a, b, b + around], [a, b + around, a + around]]
     return np.array(vertices), np.array(faces)
-
-
-def check_weights(rig, found):
-    assert found.failed == ""
-    assert found.weights.shape == (len(rig.mesh.vertices), len(rig.skeleton.joints))
-    assert (found.weights >= 0).all()
-    np.testing.assert_allclose(found.weights.sum(axis=1), 1, atol=1e-9)
-    assert not found.weights[:, ~rig.skeleton.deform].any()
-    assert all(value >= 0 for value in found.seconds.values())
 
 
 # All of them
@@ -96,7 +52,10 @@ def test_every_method_binds_a_bar(name):
     np.testing.assert_array_equal((few > 0).sum(axis=1), 1)
 
 
-@pytest.mark.parametrize("name", sorted(set(METHODS) - {"artist", "bbw", "biharmonic"}))
+VOLUME = {"bbw", "biharmonic", "quasi_harmonic"}
+
+
+@pytest.mark.parametrize("name", sorted(set(METHODS) - {"artist"} - VOLUME))
 @pytest.mark.parametrize("make", [meshes.ball_with_holes, meshes.grid_soup, meshes.non_manifold])
 def test_robust_methods_bind_anything(name, make):
     vertices, faces = make()
@@ -145,6 +104,7 @@ def test_a_result_says_what_it_is():
         ("bbw", {"iterations": 0}),
         ("bbw", {"limit": -1}),
         ("biharmonic", {"limit": "soon"}),
+        ("quasi_harmonic", {"iterations": -1}),
     ],
 )
 def test_parameters_out_of_range_are_refused(name, options):
@@ -339,77 +299,3 @@ def test_bone_heat_is_near_to_blenders(name, limit):
     ours = METHODS["bone_heat"](rig).weights[held]
     assert weight_l1(ours, theirs, share) < limit
     assert weight_l1(METHODS["euclidean"](rig).weights[held], theirs, share) > 2 * limit
-
-
-# Weights in the volume
-
-
-def tetrahedra():
-    points, faces = grid_box(6)
-    handles = np.array([[0.1, 0.1, 0.1], [0.3, 0.1, 0.1], [0.7, 0.1, 0.1], [0.9, 0.1, 0.1]])
-    nodes, tets = worker.tetrahedralize(points, faces.astype(np.int64), handles)
-    fixed, values = worker.constraints(cKDTree(nodes), handles, np.array([0, 0, 1, 1]))
-    return nodes, tets, fixed, values
-
-
-def test_biharmonic_weights_equal_libigls():
-    nodes, tets, fixed, values = tetrahedra()
-    assert len(fixed) == 4
-    found = worker.unbounded(nodes, tets, fixed, values, 1)
-    expected = igl.harmonic(nodes, tets, fixed, values, 2)
-    np.testing.assert_allclose(found, expected, atol=1e-6)
-    np.testing.assert_allclose(found.sum(axis=1), 1, atol=1e-6)
-
-
-def test_bounded_weights_equal_scipys_least_squares():
-    nodes, tets, fixed, values = tetrahedra()
-    found = worker.bounded(nodes, tets, fixed, values, 50)
-    stiffness = igl.cotmatrix(nodes, tets).toarray()
-    mass = igl.massmatrix(nodes, tets, igl.MASSMATRIX_TYPE_DEFAULT).diagonal()
-    root = stiffness / np.sqrt(mass)[:, None]
-    free = np.setdiff1d(np.arange(len(nodes)), fixed)
-    for column in range(2):
-        right = -root[:, fixed] @ values[:, column]
-        best = lsq_linear(root[:, free], right, (0, 1), tol=1e-12)
-        np.testing.assert_allclose(found[free, column], best.x, atol=2e-3)
-    assert worker.unbounded(nodes, tets, fixed, values, 1).max() > 1.001  # bounds do matter
-
-
-def test_bounded_weights_on_a_bar_mirror_each_other():
-    rig = bar()
-    found = METHODS["bbw"](rig).weights
-    x = rig.mesh.vertices[:, 0]
-    assert found[np.isclose(x, 0.5), 0].mean() == pytest.approx(0.5, abs=0.03)
-    means = [found[np.isclose(x, at), 0].mean() for at in np.unique(x)]
-    assert (np.diff(means) < 0.02).all()
-
-
-def test_surfaces_that_cannot_be_filled_say_so():
-    rig = Rig(TriangleMesh(*meshes.tube()), Skeleton([[0.5, 0.5, 0.5]], [-1]))
-    for name in ("bbw", "biharmonic"):
-        found = METHODS[name](rig)
-        assert found.weights is None
-        assert "TetGen" in found.failed
-
-
-@pytest.mark.parametrize(
-    ("code", "words"),
-    [
-        ("import os, signal; os.kill(os.getpid(), signal.SIGSEGV)", "crashed \\(signal 11\\)"),
-        ("import time; time.sleep(60)", "longer than 0.5 seconds"),
-        ("raise SystemExit('no space left')", "exit code 1: no space left"),
-        ("import sys; sys.exit(3)", "exit code 3: it said nothing"),
-    ],
-)
-def test_a_solver_that_dies_takes_nothing_along(monkeypatch, tmp_path, code, words):
-    script = tmp_path / "worker.py"
-    script.write_text(code)
-    monkeypatch.setattr(volume, "WORKER", script)
-    found = METHODS["bbw"](bar(4), limit=0.5 if "sleep" in code else 60)
-    assert found.weights is None
-    assert re.search(words, found.failed)
-
-
-def test_without_libigl_the_result_says_so(monkeypatch):
-    monkeypatch.setattr(volume, "find_spec", lambda name: None)
-    assert "pip install libigl" in METHODS["bbw"](bar(4)).failed

@@ -1,0 +1,37 @@
+"""Read a job, do it, write its result: arrays by name, or in `failed` why there are none."""
+
+from __future__ import annotations
+
+import sys
+from importlib import import_module
+
+import numpy as np
+
+TASKS = {
+    "tetgen": "tetrahedra:by_tetgen",
+    "tetwild": "tetrahedra:by_tetwild",
+    "bbw": "smooth:bounded",
+    "biharmonic": "smooth:unbounded",
+    "quasi_harmonic": "quasi_harmonic:quasi_harmonic",
+    "cage": "cage:make_cage",
+}
+"""Module and function of each task; it takes the job's arrays, and returns the result's."""
+
+
+def main(task: str, job_path: str, result_path: str) -> None:
+    """Do one task."""
+    module, function = TASKS[task].split(":")
+    with np.load(job_path) as job:
+        given = {name: job[name] for name in job.files}
+    try:
+        result = getattr(import_module(f"cutcell.workers.{module}"), function)(**given)
+    except ModuleNotFoundError as error:
+        failed = f"{error.name} is not installed; try: pip install 'cutcell[peers]'"
+        result = {"failed": failed}
+    except (RuntimeError, ValueError, MemoryError) as error:
+        result = {"failed": str(error) or type(error).__name__}
+    np.savez(result_path, **result)
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

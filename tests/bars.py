@@ -1,0 +1,50 @@
+"""Boxes cut into small squares, and rigs made of them."""
+
+from itertools import product
+
+import numpy as np
+
+from cutcell import Rig, Skeleton, TriangleMesh
+
+
+def grid_box(nx, ny=2, nz=2, size=(1.0, 0.2, 0.2)):
+    """Make a closed box of small squares, from the origin to `size`."""
+    number, faces = {}, []
+
+    def at(*key):
+        return number.setdefault(key, len(number))
+
+    n = (nx, ny, nz)
+    for axis in range(3):
+        u, v = (axis + 1) % 3, (axis + 2) % 3
+        for side, i, j in product((0, n[axis]), range(n[u]), range(n[v])):
+            corners = []
+            for a, b in ((0, 0), (1, 0), (1, 1), (0, 1)):
+                key = [0, 0, 0]
+                key[axis], key[u], key[v] = side, i + a, j + b
+                corners.append(at(*key))
+            if side == 0:
+                corners = corners[::-1]
+            faces += [[corners[0], *corners[1:3]], [corners[0], *corners[2:4]]]
+    return np.array(list(number)) / n * np.array(size), np.array(faces)
+
+
+def bar(nx=20, joints=3):
+    vertices, faces = grid_box(nx)
+    x = np.linspace(0.05, 0.95, joints)
+    skeleton = Skeleton(
+        np.stack([x, 0 * x + 0.1, 0 * x + 0.1], axis=1),
+        np.arange(joints) - 1,
+        deform=np.arange(joints) < joints - 1,
+    )
+    return Rig(TriangleMesh(vertices, faces), skeleton)
+
+
+def check_weights(rig, found):
+    """See that a method did its duty."""
+    assert found.failed == ""
+    assert found.weights.shape == (len(rig.mesh.vertices), len(rig.skeleton.joints))
+    assert (found.weights >= 0).all()
+    np.testing.assert_allclose(found.weights.sum(axis=1), 1, atol=1e-9)
+    assert not found.weights[:, ~rig.skeleton.deform].any()
+    assert all(value >= 0 for value in found.seconds.values())
