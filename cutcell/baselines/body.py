@@ -67,3 +67,19 @@ class Body:
         first = np.flatnonzero(np.diff(self.bones.joint, prepend=-1))
         joint[self.bones.joint[first]] = np.minimum.reduceat(distance, first, axis=0)
         return joint
+
+
+class Same:
+    """A body and an option as a key: equal where all their numbers are."""
+
+    def __init__(self, body: Body, option: float) -> None:
+        self.body, self.option = body, option
+        bones = body.bones
+        arrays = (body.points, body.faces, bones.start, bones.end, bones.joint)
+        self._key = (option, *(array.tobytes() for array in arrays))
+
+    def __hash__(self) -> int:
+        return hash(self._key)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Same) and self._key == other._key

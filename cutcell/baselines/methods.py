@@ -9,6 +9,7 @@ from typing import Any
 from ..rig import Rig
 from ..skinning import bind
 from .bone_heat import bone_heat
+from .cage_methods import harmonic, mean_value
 from .euclidean import euclidean
 from .result import BaselineBinding
 from .volume import bbw, biharmonic, quasi_harmonic
@@ -48,6 +49,8 @@ METHODS: dict[str, Method] = {
     "cutcell": cutcell,
     "cutcell_any": cutcell_any,
     "euclidean": euclidean,
+    "harmonic": harmonic,
+    "mean_value": mean_value,
     "quasi_harmonic": quasi_harmonic,
     "voxel": voxel,
     "voxel_unirig": voxel_unirig,

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .apart import run_apart
-from .body import Body
+from .body import Body, Same
 from .result import MethodFailedError
 
 HANDLES = 5
@@ -41,26 +41,10 @@ class Tetrahedra:
     tets: NDArray[np.int64]
     corners: NDArray[np.int64]
     shares: NDArray[np.float64]
-    used: NDArray[np.intp]
+    used: NDArray[np.int32]
     handles: NDArray[np.float64]
     joint: NDArray[np.int32]
     warnings: tuple[str, ...]
-
-
-class _Key:
-    """A body as a key: equal where its numbers are."""
-
-    def __init__(self, body: Body, limit: float) -> None:
-        self.body = body
-        bones = body.bones
-        arrays = (body.points, body.faces, bones.start, bones.end, bones.joint)
-        self.key = (limit, *(array.tobytes() for array in arrays))
-
-    def __hash__(self) -> int:
-        return hash(self.key)
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Key) and self.key == other.key
 
 
 def tetrahedra(body: Body, limit: float) -> tuple[Tetrahedra | None, str, float]:
@@ -82,12 +66,12 @@ def tetrahedra(body: Body, limit: float) -> tuple[Tetrahedra | None, str, float]
     seconds : float
         That it took the first time.
     """
-    return _fill(_Key(body, limit))
+    return _fill(Same(body, limit))
 
 
 @lru_cache(maxsize=2)
-def _fill(key: _Key) -> tuple[Tetrahedra | None, str, float]:
-    body, limit = key.body, key.key[0]
+def _fill(given: Same) -> tuple[Tetrahedra | None, str, float]:
+    body, limit = given.body, given.option
     begin = perf_counter()
     used, faces = np.unique(body.faces, return_inverse=True)
     handles, joint = _handles(body)
@@ -97,13 +81,22 @@ def _fill(key: _Key) -> tuple[Tetrahedra | None, str, float]:
         found = run_apart("tetgen", job, limit, "TetGen")
     except MethodFailedError as first:
         try:
-            found = run_apart("tetwild", {**job, "edge": EDGE}, limit, "fTetWild")
+            found = run_apart("tetwild", job | {"edge": EDGE}, limit, "fTetWild")
         except MethodFailedError as second:
             return None, f"{first}; {second}", perf_counter() - begin
         warnings = (f"{first}; fTetWild filled it, nearly",)
     seconds = perf_counter() - begin
-    arrays = (found[name] for name in ("nodes", "tets", "corners", "shares"))
-    return Tetrahedra(*arrays, used, handles, joint, warnings), "", seconds
+    filled = Tetrahedra(
+        nodes=found["nodes"],
+        tets=found["tets"],
+        corners=found["corners"],
+        shares=found["shares"],
+        used=used,
+        handles=handles,
+        joint=joint,
+        warnings=warnings,
+    )
+    return filled, "", seconds
 
 
 def _handles(body: Body) -> tuple[NDArray[np.float64], NDArray[np.int32]]:

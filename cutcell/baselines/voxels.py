@@ -82,7 +82,7 @@ def voxelize(body: Body) -> Voxels:
     """
     resolution = body.lattice.resolution
     surface = np.zeros((resolution + 2 * PAD,) * 3, bool)
-    _mark(body.points[body.faces] * resolution + PAD, surface)
+    mark_triangles(body.points[body.faces] * resolution + PAD, surface)
     # Faces stop the flood, so it runs through sides of voxels only.
     outside = label(~surface)[0]
     solid = outside != outside[0, 0, 0]
@@ -93,8 +93,8 @@ def voxelize(body: Body) -> Voxels:
 
 
 @njit(cache=True)
-def _mark(triangles, marked):
-    """Mark the unit boxes that triangles (m, 3, 3) touch."""
+def mark_triangles(triangles, marked):
+    """Mark the unit boxes that triangles (m, 3, 3) touch: box (i, j, k) starts at that corner."""
     low, high = np.empty(3, np.int64), np.empty(3, np.int64)
     corners = np.empty((3, 3))
     size = marked.shape[0]
