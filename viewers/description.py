@@ -13,6 +13,21 @@ from .skin import Skin
 
 
 @dataclass(frozen=True, eq=False)
+class Apart:
+    """A second skin, to colour points by how far it takes them from where the first does.
+
+    Parameters
+    ----------
+    skin : Skin
+    unit : float
+        What a squared length of 1 in the scene is worth, in the unit of the values.
+    """
+
+    skin: Skin
+    unit: float = 1.0
+
+
+@dataclass(frozen=True, eq=False)
 class Actor:
     """One thing in a scene.
 
@@ -33,6 +48,13 @@ class Actor:
         A value for each point, shown through `colormap` between `limits`.
     skin : Skin, optional
         How the points follow the joints; without it they stand still.
+    apart : Apart, optional
+        While there is a pose, the scalars are the squared distances between where `skin`
+        and this one take each point.
+    offset : tuple of float
+        Where the whole actor stands beside its place, after it was posed.
+    view : int, optional
+        Which of the scene's views shows it; all of them when left out.
     overlay : bool
         Drawn over all that is no overlay, as bones are.
     clipped : bool
@@ -57,6 +79,9 @@ class Actor:
     clipped: bool = True
     slab: float = 0.0
     skin: Skin | None = None
+    apart: Apart | None = None
+    offset: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    view: int | None = None
 
 
 @dataclass(frozen=True)
@@ -88,17 +113,21 @@ class Description:
         Where each joint takes the points it holds, in the scene's space; None at rest.
     cut : Cut, optional
     legend : Legend, optional
+    views : tuple of str
+        Captions of the views that stand side by side under one camera; a single view has
+        none.
     """
 
     actors: dict[str, Actor] = field(default_factory=dict)
     pose: NDArray[np.float64] | None = None
     cut: Cut | None = None
     legend: Legend | None = None
+    views: tuple[str, ...] = ()
 
     @property
     def bounds(self) -> NDArray[np.float64]:
         """Lowest and highest corner of all actors at rest, shape (2, 3)."""
-        points = [a.points for a in self.actors.values() if len(a.points)]
+        points = [a.points + np.float32(a.offset) for a in self.actors.values() if len(a.points)]
         if not points:
             return np.array([[-1.0, -1, -1], [1, 1, 1]])
         low = np.min([p.min(axis=0) for p in points], axis=0)

@@ -57,6 +57,23 @@ _MAPS: dict[str, tuple[tuple[int, int, int], ...]] = {
         (192, 46, 30),
         (128, 14, 38),
     ),
+    # from the body's own grey to dark violet: where nothing is wrong nothing is said
+    "error": (
+        (201, 206, 214),
+        (247, 217, 126),
+        (246, 148, 66),
+        (218, 66, 78),
+        (142, 26, 108),
+        (64, 12, 78),
+    ),
+    # less is blue, more is red, the same is the body's own grey
+    "difference": (
+        (24, 78, 158),
+        (92, 158, 206),
+        (201, 206, 214),
+        (238, 136, 96),
+        (172, 22, 44),
+    ),
     # near is light and warm, far is deep blue
     "distance": (
         (255, 245, 214),
@@ -79,7 +96,7 @@ def colormap(name: str) -> NDArray[np.uint8]:
 
     Parameters
     ----------
-    name : {"weight", "distance"}
+    name : {"weight", "distance", "error", "difference"}
 
     Returns
     -------

@@ -19,7 +19,7 @@ import pyvista as pv
 
 from .description import Actor, Cut, Description
 from .palette import LIGHT, Theme, colormap
-from .skin import moved, turned
+from .skin import moved, squared_apart, turned
 
 VIEW_ANGLE = 30.0
 
@@ -33,27 +33,37 @@ class Camera:
     up: tuple[float, float, float] = (0.0, 1.0, 0.0)
 
 
-def framing(bounds: NDArray[np.float64], aspect: float = 1.0) -> Camera:
-    """Return a camera that sees all of a box, from the front, a little aside and above.
+FRONT = (0.42, 0.16, 1.0)
+"""Where one looks from at first: the front, a little aside and above."""
+
+
+def framing(
+    bounds: NDArray[np.float64],
+    aspect: float = 1.0,
+    direction: tuple[float, float, float] | None = None,
+) -> Camera:
+    """Return a camera that sees all of a box.
 
     Parameters
     ----------
     bounds : array, shape (2, 3)
     aspect : float
         Width over height of the picture.
+    direction : tuple of float, optional
+        Where to look from, not straight from above or below; `FRONT` when left out.
     """
     low, high = np.asarray(bounds, float)
     centre = (low + high) / 2
-    direction = np.array([0.42, 0.16, 1.0])
-    direction /= np.linalg.norm(direction)
-    right = np.cross([0, 1, 0], direction)
+    toward = np.array(direction or FRONT, float)
+    toward /= np.linalg.norm(toward)
+    right = np.cross([0, 1, 0], toward)
     right /= np.linalg.norm(right)
-    up = np.cross(direction, right)
+    up = np.cross(toward, right)
     corners = np.array(np.meshgrid(*zip(low - centre, high - centre, strict=True))).reshape(3, -1).T
     slope = np.tan(np.radians(VIEW_ANGLE / 2))
     needed = np.maximum(np.abs(corners @ up), np.abs(corners @ right) / aspect) / slope
-    distance = 1.08 * (needed + corners @ direction).max()
-    position = centre + distance * direction
+    distance = 1.08 * (needed + corners @ toward).max()
+    position = centre + distance * toward
     return Camera(tuple(position.tolist()), tuple(centre.tolist()))
 
 
@@ -68,7 +78,9 @@ class Scene:
     """
 
     def __init__(self, theme: Theme = LIGHT, size: tuple[int, int] = (1200, 900)) -> None:
-        self.plotter = pv.Plotter(off_screen=True, window_size=list(size), lighting="none")
+        self.plotter = pv.Plotter(
+            off_screen=True, window_size=list(size), lighting="none", border=False
+        )
         self.plotter.enable_anti_aliasing("msaa", multi_samples=8)
         self._overlay = _add_overlay(self.plotter)
         self.theme = theme
@@ -115,6 +127,7 @@ class Scene:
         plotter: Any = self.plotter
         plotter.set_background(self.theme.bottom, top=self.theme.top)
         plotter.renderer.ResetCameraClippingRange()
+        plotter.render_window.Render()  # a screenshot alone shows what was drawn before
         return plotter.screenshot(None if path is None else str(path), return_img=True)
 
     def close(self) -> None:
@@ -128,6 +141,7 @@ class Scene:
         mapper = pv.DataSetMapper(_dataset(actor, description.pose))
         drawn = pv.Actor(mapper=mapper)
         _paint(drawn, actor)
+        drawn.position = actor.offset
         if actor.clipped and description.cut is not None:
             for plane in cut_planes(description.cut, actor.slab):
                 mapper.AddClippingPlane(pv._vtk.vtkPlane(**plane))
@@ -186,8 +200,15 @@ def _dataset(actor: Actor, pose: NDArray[np.float64] | None) -> pv.PolyData:
     if actor.colors is not None:
         data.point_data["colors"] = actor.colors
     elif actor.scalars is not None:
-        data.point_data["values"] = actor.scalars
+        data.point_data["values"] = _values(actor, pose)
     return data
+
+
+def _values(actor: Actor, pose: NDArray[np.float64] | None) -> Any:
+    if pose is None or actor.apart is None or actor.skin is None:
+        return actor.scalars
+    squared = squared_apart(actor.points, actor.skin, actor.apart.skin, pose)
+    return (actor.apart.unit * squared).astype(np.float32)
 
 
 def _paint(drawn: pv.Actor, actor: Actor) -> None:

@@ -77,6 +77,14 @@ def moved(points: ArrayLike, skin: Skin, pose: ArrayLike) -> NDArray[np.float64]
     return result
 
 
+def squared_apart(
+    points: ArrayLike, skin: Skin, other: Skin, pose: ArrayLike
+) -> NDArray[np.float64]:
+    """Return how far two skins take each point from each other, squared, shape (n,)."""
+    between = moved(points, skin, pose) - moved(points, other, pose)
+    return (between * between).sum(axis=1)
+
+
 def turned(normals: ArrayLike, skin: Skin, pose: ArrayLike) -> NDArray[np.float64]:
     """Return unit normals, shape (n, 3), turned by a pose."""
     pose = np.array(pose, float)

@@ -1,0 +1,239 @@
+"""Films of a scene: a turn around it, or a motion; as MP4, GIF, or a single picture."""
+
+from __future__ import annotations
+
+import zlib
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image
+
+from cutcell.errors import FileError, MissingLibraryError
+from cutcell.progress import Progress, silent
+
+from .description import Description
+from .palette import THEMES
+from .scene import Camera
+from .studio import Studio
+
+PICTURES = (".png", ".jpg", ".jpeg")
+FILMS = (".mp4", ".gif")
+TURN_SECONDS = 6.0
+LONGEST = 20.0
+"""Seconds of a motion that are filmed at most."""
+FRAMES = {".mp4": 30, ".gif": 20}
+"""Frames a second of each kind of film."""
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """Poses over time.
+
+    Parameters
+    ----------
+    times : array, shape (f,), seconds
+    poses : array, shape (f, j, 4, 4)
+        In the scene's space.
+    """
+
+    times: NDArray[np.float64]
+    poses: NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Order:
+    """What is to be drawn: a picture, or a film where it turns or moves.
+
+    Parameters
+    ----------
+    description : Description
+    theme : {"light", "dark"}
+    size : (int, int)
+        Width and height in pixels.
+    camera : Camera, optional
+    direction : tuple of float, optional
+        Where to look from, where no camera is given.
+    turntable : bool
+        Whether the camera goes once around.
+    motion : Motion, optional
+    legend : bool
+    """
+
+    description: Description
+    theme: str = "light"
+    size: tuple[int, int] = (1600, 1200)
+    camera: Camera | None = None
+    direction: tuple[float, float, float] | None = None
+    turntable: bool = False
+    motion: Motion | None = None
+    legend: bool = True
+
+
+def draw(order: Order, path: str | Path, progress: Progress = silent) -> None:
+    """Draw an order into a file.
+
+    Parameters
+    ----------
+    order : Order
+    path : str or Path
+        Its ending says what it becomes: .png or .jpg, or .mp4 or .gif for a film.
+    progress : callable
+        See `cutcell.progress`; may raise to stop.
+
+    Raises
+    ------
+    FileError
+        Another ending, a film that does not move, or a folder that is not there.
+    MissingLibraryError
+        MP4 without the library that writes it.
+    """
+    path = Path(path)
+    kind = check_picture_file(path, moves=order.turntable or order.motion is not None)
+    progress("drawing", 0.0)
+    # A film's frames have even sides: MP4 stores colours for two by two pixels at once.
+    width, height = (side - side % 2 for side in order.size) if kind in FILMS else order.size
+    with Studio(order.description, THEMES[order.theme], (width, height), order.legend) as studio:
+        camera = order.camera or studio.camera(order.direction)
+        if kind in PICTURES:
+            Image.fromarray(studio.draw(camera)).save(path, quality=92)
+        else:
+            _WRITERS[kind](path, _frames(order, studio, camera, FRAMES[kind], progress))
+    progress("drawing", 1.0)
+
+
+def check_picture_file(path: Path, moves: bool = False) -> str:
+    """Return the ending of a picture's or film's name, in small letters.
+
+    Raises
+    ------
+    FileError
+        It is none that can be drawn, or does not fit what is drawn, or has no folder.
+    """
+    kind = path.suffix.lower()
+    fitting = FILMS if moves else PICTURES
+    if kind not in fitting:
+        other = kind in (*PICTURES, *FILMS)
+        what = "what moves is stored" if moves else "what stands still is stored"
+        raise FileError(
+            f"{path.name}: {'' if other else f'a picture cannot be saved as {kind!r}; '}"
+            f"{what} as {' or '.join(fitting)}"
+            + ("; ask for a turntable or a clip" if other and not moves else "")
+        )
+    if not path.absolute().parent.is_dir():
+        raise FileError(f"{path.name}: there is no folder {path.parent} to save it in")
+    return kind
+
+
+def around(camera: Camera, angle: float) -> Camera:
+    """Return a camera that went around what it looks at, by an angle in radians."""
+    target = np.array(camera.focal_point)
+    x, y, z = np.array(camera.position) - target
+    c, s = np.cos(angle), np.sin(angle)
+    position = target + np.array([c * x + s * z, y, c * z - s * x])
+    return replace(camera, position=tuple(position.tolist()))
+
+
+def _frames(
+    order: Order, studio: Studio, camera: Camera, fps: int, progress: Progress
+) -> Iterator[NDArray[np.uint8]]:
+    length = _length(order)
+    count = max(round(length * fps), 2)
+    for k in range(count):
+        progress("drawing", k / count)
+        if order.motion is not None:
+            pose = _pose_at(order.motion, k / fps)
+            studio.show(replace(order.description, pose=pose))
+        angle = 2 * np.pi * k / count if order.turntable else 0.0
+        yield studio.draw(around(camera, angle))
+
+
+def _length(order: Order) -> float:
+    if order.motion is None:
+        return TURN_SECONDS
+    duration = float(order.motion.times[-1]) if len(order.motion.times) else 0.0
+    if order.turntable:
+        # Whole rounds of the motion, so that the film closes.
+        return duration * max(round(TURN_SECONDS / duration), 1) if duration else TURN_SECONDS
+    return min(max(duration, 0.1), LONGEST)
+
+
+def _pose_at(motion: Motion, time: float) -> NDArray[np.float64]:
+    times = motion.times
+    if len(times) < 2 or times[-1] <= 0:
+        return motion.poses[0]
+    time = time % times[-1]
+    after = int(np.clip(np.searchsorted(times, time, side="right"), 1, len(times) - 1))
+    span = times[after] - times[after - 1]
+    part = np.clip((time - times[after - 1]) / span, 0, 1) if span > 0 else 0.0
+    return (1 - part) * motion.poses[after - 1] + part * motion.poses[after]
+
+
+def _write_mp4(path: Path, frames: Iterator[NDArray[np.uint8]]) -> None:
+    try:
+        import av
+    except ModuleNotFoundError:
+        raise MissingLibraryError(
+            "MP4 needs a library that is not installed; install it by: pip install 'cutcell[app]',"
+            " or save a GIF"
+        ) from None
+    with av.open(str(path), "w", options={"movflags": "faststart"}) as film:
+        stream: Any = None
+        for pixels in frames:
+            if stream is None:
+                options = {"crf": "18", "preset": "fast"}
+                stream = film.add_stream("libx264", rate=FRAMES[".mp4"], options=options)
+                stream.height, stream.width = pixels.shape[:2]
+                stream.pix_fmt = "yuv420p"
+            for packet in stream.encode(av.VideoFrame.from_ndarray(pixels, format="rgb24")):
+                film.mux(packet)
+        for packet in stream.encode(None):
+            film.mux(packet)
+
+
+def _write_gif(path: Path, frames: Iterator[NDArray[np.uint8]]) -> None:
+    # One palette for all frames: what stands still does not flicker, and the file is small.
+    # Till it is known the frames are kept packed; most of each is one smooth gradient.
+    packed: list[bytes] = []
+    shape: tuple[int, ...] = ()
+    for pixels in frames:
+        shape = pixels.shape
+        packed.append(zlib.compress(pixels.tobytes(), 1))
+
+    def unpacked(at: int) -> NDArray[np.uint8]:
+        return np.frombuffer(zlib.decompress(packed[at]), np.uint8).reshape(shape)
+
+    sampled = range(0, len(packed), max(len(packed) // 8, 1))
+    palette = _palette(np.concatenate([unpacked(at)[::2, ::2] for at in sampled]))
+
+    def images() -> Iterator[Image.Image]:
+        for at in range(len(packed)):
+            picture = Image.fromarray(unpacked(at))
+            yield picture.quantize(palette=palette, dither=Image.Dither.NONE)
+
+    every = images()
+    next(every).save(
+        path, save_all=True, append_images=every, duration=1000 // FRAMES[".gif"], loop=0
+    )
+
+
+def _palette(pixels: NDArray[np.uint8]) -> Image.Image:
+    """Return 256 colours for a film: half for what is frequent, half for all that is there.
+
+    A legend's colours are few pixels among a large background, and are what must be told apart.
+    """
+    flat = pixels.reshape(-1, 3)
+    every = np.unique(flat >> 2, axis=0) << 2
+    repeats = max(len(flat) // max(len(every), 1), 1)
+    mixed = np.concatenate([flat, np.repeat(every, repeats, axis=0)])
+    rows = mixed[: len(mixed) // 256 * 256].reshape(-1, 256, 3)
+    return Image.fromarray(np.ascontiguousarray(rows)).quantize(256, Image.Quantize.MEDIANCUT)
+
+
+_WRITERS: dict[str, Callable[[Path, Iterator[NDArray[np.uint8]]], None]] = {
+    ".mp4": _write_mp4,
+    ".gif": _write_gif,
+}

@@ -1,0 +1,121 @@
+"""What is written on a picture: the legend in its corner, captions over its views."""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image, ImageDraw, ImageFont
+
+from .description import Legend
+from .palette import Color, Theme, colormap, to_bytes
+from .tiles import Tile
+
+CARD = {"light": (255, 255, 255, 216), "dark": (24, 28, 36, 216)}
+LINE = {"light": (31, 38, 50, 40), "dark": (232, 236, 243, 40)}
+
+
+def write_legend(picture: NDArray[np.uint8], legend: Legend, theme: Theme) -> NDArray[np.uint8]:
+    """Write a legend into the lower left corner of a picture.
+
+    Parameters
+    ----------
+    picture : array, shape (height, width, 3), uint8
+    legend : Legend
+    theme : Theme
+
+    Returns
+    -------
+    array, shape (height, width, 3), uint8
+        A new one; all sizes follow the picture's.
+    """
+    unit = _unit(picture)
+    title, ends = _font(1.25 * unit), _font(1.1 * unit)
+    pad, bar = round(1.1 * unit), round(0.75 * unit)
+    widest = picture.shape[1] - 4 * pad
+    least = ends.getlength(f"{legend.low}     {legend.high}")
+    width = round(min(max(18 * unit, title.getlength(legend.title), least), widest))
+    name = _shortened(legend.title, title, width)
+    lines = [_height(title), bar, _height(ends)]
+    height = sum(lines) + round(0.7 * unit) * 2
+    left, top = 2 * pad, picture.shape[0] - height - 3 * pad
+    image, draw = _open(picture)
+    box = (left - pad, top - pad, left + width + pad, top + height + pad)
+    draw.rounded_rectangle(box, round(0.7 * unit), fill=CARD[theme.name])
+    ink = _ink(theme.ink)
+    draw.text((left, top), name, font=title, fill=ink)
+    top += lines[0] + round(0.7 * unit)
+    table = colormap(legend.colormap)
+    strip = Image.fromarray(table[np.newaxis], "RGB").resize(
+        (width, bar), Image.Resampling.BILINEAR
+    )
+    image.paste(strip, (left, top), _rounded(width, bar))
+    top += bar + round(0.6 * unit)
+    draw.text((left, top), legend.low, font=ends, fill=ink)
+    draw.text((left + width, top), legend.high, font=ends, fill=ink, anchor="ra")
+    return np.asarray(image)
+
+
+def write_captions(
+    picture: NDArray[np.uint8], captions: tuple[str, ...], places: list[Tile], theme: Theme
+) -> NDArray[np.uint8]:
+    """Write each view's caption at its upper edge, and draw a line between the views."""
+    unit = _unit(picture)
+    font, pad = _font(1.25 * unit), round(0.7 * unit)
+    image, draw = _open(picture)
+    for text, (left, top, width, height) in zip(captions, places, strict=True):
+        if left:
+            draw.line((left, top, left, top + height), fill=LINE[theme.name], width=1)
+        if top:
+            draw.line((left, top, left + width, top), fill=LINE[theme.name], width=1)
+        name = _shortened(text, font, width - 6 * pad)
+        half = font.getlength(name) / 2 + 1.4 * pad
+        middle, upper = left + width / 2, top + 1.6 * pad
+        box = (middle - half, upper, middle + half, upper + _height(font) + 1.6 * pad)
+        draw.rounded_rectangle(box, pad, fill=CARD[theme.name])
+        draw.text((middle, upper + 0.8 * pad), name, font=font, fill=_ink(theme.ink), anchor="ma")
+    return np.asarray(image)
+
+
+def _open(picture: NDArray[np.uint8]) -> tuple[Image.Image, ImageDraw.ImageDraw]:
+    image = Image.fromarray(np.ascontiguousarray(picture), "RGB")
+    return image, ImageDraw.Draw(image, "RGBA")
+
+
+def _unit(picture: NDArray[np.uint8]) -> float:
+    return max(min(picture.shape[0], picture.shape[1] * 1.2) / 75, 8.0)
+
+
+def _ink(color: Color) -> tuple[int, int, int]:
+    red, green, blue = to_bytes(color).tolist()
+    return (red, green, blue)
+
+
+@cache
+def _font(size: float) -> ImageFont.FreeTypeFont:
+    # DejaVu, which comes with PyVista's own needs, has the letters of many scripts.
+    from matplotlib import get_data_path
+
+    return ImageFont.truetype(Path(get_data_path()) / "fonts" / "ttf" / "DejaVuSans.ttf", size)
+
+
+def _height(font: ImageFont.FreeTypeFont) -> int:
+    return sum(font.getmetrics())
+
+
+def _shortened(text: str, font: ImageFont.FreeTypeFont, width: float) -> str:
+    if font.getlength(text) <= width:
+        return text
+    while text and font.getlength(text + "…") > width:
+        text = text[:-1]
+    return text + "…"
+
+
+def _rounded(width: int, height: int) -> Image.Image:
+    mask = Image.new("L", (4 * width, 4 * height), 0)
+    ImageDraw.Draw(mask).rounded_rectangle(
+        (0, 0, 4 * width - 1, 4 * height - 1), 2 * height, fill=255
+    )
+    return mask.resize((width, height), Image.Resampling.LANCZOS)

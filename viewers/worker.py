@@ -1,0 +1,111 @@
+"""Draws in a process of its own: `python -m viewers.worker ORDER OUT`, started by `draw_apart`.
+
+Without OpenGL VTK ends its process, windows belong to one thread, and what is drawn takes
+long: none of this shall harm whoever wants a picture.
+"""
+
+from __future__ import annotations
+
+import json
+import pickle
+import subprocess
+import sys
+import tempfile
+import threading
+from pathlib import Path
+from queue import Empty, Queue
+from typing import Any
+
+from cutcell import errors
+from cutcell.errors import CutcellError
+from cutcell.progress import Progress, silent
+
+from .film import Order, check_picture_file, draw
+from .opengl import require_opengl
+
+ASK_EVERY = 0.1
+"""Seconds after which whoever waits is asked whether the picture is still wanted."""
+
+
+def draw_apart(order: Order, path: str | Path, progress: Progress = silent) -> None:
+    """Draw an order into a file, in another process; see `draw`.
+
+    Parameters
+    ----------
+    order : Order
+    path : str or Path
+    progress : callable
+        Told the stage and the part that is done; where it raises, the other process is
+        stopped and no file is left.
+
+    Raises
+    ------
+    FileError, MissingLibraryError
+        See `draw`; and this machine has no OpenGL.
+    """
+    path = Path(path)
+    check_picture_file(path, moves=order.turntable or order.motion is not None)
+    with tempfile.TemporaryDirectory(prefix="cutcell-draw-") as folder:
+        wanted, drawn = Path(folder) / "order", Path(folder) / f"drawn{path.suffix.lower()}"
+        wanted.write_bytes(pickle.dumps(order))
+        command = [sys.executable, "-m", __name__, str(wanted), str(drawn)]
+        root = Path(__file__).resolve().parent.parent
+        with subprocess.Popen(
+            command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=root
+        ) as process:
+            _watch(process, progress)
+        if not drawn.exists():
+            require_opengl()
+            raise RuntimeError("the drawing process ended without a picture")
+        path.write_bytes(drawn.read_bytes())
+
+
+def _watch(process: subprocess.Popen[str], progress: Progress) -> None:
+    lines: Queue[str | None] = Queue()
+    grumbles: list[str] = []
+
+    def listen() -> None:
+        for line in process.stdout or ():
+            lines.put(line)
+        lines.put(None)
+
+    # Both are read as they come, so that the process never waits for a reader.
+    threading.Thread(target=listen, daemon=True).start()
+    other = threading.Thread(target=lambda: grumbles.extend(process.stderr or ()), daemon=True)
+    other.start()
+    told: dict[str, Any] = {"stage": "drawing", "fraction": 0.0}
+    try:
+        while True:
+            progress(told["stage"], told["fraction"])
+            try:
+                line = lines.get(timeout=ASK_EVERY)
+            except Empty:
+                continue
+            if line is None:
+                break
+            told = json.loads(line)
+            if "error" in told:
+                raise getattr(errors, told["error"], CutcellError)(told["message"])
+        other.join()
+        if process.wait() > 0:
+            raise RuntimeError("".join(grumbles[-3:]).strip() or "the drawing process failed")
+    finally:
+        if process.poll() is None:
+            process.kill()
+
+
+def main(order: str, out: str) -> None:
+    """Draw an order that was stored in a file; tell progress and errors line by line."""
+
+    def tell(**line: object) -> None:
+        print(json.dumps(line), flush=True)
+
+    try:
+        wanted = pickle.loads(Path(order).read_bytes())
+        draw(wanted, out, lambda stage, fraction: tell(stage=stage, fraction=fraction))
+    except CutcellError as error:
+        tell(error=type(error).__name__, message=str(error))
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
