@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 from panel.custom import JSComponent
 from panel.models.vtk import VTK_VERSION
 
-from viewers.description import Actor, Description, Legend
+from viewers.description import Actor, Apart, Description, Legend
 from viewers.palette import Theme, colormap, to_hex
 from viewers.scene import AMBIENT, LIGHTS, Camera
+from viewers.skin import Skin
 
 from .scripts import script
 from .upload import Receiver
@@ -129,6 +130,8 @@ def changes(old: Description, new: Description, sent: set[str]) -> dict[str, Any
         message["cut"] = new.cut and {"origin": new.cut.origin, "normal": new.cut.normal}
     if old.legend != new.legend:
         message["legend"] = _legend(new.legend)
+    if old.views != new.views:
+        message["views"] = list(new.views)
     if not _same(old.pose, new.pose):
         message["pose"] = None if new.pose is None else _flat(new.pose, np.float32)
     return message
@@ -156,11 +159,9 @@ def _part(old: Actor | None, new: Actor) -> dict[str, Any]:
         if value is not None and (old is None or not _same(getattr(old, name), value)):
             part[name] = _flat(value, dtype)
     if new.skin is not None and (old is None or not _same_skin(old, new)):
-        part["skin"] = {
-            "joints": _flat(new.skin.joints, np.uint16),
-            "weights": _flat(new.skin.weights, np.float32),
-            "count": new.skin.joints.shape[1],
-        }
+        part["skin"] = _skin(new.skin)
+    if old is None or old.apart is not new.apart:
+        part["apart"] = _apart(new.apart)
     part.update(_colouring(old, new))
     for name, value in _settings(new).items():
         if old is None or _settings(old)[name] != value:
@@ -168,6 +169,20 @@ def _part(old: Actor | None, new: Actor) -> dict[str, Any]:
     if old is None or (old.clipped, old.slab) != (new.clipped, new.slab):
         part["clipped"], part["slab"] = new.clipped, new.slab
     return part
+
+
+def _apart(apart: Apart | None) -> dict[str, Any] | None:
+    if apart is None:
+        return None
+    return {**_skin(apart.skin), "unit": apart.unit}
+
+
+def _skin(skin: Skin) -> dict[str, Any]:
+    return {
+        "joints": _flat(skin.joints, np.uint16),
+        "weights": _flat(skin.weights, np.float32),
+        "count": skin.joints.shape[1],
+    }
 
 
 def _colouring(old: Actor | None, new: Actor) -> dict[str, Any]:
@@ -192,7 +207,8 @@ def _settings(actor: Actor) -> dict[str, Any]:
         "ambient": AMBIENT,
         "coloured": actor.colors is not None or actor.scalars is not None,
     }
-    return {"paint": paint, "overlay": actor.overlay, "visible": actor.visible}
+    place = {"overlay": actor.overlay, "view": actor.view}
+    return {"paint": paint, "place": place, "visible": actor.visible}
 
 
 def _legend(legend: Legend | None) -> dict[str, Any] | None:

@@ -51,8 +51,6 @@ class Actor:
     apart : Apart, optional
         While there is a pose, the scalars are the squared distances between where `skin`
         and this one take each point.
-    offset : tuple of float
-        Where the whole actor stands beside its place, after it was posed.
     view : int, optional
         Which of the scene's views shows it; all of them when left out.
     overlay : bool
@@ -80,7 +78,6 @@ class Actor:
     slab: float = 0.0
     skin: Skin | None = None
     apart: Apart | None = None
-    offset: tuple[float, float, float] = (0.0, 0.0, 0.0)
     view: int | None = None
 
 
@@ -127,7 +124,7 @@ class Description:
     @property
     def bounds(self) -> NDArray[np.float64]:
         """Lowest and highest corner of all actors at rest, shape (2, 3)."""
-        points = [a.points + np.float32(a.offset) for a in self.actors.values() if len(a.points)]
+        points = [a.points for a in self.actors.values() if len(a.points)]
         if not points:
             return np.array([[-1.0, -1, -1], [1, 1, 1]])
         low = np.min([p.min(axis=0) for p in points], axis=0)

@@ -141,7 +141,6 @@ class Scene:
         mapper = pv.DataSetMapper(_dataset(actor, description.pose))
         drawn = pv.Actor(mapper=mapper)
         _paint(drawn, actor)
-        drawn.position = actor.offset
         if actor.clipped and description.cut is not None:
             for plane in cut_planes(description.cut, actor.slab):
                 mapper.AddClippingPlane(pv._vtk.vtkPlane(**plane))

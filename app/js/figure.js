@@ -23,9 +23,10 @@ function withCounts(cells, corners, stride = 1) {
 }
 
 class Figure {
-  constructor(vtk, renderers) {
+  constructor(stage) {
+    const {vtk} = stage
     this.vtk = vtk
-    this.renderers = renderers
+    this.stage = stage
     this.data = vtk.Common.DataModel.vtkPolyData.newInstance()
     this.made = [this.make(this.data)]
     this.visible = true
@@ -45,14 +46,14 @@ class Figure {
     if (part.points) { this.setPoints(plain(part.points)) }
     if (part.normals) { this.setNormals(plain(part.normals)) }
     if (part.cells) { this.setCells(plain(part.cells)) }
-    if (part.skin) {
-      const {joints, weights, count} = part.skin
-      this.skin = {joints: plain(joints), weights: plain(weights), count}
-    }
+    if ("skin" in part || "apart" in part) { this.setSkins(part) }
     if (part.colors) { this.setColors(plain(part.colors)) }
     if (part.scalars) { this.setScalars(plain(part.scalars), plain(part.table), part.limits) }
     if (part.paint) { this.paint(part.paint) }
-    if ("overlay" in part) { this.place(part.overlay) }
+    if (part.place) {
+      [this.overlay, this.view] = [part.place.overlay, part.place.view]
+      this.place()
+    }
     if ("clipped" in part) { [this.clipped, this.slab] = [part.clipped, part.slab] }
     if ("visible" in part) { this.visible = part.visible }
     this.cut(cut)
@@ -91,6 +92,38 @@ class Figure {
     }
   }
 
+  // How the points follow the joints, and a second way whose distance from it colours them.
+  setSkins({skin, apart}) {
+    const plainSkin = ({joints, weights, count}) =>
+      ({joints: plain(joints), weights: plain(weights), count})
+    if (skin) { this.skin = plainSkin(skin) }
+    if (apart !== undefined) {
+      this.apart = apart && {...plainSkin(apart), unit: apart.unit}
+    }
+    if (!this.skin) { return }
+    const {vtkDataArray} = this.vtk.Common.Core
+    const arrays = [
+      ...skinArrays("skin", this.skin), ...(this.apart ? skinArrays("other", this.apart) : []),
+    ]
+    const data = this.data.getPointData()
+    for (const [name, values] of arrays) {
+      data.removeArray(name)
+      data.addArray(vtkDataArray.newInstance({name, numberOfComponents: 4, values}))
+    }
+    const sets = (of) => of ? Math.ceil(of.count / 4) : 0
+    for (const {mapper} of this.made) {
+      mapper.setCustomShaderAttributes(arrays.map(([name]) => name))
+      Object.assign(mapper.getViewSpecificProperties(), {
+        OpenGL: {ShaderReplacements: skinShader(sets(this.skin), sets(this.apart))},
+        ShadersCallbacks: [{callback: (_, primitive) => this.stage.poses.use(
+          primitive.getProgram(), primitive.getCABO(), this.limits || [0, 1], this.apart?.unit,
+        )}],
+      })
+      mapper.modified()
+    }
+    this.data.modified()
+  }
+
   setColors(colors) {
     this.setArray(colors, 3)
     for (const {mapper} of this.made) {
@@ -101,6 +134,7 @@ class Figure {
 
   setScalars(values, table, limits) {
     this.setArray(values, 1)
+    this.limits = limits
     const {vtkLookupTable, vtkDataArray} = this.vtk.Common.Core
     const size = table.length / 3
     const rgba = new Uint8Array(size * 4).fill(255)
@@ -140,11 +174,20 @@ class Figure {
     }
   }
 
-  place(overlay) {
-    this.layer = this.renderers[overlay ? 1 : 0]
+  // Stands in the view that it belongs to, or in every one.
+  place() {
+    this.leave()
+    const own = typeof this.view === "number" ? this.stage.views[this.view] : null
+    const views = own ? [own] : this.stage.views
+    this.layers = views.map((view) => this.overlay ? view.over : view.base)
     for (const {actor} of this.made) {
-      for (const renderer of this.renderers) { renderer.removeActor(actor) }
-      this.layer.addActor(actor)
+      for (const layer of this.layers) { layer.addActor(actor) }
+    }
+  }
+
+  leave() {
+    for (const {actor} of this.made) {
+      for (const layer of this.layers || []) { layer.removeActor(actor) }
     }
   }
 
@@ -169,28 +212,19 @@ class Figure {
     })
   }
 
-  pose(pose) {
-    if (!this.skin || !this.rest) { return }
-    const points = this.data.getPoints()
-    const normals = this.restNormals && this.data.getPointData().getNormals()
-    if (pose) {
-      skinInto(this.skin, this.rest, this.restNormals, pose, points.getData(), normals?.getData())
-    } else {
-      points.getData().set(this.rest)
-      normals?.getData().set(this.restNormals)
-    }
-    points.modified()
-    normals?.modified()
-    this.data.modified()
+  // Where the points are now; the card alone knows as long as nobody asks.
+  posed() {
+    const {pose} = this.stage
+    return this.skin && pose ? skinned(this.skin, this.rest, pose) : this.rest
   }
 
   remove() {
-    for (const {actor, mapper, data} of this.made) {
-      this.layer?.removeActor(actor)
+    this.leave()
+    for (const {actor, mapper} of this.made) {
       actor.delete()
       mapper.delete()
-      data.delete()
     }
+    for (const {data} of this.made) { data.delete() }
   }
 }
 

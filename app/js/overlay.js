@@ -18,6 +18,9 @@ const STYLE = `
 .legend span { display: flex; justify-content: space-between; margin-top: 4px; opacity: .75;
   font-variant-numeric: tabular-nums; }
 .bone { padding: 4px 8px; transform: translate(14px, -110%); white-space: nowrap; }
+.caption { padding: 5px 12px; transform: translateX(-50%); white-space: nowrap; overflow: hidden;
+  text-overflow: ellipsis; font-weight: 500; }
+.seam { position: absolute; background: var(--ink); opacity: .14; pointer-events: none; }
 .hint { right: 16px; bottom: 16px; padding: 0; background: none; opacity: .5; backdrop-filter: none; }
 .failed { inset: 0; margin: auto; width: min(420px, 80%); height: max-content; padding: 20px;
   font-size: 14px; text-align: center; }
@@ -84,6 +87,32 @@ class Overlay {
       ends.append(end)
     }
     this.legend.append(name, bar, ends)
+  }
+
+  // What stands in each view, and the seams between them.
+  showViews(captions, tiles) {
+    if (!this.views) {
+      this.views = document.createElement("div")
+      this.root.append(this.views)
+    }
+    const put = (className, text, style) => {
+      const element = document.createElement("div")
+      element.className = className
+      element.textContent = text
+      Object.assign(element.style, style)
+      this.views.append(element)
+    }
+    this.views.replaceChildren()
+    captions.forEach((text, i) => {
+      const [left, top, width, height] = tiles[i]
+      const px = (value) => `${value}px`
+      put("card caption", text, {
+        left: px(left + width / 2), top: px(top + 12), maxWidth: px(width - 24),
+        boxSizing: "border-box",
+      })
+      if (left > 0) { put("seam", "", {left: px(left), top: px(top), width: "1px", height: px(height)}) }
+      if (top > 0) { put("seam", "", {left: px(left), top: px(top), width: px(width), height: "1px"}) }
+    })
   }
 
   showBone(name, x, y) {

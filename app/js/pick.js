@@ -5,8 +5,9 @@ const REACH = 16
 function pickBone(stage, bones, pose, x, y) {
   if (!bones) { return null }
   let best = null
+  const view = stage.viewAt(x, y)
   bones.joint.forEach((joint, i) => {
-    const [a, b] = boneEnds(stage, bones, pose, i)
+    const [a, b] = boneEnds(stage, bones, pose, i, view)
     if (!a || !b) { return }
     const [distance, along] = toSegment(x, y, a, b)
     if (distance > REACH) { return }
@@ -18,9 +19,9 @@ function pickBone(stage, bones, pose, x, y) {
   return best && best.joint
 }
 
-function boneEnds(stage, bones, pose, i) {
+function boneEnds(stage, bones, pose, i, view = 0) {
   const at = (points) => transformed(points.slice(3 * i, 3 * i + 3), pose, bones.joint[i])
-  return [stage.project(at(bones.start)), stage.project(at(bones.end))]
+  return [stage.project(at(bones.start), view), stage.project(at(bones.end), view)]
 }
 
 function toSegment(x, y, a, b) {

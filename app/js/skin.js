@@ -1,36 +1,161 @@
-// Linear blend skinning in the browser: weights come once, then sixteen numbers a joint.
+// Linear blend skinning on the graphics card: influences are sent to it once, and after that
+// twelve numbers a joint for each pose, kept in a texture that all figures read.
 
-// Moves points and normals by `pose`, a Float32Array of row-major 4 by 4 matrices.
-function skinInto(skin, rest, restNormals, pose, points, normals) {
+const POSE_UNIT = 15  // the last texture unit that every WebGL 2 has; vtk.js takes the first ones
+
+class PoseTexture {
+  constructor(gl) {
+    this.gl = gl
+    this.texture = gl.createTexture()
+    this.rows = 0
+    this.on = false
+  }
+
+  // `pose`: a Float32Array of row-major 4 by 4 matrices, or null at rest.
+  set(pose) {
+    this.on = Boolean(pose)
+    if (!pose) { return }
+    const {gl} = this
+    const rows = pose.length / 16
+    this.bind()
+    if (rows === this.rows) {
+      gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, 4, rows, gl.RGBA, gl.FLOAT, pose)
+    } else {
+      for (const name of ["MIN_FILTER", "MAG_FILTER"]) {
+        gl.texParameteri(gl.TEXTURE_2D, gl[`TEXTURE_${name}`], gl.NEAREST)
+      }
+      gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, 4, rows, 0, gl.RGBA, gl.FLOAT, pose)
+      this.rows = rows
+    }
+    gl.activeTexture(gl.TEXTURE0)
+  }
+
+  bind() {
+    const {gl} = this
+    gl.activeTexture(gl.TEXTURE0 + POSE_UNIT)
+    gl.bindTexture(gl.TEXTURE_2D, this.texture)
+  }
+
+  // Called by vtk.js before it draws a figure.
+  use(program, buffer, limits, unit) {
+    if (!program.isUniformUsed("poseOn")) { return }
+    this.bind()
+    this.gl.activeTexture(this.gl.TEXTURE0)
+    program.setUniformi("poses", POSE_UNIT)
+    program.setUniformf("poseOn", this.on && this.rows ? 1 : 0)
+    // vtk.js shifts and scales points that are far from 1: poses are told of the true ones.
+    const m = buffer.getCoordShiftAndScaleEnabled() ? buffer.getInverseShiftAndScaleMatrix() : null
+    program.setUniform3fArray("trueScale", m ? [m[0], m[5], m[10]] : [1, 1, 1])
+    program.setUniform3fArray("trueShift", m ? [m[12], m[13], m[14]] : [0, 0, 0])
+    if (program.isUniformUsed("apartLimits")) {
+      program.setUniform3fArray("apartLimits", [limits[0], limits[1], unit])
+    }
+  }
+
+  remove() {
+    this.gl.deleteTexture(this.texture)
+  }
+}
+
+// The arrays that carry a skin to the card, by the name of their attribute: four influences each.
+function skinArrays(name, {joints, weights, count}) {
+  const arrays = []
+  const n = joints.length / count
+  for (let first = 0; first < count; first += 4) {
+    const [j, w] = [new Float32Array(4 * n), new Float32Array(4 * n)]
+    for (let i = 0; i < n; i++) {
+      for (let k = first; k < Math.min(first + 4, count); k++) {
+        j[4 * i + k - first] = joints[i * count + k]
+        w[4 * i + k - first] = weights[i * count + k]
+      }
+    }
+    arrays.push([`${name}Joints${first / 4}`, j], [`${name}Weights${first / 4}`, w])
+  }
+  return arrays
+}
+
+// What is changed in vtk.js' own vertex shader. `other`: a second skin, whose distance from the
+// first colours the figure.
+function skinShader(sets, otherSets) {
+  const attributes = (name, count) => Array.from({length: count}, (_, s) =>
+    `attribute vec4 ${name}Joints${s}MC; attribute vec4 ${name}Weights${s}MC;`).join("\n")
+  const blend = (name, count) => Array.from({length: count}, (_, s) =>
+    ["x", "y", "z", "w"].map((c) =>
+      `addPose(${name}Joints${s}MC.${c}, ${name}Weights${s}MC.${c}, a, b, c, held);`).join("\n")
+  ).join("\n")
+  const blender = (name, count) => `void ${name}Blend(out vec4 a, out vec4 b, out vec4 c) {
+    float held = 0.0;
+    a = vec4(0.0); b = vec4(0.0); c = vec4(0.0);
+    if (poseOn > 0.5) { ${blend(name, count)} }
+    if (held == 0.0) { a = vec4(1, 0, 0, 0); b = vec4(0, 1, 0, 0); c = vec4(0, 0, 1, 0); }
+  }`
+  const declared = `
+  ${attributes("skin", sets)}
+  ${otherSets ? attributes("other", otherSets) : ""}
+  uniform highp sampler2D poses;
+  uniform float poseOn;
+  uniform vec3 trueScale;
+  uniform vec3 trueShift;
+  ${otherSets ? "uniform vec3 apartLimits;" : ""}
+  vec4 rowX; vec4 rowY; vec4 rowZ; vec4 posedMC; float apart;
+  void addPose(float joint, float w, inout vec4 a, inout vec4 b, inout vec4 c, inout float held) {
+    if (w == 0.0) { return; }
+    int row = int(joint + 0.5);
+    a += w * texelFetch(poses, ivec2(0, row), 0);
+    b += w * texelFetch(poses, ivec2(1, row), 0);
+    c += w * texelFetch(poses, ivec2(2, row), 0);
+    held += w;
+  }
+  ${blender("skin", sets)}
+  ${otherSets ? blender("other", otherSets) : ""}
+  void main()
+  {
+    vec4 truePoint = vec4(vertexMC.xyz * trueScale + trueShift, 1.0);
+    skinBlend(rowX, rowY, rowZ);
+    vec3 posed = vec3(dot(rowX, truePoint), dot(rowY, truePoint), dot(rowZ, truePoint));
+    posedMC = vec4((posed - trueShift) / trueScale, 1.0);
+    ${otherSets ? `vec4 a; vec4 b; vec4 c;
+    otherBlend(a, b, c);
+    vec3 gap = posed - vec3(dot(a, truePoint), dot(b, truePoint), dot(c, truePoint));
+    float span = (apartLimits.y - apartLimits.x) / 512.0;
+    apart = (apartLimits.z * dot(gap, gap) - apartLimits.x + span)
+      / (apartLimits.y - apartLimits.x + 2.0 * span);` : ""}`
+  const turned = "vec3(dot(rowX.xyz, normalMC), dot(rowY.xyz, normalMC), dot(rowZ.xyz, normalMC))"
+  const swap = (from, to) => ({
+    shaderType: "Vertex", originalValue: from, replaceFirst: false, replacementValue: to,
+    replaceAll: false,
+  })
+  return [
+    swap("void main()\n{", declared),
+    swap("MCVCMatrix * vertexMC", "MCVCMatrix * posedMC"),
+    swap("MCPCMatrix * vertexMC", "MCPCMatrix * posedMC"),
+    swap("normalMatrix * normalMC", `normalMatrix * ${turned}`),
+    swap("dot(clipPlanes[planeNum], vertexMC)", "dot(clipPlanes[planeNum], posedMC)"),
+    ...(otherSets
+      ? [swap("tcoordVCVSOutput = tcoordMC", "tcoordVCVSOutput = vec2(min(apart, 1.0), 0.49)")]
+      : []),
+  ]
+}
+
+// The same sum for all points, on the processor: to know where they are, not to draw them.
+function skinned(skin, rest, pose) {
   const {joints, weights, count} = skin
-  const m = new Float32Array(12)
+  const out = new Float32Array(rest.length)
   for (let i = 0, n = rest.length / 3; i < n; i++) {
-    m.fill(0)
+    const [x, y, z] = [rest[3 * i], rest[3 * i + 1], rest[3 * i + 2]]
     let held = 0
     for (let k = i * count; k < (i + 1) * count; k++) {
       const w = weights[k]
       if (w === 0) { continue }
       held += w
-      const at = joints[k] * 16
-      for (let c = 0; c < 12; c++) { m[c] += w * pose[at + c] }
+      for (let r = 0; r < 3; r++) {
+        const at = joints[k] * 16 + 4 * r
+        out[3 * i + r] += w * (pose[at] * x + pose[at + 1] * y + pose[at + 2] * z + pose[at + 3])
+      }
     }
-    const o = 3 * i
-    const [x, y, z] = [rest[o], rest[o + 1], rest[o + 2]]
-    if (held === 0) { m[0] = m[5] = m[10] = 1 }
-    points[o] = m[0] * x + m[1] * y + m[2] * z + m[3]
-    points[o + 1] = m[4] * x + m[5] * y + m[6] * z + m[7]
-    points[o + 2] = m[8] * x + m[9] * y + m[10] * z + m[11]
-    if (normals) {
-      const [a, b, c] = [restNormals[o], restNormals[o + 1], restNormals[o + 2]]
-      const u = m[0] * a + m[1] * b + m[2] * c
-      const v = m[4] * a + m[5] * b + m[6] * c
-      const w = m[8] * a + m[9] * b + m[10] * c
-      const s = 1 / (Math.sqrt(u * u + v * v + w * w) || 1)
-      normals[o] = u * s
-      normals[o + 1] = v * s
-      normals[o + 2] = w * s
-    }
+    if (held === 0) { out.set([x, y, z], 3 * i) }
   }
+  return out
 }
 
 function transformed(point, pose, joint) {
@@ -47,6 +172,7 @@ class Clip {
     this.matrices = plain(matrices)
     this.size = this.matrices.length / this.times.length
     this.pose = new Float32Array(this.size)
+    this.next = 1
   }
 
   get duration() {
@@ -56,13 +182,17 @@ class Clip {
   at(time) {
     const {times, size, matrices, pose} = this
     const t = time % this.duration
-    let next = times.findIndex((x) => x > t)
-    if (next < 1) { next = next < 0 ? times.length - 1 : Math.min(1, times.length - 1) }
+    const final = times.length - 1
+    // Most often it is the same frame as before, or the next one.
+    let next = Math.min(this.next, final)
+    if (times[Math.max(next - 1, 0)] > t) { next = Math.min(1, final) }
+    while (next < final && times[next] <= t) { next += 1 }
+    this.next = next
     const last = Math.max(next - 1, 0)
     const span = times[next] - times[last]
     const f = span > 0 ? (t - times[last]) / span : 0
-    for (let i = 0; i < size; i++) {
-      pose[i] = (1 - f) * matrices[last * size + i] + f * matrices[next * size + i]
+    for (let i = 0, a = last * size, b = next * size; i < size; i++) {
+      pose[i] = (1 - f) * matrices[a + i] + f * matrices[b + i]
     }
     return pose
   }

@@ -18,39 +18,76 @@ class Stage {
     this.element = element
     // Lines that lie in a surface win over it. A switch of all of vtk.js, so set it at once.
     vtk.Rendering.Core.vtkMapper.setResolveCoincidentTopologyToPolygonOffset()
-    const {vtkRenderWindow, vtkRenderer, vtkLight} = vtk.Rendering.Core
+    const {vtkRenderWindow, vtkCamera} = vtk.Rendering.Core
     this.window = vtkRenderWindow.newInstance()
-    this.base = vtkRenderer.newInstance()
-    this.over = vtkRenderer.newInstance({layer: 1, preserveColorBuffer: true})
-    this.base.setBackground(0, 0, 0, 0)
     this.window.setNumberOfLayers(2)
-    this.renderers = [this.base, this.over]
-    this.camera = this.base.getActiveCamera()
+    this.camera = vtkCamera.newInstance()
     this.camera.setViewAngle(VIEW_ANGLE)
-    this.over.setActiveCamera(this.camera)
-    for (const renderer of this.renderers) {
-      renderer.setAutomaticLightCreation(false)
-      this.window.addRenderer(renderer)
-    }
-    this.Light = vtkLight
+    this.lights = []
+    this.views = []
+    this.figures = new Map()
     this.gl = vtk.Rendering.OpenGL.vtkRenderWindow.newInstance()
     this.gl.setContainer(element)
     this.window.addView(this.gl)
-    this.figures = new Map()
+    this.pose = null
+    this.divide([])
     this.frames = 0
     this.scale = 1
     this.cost = 0
   }
 
+  // Side by side, under one camera: as many views as there are captions, or a single one.
+  divide(captions) {
+    const count = Math.max(captions.length, 1)
+    const {vtkRenderer} = this.vtk.Rendering.Core
+    while (this.views.length < count) {
+      const base = vtkRenderer.newInstance()
+      const over = vtkRenderer.newInstance({layer: 1, preserveColorBuffer: true})
+      base.setBackground(0, 0, 0, 0)
+      for (const renderer of [base, over]) {
+        renderer.setActiveCamera(this.camera)
+        renderer.setAutomaticLightCreation(false)
+        this.window.addRenderer(renderer)
+      }
+      this.views.push({base, over})
+    }
+    for (const {base, over} of this.views.splice(count)) {
+      for (const renderer of [base, over]) { this.window.removeRenderer(renderer) }
+    }
+    this.light(this.lights)
+    for (const figure of this.figures.values()) { figure.place() }
+  }
+
+  // Where each view lies, in the canvas' own pixels; divided as pictures are (viewers/tiles.py).
+  get tiles() {
+    const {clientWidth: w, clientHeight: h} = this.element
+    const b = this.bounds()
+    const [wide, high, deep] = [0, 1, 2].map((i) => Math.max(b[2 * i + 1] - b[2 * i], 1e-9))
+    const shape = Math.min(Math.max(Math.max(wide, deep) / high, 0.4), 2.5)
+    return tiles(this.views.length, w, h, shape)
+  }
+
   light(lights) {
-    for (const renderer of this.renderers) {
+    this.lights = lights
+    const {vtkLight} = this.vtk.Rendering.Core
+    for (const renderer of this.views.flatMap(({base, over}) => [base, over])) {
       renderer.removeAllLights()
       for (const [position, intensity] of lights) {
-        const light = this.Light.newInstance({position, focalPoint: [0, 0, 0], intensity})
+        const light = vtkLight.newInstance({position, focalPoint: [0, 0, 0], intensity})
         light.setLightTypeToCameraLight()
         renderer.addLight(light)
       }
     }
+  }
+
+  get poses() {
+    this.texture ??= new PoseTexture(this.gl.getContext() || this.gl.get3DContext())
+    return this.texture
+  }
+
+  setPose(pose) {
+    this.pose = pose
+    this.poses.set(pose)
   }
 
   resize(moving = false) {
@@ -70,6 +107,12 @@ class Stage {
 
   draw(moving) {
     this.resize(moving)
+    const {clientWidth: w, clientHeight: h} = this.element
+    this.tiles.forEach(([left, top, width, height], i) => {
+      const part = [left / w, 1 - (top + height) / h, (left + width) / w, 1 - top / h]
+      const {base, over} = this.views[i]
+      for (const renderer of [base, over]) { renderer.setViewport(...part) }
+    })
     for (const figure of this.figures.values()) { figure.show(moving) }
     const start = performance.now()
     const range = this.depthRange()
@@ -103,7 +146,7 @@ class Stage {
 
   // How far the eye must be from the middle to see all, in this window, along a direction.
   fitting(direction, target) {
-    const {clientWidth: w, clientHeight: h} = this.element
+    const [, , w, h] = this.tiles.reduce((a, b) => a[2] / a[3] < b[2] / b[3] ? a : b)
     const slope = Math.tan(VIEW_ANGLE * Math.PI / 360)
     const b = this.bounds()
     const flat = Math.hypot(direction[0], direction[2]) || 1
@@ -122,21 +165,45 @@ class Stage {
     return 1.08 * distance
   }
 
-  // From the scene to pixels of the page, relative to the canvas; null behind the eye.
-  project(point) {
-    const {clientWidth: w, clientHeight: h} = this.element
+  // Which view a pixel of the canvas belongs to.
+  viewAt(x, y) {
+    const hit = ([left, top, width, height]) =>
+      x >= left && x < left + width && y >= top && y < top + height
+    return Math.max(this.tiles.findIndex(hit), 0)
+  }
+
+  // From the scene to pixels of the canvas, as seen in one of the views; null behind the eye.
+  project(point, view = 0) {
+    const [left, top, w, h] = this.tiles[view]
     const m = this.camera.getCompositeProjectionMatrix(w / h, -1, 1)
     const [x, y, z] = point
     const row = (r) => m[4 * r] * x + m[4 * r + 1] * y + m[4 * r + 2] * z + m[4 * r + 3]
     const depth = row(3)
     if (depth <= 0) { return null }
-    return [(row(0) / depth + 1) / 2 * w, (1 - row(1) / depth) / 2 * h, depth]
+    return [
+      left + (row(0) / depth + 1) / 2 * w, top + (1 - row(1) / depth) / 2 * h, depth,
+    ]
   }
 
   remove() {
     for (const figure of this.figures.values()) { figure.remove() }
+    this.texture?.remove()
     this.gl.setContainer(null)
     this.gl.delete()
     this.window.delete()
   }
+}
+
+// Divides a canvas among views so that what stands in each is seen as large as can be.
+function tiles(count, width, height, shape) {
+  let [best, columns] = [0, 1]
+  for (let c = 1; c <= count; c++) {
+    const seen = Math.min(width / c / shape, height / Math.ceil(count / c))
+    if (seen > best) { [best, columns] = [seen, c] }
+  }
+  const rows = Math.ceil(count / columns)
+  return Array.from({length: count}, (_, k) => {
+    const [c, r] = [k % columns, Math.floor(k / columns)]
+    return [width * c / columns, height * r / rows, width / columns, height / rows]
+  })
 }

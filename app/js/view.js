@@ -40,14 +40,15 @@ class View {
       this.cut = message.cut
       for (const figure of stage.figures.values()) { figure.cut(this.cut) }
     }
-    const renewed = []
+    if (message.views) {
+      this.views = message.views
+      stage.divide(this.views)
+    }
     for (const [name, part] of entries(message.actors)) {
       if (!stage.figures.has(name)) {
-        stage.figures.set(name, new Figure(stage.vtk, stage.renderers))
+        stage.figures.set(name, new Figure(stage))
       }
-      const figure = stage.figures.get(name)
-      figure.update(part, this.cut)
-      if (part.points || part.skin || part.normals) { renewed.push(figure) }
+      stage.figures.get(name).update(part, this.cut)
     }
     if (message.bones) {
       const {start, end, joint, names} = message.bones
@@ -59,7 +60,6 @@ class View {
     if ("clip" in message) { this.clip = message.clip && new Clip(message.clip) }
     if ("playing" in message) { this.play(message.playing) }
     if ("pose" in message || "clip" in message) { this.applyPose() }
-    else if (this.currentPose) { for (const figure of renewed) { figure.pose(this.currentPose) } }
     if (message.camera) {
       this.frame(message.camera)
     }
@@ -81,10 +81,7 @@ class View {
   }
 
   applyPose() {
-    const pose = this.currentPose
-    for (const figure of this.stage.figures.values()) {
-      if (figure.visible || !pose) { figure.pose(pose) }
-    }
+    this.stage.setPose(this.currentPose)
     this.posed += 1
   }
 
@@ -123,6 +120,11 @@ class View {
   draw() {
     if (this.gone || !this.overlay.canvas.clientWidth) { return }
     this.stage.look(this.orbit)
+    const tiles = this.views?.length ? this.stage.tiles : []
+    if (String(tiles) !== this.divided || this.captioned !== this.views) {
+      [this.divided, this.captioned] = [String(tiles), this.views]
+      this.overlay.showViews(this.views || [], tiles)
+    }
     this.stage.draw(this.orbit.moving || this.playing)
   }
 

@@ -136,7 +136,7 @@ class Visit:
 
     def points(self, name: str = "body") -> np.ndarray:
         """Return where an actor's points are now, shape (n, 3)."""
-        code = "name => Array.from(__cutcell.stage.figures.get(name).data.getPoints().getData())"
+        code = "name => Array.from(__cutcell.stage.figures.get(name).posed())"
         return np.array(self.page.evaluate(code, name)).reshape(-1, 3)
 
     def button(self, name: str, exact: bool = True) -> Locator:
