@@ -1,10 +1,14 @@
-"""Measure every method on real characters, and print the tables of docs/quality.md.
+"""Measure every method on real characters, and write the tables of docs/quality.md.
 
-    python -m benchmarks.quality [RIG...] [--methods NAME,...]
-        [--resolution R] [--json FILE] [--markdown FILE]
+    python -m benchmarks.quality                       measure all, and write docs/
+    python -m benchmarks.quality --methods A,B         these again, keep what is known of others
+    python -m benchmarks.quality RIG... [--methods A,B] [--json FILE] [--plot FILE]
 
-Without rigs: all in ../shared/data/rigs. Where ../shared/data/bone_heat holds Blender's
-automatic weights of a rig, they are a column of their own.
+The first form takes about half an hour on two cores, most of it tetrahedra, and keeps what it has
+in docs/quality.json after each rig: with --resume it goes on after what is there. It measures
+the rigs in ../shared/data/rigs, and the demo characters for crosstalk; where
+../shared/data/bone_heat holds Blender's automatic weights of a rig, they are a method of their
+own. With rigs named it only prints.
 """
 
 from __future__ import annotations
@@ -12,8 +16,9 @@ from __future__ import annotations
 import argparse
 import json
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from functools import partial
+from inspect import signature
 from pathlib import Path
 
 import numpy as np
@@ -21,20 +26,27 @@ from scipy.spatial import cKDTree
 
 import cutcell
 from cutcell.baselines import METHODS, BaselineBinding
-from cutcell.compare import compare, comparison_markdown
+from cutcell.compare import Comparison, compare, comparison_markdown
+from cutcell.compare.plot import plot_comparison
 from cutcell.metrics.deformation import longest_side
 from cutcell.rig import Rig
 
-DATA = Path(__file__).resolve().parents[2] / "shared" / "data"
+from .document import fill
+from .rigs import ROOT, SHARED
+from .shapes import small
+
 SAME_PLACE = 1e-4
 """Of the longest side: farther from every vertex of Blender's, one has no counterpart."""
+DEMOS = ("biped", "rabbit", "octopus", "robot")
+LIMIT = 300.0
+"""Seconds that a mesher or solver in a process of its own may take."""
 
 
 def blender(rig: Rig, folder: Path) -> BaselineBinding:
     """Read what Blender's automatic weights are for a rig, matched by position."""
     path = folder / f"{rig.name}.npz"
     if not path.exists():
-        return BaselineBinding(None, failed=f"there is no {path.name} beside the other results")
+        return BaselineBinding(None, failed="there is no stored result for this file")
     with np.load(path) as data:
         away, row = cKDTree(data["vertices"]).query(rig.mesh.vertices)
         if away.max() > SAME_PLACE * longest_side(rig.mesh):
@@ -58,48 +70,126 @@ def columns(rig: Rig, names: list[str]) -> list[int]:
     return [names.index(name) for name in rig.skeleton.names]
 
 
-def warmed(rigs: list[Path], methods: dict) -> None:
-    """Bind one rig once, so that no method pays for the compiling of its loops."""
-    rig = cutcell.load(rigs[0])
+def chosen(names: str | None, limit: float) -> dict:
+    """Look methods up; all of them when none is named. Ends the script at an unknown one."""
+    known = {**METHODS, "blender": partial(blender, folder=SHARED / "bone_heat")}
+    wanted = list(known) if names is None else [name.strip() for name in names.split(",")]
+    if unknown := [name for name in wanted if name not in known]:
+        sys.exit(f"unknown: {', '.join(unknown)}; known: {', '.join(known)}")
+    return {
+        name: partial(known[name], limit=limit)
+        if "limit" in signature(known[name]).parameters
+        else known[name]
+        for name in wanted
+    }
+
+
+def measured(
+    paths: Sequence[Path], methods: dict, resolution: int, known: Comparison, keep: Path | None
+) -> Comparison:
+    """Compare rig by rig, and keep what there is after each."""
+    for path in paths:
+        print(path.stem, file=sys.stderr, flush=True)
+        try:
+            found = compare([cutcell.load(path)], methods, resolution=resolution)
+        except cutcell.CutcellError as error:
+            print(f"{path.name} is left out: {error}", file=sys.stderr, flush=True)
+            continue
+        known = known.merged(found)
+        if keep:
+            keep.write_text(json.dumps(known.to_dict(), indent=1) + "\n", encoding="utf-8")
+    return known
+
+
+def warm(methods: dict) -> None:
+    """Bind a small ball by each method, so that none pays for the compiling of its loops."""
+    rig = small()
     for method in methods.values():
         method(rig)
 
 
-def loaded(paths: list[Path]) -> Iterator[Rig]:
-    """Load rigs one by one."""
-    for path in paths:
-        print(path.stem, file=sys.stderr, flush=True)
-        yield cutcell.load(path)
+def read(path: Path) -> Comparison:
+    """Read what an earlier run kept."""
+    if not path.exists():
+        return Comparison((), ())
+    return Comparison.from_dict(json.loads(path.read_text(encoding="utf-8")))
 
 
-def main(given: Sequence[str] | None = None) -> None:
-    """Read the command line, measure, print."""
+def crosstalk_table(comparison: Comparison) -> str:
+    """Write the crosstalk on the demo characters, one method a row."""
+    rigs = [rig for rig in comparison.rigs if rig.name in DEMOS]
+    lines = [
+        f"| method | {' | '.join(rig.name for rig in rigs)} |",
+        "| --- |" + " ---: |" * len(rigs),
+    ]
+    for index, name in enumerate(comparison.methods):
+        cells = []
+        for rig in rigs:
+            score = rig.scores[index]
+            value = score.crosstalk
+            cells.append(f"{value:.3f}" if value is not None else "failed" if score.failed else "–")
+        if any(cell != "failed" for cell in cells):
+            lines.append(f"| {name} | {' | '.join(cells)} |")
+    return "\n".join(lines)
+
+
+def write_docs(comparison: Comparison, docs: Path, resolution: int) -> None:
+    """Write the tables into docs/quality.md, and the figure that it shows."""
+    real = Comparison(
+        tuple(rig for rig in comparison.rigs if rig.name not in DEMOS), comparison.methods
+    )
+    text = comparison_markdown(real).replace("\n## ", "\n#### ").replace("## ", "#### ", 1)
+    blocks = {"tables": text, "crosstalk": crosstalk_table(comparison)}
+    fill(docs / "quality.md", {name: f"R = {resolution}.\n\n{t}" for name, t in blocks.items()})
+    plot_comparison(real, docs / "pictures" / "quality.png")
+
+
+def arguments(given: Sequence[str] | None) -> argparse.Namespace:
+    """Read the command line."""
     parser = argparse.ArgumentParser(
-        prog="python -m benchmarks.quality", description=__doc__.splitlines()[0]
+        prog="python -m benchmarks.quality",
+        description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("rigs", nargs="*", type=Path)
     parser.add_argument("--methods", help="names with commas between; all when left out")
     parser.add_argument("--resolution", type=int, default=64, help="R; 64 when left out")
+    parser.add_argument("--limit", type=float, default=LIMIT, help="seconds, of other processes")
     parser.add_argument("--json", type=Path, help="write all numbers to this file")
-    parser.add_argument("--markdown", type=Path, help="write the tables to this file")
-    options = parser.parse_args(given)
-    rigs = options.rigs or sorted((DATA / "rigs").glob("*.glb"))
+    parser.add_argument("--plot", type=Path, help="draw the figure into this file")
+    parser.add_argument("--docs", type=Path, default=ROOT / "docs", help="the folder to write")
+    parser.add_argument("--resume", action="store_true", help="skip rigs that are there already")
+    return parser.parse_args(given)
+
+
+def main(given: Sequence[str] | None = None) -> None:
+    """Read the command line, measure, print or write."""
+    options = arguments(given)
+    methods = chosen(options.methods, options.limit)
+    if options.rigs:
+        warm(methods)
+        none = Comparison((), ())
+        found = measured(options.rigs, methods, options.resolution, none, options.json)
+        print(comparison_markdown(found))
+        if options.plot:
+            plot_comparison(found, options.plot)
+        return
+    rigs = sorted((SHARED / "rigs").glob("*.glb"))
     if not rigs:
-        sys.exit(f"there are no rigs in {DATA / 'rigs'}; name some")
-    methods = {**METHODS, "blender": partial(blender, folder=DATA / "bone_heat")}
-    if options.methods:
-        names = options.methods.split(",")
-        if unknown := [name for name in names if name not in methods]:
-            sys.exit(f"unknown: {', '.join(unknown)}; known: {', '.join(methods)}")
-        methods = {name: methods[name] for name in names}
-    warmed(rigs, methods)
-    comparison = compare(loaded(rigs), methods, resolution=options.resolution)
-    text = comparison_markdown(comparison)
-    print(text)
-    if options.markdown:
-        options.markdown.write_text(text, encoding="utf-8")
-    if options.json:
-        options.json.write_text(json.dumps(comparison.to_dict(), indent=1) + "\n", encoding="utf-8")
+        sys.exit(f"there are no rigs in {SHARED / 'rigs'}; name some")
+    rigs += [ROOT / "assets" / f"{name}.glb" for name in DEMOS]
+    keep = options.docs / "quality.json"
+    known = read(keep) if options.methods or options.resume else Comparison((), ())
+    if options.resume:
+        there = {
+            rig.name
+            for rig in known.rigs
+            if not set(methods) - {s.method for s in rig.scores if s.failed != "not measured"}
+        }
+        rigs = [path for path in rigs if path.stem not in there]
+    warm(methods)
+    found = measured(rigs, methods, options.resolution, known, keep)
+    write_docs(found, options.docs, options.resolution)
 
 
 if __name__ == "__main__":

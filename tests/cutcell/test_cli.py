@@ -408,8 +408,18 @@ class TestCompare:
         assert document["methods"] == ["cutcell_any", "euclidean"]
         assert document["summary"]["cutcell_any"]["l1"]["median"] < 1e-6
         table = run("compare", rigged, *options).stdout
-        assert "| cutcell_any |" in table
-        assert "| rigged |" in table
+        assert table.startswith("rigged: 12 vertices, 2 joints with weight")
+        assert "cutcell_any  0.000" in table
+
+    def test_writes_markdown_and_a_figure(self, run, demo_paths, tmp_path):
+        plot = tmp_path / "errors.svg"
+        rig = next(path for path in demo_paths if path.stem == "rabbit")
+        options = ("--methods", "artist,euclidean", "--markdown", "--plot", plot)
+        table = run("compare", rig, rig, *options).stdout
+        assert "| euclidean |" in table
+        assert "| rabbit |" in table
+        assert "<svg" in plot.read_text()
+        assert "cannot be" in refused(run("compare", rig, "--plot", tmp_path / "errors.txt"))
 
     def test_unknown_methods_and_rigs_without_weights_are_told(self, run, bar, tmp_path):
         assert "'bone_heat'" in refused(run("compare", bar, "--methods", "magic"))

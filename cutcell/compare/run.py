@@ -1,0 +1,155 @@
+"""Bind rigs by several methods, and measure each against the artists' weights."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from functools import partial
+from inspect import signature
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..baselines import METHODS, BaselineBinding, Method
+from ..checks import check_choice
+from ..errors import Cancelled, CutcellError, ParameterError, WeightsError
+from ..graph import build_graph
+from ..metrics import (
+    clip_error,
+    crosstalk,
+    deformation_error,
+    find_gaps,
+    precision_recall,
+    unweighted,
+    vertex_shares,
+    weight_l1,
+)
+from ..progress import Progress, silent
+from ..rig import Rig
+from .scores import Comparison, MethodScore, RigScore
+
+GAP_RESOLUTION = 64
+"""Of the graph that tells which parts are far from each other through the body."""
+
+
+def compare(
+    rigs: Iterable[Rig],
+    methods: Sequence[str] | Mapping[str, Method] | None = None,
+    *,
+    resolution: int = 64,
+    max_influences: int | None = None,
+    progress: Progress = silent,
+) -> Comparison:
+    """Bind every rig by every method and measure all against the rigs' own weights.
+
+    Parameters
+    ----------
+    rigs : iterable of Rig
+        Each with the weights of its artist; may load them one by one.
+    methods : sequence of str, or mapping of names to methods, optional
+        Names in `cutcell.baselines.METHODS`, or methods of one's own; all of the former
+        when left out.
+    resolution : int
+        R, for the methods that have a lattice.
+    max_influences : int or None
+        Joints a vertex may follow; None for no limit.
+    progress : callable
+        See `cutcell.progress`; each rig is a stage.
+
+    Returns
+    -------
+    Comparison
+
+    Raises
+    ------
+    ParameterError
+        An unknown method, a parameter out of range, or no rigs.
+    WeightsError
+        A rig without weights.
+    """
+    chosen = _chosen(methods, {"resolution": resolution, "max_influences": max_influences})
+    scores = [_compare_rig(rig, chosen, progress) for rig in rigs]
+    if not scores:
+        raise ParameterError("there are no rigs to compare methods on")
+    return Comparison(tuple(scores), tuple(chosen))
+
+
+def _chosen(
+    methods: Sequence[str] | Mapping[str, Method] | None, options: Mapping[str, Any]
+) -> dict[str, Method]:
+    """Look methods up, and give each those options that it knows."""
+    if methods is None:
+        methods = METHODS
+    if not isinstance(methods, Mapping):
+        methods = {name: METHODS[check_choice("method", name, METHODS)] for name in methods}
+    if not methods:
+        raise ParameterError("there are no methods to compare")
+    chosen: dict[str, Method] = {}
+    for name, method in methods.items():
+        known = signature(method).parameters
+        every = any(p.kind is p.VAR_KEYWORD for p in known.values())
+        chosen[name] = partial(
+            method, **{key: value for key, value in options.items() if every or key in known}
+        )
+    return chosen
+
+
+def _compare_rig(rig: Rig, methods: Mapping[str, Method], progress: Progress) -> RigScore:
+    if rig.weights is None:
+        raise WeightsError(f'rig "{rig.name}" has no weights of its own to compare with')
+    progress(rig.name, 0.0)
+    gaps = find_gaps(build_graph(rig.mesh, GAP_RESOLUTION))
+    share = vertex_shares(rig.mesh)
+    scores = []
+    for done, (name, method) in enumerate(methods.items()):
+        progress(rig.name, (done + 1) / (len(methods) + 1))
+        found = _attempt(method, rig)
+        scores.append(_score(name, rig, found, share, gaps))
+    progress(rig.name, 1.0)
+    joints = int(rig.skeleton.deform.sum())
+    counts = (len(rig.mesh.vertices), joints, len(rig.clips), len(gaps))
+    return RigScore(rig.name, *counts, tuple(scores))
+
+
+def _attempt(method: Method, rig: Rig) -> BaselineBinding:
+    """Bind by one method; whatever it dies of, the others go on."""
+    try:
+        return method(rig)
+    except (ParameterError, Cancelled):
+        raise  # the same for all rigs: whoever asked must know
+    except CutcellError as error:
+        return BaselineBinding(None, failed=str(error))
+    except Exception as error:
+        return BaselineBinding(None, failed=f"{type(error).__name__}: {error}".rstrip(": "))
+
+
+def _score(
+    name: str,
+    rig: Rig,
+    found: BaselineBinding,
+    share: NDArray[np.float64],
+    gaps: NDArray[np.int32],
+) -> MethodScore:
+    seconds = float(sum(found.seconds.values()))
+    if found.weights is None or rig.weights is None:
+        return MethodScore(name, found.failed, seconds=seconds, warnings=found.warnings)
+    precision, recall = precision_recall(found.weights, rig.weights, shares=share)
+    error = deformation_error(rig, found.weights, rig.weights)
+    clips = [clip.largest for clip in clip_error(rig, found.weights, rig.weights)]
+    return MethodScore(
+        name,
+        l1=weight_l1(found.weights, rig.weights, share),
+        precision=_number(precision),
+        recall=_number(recall),
+        deformation=error.mean,
+        clips=float(np.mean(clips)) if clips else None,
+        unweighted=unweighted(found.weights, share),
+        crosstalk=_number(crosstalk(found.weights, gaps).mean),
+        seconds=seconds,
+        warnings=found.warnings,
+        worst=tuple(error.worst(3)),
+    )
+
+
+def _number(value: float) -> float | None:
+    return None if np.isnan(value) else float(value)
