@@ -36,7 +36,8 @@ class SceneView(JSComponent):
     window_width = param.Integer(0, doc="Width of the browser's window, once it is known.")
 
     _rename = {"window_width": None}  # noqa: RUF012
-    _esm = script("orbit", "skin", "figure", "stage", "pick", "upload", "overlay", "view")
+    _esm = script("orbit", "skin", "figure", "stage", "pick", "gizmo", "transport",
+                  "upload", "overlay", "view")  # fmt: skip
 
     def __init__(
         self,
@@ -55,6 +56,11 @@ class SceneView(JSComponent):
         self._shown = Description()
         self._wanted = Description()
         self._sent: set[str] = set()
+        self._listeners: dict[str, Callable[[dict[str, Any]], Any]] = {}
+
+    def listen(self, kind: str, act: Callable[[dict[str, Any]], Any]) -> None:
+        """Call a function with every message of a kind that the browser sends."""
+        self._listeners[kind] = act
 
     def present(self, description: Description) -> None:
         """Make the view what a description says."""
@@ -95,6 +101,8 @@ class SceneView(JSComponent):
             self._shown = self._wanted
         elif kind == "pick" and self._on_pick is not None:
             self._on_pick(int(data["joint"]))
+        elif kind in self._listeners:
+            self._listeners[kind](data)
         elif kind == "time":
             self.time = float(data["time"])
         elif kind == "camera":
@@ -205,6 +213,7 @@ def _settings(actor: Actor) -> dict[str, Any]:
         "opacity": actor.opacity,
         "width": actor.width,
         "ambient": AMBIENT,
+        "behind": actor.behind,
         "coloured": actor.colors is not None or actor.scalars is not None,
     }
     place = {"overlay": actor.overlay, "view": actor.view}

@@ -55,6 +55,8 @@ class Actor:
         Which of the scene's views shows it; all of them when left out.
     overlay : bool
         Drawn over all that is no overlay, as bones are.
+    behind : bool
+        Gives way where it coincides with another surface.
     clipped : bool
         Whether the scene's cut takes away what lies before it.
     slab : float
@@ -74,6 +76,7 @@ class Actor:
     width: float = 1.0
     visible: bool = True
     overlay: bool = False
+    behind: bool = False
     clipped: bool = True
     slab: float = 0.0
     skin: Skin | None = None

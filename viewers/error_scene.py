@@ -11,12 +11,47 @@ from cutcell.metrics import DeformationError, deformation_error
 from cutcell.metrics.deformation import CM2
 from cutcell.rig import Rig, Skeleton, TriangleMesh
 
-from .character import attachments, body, bones, to_scene
+from .character import attachments, body, bones, pose_in_scene, to_scene
 from .description import Apart, Description, Legend
-from .skin import moved, skin_of_weights, squared_apart
+from .skin import skin_of_weights
 
 FLOOR = 0.1
 """The end of the scale is this many cm² at least: what is less would not be seen."""
+
+WHOLE = 0.995
+"""The scale holds this part of the vertices: a single one would leave all others grey."""
+
+
+class Gap:
+    """Tells how far two weightings of a rig take each vertex from each other.
+
+    Parameters
+    ----------
+    rig : Rig
+    weights, reference : array_like, shape (n, j)
+        Rows sum to one, or to zero where a vertex stands still.
+    """
+
+    def __init__(self, rig: Rig, weights: ArrayLike, reference: ArrayLike) -> None:
+        self._points = to_scene(rig, rig.mesh.vertices).astype(np.float32)
+        # A vertex that nothing holds follows a joint of its own, which never moves.
+        ours, theirs = (_with_rest(np.asarray(w, np.float32)) for w in (weights, reference))
+        self._between = ours - theirs
+        self._unit = squared_unit(rig)
+
+    def squared(self, pose: ArrayLike) -> NDArray[np.float32]:
+        """Return the squared distances in cm², the longest side 1 m, shape (n,).
+
+        Parameters
+        ----------
+        pose : array_like, shape (j, 4, 4)
+            In the scene's space.
+        """
+        matrices = np.asarray(pose, np.float32)[:, :3].reshape(-1, 12)
+        matrices = np.vstack([matrices, np.eye(3, 4, dtype=np.float32).ravel()])
+        blended = (self._between @ matrices).reshape(-1, 3, 4)
+        apart = (blended[:, :, :3] @ self._points[:, :, None])[:, :, 0] + blended[:, :, 3]
+        return self._unit * (apart * apart).sum(axis=1)
 
 
 def error_scene(
@@ -46,18 +81,16 @@ def error_scene(
     Description
         With the actors "body", "bones" and the attachments.
     """
-    from .pose_scene import posed
-
+    pose = pose_in_scene(rig, transforms)
+    limits = error_limits(Gap(rig, weights, reference).squared(pose))
     apart = Apart(skin_of_weights(reference), squared_unit(rig))
-    still = posed(Description(), rig, transforms).pose
-    limits = error_limits(rig, weights, apart, still)
     look = error_look(len(rig.mesh.vertices), apart, limits)
     actors = {
         "body": body(rig, weights, **look),
         **attachments(rig),
         "bones": bones(rig, chosen, skeleton),
     }
-    return posed(Description(actors, legend=error_legend(limits)), rig, transforms)
+    return Description(actors, pose=pose, legend=error_legend(limits))
 
 
 def error_look(count: int, apart: Apart, limits: tuple[float, float]) -> dict[str, Any]:
@@ -66,39 +99,26 @@ def error_look(count: int, apart: Apart, limits: tuple[float, float]) -> dict[st
     return {"scalars": values, "colormap": "error", "limits": limits, "apart": apart}
 
 
-def error_legend(limits: tuple[float, float], reference: str = "the file's own weights") -> Legend:
-    """Return the legend of the error; the mesh's longest side counts as one metre."""
-    title = f"Apart from {reference}, squared (longest side 1 m)"
-    return Legend(title, "error", "0", f"{limits[1]:.3g} cm²")
+def error_legend(limits: tuple[float, float]) -> Legend:
+    """Return the legend of the error."""
+    return Legend("Error against the file's weights", "error", "0", f"{limits[1]:g} cm²")
 
 
-def error_limits(
-    rig: Rig, weights: ArrayLike, apart: Apart, poses: ArrayLike | None
-) -> tuple[float, float]:
-    """Return the range of the error over one pose or several, (j, 4, 4) or (f, j, 4, 4)."""
-    if poses is None:
-        return (0.0, FLOOR)
-    points, skin = to_scene(rig, rig.mesh.vertices), skin_of_weights(weights)
-    poses = np.asarray(poses, float)
-    poses = poses[np.newaxis] if poses.ndim == 3 else poses
-    top = max(float(squared_apart(points, skin, apart.skin, pose).max()) for pose in poses)
-    return (0.0, max(apart.unit * top, FLOOR))
+def error_limits(squared: ArrayLike) -> tuple[float, float]:
+    """Return a range that nearly all errors lie in; its end is a round number.
 
-
-def mean_error(
-    rig: Rig, weights: ArrayLike, reference: ArrayLike, pose: ArrayLike
-) -> tuple[float, float]:
-    """Return the mean and the greatest error of a pose, (j, 4, 4) in the scene's space, in cm²."""
-    points = to_scene(rig, rig.mesh.vertices)
-    between = moved(points, skin_of_weights(weights), pose)
-    between -= moved(points, skin_of_weights(reference), pose)
-    squared = squared_unit(rig) * (between * between).sum(axis=1)
-    return float(squared.mean()), float(squared.max())
+    Round numbers stay the same while a joint turns a little: the colours can be compared.
+    """
+    top = max(float(np.quantile(np.asarray(squared), WHOLE)), FLOOR)
+    power = 10.0 ** np.floor(np.log10(top))
+    step = next(step for step in (1, 1.5, 2, 3, 5, 7, 10) if step * power >= top * (1 - 1e-9))
+    return (0.0, float(step * power))
 
 
 def squared_unit(rig: Rig) -> float:
     """Return what a squared length of 1 in the scene is worth in cm², the longest side 1 m."""
-    return CM2 / float(np.ptp(_used(rig), axis=0).max()) ** 2
+    used = to_scene(rig, rig.mesh.vertices[np.unique(rig.mesh.faces)])
+    return CM2 / float(np.ptp(used, axis=0).max()) ** 2
 
 
 def scene_error(rig: Rig, weights: ArrayLike, reference: ArrayLike) -> DeformationError:
@@ -110,5 +130,5 @@ def scene_error(rig: Rig, weights: ArrayLike, reference: ArrayLike) -> Deformati
     return deformation_error(parts, weights, reference)
 
 
-def _used(rig: Rig) -> NDArray[np.float64]:
-    return to_scene(rig, rig.mesh.vertices[np.unique(rig.mesh.faces)])
+def _with_rest(weights: NDArray[np.float32]) -> NDArray[np.float32]:
+    return np.hstack([weights, (weights.sum(axis=1, keepdims=True) <= 0).astype(np.float32)])

@@ -26,6 +26,7 @@ ATTACHMENT = _rgb(163, 170, 182)
 BONE = _rgb(236, 239, 244)
 BONE_IDLE = _rgb(150, 158, 172)
 BONE_CHOSEN = _rgb(0, 122, 255)
+GHOST = _rgb(64, 132, 255)
 UNREACHED = _rgb(120, 116, 132)
 
 

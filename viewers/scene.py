@@ -231,6 +231,9 @@ def _paint(drawn: pv.Actor, actor: Actor) -> None:
         opaque = np.full((len(table), 1), 255, np.uint8)
         mapper.lookup_table = pv.LookupTable(values=np.hstack([table, opaque]))
         mapper.scalar_range = actor.limits
+    if actor.behind:
+        mapper.SetResolveCoincidentTopologyToPolygonOffset()
+        mapper.SetRelativeCoincidentTopologyPolygonOffsetParameters(2, 30)
     if actor.kind == "lines":
         # Lines on a surface lie in it: pull them a little towards the eye.
         mapper.SetResolveCoincidentTopologyToPolygonOffset()

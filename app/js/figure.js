@@ -158,7 +158,7 @@ class Figure {
     this.data.modified()
   }
 
-  paint({color, opacity, width, ambient, coloured}) {
+  paint({color, opacity, width, ambient, coloured, behind}) {
     for (const {mapper, actor} of this.made) {
       const look = actor.getProperty()
       look.setColor(...color)
@@ -168,6 +168,7 @@ class Figure {
       look.setLighting(this.kind === "surface")
       if (!this.restNormals) { look.setInterpolationToFlat() }
       mapper.setScalarVisibility(coloured)
+      if (behind) { mapper.setRelativeCoincidentTopologyPolygonOffsetParameters(2, 30) }
       if (this.kind === "lines") {
         mapper.setRelativeCoincidentTopologyLineOffsetParameters(0, -4)
       }

@@ -55,6 +55,12 @@ class Orbit {
     this.reset()
   }
 
+  // Goes nearer or farther, and takes the start along: the same is seen in another window.
+  scale(factor) {
+    this.home.distance *= factor
+    this.distance *= factor
+  }
+
   get position() {
     const c = Math.cos(this.pitch)
     const out = [c * Math.sin(this.yaw), Math.sin(this.pitch), c * Math.cos(this.yaw)]

@@ -21,6 +21,39 @@ const STYLE = `
 .caption { padding: 5px 12px; transform: translateX(-50%); white-space: nowrap; overflow: hidden;
   text-overflow: ellipsis; font-weight: 500; }
 .seam { position: absolute; background: var(--ink); opacity: .14; pointer-events: none; }
+.gizmo { position: absolute; inset: 0; width: 100%; height: 100%; pointer-events: none; }
+.gizmo path { fill: none; }
+.gizmo .reach { stroke: transparent; stroke-width: 20; pointer-events: stroke; cursor: grab;
+  touch-action: none; }
+.gizmo .halo { stroke: #0006; stroke-width: 4.5; }
+.gizmo .ring { stroke-width: 2.5; stroke-linecap: round; }
+.gizmo .far { opacity: .3; }
+.gizmo g:hover .ring, .gizmo g.held .ring { stroke-width: 4; }
+.gizmo.holding g:not(.held) { opacity: .25; }
+.gizmo.holding .reach { cursor: grabbing; }
+.gizmo text { font: 600 11px Roboto, system-ui, sans-serif; fill: #fff; text-anchor: middle;
+  dominant-baseline: central; pointer-events: none; }
+.angle { padding: 4px 9px; transform: translate(-50%, 14px); white-space: nowrap; font-weight: 500;
+  font-variant-numeric: tabular-nums; }
+.transport { left: 50%; bottom: 16px; transform: translateX(-50%); pointer-events: auto;
+  display: flex; align-items: center; gap: 8px; padding: 5px 12px 5px 6px;
+  width: min(400px, calc(100% - 500px)); min-width: 250px; box-sizing: border-box; }
+.transport[hidden] { display: none; }
+.transport button { all: unset; box-sizing: border-box; display: grid; place-items: center;
+  min-width: 32px; height: 32px; border-radius: 16px; cursor: pointer; font-weight: 500;
+  font-variant-numeric: tabular-nums; }
+.transport button:hover { background: color-mix(in srgb, var(--ink) 10%, transparent); }
+.transport button:focus-visible, .transport input:focus-visible { outline: 2px solid #ff6c0c; }
+.transport svg { width: 18px; height: 18px; fill: currentColor; }
+.transport input { flex: 1; min-width: 60px; accent-color: var(--mui-palette-primary-main, #17678c);
+  margin: 0; height: 20px; }
+.transport output { min-width: 66px; text-align: right; font-variant-numeric: tabular-nums;
+  white-space: nowrap; }
+.stage { container-type: inline-size; }
+@container (max-width: 900px) {
+  .moving .legend { bottom: 70px; } .moving .hint { display: none; }
+  .transport { width: calc(100% - 32px); max-width: 460px; } }
+@container (max-width: 560px) { .hint { display: none; } }
 .hint { right: 16px; bottom: 16px; padding: 0; background: none; opacity: .5; backdrop-filter: none; }
 .failed { inset: 0; margin: auto; width: min(420px, 80%); height: max-content; padding: 20px;
   font-size: 14px; text-align: center; }
@@ -51,6 +84,11 @@ class Overlay {
     )
     this.legend = make("div", "card legend", this.root)
     this.bone = make("div", "card bone", this.root)
+    this.gizmo = document.createElementNS("http://www.w3.org/2000/svg", "svg")
+    this.gizmo.classList.add("gizmo")
+    this.root.append(this.gizmo)
+    this.angle = make("div", "card angle", this.root)
+    this.transport = make("div", "card transport", this.root)
     this.hint = make("div", "card hint", this.root, false)
     this.hint.textContent = "drag to turn · right-drag to move · scroll to zoom · click a bone"
     this.failed = make("div", "card failed", this.root)

@@ -12,6 +12,15 @@ class View {
       clicked: (e) => this.clicked(e),
       hovered: (e) => this.hovered(e),
     })
+    this.gizmo = new Gizmo(overlay, this.stage, {
+      turned: (pose) => { this.pose = pose; this.applyPose(); this.changed() },
+      tell: (message) => model.send_msg(message),
+      poseNow: () => this.currentPose,
+    })
+    this.transport = new Transport(overlay, {
+      play: (on) => model.send_msg({type: "play", on}),
+      seek: (time) => { this.time = time; this.applyPose(); this.changed(); this.tellTime() },
+    })
     const uploader = new Uploader(model, {
       started: (files) => overlay.say(`Sending ${files.map((f) => f.name).join(", ")}`),
       moved: () => {},
@@ -42,7 +51,11 @@ class View {
     }
     if (message.views) {
       this.views = message.views
+      const {position, target} = this.orbit
+      const way = position.map((x, i) => (x - target[i]) / this.orbit.distance)
+      const before = stage.fitting(way, target)
       stage.divide(this.views)
+      this.orbit.scale(stage.fitting(way, target) / before)
     }
     for (const [name, part] of entries(message.actors)) {
       if (!stage.figures.has(name)) {
@@ -56,9 +69,15 @@ class View {
         start: plainList(start), end: plainList(end), joint: plainList(joint), names,
       }
     }
-    if ("pose" in message) { this.pose = message.pose && plain(message.pose) }
+    if ("gizmo" in message) { this.gizmo.show(message.gizmo) }
+    // While a ring is dragged the hand is ahead of the server.
+    if ("pose" in message && !this.gizmo.held) { this.pose = message.pose && plain(message.pose) }
     if ("clip" in message) { this.clip = message.clip && new Clip(message.clip) }
     if ("playing" in message) { this.play(message.playing) }
+    if ("clip" in message || "playing" in message) {
+      this.transport.show(this.clip, this.playing)
+      if (this.clip) { this.transport.tick(this.clip, this.time || 0) }
+    }
     if ("pose" in message || "clip" in message) { this.applyPose() }
     if (message.camera) {
       this.frame(message.camera)
@@ -82,6 +101,7 @@ class View {
 
   applyPose() {
     this.stage.setPose(this.currentPose)
+    if (this.clip) { this.transport.tick(this.clip, this.time || 0) }
     this.posed += 1
   }
 
@@ -96,7 +116,7 @@ class View {
     cancelAnimationFrame(this.ticking)
     this.ticking = requestAnimationFrame((now) => {
       if (!this.playing || !this.clip || this.gone) { return }
-      this.time = (this.time || 0) + (this.last === null ? 0 : Math.min(now - this.last, 100) / 1000)
+      this.time = (this.time || 0) + (this.last === null ? 0 : this.transport.speed * Math.min(now - this.last, 100) / 1000)
       this.last = now
       this.applyPose()
       this.draw()
@@ -126,6 +146,7 @@ class View {
       this.overlay.showViews(this.views || [], tiles)
     }
     this.stage.draw(this.orbit.moving || this.playing)
+    this.gizmo.draw()
   }
 
   rested() {

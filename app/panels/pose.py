@@ -1,4 +1,4 @@
-"""Turn a joint, play a motion, go back to rest."""
+"""Turn joints, play motions, and see where other weights would put the skin."""
 
 from __future__ import annotations
 
@@ -6,16 +6,88 @@ from typing import Any
 
 import panel_material_ui as pmui
 
+from ..actions import pose as actions
+from ..rows import Rows
+from ..scenes.pose import error_of, has_rival
 from ..session import Session
+from ..state import State
 from .parts import GAP, caption, choice, section, when
 
 AXES = ("x", "y", "z")
+RING_COLORS = ("#e5484d", "#30a46c", "#3e83f8")
+WORST = 8
+"""How many of the worst turns are listed."""
 
 
 def pose(session: Session) -> pmui.Column:
     """Return the controls of the panel Pose."""
+    return pmui.Column(
+        _turning(session), _motion(session), _comparison(session),
+        margin=0, sizing_mode="stretch_width",
+    )  # fmt: skip
+
+
+def _turning(session: Session) -> pmui.Column:
     state = session.state
-    axis = choice(state.param.axis, {"about X": "x", "about Y": "y", "about Z": "z"})
+    about = caption(
+        when(
+            lambda rig, joint: (
+                ""
+                if rig is None
+                else f"Turn {rig.skeleton.names[joint]}: drag its rings, or these."
+            ),
+            state.param.rig,
+            state.param.joint,
+        ),
+        margin=0,
+    )
+    rest = pmui.Button(
+        label="Rest pose",
+        variant="outlined",
+        size="small",
+        on_click=lambda event: actions.rest(session),
+        margin=GAP,
+        sizing_mode="stretch_width",
+        disabled=when(lambda *_: not state.posed, state.param.turns, state.param.moving),
+    )
+    return section("Pose", about, *[_angle(session, axis) for axis in range(3)], rest)
+
+
+def _angle(session: Session, axis: int) -> pmui.FloatSlider:
+    state = session.state
+    color = RING_COLORS[axis]
+    slider = pmui.FloatSlider(
+        label=f"About {AXES[axis].upper()}",
+        value=0,
+        start=-180,
+        end=180,
+        step=1,
+        format="0°",
+        size="small",
+        margin=(0, 0),
+        track=False,
+        sizing_mode="stretch_width",
+        sx={"& .MuiSlider-thumb": {"bgcolor": color}, "& .MuiSlider-root": {"color": color}},
+    )
+
+    def turned(event: Any) -> None:
+        if event.new != round(shown_angle()):
+            actions.turn_joint(session, axis, float(event.new))
+
+    def shown_angle() -> float:
+        return float(state.turns.get(state.joint, (0, 0, 0))[axis])
+
+    def shown(*events: Any) -> None:
+        slider.value = float(round(shown_angle()))
+
+    slider.param.watch(turned, "value")
+    state.param.watch(shown, ["turns", "joint"])
+    shown()
+    return slider
+
+
+def _motion(session: Session) -> pmui.Column:
+    state = session.state
     motion = pmui.Select(
         label="Motion", options={}, size="small", margin=GAP, sizing_mode="stretch_width"
     )
@@ -32,71 +104,102 @@ def pose(session: Session) -> pmui.Column:
     state.param.watch(listed, ["rig", "clip"])
     motion.param.watch(chosen, "value")
     listed()
-
-    def play(event: Any) -> None:
-        state.param.update(moving=True, playing=not state.playing)
-
-    def rest(event: Any) -> None:
-        state.param.update(turns={}, moving=False, playing=False)
-
-    buttons = pmui.Row(
-        pmui.Button(
-            label=when(lambda on: "Pause" if on else "Play", state.param.playing),
-            icon=when(lambda on: "pause" if on else "play_arrow", state.param.playing),
-            size="small",
-            on_click=play,
-            margin=(4, 8, 4, 0),
-            sizing_mode="stretch_width",
-        ),
-        pmui.Button(
-            label="Rest pose",
-            variant="outlined",
-            size="small",
-            on_click=rest,
-            margin=(4, 0),
-            sizing_mode="stretch_width",
-            disabled=when(lambda *_: not state.posed, state.param.turns, state.param.moving),
-        ),
-        sizing_mode="stretch_width",
-        margin=0,
-    )
-    turned = caption(
-        when(
-            lambda rig, joint: "" if rig is None else f"Turn {rig.skeleton.names[joint]}",
-            state.param.rig,
-            state.param.joint,
-        ),
-        margin=0,
-    )
-    return section("Pose", turned, axis, _angle(session), motion, buttons)
-
-
-def _angle(session: Session) -> pmui.IntSlider:
-    state = session.state
-    slider = pmui.IntSlider(
-        label="Angle",
-        value=0,
-        start=-120,
-        end=120,
-        step=1,
-        format="0°",
+    axis = choice(state.param.axis, {"about X": "x", "about Y": "y", "about Z": "z"})
+    axis.visible = when(lambda clip: clip < 0, state.param.clip)
+    play = pmui.Button(
+        label=when(lambda on: "Pause" if on else "Play", state.param.playing),
+        icon=when(lambda on: "pause" if on else "play_arrow", state.param.playing),
         size="small",
+        on_click=lambda event: actions.play(session),
         margin=GAP,
         sizing_mode="stretch_width",
     )
+    return section("", motion, axis, play, margin=(2, 20, 4, 20))
 
-    def turned(event: Any) -> None:
-        k = AXES.index(state.axis)
-        angles = list(state.turns.get(state.joint, (0, 0, 0)))
-        if angles[k] == event.new:
-            return
-        angles[k] = event.new
-        turns = {**state.turns, state.joint: tuple(angles)}
-        state.param.update(turns=turns, moving=False, playing=False)
 
-    def shown(*events: Any) -> None:
-        slider.value = state.turns.get(state.joint, (0, 0, 0))[AXES.index(state.axis)]
+def _comparison(session: Session) -> pmui.Column:
+    state = session.state
+    views = {"Alone": "alone", "Ghost": "ghost", "Side by side": "beside"}
+    heat = pmui.Switch.from_param(
+        state.param.heat, label="Error as colours", size="small", margin=GAP, description=""
+    )
+    now = caption(
+        when(
+            lambda *_: error_text(state, error_of(state, session.memo)),
+            state.param.turns,
+            state.param.moving,
+            state.param.clip,
+            state.param.motion_error,
+            state.param.binding,
+        )
+    )
+    worst = Rows(
+        lambda row: actions.show_turn(session, *_turn_of(state, row)),
+        label="The worst turns",
+        sizing_mode="stretch_width",
+        margin=(0, -8),
+    )
+    heading = caption(margin=(6, 0, 2, 0))
 
-    slider.param.watch(turned, "value")
-    state.param.watch(shown, ["turns", "joint", "axis"])
-    return slider
+    def listed(*events: Any) -> None:
+        rows = worst_rows(state)
+        worst.param.update(rows=rows, chosen=chosen_row(state))
+        heading.object = WORST_TEXT if rows else ""
+
+    state.param.watch(listed, ["errors", "binding", "turns", "joint"])
+    listed()
+    with_rival = when(
+        lambda rig, binding: rig is not None and has_rival(state),
+        state.param.rig,
+        state.param.binding,
+    )
+    return section(
+        "Against the file's weights",
+        choice(state.param.rival, views), heat, now, heading, worst,
+        visible=with_rival,
+    )  # fmt: skip
+
+
+WORST_TEXT = "The worst turns by 30°, mean over the vertices. Press one to see it:"
+
+
+def error_text(state: State, error: tuple[float, float] | None) -> str:
+    """Return the error of what is seen, in a sentence."""
+    if error is None:
+        return "Switch the colours on to measure the motion." if not state.heat else ""
+    if not state.posed:
+        return "At rest there is no error. Distances are squared, the longest side scaled to 1 m."
+    mean, greatest = error
+    over = "over the motion" if state.moving else "in this pose"
+    return f"Mean {mean:.3g} cm² {over}, greatest {greatest:.3g} cm² (longest side 1 m)."
+
+
+def worst_rows(state: State) -> list[tuple[str, str, float]]:
+    """Return the rows of the list of the worst turns."""
+    turns = _worst(state)
+    top = turns[0].mean if turns else 1.0
+    return [
+        (f"{one.name} about {one.axis.upper()}", f"{one.mean:.3g} cm²", one.mean / top)
+        for one in turns
+    ]
+
+
+def chosen_row(state: State) -> int:
+    """Return which of the worst turns the character shows; -1 if none."""
+    turned = {joint: angles for joint, angles in state.turns.items() if any(angles)}
+    for row, one in enumerate(_worst(state)):
+        expected = tuple(actions.TURN_DEGREES * float(one.axis == axis) for axis in AXES)
+        if turned == {one.joint: expected}:
+            return row
+    return -1
+
+
+def _turn_of(state: State, row: int) -> tuple[int, str]:
+    one = _worst(state)[row]
+    return one.joint, one.axis
+
+
+def _worst(state: State) -> list[Any]:
+    if state.errors is None or state.errors[0] is not state.binding:
+        return []
+    return state.errors[1].worst(WORST)

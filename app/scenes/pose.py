@@ -1,15 +1,19 @@
-"""The character in a pose or a motion."""
+"""The character in a pose or a motion, and what the file's own weights make of the same."""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from cutcell.rig import Clip
-from viewers.character import pose_in_scene
-from viewers.description import Description
+from viewers.character import body, pose_in_scene
+from viewers.description import Actor, Apart, Description
+from viewers.error_scene import Gap, error_legend, error_limits, error_look, squared_unit
+from viewers.palette import GHOST
 from viewers.pose_scene import joint_turns, swing, turn
+from viewers.skin import skin_of_weights
 
 from ..state import State
 from .common import character
@@ -18,11 +22,90 @@ from .memo import Memo
 SWING_DEGREES = 50.0
 POSED = ("pose", "compare")
 """The panels on which the character moves; on all others it rests."""
+GHOST_OPACITY = 0.38
+VIEWS = ("cutcell", "The file's own weights")
 
 
 def pose(state: State, memo: Memo) -> Description:
     """Return the scene of the panel Pose."""
-    return Description(character(state, memo), pose=pose_of(state))
+    placed = pose_of(state)
+    if not has_rival(state):
+        return Description(character(state, memo), pose=placed)
+    look, legend = {}, None
+    if state.heat:
+        limits = error_limits_of(state, placed, memo)
+        apart = memo(
+            "apart",
+            (state.rig,),
+            lambda: Apart(skin_of_weights(state.rig.weights), squared_unit(state.rig)),
+        )
+        look = memo(
+            "error look",
+            (state.rig, limits[1]),
+            lambda: error_look(len(state.rig.mesh.vertices), apart, limits),
+        )
+        legend = error_legend(limits)
+    actors = character(state, memo, **look)
+    if state.rival == "alone":
+        return Description(actors, pose=placed, legend=legend)
+    rival = rival_of(state, memo)
+    if state.rival == "ghost":
+        rival = replace(rival, color=GHOST, opacity=GHOST_OPACITY, behind=True)
+        return Description({**actors, "rival": rival}, pose=placed, legend=legend)
+    actors["body"] = replace(actors["body"], view=0)
+    rival = replace(rival, view=1)
+    return Description({**actors, "rival": rival}, pose=placed, legend=legend, views=VIEWS)
+
+
+def has_rival(state: State) -> bool:
+    """Whether there are two weightings: what was computed, and the file's own."""
+    return state.binding is not None and state.rig.weights is not None
+
+
+def rival_of(state: State, memo: Memo) -> Actor:
+    """Return the body as the file's own weights move it."""
+    return memo("rival", (state.rig,), lambda: body(state.rig, state.rig.weights))
+
+
+def gap_of(state: State, memo: Memo) -> Gap:
+    """Return what tells the distance between the two weightings in any pose."""
+    rig, binding = state.rig, state.binding
+    return memo("gap", (rig, binding), lambda: Gap(rig, binding.weights, rig.weights))
+
+
+def error_of(state: State, memo: Memo) -> tuple[float, float] | None:
+    """Return the mean and greatest error in cm² of the pose or motion that is on, if known."""
+    if not has_rival(state):
+        return None
+    if state.moving:
+        found = motion_error_of(state)
+        return found and found[:2]
+    placed = pose_of(state)
+    if placed is None:
+        return (0.0, 0.0)
+    squared = squared_of(state, placed, memo)
+    return float(squared.mean()), float(squared.max())
+
+
+def motion_error_of(state: State) -> Any:
+    """Return mean, greatest and nearly greatest error of the motion in cm², if known."""
+    found = state.motion_error
+    known = found is not None and found[0] is state.binding and found[1] == state.motion
+    return found[2] if known else None
+
+
+def squared_of(state: State, placed: np.ndarray, memo: Memo) -> np.ndarray:
+    """Return the error of each vertex in the pose that the sliders make, in cm²."""
+    inputs = (state.binding, state.turns)
+    return memo("squared", inputs, lambda: gap_of(state, memo).squared(placed))
+
+
+def error_limits_of(state: State, placed: np.ndarray | None, memo: Memo) -> tuple[float, float]:
+    """Return the range of the error's colours: round, and enough for what is seen."""
+    if state.moving:
+        found = motion_error_of(state)
+        return error_limits([0.0 if found is None else found[2]])
+    return error_limits([0.0] if placed is None else squared_of(state, placed, memo))
 
 
 def pose_of(state: State) -> np.ndarray | None:
@@ -31,13 +114,34 @@ def pose_of(state: State) -> np.ndarray | None:
 
     if state.moving or not state.posed:
         return None
-    rotations = {
-        joint: turn("z", z) @ turn("y", y) @ turn("x", x)
-        for joint, (x, y, z) in state.turns.items()
-        if any((x, y, z))
-    }
+    rotations = {joint: rotation_of(angles) for joint, angles in state.turns.items() if any(angles)}
     transforms = forward_kinematics(state.rig.skeleton, joint_turns(state.rig, rotations))
     return pose_in_scene(state.rig, transforms)
+
+
+def rotation_of(angles: tuple[float, float, float]) -> np.ndarray:
+    """Return the rotation of a joint (3, 3) that is turned by degrees about x, y, then z."""
+    x, y, z = angles
+    return turn("z", z) @ turn("y", y) @ turn("x", x)
+
+
+def angles_of(
+    rotation: np.ndarray, near: tuple[float, float, float] = (0, 0, 0)
+) -> tuple[float, float, float]:
+    """Return degrees about x, y and z that make a rotation; of those that do, the nearest."""
+    y = np.arcsin(np.clip(-rotation[2, 0], -1, 1))
+    if abs(rotation[2, 0]) > 1 - 1e-9:
+        # Only the sum or difference of the other two counts here: leave z as it was.
+        z = np.radians(near[2])
+        x = np.sign(y) * z + np.arctan2(np.sign(y) * rotation[0, 1], rotation[1, 1])
+    else:
+        x = np.arctan2(rotation[2, 1], rotation[2, 2])
+        z = np.arctan2(rotation[1, 0], rotation[0, 0])
+    one = np.degrees([x, y, z])
+    other = np.degrees([x + np.pi, np.pi - y, z + np.pi])
+    both = [(option + 180) % 360 - 180 for option in (one, other)]
+    best = min(both, key=lambda angles: float(np.abs(angles - near).sum()))
+    return tuple(float(round(angle, 1)) + 0.0 for angle in best)  # type: ignore[return-value]
 
 
 def clip_of(state: State) -> Clip | None:
@@ -55,3 +159,17 @@ def clip_part(state: State, clip: Clip | None) -> dict[str, Any] | None:
         return None
     matrices = pose_in_scene(state.rig, clip.transforms).astype(np.float32)
     return {"times": clip.times.astype(np.float32), "matrices": matrices.ravel()}
+
+
+def gizmo_part(state: State) -> dict[str, Any] | None:
+    """Return what the view needs to turn the chosen joint by hand; None where it cannot be."""
+    if state.rig is None or state.panel != "pose" or state.moving:
+        return None
+    rig, joint = state.rig, state.joint
+    centre = rig.world[:3, :3] @ rig.skeleton.joints[joint] + rig.world[:3, 3]
+    return {
+        "joint": joint,
+        "joints": len(rig.skeleton.joints),
+        "centre": centre.tolist(),
+        "below": np.flatnonzero(rig.skeleton.subtree[joint]).astype(np.int32),
+    }

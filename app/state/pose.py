@@ -2,21 +2,42 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import param
 
 
 class PoseChoices(param.Parameterized):
-    """How the character stands, and what moves it."""
+    """How the character stands, what moves it, and what it is compared with."""
 
-    axis: Any = param.Selector(default="z", objects=["x", "y", "z"], doc="What to turn about.")
+    if TYPE_CHECKING:
+        joint: Any
+
+    axis: Any = param.Selector(default="z", objects=["x", "y", "z"], doc="What to swing about.")
     turns: Any = param.Dict({}, doc="Degrees about x, y and z, a triple for each turned joint.")
     clip: Any = param.Integer(-1, doc="Which clip of the rig to play; -1 swings the joint.")
     moving: Any = param.Boolean(False, doc="Whether a motion, rather than `turns`, poses.")
     playing: Any = param.Boolean(False, doc="Whether that motion runs, or is halted.")
 
+    rival: Any = param.Selector(
+        default="alone",
+        objects=["alone", "ghost", "beside"],
+        doc="How the same motion with the file's own weights is seen.",
+    )
+    heat: Any = param.Boolean(False, doc="Whether colours tell how far the two are apart.")
+    errors: Any = param.Parameter(None, doc="(binding, DeformationError) about the scene's axes.")
+    motion_error: Any = param.Parameter(
+        None, doc="(binding, motion, mean and greatest cm² over it), once it is known."
+    )
+
     @property
     def posed(self) -> bool:
         """Whether the character is anywhere but at rest on the panels that pose it."""
         return self.moving or any(any(angles) for angles in self.turns.values())
+
+    @property
+    def motion(self) -> str:
+        """Names the motion that is on, by what makes it another one; empty without one."""
+        if not self.moving:
+            return ""
+        return f"clip {self.clip}" if self.clip >= 0 else f"swing {self.joint} {self.axis}"
