@@ -13,8 +13,11 @@ from cutcell.progress import Progress
 Schedule = Callable[[Callable[[], Any]], Any]
 """Runs a function later, on the thread that owns the page."""
 
-_TURN = threading.Lock()
+COMPUTING = threading.Lock()
 """Numeric libraries share one pool of threads: sessions compute in turn."""
+
+DRAWING = threading.Lock()
+"""Pictures and films are drawn in turn, while others compute."""
 
 REPORT_EVERY = 0.08
 """Seconds between two reports of progress; more would only keep the page busy."""
@@ -74,9 +77,9 @@ class Job:
         """Run an action on the page's own thread, unless the job is stopped till then."""
         self._schedule(lambda: None if self.cancelled.is_set() else action())
 
-    def wait_for_turn(self) -> None:
-        """Wait until no other session computes."""
-        while not _TURN.acquire(timeout=0.05):
+    def wait_for(self, turn: threading.Lock) -> None:
+        """Wait until no other session does work of the kind."""
+        while not turn.acquire(timeout=0.05):
             self.progress("waiting for another computation", 0.0)
 
 
@@ -105,16 +108,19 @@ class Jobs:
         done: Callable[[Any], None],
         failed: Callable[[Exception], None],
         report: Progress,
+        turn: threading.Lock = COMPUTING,
     ) -> Job | None:
         """Do some work in a thread; `done`, `failed` and `report` run on the page's thread.
 
+        It waits until no other session does work that takes turns by the same lock.
         Whatever ran before is stopped, and none of its results arrive any more.
         """
         self.cancel()
         if self._closed:
             return None
         job = self._current = Job(self._schedule, report)
-        arguments = (job, work, self._finishing(job, done), self._finishing(job, failed))
+        ends = (self._finishing(job, done), self._finishing(job, failed))
+        arguments = (job, work, *ends, turn)
         threading.Thread(target=_run, args=arguments, daemon=True, name="cutcell job").start()
         return job
 
@@ -144,13 +150,14 @@ def _run(
     work: Callable[[Progress], Any],
     done: Callable[[Any], None],
     failed: Callable[[Exception], None],
+    turn: threading.Lock,
 ) -> None:
     try:
-        job.wait_for_turn()
+        job.wait_for(turn)
         try:
             result = work(job.progress)
         finally:
-            _TURN.release()
+            turn.release()
     except Cancelled:
         return
     except Exception as error:  # whatever it is, the page must hear of it

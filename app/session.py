@@ -7,6 +7,7 @@ import logging
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
+from threading import Lock
 from typing import Any
 
 import cutcell
@@ -17,7 +18,7 @@ from cutcell.rig import Rig
 from viewers.scene import framing
 
 from .actions import WATCHERS
-from .jobs import Jobs, Schedule
+from .jobs import COMPUTING, Jobs, Schedule
 from .scenes import Memo, resolve
 from .scenes.common import bones_part, bounds_of, first_joint, theme_of
 from .state import UNSEEN, State
@@ -144,7 +145,12 @@ class Session:
                 busy=False, message=("info", "Cancelled. The page keeps what it had.")
             )
 
-    def start(self, work: Callable[[Progress], Any], done: Callable[[Any], None]) -> None:
+    def start(
+        self,
+        work: Callable[[Progress], Any],
+        done: Callable[[Any], None],
+        turn: Lock = COMPUTING,
+    ) -> None:
         """Do some work that the page shows progress of; it stops what went on before."""
 
         def finish(result: Any) -> None:
@@ -156,7 +162,7 @@ class Session:
             self.fail(error)
 
         self.state.param.update(busy=True, stage="", fraction=0.0)
-        self.jobs("main").start(work, finish, failed, self._report)
+        self.jobs("main").start(work, finish, failed, self._report, turn)
 
     def _report(self, stage: str, fraction: float) -> None:
         self.state.param.update(stage=stage, fraction=fraction)

@@ -49,6 +49,7 @@ class SceneView(JSComponent):
         self._on_pick = on_pick
         self._receiver = receiver
         self.camera: Camera | None = None
+        self.aspect = 4 / 3
         self.time = 0.0
         self._ready = False
         self._count = 0
@@ -107,6 +108,7 @@ class SceneView(JSComponent):
             self.time = float(data["time"])
         elif kind == "camera":
             self.camera = Camera(tuple(data["position"]), tuple(data["focal_point"]))
+            self.aspect = min(max(float(data.get("aspect", self.aspect)), 0.3), 4.0)
 
 
 def changes(old: Description, new: Description, sent: set[str]) -> dict[str, Any]:

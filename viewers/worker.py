@@ -53,14 +53,15 @@ def draw_apart(order: Order, path: str | Path, progress: Progress = silent) -> N
         with subprocess.Popen(
             command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=root
         ) as process:
-            _watch(process, progress)
-        if not drawn.exists():
+            grumble = _watch(process, progress)
+        if process.returncode or not drawn.exists():
             require_opengl()
-            raise RuntimeError("the drawing process ended without a picture")
+            raise RuntimeError(f"the picture could not be drawn: {grumble}")
         path.write_bytes(drawn.read_bytes())
 
 
-def _watch(process: subprocess.Popen[str], progress: Progress) -> None:
+def _watch(process: subprocess.Popen[str], progress: Progress) -> str:
+    """Pass on what a drawing process tells until it ends; return what it complained of last."""
     lines: Queue[str | None] = Queue()
     grumbles: list[str] = []
 
@@ -87,8 +88,8 @@ def _watch(process: subprocess.Popen[str], progress: Progress) -> None:
             if "error" in told:
                 raise getattr(errors, told["error"], CutcellError)(told["message"])
         other.join()
-        if process.wait() > 0:
-            raise RuntimeError("".join(grumbles[-3:]).strip() or "the drawing process failed")
+        process.wait()
+        return "".join(grumbles[-1:]).strip() or f"exit code {process.returncode}"
     finally:
         if process.poll() is None:
             process.kill()

@@ -1,4 +1,4 @@
-"""What a person takes along: the bound character, a picture."""
+"""What a person takes along: the bound character, pictures, films, numbers."""
 
 from __future__ import annotations
 
@@ -8,45 +8,99 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import cutcell
+from cutcell.io.numbers import save_numbers
 from cutcell.progress import Progress
+from cutcell.rig import Clip
+from viewers.character import pose_in_scene
 from viewers.description import Description
-from viewers.opengl import require_opengl
-from viewers.pose_scene import pose_at
-from viewers.scene import Scene, framing
+from viewers.film import Motion, Order
+from viewers.pose_scene import pose_at, swing
+from viewers.worker import draw_apart
 
+from ..jobs import DRAWING
 from ..scenes import resolve
-from ..scenes.common import bounds_of, theme_of
-from ..scenes.pose import clip_of
+from ..scenes.pose import SWING_DEGREES, clip_of
+from ..state import State
 
 if TYPE_CHECKING:
     from ..session import Session
 
+Done = Callable[[str, bytes], None]
+"""Takes the name and the content of a file."""
 
-def take_picture(session: Session, done: Callable[[str, bytes], None]) -> None:
-    """Draw what is seen, if this machine can, and hand over a name and the PNG."""
-
-    def work(progress: Progress) -> None:
-        progress("drawing the picture", 0.0)
-        require_opengl()
-
-    session.start(work, lambda _: done("cutcell.png", picture(session)))
+PICTURE_PIXELS = 2400 * 1800
+FILM_PIXELS = 960 * 720
 
 
-def picture(session: Session, size: tuple[int, int] = (1600, 1200)) -> bytes:
-    """Return what is seen as a PNG, drawn off-screen with the view's camera."""
-    path = session.folder / "picture.png"
-    scene = Scene(theme_of(session.state), size)
-    try:
-        scene.show(_snapshot(session))
-        fitting = framing(bounds_of(session.state), size[0] / size[1])
-        scene.look(session.view.camera or fitting)
-        scene.render_png(path)
-    finally:
-        scene.close()
-    return path.read_bytes()
+def take_picture(session: Session, done: Done) -> None:
+    """Draw what is seen, large and with its legend, and hand over the PNG."""
+    _draw(session, _order(session, PICTURE_PIXELS, snapshot(session)), "png", done)
 
 
-def _snapshot(session: Session) -> Description:
+def take_turntable(session: Session, ending: str, done: Done) -> None:
+    """Film what is seen while the camera goes around it once; "mp4" or "gif"."""
+    order = replace(_order(session, FILM_PIXELS, snapshot(session)), turntable=True)
+    _draw(session, order, ending, done)
+
+
+def take_motion(session: Session, ending: str, done: Done) -> None:
+    """Film the motion that is chosen, as what is seen now goes through it."""
+    state = session.state
+    if state.rig is None:
+        return
+    clip = chosen_clip(state)
+    motion = Motion(clip.times, pose_in_scene(state.rig, clip.transforms))
+    whole = resolve(state, session.memo)
+    # What cannot follow the joints would be left behind.
+    actors = {name: actor for name, actor in whole.actors.items() if actor.skin is not None}
+    order = _order(session, FILM_PIXELS, replace(whole, actors=actors, cut=None))
+    _draw(session, replace(order, motion=motion), ending, done)
+
+
+def take_numbers(session: Session, what: str, ending: str, done: Done) -> None:
+    """Hand over "weights", "distances" or "all" as numbers, in a "csv" or "npz"."""
+    binding, rig = session.state.binding, session.state.rig
+    if binding is None:
+        session.state.message = ("info", "There are no numbers to save yet.")
+        return
+    tables = {"weights": binding.weights, "distances": binding.distances.joint.T}
+    chosen = tables if what == "all" else {what: tables[what]}
+    path = session.folder / f"{_stem(session)}-{'numbers' if what == 'all' else what}.{ending}"
+
+    def work(progress: Progress) -> tuple[str, bytes]:
+        progress("writing the numbers", 0.0)
+        save_numbers(path, rig, **chosen)
+        return _taken(path)
+
+    session.start(work, lambda result: done(*result))
+
+
+def bound_file(session: Session, done: Done) -> None:
+    """Write the character with its new weights, and hand over its name and content."""
+    state = session.state
+    if state.binding is None:
+        state.message = ("info", "There are no weights to download yet.")
+        return
+    rig = state.rig.with_weights(state.binding.weights)
+    path = session.folder / f"{_stem(session)}-bound.glb"
+
+    def work(progress: Progress) -> tuple[str, bytes]:
+        progress("writing the file", 0.0)
+        cutcell.save(path, rig)
+        return _taken(path)
+
+    session.start(work, lambda result: done(*result))
+
+
+def chosen_clip(state: State) -> Clip:
+    """Return the motion that is chosen, whether or not it is on."""
+    if 0 <= state.clip < len(state.rig.clips):
+        return state.rig.clips[state.clip]
+    return swing(state.rig, state.joint, state.axis, SWING_DEGREES)
+
+
+def snapshot(session: Session) -> Description:
+    """Return what is seen, in the pose that a motion has come to."""
     description = resolve(session.state, session.memo)
     clip = clip_of(session.state)
     if clip is None or not len(clip.times):
@@ -54,18 +108,35 @@ def _snapshot(session: Session) -> Description:
     return replace(description, pose=pose_at(session.state.rig, clip, session.view.time))
 
 
-def bound_file(session: Session, done: Callable[[str, bytes], None]) -> None:
-    """Write the character with its new weights, and hand over its name and content."""
-    state = session.state
-    if state.binding is None:
-        state.message = ("info", "There are no weights to download yet.")
-        return
-    rig = state.rig.with_weights(state.binding.weights)
-    path = session.folder / f"{Path(rig.name).stem or 'character'}-bound.glb"
+def picture_size(pixels: int, aspect: float) -> tuple[int, int]:
+    """Return width and height, even numbers, of about so many pixels in a given shape."""
+    height = (pixels / aspect) ** 0.5
+    return 2 * round(height * aspect / 2), 2 * round(height / 2)
+
+
+def _order(session: Session, pixels: int, description: Description) -> Order:
+    view = session.view
+    theme = "dark" if session.state.dark else "light"
+    return Order(description, theme, picture_size(pixels, view.aspect), view.camera)
+
+
+def _draw(session: Session, order: Order, ending: str, done: Done) -> None:
+    path = session.folder / f"{_stem(session)}-{session.state.panel}.{ending}"
+    stage = "drawing the picture" if ending == "png" else "drawing the film"
 
     def work(progress: Progress) -> tuple[str, bytes]:
-        progress("writing the file", 0.0)
-        cutcell.save(path, rig)
-        return path.name, path.read_bytes()
+        draw_apart(order, path, lambda _, fraction: progress(stage, fraction))
+        return _taken(path)
 
-    session.start(work, lambda result: done(*result))
+    session.start(work, lambda result: done(*result), turn=DRAWING)
+
+
+def _stem(session: Session) -> str:
+    rig = session.state.rig
+    return (Path(rig.name).stem if rig is not None else "") or "character"
+
+
+def _taken(path: Path) -> tuple[str, bytes]:
+    content = path.read_bytes()
+    path.unlink()
+    return path.name, content

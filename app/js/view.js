@@ -153,6 +153,7 @@ class View {
     this.changed()
     this.model.send_msg({
       type: "camera", position: this.orbit.position, focal_point: this.orbit.target,
+      aspect: this.overlay.canvas.clientWidth / Math.max(this.overlay.canvas.clientHeight, 1),
     })
   }
 

@@ -170,7 +170,7 @@ def test_a_joint_is_turned_as_the_core_turns_it(visit, robot):
     rest = visit.points()
     np.testing.assert_allclose(rest, to_scene(robot, robot.mesh.vertices), atol=1e-5)
     before = visit.look()
-    visit.slide("Angle", "ArrowRight", 25)
+    visit.slide("About Z", "ArrowRight", 25)
     after = visit.look()
     assert changed(before, after) > 0.002
     joint = robot.skeleton.names.index(visit.page.get_by_role("combobox", name="Bone").inner_text())
@@ -236,7 +236,8 @@ def test_a_file_goes_in_and_the_bound_one_comes_out(visit, request, tmp_path):
 
 def test_the_picture_comes_out_as_a_png(visit, tmp_path):
     with visit.page.expect_download(timeout=LOAD_MS) as download:
-        visit.button("Picture", exact=False).click()
+        visit.button("Picture, film", exact=False).click()
+        visit.page.get_by_role("menuitem", name="Picture (PNG)").click()
     path = tmp_path / "picture.png"
     download.value.save_as(path)
     assert path.read_bytes().startswith(b"\x89PNG")

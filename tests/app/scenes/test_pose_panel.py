@@ -1,0 +1,120 @@
+"""The panel Pose, from state to scene."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import cutcell
+from app.scenes import Memo, resolve
+from app.scenes.pose import VIEWS, angles_of, error_of, gizmo_part, rotation_of
+from app.state import State
+from tests.viewers.arm import arm_rig
+from viewers.error_scene import Gap
+
+angle = st.floats(-180, 180)
+
+
+@pytest.fixture(scope="module")
+def rig():
+    return arm_rig()
+
+
+@pytest.fixture(scope="module")
+def binding(rig):
+    return cutcell.bind(rig, 16)
+
+
+@pytest.fixture
+def state(rig, binding):
+    return State(rig=rig, binding=binding, joint=1, panel="pose")
+
+
+@given(angle, angle, angle)
+def test_angles_make_the_rotation_that_they_are_read_from(x, y, z):
+    rotation = rotation_of((x, y, z))
+    again = rotation_of(angles_of(rotation, (x, y, z)))
+    np.testing.assert_allclose(again, rotation, atol=6e-3)
+
+
+@given(angle, st.floats(-89, 89), angle)
+def test_of_the_angles_that_make_a_rotation_the_nearest_are_taken(x, y, z):
+    found = np.array(angles_of(rotation_of((x, y, z)), (x, y, z)))
+    off = (found - (x, y, z) + 180) % 360 - 180
+    assert np.abs(off).max() < 4  # within rounding, which near the pole weighs most
+
+
+def test_a_quarter_turn_is_read_though_two_axes_fall_together():
+    for y in (90, -90):
+        rotation = rotation_of((20, y, 50))
+        np.testing.assert_allclose(rotation_of(angles_of(rotation)), rotation, atol=6e-3)
+
+
+def test_a_ghost_is_seen_through_and_a_neighbour_has_a_view(state):
+    assert "rival" not in resolve(state).actors
+    state.rival = "ghost"
+    scene = resolve(state)
+    assert 0 < scene.actors["rival"].opacity < 1
+    assert scene.actors["rival"].behind
+    assert scene.views == ()
+    state.rival = "beside"
+    scene = resolve(state)
+    assert scene.views == VIEWS
+    assert (scene.actors["body"].view, scene.actors["rival"].view) == (0, 1)
+    assert scene.actors["bones"].view is None
+
+
+def test_without_the_files_weights_there_is_nothing_to_compare(rig, binding):
+    bare = rig.with_weights(None)
+    state = State(rig=bare, binding=binding, panel="pose", rival="beside", heat=True)
+    scene = resolve(state)
+    assert "rival" not in scene.actors
+    assert scene.legend is None
+
+
+def test_the_error_is_told_and_coloured(state, rig, binding):
+    memo = Memo()
+    state.heat = True
+    assert error_of(state, memo) == (0.0, 0.0)
+    state.turns = {1: (0, 40, 0)}
+    scene = resolve(state, memo)
+    squared = Gap(rig, binding.weights, rig.weights).squared(scene.pose)
+    mean, greatest = error_of(state, memo)
+    assert mean == pytest.approx(float(squared.mean()))
+    assert greatest == pytest.approx(float(squared.max()))
+    body = scene.actors["body"]
+    assert body.apart is not None
+    assert body.limits[1] >= np.quantile(squared, 0.99)
+    assert scene.legend.high.endswith("cm²")
+
+
+def test_the_error_of_a_motion_is_known_once_it_was_measured(state, binding):
+    state.param.update(moving=True, clip=0, heat=True)
+    assert error_of(state, Memo()) is None
+    state.motion_error = (binding, "clip 0", (1.5, 40.0, 28.0))
+    assert error_of(state, Memo()) == (1.5, 40.0)
+    assert resolve(state).actors["body"].limits == (0.0, 30.0)
+    state.clip = -1
+    assert error_of(state, Memo()) is None
+
+
+def test_a_small_turn_streams_nothing_but_the_pose(state):
+    memo = Memo()
+    state.param.update(heat=True, rival="beside", turns={1: (0, 40, 0)})
+    before = resolve(state, memo)
+    state.turns = {1: (0, 40.5, 0)}
+    after = resolve(state, memo)
+    for name, actor in before.actors.items():
+        for field in ("points", "scalars", "skin", "apart"):
+            assert getattr(after.actors[name], field) is getattr(actor, field), (name, field)
+
+
+def test_the_rings_are_there_while_a_joint_can_be_turned(state):
+    part = gizmo_part(state)
+    assert part["joint"] == 1
+    assert part["below"].tolist() == [1, 2]
+    np.testing.assert_allclose(part["centre"], [0, 0, 0], atol=1e-12)
+    state.moving = True
+    assert gizmo_part(state) is None
+    state.param.update(moving=False, panel="graph")
+    assert gizmo_part(state) is None

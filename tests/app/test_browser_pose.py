@@ -1,0 +1,186 @@
+"""The panel Pose in a browser: rings, ghosts, errors in colours, motions, films."""
+
+import re
+
+import numpy as np
+import pytest
+from playwright.sync_api import expect, sync_playwright
+
+import cutcell
+from assets import demo_path
+from scripts.get_chromium import FLAGS
+from tests.app.browser import LOAD_MS, Visit, changed, served
+from tests.conftest import SHARED_RIGS
+from viewers.character import pose_in_scene
+from viewers.pose_scene import joint_turns, turn
+
+REAL = SHARED_RIGS / "quaternius_wizard.glb"
+SOURCE = REAL if REAL.exists() else demo_path("rabbit")
+
+
+@pytest.fixture(scope="module")
+def visit(chromium):
+    with sync_playwright() as playwright, served(str(SOURCE)) as url:
+        browser = playwright.chromium.launch(executable_path=chromium, args=list(FLAGS))
+        visit = Visit(browser, url, viewport={"width": 1000, "height": 640}, has_touch=True)
+        visit.wait_until_bound()
+        visit.panel("Pose")
+        yield visit
+        visit.close()
+        browser.close()
+
+
+@pytest.fixture(scope="module")
+def rig():
+    return cutcell.load(SOURCE)
+
+
+def drag_ring(visit, axis, dx, dy):
+    x, y = visit.page.evaluate("axis => __cutcell.gizmo.handle(axis)", axis)
+    visit.page.mouse.move(x, y)
+    visit.page.mouse.down()
+    visit.page.mouse.move(x + dx, y + dy, steps=6)
+    local = visit.points()
+    expect(visit.page.locator(".angle")).to_contain_text("°")
+    visit.page.mouse.up()
+    visit.settle()
+    return local
+
+
+def angle(visit, axis):
+    return float(visit.page.get_by_role("slider", name=f"About {axis}").input_value())
+
+
+def rest(visit):
+    visit.button("Rest pose").click()
+    visit.settle()
+
+
+def test_a_ring_turns_the_joint_and_the_server_agrees(visit, rig):
+    still = visit.points()
+    before = visit.look()
+    local = drag_ring(visit, 2, -50, 50)
+    assert np.abs(local - still).max() > 0.01
+    np.testing.assert_allclose(visit.points(), local, atol=2e-3 * np.ptp(local))
+    assert changed(before, visit.look()) > 0.005
+    degrees = angle(visit, "Z")
+    assert abs(degrees) > 10
+    assert angle(visit, "X") == angle(visit, "Y") == 0
+    name = visit.page.get_by_role("combobox", name="Bone").inner_text()
+    joint = rig.skeleton.names.index(name)
+    transforms = cutcell.forward_kinematics(
+        rig.skeleton, joint_turns(rig, {joint: turn("z", degrees)})
+    )
+    weights = cutcell.bind(rig).weights
+    expected = cutcell.linear_blend_skinning(still, weights, pose_in_scene(rig, transforms))
+    np.testing.assert_allclose(visit.points(), expected, atol=1e-4 * np.ptp(still))
+    rest(visit)
+    np.testing.assert_array_equal(visit.points(), still)
+
+
+def test_a_finger_turns_a_ring_too(visit):
+    x, y = visit.page.evaluate("__cutcell.gizmo.handle(2)")
+    touch = visit.context.new_cdp_session(visit.page)
+    for kind, at in (("touchStart", (x, y)), ("touchMove", (x - 30, y + 40)), ("touchEnd", None)):
+        points = [] if at is None else [{"x": at[0], "y": at[1]}]
+        touch.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+    visit.settle()
+    assert abs(angle(visit, "Z")) > 5
+    rest(visit)
+
+
+def test_what_the_card_draws_is_where_the_points_are(visit):
+    plain = visit.look()
+    visit.slide("About Z", "PageUp", 4)
+    visit.settle()
+    turned = visit.look()
+    visit.page.evaluate("""() => {
+      const {stage} = __cutcell
+      const figures = [...stage.figures.values()].filter((figure) => figure.skin)
+      window.__rests = figures.map((figure) => [figure, figure.rest])
+      const moved = figures.map((figure) => figure.posed())
+      stage.setPose(null)
+      figures.forEach((figure, i) => figure.setPoints(moved[i]))
+      __cutcell.changed()
+    }""")
+    same = visit.look()
+    far = (np.abs(turned - same).max(axis=2) > 80).mean()  # normals and rings differ a little
+    assert changed(plain, turned) > 0.01
+    assert far < 0.004, far
+    visit.page.evaluate("""() => {
+      for (const [figure, rest] of window.__rests) { figure.setPoints(rest) }
+      __cutcell.applyPose()
+    }""")
+    rest(visit)
+
+
+def test_the_worst_turns_are_a_click_away(visit):
+    rows = visit.page.get_by_role("list", name="The worst turns").get_by_role("button")
+    rows.first.wait_for(timeout=LOAD_MS)
+    before = visit.look()
+    name = rows.first.locator("span").inner_text()
+    rows.first.click()
+    visit.expect_text("Error against the file's weights")
+    bone, axis = re.fullmatch(r"(.*) about ([XYZ])", name).groups()
+    expect(visit.page.get_by_role("combobox", name="Bone")).to_have_text(bone)
+    assert angle(visit, axis) == 30
+    expect(rows.first).to_have_attribute("aria-current", "true")
+    visit.expect_text(re.compile(r"Mean [\d.e-]+ cm² in this pose"))
+    coloured = visit.look()
+    assert changed(before, coloured) > 0.01
+    visit.switch("Error as colours")
+    assert changed(coloured, visit.look()) > 0.0005
+
+
+def test_the_files_weights_are_a_ghost_or_a_neighbour(visit):
+    alone = visit.look()
+    visit.button("Ghost").click()
+    ghost = visit.look()
+    assert changed(alone, ghost) > 0.0005
+    visit.button("Side by side").click()
+    visit.expect_text("The file's own weights")
+    beside = visit.look()
+    assert changed(ghost, beside) > 0.02
+    half = beside.shape[1] // 2
+    for side in (beside[60:, : half - 2], beside[60:, half + 2 :]):
+        assert np.ptp(side.reshape(-1, 3), axis=0).max() > 100  # somebody stands on either side
+    visit.button("Alone").click()
+    visit.settle()
+    assert changed(alone, visit.look()) < 0.004
+
+
+def test_a_motion_runs_halts_and_is_moved_through(visit):
+    rest(visit)
+    still = visit.points()
+    visit.button("Play").click()
+    visit.page.wait_for_function("__cutcell.report().time > 0.1", timeout=LOAD_MS)
+    visit.button("Halt the motion").click()
+    visit.page.wait_for_function("!__cutcell.report().playing", timeout=LOAD_MS)
+    track = visit.page.get_by_role("slider", name="Time in the motion")
+    track.focus()
+    track.press("Home")
+    visit.settle()
+    first = visit.points()
+    for _ in range(3):
+        track.press("PageUp")
+    visit.settle()
+    assert np.abs(visit.points() - first).max() > 1e-3
+    assert visit.page.locator(".gizmo").is_hidden()
+    visit.button("Speed: 1 times", exact=False).click()
+    visit.button("Speed: 2 times", exact=False).wait_for(timeout=LOAD_MS)
+    rest(visit)
+    np.testing.assert_array_equal(visit.points(), still)
+    assert visit.page.locator(".transport").is_hidden()
+
+
+def test_a_film_and_the_numbers_come_out(visit, tmp_path):
+    for menu, item, start in (
+        ("Picture, film", "Motion (MP4)", b"ftyp"),
+        ("Numbers", "Weights (CSV)", b"vertex,"),
+    ):
+        visit.button(menu).click()
+        with visit.page.expect_download(timeout=LOAD_MS) as download:
+            visit.page.get_by_role("menuitem", name=item).click()
+        path = tmp_path / download.value.suggested_filename
+        download.value.save_as(path)
+        assert start in path.read_bytes()[:16]

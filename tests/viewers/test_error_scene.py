@@ -1,0 +1,91 @@
+"""The error between two weightings, as it is coloured, listed and told."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from cutcell import linear_blend_skinning
+from cutcell.metrics import deformation_error
+from cutcell.pose import rotate_joint
+from tests.viewers.arm import arm_rig
+from viewers.character import pose_in_scene, to_scene
+from viewers.error_scene import (
+    FLOOR,
+    Gap,
+    error_limits,
+    error_scene,
+    scene_error,
+    squared_unit,
+)
+from viewers.pose_scene import joint_turns, turn
+from viewers.skin import squared_apart
+
+
+@pytest.fixture(scope="module")
+def rig():
+    return arm_rig()
+
+
+@pytest.fixture(scope="module")
+def other(rig):
+    weights = np.random.default_rng(3).random(rig.weights.shape)
+    weights /= weights.sum(axis=1, keepdims=True)
+    weights[:5] = 0  # these stand still
+    return weights
+
+
+def test_it_is_the_squared_distance_in_square_centimetres(rig, other):
+    pose = pose_in_scene(rig, rotate_joint(rig.skeleton, 1, "y", 70))
+    points = to_scene(rig, rig.mesh.vertices)
+    ours = linear_blend_skinning(points, rig.weights, pose)
+    theirs = linear_blend_skinning(points, other, pose)
+    metre = np.ptp(points, axis=0).max()
+    expected = ((100 * (ours - theirs) / metre) ** 2).sum(axis=1)
+    np.testing.assert_allclose(
+        Gap(rig, rig.weights, other).squared(pose), expected, rtol=2e-4, atol=1e-3
+    )
+    assert expected.max() > 10
+
+
+def test_the_scene_shows_the_same_numbers(rig, other):
+    transforms = rotate_joint(rig.skeleton, 1, "y", 70)
+    scene = error_scene(rig, rig.weights, other, transforms)
+    shown = scene.actors["body"]
+    pose = pose_in_scene(rig, transforms)
+    seen = shown.apart.unit * squared_apart(shown.points, shown.skin, shown.apart.skin, pose)
+    np.testing.assert_allclose(
+        seen, Gap(rig, rig.weights, other).squared(pose), rtol=2e-3, atol=1e-2
+    )
+    assert scene.legend.high == f"{shown.limits[1]:g} cm²"
+    assert shown.limits[1] >= np.quantile(seen, 0.99)
+
+
+def test_worst_turns_are_about_the_axes_that_the_page_turns_about(rig, other):
+    errors = scene_error(rig, rig.weights, other)
+    worst = errors.worst(1)[0]
+    rotations = joint_turns(rig, {worst.joint: turn(worst.axis, 30)})
+    from cutcell import forward_kinematics
+
+    pose = pose_in_scene(rig, forward_kinematics(rig.skeleton, rotations))
+    squared = Gap(rig, rig.weights, other).squared(pose)
+    assert worst.largest == pytest.approx(squared.max(), rel=1e-3)
+    # The arm's space has z up and the scene y: the same turns, called by other names.
+    plain = deformation_error(rig, rig.weights, other)
+    np.testing.assert_allclose(errors.turn_mean[:, 1], plain.turn_mean[:, 2], rtol=1e-9)
+    assert errors.mean == pytest.approx(plain.mean)
+
+
+@given(st.floats(1e-3, 1e6))
+def test_the_scale_ends_at_a_round_number_that_holds_nearly_all(top):
+    low, high = error_limits(np.linspace(0, top, 1000))
+    assert low == 0
+    assert high >= min(0.99 * top, high)
+    assert high >= 0.98 * top
+    assert high <= 2.01 * max(top, FLOOR)
+    assert float(f"{high:.1e}") == pytest.approx(high)
+
+
+def test_the_longest_side_counts_as_a_metre(rig):
+    points = to_scene(rig, rig.mesh.vertices)
+    assert squared_unit(rig) * np.ptp(points, axis=0).max() ** 2 == pytest.approx(1e4)

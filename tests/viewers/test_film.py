@@ -1,0 +1,170 @@
+"""Pictures and films of whole scenes: views, captions, legend, files that can be played."""
+
+import subprocess
+from dataclasses import replace
+
+import av
+import numpy as np
+import pytest
+from PIL import Image
+
+import viewers.worker
+from cutcell.errors import Cancelled, FileError, MissingLibraryError
+from tests.viewers.arm import arm_rig
+from viewers.character import pose_in_scene
+from viewers.film import FRAMES, Motion, Order, around, draw
+from viewers.palette import DARK, LIGHT
+from viewers.scene import Camera
+from viewers.studio import Studio
+from viewers.weights_scene import weights_scene
+from viewers.worker import draw_apart
+
+SIZE = (160, 120)
+
+
+@pytest.fixture(scope="module")
+def rig():
+    return arm_rig()
+
+
+@pytest.fixture(scope="module")
+def scene(rig):
+    return weights_scene(rig, rig.weights, 1)
+
+
+@pytest.fixture(scope="module")
+def motion(rig):
+    clip = rig.clips[0]
+    return Motion(0.3 * clip.times, pose_in_scene(rig, clip.transforms))
+
+
+def picture(scene, **options):
+    with Studio(scene, options.pop("theme", LIGHT), options.pop("size", SIZE), **options) as studio:
+        return studio.draw(studio.camera()).astype(int)
+
+
+def apart(one, other):
+    return float((np.abs(one - other).max(axis=2) > 8).mean())
+
+
+def test_the_legend_stands_in_the_lower_left_corner(scene):
+    plain, written = (picture(scene, size=(640, 480), legend=legend) for legend in (False, True))
+    differs = np.abs(plain - written).max(axis=2) > 0
+    assert differs[320:, :240].mean() > 0.2
+    assert not differs[:320].any()
+    assert not differs[:, 240:].any()
+
+
+def test_each_view_shows_its_own_actors_and_all_show_the_shared_ones(scene):
+    body = scene.actors["body"]
+    two = replace(scene, views=("One", "Two"), legend=None)
+    own = replace(two, actors={**scene.actors, "body": replace(body, view=0)})
+    both, left = picture(two, size=(320, 120)), picture(own, size=(320, 120))
+    assert apart(both[:, :160], left[:, :160]) == 0
+    assert apart(both[:, 160:], left[:, 160:]) > 0.05
+    # What follows the captions is the same on both sides.
+    assert apart(both[40:, 1:160], both[40:, 161:]) < 0.01
+
+
+def test_a_name_that_is_too_long_is_shortened(scene):
+    title = "a very long name of a bone that no picture has room for " * 4
+    long = replace(scene, legend=replace(scene.legend, title=title), views=(title, title))
+    assert picture(long, theme=DARK).shape == (120, 160, 3)
+
+
+def test_a_turntable_goes_around_once_and_shows_other_sides(scene, tmp_path):
+    path = tmp_path / "turn.gif"
+    draw(Order(scene, size=(80, 60), turntable=True), path)
+    with Image.open(path) as film:
+        count = film.n_frames
+        assert count > 60
+        assert film.info["duration"] == 1000 // FRAMES[".gif"]
+        film.seek(0)
+        first = np.asarray(film.convert("RGB")).astype(int)
+        film.seek(count // 4)
+        quarter = np.asarray(film.convert("RGB")).astype(int)
+        film.seek(count - 1)
+        last = np.asarray(film.convert("RGB")).astype(int)
+    assert apart(first, quarter) > 0.02
+    assert apart(first, last) < apart(first, quarter)
+
+
+def test_a_motion_can_be_played_as_mp4(scene, motion, tmp_path):
+    path = tmp_path / "motion.mp4"
+    told = []
+    draw(Order(scene, size=(81, 61), motion=motion), path, lambda *now: told.append(now))
+    with av.open(str(path)) as film:
+        frames = [frame.to_ndarray(format="rgb24").astype(int) for frame in film.decode(video=0)]
+    assert len(frames) == round(0.3 * FRAMES[".mp4"])
+    assert frames[0].shape == (60, 80, 3)
+    assert apart(frames[0], frames[-1]) > 0.01
+    fractions = [fraction for _, fraction in told]
+    assert fractions == sorted(fractions)
+    assert fractions[-1] == 1.0
+
+
+def test_going_around_keeps_height_and_distance():
+    camera = Camera((1.0, 2.0, 3.0), (0.0, 1.0, 1.0))
+    other = around(camera, np.pi)
+    np.testing.assert_allclose(other.position, (-1.0, 2.0, -1.0), atol=1e-12)
+    assert other.focal_point == camera.focal_point
+
+
+@pytest.mark.parametrize(
+    ("name", "options", "words"),
+    [
+        ("a.bmp", {}, "cannot be saved"),
+        ("a.mp4", {}, "turntable"),
+        ("a.png", {"turntable": True}, r"\.mp4 or \.gif"),
+        ("missing/a.png", {}, "no folder"),
+    ],
+)
+def test_what_cannot_be_stored_is_told_before_it_is_drawn(scene, tmp_path, name, options, words):
+    order = Order(scene, size=SIZE, **options)
+    for act in (draw, draw_apart):
+        with pytest.raises(FileError, match=words):
+            act(order, tmp_path / name)
+
+
+def test_without_its_library_mp4_says_how_to_install_it(scene, motion, tmp_path, monkeypatch):
+    monkeypatch.setitem(__import__("sys").modules, "av", None)
+    with pytest.raises(MissingLibraryError, match="pip install"):
+        draw(Order(scene, size=(64, 48), motion=motion), tmp_path / "a.mp4")
+
+
+def test_drawing_apart_draws_the_same_and_tells_how_far_it_is(scene, tmp_path):
+    here, there = tmp_path / "here.png", tmp_path / "there.png"
+    told = []
+    draw(Order(scene, size=SIZE), here)
+    draw_apart(Order(scene, size=SIZE), there, lambda *now: told.append(now))
+    with Image.open(here) as one, Image.open(there) as other:
+        np.testing.assert_array_equal(np.asarray(one), np.asarray(other))
+    assert told[-1] == ("drawing", 1.0)
+
+
+def test_a_film_that_is_no_longer_wanted_is_stopped_at_once(scene, tmp_path, monkeypatch):
+    started = []
+    begin = subprocess.Popen
+
+    def remembered(*arguments, **options):
+        started.append(begin(*arguments, **options))
+        return started[-1]
+
+    def cancel(stage, fraction):
+        if fraction > 0:
+            raise Cancelled
+
+    monkeypatch.setattr(viewers.worker.subprocess, "Popen", remembered)
+    path = tmp_path / "turn.gif"
+    with pytest.raises(Cancelled):
+        draw_apart(Order(scene, size=SIZE, turntable=True), path, cancel)
+    assert started[0].poll() is not None
+    assert not path.exists()
+    monkeypatch.undo()
+
+
+def test_a_process_that_dies_without_reason_is_told(scene, tmp_path, monkeypatch):
+    monkeypatch.setattr("viewers.worker.sys.executable", "false")
+    monkeypatch.setattr("viewers.opengl._can_draw", lambda: True)
+    with pytest.raises(RuntimeError, match="exit code 1"):
+        draw_apart(Order(scene, size=SIZE), tmp_path / "a.png")
