@@ -6,9 +6,8 @@
 
 The first form takes about half an hour on two cores, most of it tetrahedra, and keeps what it has
 in docs/quality.json after each rig: with --resume it goes on after what is there. It measures
-the rigs in ../shared/data/rigs, and the demo characters for crosstalk; where
-../shared/data/bone_heat holds Blender's automatic weights of a rig, they are a method of their
-own. With rigs named it only prints.
+the rigs in ../shared/data/rigs; where ../shared/data/bone_heat holds Blender's automatic weights
+of a rig, they are a method of their own. With rigs named it only prints.
 """
 
 from __future__ import annotations
@@ -37,7 +36,6 @@ from .shapes import small
 
 SAME_PLACE = 1e-4
 """Of the longest side: farther from every vertex of Blender's, one has no counterpart."""
-DEMOS = ("biped", "rabbit", "octopus", "robot")
 LIMIT = 300.0
 """Seconds that a mesher or solver in a process of its own may take."""
 
@@ -115,33 +113,11 @@ def read(path: Path) -> Comparison:
     return Comparison.from_dict(json.loads(path.read_text(encoding="utf-8")))
 
 
-def crosstalk_table(comparison: Comparison) -> str:
-    """Write the crosstalk on the demo characters, one method a row."""
-    rigs = [rig for rig in comparison.rigs if rig.name in DEMOS]
-    lines = [
-        f"| method | {' | '.join(rig.name for rig in rigs)} |",
-        "| --- |" + " ---: |" * len(rigs),
-    ]
-    for index, name in enumerate(comparison.methods):
-        cells = []
-        for rig in rigs:
-            score = rig.scores[index]
-            value = score.crosstalk
-            cells.append(f"{value:.3f}" if value is not None else "failed" if score.failed else "–")
-        if any(cell != "failed" for cell in cells):
-            lines.append(f"| {name} | {' | '.join(cells)} |")
-    return "\n".join(lines)
-
-
 def write_docs(comparison: Comparison, docs: Path, resolution: int) -> None:
     """Write the tables into docs/quality.md, and the figure that it shows."""
-    real = Comparison(
-        tuple(rig for rig in comparison.rigs if rig.name not in DEMOS), comparison.methods
-    )
-    text = comparison_markdown(real).replace("\n## ", "\n#### ").replace("## ", "#### ", 1)
-    blocks = {"tables": text, "crosstalk": crosstalk_table(comparison)}
-    fill(docs / "quality.md", {name: f"R = {resolution}.\n\n{t}" for name, t in blocks.items()})
-    plot_comparison(real, docs / "pictures" / "quality.png")
+    text = comparison_markdown(comparison).replace("## ", "### ")
+    fill(docs / "quality.md", {"tables": f"R = {resolution}.\n\n{text}"})
+    plot_comparison(comparison, docs / "pictures" / "quality.png")
 
 
 def arguments(given: Sequence[str] | None) -> argparse.Namespace:
@@ -177,7 +153,6 @@ def main(given: Sequence[str] | None = None) -> None:
     rigs = sorted((SHARED / "rigs").glob("*.glb"))
     if not rigs:
         sys.exit(f"there are no rigs in {SHARED / 'rigs'}; name some")
-    rigs += [ROOT / "assets" / f"{name}.glb" for name in DEMOS]
     keep = options.docs / "quality.json"
     known = read(keep) if options.methods or options.resume else Comparison((), ())
     if options.resume:

@@ -40,6 +40,40 @@ def bar(nx=20, joints=3):
     return Rig(TriangleMesh(vertices, faces), skeleton)
 
 
+def fork():
+    """Make a handle with two prongs, 0.4 long and 0.01 apart, and a bone in each."""
+    ticks = [
+        np.linspace(0, 1, 11),
+        np.array([0, 0.05, 0.1, 0.11, 0.16, 0.21]),
+        np.array([0, 0.05, 0.1]),
+    ]
+    solid = np.ones([len(t) - 1 for t in ticks], bool)
+    solid[6:, 2, :] = False
+    filled = np.pad(solid, 1)
+    number, faces = {}, []
+    for axis, cell in product(range(3), np.argwhere(solid)):
+        u, v = (axis + 1) % 3, (axis + 2) % 3
+        for side in (0, 1):
+            beside = cell + 1
+            beside[axis] += 2 * side - 1
+            if filled[tuple(beside)]:
+                continue
+            corners = []
+            for a, b in ((0, 0), (1, 0), (1, 1), (0, 1)):
+                key = cell.copy()
+                key[axis] += side
+                key[u] += a
+                key[v] += b
+                corners.append(number.setdefault(tuple(key), len(number)))
+            corners = corners if side else corners[::-1]
+            faces += [corners[:3], [corners[0], *corners[2:]]]
+    points = np.array([[ticks[axis][key[axis]] for axis in range(3)] for key in number])
+    joints = [[0.1, 0.105, 0.05], [0.55, 0.105, 0.05]]
+    joints += [[x, y, 0.05] for y in (0.05, 0.16) for x in (0.65, 0.95)]
+    skeleton = Skeleton(joints, [-1, 0, 1, 2, 1, 4], deform=[True, False, True, False, True, False])
+    return Rig(TriangleMesh(points, np.array(faces)), skeleton)
+
+
 def check_weights(rig, found):
     """See that a method did its duty."""
     assert found.failed == ""

@@ -16,7 +16,7 @@ from .voxels import mark_triangles
 
 MARGIN = 2
 """Cells around the cage."""
-ACCURACY = 1e-6
+ACCURACY = 1e-4
 """Of the solution, relative."""
 
 

@@ -165,7 +165,8 @@ def _sees(body, anchor, settled, u, v, step, a, bend):
     if far > 1:
         sx, sy, sz = int(np.rint(dx / far)), int(np.rint(dy / far)), int(np.rint(dz / far))
         w = _point(table, resolution, x + sx, y + sy, z + sz)
-        if w != OUTSIDE:
+        # Across a gap thinner than a cell the next point is no neighbour.
+        if w != OUTSIDE and _walk(table, whole, resolution, (x, y, z), (x + sx, y + sy, z + sz)):
             w += first_point
             if w in (u, a) or (settled[w] and anchor[w] == a):
                 return True

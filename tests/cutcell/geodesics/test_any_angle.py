@@ -7,6 +7,7 @@ import trimesh
 from cutcell import Skeleton, TriangleMesh, bone_distances, build_graph
 from cutcell.geodesics import distance_to_segment
 from tests import meshes
+from tests.bars import fork
 
 
 def l_bar():
@@ -96,3 +97,15 @@ def test_walls_are_not_seen_through():
     across = (vertices[:, 1] > 0.6) & (vertices[:, 0] > 0.8)
     way_round = 0.75 + 0.6  # to the inner corner and back, at the very least
     assert found[across].min() > way_round
+
+
+@pytest.mark.parametrize("resolution", [32, 48, 64, 80, 96])
+def test_nothing_is_seen_across_a_gap_thinner_than_a_cell(resolution):
+    """Two prongs 0.01 apart: from the tip of one the other's bone is around the corner."""
+    rig = fork()
+    graph = build_graph(rig.mesh, resolution, connectivity="any")
+    distance = bone_distances(graph, rig.skeleton).joint
+    x, y = rig.mesh.vertices[:, :2].T
+    tip = (x > 0.99) & (y < 0.11)
+    assert (distance[4, tip] > 0.45).all()
+    assert (distance[2, tip] < 0.12).all()
