@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import functools
+import weakref
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +15,7 @@ from assets import DEMOS
 
 from .favicon import FAVICON
 from .jobs import Gate
+from .memory import tidy_soon
 from .session import Session
 from .sidebar import sidebar
 from .status import messages, status_line
@@ -35,7 +38,10 @@ def page(path: Path | None = None) -> pmui.Page:
     pn.state.onload(gate.open)
     session = Session(gate)
     document.on_session_destroyed(functools.partial(_close, session))
-    pn.config.exception_handler = session.fail
+    # Panel keeps its settings per document for as long as the document lives: what they hold
+    # must not in turn hold the document.
+    fail = weakref.WeakMethod(session.fail)
+    pn.config.exception_handler = lambda error: _told(fail(), error)
     result = layout(session)
     if path is None:
         session.open_demo(next(demo.id for demo in DEMOS if demo.path.exists()))
@@ -46,6 +52,12 @@ def page(path: Path | None = None) -> pmui.Page:
 
 def _close(session: Session, context: Any) -> None:
     session.close()
+    tidy_soon()
+
+
+def _told(fail: Callable[[Exception], None] | None, error: Exception) -> None:
+    if fail is not None:
+        fail(error)
 
 
 def layout(session: Session) -> pmui.Page:

@@ -1,0 +1,36 @@
+"""Memory that ended sessions held, given back to the system soon after they ended."""
+
+from __future__ import annotations
+
+import ctypes
+import gc
+import sys
+import threading
+
+AFTER = 2.0
+"""Seconds after a session's end; several that end together are tidied up once."""
+
+_LOCK = threading.Lock()
+_WAITING: list[threading.Timer] = []
+
+
+def tidy_soon() -> None:
+    """Collect what is no longer used, a moment from now, on a thread of its own."""
+    with _LOCK:
+        while _WAITING:
+            _WAITING.pop().cancel()
+        timer = threading.Timer(AFTER, tidy)
+        timer.daemon = True
+        _WAITING.append(timer)
+        timer.start()
+
+
+def tidy() -> None:
+    """Collect what is no longer used, and give its memory back to the system."""
+    # A page is full of cycles: its document, models, callbacks and session know each other.
+    gc.collect()
+    if sys.platform == "linux":
+        try:
+            ctypes.CDLL(None).malloc_trim(0)
+        except AttributeError:
+            return  # another C library than glibc, which has its own ways
