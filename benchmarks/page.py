@@ -23,7 +23,7 @@ import trimesh
 from playwright.sync_api import Browser, Page, sync_playwright
 
 import cutcell
-from app.resolve import clip_part
+from app.scenes.pose import clip_part
 from app.state import State
 from app.view import SceneView, camera_part
 from cutcell import Rig, TriangleMesh
@@ -158,21 +158,24 @@ def theirs(material: Material) -> Subject:
         camera = framing(material.scene.bounds, SIZE[0] / SIZE[1])
         plotter.camera_position = [camera.position, camera.focal_point, camera.up]
         pane = pn.pane.VTK(plotter.render_window, width=SIZE[0], height=SIZE[1])
-        data: Any = added["body"].mapper.dataset
-        rest = np.array(data.points)
+        shown = material.scene.actors["body"]
+
+        def put(**changed: Any) -> None:
+            # Another actor: an array edited in place makes the pane crash (debugAll), and new
+            # scalars on the same points never reach its picture.
+            nonlocal shown
+            shown = replace(shown, **changed)
+            plotter.remove_actor(added["body"], render=False)
+            added["body"] = _added(plotter, shown)
+            pane.param.trigger("object")
 
         def color(turn: int) -> None:
-            data.point_data["values"][:] = material.fields[turn % len(material.fields)]
-            data.GetPointData().GetArray("values").Modified()
-            data.Modified()
-            pane.param.trigger("object")
+            put(scalars=material.fields[turn % len(material.fields)])
 
         def move(turn: int) -> None:
-            skin = material.scene.actors["body"].skin
-            assert skin is not None
-            pose = material.poses[turn % len(material.poses)]
-            data.points = moved(rest, skin, pose).astype(np.float32)
-            pane.param.trigger("object")
+            rest, pose = material.scene.actors["body"], material.poses[turn % len(material.poses)]
+            assert rest.skin is not None
+            put(points=moved(rest.points, rest.skin, pose).astype(np.float32))
 
         def show_graph(on: bool) -> None:
             for actor in lines:
@@ -191,11 +194,12 @@ def _added(plotter: Any, actor: Actor) -> Any:
     cells = np.insert(actor.cells, 0, actor.cells.shape[1], axis=1).ravel()
     setattr(data, "faces" if actor.kind == "surface" else "lines", cells)
     if actor.scalars is None:
-        return plotter.add_mesh(data, color=actor.color, lighting=actor.kind == "surface")
+        return plotter.add_mesh(data, color=actor.color, lighting=actor.kind == "surface",
+                                render=False, reset_camera=False)  # fmt: skip
     data.point_data["values"] = actor.scalars
     return plotter.add_mesh(
         data, scalars="values", cmap="viridis", clim=[0, 1], show_scalar_bar=False,
-        smooth_shading=False,
+        render=False, reset_camera=False,
     )  # fmt: skip
 
 
@@ -335,7 +339,6 @@ def _visit(
     if name == OURS:
         for graph in (True, False):
             beside = ", graph shown" if graph else ""
-            visitor.seen_after(lambda: subject.move(0))
             if not graph:
                 visitor.seen_after(lambda: subject.show_graph(False))
             script, frame = visitor.play(options.play)

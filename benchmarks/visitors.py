@@ -1,0 +1,169 @@
+"""A server of the page, and visitors without a browser: they say what a browser would say."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import os
+import re
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import psutil
+from bokeh.util.token import generate_jwt_token, generate_session_id
+from tornado.httpclient import HTTPRequest
+from tornado.websocket import WebSocketClientConnection, websocket_connect
+
+from .rigs import ROOT
+
+PATIENCE = 120.0
+MAX_MESSAGE = 2**28
+BOUND = r"interior, .* surface"
+"""What the page says when the weights are there."""
+
+
+class Server:
+    """A server of the page, as a process of its own."""
+
+    def __init__(self, address: str, process: psutil.Process) -> None:
+        self.address = address
+        self.process = process
+
+    def megabytes(self) -> float:
+        """Return the memory that the process has to itself, in MB."""
+        return self.process.memory_full_info().uss / 2**20
+
+
+@contextmanager
+def served(*arguments: str, **environment: str) -> Iterator[Server]:
+    """Run `cutcell app` until the block ends."""
+    command = [sys.executable, "-m", "cutcell", "app", *arguments, "--no-show", "--port", "0"]
+    process = subprocess.Popen(
+        command, cwd=ROOT, stdout=subprocess.PIPE, text=True, env={**os.environ, **environment}
+    )
+    assert process.stdout is not None
+    try:
+        line = process.stdout.readline()
+        found = re.search(r"http://\S+", line)
+        if not found:
+            raise RuntimeError(f"the server did not start: {line}")
+        yield Server(found.group(), psutil.Process(process.pid))
+    finally:
+        process.terminate()
+        process.wait(20)
+        process.stdout.close()
+
+
+class Visitor:
+    """One session, without a browser.
+
+    Parameters
+    ----------
+    address : str
+        Of the server.
+    query : str
+        What the address holds behind it, from the question mark on.
+    """
+
+    def __init__(self, address: str, query: str = "") -> None:
+        self.heard: list[str] = []
+        self._count = 0
+        self._news = threading.Event()
+        self._socket = _wait(self._connect(address.replace("http", "ws") + "/ws", query))
+        self._listening = asyncio.run_coroutine_threadsafe(self._listen(), _loop())
+        self.wait_for('"ACK"')
+        self._send("PULL-DOC-REQ", {})
+        whole = self.wait_for('"doc":')
+        found = re.search(r'"id":"(p\d+)","attributes":\{"name":"SceneView"', whole)
+        if not found:
+            raise RuntimeError("there is no view on the page")
+        self.view = found.group(1)
+        self._event("document_ready", [])
+        self.tell(type="ready", width=1200)
+
+    def tell(self, **message: Any) -> None:
+        """Send a message of the view's own."""
+        data = {"type": "map", "entries": [list(item) for item in message.items()]}
+        self._event("data_event", [["model", {"id": self.view}], ["data", data]])
+
+    def wait_for(self, pattern: str, seconds: float = PATIENCE) -> str:
+        """Wait until the server sends something that matches; return that message."""
+        end, seen = time.monotonic() + seconds, 0
+        while time.monotonic() < end:
+            self._news.clear()
+            for text in self.heard[seen:]:
+                if re.search(pattern, text):
+                    return text
+            seen = len(self.heard)
+            self._news.wait(0.5)
+        raise TimeoutError(f"the server did not say {pattern}")
+
+    def close(self) -> None:
+        """Leave."""
+        _loop().call_soon_threadsafe(self._socket.close)
+        self._listening.result(10)
+
+    async def _connect(self, address: str, query: str) -> WebSocketClientConnection:
+        payload = {"arguments": _arguments(query)}
+        token = generate_jwt_token(generate_session_id(), extra_payload=payload)
+        end = time.monotonic() + PATIENCE
+        while True:
+            try:
+                return await websocket_connect(
+                    HTTPRequest(address, request_timeout=PATIENCE),
+                    subprotocols=["bokeh", token],
+                    max_message_size=MAX_MESSAGE,
+                )
+            except OSError:
+                # The server tells its address a moment before it listens.
+                if time.monotonic() > end:
+                    raise
+                await asyncio.sleep(0.2)
+
+    async def _listen(self) -> None:
+        while (part := await self._socket.read_message()) is not None:
+            if isinstance(part, str):
+                self.heard.append(part)
+                self._news.set()
+
+    def _send(self, kind: str, content: dict[str, Any]) -> None:
+        self._count += 1
+        header = {"msgid": f"m{self._count}", "msgtype": kind}
+        parts = [json.dumps(part) for part in (header, {}, content)]
+
+        def write() -> None:
+            for part in parts:
+                self._socket.write_message(part)
+
+        _loop().call_soon_threadsafe(write)
+
+    def _event(self, name: str, entries: list[Any]) -> None:
+        event = {"type": "event", "name": name, "values": {"type": "map", "entries": entries}}
+        message = {"kind": "MessageSent", "msg_type": "bokeh_event", "msg_data": event}
+        self._send("PATCH-DOC", {"events": [message]})
+
+
+def _arguments(query: str) -> dict[str, list[str]]:
+    from urllib.parse import parse_qs
+
+    return parse_qs(query.lstrip("?"))
+
+
+_LOOPS: list[asyncio.AbstractEventLoop] = []
+
+
+def _loop() -> asyncio.AbstractEventLoop:
+    if not _LOOPS:
+        loop = asyncio.new_event_loop()
+        threading.Thread(target=loop.run_forever, daemon=True, name="visitors").start()
+        _LOOPS.append(loop)
+    return _LOOPS[0]
+
+
+def _wait(work: Any) -> Any:
+    return asyncio.run_coroutine_threadsafe(work, _loop()).result(PATIENCE)
