@@ -7,11 +7,22 @@ import gc
 import sys
 import threading
 
+import panel as pn
+
 AFTER = 2.0
 """Seconds after a session's end; several that end together are tidied up once."""
 
 _LOCK = threading.Lock()
 _WAITING: list[threading.Timer] = []
+
+
+def let_go(page: object) -> None:
+    """Take a page out of Panel's own state, which outlives it: it shows there whether busy."""
+    state = pn.state
+    for watchers in list(state.param.watchers.values()):
+        for watcher in [one for kind in watchers.values() for one in kind]:
+            if getattr(getattr(watcher.fn, "__self__", None), "self", None) is page:
+                state.param.unwatch(watcher)
 
 
 def tidy_soon() -> None:

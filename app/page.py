@@ -15,7 +15,7 @@ from assets import DEMOS
 
 from .favicon import FAVICON
 from .jobs import Gate
-from .memory import tidy_soon
+from .memory import let_go, tidy_soon
 from .session import Session
 from .sidebar import sidebar
 from .status import messages, status_line
@@ -37,12 +37,12 @@ def page(path: Path | None = None) -> pmui.Page:
     gate = Gate(document.add_next_tick_callback)
     pn.state.onload(gate.open)
     session = Session(gate)
-    document.on_session_destroyed(functools.partial(_close, session))
     # Panel keeps its settings per document for as long as the document lives: what they hold
     # must not in turn hold the document.
     fail = weakref.WeakMethod(session.fail)
     pn.config.exception_handler = lambda error: _told(fail(), error)
     result = layout(session)
+    document.on_session_destroyed(functools.partial(_close, session, result))
     if path is None:
         session.open_demo(next(demo.id for demo in DEMOS if demo.path.exists()))
     else:
@@ -50,8 +50,9 @@ def page(path: Path | None = None) -> pmui.Page:
     return result
 
 
-def _close(session: Session, context: Any) -> None:
+def _close(session: Session, shown: pmui.Page, context: Any) -> None:
     session.close()
+    let_go(shown)
     tidy_soon()
 
 
