@@ -41,7 +41,7 @@ def measure(case: dict) -> dict:
         **binding.seconds,
         "nodes": len(binding.graph.nodes),
         "faces": len(rig.mesh.faces),
-        "bones": len(binding.distances.bone),
+        "bones": len(binding.distances.bones.joint),
         "peak": peak_memory(),
         "before": before,
     }

@@ -24,7 +24,7 @@ def geodesics(state: State, memo: Memo) -> Description:
     colors, legend = memo(
         "distance",
         (binding, joint),
-        lambda: distance_colors(rig, binding.distances.joint[joint], joint),
+        lambda: distance_colors(rig, binding.distances.on_mesh(joint), joint),
     )
     actors = character(state, memo, **colors)
     field, theme = field_of(state), theme_of(state)

@@ -9,9 +9,16 @@ the whole bone as first anchor: what sees the bone has its exact distance to the
 Dijkstra's order makes seeing cheap. Nodes nearer to the anchor are settled first, so a
 lattice point sees the anchor when the neighbour that the line of sight passes next to does.
 Where that neighbour follows another anchor, the line itself is walked.
+
+All joints spread at once, and a node has room for the labels (joint, distance, anchor) of
+its nearest few alone. Nothing is lost by that: where k joints are nearer to a node than a
+further one, they are also nearer to whatever that one would reach by way of the node. So the
+work grows with the labels that a vertex keeps, not with the joints.
 """
 
 from __future__ import annotations
+
+from dataclasses import dataclass
 
 import numpy as np
 from numba import njit
@@ -20,14 +27,23 @@ from numpy.typing import NDArray
 from ..graph import CutCellGraph
 from ..graph.interior import OUTSIDE, point_number
 from ..progress import Progress, silent
-from ..threads import in_threads, threads
+from ..threads import in_threads
 from .bones import Bones, Sources
 from .heap import heap_pop, heap_push
+from .queue import END, SETTLED, bucket_of, bucket_queue, join, leave
 
-BONE, NOTHING = -1, -2
-"""Anchors that are no node."""
+NOBODY, NOTHING = -1, -(2**31)
+"""The joint and the anchor of a label that is not there."""
 NEAR = 2
 """Lattice cells. A far corner of a triangle may lie behind a bend of the surface."""
+AT_ONCE = 4
+"""Joints that spread together where all are wanted everywhere."""
+FINENESS = 32
+"""Buckets a lattice cell."""
+SPAN = 4
+"""Sides of the unit cube. What lies further away shares the last bucket."""
+PAUSES = 16
+"""How often a unit of distance is interrupted, to report and to be cancelled."""
 
 
 def any_angle_paths(
@@ -35,9 +51,10 @@ def any_angle_paths(
     sources: Sources,
     bones: Bones,
     targets: NDArray[np.int32],
+    nearest: int | None = None,
     progress: Progress = silent,
 ) -> NDArray[np.float64]:
-    """Compute how long the shortest path of straight pieces from each bone to each node is.
+    """Compute how long the shortest path of straight pieces from each joint to each node is.
 
     Parameters
     ----------
@@ -46,105 +63,231 @@ def any_angle_paths(
     sources : Sources
         Nodes that see the bone.
     bones : Bones
-        In the unit cube.
+        In the unit cube; paths start on any bone of a joint.
     targets : array, shape (t,), int32
         Nodes whose distances are wanted.
+    nearest : int, optional
+        k: a node gets the distances of its k nearest joints alone; of all when left out.
     progress : callable
         Called with the stage "distances".
 
     Returns
     -------
-    array, shape (b, t), float64
-        Infinite where no path leads.
+    array, shape (j, t), float64
+        For the joints with bones, ascending. Infinite where no path leads and for joints that
+        are not among the nearest.
     """
-    count = len(bones.joint)
-    start = np.searchsorted(sources.bone, np.arange(count + 1))
+    joints = np.unique(bones.joint)
+    if nearest is not None and nearest < len(joints):
+        groups = [joints]
+    else:
+        nearest = min(AT_ONCE, len(joints))
+        groups = [joints[k : k + nearest] for k in range(0, len(joints), nearest)]
+    body = _body(graph)
+    result = np.full((len(joints), len(targets)), np.inf)
+
+    def spread(group: NDArray[np.int32]) -> None:
+        report = progress if len(groups) == 1 else silent
+        front = _start(graph, sources, bones, group, nearest)
+        ranked, distance = _spread(graph, body, front, report)
+        ranked, distance = ranked[targets], distance[targets]
+        at, slot = np.nonzero(ranked != NOBODY)
+        row = np.searchsorted(joints, front.joints[ranked[at, slot]])
+        result[row, at] = distance[at, slot]
+
+    step = 8
+    for first in range(0, len(groups), step):
+        progress("distances", first / len(groups))
+        in_threads(spread, groups[first : first + step])
+    progress("distances", 1.0)
+    return result
+
+
+@dataclass(frozen=True, eq=False)
+class _Front:
+    """Labels and bones of a group of joints, ranked by position.
+
+    So ties do not hang on how joints are numbered.
+
+    Parameters
+    ----------
+    joints : array
+        Of each rank.
+    bones : array, shape (b, 7)
+        Start, way to the end, and one over its squared length.
+    labels : tuple
+        k; the rank, distance and anchor of label s of node v at v * k + s. An anchor is the
+        label of the node where the path bends last, or ~bone.
+    queue : tuple
+        See `bucket_queue`.
+    """
+
+    joints: NDArray[np.int32]
+    bones: NDArray[np.float64]
+    labels: tuple
+    queue: tuple
+
+
+def _start(
+    graph: CutCellGraph, sources: Sources, bones: Bones, group: NDArray, each: int
+) -> _Front:
+    mine = np.flatnonzero(np.isin(bones.joint, group))
+    start, end = bones.start[mine], bones.end[mine]
+    order = np.lexsort(np.concatenate([start, end], axis=1).T[::-1])
+    mine, start, way = mine[order], start[order], (end - start)[order]
+    squared = (way * way).sum(axis=1)
+    inverse = np.divide(1, squared, out=np.zeros_like(squared), where=squared > 0)
+    joints, first, rank = np.unique(bones.joint[mine], return_index=True, return_inverse=True)
+    by_place = np.argsort(first)
+    rank = np.argsort(by_place)[rank].astype(np.int32)
+
+    place = np.full(len(bones.joint), -1)
+    place[mine] = np.arange(len(mine))
+    bone = place[sources.bone]
+    chosen = np.flatnonzero(bone >= 0)
+    chosen = chosen[np.argsort(bone[chosen], kind="stable")]
+
+    count = len(graph.nodes) * each
+    labels = (
+        each,
+        np.full(count, NOBODY, np.int32),
+        np.full(count, np.inf),
+        np.full(count, NOTHING, np.int32),
+    )
+    scale = FINENESS * graph.lattice.resolution
+    queue = bucket_queue(count, SPAN * scale, scale)
+    _enter_sources(
+        labels, queue, sources.node[chosen], bone[chosen], rank, sources.distance[chosen]
+    )
+    table = np.concatenate([start, way, inverse[:, None]], axis=1)
+    return _Front(joints[by_place], table, labels, queue)
+
+
+def _body(graph: CutCellGraph) -> tuple:
+    first_point = int(graph.vertex_node.max()) + 1
+    first_crossing = first_point + len(graph.interior)
     resolution = graph.lattice.resolution
-    first_point = int((graph.node_kind == 0).sum())
-    body = (
+    return (
         resolution,
         first_point,
-        first_point + len(graph.interior),
+        first_crossing,
         graph.nodes,
         graph.interior.table,
         graph.whole,
     )
 
-    def one_bone(bone: int) -> NDArray[np.float64]:
-        mine = slice(start[bone], start[bone + 1])
-        node, distance = sources.node[mine], sources.distance[mine]
-        ends = bones.start[bone], bones.end[bone]
-        return _paths(graph.adjacency, body, node, distance, *ends)[targets]
 
-    result = np.empty((count, len(targets)))
-    step = 4 * threads()
-    for first in range(0, count, step):
-        progress("distances", first / count)
-        part = range(first, min(first + step, count))
-        result[part.start : part.stop] = in_threads(one_bone, part)
-    progress("distances", 1.0)
-    return result
+def _spread(
+    graph: CutCellGraph, body: tuple, front: _Front, progress: Progress
+) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
+    """Settle all labels; return the ranks and distances of each node's, both (N, k)."""
+    each, rank, distance, _ = front.labels
+    scale, head = front.queue[:2]
+    step = int(scale) // PAUSES
+    for bucket in range(0, len(head), step):
+        progress("distances", bucket / len(head))
+        last = min(bucket + step, len(head))
+        if not _settle(graph.adjacency, body, front.bones, front.labels, front.queue, bucket, last):
+            break
+    return rank.reshape(-1, each), distance.reshape(-1, each)
+
+
+@njit(cache=True)
+def _enter_sources(labels, queue, node, bone, rank, first_distance):
+    _, joint, distance, anchor = labels
+    for s in range(len(node)):
+        slot = _slot(labels, node[s], rank[bone[s]], ~bone[s])
+        if slot >= 0 and first_distance[s] < distance[slot]:
+            leave(queue, slot)
+            joint[slot], distance[slot] = rank[bone[s]], first_distance[s]
+            anchor[slot] = ~bone[s]
+            join(queue, bucket_of(queue, first_distance[s]), slot)
+
+
+@njit(cache=True, inline="always")
+def _slot(labels, v, j, a):
+    """Return where node v keeps the label of joint j or, if it has none, its farthest label.
+
+    -1 if v follows the anchor a already.
+    """
+    each, joint, distance, anchor = labels
+    farthest = v * each
+    for slot in range(v * each, v * each + each):
+        if anchor[slot] == a:
+            return -1
+        if joint[slot] == j:
+            return slot
+        if distance[slot] > distance[farthest]:
+            farthest = slot
+    return farthest
 
 
 @njit(cache=True, nogil=True)
-def _paths(adjacency, body, source, first_distance, head, tail):
+def _settle(adjacency, body, bones, labels, queue, first, last):
+    """Settle labels by distance, bucket after bucket; tell whether any are left beyond."""
     indptr, indices, lengths = adjacency
-    count = len(indptr) - 1
-    distance = np.full(count, np.inf)
-    anchor = np.full(count, NOTHING, np.int32)
-    settled = np.zeros(count, np.bool_)
-    keys, nodes, size = np.empty(1024), np.empty(1024, np.int32), 0
-    for s in range(len(source)):
-        distance[source[s]] = first_distance[s]
-        anchor[source[s]] = BONE
-        keys, nodes, size = heap_push(keys, nodes, size, first_distance[s], source[s])
+    each, joint, distance, anchor = labels
+    head, after = queue[1], queue[2]
     bend = np.empty(3)
-    while size > 0:
-        u = nodes[0]
-        size = heap_pop(keys, nodes, size)
-        if settled[u]:
-            continue
-        settled[u] = True
-        for e in range(indptr[u], indptr[u + 1]):
-            v = indices[e]
-            if settled[v]:
-                continue
-            a = anchor[u]
-            reached = _straight(body, distance, a, head, tail, v, bend)
-            if reached >= distance[v]:
-                continue  # a bend at u would be no shorter
-            if not _sees(body, anchor, settled, u, v, lengths[e], a, bend):
-                a = u
-                reached = distance[u] + lengths[e]
-            if reached < distance[v]:
-                distance[v] = reached
-                anchor[v] = a
-                keys, nodes, size = heap_push(keys, nodes, size, reached, v)
-    return distance
+    keys, heap, size = np.empty(64), np.empty(64, np.int32), 0
+    for bucket in range(first, last):
+        while head[bucket] != END:
+            label = head[bucket]
+            leave(queue, label)
+            keys, heap, size = heap_push(keys, heap, size, distance[label], label)
+        while size > 0:
+            label, d = heap[0], keys[0]
+            size = heap_pop(keys, heap, size)
+            if after[label] == SETTLED or distance[label] != d:
+                continue  # a shorter path was found after this one had been put here
+            after[label] = SETTLED
+            u, j, a = label // each, joint[label], anchor[label]
+            before = distance[a] if a >= 0 else 0.0
+            for e in range(indptr[u], indptr[u + 1]):
+                v = indices[e]
+                slot = _slot(labels, v, j, a)
+                if slot < 0 or after[slot] == SETTLED:
+                    continue
+                new_anchor = a
+                reached = before + _straight(body, bones, each, a, v, bend)
+                if reached >= distance[slot]:
+                    continue  # a bend at u would be no shorter
+                if not _sees(body, labels, u, v, lengths[e], a, bend):
+                    new_anchor = label
+                    reached = d + lengths[e]
+                    if reached >= distance[slot]:
+                        continue
+                leave(queue, slot)
+                joint[slot], distance[slot], anchor[slot] = j, reached, new_anchor
+                into = bucket_of(queue, reached)
+                if into > bucket:
+                    join(queue, into, slot)
+                else:
+                    keys, heap, size = heap_push(keys, heap, size, reached, slot)
+    return (head[last:] != END).any()
 
 
 @njit(cache=True, inline="always")
-def _straight(body, distance, a, head, tail, v, bend):
-    """Return the distance of v by way of anchor a, and put the place of a into `bend`."""
-    p = body[3][v]
-    before = 0.0
-    if a == BONE:
-        ex, ey, ez = tail[0] - head[0], tail[1] - head[1], tail[2] - head[2]
-        squared = ex * ex + ey * ey + ez * ez
-        t = 0.0
-        if squared > 0:
-            along = (p[0] - head[0]) * ex + (p[1] - head[1]) * ey + (p[2] - head[2]) * ez
-            t = min(max(along / squared, 0.0), 1.0)
-        bend[0], bend[1], bend[2] = head[0] + t * ex, head[1] + t * ey, head[2] + t * ez
+def _straight(body, bones, each, a, v, bend):
+    """Return how far v is from anchor a, and put the place of a into `bend`."""
+    nodes = body[3]
+    x, y, z = nodes[v, 0], nodes[v, 1], nodes[v, 2]
+    if a >= 0:
+        n = a // each
+        bend[0], bend[1], bend[2] = nodes[n, 0], nodes[n, 1], nodes[n, 2]
     else:
-        before = distance[a]
-        bend[0], bend[1], bend[2] = body[3][a, 0], body[3][a, 1], body[3][a, 2]
-    x, y, z = p[0] - bend[0], p[1] - bend[1], p[2] - bend[2]
-    return before + np.sqrt(x * x + y * y + z * z)
+        bone = bones[~a]
+        along = (x - bone[0]) * bone[3] + (y - bone[1]) * bone[4] + (z - bone[2]) * bone[5]
+        t = min(max(along * bone[6], 0.0), 1.0)
+        bend[0] = bone[0] + t * bone[3]
+        bend[1] = bone[1] + t * bone[4]
+        bend[2] = bone[2] + t * bone[5]
+    x, y, z = x - bend[0], y - bend[1], z - bend[2]
+    return np.sqrt(x * x + y * y + z * z)
 
 
 @njit(cache=True, inline="always")
-def _sees(body, anchor, settled, u, v, step, a, bend):
+def _sees(body, labels, u, v, step, a, bend):
     """Tell whether the straight way from the bend to v stays inside, u being seen.
 
     Off the lattice, what is one step from a lattice point that sees the bend does, too:
@@ -165,10 +308,18 @@ def _sees(body, anchor, settled, u, v, step, a, bend):
     if far > 1:
         sx, sy, sz = int(np.rint(dx / far)), int(np.rint(dy / far)), int(np.rint(dz / far))
         w = _point(table, resolution, x + sx, y + sy, z + sz)
-        # Across a gap thinner than a cell the next point is no neighbour.
-        if w != OUTSIDE and _walk(table, whole, resolution, (x, y, z), (x + sx, y + sy, z + sz)):
+        if w != OUTSIDE:
+            each, _, _, anchor = labels
             w += first_point
-            if w in (u, a) or (settled[w] and anchor[w] == a):
+            if w == u:
+                return True
+            follows = a >= 0 and w == a // each
+            for slot in range(w * each, w * each + each):
+                follows |= anchor[slot] == a
+            # Across a gap thinner than a cell the next point is no neighbour.
+            if follows and _walk(
+                table, whole, resolution, (x, y, z), (x + sx, y + sy, z + sz)
+            ):
                 return True
     cell = int(bend[0] * resolution), int(bend[1] * resolution), int(bend[2] * resolution)
     return _walk(table, whole, resolution, (x, y, z), cell)

@@ -25,9 +25,11 @@ class BoneDistances:
     Parameters
     ----------
     joint : array, shape (j, n), float64
-        The least over the bones of each joint; infinite where no path leads and for joints
-        that may not carry weight. n counts the vertices of the mesh as it was given.
-    bone : array, shape (b, n), float64
+        The least over the bones of each joint; infinite where no path leads, for joints
+        that may not carry weight, and for joints that are not among a vertex' nearest.
+        n counts the vertices of the mesh as it was given.
+    nearest_joints : int or None
+        How many joints each vertex has distances of; None for all.
     bones : Bones
         In the unit cube.
     sources : Sources
@@ -39,7 +41,7 @@ class BoneDistances:
     """
 
     joint: NDArray[np.float64]
-    bone: NDArray[np.float64]
+    nearest_joints: int | None
     bones: Bones
     sources: Sources
     fallback: NDArray[np.uint8]
@@ -70,18 +72,29 @@ class BoneDistances:
         """
         if joint not in self.bones.joint:
             raise ParameterError(f"joint {joint} has no bone: it may not carry weight")
-        mine = np.flatnonzero(self.bones.joint[self.sources.bone] == joint)
+        # Its bones follow one another, and so do their sources.
+        low, high = np.searchsorted(self.bones.joint, [joint, joint + 1])
+        own = slice(low, high)
+        bones = Bones(self.bones.start[own], self.bones.end[own], self.bones.joint[own])
+        mine = slice(*np.searchsorted(self.sources.bone, [low, high]))
         sources = Sources(
-            self.sources.node[mine], np.zeros(len(mine), np.int32), self.sources.distance[mine]
+            self.sources.node[mine], self.sources.bone[mine] - low, self.sources.distance[mine]
         )
         everywhere = np.arange(len(self.graph.nodes), dtype=np.int32)
-        if self.graph.connectivity != "any":
-            return shortest_paths(self.graph, sources, 1, everywhere)[0]
-        # Each bone is an anchor of its own.
-        own = np.flatnonzero(self.bones.joint == joint)
-        bones = Bones(self.bones.start[own], self.bones.end[own], self.bones.joint[own])
-        sources = replace(sources, bone=(self.sources.bone[mine] - own[0]).astype(np.int32))
-        return any_angle_paths(self.graph, sources, bones, everywhere).min(axis=0)
+        return _paths(self.graph, sources, bones, everywhere)[0]
+
+    def on_mesh(self, joint: int) -> NDArray[np.float64]:
+        """Compute a joint's distance at every vertex, nearest joint or not, shape (n,).
+
+        Vertices that fell back have what `joint` holds.
+
+        Raises
+        ------
+        ParameterError
+            `joint` is no joint that may carry weight.
+        """
+        through = self.field(joint)[self.graph.vertex_node]
+        return np.where(self.fallback == REACHED, through, self.joint[joint])
 
 
 def bone_distances(
@@ -91,6 +104,7 @@ def bone_distances(
     samples: int = 5,
     leaf: str = "point",
     nearest: int = 3,
+    nearest_joints: int | None = None,
     allowed: NDArray[np.bool_] | None = None,
     progress: Progress = silent,
 ) -> BoneDistances:
@@ -107,6 +121,10 @@ def bone_distances(
         See `bone_segments`.
     nearest : int
         k, how many bones a vertex follows that none reaches, 1 or more.
+    nearest_joints : int, optional
+        Measure from each vertex' nearest joints alone, 1 or more, and from all when left
+        out. Fewer take less time with connectivity "any"; with others they do not, and
+        neither where `allowed` is given: then all are measured.
     allowed : array, shape (n, j), bool, optional
         Which joints each vertex may follow; see `Rig.allowed`.
     progress : callable
@@ -131,56 +149,76 @@ def bone_distances(
     """
     samples = check_integer("samples", samples, 1, 1000)
     nearest = check_integer("nearest", nearest, 1, 1_000_000)
+    if nearest_joints is not None:
+        nearest_joints = check_integer("nearest_joints", nearest_joints, 1, 1_000_000)
+    if graph.connectivity != "any" or allowed is not None:
+        nearest_joints = None
     progress("distances", 0.0)
     bones = bone_segments(skeleton, leaf)
     bones = replace(
         bones, start=graph.lattice.to_unit(bones.start), end=graph.lattice.to_unit(bones.end)
     )
-    may_follow = _allowed_bones(graph, skeleton, bones, allowed)
+    if allowed is not None:
+        _check_allowed(graph, skeleton, allowed)
     sources = find_sources(graph, bones, samples)
 
     # Mesh vertices are the graph's first nodes; the file's own vertices share them.
     welded = int(graph.vertex_node.max()) + 1
     targets = np.arange(welded, dtype=np.int32)
-    if graph.connectivity == "any":
-        by_node = any_angle_paths(graph, sources, bones, targets, progress)
-    else:
-        by_node = shortest_paths(graph, sources, len(bones.joint), targets, progress)
-    bone = by_node[:, graph.vertex_node]
-    fallback = np.where(np.isfinite(bone).any(axis=0), REACHED, UNREACHED).astype(np.uint8)
+    by_node = _paths(graph, sources, bones, targets, nearest_joints, progress)
+    measured = np.unique(bones.joint)
+    joint = np.full((len(skeleton.joints), len(graph.vertex_node)), np.inf)
+    joint[measured] = by_node[:, graph.vertex_node]
+
+    reached = np.isfinite(joint).any(axis=0)
+    fallback = np.where(reached, REACHED, UNREACHED).astype(np.uint8)
     fallback[graph.degree[graph.vertex_node] == 0] = UNUSED
-    if may_follow is not None:
-        bone = np.where(may_follow.T, bone, np.inf)
-        fallback[(fallback == REACHED) & ~np.isfinite(bone).any(axis=0)] = NOT_ALLOWED
+    if allowed is not None:
+        joint[~allowed.T] = np.inf
+        fallback[(fallback == REACHED) & ~np.isfinite(joint).any(axis=0)] = NOT_ALLOWED
     lost = np.flatnonzero(fallback != REACHED)
     if len(lost):
-        bone[:, lost] = straight_to_nearest(
-            graph.nodes[graph.vertex_node[lost]],
-            bones,
-            nearest,
-            None if may_follow is None else may_follow[lost],
-        )
+        may_follow = None if allowed is None else allowed[np.ix_(lost, bones.joint)]
+        points = graph.nodes[graph.vertex_node[lost]]
+        straight = straight_to_nearest(points, bones, nearest, may_follow)
+        joint[np.ix_(measured, lost)] = _least(straight, bones)
+    return BoneDistances(joint, nearest_joints, bones, sources, fallback, graph)
 
-    joint = np.full((len(skeleton.joints), bone.shape[1]), np.inf)
+
+def _paths(
+    graph: CutCellGraph,
+    sources: Sources,
+    bones: Bones,
+    targets: NDArray[np.int32],
+    nearest_joints: int | None = None,
+    progress: Progress = silent,
+) -> NDArray[np.float64]:
+    """Measure from each joint that has bones, in ascending order, to the target nodes."""
+    if graph.connectivity == "any":
+        return any_angle_paths(graph, sources, bones, targets, nearest_joints, progress)
+    joints, place = np.unique(bones.joint, return_inverse=True)
+    owner = place[sources.bone].astype(np.int32)
+    # A joint's paths begin on all of its bones; where they share a node, on the nearest.
+    order = np.lexsort((sources.distance, sources.node, owner))
+    pairs = np.stack([owner, sources.node])[:, order]
+    first = order[np.diff(pairs, prepend=-1).any(axis=0)]
+    begin = Sources(sources.node[first], owner[first], sources.distance[first])
+    return shortest_paths(graph, begin, len(joints), targets, progress)
+
+
+def _least(distance: NDArray[np.float64], bones: Bones) -> NDArray[np.float64]:
+    """Reduce distances of bones (b, t) to those of the joints that have bones."""
     first = np.flatnonzero(np.diff(bones.joint, prepend=-1))
-    joint[bones.joint[first]] = np.minimum.reduceat(bone, first, axis=0)
-    return BoneDistances(joint, bone, bones, sources, fallback, graph)
+    return np.minimum.reduceat(distance, first, axis=0)
 
 
-def _allowed_bones(
-    graph: CutCellGraph, skeleton: Skeleton, bones: Bones, allowed: NDArray[np.bool_] | None
-) -> NDArray[np.bool_] | None:
-    """Turn joints allowed for each vertex into bones allowed, shape (n, b)."""
-    if allowed is None:
-        return None
+def _check_allowed(graph: CutCellGraph, skeleton: Skeleton, allowed: NDArray[np.bool_]) -> None:
     shape = (len(graph.vertex_node), len(skeleton.joints))
     if allowed.shape != shape:
         raise WeightsError(f"allowed has the shape {allowed.shape}, expected {shape}")
-    by_bone = allowed[:, bones.joint]
-    bad = np.flatnonzero(~by_bone.any(axis=1))
+    bad = np.flatnonzero(~allowed[:, skeleton.deform].any(axis=1))
     if len(bad):
         raise WeightsError(
             f"vertex {bad[0]} may follow no joint that carries weight "
             f"({len(bad)} vertices are so); check which joints its skin lists"
         )
-    return by_bone

@@ -9,12 +9,13 @@ from time import perf_counter
 import numpy as np
 from numpy.typing import NDArray
 
+from ..checks import check_integer
 from ..geodesics import FALLBACK_REASONS, BoneDistances, bone_distances
 from ..graph import CutCellGraph, build_graph, kernels_are_compiled
 from ..progress import Progress, silent
 from ..rig import Rig, Skeleton, TriangleMesh
 from .refine import refine_weights
-from .weights import skinning_weights
+from .weights import MOST_INFLUENCES, skinning_weights
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,6 +28,7 @@ class Binding:
         For the rig's own vertices, in their order.
     graph : CutCellGraph
     distances : BoneDistances
+        From as many of each vertex' nearest joints as it may follow.
     seconds : dict of str to float
         Time taken by each stage: "graph", "distances", "weights".
     warnings : tuple of str
@@ -94,6 +96,8 @@ def bind(
     >>> binding = cutcell.bind(rig)  # doctest: +SKIP
     >>> cutcell.save("bound.glb", rig.with_weights(binding.weights))  # doctest: +SKIP
     """
+    if max_influences is not None:
+        max_influences = check_integer("max_influences", max_influences, 1, MOST_INFLUENCES)
     if not kernels_are_compiled():
         progress("compile", 0.0)
         _compile(connectivity)
@@ -108,7 +112,13 @@ def bind(
     )
     ticks.append(perf_counter())
     distances = bone_distances(
-        graph, rig.skeleton, samples=samples, leaf=leaf, allowed=rig.allowed, progress=progress
+        graph,
+        rig.skeleton,
+        samples=samples,
+        leaf=leaf,
+        nearest_joints=max_influences,
+        allowed=rig.allowed,
+        progress=progress,
     )
     ticks.append(perf_counter())
     progress("weights", 0.0)
@@ -139,7 +149,8 @@ def _compile(connectivity: int | str) -> None:
     corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
     mesh = TriangleMesh(np.array(corners), np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]))
     graph = build_graph(mesh, 4, connectivity=connectivity)
-    bone_distances(graph, Skeleton(np.full((1, 3), 0.2), np.array([-1])))
+    distances = bone_distances(graph, Skeleton(np.full((1, 3), 0.2), np.array([-1])))
+    skinning_weights(distances)
 
 
 def _warnings(graph: CutCellGraph, distances: BoneDistances) -> tuple[str, ...]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 
@@ -28,12 +29,25 @@ def paper_kernel(
         Rows sum to one. A vertex that touches bones (d = 0) follows these alone: the limit
         of the formula.
     """
-    reached = np.isfinite(distance.T)
-    x = np.where(reached, distance.T / diagonal, 0)
-    steepness = np.where(reached, (1 - alpha) * x + alpha * x * x, np.inf)
-    # Relative to the nearest joint nothing overflows, however small the distances.
-    least = steepness.min(axis=1, keepdims=True)
-    ratio = np.divide(least, steepness, out=np.ones_like(steepness), where=steepness > 0)
-    weights = ratio * ratio
-    weights /= weights.sum(axis=1, keepdims=True)
+    weights = np.empty(distance.shape[::-1])
+    _paper_kernel(distance, diagonal, alpha, weights)
     return weights
+
+
+@njit(cache=True)
+def _paper_kernel(distance, diagonal, alpha, weights):
+    for v in range(len(weights)):
+        least = np.inf
+        for j in range(len(distance)):
+            x = distance[j, v] / diagonal
+            steepness = (1 - alpha) * x + alpha * x * x if x < np.inf else np.inf
+            weights[v, j] = steepness
+            least = min(least, steepness)
+        # Relative to the nearest joint nothing overflows, however small the distances.
+        total = 0.0
+        for j in range(len(distance)):
+            steepness = weights[v, j]
+            ratio = least / steepness if steepness > 0 else 1.0
+            weights[v, j] = ratio * ratio
+            total += ratio * ratio
+        weights[v] /= total

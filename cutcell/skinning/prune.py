@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 
@@ -21,7 +22,8 @@ def prune(
     max_influences : int or None
         Weights kept a vertex, at most; None keeps all.
     threshold : float
-        Weights below it are dropped; a vertex always keeps its largest.
+        Of those that are left, weights below it are dropped; a vertex always keeps its
+        largest.
     priority : array, shape (j,)
         The joints in the order in which they are kept among equal weights.
 
@@ -29,9 +31,34 @@ def prune(
     -------
     array, shape (n, j)
     """
-    largest = weights.max(axis=1, keepdims=True)
-    kept = np.where((weights >= threshold) | (weights == largest), weights, 0.0)
-    if max_influences is not None and max_influences < weights.shape[1]:
-        order = np.argsort(-kept[:, priority], axis=1, kind="stable")
-        np.put_along_axis(kept, priority[order[:, max_influences:]], 0.0, axis=1)
-    return kept / kept.sum(axis=1, keepdims=True)
+    most = weights.shape[1] if max_influences is None else max_influences
+    pruned = np.zeros_like(weights, order="C")
+    _prune(weights, most, threshold, priority, pruned)
+    return pruned
+
+
+@njit(cache=True)
+def _prune(weights, most, threshold, priority, pruned):
+    kept = np.empty(len(priority), np.intp)
+    for v in range(len(weights)):
+        count = 0
+        for joint in priority:
+            weight = weights[v, joint]
+            if weight == 0:
+                continue
+            if count < most:
+                count += 1
+            elif weight <= weights[v, kept[count - 1]]:
+                continue
+            place = count - 1
+            while place > 0 and weights[v, kept[place - 1]] < weight:
+                kept[place] = kept[place - 1]
+                place -= 1
+            kept[place] = joint
+        # Now the largest come first.
+        least = threshold * weights[v][kept[:count]].sum()
+        while count > 1 and weights[v, kept[count - 1]] < least:
+            count -= 1
+        total = weights[v][kept[:count]].sum()
+        for joint in kept[:count]:
+            pruned[v, joint] = weights[v, joint] / total

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..checks import check_choice, check_integer, check_number
+from ..errors import ParameterError
 from ..geodesics import BoneDistances
 from .kernel import paper_kernel
 from .prune import prune
@@ -32,9 +33,10 @@ def skinning_weights(
     alpha : float
         Its smoothness, 0 to 1.
     max_influences : int or None
-        Joints a vertex may follow, 1 or more; None for no limit.
+        Joints a vertex may follow, 1 or more; None for no limit. No more than
+        `distances` were measured from.
     threshold : float
-        Weights below it are dropped, 0 to 1.
+        Of the weights that are left, those below it are dropped, 0 to 1.
 
     Returns
     -------
@@ -44,7 +46,7 @@ def skinning_weights(
     Raises
     ------
     ParameterError
-        A parameter is out of its range.
+        A parameter is out of its range, or the distances hold too few joints.
 
     References
     ----------
@@ -55,6 +57,13 @@ def skinning_weights(
     threshold = check_number("threshold", threshold, 0, 1)
     if max_influences is not None:
         max_influences = check_integer("max_influences", max_influences, 1, MOST_INFLUENCES)
+    known = distances.nearest_joints
+    if known is not None and (max_influences is None or max_influences > known):
+        raise ParameterError(
+            f"max_influences is {max_influences}, but the distances were measured from the "
+            f"{known} nearest joints of each vertex alone: measure them again with more "
+            f"nearest_joints, or with None for all"
+        )
     weights = paper_kernel(distances.joint, distances.graph.lattice.diagonal, alpha)
     return prune(weights, max_influences, threshold, _by_position(distances))
 

@@ -54,12 +54,12 @@ def test_the_same_distances_from_the_same_sources():
     skeleton = Skeleton((joints + 0.5) @ TURN.T, [-1, 0, 1])
     graph = build_graph(mesh, 16, connectivity=6)
     ours = bone_distances(graph, skeleton)
-    count = len(ours.bone)
+    count = len(ours.bones.joint)
     augmented = recipe.with_bones(
         graph.csr(), ours.source_bone, ours.source_node, ours.source_distance, count
     )
     theirs = recipe.scipy_distances(augmented, count, graph.vertex_node)
-    np.testing.assert_allclose(ours.bone, theirs, rtol=1e-6, atol=1e-9)
+    np.testing.assert_allclose(ours.joint, theirs, rtol=1e-6, atol=1e-9)
 
 
 def test_nearly_the_same_weights():

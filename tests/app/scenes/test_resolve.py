@@ -142,7 +142,7 @@ def test_the_weights_of_all_bones_or_of_one(state, binding):
 def test_the_distance_on_the_surface(state, binding):
     state.panel = "geodesics"
     scene = resolve(state)
-    distance = binding.distances.joint[1]
+    distance = binding.distances.on_mesh(1)
     np.testing.assert_allclose(scene.actors["body"].scalars, distance, rtol=1e-5, atol=1e-6)
     assert "elbow" in scene.legend.title
 

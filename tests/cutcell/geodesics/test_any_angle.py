@@ -1,11 +1,14 @@
 """Any-angle distances are the geodesic ones: in the open, around corners, beside walls."""
 
+import itertools
+
 import numpy as np
 import pytest
 import trimesh
 
-from cutcell import Skeleton, TriangleMesh, bone_distances, build_graph
+from cutcell import ParameterError, Skeleton, TriangleMesh, bone_distances, build_graph
 from cutcell.geodesics import distance_to_segment
+from cutcell.geodesics.any_angle import SPAN
 from tests import meshes
 from tests.bars import fork
 
@@ -109,3 +112,77 @@ def test_nothing_is_seen_across_a_gap_thinner_than_a_cell(resolution):
     tip = (x > 0.99) & (y < 0.11)
     assert (distance[4, tip] > 0.45).all()
     assert (distance[2, tip] < 0.12).all()
+
+
+def chain_in_the_l():
+    """Put twelve joints, one of them forked, into both arms of the L-bar."""
+    vertices, faces = l_bar()
+    lower = [[x, 0.12, 0.12] for x in np.linspace(0.9, 0.15, 6)]
+    upper = [[0.13, y, 0.12] for y in np.linspace(0.3, 0.9, 5)]
+    skeleton = Skeleton([*lower, *upper, [0.5, 0.2, 0.2]], [*range(-1, 10), 2])
+    return build_graph(TriangleMesh(vertices, faces), 24, connectivity="any"), skeleton
+
+
+@pytest.mark.parametrize("nearest", [1, 3, 5])
+def test_the_nearest_joints_are_those_of_all(nearest):
+    graph, skeleton = chain_in_the_l()
+    every = bone_distances(graph, skeleton).joint
+    few = bone_distances(graph, skeleton, nearest_joints=nearest)
+    assert few.nearest_joints == nearest
+    assert (np.isfinite(few.joint).sum(axis=0) == nearest).all()
+    found, expected = (np.sort(d, axis=0)[:nearest] for d in (few.joint, every))
+    # Where a joint is just about to be too far, what lies beside the line of sight may not
+    # know it any more: such paths bend a little.
+    error = np.abs(found / expected - 1)
+    assert (error < 1e-9).mean() > 0.95
+    assert error.mean() < 3e-4
+    assert error.max() < 0.03
+
+
+def test_all_joints_are_measured_where_as_many_are_wanted():
+    graph, skeleton = chain_in_the_l()
+    every = bone_distances(graph, skeleton)
+    assert np.isfinite(every.joint).all()
+    enough = bone_distances(graph, skeleton, nearest_joints=12)
+    np.testing.assert_array_equal(enough.joint, every.joint)
+    # Joint by joint, as `field` does it, gives the same as all together.
+    for joint in (0, 2, 7):
+        alone = every.field(joint)[graph.vertex_node]
+        np.testing.assert_allclose(alone, every.joint[joint], rtol=1e-9)
+    few = bone_distances(graph, skeleton, nearest_joints=2)
+    np.testing.assert_array_equal(few.on_mesh(7), every.on_mesh(7))
+    with pytest.raises(ParameterError, match="nearest_joints must be a whole number from 1"):
+        bone_distances(graph, skeleton, nearest_joints=0)
+
+
+def test_distances_repeat_to_the_last_bit():
+    graph, skeleton = chain_in_the_l()
+    once, again = (bone_distances(graph, skeleton, nearest_joints=4).joint for _ in range(2))
+    np.testing.assert_array_equal(once, again)
+
+
+def test_what_lies_beyond_the_last_bucket_is_reached_in_order():
+    # Paths longer than the span that buckets are made for.
+    turns, thin = 9, 0.04
+    y = np.arange(turns) * 2 * thin
+    corners = [[0, 0]]
+    x = 0.0
+    for k in range(turns):
+        x = 1.0 - x
+        corners += [[x, y[k]], [x, y[k] + 2 * thin]] if k < turns - 1 else [[x, y[k]]]
+    tube = ribbon(np.array(corners), 0.6 * thin)
+    start = np.array([0.02, 0, 0])
+    found = distances_from(*tube, start, start, 96)
+    assert np.isfinite(found).all()
+    assert found.max() > 1.0 * (SPAN + 1)
+
+
+def ribbon(corners, half):
+    """Extrude a polyline of axis-parallel pieces into a duct with square cross-sections."""
+    boxes = []
+    for a, b in itertools.pairwise(corners):
+        low, high = np.minimum(a, b) - half, np.maximum(a, b) + half
+        box = trimesh.creation.box(bounds=[[*low, -half], [*high, half]])
+        boxes.append(box)
+    mesh = trimesh.util.concatenate(boxes)
+    return np.array(mesh.vertices), np.array(mesh.faces, np.int32)

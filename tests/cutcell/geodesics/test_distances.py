@@ -48,7 +48,7 @@ def test_distances_equal_the_slow_ones(name, leaf, connectivity):
         slow = naive.shortest_paths(len(graph.nodes), graph.edges, graph.lengths, sources)
         reached = distances.fallback == REACHED
         np.testing.assert_allclose(
-            distances.bone[b, reached], slow[graph.vertex_node][reached], rtol=1e-12
+            distances.joint[b, reached], slow[graph.vertex_node][reached], rtol=1e-12
         )
         if np.isfinite(slow).all():
             joint = distances.bones.joint[b]
@@ -69,7 +69,7 @@ def test_distances_equal_scipy_on_a_large_graph():
         data = np.concatenate([matrix.data, distances.source_distance[mine]])
         linked = csr_array((data, (row, col)), shape=(count + 1, count + 1))
         expected = dijkstra(linked, indices=count)[graph.vertex_node]
-        np.testing.assert_allclose(distances.bone[b], expected, rtol=1e-12)
+        np.testing.assert_allclose(distances.joint[b], expected, rtol=1e-12)
 
 
 def test_sources_are_the_nearest_nodes():
@@ -91,10 +91,13 @@ def test_sources_are_the_nearest_nodes():
 
 def test_a_joint_is_as_near_as_its_nearest_bone():
     fork = Skeleton([[0.5, 0.5, 0.5], [0.6, 0.5, 0.7], [0.4, 0.5, 0.7]], [-1, 0, 0])
-    graph = build_graph(TriangleMesh(*meshes.ball()), 12)
+    graph = build_graph(TriangleMesh(*meshes.ball()), 12, connectivity="any")
     distances = bone_distances(graph, fork)
     assert distances.bones.joint.tolist() == [0, 0, 1, 2]
-    np.testing.assert_array_equal(distances.joint[0], distances.bone[:2].min(axis=0))
+    bones = distances.bones
+    unit = graph.nodes[graph.vertex_node]
+    straight = distance_to_segment(unit[:, None], bones.start[:2], bones.end[:2]).min(axis=1)
+    np.testing.assert_allclose(distances.joint[0], straight)
     np.testing.assert_array_equal(distances.field(1)[graph.vertex_node], distances.joint[1])
 
 
@@ -126,10 +129,10 @@ def test_parts_that_no_path_reaches_follow_three_bones():
     distances = bone_distances(graph, chain)
     lost = np.arange(len(vertices)) >= len(vertices) - 8
     np.testing.assert_array_equal(distances.fallback == UNREACHED, lost)
-    assert (np.isfinite(distances.bone[:, lost]).sum(axis=0) == 3).all()
+    assert (np.isfinite(distances.joint[:, lost]).sum(axis=0) == 3).all()
     unit = graph.lattice.to_unit(vertices[-1])
     straight = distance_to_segment(unit, distances.bones.start, distances.bones.end)
-    np.testing.assert_allclose(np.sort(distances.bone[:, -1])[:3], np.sort(straight)[:3])
+    np.testing.assert_allclose(np.sort(distances.joint[:, -1])[:3], np.sort(straight)[:3])
     assert "no path" in FALLBACK_REASONS[UNREACHED]
 
 
@@ -140,7 +143,7 @@ def test_unused_vertices_fall_back_and_never_become_sources():
     distances = bone_distances(graph, ARM)
     assert distances.fallback[-1] == UNUSED
     assert graph.vertex_node[-1] not in distances.source_node
-    assert np.isfinite(distances.bone[:, -1]).all()
+    assert np.isfinite(distances.joint[:, -1]).all()
 
 
 def test_a_vertex_follows_only_joints_its_file_can_store():

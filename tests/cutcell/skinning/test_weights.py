@@ -64,3 +64,14 @@ def test_pruning_keeps_the_largest():
 def test_parameters_are_checked(distances, name, value, sentence):
     with pytest.raises(ParameterError, match=sentence):
         skinning_weights(distances, **{name: value})
+
+
+@pytest.mark.parametrize("influences", [4, None])
+def test_more_influences_than_joints_were_measured(influences):
+    graph = build_graph(TriangleMesh(*meshes.ball()), 8, connectivity="any")
+    few = bone_distances(graph, CHAIN, nearest_joints=3)
+    with pytest.raises(ParameterError, match="measured from the 3 nearest joints"):
+        skinning_weights(few, max_influences=influences)
+    # The nearest joints weigh most: the others would have been pruned.
+    every = skinning_weights(bone_distances(graph, CHAIN), max_influences=3)
+    np.testing.assert_allclose(skinning_weights(few, max_influences=3), every, atol=1e-9)
