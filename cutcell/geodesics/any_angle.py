@@ -28,7 +28,7 @@ from ..graph import CutCellGraph
 from ..graph.interior import OUTSIDE, point_number
 from ..progress import Progress, silent
 from ..threads import in_threads
-from .bones import Bones, Sources
+from .bones import TIE, Bones, Sources
 from .heap import heap_pop, heap_push
 from .queue import END, SETTLED, bucket_of, bucket_queue, join, leave
 
@@ -249,13 +249,17 @@ def _settle(adjacency, body, bones, labels, queue, first, last):
                 if slot < 0 or after[slot] == SETTLED:
                     continue
                 new_anchor = a
+                # Of joints equally near, the first by position stays.
+                limit = distance[slot]
+                if joint[slot] != j:
+                    limit *= 1 + TIE if j < joint[slot] else 1 - TIE
                 reached = before + _straight(body, bones, each, a, v, bend)
-                if reached >= distance[slot]:
+                if reached >= limit:
                     continue  # a bend at u would be no shorter
                 if not _sees(body, labels, u, v, lengths[e], a, bend):
                     new_anchor = label
                     reached = d + lengths[e]
-                    if reached >= distance[slot]:
+                    if reached >= limit:
                         continue
                 leave(queue, slot)
                 joint[slot], distance[slot], anchor[slot] = j, reached, new_anchor

@@ -6,6 +6,10 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+EQUAL = 1 + 1e-9
+"""Times a weight: what is less counts as equal to it. Two bones that meet in a joint weigh the
+same wherever that joint is the nearest of both, and rounding must not choose between them."""
+
 
 def prune(
     weights: NDArray[np.float64],
@@ -48,10 +52,10 @@ def _prune(weights, most, threshold, priority, pruned):
                 continue
             if count < most:
                 count += 1
-            elif weight <= weights[v, kept[count - 1]]:
+            elif weight <= EQUAL * weights[v, kept[count - 1]]:
                 continue
             place = count - 1
-            while place > 0 and weights[v, kept[place - 1]] < weight:
+            while place > 0 and EQUAL * weights[v, kept[place - 1]] < weight:
                 kept[place] = kept[place - 1]
                 place -= 1
             kept[place] = joint

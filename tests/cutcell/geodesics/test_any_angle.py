@@ -136,7 +136,7 @@ def test_the_nearest_joints_are_those_of_all(nearest):
     error = np.abs(found / expected - 1)
     assert (error < 1e-9).mean() > 0.95
     assert error.mean() < 3e-4
-    assert error.max() < 0.03
+    assert error.max() < 0.15
 
 
 def test_all_joints_are_measured_where_as_many_are_wanted():
