@@ -321,9 +321,7 @@ def _sees(body, labels, u, v, step, a, bend):
             for slot in range(w * each, w * each + each):
                 follows |= anchor[slot] == a
             # Across a gap thinner than a cell the next point is no neighbour.
-            if follows and _walk(
-                table, whole, resolution, (x, y, z), (x + sx, y + sy, z + sz)
-            ):
+            if follows and _walk(table, whole, resolution, (x, y, z), (x + sx, y + sy, z + sz)):
                 return True
     cell = int(bend[0] * resolution), int(bend[1] * resolution), int(bend[2] * resolution)
     return _walk(table, whole, resolution, (x, y, z), cell)
