@@ -98,7 +98,7 @@ def material(resolution: int, vertices: int) -> Material:
     clip = swing(rig, BONES // 4, "x", 50.0)
     poses = [pose_in_scene(rig, clip.transforms[k]) for k in np.linspace(1, 20, 6).astype(int)]
     joints = np.linspace(1, BONES - 2, 6).astype(int)
-    fields = [_up_to_one(bound.distances.joint[joint]) for joint in joints]
+    fields = [_up_to_one(bound.distances.on_mesh(joint)) for joint in joints]
     actors = {
         "body": body(rig, bound.weights, scalars=fields[0], colormap="distance"),
         **graph_scene(rig, bound.graph).actors,

@@ -63,13 +63,16 @@ def take_numbers(session: Session, what: str, ending: str, done: Done) -> None:
     if binding is None:
         session.state.message = ("info", "There are no numbers to save yet.")
         return
-    tables = {"weights": binding.weights, "distances": binding.distances.joint.T}
-    chosen = tables if what == "all" else {what: tables[what]}
     path = session.folder / f"{_stem(session)}-{'numbers' if what == 'all' else what}.{ending}"
 
     def work(progress: Progress) -> tuple[str, bytes]:
+        tables = {}
+        if what != "distances":
+            tables["weights"] = binding.weights
+        if what != "weights":
+            tables["distances"] = binding.distances.all_joints(progress).T
         progress("writing the numbers", 0.0)
-        save_numbers(path, rig, **chosen)
+        save_numbers(path, rig, **tables)
         return _taken(path)
 
     session.start(work, lambda result: done(*result))

@@ -63,7 +63,8 @@ def any_angle_paths(
     sources : Sources
         Nodes that see the bone.
     bones : Bones
-        In the unit cube; paths start on any bone of a joint.
+        In the unit cube. Paths start on any bone of a joint; to tell bones apart, give each
+        a joint of its own.
     targets : array, shape (t,), int32
         Nodes whose distances are wanted.
     nearest : int, optional

@@ -96,6 +96,17 @@ class BoneDistances:
         through = self.field(joint)[self.graph.vertex_node]
         return np.where(self.fallback == REACHED, through, self.joint[joint])
 
+    def all_joints(self, progress: Progress = silent) -> NDArray[np.float64]:
+        """Compute all joints' distances at every vertex, nearest or not, shape (j, n)."""
+        if self.nearest_joints is None:
+            return self.joint
+        by_node = _paths(self.graph, self.sources, self.bones, _on_mesh(self.graph), None, progress)
+        joint = self.joint.copy()
+        reached = np.flatnonzero(self.fallback == REACHED)
+        place = np.ix_(np.unique(self.bones.joint), reached)
+        joint[place] = by_node[:, self.graph.vertex_node[reached]]
+        return joint
+
 
 def bone_distances(
     graph: CutCellGraph,
@@ -162,10 +173,7 @@ def bone_distances(
         _check_allowed(graph, skeleton, allowed)
     sources = find_sources(graph, bones, samples)
 
-    # Mesh vertices are the graph's first nodes; the file's own vertices share them.
-    welded = int(graph.vertex_node.max()) + 1
-    targets = np.arange(welded, dtype=np.int32)
-    by_node = _paths(graph, sources, bones, targets, nearest_joints, progress)
+    by_node = _paths(graph, sources, bones, _on_mesh(graph), nearest_joints, progress)
     measured = np.unique(bones.joint)
     joint = np.full((len(skeleton.joints), len(graph.vertex_node)), np.inf)
     joint[measured] = by_node[:, graph.vertex_node]
@@ -183,6 +191,11 @@ def bone_distances(
         straight = straight_to_nearest(points, bones, nearest, may_follow)
         joint[np.ix_(measured, lost)] = _least(straight, bones)
     return BoneDistances(joint, nearest_joints, bones, sources, fallback, graph)
+
+
+def _on_mesh(graph: CutCellGraph) -> NDArray[np.int32]:
+    """List the nodes of the mesh: the graph's first ones, shared by the file's vertices."""
+    return np.arange(int(graph.vertex_node.max()) + 1, dtype=np.int32)
 
 
 def _paths(

@@ -151,6 +151,8 @@ def test_all_joints_are_measured_where_as_many_are_wanted():
         np.testing.assert_allclose(alone, every.joint[joint], rtol=1e-9)
     few = bone_distances(graph, skeleton, nearest_joints=2)
     np.testing.assert_array_equal(few.on_mesh(7), every.on_mesh(7))
+    np.testing.assert_array_equal(few.all_joints(), every.joint)
+    assert every.all_joints() is every.joint
     with pytest.raises(ParameterError, match="nearest_joints must be a whole number from 1"):
         bone_distances(graph, skeleton, nearest_joints=0)
 
