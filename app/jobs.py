@@ -16,6 +16,9 @@ Schedule = Callable[[Callable[[], Any]], Any]
 COMPUTING = threading.Lock()
 """Numeric libraries share one pool of threads: sessions compute in turn."""
 
+COMPARING = threading.Lock()
+"""Methods that are compared may take minutes: nobody else waits for them."""
+
 DRAWING = threading.Lock()
 """Pictures and films are drawn in turn, while others compute."""
 

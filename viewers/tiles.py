@@ -31,9 +31,11 @@ def tiles(count: int, size: tuple[int, int], shape: float = 0.75) -> list[Tile]:
 
     columns = max(range(1, max(count, 1) + 1), key=seen)
     rows = ceil(count / columns)
-    lefts = [round(width * k / columns) for k in range(columns + 1)]
-    tops = [round(height * k / rows) for k in range(rows + 1)]
-    return [
-        (lefts[c], tops[r], lefts[c + 1] - lefts[c], tops[r + 1] - tops[r])
-        for r, c in (divmod(k, columns) for k in range(count))
-    ]
+    places = []
+    for k in range(count):
+        row, column = divmod(k, columns)
+        along = min(columns, count - row * columns)  # the last row shares what it has
+        left, right = (round(width * c / along) for c in (column, column + 1))
+        top, bottom = (round(height * r / rows) for r in (row, row + 1))
+        places.append((left, top, right - left, bottom - top))
+    return places

@@ -6,6 +6,6 @@ are what the panels call.
 
 from __future__ import annotations
 
-from . import geodesics, pose
+from . import compare, geodesics, pose
 
-WATCHERS = (geodesics.watch, pose.watch)
+WATCHERS = (geodesics.watch, pose.watch, compare.watch)

@@ -51,9 +51,10 @@ const STYLE = `
   white-space: nowrap; }
 .stage { container-type: inline-size; }
 @container (max-width: 900px) {
-  .moving .legend { bottom: 70px; } .moving .hint { display: none; }
+  .moving .legend { bottom: 70px; }
   .transport { width: calc(100% - 32px); max-width: 460px; } }
 @container (max-width: 560px) { .hint { display: none; } }
+.moving .hint { display: none; }
 .hint { right: 16px; bottom: 16px; padding: 0; background: none; opacity: .5; backdrop-filter: none; }
 .failed { inset: 0; margin: auto; width: min(420px, 80%); height: max-content; padding: 20px;
   font-size: 14px; text-align: center; }

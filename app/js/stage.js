@@ -155,11 +155,13 @@ class Stage {
       const [i, j] = [(k + 1) % 3, (k + 2) % 3]
       return direction[i] * right[j] - direction[j] * right[i]
     })
+    // Captions stand above, so as much stays free below.
+    const room = this.views.length > 1 ? Math.min(84, h / 3) : 0
     let distance = 0
     for (let corner = 0; corner < 8; corner++) {
       const p = [0, 1, 2].map((i) => b[2 * i + (corner >> i & 1)] - target[i])
       const along = (v) => p[0] * v[0] + p[1] * v[1] + p[2] * v[2]
-      const needed = Math.max(Math.abs(along(up)), Math.abs(along(right)) * h / Math.max(w, 1))
+      const needed = Math.max(Math.abs(along(up)) * h / (h - room), Math.abs(along(right)) * h / Math.max(w, 1))
       distance = Math.max(distance, needed / slope + along(direction))
     }
     return 1.08 * distance
@@ -204,6 +206,7 @@ function tiles(count, width, height, shape) {
   const rows = Math.ceil(count / columns)
   return Array.from({length: count}, (_, k) => {
     const [c, r] = [k % columns, Math.floor(k / columns)]
-    return [width * c / columns, height * r / rows, width / columns, height / rows]
+    const along = Math.min(columns, count - r * columns)  // the last row shares what it has
+    return [width * c / along, height * r / rows, width / along, height / rows]
   })
 }

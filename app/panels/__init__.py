@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ..session import Session
+from .compare import compare
 from .geodesics import geodesics
 from .graph import graph
 from .pose import pose
@@ -63,6 +64,12 @@ PANELS = (
         '<circle cx="13" cy="4.5" r="2"/><path d="M13 7.5l-2 6 3.5 2.5 1 5M11 13.5L8 21M5 11.5l'
         '3.5-3L13 8l3 3.5 3.5.5"/>',
         pose,
+    ),
+    Panel(
+        "compare",
+        "Compare",
+        '<path d="M4 5h6v14H4zM14 5h6v14h-6zM12 2.5v19"/>',
+        compare,
     ),
 )
 """In the order in which they are offered; the ids are those of `state.PANELS`."""

@@ -8,6 +8,7 @@ from viewers.description import Description
 
 from ..state import State
 from .common import plain
+from .compare import compare
 from .geodesics import geodesics
 from .graph import graph
 from .memo import Memo
@@ -21,6 +22,7 @@ SCENES: dict[str, Callable[[State, Memo], Description]] = {
     "geodesics": geodesics,
     "weights": weights,
     "pose": pose,
+    "compare": compare,
 }
 """The scene of each panel, for a state with a rig."""
 

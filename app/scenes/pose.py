@@ -139,8 +139,10 @@ def angles_of(
         z = np.arctan2(rotation[1, 0], rotation[0, 0])
     one = np.degrees([x, y, z])
     other = np.degrees([x + np.pi, np.pi - y, z + np.pi])
-    both = [(option + 180) % 360 - 180 for option in (one, other)]
-    best = min(both, key=lambda angles: float(np.abs(angles - near).sum()))
+    # By the shortest way round; half a turn keeps the sign that it had.
+    ways = [(option - near + 180) % 360 - 180 for option in (one, other)]
+    best = near + min(ways, key=lambda way: float(np.abs(way).sum()))
+    best -= 360 * np.round(best / 360 * (1 - 1e-12))
     return tuple(float(round(angle, 1)) + 0.0 for angle in best)  # type: ignore[return-value]
 
 

@@ -6,6 +6,7 @@ One object a browser session, made of one class a panel. It knows no widget and 
 from __future__ import annotations
 
 from .common import PANELS, UNSEEN, Common
+from .compare import CompareChoices
 from .geodesics import GeodesicsChoices
 from .graph import LAYERS, GraphChoices
 from .pose import PoseChoices
@@ -17,5 +18,5 @@ MAX_UPLOAD = 200 * 1024 * 1024
 """The largest file that the page takes, in bytes."""
 
 
-class State(GraphChoices, GeodesicsChoices, WeightsChoices, PoseChoices, Common):
+class State(GraphChoices, GeodesicsChoices, WeightsChoices, PoseChoices, CompareChoices, Common):
     """What the page shows."""

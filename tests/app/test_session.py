@@ -288,3 +288,36 @@ def test_what_is_told_reads_well(session):
     assert stage_text("") == "Starting"
     assert summary(session.state) == ""
     assert warning(session.state) is None
+
+
+def test_methods_are_compared_one_after_the_other_and_one_that_fails_stops_none(
+    bound, loop, monkeypatch
+):
+    from app.actions.compare import cancel
+    from cutcell.baselines import METHODS, BaselineBinding
+
+    def fails(rig):
+        return BaselineBinding(None, failed="it cannot")
+
+    def breaks(rig):
+        raise ZeroDivisionError("oops")
+
+    monkeypatch.setitem(METHODS, "fails", fails)
+    monkeypatch.setitem(METHODS, "breaks", breaks)
+    state = bound.state
+    state.param.update(panel="compare", methods=["now", "fails", "breaks", "euclidean"])
+    loop.run_until(lambda: len(state.compared) == 4 and not state.comparing, 60)
+    assert state.compared["fails"].failed == "it cannot"
+    assert "oops" in state.compared["breaks"].failed
+    assert state.compared["euclidean"].weights.shape == state.rig.weights.shape
+    assert state.compared["now"].source is state.binding
+    before = state.compared["now"]
+    bound.bind()
+    loop.run_until(lambda: state.compared["now"] is not before, 60)
+    state.param.update(methods=["now", "voxel"])
+    cancel(bound)
+    assert state.comparing != "voxel"
+    assert "voxel" not in state.methods
+    bound.open_rig(arm_rig())
+    assert state.compared == {}
+    loop.run_until(lambda: state.binding is not None)

@@ -41,6 +41,7 @@ def test_angles_make_the_rotation_that_they_are_read_from(x, y, z):
 def test_of_the_angles_that_make_a_rotation_the_nearest_are_taken(x, y, z):
     found = np.array(angles_of(rotation_of((x, y, z)), (x, y, z)))
     off = (found - (x, y, z) + 180) % 360 - 180
+    assert np.abs(found).max() <= 180
     assert np.abs(off).max() < 4  # within rounding, which near the pole weighs most
 
 

@@ -1,0 +1,178 @@
+"""Computes what is compared: one method after the other, none stopped by another's failure."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from inspect import signature
+from typing import TYPE_CHECKING, Any
+
+from numpy.typing import NDArray
+
+from cutcell.baselines import METHODS, Method
+from cutcell.errors import CutcellError
+from cutcell.metrics import (
+    DeformationError,
+    deformation_error,
+    unweighted,
+    vertex_shares,
+    weight_l1,
+)
+from cutcell.progress import Progress
+from cutcell.rig import Rig
+
+from ..jobs import COMPARING
+from ..scenes.compare import found_of
+from ..state import State
+from ..state.compare import MOST_VIEWS, NOW
+
+if TYPE_CHECKING:
+    from ..session import Session
+
+
+@dataclass(frozen=True, eq=False)
+class Compared:
+    """What one method makes of the rig.
+
+    Parameters
+    ----------
+    rig : Rig
+    weights : array, shape (n, j), or None
+        None where it failed.
+    failed : str
+        Why, in a sentence.
+    seconds : float
+    l1, deformation : float or None
+        Against the file's own weights: the paper's weight error, and its squared distance
+        in motion in cm²; None where the file has none.
+    unweighted : float or None
+        Share of the surface's places without weight.
+    errors : DeformationError or None
+    source
+        What it was computed from, to tell whether it is out of date.
+    """
+
+    rig: Rig
+    weights: NDArray | None
+    failed: str = ""
+    seconds: float | None = None
+    l1: float | None = None
+    deformation: float | None = None
+    unweighted: float | None = None
+    errors: DeformationError | None = None
+    source: Any = None
+
+
+def watch(session: Session) -> None:
+    """Compute what is wanted and not there, while the panel is looked at."""
+    state = session.state
+    state.param.watch(lambda *events: _forget(session), ["rig", "resolution"])
+    state.param.watch(lambda *events: find(session), ["panel", "binding", "methods"])
+
+
+def choose(session: Session, name: str, chosen: bool) -> None:
+    """Put a method beside the others, or take it away; two to four stay."""
+    state = session.state
+    names = [one for one in state.methods if one != name]
+    if chosen:
+        names = [one for one in methods(state) if one in {*names, name}]
+    if 2 <= len(names) <= MOST_VIEWS:
+        minus = state.minus if state.minus in names else ""
+        state.param.update(methods=names, minus=minus)
+
+
+def methods(state: State) -> list[str]:
+    """Return all methods by name: what is on the page, and those that are registered."""
+    known = [name for name in METHODS if name != "artist"]
+    own = ["artist"] if state.rig is not None and state.rig.weights is not None else []
+    return [NOW, *own, *known]
+
+
+def wanted(state: State) -> str | None:
+    """Return the next method to be computed, or None."""
+    for name in state.methods:
+        if found_of(state, name) is None:
+            return name
+    return None
+
+
+def find(session: Session) -> None:
+    """Start computing, unless that goes on already."""
+    state, jobs = session.state, session.jobs("compare")
+    if state.panel != "compare" or state.binding is None or jobs.running:
+        return
+    name = wanted(state)
+    if name is None:
+        state.comparing = ""
+        return
+    rig, binding, resolution = state.rig, state.binding, state.resolution
+    state.comparing = name
+
+    def work(progress: Progress) -> Compared:
+        return measured(rig, name, binding, resolution, progress)
+
+    def done(found: Compared) -> None:
+        state.param.update(compared={**state.compared, name: found}, comparing="")
+        find(session)
+
+    def failed(error: Exception) -> None:
+        session.fail(error)
+        done(
+            Compared(
+                rig, None, f"something unexpected went wrong ({type(error).__name__}: {error})"
+            )
+        )
+
+    jobs.start(work, done, failed, lambda stage, fraction: None, COMPARING)
+
+
+def cancel(session: Session) -> None:
+    """Stop what is being computed; it and what waits are taken off the page."""
+    state = session.state
+    session.jobs("compare").cancel()
+    there = [name for name in state.methods if name in state.compared or name == NOW]
+    spare = [name for name in ("artist", "euclidean") if name in methods(state)]
+    names = (there + [name for name in spare if name not in there])[: max(len(there), 2)]
+    state.param.update(comparing="", methods=names)
+
+
+def measured(rig: Rig, name: str, binding: Any, resolution: int, progress: Progress) -> Compared:
+    """Return what a method makes of a rig; a failure that it knows of is its result."""
+    progress(name, 0.0)
+    if name == NOW:
+        weights, seconds, source = binding.weights, binding.seconds, binding
+    else:
+        try:
+            method = METHODS[name]
+            found = method(rig, **options_of(method, resolution=resolution, progress=progress))
+        except CutcellError as error:
+            return Compared(rig, None, str(error))
+        if found.weights is None:
+            return Compared(rig, None, found.failed, float(sum(found.seconds.values())))
+        weights, seconds, source = found.weights, found.seconds, None
+    progress(name, 0.9)
+    share = vertex_shares(rig.mesh)
+    total, none = float(sum(seconds.values())), unweighted(weights, share)
+    if rig.weights is None:
+        return Compared(rig, weights, seconds=total, unweighted=none, source=source)
+    errors = deformation_error(rig, weights, rig.weights)
+    l1 = weight_l1(weights, rig.weights, share)
+    return Compared(rig, weights, "", total, l1, errors.mean, none, errors, source)
+
+
+def options_of(method: Method, **options: Any) -> Mapping[str, Any]:
+    """Return those options that a method knows."""
+    known = signature(method).parameters
+    every = any(one.kind is one.VAR_KEYWORD for one in known.values())
+    return {name: value for name, value in options.items() if every or name in known}
+
+
+def _forget(session: Session) -> None:
+    state = session.state
+    session.jobs("compare").cancel()
+    names = [name for name in state.methods if name in methods(state)]
+    if len(names) < 2:
+        names = [NOW, "euclidean"]
+    if state.rig is not None and state.rig.weights is not None and not state.compared:
+        names = [NOW, "artist", "euclidean"]
+    state.param.update(compared={}, comparing="", methods=names, minus="")

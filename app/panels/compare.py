@@ -1,0 +1,158 @@
+"""Methods side by side: which, what of them is seen, and how good they are."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import panel_material_ui as pmui
+
+from ..actions import compare as actions
+from ..actions import pose as moving
+from ..methods import Methods
+from ..scenes.compare import found_of, title_of
+from ..session import Session
+from ..state import State
+from ..state.compare import MOST_VIEWS
+from .parts import GAP, caption, choice, section, when
+
+FIELDS = {"Chosen bone": "bone", "All bones": "all", "Error": "error"}
+COLUMNS = [
+    ("L1", "Weight error against the file's own: 0 the same, 2 nothing in common"),
+    ("cm²", "Deformation error against the file's own, the longest side scaled to 1 m"),
+    ("s", "Seconds it took"),
+]
+WATCHED = ["methods", "compared", "comparing", "binding", "rig"]
+
+
+def compare(session: Session) -> pmui.Column:
+    """Return the controls of the panel Compare."""
+    state = session.state
+    table = Methods(
+        lambda name, chosen: actions.choose(session, name, chosen),
+        columns=COLUMNS,
+        sizing_mode="stretch_width",
+        margin=(2, 0, 6, 0),
+    )
+
+    def listed(*events: Any) -> None:
+        table.rows = rows_of(state)
+
+    state.param.watch(listed, WATCHED)
+    listed()
+    stop = pmui.Button(
+        label="Stop computing",
+        size="small",
+        variant="outlined",
+        margin=GAP,
+        sizing_mode="stretch_width",
+        visible=when(bool, state.param.comparing),
+        on_click=lambda event: actions.cancel(session),
+    )
+    return section(
+        "Compare",
+        caption("Two to four methods, one camera. Errors are against the file's own weights."),
+        choice(state.param.compare_field, FIELDS),
+        _minus(state),
+        table,
+        stop,
+        _motion(session),
+    )
+
+
+def _minus(state: State) -> pmui.Select:
+    select = pmui.Select(
+        label="Difference to", options={}, size="small", margin=GAP, sizing_mode="stretch_width",
+        visible=when(lambda field: field != "error", state.param.compare_field),
+    )  # fmt: skip
+
+    def listed(*events: Any) -> None:
+        named = {title_of(name): name for name in state.methods}
+        select.param.update(options={"None: each by itself": "", **named}, value=state.minus)
+
+    def chosen(event: Any) -> None:
+        if event.new is not None:
+            state.minus = event.new
+
+    state.param.watch(listed, ["methods", "minus"])
+    select.param.watch(chosen, "value")
+    listed()
+    return select
+
+
+def _motion(session: Session) -> pmui.Row:
+    state = session.state
+    play = pmui.Button(
+        label=when(lambda on: "Pause" if on else "Play", state.param.playing),
+        icon=when(lambda on: "pause" if on else "play_arrow", state.param.playing),
+        size="small",
+        variant="outlined",
+        margin=(4, 8, 4, 0),
+        sizing_mode="stretch_width",
+        on_click=lambda event: moving.play(session),
+    )
+    rest = pmui.Button(
+        label="Rest pose",
+        size="small",
+        variant="outlined",
+        margin=GAP,
+        sizing_mode="stretch_width",
+        on_click=lambda event: moving.rest(session),
+        disabled=when(lambda *_: not state.posed, state.param.turns, state.param.moving),
+    )
+    return pmui.Row(play, rest, margin=0, sizing_mode="stretch_width")
+
+
+def rows_of(state: State) -> list[dict[str, Any]]:
+    """Return the rows of the table, as `js/methods.js` takes them."""
+    names = actions.methods(state)
+    found = {name: found_of(state, name) for name in names}
+    best = {
+        measure: min(
+            (getattr(one, measure) for name, one in found.items()
+             if one is not None and name != "artist" and getattr(one, measure) is not None),
+            default=None,
+        )
+        for measure in ("l1", "deformation")
+    }  # fmt: skip
+    rows = []
+    for name in names:
+        one, chosen = found[name], name in state.methods
+        note, kind = _note(state, name, one, chosen)
+        values = (None,) * 3 if one is None else (one.l1, one.deformation, one.seconds)
+        if name == "artist":
+            values = (*values[:2], None)  # nobody knows how long that took
+        full = len(state.methods) >= MOST_VIEWS
+        rows.append(
+            {
+                "id": name,
+                "title": title_of(name),
+                "values": [_number(value, k) for k, value in enumerate(values)],
+                "best": [
+                    value is not None and name != "artist" and value == best.get(measure)
+                    for measure, value in zip(("l1", "deformation", ""), values, strict=True)
+                ],
+                "note": note,
+                "state": kind,
+                "chosen": chosen,
+                "fixed": len(state.methods) <= 2 if chosen else full,
+            }
+        )
+    return rows
+
+
+def _note(state: State, name: str, one: Any, chosen: bool) -> tuple[str, str]:
+    if one is not None and one.failed:
+        return one.failed[:1].upper() + one.failed[1:], "failed"
+    if one is not None and one.unweighted:
+        return f"{one.unweighted:.1%} without weight", "told"
+    if one is None and chosen:
+        return ("Computing", "running") if state.comparing == name else ("Waiting", "told")
+    return "", ""
+
+
+def _number(value: float | None, column: int) -> str:
+    if value is None:
+        return ""
+    if column == 0:
+        return f"{value:.2f}"
+    return f"{value:.0f}" if value >= 99.5 else f"{value:.1f}"

@@ -1,0 +1,159 @@
+"""Two to four methods side by side, under one camera, in the same colours."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import partial
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from viewers.description import Actor, Description, Legend
+from viewers.error_scene import error_limits
+from viewers.skin import skin_of_weights
+from viewers.weights_scene import weight_colors
+
+from ..state import State
+from ..state.compare import NOW
+from .common import character
+from .memo import Memo
+from .pose import pose_of
+
+TITLES = {
+    NOW: "cutcell, as set here",
+    "artist": "The file's own",
+    "bbw": "Bounded biharmonic",
+    "cutcell": "Cut-cell, the paper's",
+    "cutcell_any": "Cut-cell, any angle",
+    "voxel": "Voxel binding",
+    "voxel_unirig": "Voxel binding, UniRig's",
+}
+"""What methods are called where their names do not say it; others join by themselves."""
+
+WAITING = 0.28
+"""How opaque a body is whose weights are not there."""
+
+
+def compare(state: State, memo: Memo) -> Description:
+    """Return the scene of the panel Compare."""
+    shared = character(state, memo)
+    if state.binding is None:
+        return Description(shared, pose=pose_of(state))
+    plain = shared.pop("body")
+    names = list(state.methods)
+    tables = {name: weights_of(state, name) for name in names}
+    looks, legend = looks_of(state, tables, memo)
+    actors: dict[str, Actor] = {}
+    for view, name in enumerate(names):
+        key = f"body {view}" if view else "body"
+        weights = tables[name]
+        if weights is None:
+            actors[key] = replace(plain, view=view, opacity=WAITING)
+            continue
+        skin = memo(f"skin {name}", (weights,), partial(skin_of_weights, weights))
+        actors[key] = replace(plain, view=view, skin=skin, **looks[name])
+    captions = tuple(caption_of(state, name) for name in names)
+    return Description({**actors, **shared}, pose=pose_of(state), legend=legend, views=captions)
+
+
+def title_of(name: str) -> str:
+    """Return what a method is called."""
+    return TITLES.get(name) or name.replace("_", " ").capitalize()
+
+
+def caption_of(state: State, name: str) -> str:
+    """Return what stands over a method's view."""
+    title = title_of(name)
+    found = found_of(state, name)
+    if weights_of(state, name) is None:
+        if found is not None and found.failed:
+            return f"{title} · failed"
+        return f"{title} · {'computing' if state.comparing == name else 'waiting'}"
+    if state.minus and subtracted(state) is not None:
+        return f"{title} itself" if name == state.minus else f"{title} − {title_of(state.minus)}"
+    return title
+
+
+def weights_of(state: State, name: str) -> Any:
+    """Return the weights of a method, shape (n, j); None where there are none yet."""
+    if name == NOW:
+        return None if state.binding is None else state.binding.weights
+    if name == "artist":
+        return state.rig.weights
+    found = found_of(state, name)
+    return None if found is None else found.weights
+
+
+def found_of(state: State, name: str) -> Any:
+    """Return the Compared of a method, unless it is of another character or out of date."""
+    found = state.compared.get(name)
+    if found is None or found.rig is not state.rig:
+        return None
+    return None if name == NOW and found.source is not state.binding else found
+
+
+def subtracted(state: State) -> Any:
+    """Return the weights that are taken away from all others, or None."""
+    return weights_of(state, state.minus) if state.minus in state.methods else None
+
+
+def looks_of(
+    state: State, tables: dict[str, Any], memo: Memo
+) -> tuple[dict[str, dict[str, Any]], Legend | None]:
+    """Return how each method's body is coloured, and the legend that holds for all."""
+    known = {name: table for name, table in tables.items() if table is not None}
+    joint = state.joint
+    if state.compare_field == "error":
+        return error_looks(state, known)
+    base = subtracted(state)
+    if base is not None and state.compare_field == "bone":
+        looks = {
+            name: _difference(table[:, joint] - base[:, joint]) for name, table in known.items()
+        }
+        title = f"Weight of {state.rig.skeleton.names[joint]}, difference"
+        return looks, Legend(title, "difference", "−1", "+1")
+    if base is not None:
+        looks = {
+            name: memo(f"apart {name}", (table, base), partial(_sum_of_differences, table, base))
+            for name, table in known.items()
+        }
+        return looks, Legend("Weight that lies elsewhere", "error", "0", "all")
+    which = joint if state.compare_field == "bone" else None
+    looks, legend = {}, None
+    for name, table in known.items():
+        looks[name], legend = memo(
+            f"colors {name}", (table, which), partial(weight_colors, state.rig, table, which)
+        )
+    return looks, legend
+
+
+def error_looks(
+    state: State, known: dict[str, Any]
+) -> tuple[dict[str, dict[str, Any]], Legend | None]:
+    """Return the colours of the deformation error, on one scale for all methods."""
+    errors = {name: errors_of(state, name) for name in known}
+    found = {name: one for name, one in errors.items() if one is not None}
+    if not found:
+        return {name: {} for name in known}, None
+    limits = max(error_limits(one.vertex) for one in found.values())
+    looks: dict[str, dict[str, Any]] = {name: {} for name in known}
+    for name, one in found.items():
+        values = one.vertex.astype(np.float32)
+        looks[name] = {"scalars": values, "colormap": "error", "limits": limits}
+    return looks, Legend("Worst error in any turn by 30°", "error", "0", f"{limits[1]:g} cm²")
+
+
+def errors_of(state: State, name: str) -> Any:
+    """Return the DeformationError of a method's weights against the file's, if it is known."""
+    found = found_of(state, name)
+    return None if found is None else found.errors
+
+
+def _difference(values: NDArray[np.float64]) -> dict[str, Any]:
+    return {"scalars": values.astype(np.float32), "colormap": "difference", "limits": (-1.0, 1.0)}
+
+
+def _sum_of_differences(table: NDArray, base: NDArray) -> dict[str, Any]:
+    values = np.abs(table - base).sum(axis=1) / 2
+    return {"scalars": values.astype(np.float32), "colormap": "error", "limits": (0.0, 1.0)}

@@ -1,0 +1,201 @@
+"""The panel Compare, from state to scene and to its table."""
+
+import numpy as np
+import pytest
+
+import cutcell
+from app.actions.compare import Compared, choose, measured, methods, options_of, wanted
+from app.panels.compare import rows_of
+from app.scenes import Memo, resolve
+from app.scenes.compare import WAITING, caption_of, title_of
+from app.state import State
+from app.state.compare import NOW
+from cutcell.baselines import METHODS, BaselineBinding
+from cutcell.metrics import deformation_error, weight_l1
+from cutcell.progress import silent
+from tests.viewers.arm import arm_rig
+
+
+@pytest.fixture(scope="module")
+def rig():
+    return arm_rig()
+
+
+@pytest.fixture(scope="module")
+def binding(rig):
+    return cutcell.bind(rig, 16)
+
+
+@pytest.fixture(scope="module")
+def euclidean(rig, binding):
+    return measured(rig, "euclidean", binding, 16, silent)
+
+
+@pytest.fixture
+def state(rig, binding, euclidean):
+    return State(
+        rig=rig, binding=binding, joint=1, panel="compare", methods=[NOW, "artist", "euclidean"],
+        compared={"euclidean": euclidean},
+    )  # fmt: skip
+
+
+class Page:
+    """As much of a session as choosing needs."""
+
+    def __init__(self, state):
+        self.state = state
+
+
+def test_each_method_has_a_view_of_its_own_and_bones_stand_in_all(state, rig, euclidean):
+    scene = resolve(state)
+    assert scene.views == ("cutcell, as set here", "The file's own", "Euclidean")
+    bodies = [scene.actors[name] for name in ("body", "body 1", "body 2")]
+    assert [body.view for body in bodies] == [0, 1, 2]
+    assert scene.actors["bones"].view is None
+    np.testing.assert_allclose(bodies[1].scalars, rig.weights[:, 1], atol=1e-6)
+    np.testing.assert_allclose(bodies[2].scalars, euclidean.weights[:, 1], atol=1e-6)
+    assert bodies[1].points is bodies[0].points
+
+
+def test_they_are_posed_by_their_own_weights(state):
+    state.turns = {1: (0, 40, 0)}
+    scene = resolve(state)
+    assert scene.pose is not None
+    own, other = scene.actors["body"].skin, scene.actors["body 1"].skin
+    assert own.weights.shape != other.weights.shape or not np.array_equal(
+        own.weights, other.weights
+    )
+
+
+def test_a_difference_is_taken_from_the_method_that_is_named(state, rig, euclidean):
+    state.minus = "artist"
+    scene = resolve(state)
+    assert scene.views[1] == "The file's own itself"
+    assert scene.views[2] == "Euclidean − The file's own"
+    expected = euclidean.weights[:, 1] - rig.weights[:, 1]
+    np.testing.assert_allclose(scene.actors["body 2"].scalars, expected, atol=1e-6)
+    assert scene.actors["body 1"].scalars.any() == False  # noqa: E712
+    assert scene.legend.colormap == "difference"
+    state.compare_field = "all"
+    scene = resolve(state)
+    share = np.abs(euclidean.weights - rig.weights).sum(axis=1) / 2
+    np.testing.assert_allclose(scene.actors["body 2"].scalars, share, atol=1e-6)
+    assert share.max() <= 1 + 1e-9
+
+
+def test_errors_share_one_scale(state, rig, binding, euclidean):
+    state.compared = {**state.compared, NOW: measured(rig, NOW, binding, 16, silent)}
+    state.compare_field = "error"
+    scene = resolve(state)
+    one, other = scene.actors["body"], scene.actors["body 2"]
+    assert one.limits == other.limits
+    assert one.limits[1] >= np.quantile(euclidean.errors.vertex, 0.99)
+    np.testing.assert_allclose(other.scalars, euclidean.errors.vertex, rtol=1e-6)
+    assert scene.actors["body 1"].scalars is None  # the file's own was not measured yet
+
+
+def test_what_is_not_there_yet_waits_pale_and_what_failed_says_so(state, rig):
+    state.compared = {"euclidean": Compared(rig, None, "it has no inside")}
+    scene = resolve(state)
+    assert scene.actors["body 2"].opacity == WAITING
+    assert scene.views[2] == "Euclidean · failed"
+    state.methods = [NOW, "voxel"]
+    assert caption_of(state, "voxel").endswith("waiting")
+    state.comparing = "voxel"
+    assert caption_of(state, "voxel").endswith("computing")
+
+
+def test_results_of_another_character_are_never_shown(state):
+    other = arm_rig()
+    state.param.update(rig=other, binding=cutcell.bind(other, 16))
+    assert caption_of(state, "euclidean").endswith("waiting")
+    assert resolve(state).actors["body 2"].opacity == WAITING
+    assert wanted(state) == NOW
+    state.binding = None
+    assert resolve(state).views == ()
+
+
+def test_the_measures_are_those_of_the_core(rig, euclidean):
+    assert euclidean.deformation == deformation_error(rig, euclidean.weights, rig.weights).mean
+    share = cutcell.metrics.vertex_shares(rig.mesh)
+    assert euclidean.l1 == weight_l1(euclidean.weights, rig.weights, share)
+    assert euclidean.seconds > 0
+    assert euclidean.unweighted == 0
+
+
+def test_without_the_files_weights_only_times_are_measured(rig, binding):
+    found = measured(rig.with_weights(None), "euclidean", binding, 16, silent)
+    assert (found.l1, found.deformation, found.errors) == (None, None, None)
+    assert found.seconds > 0
+    assert "artist" not in methods(State(rig=rig.with_weights(None)))
+
+
+def test_a_method_that_fails_says_why(rig, binding, monkeypatch):
+    def gives_up(rig):
+        return BaselineBinding(None, {"trying": 0.5}, failed="nothing is inside")
+
+    def raises(rig):
+        raise cutcell.errors.MeshError("the mesh is open")
+
+    monkeypatch.setitem(METHODS, "gives_up", gives_up)
+    monkeypatch.setitem(METHODS, "raises", raises)
+    found = measured(rig, "gives_up", binding, 16, silent)
+    assert (found.weights, found.failed, found.seconds) == (None, "nothing is inside", 0.5)
+    assert measured(rig, "raises", binding, 16, silent).failed == "the mesh is open"
+    assert {"gives_up", "raises"} <= set(methods(State(rig=rig)))
+    assert title_of("gives_up") == "Gives up"
+
+
+def test_options_go_to_methods_that_know_them():
+    def plain(rig):
+        return rig
+
+    def fine(rig, resolution=64):
+        return rig
+
+    def all_of_them(rig, **options):
+        return rig
+
+    options = {"resolution": 8, "progress": silent}
+    assert options_of(plain, **options) == {}
+    assert options_of(fine, **options) == {"resolution": 8}
+    assert options_of(all_of_them, **options) == options
+
+
+def test_two_to_four_methods_stay_chosen(state):
+    page = Page(state)
+    choose(page, "bone_heat", True)
+    assert state.methods == [NOW, "artist", "bone_heat", "euclidean"]
+    choose(page, "voxel", True)
+    assert "voxel" not in state.methods
+    state.minus = "euclidean"
+    for name in ("bone_heat", "euclidean", "artist", NOW):
+        choose(page, name, False)
+    assert state.methods == [NOW, "artist"]
+    assert state.minus == ""
+
+
+def test_the_table_tells_what_is_known(state, rig):
+    rows = {row["id"]: row for row in rows_of(state)}
+    assert set(rows) == {NOW, *METHODS}
+    assert rows["euclidean"]["values"][0] == f"{state.compared['euclidean'].l1:.2f}"
+    assert rows["euclidean"]["best"][:2] == [True, True]
+    assert rows["voxel"]["values"] == ["", "", ""]
+    assert not rows["voxel"]["chosen"]
+    assert rows[NOW]["note"] == "Waiting"
+    state.methods = [NOW, "artist", "euclidean", "voxel"]
+    state.compared = {"voxel": Compared(rig, None, "no inside")}
+    rows = {row["id"]: row for row in rows_of(state)}
+    assert (rows["voxel"]["note"], rows["voxel"]["state"]) == ("No inside", "failed")
+    assert rows["bbw"]["fixed"]
+    assert not rows["voxel"]["fixed"]
+
+
+def test_a_memo_keeps_what_did_not_change(state):
+    memo = Memo()
+    before = resolve(state, memo)
+    state.turns = {1: (0, 10, 0)}
+    after = resolve(state, memo)
+    for name, actor in before.actors.items():
+        assert after.actors[name].skin is actor.skin, name
+        assert after.actors[name].scalars is actor.scalars, name

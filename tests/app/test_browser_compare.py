@@ -1,0 +1,118 @@
+"""The panel Compare in a browser."""
+
+import numpy as np
+import pytest
+from playwright.sync_api import expect, sync_playwright
+
+from assets import demo_path
+from scripts.get_chromium import FLAGS
+from tests.app.browser import LOAD_MS, Visit, changed, served
+from tests.conftest import SHARED_RIGS
+
+REAL = SHARED_RIGS / "webxr_hand_right.glb"
+SOURCE = REAL if REAL.exists() else demo_path("rabbit")
+
+
+@pytest.fixture(scope="module")
+def visit(chromium):
+    with sync_playwright() as playwright, served(str(SOURCE)) as url:
+        browser = playwright.chromium.launch(executable_path=chromium, args=list(FLAGS))
+        visit = Visit(browser, url, viewport={"width": 1000, "height": 640})
+        visit.wait_until_bound()
+        visit.panel("Compare")
+        yield visit
+        visit.close()
+        browser.close()
+
+
+def box(visit, name):
+    return visit.page.get_by_role("checkbox", name=name)
+
+
+def captions(visit):
+    return visit.page.locator(".caption").all_inner_texts()
+
+
+def measured(visit, name):
+    cells = visit.page.get_by_role("row").filter(has_text=name).get_by_role("cell")
+    expect(cells.nth(3)).not_to_have_text("", timeout=LOAD_MS)
+    return [float(text) for text in cells.all_inner_texts()[1:]]
+
+
+def test_methods_stand_side_by_side_with_their_measures(visit):
+    l1, deformation, seconds = measured(visit, "Euclidean")
+    assert 0 < l1 < 2
+    assert deformation > 0
+    assert seconds >= 0
+    visit.settle()
+    assert captions(visit) == ["cutcell, as set here", "The file's own", "Euclidean"]
+    three = visit.look()
+    box(visit, "Voxel binding, UniRig's").check()
+    measured(visit, "UniRig")
+    visit.settle()
+    assert len(captions(visit)) == 4
+    assert changed(three, visit.look()) > 0.02
+    expect(box(visit, "Bone heat")).to_be_disabled()
+    box(visit, "Voxel binding, UniRig's").uncheck()
+    box(visit, "Euclidean").uncheck()
+    visit.settle()
+    assert captions(visit) == ["cutcell, as set here", "The file's own"]
+    expect(box(visit, "The file's own")).to_be_disabled()
+
+
+def test_one_camera_turns_all(visit):
+    before = visit.look()
+    half = before.shape[1] // 2
+    place = visit.page.get_by_role("application").bounding_box()
+    x, y = place["x"] + place["width"] * 0.75, place["y"] + place["height"] / 2
+    visit.page.mouse.move(x, y)
+    visit.page.mouse.down()
+    visit.page.mouse.move(x + 60, y, steps=4)
+    visit.page.mouse.up()
+    after = visit.look()
+    for side in (slice(0, half), slice(half, None)):
+        assert changed(before[:, side], after[:, side]) > 0.02
+
+
+def test_a_bone_is_picked_in_any_view(visit):
+    expect(visit.page.get_by_role("combobox", name="Bone")).not_to_have_text("")
+    chosen = visit.page.get_by_role("combobox", name="Bone").inner_text()
+    ends = visit.page.evaluate("""() => {
+      const {bones, stage, overlay} = __cutcell
+      const box = overlay.canvas.getBoundingClientRect()
+      return bones.names.map((name, joint) => {
+        const i = bones.joint.indexOf(joint)
+        const start = stage.project(bones.start.slice(3 * i, 3 * i + 3), 1)
+        const end = stage.project(bones.end.slice(3 * i, 3 * i + 3), 1)
+        return [name, box.left + (start[0] + end[0]) / 2, box.top + (start[1] + end[1]) / 2]
+      })
+    }""")
+    other = max(
+        (end for end in ends if end[0] != chosen),
+        key=lambda end: min(
+            np.hypot(end[1] - x, end[2] - y) for name, x, y in ends if name != end[0]
+        ),
+    )
+    visit.page.mouse.click(other[1], other[2])
+    visit.expect_text(f"Weight of {other[0]}")
+
+
+def test_differences_errors_and_poses_are_seen(visit):
+    plain = visit.look()
+    visit.choose("Difference to", "The file's own")
+    visit.expect_text("difference")
+    difference = visit.look()
+    assert changed(plain, difference) > 0.005
+    assert captions(visit)[0] == "cutcell, as set here − The file's own"
+    visit.button("Error").click()
+    visit.expect_text("Worst error in any turn by 30°")
+    assert changed(difference, visit.look()) > 0.005
+    still = visit.points("body 1")
+    visit.button("Play").click()
+    visit.page.wait_for_function("__cutcell.report().time > 0.3", timeout=LOAD_MS)
+    visit.button("Pause").click()
+    visit.page.wait_for_function("!__cutcell.report().playing", timeout=LOAD_MS)
+    assert np.abs(visit.points("body 1") - still).max() > 1e-3 * np.ptp(still)
+    visit.button("Rest pose").click()
+    visit.settle()
+    np.testing.assert_array_equal(visit.points("body 1"), still)
