@@ -123,7 +123,7 @@ def open_page(
 
 - `cutcell bind character.glb bound.glb -r 128`  (a finer lattice: close parts are told apart)
 
-- `cutcell bind character.glb bound.glb --connectivity 6`  (just as in the paper)
+- `cutcell bind character.glb bound.glb --falloff paper --connectivity 6`  (just as in the paper)
 
 - `cutcell bind character.glb bound.glb --lock Jaw --lock Eye.L --symmetric`  (keep these two)
 
@@ -145,8 +145,8 @@ def bind(
     connectivity: Connectivity = "any",
     winding_threshold: WindingThreshold = 0.5,
     samples: Samples = 5,
-    leaf: Leaf = "point",
-    falloff: Falloff = "paper",
+    leaf: Leaf = None,
+    falloff: Falloff = "rig",
     alpha: Alpha = 0.5,
     max_influences: MaxInfluences = 4,
     threshold: Threshold = 0.0,
@@ -165,6 +165,7 @@ def bind(
     """
     from . import summary
     from .io import save
+    from .skinning import DEFAULT_LEAF
     from .skinning import bind as compute
 
     parameters: dict[str, Any] = {
@@ -172,7 +173,7 @@ def bind(
         "connectivity": _neighbours(connectivity),
         "winding_threshold": winding_threshold,
         "samples": samples,
-        "leaf": leaf,
+        "leaf": leaf or DEFAULT_LEAF.get(falloff),
         "falloff": falloff,
         "alpha": alpha,
         "max_influences": max_influences,
@@ -223,7 +224,7 @@ def graph(
     connectivity: Connectivity = "6",
     winding_threshold: WindingThreshold = 0.5,
     samples: Samples = 5,
-    leaf: Leaf = "point",
+    leaf: Leaf = None,
     skeleton: SkeletonFile = None,
     json: Json = False,
 ) -> None:
@@ -255,7 +256,7 @@ def graph(
                 built,
                 loaded.skeleton,
                 samples=samples,
-                leaf=leaf,
+                leaf=leaf or "point",
                 allowed=loaded.allowed,
                 progress=progress,
             )
@@ -267,7 +268,7 @@ def graph(
             "connectivity": _neighbours(connectivity),
             "winding_threshold": winding_threshold,
             "samples": samples,
-            "leaf": leaf,
+            "leaf": leaf or "point",
         },
         "mesh": summary.summarize_mesh(mesh, built),
         "skeleton": loaded and summary.summarize_skeleton(loaded.skeleton),

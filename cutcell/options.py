@@ -76,12 +76,14 @@ Samples = Annotated[
     ),
 ]
 Leaf = Annotated[
-    str,
+    str | None,
     typer.Option(
         "--leaf",
-        metavar="point|extend",
-        help="Bone of a joint without children: the joint alone, or a segment on along its"
-        " parent's direction.",
+        metavar="point|extend|fit",
+        help="Where bones end. point, extend: at the child joints; a joint without children is a"
+        " point, or goes on along its parent's direction. fit: where the body says. Left out:"
+        " fit with the falloff rig, else point.",
+        show_default=False,
         rich_help_panel=METHOD,
     ),
 ]
@@ -89,9 +91,9 @@ Falloff = Annotated[
     str,
     typer.Option(
         "--falloff",
-        metavar="NAME",
-        help="How weight falls with distance. paper: the paper's kernel (its equation 1), smooth"
-        " and soft.",
+        metavar="rig|paper",
+        help="How weight falls with distance. rig: made to animate with. paper: the paper's kernel"
+        " (its equation 1), a soft feature of the distance.",
         rich_help_panel=METHOD,
     ),
 ]

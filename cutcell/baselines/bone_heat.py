@@ -12,8 +12,8 @@ from scipy.sparse.linalg import splu
 
 from ..checks import check_number
 from ..rig import Rig
+from ..skinning.laplacian import cotangent_laplacian, vertex_areas, vertex_normals
 from .body import Body
-from .laplacian import cotangent_laplacian, vertex_areas, vertex_normals
 from .result import BaselineBinding, finish
 from .visibility import Blockers
 

@@ -24,13 +24,19 @@ def cutcell(rig: Rig, resolution: int = 64, **options: Any) -> BaselineBinding:
     Unless asked for otherwise, paths inside run along the axes as the paper's do, and
     nothing limits the influences, as for all methods here.
     """
-    binding = bind(rig, resolution, **{"connectivity": 6, "max_influences": None, **options})
+    paper = {"connectivity": 6, "falloff": "paper", "max_influences": None}
+    binding = bind(rig, resolution, **{**paper, **options})
     return BaselineBinding(binding.weights, binding.seconds, binding.warnings)
 
 
 def cutcell_any(rig: Rig, resolution: int = 64, **options: Any) -> BaselineBinding:
     """Bind by the paper's falloff on true distances: paths inside may run at any angle."""
     return cutcell(rig, resolution, **{"connectivity": "any", **options})
+
+
+def cutcell_rig(rig: Rig, resolution: int = 64, **options: Any) -> BaselineBinding:
+    """Bind by the falloff for rigs, with bones fitted to the body: what `cutcell.bind` does."""
+    return cutcell(rig, resolution, **{"connectivity": "any", "falloff": "rig", **options})
 
 
 def artist(rig: Rig) -> BaselineBinding:
@@ -48,6 +54,7 @@ METHODS: dict[str, Method] = {
     "bone_heat": bone_heat,
     "cutcell": cutcell,
     "cutcell_any": cutcell_any,
+    "cutcell_rig": cutcell_rig,
     "euclidean": euclidean,
     "harmonic": harmonic,
     "mean_value": mean_value,

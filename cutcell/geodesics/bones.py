@@ -13,7 +13,7 @@ from ..errors import MeshError
 from ..graph import CutCellGraph
 from ..rig import Skeleton
 
-LEAVES = ("point", "extend")
+LEAVES = ("point", "extend", "fit")
 TIE = 1e-9
 """Relative: nodes this nearly as near as the nearest are sources as well. The middle of a
 lattice cell has eight nearest nodes, and none of them may win by rounding."""
@@ -34,6 +34,10 @@ class Bones:
     start: NDArray[np.float64]
     end: NDArray[np.float64]
     joint: NDArray[np.int32]
+
+    def some(self, which: NDArray[np.bool_]) -> Bones:
+        """Return those bones for which `which`, shape (b,), is true."""
+        return Bones(self.start[which], self.end[which], self.joint[which])
 
 
 def bone_segments(skeleton: Skeleton, leaf: str = "point") -> Bones:
@@ -58,7 +62,7 @@ def bone_segments(skeleton: Skeleton, leaf: str = "point") -> Bones:
     ParameterError
         An unknown `leaf`.
     """
-    check_choice("leaf", leaf, LEAVES)
+    check_choice("leaf", leaf, LEAVES[:2])
     start, end, joint = [], [], []
     for j in np.flatnonzero(skeleton.deform):
         head = skeleton.joints[j]

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..checks import check_integer
+from ..checks import check_choice, check_integer
 from ..errors import ParameterError, WeightsError
 from ..graph import CutCellGraph
 from ..progress import Progress, silent
 from ..rig import Skeleton
 from .any_angle import any_angle_paths
-from .bones import Bones, Sources, bone_segments, find_sources
+from .bone_extents import REGION_JOINTS, aim_tips, fit_bones
+from .bones import LEAVES, Bones, Sources, bone_segments, find_sources
 from .fallback import NOT_ALLOWED, REACHED, UNREACHED, UNUSED, straight_to_nearest
 from .shortest_paths import shortest_paths
 
@@ -128,8 +129,9 @@ def bone_distances(
         In the units of the graph's mesh.
     samples : int
         N, points on each bone that look for their nearest node, 1 to 1000.
-    leaf : {"point", "extend"}
-        See `bone_segments`.
+    leaf : {"point", "extend", "fit"}
+        The first two: see `bone_segments`. "fit": all bones end where the body says, see
+        `geodesics.bone_extents`.
     nearest : int
         k, how many bones a vertex follows that none reaches, 1 or more.
     nearest_joints : int, optional
@@ -165,15 +167,22 @@ def bone_distances(
     if graph.connectivity != "any" or allowed is not None:
         nearest_joints = None
     progress("distances", 0.0)
-    bones = bone_segments(skeleton, leaf)
-    bones = replace(
-        bones, start=graph.lattice.to_unit(bones.start), end=graph.lattice.to_unit(bones.end)
-    )
+    check_choice("leaf", leaf, LEAVES)
     if allowed is not None:
         _check_allowed(graph, skeleton, allowed)
+    targets = _on_mesh(graph)
+    if leaf == "fit":
+        bones, tip = fit_bones(graph, skeleton)
+        if tip.any():
+            sources = find_sources(graph, bones, samples)
+            own = _paths(graph, sources, bones, targets, REGION_JOINTS, progress)
+            bones = aim_tips(graph, bones, tip, own)
+    else:
+        bones = bone_segments(skeleton, leaf)
+        ends = graph.lattice.to_unit(bones.start), graph.lattice.to_unit(bones.end)
+        bones = Bones(*ends, bones.joint)
     sources = find_sources(graph, bones, samples)
-
-    by_node = _paths(graph, sources, bones, _on_mesh(graph), nearest_joints, progress)
+    by_node = _paths(graph, sources, bones, targets, nearest_joints, progress)
     measured = np.unique(bones.joint)
     joint = np.full((len(skeleton.joints), len(graph.vertex_node)), np.inf)
     joint[measured] = by_node[:, graph.vertex_node]

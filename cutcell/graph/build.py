@@ -158,6 +158,7 @@ def _assemble(
         edge_kind=_kinds([len(part) for part in parts]),
         triangle=triangle,
         vertex_node=vertex_node,
+        faces=faces,
         lattice=lattice,
         is_closed=is_closed,
         connectivity=connectivity,

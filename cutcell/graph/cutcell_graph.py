@@ -39,6 +39,8 @@ class CutCellGraph:
         The face that a surface node lies on; -1 for other nodes.
     vertex_node : array, shape (n,), int32
         The node of each vertex of the mesh as it was given.
+    faces : array, shape (m, 3), int32
+        The mesh's triangles between nodes; those that welding closed up are still there.
     lattice : Lattice
     is_closed : bool
         Whether the faces leave no boundary, so that inside and outside are never in doubt.
@@ -58,6 +60,7 @@ class CutCellGraph:
     edge_kind: NDArray[np.uint8]
     triangle: NDArray[np.int32]
     vertex_node: NDArray[np.int32]
+    faces: NDArray[np.int32]
     lattice: Lattice
     is_closed: bool
     connectivity: int | str

@@ -2,6 +2,6 @@
 
 from .bind import Binding, bind
 from .refine import refine_weights
-from .weights import FALLOFFS, skinning_weights
+from .weights import DEFAULT_LEAF, FALLOFFS, skinning_weights
 
-__all__ = ["FALLOFFS", "Binding", "bind", "refine_weights", "skinning_weights"]
+__all__ = ["DEFAULT_LEAF", "FALLOFFS", "Binding", "bind", "refine_weights", "skinning_weights"]

@@ -9,13 +9,13 @@ from time import perf_counter
 import numpy as np
 from numpy.typing import NDArray
 
-from ..checks import check_integer
+from ..checks import check_choice, check_integer
 from ..geodesics import FALLBACK_REASONS, BoneDistances, bone_distances
 from ..graph import CutCellGraph, build_graph, kernels_are_compiled
 from ..progress import Progress, silent
 from ..rig import Rig, Skeleton, TriangleMesh
 from .refine import refine_weights
-from .weights import MOST_INFLUENCES, skinning_weights
+from .weights import DEFAULT_LEAF, FALLOFFS, MOST_INFLUENCES, joints_needed, skinning_weights
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,7 +28,7 @@ class Binding:
         For the rig's own vertices, in their order.
     graph : CutCellGraph
     distances : BoneDistances
-        From as many of each vertex' nearest joints as it may follow.
+        From as many of each vertex' nearest joints as the falloff needs.
     seconds : dict of str to float
         Time taken by each stage: "graph", "distances", "weights".
     warnings : tuple of str
@@ -49,8 +49,8 @@ def bind(
     connectivity: int | str = "any",
     winding_threshold: float = 0.5,
     samples: int = 5,
-    leaf: str = "point",
-    falloff: str = "paper",
+    leaf: str | None = None,
+    falloff: str = "rig",
     alpha: float = 0.5,
     max_influences: int | None = 4,
     threshold: float = 0.0,
@@ -70,7 +70,8 @@ def bind(
         See `build_graph`. The default measures geodesic distances; connectivity 6 is the
         paper's, whose paths inside follow the axes.
     samples, leaf
-        See `bone_distances`.
+        See `bone_distances`. Left out, `leaf` is what the falloff is made for: "fit" for
+        "rig", "point" for "paper".
     falloff, alpha, max_influences, threshold
         See `skinning_weights`.
     smoothing, symmetric, locked
@@ -102,6 +103,8 @@ def bind(
         progress("compile", 0.0)
         _compile(connectivity)
         progress("compile", 1.0)
+    check_choice("falloff", falloff, FALLOFFS)
+    leaf = leaf or DEFAULT_LEAF[falloff]
     ticks = [perf_counter()]
     graph = build_graph(
         rig.mesh,
@@ -116,7 +119,7 @@ def bind(
         rig.skeleton,
         samples=samples,
         leaf=leaf,
-        nearest_joints=max_influences,
+        nearest_joints=joints_needed(falloff, max_influences),
         allowed=rig.allowed,
         progress=progress,
     )
@@ -128,6 +131,7 @@ def bind(
         alpha=alpha,
         max_influences=max_influences,
         threshold=threshold,
+        allowed=rig.allowed,
     )
     weights = refine_weights(
         rig,

@@ -10,8 +10,11 @@ from ..errors import ParameterError
 from ..geodesics import BoneDistances
 from .kernel import paper_kernel
 from .prune import prune
+from .rig_falloff import NEAREST_JOINTS, rig_kernel
 
-FALLOFFS = ("paper",)
+FALLOFFS = ("rig", "paper")
+DEFAULT_LEAF = {"rig": "fit", "paper": "point"}
+"""The bones that each falloff is made for; see `bone_distances`."""
 MOST_INFLUENCES = 1024
 
 
@@ -22,21 +25,25 @@ def skinning_weights(
     alpha: float = 0.5,
     max_influences: int | None = 4,
     threshold: float = 0.0,
+    allowed: NDArray[np.bool_] | None = None,
 ) -> NDArray[np.float64]:
     """Turn distances into weights.
 
     Parameters
     ----------
     distances : BoneDistances
-    falloff : {"paper"}
-        The kernel: equation 1 of the paper.
+    falloff : {"paper", "rig"}
+        "paper": equation 1 of the paper, a soft kernel of the distance alone. "rig": made to
+        animate with, see docs/falloff.md; for distances with `leaf="fit"`.
     alpha : float
-        Its smoothness, 0 to 1.
+        Smoothness of the paper's falloff, 0 to 1.
     max_influences : int or None
         Joints a vertex may follow, 1 or more; None for no limit. No more than
         `distances` were measured from.
     threshold : float
         Of the weights that are left, those below it are dropped, 0 to 1.
+    allowed : array, shape (n, j), bool, optional
+        Which joints each vertex may follow; see `Rig.allowed`.
 
     Returns
     -------
@@ -64,8 +71,18 @@ def skinning_weights(
             f"{known} nearest joints of each vertex alone: measure them again with more "
             f"nearest_joints, or with None for all"
         )
-    weights = paper_kernel(distances.joint, distances.graph.lattice.diagonal, alpha)
+    if falloff == "rig":
+        weights = rig_kernel(distances, allowed)
+    else:
+        weights = paper_kernel(distances.joint, distances.graph.lattice.diagonal, alpha)
     return prune(weights, max_influences, threshold, _by_position(distances))
+
+
+def joints_needed(falloff: str, max_influences: int | None) -> int | None:
+    """Return from how many nearest joints of each vertex a falloff needs distances."""
+    if falloff == "paper" or max_influences is None:
+        return max_influences
+    return max(max_influences, NEAREST_JOINTS)
 
 
 def _by_position(distances: BoneDistances) -> NDArray[np.intp]:

@@ -13,7 +13,7 @@ from typer.testing import CliRunner
 import cutcell
 from cutcell.cli import ENDINGS, app, main
 from cutcell.console import print_json, progress_bars
-from cutcell.skinning.weights import FALLOFFS
+from cutcell.skinning.weights import DEFAULT_LEAF, FALLOFFS
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 BAR = [[x, y, z] for z in (0, 1, 2) for y in (0, 1) for x in (0, 1)]
@@ -105,6 +105,7 @@ class TestBind:
         document = json.loads(run("bind", bar, tmp_path / "bound.glb", "--json").stdout)
         defaults = {**cutcell.bind.__kwdefaults__, "resolution": cutcell.bind.__defaults__[0]}
         del defaults["progress"]
+        defaults["leaf"] = DEFAULT_LEAF[defaults["falloff"]]
         assert document["parameters"] == {**defaults, "locked": list(defaults["locked"])}
 
     def test_touching_up_reaches_the_library(self, run, bar, tmp_path):
@@ -401,15 +402,15 @@ class TestCompare:
     def test_measures_each_method_on_each_rig(self, run, bar, tmp_path):
         rigged = tmp_path / "rigged.glb"
         assert run("bind", bar, rigged, "-r", 8).exit_code == 0
-        options = ("--methods", "cutcell_any, euclidean", "-r", 8)
+        options = ("--methods", "cutcell_rig, euclidean", "-r", 8)
         result = run("compare", rigged, *options, "--json")
         assert result.exit_code == 0
         document = json.loads(result.stdout)
-        assert document["methods"] == ["cutcell_any", "euclidean"]
-        assert document["summary"]["cutcell_any"]["l1"]["median"] < 1e-6
+        assert document["methods"] == ["cutcell_rig", "euclidean"]
+        assert document["summary"]["cutcell_rig"]["l1"]["median"] < 1e-6
         table = run("compare", rigged, *options).stdout
         assert table.startswith("rigged: 12 vertices, 2 joints with weight")
-        assert "cutcell_any  0.000" in table
+        assert "cutcell_rig  0.000" in table
 
     def test_writes_markdown_and_a_figure(self, run, demo_paths, tmp_path):
         plot = tmp_path / "errors.svg"

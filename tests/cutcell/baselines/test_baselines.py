@@ -14,11 +14,11 @@ import cutcell
 from cutcell import ParameterError, Rig, Skeleton, TriangleMesh
 from cutcell.baselines import METHODS, BaselineBinding
 from cutcell.baselines.body import Body
-from cutcell.baselines.laplacian import cotangent_laplacian, vertex_areas, vertex_normals
 from cutcell.baselines.paths import path_lengths
 from cutcell.baselines.visibility import Blockers
 from cutcell.baselines.voxels import PAD, voxelize
 from cutcell.metrics import vertex_shares, weight_l1
+from cutcell.skinning.laplacian import cotangent_laplacian, vertex_areas, vertex_normals
 from tests import meshes
 from tests.bars import bar, check_weights, grid_box
 from tests.conftest import SHARED_RIGS

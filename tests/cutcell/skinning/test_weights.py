@@ -58,7 +58,7 @@ def test_pruning_keeps_the_largest():
         ("alpha", "soft", "alpha must be a number from 0 to 1, not 'soft'"),
         ("threshold", -1, "threshold must be a number from 0 to 1, not -1"),
         ("max_influences", 0, "max_influences must be a whole number from 1"),
-        ("falloff", "linear", "falloff must be one of 'paper', not 'linear'"),
+        ("falloff", "linear", "falloff must be one of 'rig', 'paper', not 'linear'"),
     ],
 )
 def test_parameters_are_checked(distances, name, value, sentence):

@@ -1,0 +1,129 @@
+"""Bones fitted to the body: where they end, which files seldom tell.
+
+A joint is where a bone begins. Where it ends is known only if one child goes on from there. For
+all others: the last bone of a limb runs on until it leaves the body; then, once it is known
+which skin is nearest to it, it is aimed at the middle of that.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..graph import CutCellGraph
+from ..rig import Skeleton
+from .bones import Bones
+from .chains import SAME_PLACE, Chains, find_chains
+from .probe import BodyProbe
+
+NO_ROOM = 2.0
+"""Depths of the body: a tip with less room than this before it leaves the body is given some of
+the bone that leads to it."""
+GIVEN = 2.0
+"""Depths of the body that it is given at most."""
+REGION_JOINTS = 3
+"""Nearest joints among which skin is divided to see what a tip moves."""
+REGION_POWER = 20
+"""Skin belongs to joints by this power of how much nearer the nearest one is."""
+
+
+def fit_bones(graph: CutCellGraph, skeleton: Skeleton) -> tuple[Bones, NDArray[np.bool_]]:
+    """Find the bones of every joint that may carry weight.
+
+    Parameters
+    ----------
+    graph : CutCellGraph
+    skeleton : Skeleton
+        In the units of the graph's mesh.
+
+    Returns
+    -------
+    bones : Bones
+        In the unit cube, ordered by joint.
+    tip : array, shape (b,), bool
+        Bones whose end no other joint tells; see `aim_tips`.
+    """
+    probe = BodyProbe(graph)
+    chains = find_chains(skeleton, graph.lattice.to_unit(skeleton.joints), probe)
+    start, end, joint, is_tip = [], [], [], []
+    for j in np.flatnonzero(skeleton.deform).tolist():
+        told = [*chains.ends[j], *chains.links[j]]
+        for place in told or [_way_on(j, chains, probe)]:
+            start.append(chains.joints[j])
+            end.append(place)
+            joint.append(j)
+            is_tip.append(not told)
+    bones = Bones(np.array(start), np.array(end), np.array(joint, np.int32))
+    tip = np.array(is_tip)
+    return _share_with_tips(bones, tip, probe), tip & chains.near[bones.joint]
+
+
+def _way_on(j: int, chains: Chains, probe: BodyProbe) -> NDArray[np.float64]:
+    """Extend a joint the way its bone came until it leaves the body."""
+    head, direction = chains.joints[j], chains.direction[j]
+    return head + direction * probe.way_out(head, direction) if direction.any() else head
+
+
+def _share_with_tips(bones: Bones, tip: NDArray[np.bool_], probe: BodyProbe) -> Bones:
+    """Shorten bones that end at a tip without room of its own, such as a foot on the ground.
+
+    Its joint lies at the very end of the body; were the bone before it to reach there, nothing
+    would be left for it to move.
+    """
+    end = bones.end.copy()
+    room = np.linalg.norm(bones.end - bones.start, axis=1)
+    for b in np.flatnonzero(~tip):
+        there = tip & (np.linalg.norm(bones.start - bones.end[b], axis=1) < SAME_PLACE)
+        if not there.any():
+            continue
+        depth = float(probe.depth((bones.start[b] + bones.end[b])[None] / 2)[0])
+        left = room[there].max()
+        if left < min(room[b], NO_ROOM * depth):
+            cut = min((room[b] - left) / 2, GIVEN * depth)
+            end[b] += (bones.start[b] - bones.end[b]) * (cut / room[b])
+    return Bones(bones.start, end, bones.joint)
+
+
+def aim_tips(
+    graph: CutCellGraph, bones: Bones, tip: NDArray[np.bool_], distance: NDArray[np.float64]
+) -> Bones:
+    """End tips in the middle of the skin that they move.
+
+    Parameters
+    ----------
+    graph : CutCellGraph
+    bones : Bones
+        In the unit cube.
+    tip : array, shape (b,), bool
+        Which to aim.
+    distance : array, shape (i, k)
+        Of the joints with bones, ascending, from the places of the mesh: the first nodes of
+        the graph. Infinite for joints that are not among the nearest.
+
+    Returns
+    -------
+    Bones
+    """
+    end = bones.end.copy()
+    count = distance.shape[1]
+    points, share = graph.nodes[:count], _areas(graph, count)
+    nearest = distance.min(axis=0)
+    row = np.searchsorted(np.unique(bones.joint), bones.joint)
+    for b in np.flatnonzero(tip):
+        mine = np.flatnonzero(np.isfinite(distance[row[b]]))
+        own = distance[row[b], mine]
+        ratio = np.divide(nearest[mine], own, out=np.ones_like(own), where=own > 0)
+        weight = share[mine] * ratio**REGION_POWER
+        if weight.sum() > 0:
+            end[b] = weight @ points[mine] / weight.sum()
+    return Bones(bones.start, end, bones.joint)
+
+
+def _areas(graph: CutCellGraph, count: int) -> NDArray[np.float64]:
+    """Return the area of the triangles around each place of the mesh."""
+    corners = graph.nodes[graph.faces]
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    area = np.linalg.norm(across, axis=1)
+    areas: NDArray[np.float64] = np.zeros(count)
+    np.add.at(areas, graph.faces, area[:, None])
+    return areas

@@ -1,0 +1,224 @@
+"""What continues what: the skeleton as its joints lie in the body, not only as the file says.
+
+A file's tree tells what moves with what. Most of its links are bones, but not all: feet for
+inverse kinematics hang on a root below the ground, arms and ears branch off sideways, and some
+files list their joints without any tree.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse.csgraph import dijkstra
+
+from ..rig import Skeleton
+from .probe import BodyProbe
+
+SAME_PLACE = 1e-6
+"""Of the longest side: joints as near as this are at one place."""
+ONWARD = 0.5
+"""Cosine: a child within 60 degrees of the way its parent came goes on; others branch off."""
+IN_BODY = 0.5
+"""Part of a bone that must run through the body for it to be one."""
+BACKWARD = -0.2
+"""Cosine: a bone that a link continues may bend by this much, as the hock of a hind leg does."""
+REACH = 4.0
+"""A link is at most so many times as long as the bone that it continues."""
+CLEARLY = 1.2
+"""A link is made where the next best is this much farther; of equals neither is right."""
+HOP = 1.5
+"""Without a tree, a way of hops costs the sum of their lengths to this power: many short hops
+along a limb are cheaper than one across, and a straight hop cheaper than a zigzag."""
+THROUGH_AIR = 10.0
+"""How much dearer a hop is outside the body."""
+
+
+@dataclass(frozen=True, eq=False)
+class Chains:
+    """The joints as they follow each other.
+
+    Parameters
+    ----------
+    joints : array, shape (j, 3)
+        In the unit cube.
+    near : array, shape (j,), bool
+        Joints in the body or right beside it.
+    direction : array, shape (j, 3)
+        Unit vector of the bone that ends at each joint; zero where none does.
+    length : array, shape (j,)
+        Of that bone; zero where there is none.
+    ends : tuple of lists
+        Where the bones of each joint end: points in space.
+    links : tuple of lists
+        Further ends, of bones that the tree does not have.
+    """
+
+    joints: NDArray[np.float64]
+    near: NDArray[np.bool_]
+    direction: NDArray[np.float64]
+    length: NDArray[np.float64]
+    ends: tuple[list[NDArray[np.float64]], ...]
+    links: tuple[list[NDArray[np.float64]], ...]
+
+
+def find_chains(skeleton: Skeleton, joints: NDArray[np.float64], probe: BodyProbe) -> Chains:
+    """Find out which joints continue which.
+
+    Parameters
+    ----------
+    skeleton : Skeleton
+    joints : array, shape (j, 3)
+        Its joints in the unit cube.
+    probe : BodyProbe
+    """
+    near = probe.near(joints)
+    if not _has_bones(skeleton):
+        parents = _grown_tree(skeleton, joints, near, probe)
+        skeleton = replace(skeleton, parents=parents)
+    direction, length = _directions(skeleton, joints, near, probe)
+    ends = _ends(skeleton, joints, near, direction)
+    links = _links(skeleton, joints, direction, length, ends, probe)
+    return Chains(joints, near, direction, length, ends, links)
+
+
+def _has_bones(skeleton: Skeleton) -> bool:
+    has_parent = skeleton.parents >= 0
+    return bool((skeleton.deform & has_parent & skeleton.deform[skeleton.parents]).any())
+
+
+def _directions(
+    skeleton: Skeleton, joints: NDArray[np.float64], near: NDArray[np.bool_], probe: BodyProbe
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return direction and length of the bone that ends at each joint, zero where none does.
+
+    The link to a parent is a bone if the parent may move skin, and the link runs through the
+    body: a root on the ground, or a helper that moves nothing, is no place to come from.
+    """
+    parent = skeleton.parents.copy()
+    for j in range(len(parent)):
+        above = parent[j]
+        while above >= 0 and skeleton.deform[above] and _at_one_place(joints, above, j):
+            above = skeleton.parents[above]
+        parent[j] = above
+    away = joints - joints[parent]
+    length = np.linalg.norm(away, axis=1)
+    bone = (parent >= 0) & skeleton.deform[parent] & near[parent] & (length >= SAME_PLACE)
+    bone[bone] = probe.inner_part(joints[parent[bone]], joints[bone]) >= IN_BODY
+    length = np.where(bone, length, 0.0)
+    direction = np.divide(away, length[:, None], out=np.zeros_like(away), where=bone[:, None])
+    return direction, length
+
+
+def _ends(
+    skeleton: Skeleton,
+    joints: NDArray[np.float64],
+    near: NDArray[np.bool_],
+    direction: NDArray[np.float64],
+) -> tuple[list[NDArray[np.float64]], ...]:
+    """List where the bones of each joint end.
+
+    They run to its children, but where the body forks and no child goes on the way the bone
+    came: then, as with a head and its ears, the children are side branches and the joint's own
+    bone is not in the file. A joint outside the body has no bone at all.
+    """
+    ends: tuple[list[NDArray[np.float64]], ...] = tuple([] for _ in joints)
+    for j in np.flatnonzero(skeleton.deform & near).tolist():
+        children = [
+            k
+            for k in skeleton.children[j]
+            if (skeleton.deform[k] or near[k]) and not _at_one_place(joints, j, k)
+        ]
+        if len(children) > 1 and direction[j].any():
+            away = joints[children] - joints[j]
+            away /= np.linalg.norm(away, axis=1, keepdims=True)
+            if (away @ direction[j]).max() < ONWARD:
+                continue
+        ends[j].extend(joints[k] for k in children)
+    return ends
+
+
+def _links(
+    skeleton: Skeleton,
+    joints: NDArray[np.float64],
+    direction: NDArray[np.float64],
+    length: NDArray[np.float64],
+    ends: tuple[list[NDArray[np.float64]], ...],
+    probe: BodyProbe,
+) -> tuple[list[NDArray[np.float64]], ...]:
+    """Join chains that end with joints that no bone leads to, as a shin with the foot below it.
+
+    Both must be each other's clear choice: nearest, through the body, and not backward.
+    """
+    links: tuple[list[NDArray[np.float64]], ...] = tuple([] for _ in joints)
+    loose = np.flatnonzero(skeleton.deform & (length == 0))
+    tips = [
+        j for j in np.flatnonzero(skeleton.deform) if not ends[j] and length[j] > 0 and len(loose)
+    ]
+    wanted: dict[int, list[tuple[float, int]]] = {}
+    for j in tips:
+        away = joints[loose] - joints[j]
+        far = np.linalg.norm(away, axis=1)
+        fits = (loose != j) & ~skeleton.subtree[loose, j] & (far >= SAME_PLACE)
+        fits &= (far <= REACH * length[j]) & (away @ direction[j] >= BACKWARD * far)
+        fits[fits] = probe.inner_part(joints[j], joints[loose[fits]]) >= IN_BODY
+        choice = _clear_choice(far[fits], joints[loose[fits]])
+        if choice is not None:
+            k = loose[fits][choice]
+            wanted.setdefault(int(k), []).append((float(far[fits][choice]), int(j)))
+    for k, suitors in wanted.items():
+        choice = _clear_choice(
+            np.array([far for far, _ in suitors]), joints[[j for _, j in suitors]]
+        )
+        if choice is not None:
+            links[suitors[choice][1]].append(joints[k])
+    return links
+
+
+def _clear_choice(far: NDArray[np.float64], places: NDArray[np.float64]) -> int | None:
+    """Return the nearest, unless another, at another place, is about as near."""
+    if len(far) == 0:
+        return None
+    first = int(far.argmin())
+    elsewhere = np.linalg.norm(places - places[first], axis=1) >= SAME_PLACE
+    return None if (far[elsewhere] <= CLEARLY * far[first]).any() else first
+
+
+def _grown_tree(
+    skeleton: Skeleton, joints: NDArray[np.float64], near: NDArray[np.bool_], probe: BodyProbe
+) -> NDArray[np.int32]:
+    """Make up a tree for joints without one; return the parents.
+
+    From the root each joint is reached by its cheapest way of hops. The root is the joint from
+    which these ways are straightest.
+    """
+    parents = np.full(len(joints), -1, np.int32)
+    members = np.flatnonzero(skeleton.deform | near)
+    if len(members) < 3:
+        return parents
+    # In an order of their own, so that ties do not hang on how a file numbers joints.
+    members = members[np.lexsort(joints[members].T[::-1])]
+    places = joints[members]
+    away = places[None] - places[:, None]
+    length = np.linalg.norm(away, axis=2)
+    air = 1 - probe.inner_part(places[:, None], places[None], strictly=True)
+    # Joints at one place cost next to nothing, but not nothing: that would be no link.
+    cost = np.maximum(length**HOP * (1 + THROUGH_AIR * air), 1e-12)
+    before = dijkstra(cost, return_predecessors=True)[1]
+    unit = np.divide(away, length[..., None], out=np.zeros_like(away), where=length[..., None] > 0)
+    best, least = -1, np.inf
+    for root in np.flatnonzero(skeleton.deform[members]):
+        # Hops from the root itself bend nothing.
+        to = np.flatnonzero((before[root] >= 0) & (before[root] != root))
+        via = before[root][to]
+        bend = (1 - (unit[before[root][via], via] * unit[via, to]).sum(axis=1)).sum()
+        if bend < least * (1 - SAME_PLACE):
+            best, least = int(root), float(bend)
+    reached = before[best] >= 0
+    parents[members[reached]] = members[before[best][reached]]
+    return parents
+
+
+def _at_one_place(joints: NDArray[np.float64], a: int, b: int) -> bool:
+    return bool(np.linalg.norm(joints[a] - joints[b]) < SAME_PLACE)

@@ -1,0 +1,110 @@
+"""Questions about the body that a point in space can ask of the graph."""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+from numpy.typing import ArrayLike, NDArray
+
+from ..graph import INTERIOR, CutCellGraph
+from ..graph.interior import OUTSIDE, point_number
+
+STEP = 0.25
+"""Lattice cells between the points at which a ray is looked at."""
+ENTRY = 5
+"""Steps within which a ray must have come inside; a joint may lie right under the skin."""
+ALONG = np.linspace(0, 1, 17)
+"""Where a segment is looked at."""
+
+
+class BodyProbe:
+    """Tells what is inside the body, how thick it is, and where a ray leaves it.
+
+    All is known to about a lattice cell: enough to say where a bone ends.
+
+    Parameters
+    ----------
+    graph : CutCellGraph
+        Points are in its unit cube.
+    """
+
+    def __init__(self, graph: CutCellGraph) -> None:
+        self._graph = graph
+        self._resolution = graph.lattice.resolution
+        self._skin = graph.nodes[graph.node_kind != INTERIOR]
+        self._filled = np.sort(self._keys(self._cells(graph.nodes)))
+
+    def inside(self, points: ArrayLike) -> NDArray[np.bool_]:
+        """Tell for each point (..., 3) whether its lattice cell's centre is inside."""
+        points = np.asarray(points, np.float64)
+        cells = self._cells(points.reshape(-1, 3))
+        found = _inside(cells, self._resolution, *self._graph.interior.table)
+        return found.reshape(points.shape[:-1])
+
+    def near(self, points: ArrayLike) -> NDArray[np.bool_]:
+        """Tell for each point (..., 3) whether the body is in its lattice cell or next to it."""
+        points = np.asarray(points, np.float64)
+        cells = self._cells(points.reshape(-1, 3))
+        around = np.stack(np.meshgrid(*[[-1, 0, 1]] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
+        keys = self._keys(cells[:, None] + around)
+        place = np.searchsorted(self._filled, keys)
+        found = self._filled[np.minimum(place, len(self._filled) - 1)] == keys
+        return found.any(axis=1).reshape(points.shape[:-1])
+
+    def inner_part(
+        self, start: ArrayLike, end: ArrayLike, *, strictly: bool = False
+    ) -> NDArray[np.float64]:
+        """Return which part of each segment (..., 3) runs near the body, or strictly inside."""
+        start, end = np.broadcast_arrays(np.asarray(start, float), np.asarray(end, float))
+        points = start[..., None, :] + ALONG[:, None] * (end - start)[..., None, :]
+        return (self.inside if strictly else self.near)(points).mean(axis=-1)
+
+    def depth(self, points: ArrayLike) -> NDArray[np.float64]:
+        """Measure from each point (p, 3) to the nearest skin; zero outside."""
+        points = np.asarray(points, np.float64)
+        return np.where(self.inside(points), _to_nearest(points, self._skin), 0.0)
+
+    def way_out(self, start: NDArray[np.float64], direction: NDArray[np.float64]) -> float:
+        """Measure how far one can go from a point until outside; zero if not inside at all."""
+        steps = np.arange(int(2 * self._resolution / STEP)) * STEP / self._resolution
+        inside = self.inside(start + steps[:, None] * direction)
+        if not inside[:ENTRY].any():
+            return 0.0
+        entry = int(inside.argmax())
+        outside = np.flatnonzero(~inside[entry:])
+        return float(steps[entry + outside[0]])
+
+    def _cells(self, points: NDArray[np.float64]) -> NDArray[np.int64]:
+        return np.floor(points * self._resolution).astype(np.int64)
+
+    def _keys(self, cells: NDArray[np.int64]) -> NDArray[np.int64]:
+        # With two cells around the cube: skin may lie right on its side, and what is far
+        # outside must have a key without skin.
+        inner = np.clip(cells + 2, 0, self._resolution + 3)
+        side = self._resolution + 4
+        return (inner[..., 0] * side + inner[..., 1]) * side + inner[..., 2]
+
+
+@njit(cache=True, nogil=True)
+def _inside(cells, resolution, start, first, last, number):
+    found = np.zeros(len(cells), np.bool_)
+    for p in range(len(cells)):
+        x, y, z = cells[p]
+        if 0 <= x < resolution and 0 <= y < resolution and 0 <= z < resolution:
+            column = x * resolution + y
+            found[p] = point_number(start, first, last, number, column, z) != OUTSIDE
+    return found
+
+
+@njit(cache=True, nogil=True)
+def _to_nearest(points, others):
+    result = np.empty(len(points))
+    for p in range(len(points)):
+        least = np.inf
+        for o in range(len(others)):
+            x = points[p, 0] - others[o, 0]
+            y = points[p, 1] - others[o, 1]
+            z = points[p, 2] - others[o, 2]
+            least = min(least, x * x + y * y + z * z)
+        result[p] = np.sqrt(least)
+    return result

@@ -1,0 +1,120 @@
+"""Pieces of a mesh: limbs that hold bones of their own, and what is worn without any."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from ..graph import SURFACE, CutCellGraph
+
+FOREIGN = 2.0
+"""How many times farther a bone counts to be, beyond once, from a piece that it is not in while
+it is in another."""
+SMALL = 0.25
+"""Of the longest side: a piece up to this large may be something worn."""
+CONTACT = 1.0
+"""Lattice cells: a worn piece touches its wearer wherever it is this much farther than at its
+nearest."""
+RIGID = 0.6
+"""A worn piece follows one joint alone if its wearer does by this much where they touch."""
+
+
+def foreign_bones(
+    piece: NDArray[np.int32], held: NDArray[np.float64]
+) -> NDArray[np.float64] | None:
+    """Tell how many times farther each joint counts to be from each place.
+
+    An arm whose mesh is a piece of its own reaches into the shoulder, and its bone with it; the
+    chest's skin there is not the arm's.
+
+    Parameters
+    ----------
+    piece : array, shape (k,)
+    held : array, shape (pieces, j)
+        Which part of each joint's bones each piece holds.
+
+    Returns
+    -------
+    array, shape (j, k), or None where it is 1 everywhere
+    """
+    if len(held) == 1:
+        return None
+    most = held.max(axis=0)
+    home = np.divide(held, most, out=np.ones_like(held), where=most > 0)
+    farther = 1 + FOREIGN * (1 - home)
+    farther[held.max(axis=1) == 0] = 1
+    return farther[piece].T
+
+
+def dress(
+    graph: CutCellGraph,
+    areas: NDArray[np.float64],
+    piece: NDArray[np.int32],
+    held: NDArray[np.float64],
+    weights: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """Let small pieces without bones follow what they sit on: eyes, buttons, horns, armour.
+
+    Each moves as one, by the mean weights of its wearer where they touch.
+
+    Parameters
+    ----------
+    graph : CutCellGraph
+    areas : array, shape (k,)
+        Of the skin around each place.
+    piece, held
+        See `foreign_bones`.
+    weights : array, shape (k, j)
+
+    Returns
+    -------
+    array, shape (k, j)
+    """
+    points = graph.nodes[: len(piece)]
+    worn = (held.max(axis=1) == 0) & (_longest_sides(points, piece) <= SMALL)
+    wearer = ~worn[piece]
+    # What is in patches all over is no body with things on it.
+    if not worn.any() or areas[wearer].sum() < areas.sum() / 2:
+        return weights
+    where, corners = _wearer_skin(graph, wearer)
+    mine = np.flatnonzero(~wearer)
+    away, place = cKDTree(where).query(points[mine])
+    label = piece[mine]
+    least = np.full(len(held), np.inf)
+    np.minimum.at(least, label, away)
+    touching = away <= least[label] + CONTACT / graph.lattice.resolution
+    share = np.where(touching, areas[mine] + 1e-12, 0)
+    there = weights[corners[place]].mean(axis=1) * share[:, None]
+    total = np.zeros((len(held), weights.shape[1]))
+    np.add.at(total, label, there)
+    mean = total / np.maximum(total.sum(axis=1, keepdims=True), 1e-300)
+    leading = mean.argmax(axis=1)
+    alone = mean.max(axis=1) > RIGID
+    mean[alone] = np.eye(weights.shape[1])[leading[alone]]
+    dressed = weights.copy()
+    dressed[mine] = mean[label]
+    return dressed
+
+
+def _longest_sides(points: NDArray[np.float64], piece: NDArray[np.int32]) -> NDArray[np.float64]:
+    low = np.full((int(piece.max()) + 1, 3), np.inf)
+    high = -low
+    np.minimum.at(low, piece, points)
+    np.maximum.at(high, piece, points)
+    return (high - low).max(axis=1)
+
+
+def _wearer_skin(
+    graph: CutCellGraph, wearer: NDArray[np.bool_]
+) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
+    """List points on the wearers' skin: its vertices, and where rays cross it.
+
+    And for each point the three places that its weights are the mean of.
+    """
+    vertices = np.flatnonzero(wearer)
+    crossings = np.flatnonzero(graph.node_kind == SURFACE)
+    corners = graph.faces[graph.triangle[crossings]]
+    kept = wearer[corners[:, 0]]
+    where = np.concatenate([graph.nodes[vertices], graph.nodes[crossings[kept]]])
+    return where, np.concatenate([np.stack([vertices] * 3, axis=1), corners[kept]])

@@ -1,0 +1,109 @@
+"""Bones end where the body and the chain of joints say."""
+
+import numpy as np
+import pytest
+
+from cutcell import Skeleton, TriangleMesh, bone_distances, build_graph
+from cutcell.geodesics.bone_extents import fit_bones
+from cutcell.geodesics.probe import BodyProbe
+from tests import meshes
+from tests.bars import grid_box
+
+
+def limb():
+    """Make the graph of a bar from x = 0 to 1, 0.2 thick."""
+    return build_graph(TriangleMesh(*grid_box(20)), 32, connectivity="any")
+
+
+def on_axis(*x):
+    return [[value, 0.1, 0.1] for value in x]
+
+
+def ends(graph, skeleton, joint):
+    """List where a joint's bones end, in the file's units."""
+    bones, _ = fit_bones(graph, skeleton)
+    return graph.lattice.to_file(bones.end[bones.joint == joint])
+
+
+def test_probe_knows_a_box():
+    graph = build_graph(TriangleMesh(*meshes.box(0.0, 1.0)), 32)
+    probe = BodyProbe(graph)
+    points = np.array([[0.5, 0.5, 0.5], [0.9, 0.5, 0.5], [1.02, 0.5, 0.5], [1.3, 0.5, 0.5]])
+    np.testing.assert_array_equal(probe.inside(points), [True, True, False, False])
+    np.testing.assert_array_equal(probe.near(points), [True, True, True, False])
+    np.testing.assert_allclose(probe.depth(points), [0.5, 0.1, 0, 0], atol=0.01)
+    assert probe.inner_part(points[0], points[1]) == 1
+    assert 0.5 < probe.inner_part(points[0], [1.4, 0.5, 0.5]) < 0.65
+    assert probe.way_out(points[0], np.array([1.0, 0, 0])) == pytest.approx(0.5, abs=1 / 32)
+    assert probe.way_out(points[3], np.array([1.0, 0, 0])) == 0
+
+
+def test_a_tip_runs_on_and_is_aimed_at_its_skin():
+    graph = limb()
+    skeleton = Skeleton(on_axis(0.1, 0.5), [-1, 0])
+    np.testing.assert_allclose(ends(graph, skeleton, 0), on_axis(0.5))
+    np.testing.assert_allclose(ends(graph, skeleton, 1), on_axis(1.0), atol=1 / 32)
+    bones = bone_distances(graph, skeleton, leaf="fit").bones
+    aimed = graph.lattice.to_file(bones.end[bones.joint == 1])
+    np.testing.assert_allclose(aimed, on_axis(0.77), atol=0.03)
+
+
+def test_side_branches_are_no_continuation():
+    graph = build_graph(TriangleMesh(*meshes.ball(3)), 32, connectivity="any")
+    neck, head, left, right = [0.5, 0.5, 0.2], [0.5, 0.5, 0.5], [0.3, 0.5, 0.55], [0.7, 0.5, 0.55]
+    skeleton = Skeleton([neck, head, left, right], [-1, 0, 1, 1])
+    top = ends(graph, skeleton, 1)
+    assert len(top) == 1
+    np.testing.assert_allclose(top[0], [0.5, 0.5, 0.95], atol=1 / 32)
+    # With a crown that goes on, the branches are bones as well: so is a chest with arms.
+    skeleton = Skeleton([neck, head, left, right, [0.5, 0.5, 0.8]], [-1, 0, 1, 1, 1])
+    assert len(ends(graph, skeleton, 1)) == 3
+
+
+def test_a_foot_hung_on_the_root_continues_the_shin():
+    graph = limb()
+    root, foot = [0.5, -0.6, 0.1], [0.8, 0.1, 0.1]
+    skeleton = Skeleton([root, *on_axis(0.2, 0.5), foot], [-1, 0, 1, 0])
+    # It leaves the foot, whose own way the file does not tell, half of what lies between.
+    np.testing.assert_allclose(ends(graph, skeleton, 2), on_axis(0.65))
+    # The root itself is outside: it has no bone.
+    np.testing.assert_allclose(ends(graph, skeleton, 0), [root])
+    # Of two that are about as near neither is right.
+    two = Skeleton([root, *on_axis(0.2, 0.5), [0.8, 0.05, 0.1], [0.8, 0.15, 0.1]], [-1, 0, 1, 0, 0])
+    np.testing.assert_allclose(ends(graph, two, 2), on_axis(1.0), atol=1 / 32)
+
+
+def test_a_tip_without_room_is_given_some():
+    graph = limb()
+    skeleton = Skeleton(on_axis(0.1, 0.5, 0.98), [-1, 0, 1])
+    shortened = ends(graph, skeleton, 1)[0, 0]
+    assert 0.75 < shortened < 0.85
+    roomy = Skeleton(on_axis(0.1, 0.4, 0.7), [-1, 0, 1])
+    np.testing.assert_allclose(ends(graph, roomy, 1), on_axis(0.7))
+
+
+@pytest.mark.parametrize("order", [[0, 1, 2, 3, 4], [3, 1, 4, 0, 2]])
+def test_joints_without_a_tree_get_one(order):
+    graph = limb()
+    joints = np.array(on_axis(0.1, 0.25, 0.4, 0.55, 0.7))
+    skeleton = Skeleton(joints[order], [-1] * 5)
+    bones, tip = fit_bones(graph, skeleton)
+    length = np.linalg.norm(graph.lattice.to_file(bones.end) - joints[order][bones.joint], axis=1)
+    assert tip.sum() == 1
+    np.testing.assert_allclose(length[~tip], 0.15, atol=1e-9)
+
+
+def test_two_lone_joints_stay_points():
+    graph = limb()
+    bones, tip = fit_bones(graph, Skeleton(on_axis(0.2, 0.8), [-1, -1]))
+    np.testing.assert_array_equal(bones.start, bones.end)
+    assert tip.all()
+
+
+@pytest.mark.parametrize("name", meshes.ALL)
+def test_bones_can_be_fitted_to_anything(name):
+    graph = build_graph(TriangleMesh(*meshes.ALL[name]()), 10, connectivity="any")
+    joints = [[0.5, 0.5, 0.3], [0.5, 0.5, 0.5], [0.5, 0.52, 0.7], [3, 3, 3], [0.5, 0.5, 0.3]]
+    distances = bone_distances(graph, Skeleton(joints, [-1, 0, 1, 0, 0]), leaf="fit")
+    assert np.isfinite(distances.bones.end).all()
+    assert np.isfinite(distances.joint).any(axis=0).all()
