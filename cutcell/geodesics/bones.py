@@ -135,7 +135,9 @@ def find_sources(graph: CutCellGraph, bones: Bones, samples: int) -> Sources:
     place_on_bone = np.concatenate([np.linspace(0, 1, n) if n > 1 else [0.5] for n in counts])
     points = bones.start[bone] + place_on_bone[:, None] * (bones.end - bones.start)[bone]
     near = min(8, len(connected))
-    distance, place = cKDTree(graph.nodes[connected]).query(points, k=list(range(1, near + 1)))
+    # Few queries: a tree that is quick to build rather than to ask.
+    tree = cKDTree(graph.nodes[connected], balanced_tree=False, compact_nodes=False)
+    distance, place = tree.query(points, k=list(range(1, near + 1)))
     chosen = distance <= distance[:, :1] * (1 + TIE)
     bone = np.broadcast_to(bone[:, None], chosen.shape)[chosen]
     pairs = np.unique(np.stack([bone, connected[place[chosen]]], axis=1), axis=0)

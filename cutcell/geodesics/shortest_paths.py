@@ -1,11 +1,13 @@
 """Shortest paths along the graph's edges from all bones (paper section 3.2, algorithm 2).
 
-Bones are worked off LANES at a time: all of them share each visit of a node and each edge
-read from memory, and one vector instruction relaxes the edge for all. Nodes are visited in
-sweeps, sorted by position once in each direction of the lattice, as in fast sweeping: a
-path that never turns back is found in one sweep. Only nodes next to a change are visited
-again, until nothing changes. Then every distance is the least over its neighbours' plus
-the edge, which is what Dijkstra's algorithm arrives at, too.
+Nodes are numbered anew along the body's longest side and swept, forth and back in turn. A
+node whose distances fell since its last visit lowers its neighbours'; a path that keeps
+its direction is found in one sweep, and most follow a limb out. When no node waits for a
+visit, every distance is at most its neighbours' plus the edge, which is what Dijkstra's
+algorithm arrives at, too.
+
+LANES bones share each visit and each edge read from memory, and one vector instruction
+lowers the distances of all.
 """
 
 from __future__ import annotations
@@ -15,11 +17,11 @@ from numba import njit
 from numpy.typing import NDArray
 
 from ..graph import CutCellGraph
+from ..graph.cutcell_graph import Adjacency, list_neighbours
 from ..progress import Progress, silent
 from ..threads import in_threads, threads
 from .bones import Sources
-
-LANES = 8
+from .lanes import LANES, lower
 
 
 def shortest_paths(
@@ -48,75 +50,52 @@ def shortest_paths(
     array, shape (b, t), float64
         Infinite where no path leads.
     """
-    orders = _sweep_orders(graph.nodes)
-    blocks = -(-bones // LANES)
-    result = np.empty((blocks * LANES, len(targets)))
-    step = threads()
-    for first in range(0, blocks, step):
-        progress("distances", first / blocks)
-        last = min(first + step, blocks)
-        distance = np.full((last - first, len(graph.nodes), LANES), np.inf)
-        mine = (sources.bone >= first * LANES) & (sources.bone < last * LANES)
-        bone = sources.bone[mine] - first * LANES
-        distance[bone // LANES, sources.node[mine], bone % LANES] = sources.distance[mine]
-        in_threads(lambda block: _relax(*graph.adjacency, orders, block), distance)
-        found = distance[:, targets].transpose(0, 2, 1).reshape(-1, len(targets))
-        result[first * LANES : last * LANES] = found
+    place, adjacency = _along_body(graph)
+    groups = -(-bones // LANES)
+    result = np.empty((groups, LANES, len(targets)))
+
+    def one_group(group: int) -> None:
+        mine = sources.bone // LANES == group
+        node, lane = place[sources.node[mine]], sources.bone[mine] % LANES
+        distance = np.full((len(place), LANES), np.inf)
+        np.minimum.at(distance, (node, lane), sources.distance[mine])
+        waiting = np.zeros(len(place), np.bool_)
+        waiting[node] = True
+        _sweep(*adjacency, waiting, distance)
+        result[group] = distance[place[targets]].T
+
+    step = 2 * threads()
+    for first in range(0, groups, step):
+        progress("distances", first / groups)
+        in_threads(one_group, range(first, min(first + step, groups)))
     progress("distances", 1.0)
-    return result[:bones]
+    return result.reshape(-1, len(targets))[:bones]
 
 
-def _sweep_orders(nodes: NDArray[np.float64]) -> NDArray[np.int32]:
-    """Sort the nodes by x, y, z for each sign of y and z; reversed, these are all eight."""
-    x, y, z = nodes.T
-    signs = [(1, 1), (1, -1), (-1, 1), (-1, -1)]
-    return np.stack([np.lexsort((c * z, b * y, x)) for b, c in signs]).astype(np.int32)
+def _along_body(graph: CutCellGraph) -> tuple[NDArray[np.int32], Adjacency]:
+    """Number the nodes along the longest side: each node's place, and their neighbours.
+
+    Nodes at one height keep their order, which is ascending for lattice points. Heights
+    have 16 bits, many to a lattice cell, because these are sorted in linear time.
+    """
+    side = np.argmax([np.ptp(along) for along in graph.nodes.T])
+    height = (graph.nodes[:, side] * np.iinfo(np.uint16).max).astype(np.uint16)
+    order = np.argsort(height, kind="stable")
+    place = np.empty(len(order), np.int32)
+    place[order] = np.arange(len(order), dtype=np.int32)
+    return place, list_neighbours(place[graph.edges], graph.lengths, len(place))
 
 
 @njit(cache=True, nogil=True)
-def _relax(indptr, indices, lengths, orders, distance):
-    waiting = np.zeros(len(indptr) - 1, np.bool_)
-    for node in range(len(waiting)):
-        if distance[node].min() < np.inf:
-            waiting[indices[indptr[node] : indptr[node + 1]]] = True
-    sweep = 0
+def _sweep(indptr, indices, lengths, waiting, distance):
+    forth = True
     while waiting.any():
-        order = orders[sweep // 2 % len(orders)]
-        for k in range(len(order)):
-            node = order[k] if sweep % 2 == 0 else order[len(order) - 1 - k]
-            if waiting[node]:
-                waiting[node] = False
-                if _relax_node(indptr, indices, lengths, distance, node):
-                    for e in range(indptr[node], indptr[node + 1]):
-                        waiting[indices[e]] = True
-        sweep += 1
-
-
-@njit(cache=True, inline="always")
-def _relax_node(indptr, indices, lengths, distance, v):
-    """Lower a node's distances to the least over its neighbours; tell whether any fell.
-
-    The lanes are written out so that they stay in vector registers.
-    """
-    d0, d1, d2, d3 = distance[v, 0], distance[v, 1], distance[v, 2], distance[v, 3]
-    d4, d5, d6, d7 = distance[v, 4], distance[v, 5], distance[v, 6], distance[v, 7]
-    for e in range(indptr[v], indptr[v + 1]):
-        u, step = np.uint32(indices[e]), lengths[e]
-        d0, d1 = min(d0, distance[u, 0] + step), min(d1, distance[u, 1] + step)
-        d2, d3 = min(d2, distance[u, 2] + step), min(d3, distance[u, 3] + step)
-        d4, d5 = min(d4, distance[u, 4] + step), min(d5, distance[u, 5] + step)
-        d6, d7 = min(d6, distance[u, 6] + step), min(d7, distance[u, 7] + step)
-    fell = (
-        (d0 < distance[v, 0])
-        | (d1 < distance[v, 1])
-        | (d2 < distance[v, 2])
-        | (d3 < distance[v, 3])
-        | (d4 < distance[v, 4])
-        | (d5 < distance[v, 5])
-        | (d6 < distance[v, 6])
-        | (d7 < distance[v, 7])
-    )
-    if fell:
-        distance[v, 0], distance[v, 1], distance[v, 2], distance[v, 3] = d0, d1, d2, d3
-        distance[v, 4], distance[v, 5], distance[v, 6], distance[v, 7] = d4, d5, d6, d7
-    return fell
+        for k in range(len(waiting)):
+            v = k if forth else len(waiting) - 1 - k
+            if waiting[v]:
+                waiting[v] = False
+                for e in range(indptr[v], indptr[v + 1]):
+                    u = indices[e]
+                    if lower(distance, u, v, lengths[e]):
+                        waiting[u] = True
+        forth = not forth

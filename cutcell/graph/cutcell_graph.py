@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TypeAlias
 
 import numpy as np
 from numba import njit
@@ -16,6 +17,8 @@ from .lattice import Lattice
 MESH, INTERIOR, SURFACE = 0, 1, 2
 """Kinds of nodes (mesh vertices, lattice points inside, crossings of rays and surface) and
 of edges (of the mesh, along rays inside, from a crossing to the corners of its triangle)."""
+
+Adjacency: TypeAlias = tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.float64]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,18 +76,26 @@ class CutCellGraph:
         return csr_array((lengths, indices, indptr), shape=(len(self.nodes),) * 2)
 
     @cached_property
-    def adjacency(self) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.float64]]:
-        """Neighbours of each node: indptr (N + 1,), indices (2E,) and lengths (2E,)."""
-        indptr = np.concatenate([[0], np.cumsum(self.degree)]).astype(np.int32)
-        indices = np.empty(2 * len(self.edges), np.int32)
-        lengths = np.empty(2 * len(self.edges))
-        _fill_adjacency(self.edges, self.lengths, indptr[:-1].copy(), indices, lengths)
-        return indptr, indices, lengths
+    def adjacency(self) -> Adjacency:
+        """Neighbours of each node, see `list_neighbours`."""
+        return list_neighbours(self.edges, self.lengths, len(self.nodes))
 
     @cached_property
     def degree(self) -> NDArray[np.int64]:
         """Number of edges at each node, shape (N,)."""
         return np.bincount(self.edges.ravel(), minlength=len(self.nodes))
+
+
+def list_neighbours(
+    edges: NDArray[np.int32], lengths: NDArray[np.float64], count: int
+) -> Adjacency:
+    """List the neighbours of each of `count` nodes: indptr (N + 1,), indices and lengths (2E,)."""
+    degree = np.bincount(edges.ravel(), minlength=count)
+    indptr = np.concatenate([[0], np.cumsum(degree)]).astype(np.int32)
+    indices = np.empty(2 * len(edges), np.int32)
+    both_ways = np.empty(2 * len(edges))
+    _fill_adjacency(edges, lengths, indptr[:-1].copy(), indices, both_ways)
+    return indptr, indices, both_ways
 
 
 @njit(cache=True)
