@@ -73,7 +73,7 @@ def shortest_paths(
 
 
 def _along_body(graph: CutCellGraph) -> tuple[NDArray[np.int32], Adjacency]:
-    """Number the nodes along the longest side: each node's place, and their neighbours.
+    """Sort the nodes along the longest side: return the place of each, and their neighbours.
 
     Nodes at one height keep their order, which is ascending for lattice points. Heights
     have 16 bits, many to a lattice cell, because these are sorted in linear time.
@@ -96,6 +96,6 @@ def _sweep(indptr, indices, lengths, waiting, distance):
                 waiting[v] = False
                 for e in range(indptr[v], indptr[v + 1]):
                     u = indices[e]
-                    if lower(distance, u, v, lengths[e]):
+                    if lower(distance, u, v, lengths[e]):  # type: ignore[call-arg]
                         waiting[u] = True
         forth = not forth
