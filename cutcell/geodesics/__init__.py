@@ -3,6 +3,7 @@
 from .bones import Bones, Sources, bone_segments, distance_to_segment
 from .distances import BoneDistances, bone_distances
 from .fallback import FALLBACK_REASONS
+from .paths import path_length, shortest_path
 
 __all__ = [
     "FALLBACK_REASONS",
@@ -12,4 +13,6 @@ __all__ = [
     "bone_distances",
     "bone_segments",
     "distance_to_segment",
+    "path_length",
+    "shortest_path",
 ]

@@ -4,6 +4,7 @@ from .build import build_graph
 from .cutcell_graph import INTERIOR, MESH, SURFACE, CutCellGraph
 from .lattice import Lattice
 from .segments import kernels_are_compiled
+from .slice import RaySlice, slice_rays
 from .winding import winding_number
 
 __all__ = [
@@ -12,7 +13,9 @@ __all__ = [
     "SURFACE",
     "CutCellGraph",
     "Lattice",
+    "RaySlice",
     "build_graph",
     "kernels_are_compiled",
+    "slice_rays",
     "winding_number",
 ]

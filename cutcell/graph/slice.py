@@ -1,0 +1,147 @@
+"""One slice of the lattice and what its rays meet (paper section 3.1, figure "ray segments").
+
+The graph is built from all rays at once and forgets the pieces that it drops. Here the rays
+of one slice are diced again, to be looked at.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..checks import check_choice, check_integer, check_number
+from ..errors import ParameterError
+from ..rig import TriangleMesh
+from .lattice import Lattice
+from .rays import AXES, Crossings, cast_rays
+from .weld import weld
+from .winding import winding_number
+
+
+@dataclass(frozen=True, eq=False)
+class RaySlice:
+    """Parallel rays in one plane of the lattice, diced by crossings and lattice points.
+
+    Positions are in the unit cube.
+
+    Parameters
+    ----------
+    low, high : arrays, shape (s, 3), float64
+        The ends of each segment, ray by ray, upward; those that reach the cube's wall lack
+        an end and are left out.
+    winding : array, shape (s,), float64
+        The winding number at each segment's midpoint.
+    kept : array, shape (s,), bool
+        Whether it is at least tau.
+    crossing : array, shape (c, 3), float64
+        Where the rays meet triangles.
+    sign : array, shape (c,), int8
+        +1 where a ray leaves through a triangle's back, -1 where it enters.
+    triangle : array, shape (c,), int32
+    lattice : Lattice
+    """
+
+    low: NDArray[np.float64]
+    high: NDArray[np.float64]
+    winding: NDArray[np.float64]
+    kept: NDArray[np.bool_]
+    crossing: NDArray[np.float64]
+    sign: NDArray[np.int8]
+    triangle: NDArray[np.int32]
+    lattice: Lattice
+
+
+def slice_rays(
+    mesh: TriangleMesh,
+    resolution: int,
+    *,
+    axis: int,
+    normal: int,
+    index: int,
+    winding_threshold: float = 0.5,
+) -> RaySlice:
+    """Dice the rays of one slice of the lattice.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+    resolution : int
+        R, as of `build_graph`.
+    axis : int
+        Which way the rays run: 0, 1, 2 for x, y, z.
+    normal : int
+        What the slice is perpendicular to; another axis.
+    index : int
+        Which slice, from 0 to R - 1: the one at (index + 1/2) / R.
+    winding_threshold : float
+        tau: segments with at least this winding number are kept.
+
+    Returns
+    -------
+    RaySlice
+
+    Raises
+    ------
+    ParameterError
+        A parameter is out of its range, or the rays would leave the slice.
+
+    References
+    ----------
+    Paper section 3.1, figure "ray segments".
+    """
+    lattice = Lattice.around(mesh, resolution)
+    resolution = lattice.resolution
+    check_choice("axis", axis, (0, 1, 2))
+    check_choice("normal", normal, (0, 1, 2))
+    if axis == normal:
+        raise ParameterError(f"axis and normal are both {axis}; rays lie in their slice")
+    index = check_integer("index", index, 0, resolution - 1)
+    threshold = check_number("winding_threshold", winding_threshold, 0, 1)
+
+    vertices, vertex_node = weld(lattice.to_unit(mesh.vertices))
+    crossings = cast_rays(vertices, vertex_node[mesh.faces], resolution, axis)
+    u, v, along = AXES[axis]
+    across = v if normal == u else u
+    every = np.arange(resolution)
+    rays = index * resolution + every if normal == u else every * resolution + index
+
+    place, number = _segments(crossings, rays, resolution)
+    low, high = (np.empty((len(number), 3)) for _ in range(2))
+    for ends, at in zip((low, high), place.T, strict=True):
+        ends[:, normal] = (index + 0.5) / resolution
+        ends[:, across] = (number + 0.5) / resolution
+        ends[:, along] = at
+    winding = winding_number(mesh, lattice.to_file((low + high) / 2))
+
+    count = np.diff(crossings.start)[rays]
+    hit = np.concatenate([np.arange(*crossings.start[[ray, ray + 1]]) for ray in rays])
+    crossing = np.empty((len(hit), 3))
+    crossing[:, normal] = (index + 0.5) / resolution
+    crossing[:, across] = (np.repeat(every, count) + 0.5) / resolution
+    crossing[:, along] = crossings.position[hit]
+    return RaySlice(
+        low,
+        high,
+        winding,
+        winding >= threshold,
+        crossing,
+        crossings.sign[hit],
+        crossings.triangle[hit],
+        lattice,
+    )
+
+
+def _segments(
+    crossings: Crossings, rays: NDArray[np.intp], resolution: int
+) -> tuple[NDArray[np.float64], NDArray[np.intp]]:
+    """Return where each segment begins and ends, shape (s, 2), and the place of its ray."""
+    lattice = (np.arange(resolution) + 0.5) / resolution
+    place, number = [], []
+    for k, ray in enumerate(rays):
+        met = crossings.position[crossings.start[ray] : crossings.start[ray + 1]]
+        ends = np.unique(np.concatenate([met, lattice]))
+        place.append(np.stack([ends[:-1], ends[1:]], axis=1))
+        number.append(np.full(len(ends) - 1, k))
+    return np.concatenate(place), np.concatenate(number)

@@ -1,0 +1,75 @@
+"""The way back from a vertex is as long as its distance, and stays inside."""
+
+import numpy as np
+import pytest
+
+from cutcell import (
+    ParameterError,
+    Skeleton,
+    TriangleMesh,
+    bone_distances,
+    build_graph,
+)
+from cutcell.geodesics import path_length, shortest_path
+from tests import meshes
+from tests.cutcell.geodesics.test_any_angle import l_bar
+
+SKELETON = Skeleton([[0.9, 0.1, 0.12], [0.8, 0.1, 0.12]], [-1, 0], deform=[True, False])
+
+
+def measured(connectivity, skeleton=SKELETON, resolution=24):
+    mesh = TriangleMesh(*l_bar())
+    graph = build_graph(mesh, resolution, connectivity=connectivity)
+    return mesh, bone_distances(graph, skeleton)
+
+
+@pytest.mark.parametrize("connectivity", [6, 26])
+def test_along_edges_it_is_exactly_as_long_as_the_field_says(connectivity):
+    mesh, distances = measured(connectivity)
+    field = distances.field(0)
+    for vertex in range(0, len(mesh.vertices), 97):
+        path = shortest_path(distances, 0, vertex, field)
+        assert path_length(path) == pytest.approx(
+            field[distances.graph.vertex_node[vertex]], rel=5e-3
+        )
+
+
+def test_at_any_angle_it_bends_only_at_corners_and_stays_inside():
+    _, distances = measured("any")
+    graph, field = distances.graph, distances.field(0)
+    far = np.argsort(-field[graph.vertex_node])[: len(graph.vertex_node) // 2 : 41]
+    for vertex in far:
+        path = shortest_path(distances, 0, int(vertex), field)
+        assert path_length(path) == pytest.approx(field[graph.vertex_node[vertex]], rel=0.1)
+        assert len(path) <= 9
+        steps = np.linspace(0, 1, 19)[:, None, None]
+        between = (path[:-1] + steps * (path[1:] - path[:-1])).reshape(-1, 3)
+        # Nowhere near the air that the L leaves out.
+        x, y = graph.lattice.to_file(between)[:, :2].T
+        assert np.minimum(x, y).max() < 0.25 + 1 / 24
+
+
+def test_it_begins_at_the_vertex_and_ends_on_the_bone():
+    mesh, distances = measured("any")
+    path = shortest_path(distances, 0, 5)
+    np.testing.assert_allclose(distances.graph.lattice.to_file(path[0]), mesh.vertices[5])
+    foot = distances.graph.lattice.to_file(path[-1])
+    np.testing.assert_allclose(foot[1:], [0.1, 0.12], atol=1e-9)
+    assert 0.8 - 1e-9 <= foot[0] <= 0.9 + 1e-9
+
+
+def test_where_no_path_leads_there_is_none():
+    (v, f), (w, g) = meshes.box(0, 0.4), meshes.box(0.6, 1)
+    mesh = TriangleMesh(np.concatenate([v, w]), np.concatenate([f, g + len(v)]))
+    distances = bone_distances(build_graph(mesh, 10), Skeleton([[0.2, 0.2, 0.2]], [-1]))
+    assert shortest_path(distances, 0, len(v)).shape == (0, 3)
+
+
+def test_what_there_is_not_is_refused():
+    _, distances = measured(6, resolution=8)
+    with pytest.raises(ParameterError, match="vertex"):
+        shortest_path(distances, 0, 10**6)
+    with pytest.raises(ParameterError, match="no bone"):
+        shortest_path(distances, 1, 0)
+    with pytest.raises(ParameterError, match="field has the shape"):
+        shortest_path(distances, 0, 0, np.zeros(3))

@@ -1,0 +1,71 @@
+"""One slice of the lattice tells what the graph was built from."""
+
+import numpy as np
+import pytest
+
+from cutcell import ParameterError, TriangleMesh, build_graph, winding_number
+from cutcell.graph import INTERIOR, slice_rays
+from tests import meshes
+
+
+def middles_in(graph, axis, normal, index):
+    """Midpoints of the graph's interior edges that lie in a slice and run along an axis."""
+    ends = graph.nodes[graph.edges[graph.edge_kind == INTERIOR]]
+    level = (index + 0.5) / graph.lattice.resolution
+    inside = (np.abs(ends[:, :, normal] - level) < 1e-9).all(axis=1)
+    other = 3 - axis - normal
+    along = np.abs(ends[:, 0, other] - ends[:, 1, other]) < 1e-12
+    moves = np.abs(ends[:, 0, axis] - ends[:, 1, axis]) > 1e-12
+    return ends[inside & along & moves].mean(axis=1)
+
+
+@pytest.mark.parametrize("shape", [meshes.ball, meshes.torus, meshes.ball_with_holes, meshes.tube])
+@pytest.mark.parametrize(("axis", "normal"), [(0, 1), (0, 2), (1, 0), (2, 0), (2, 1)])
+def test_kept_segments_are_the_graphs_interior_edges(shape, axis, normal):
+    mesh = TriangleMesh(*shape())
+    graph = build_graph(mesh, 12, connectivity=6)
+    found = slice_rays(mesh, 12, axis=axis, normal=normal, index=5)
+    long = np.linalg.norm(found.high - found.low, axis=1) > 1e-12
+    kept = ((found.low + found.high) / 2)[found.kept & long]
+    expected = middles_in(graph, axis, normal, 5)
+    assert len(expected) > 0
+    order = lambda points: points[np.lexsort(points.round(9).T)]  # noqa: E731
+    np.testing.assert_allclose(order(kept), order(expected), atol=1e-9)
+
+
+def test_segments_hang_together_and_tell_their_winding_number():
+    mesh = TriangleMesh(*meshes.ball_with_holes())
+    found = slice_rays(mesh, 10, axis=2, normal=0, index=4, winding_threshold=0.3)
+    assert (found.high[:, 2] > found.low[:, 2]).all()
+    np.testing.assert_allclose(found.low[:, 0], 0.45)
+    middle = found.lattice.to_file((found.low + found.high) / 2)
+    np.testing.assert_allclose(found.winding, winding_number(mesh, middle), atol=1e-12)
+    np.testing.assert_array_equal(found.kept, found.winding >= 0.3)
+    assert 0 < found.kept.sum() < len(found.kept)
+
+
+def test_on_a_closed_mesh_each_ray_enters_as_often_as_it_leaves():
+    mesh = TriangleMesh(*meshes.torus())
+    found = slice_rays(mesh, 16, axis=0, normal=2, index=8)
+    assert found.sign.sum() == 0
+    np.testing.assert_allclose(found.winding, found.winding.round(), atol=1e-9)
+    corners = found.lattice.to_unit(mesh.vertices)[mesh.faces[found.triangle]]
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    np.testing.assert_array_equal(np.sign(normal[:, 0]), found.sign)
+    offset = ((found.crossing - corners[:, 0]) * normal).sum(axis=1)
+    np.testing.assert_allclose(offset, 0, atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "said"),
+    [
+        ({"normal": 0}, "both 0"),
+        ({"axis": 3}, "axis"),
+        ({"index": 8}, "index"),
+        ({"winding_threshold": 2}, "winding_threshold"),
+    ],
+)
+def test_a_slice_that_is_none_is_refused(wrong, said):
+    mesh = TriangleMesh(*meshes.box())
+    with pytest.raises(ParameterError, match=said):
+        slice_rays(mesh, 8, **{"axis": 0, "normal": 1, "index": 0, **wrong})
