@@ -12,7 +12,7 @@ from .bones import Bones, distance_to_segment
 from .distances import BoneDistances
 
 STRAIGHT = 1.005
-"""A way this little longer than the straight one is taken as straight."""
+"""A way that is longer than the straight one by no more than this counts as straight."""
 SLACK = 0.9
 """How much of a straight piece's length the field must fall by along it."""
 
@@ -109,7 +109,7 @@ def _pulled(nodes: NDArray[np.float64], field: NDArray[np.float64], chain: list[
     for k in range(last - 1, -1, -1):
         length = np.linalg.norm(points[k + 1 :] - points[k], axis=1)
         fall = height[k] - height[k + 1 :]
-        seen = (fall <= length * (1 + 1e-9)) & (fall >= SLACK * length)
+        seen = (fall <= length * STRAIGHT) & (fall >= SLACK * length)
         seen[0] = True
         total = np.where(seen, length + left[k + 1 :], np.inf)
         best = int(np.argmin(total))
