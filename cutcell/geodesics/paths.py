@@ -112,7 +112,7 @@ def _pulled(nodes: NDArray[np.float64], field: NDArray[np.float64], chain: list[
         seen = (fall <= length * STRAIGHT) & (fall >= SLACK * length)
         seen[0] = True
         total = np.where(seen, length + left[k + 1 :], np.inf)
-        best = int(np.argmin(total))
+        best = int(np.flatnonzero(total <= total.min() * (1 + 1e-9))[-1])  # the fewest points
         left[k], following[k] = total[best], k + 1 + best
     kept = [0]
     while kept[-1] < last:
