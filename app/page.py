@@ -14,6 +14,7 @@ import panel_material_ui as pmui
 from assets import DEMOS
 
 from .favicon import FAVICON
+from .inspector import inspector
 from .jobs import Gate
 from .memory import let_go, tidy_soon
 from .session import Session
@@ -72,6 +73,7 @@ def layout(session: Session) -> pmui.Page:
         pmui.Column(
             session.view,
             messages(session),
+            inspector(session),
             sizing_mode="stretch_both",
             margin=0,
             styles={"position": "relative"},

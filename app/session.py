@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import logging
 import tempfile
+import threading
 from collections.abc import Callable
 from pathlib import Path
 from threading import Lock
@@ -18,14 +19,19 @@ from cutcell.rig import Rig
 from viewers.scene import framing
 
 from .actions import WATCHERS
+from .actions.weights import weigh
 from .jobs import COMPUTING, Jobs, Schedule
 from .scenes import Memo, resolve
 from .scenes.common import bones_part, bounds_of, first_joint, theme_of
 from .state import UNSEEN, State
+from .state.method import GRAPH, WEIGHTS, method_of
 from .upload import Receiver
 from .view import SceneView, camera_part, theme_part
 
 logger = logging.getLogger("cutcell.app")
+
+PAUSE = 0.2
+"""Seconds without a change of the graph's parameters before it is built again."""
 
 COMPANIONS = {".txt", ".json", ".mtl", ".bin", ".png", ".jpg", ".jpeg"}
 """Files that come along with the one that is opened."""
@@ -45,16 +51,21 @@ class Session:
         self._schedule = schedule
         self._files = tempfile.TemporaryDirectory(prefix="cutcell-", ignore_cleanup_errors=True)
         self.folder = Path(self._files.name)
-        self.view = SceneView(self.pick, self.receiver(), sizing_mode="stretch_both")
+        self.view = SceneView(
+            self.pick,
+            self.receiver(),
+            sizing_mode="stretch_both",
+        )
         self._jobs: dict[str, Jobs] = {}
         self._closed = False
+        self._timer: threading.Timer | None = None
         self.memo = Memo()
         seen = [name for name in self.state.param if name not in UNSEEN]
         self.state.param.watch(self._refresh, seen)
         for watch in WATCHERS:
             watch(self)
         self.state.param.watch(self._theme, "dark")
-        self.state.param.watch(lambda event: self.bind(), "resolution")
+        self.state.param.watch(lambda *events: self._soon(self.bind), list(GRAPH))
         self._theme()
 
     def later(self, action: Callable[[], Any]) -> None:
@@ -67,6 +78,14 @@ class Session:
                 self.fail(error)
 
         self._schedule(guarded)
+
+    def _soon(self, action: Callable[[], Any]) -> None:
+        """Run an action when a person has paused for a moment; a newer one takes its place."""
+        if self._timer is not None:
+            self._timer.cancel()
+        self._timer = threading.Timer(PAUSE, lambda: self.later(action))
+        self._timer.daemon = True
+        self._timer.start()
 
     def jobs(self, name: str) -> Jobs:
         """Return the work of one name: a newer piece of it stops the one before."""
@@ -118,7 +137,7 @@ class Session:
         self.jobs("field").cancel()
         state.param.update(
             rig=rig, binding=None, field=None, turns={}, moving=False, playing=False,
-            clip=0 if rig.clips else -1, message=None, joint=first_joint(rig),
+            clip=0 if rig.clips else -1, message=None, joint=first_joint(rig), vertex=None,
         )  # fmt: skip
         self.view.camera = framing(bounds_of(state), 1.2)
         self.view.tell(bones=bones_part(state), camera=camera_part(self.view.camera))
@@ -129,14 +148,16 @@ class Session:
     def bind(self) -> None:
         """Compute graph, distances and weights of the character that stands there."""
         state = self.state
-        rig, resolution = state.rig, state.resolution
+        rig, method = state.rig, method_of(state)
         if rig is None:
             return
 
         def done(binding: Any) -> None:
             state.param.update(binding=binding, field=None, message=None)
+            if method_of(state, WEIGHTS) != {name: method[name] for name in WEIGHTS}:
+                weigh(self)  # another falloff was chosen in the meantime
 
-        self.start(lambda progress: cutcell.bind(rig, resolution, progress=progress), done)
+        self.start(lambda progress: cutcell.bind(rig, progress=progress, **method), done)
 
     def cancel(self) -> None:
         """Stop computing; what was there stays."""
@@ -188,6 +209,13 @@ class Session:
             return
         state.param.update(joint=joint, weights_shown="bone")
 
+    def pick_vertex(self, vertex: int | None) -> None:
+        """Choose a vertex to look at closely; None for no more."""
+        state = self.state
+        if state.rig is None or (vertex is not None and vertex >= len(state.rig.mesh.vertices)):
+            return
+        state.vertex = vertex
+
     def _refresh(self, *events: Any) -> None:
         self.view.present(resolve(self.state, self.memo))
 
@@ -197,6 +225,8 @@ class Session:
     def close(self) -> None:
         """Stop all work and remove what was uploaded."""
         self._closed = True
+        if self._timer is not None:
+            self._timer.cancel()
         for jobs in self._jobs.values():
             jobs.close()
         self._files.cleanup()

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from panel.custom import JSComponent
 from panel.models.vtk import VTK_VERSION
 
-from viewers.description import Actor, Apart, Description, Legend
+from viewers.description import Actor, Apart, Description, Legend, Reading
 from viewers.palette import Theme, colormap, to_hex
 from viewers.scene import AMBIENT, LIGHTS, Camera
 from viewers.skin import Skin
@@ -36,7 +36,7 @@ class SceneView(JSComponent):
     window_width = param.Integer(0, doc="Width of the browser's window, once it is known.")
 
     _rename = {"window_width": None}  # noqa: RUF012
-    _esm = script("orbit", "skin", "figure", "stage", "pick", "gizmo", "transport",
+    _esm = script("orbit", "skin", "figure", "stage", "pick", "surface", "gizmo", "transport",
                   "upload", "overlay", "view")  # fmt: skip
 
     def __init__(
@@ -78,6 +78,10 @@ class SceneView(JSComponent):
         self._parts.update(parts)
         if self._ready:
             self._send(parts)
+
+    def told(self, name: str) -> Any:
+        """Return what was last told of a part of the view; None if nothing was."""
+        return self._parts.get(name)
 
     def offer(self, name: str, content: bytes) -> None:
         """Let the browser save a file."""
@@ -138,6 +142,8 @@ def changes(old: Description, new: Description, sent: set[str]) -> dict[str, Any
         message["actors"] = actors
     if old.cut != new.cut:
         message["cut"] = new.cut and {"origin": new.cut.origin, "normal": new.cut.normal}
+    if old.front != new.front:
+        message["front"] = new.front
     if old.legend != new.legend:
         message["legend"] = _legend(new.legend)
     if old.views != new.views:
@@ -173,6 +179,10 @@ def _part(old: Actor | None, new: Actor) -> dict[str, Any]:
     if old is None or old.apart is not new.apart:
         part["apart"] = _apart(new.apart)
     part.update(_colouring(old, new))
+    if (old is not None and old.film) != new.film:
+        part["film"] = new.film
+    if not _same_reading(None if old is None else old.reading, new.reading):
+        part["reading"] = _reading(new.reading)
     for name, value in _settings(new).items():
         if old is None or _settings(old)[name] != value:
             part[name] = value
@@ -222,11 +232,20 @@ def _settings(actor: Actor) -> dict[str, Any]:
     return {"paint": paint, "place": place, "visible": actor.visible}
 
 
+def _reading(reading: Reading | None) -> dict[str, Any] | None:
+    if reading is None:
+        return None
+    values = None if reading.values is None else _flat(reading.values, np.float32)
+    return {"text": reading.text, "values": values, "names": list(reading.names)}
+
+
 def _legend(legend: Legend | None) -> dict[str, Any] | None:
     if legend is None:
         return None
-    table = _flat(colormap(legend.colormap), np.uint8)
-    return {"title": legend.title, "low": legend.low, "high": legend.high, "table": table}
+    table = _flat(colormap(legend.colormap), np.uint8) if legend.colormap else None
+    swatches = [(to_hex(color), text) for color, text in legend.swatches]
+    ends = {"low": legend.low, "high": legend.high}
+    return {"title": legend.title, "table": table, "swatches": swatches, **ends}
 
 
 def _flat(array: NDArray, dtype: Any) -> NDArray:
@@ -237,6 +256,13 @@ def _same(a: NDArray | None, b: NDArray | None) -> bool:
     if a is None or b is None:
         return a is b
     return a is b or (a.shape == b.shape and np.array_equal(a, b))
+
+
+def _same_reading(old: Reading | None, new: Reading | None) -> bool:
+    if old is None or new is None:
+        return old is new
+    same = (old.text, old.names) == (new.text, new.names)
+    return same and _same(old.values, new.values)
 
 
 def _same_skin(old: Actor, new: Actor) -> bool:

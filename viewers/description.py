@@ -28,6 +28,26 @@ class Apart:
 
 
 @dataclass(frozen=True, eq=False)
+class Reading:
+    """What is told of the place under the pointer.
+
+    Parameters
+    ----------
+    text : str
+        What the value is: told before it.
+    values : array, shape (n,) or (m,), float32, optional
+        One for each point of a surface, or for each cell of lines; the actor's scalars when
+        left out.
+    names : tuple of str
+        Where there are any, the value is an index into these.
+    """
+
+    text: str = ""
+    values: NDArray[np.float32] | None = None
+    names: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
 class Actor:
     """One thing in a scene.
 
@@ -61,6 +81,10 @@ class Actor:
         Whether the scene's cut takes away what lies before it.
     slab : float
         Keep only what lies less than this far behind the cut; 0 keeps all.
+    reading : Reading, optional
+        What is told where the pointer rests on it.
+    film : bool
+        Whether only scalars up to the description's `front` are coloured.
     """
 
     kind: Literal["surface", "lines", "points"]
@@ -82,6 +106,8 @@ class Actor:
     skin: Skin | None = None
     apart: Apart | None = None
     view: int | None = None
+    reading: Reading | None = None
+    film: bool = False
 
 
 @dataclass(frozen=True)
@@ -94,12 +120,16 @@ class Cut:
 
 @dataclass(frozen=True)
 class Legend:
-    """How to read the colours: the title, the map and the numbers at its two ends."""
+    """How to read the colours: the title, the map and the numbers at its two ends.
+
+    Instead of a map, or below it, there may be `swatches`: a colour and what it stands for.
+    """
 
     title: str
-    colormap: str
-    low: str
-    high: str
+    colormap: str = ""
+    low: str = ""
+    high: str = ""
+    swatches: tuple[tuple[Color, str], ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,6 +146,8 @@ class Description:
     views : tuple of str
         Captions of the views that stand side by side under one camera; a single view has
         none.
+    front : float, optional
+        Scalars above it are left grey on the actors that are part of the film.
     """
 
     actors: dict[str, Actor] = field(default_factory=dict)
@@ -123,6 +155,7 @@ class Description:
     cut: Cut | None = None
     legend: Legend | None = None
     views: tuple[str, ...] = ()
+    front: float | None = None
 
     @property
     def bounds(self) -> NDArray[np.float64]:

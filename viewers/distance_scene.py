@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from cutcell.rig import Rig
 
 from .character import attachments, body, bones
-from .description import Description, Legend
+from .description import Description, Legend, Reading
 
 
 def distance_scene(
@@ -55,7 +55,8 @@ def distance_colors(rig: Rig, distance: ArrayLike, joint: int) -> tuple[dict[str
     """Return the fields of the body's `Actor` that colour it, and how to read them."""
     limits = distance_limits(distance)
     values = shown_distance(distance, limits)
-    colors = {"scalars": values, "colormap": "distance", "limits": limits}
+    reading = Reading(f"from {rig.skeleton.names[joint]}: ")
+    colors = {"scalars": values, "colormap": "distance", "limits": limits, "reading": reading}
     return colors, distance_legend(rig, joint, limits)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.spatial import cKDTree
 
 from cutcell.graph import INTERIOR, MESH, SURFACE, CutCellGraph
 from cutcell.rig import Rig
@@ -25,6 +26,8 @@ def graph_scene(
     *,
     layers: tuple[str, ...] = tuple(LAYERS),
     field: ArrayLike | None = None,
+    kinds: tuple[int, ...] = (INTERIOR,),
+    shades: str = "distance",
     cut: Cut | None = None,
     slab: float = 0.0,
     theme: palette.Theme = palette.LIGHT,
@@ -39,7 +42,11 @@ def graph_scene(
     layers : tuple of str
         Which of `LAYERS` are seen.
     field : array_like, shape (N,), optional
-        A distance at every node: the interior is then coloured by it.
+        A distance at every node: edges are then coloured by it.
+    kinds : tuple of int
+        The kinds of edges that are.
+    shades : str
+        The colour map that it is shown with.
     cut : Cut, optional
         Takes away what lies before it, so that the interior is seen.
     slab : float
@@ -59,7 +66,7 @@ def graph_scene(
         edges = graph.edges[graph.edge_kind == kind]
         used, cells = np.unique(edges, return_inverse=True)
         scalars, limits = None, (0.0, 1.0)
-        if field is not None and kind == INTERIOR:
+        if field is not None and kind in kinds:
             limits = distance_limits(field)
             scalars = shown_distance(np.asarray(field)[used], limits)
         actors[name] = Actor(
@@ -68,12 +75,21 @@ def graph_scene(
             cells.reshape(-1, 2).astype(np.int32),
             color=color,
             scalars=scalars,
-            colormap="distance",
+            colormap=shades,
             limits=limits,
             visible=name in layers,
             slab=slab if kind == INTERIOR else 0.0,
         )
     return Description(actors, cut=cut)
+
+
+def depth_field(graph: CutCellGraph) -> NDArray[np.float64]:
+    """Return how far each node lies below the surface, shape (N,), in unit-cube lengths."""
+    inner = graph.node_kind == INTERIOR
+    depth = np.zeros(len(graph.nodes))
+    if inner.any():
+        depth[inner] = cKDTree(graph.nodes[~inner]).query(graph.nodes[inner])[0]
+    return depth
 
 
 def cut_at(bounds: NDArray[np.float64], axis: str, position: float) -> Cut:

@@ -30,6 +30,43 @@ GHOST = _rgb(64, 132, 255)
 UNREACHED = _rgb(120, 116, 132)
 
 
+# What a person marks: the clicked vertex, the way back from it.
+MARK = _rgb(232, 30, 99)
+# The paper's purple: nodes where distances begin.
+SOURCE = _rgb(146, 72, 190)
+
+# What is enough of a difference to people who see few colours, too: of all colours of middle
+# lightness each was chosen farthest from those before it, to every one of `EYES`.
+JOINT_COLORS = (
+    (221, 165, 82), (89, 111, 187), (95, 230, 252), (173, 91, 51), (0, 168, 169),
+    (169, 166, 250), (187, 221, 169), (209, 116, 101), (66, 202, 180), (139, 135, 216),
+    (143, 99, 139), (239, 206, 111),
+)  # fmt: skip
+EVENNESS = 0.012
+"""How much of a difference in OKLab it is worth to use all colours equally often."""
+
+# How linear red, green and blue are seen by trichromats and by those who lack the long, middle
+# or short cones (Machado, Oliveira & Fernandes 2009).
+EYES = {
+    "all cones": ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
+    "no long cones": (
+        (0.152286, 1.052583, -0.204868),
+        (0.114503, 0.786281, 0.099216),
+        (-0.003882, -0.048116, 1.051998),
+    ),
+    "no middle cones": (
+        (0.367322, 0.860646, -0.227968),
+        (0.280085, 0.672501, 0.047413),
+        (-0.011820, 0.042940, 0.968881),
+    ),
+    "no short cones": (
+        (1.255528, -0.076749, -0.178779),
+        (-0.078411, 0.930809, 0.147602),
+        (0.004733, 0.691367, 0.303900),
+    ),
+}
+
+
 @dataclass(frozen=True)
 class Theme:
     """The surroundings of a scene: a vertical gradient and the ink of its text."""
@@ -85,6 +122,12 @@ _MAPS: dict[str, tuple[tuple[int, int, int], ...]] = {
         (52, 54, 128),
         (38, 22, 72),
     ),
+    # few influences are calm, many glow
+    "count": ((214, 224, 236), (150, 190, 214), (86, 148, 178), (132, 92, 160), (96, 34, 92)),
+    # from the surface's green to the deepest orange
+    "depth": ((176, 214, 108), (235, 200, 90), (255, 140, 40), (214, 66, 14), (120, 24, 20)),
+    # winding numbers: outside is grey, inside orange
+    "winding": ((150, 158, 172), (176, 172, 168), (226, 158, 110), (255, 108, 12)),
 }
 TEXELS = 512
 ISO_LINES = 16
@@ -97,7 +140,7 @@ def colormap(name: str) -> NDArray[np.uint8]:
 
     Parameters
     ----------
-    name : {"weight", "distance", "error", "difference"}
+    name : {"weight", "distance", "error", "difference", "count", "depth", "winding"}
 
     Returns
     -------
@@ -116,7 +159,7 @@ def colormap(name: str) -> NDArray[np.uint8]:
 
 
 def joint_colors(parents: ArrayLike) -> NDArray[np.float64]:
-    """Return one calm colour a joint, equally bright, far from its neighbours'.
+    """Return one colour a joint, far from its neighbours' to every kind of eye.
 
     Parameters
     ----------
@@ -125,13 +168,38 @@ def joint_colors(parents: ArrayLike) -> NDArray[np.float64]:
     Returns
     -------
     array, shape (j, 3), float64
-        Red, green and blue from 0 to 1.
+        Red, green and blue from 0 to 1, each one of `JOINT_COLORS`. Parents, grandparents and
+        siblings of a joint have others.
     """
-    index = np.arange(len(np.asarray(parents)))
-    hue = 2 * np.pi * (0.07 + 0.61803398875 * index)  # the golden ratio never repeats a hue
-    lightness = 0.78 + 0.05 * (index % 3 - 1)
-    lab = np.stack([lightness, 0.095 * np.cos(hue), 0.095 * np.sin(hue)], axis=1)
-    return np.clip(_oklab_to_srgb(lab), 0, 1)
+    parents = np.asarray(parents)
+    apart = _differences()
+    used = np.zeros(len(apart))
+    chosen = np.zeros(len(parents), int)
+    for joint, parent in enumerate(parents):
+        siblings = np.flatnonzero(parents[:joint] == parent)[-(len(apart) - 3) :]
+        above = [parent, parents[parent]] if parent >= 0 else []
+        near = [k for k in (*above, *siblings) if 0 <= k < joint]
+        score = apart[:, chosen[near]].min(axis=1, initial=1.0) - EVENNESS * used
+        chosen[joint] = int(np.argmax(score))
+        used[chosen[joint]] += 1
+    return np.array(JOINT_COLORS)[chosen] / 255
+
+
+@cache
+def _differences() -> NDArray[np.float64]:
+    """Return how far apart the joints' colours are, in OKLab, to the eye that sees it least."""
+    colors = np.array(JOINT_COLORS) / 255
+    apart = [
+        np.linalg.norm(lab[:, None] - lab, axis=2)
+        for lab in (_srgb_to_oklab(as_seen(colors, eye)) for eye in EYES)
+    ]
+    return np.min(apart, axis=0)
+
+
+def as_seen(colors: ArrayLike, eye: str) -> NDArray[np.float64]:
+    """Return colours (n, 3), from 0 to 1, as an eye sees them: one of `EYES`."""
+    linear = _to_linear(np.asarray(colors, float)) @ np.array(EYES[eye]).T
+    return np.clip(_from_linear(linear), 0, 1)
 
 
 def to_bytes(colors: ArrayLike) -> NDArray[np.uint8]:
@@ -151,15 +219,21 @@ def _with_iso_lines(table: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.where(line[:, None], table * 0.62, table)
 
 
+def _to_linear(rgb: NDArray[np.float64]) -> NDArray[np.float64]:
+    return np.where(rgb <= 0.04045, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4)
+
+
+def _from_linear(linear: NDArray[np.float64]) -> NDArray[np.float64]:
+    linear = np.maximum(linear, 0)
+    return np.where(linear <= 0.0031308, linear * 12.92, 1.055 * linear ** (1 / 2.4) - 0.055)
+
+
 def _srgb_to_oklab(rgb: NDArray[np.float64]) -> NDArray[np.float64]:
-    linear = np.where(rgb <= 0.04045, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4)
-    return np.cbrt(linear @ _RGB_TO_LMS.T) @ _LMS_TO_LAB.T
+    return np.cbrt(_to_linear(rgb) @ _RGB_TO_LMS.T) @ _LMS_TO_LAB.T
 
 
 def _oklab_to_srgb(lab: NDArray[np.float64]) -> NDArray[np.float64]:
-    linear = (lab @ np.linalg.inv(_LMS_TO_LAB).T) ** 3 @ np.linalg.inv(_RGB_TO_LMS).T
-    linear = np.maximum(linear, 0)
-    return np.where(linear <= 0.0031308, linear * 12.92, 1.055 * linear ** (1 / 2.4) - 0.055)
+    return _from_linear((lab @ np.linalg.inv(_LMS_TO_LAB).T) ** 3 @ np.linalg.inv(_RGB_TO_LMS).T)
 
 
 # Björn Ottosson, "A perceptual color space for image processing", 2020.

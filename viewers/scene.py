@@ -18,7 +18,7 @@ if sys.platform == "linux" and not os.environ.get("DISPLAY"):
 import pyvista as pv
 
 from .description import Actor, Cut, Description
-from .palette import LIGHT, Theme, colormap
+from .palette import BODY, LIGHT, Theme, colormap, to_bytes
 from .skin import moved, squared_apart, turned
 
 VIEW_ANGLE = 30.0
@@ -140,7 +140,7 @@ class Scene:
     def _add(self, actor: Actor, description: Description) -> pv.Actor:
         mapper = pv.DataSetMapper(_dataset(actor, description.pose))
         drawn = pv.Actor(mapper=mapper)
-        _paint(drawn, actor)
+        _paint(drawn, actor, description.front)
         if actor.clipped and description.cut is not None:
             for plane in cut_planes(description.cut, actor.slab):
                 mapper.AddClippingPlane(pv._vtk.vtkPlane(**plane))
@@ -210,7 +210,7 @@ def _values(actor: Actor, pose: NDArray[np.float64] | None) -> Any:
     return (actor.apart.unit * squared).astype(np.float32)
 
 
-def _paint(drawn: pv.Actor, actor: Actor) -> None:
+def _paint(drawn: pv.Actor, actor: Actor, front: float | None = None) -> None:
     look = drawn.prop
     look.color, look.opacity, look.line_width = actor.color, actor.opacity, actor.width
     look.ambient, look.diffuse = AMBIENT, 1.0
@@ -228,6 +228,8 @@ def _paint(drawn: pv.Actor, actor: Actor) -> None:
         mapper.SelectColorArray("values")
         mapper.interpolate_before_map = True
         table = colormap(actor.colormap)
+        if actor.film and front is not None:
+            table = behind_front(table, actor.limits, front)
         opaque = np.full((len(table), 1), 255, np.uint8)
         mapper.lookup_table = pv.LookupTable(values=np.hstack([table, opaque]))
         mapper.scalar_range = actor.limits
@@ -238,6 +240,14 @@ def _paint(drawn: pv.Actor, actor: Actor) -> None:
         # Lines on a surface lie in it: pull them a little towards the eye.
         mapper.SetResolveCoincidentTopologyToPolygonOffset()
         mapper.SetRelativeCoincidentTopologyLineOffsetParameters(0, -4)
+
+
+def behind_front(
+    table: NDArray[np.uint8], limits: tuple[float, float], front: float
+) -> NDArray[np.uint8]:
+    """Return a colour table that is the body's grey for values above the front."""
+    values = np.linspace(*limits, len(table))
+    return np.where(values[:, None] <= front, table, to_bytes(BODY)).astype(np.uint8)
 
 
 def _add_overlay(plotter: pv.Plotter) -> pv.Renderer:

@@ -5,16 +5,13 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from cutcell.rig import Rig
 
 from .character import attachments, body, bones
-from .description import Description, Legend
+from .description import Description, Legend, Reading
 from .palette import UNREACHED, joint_colors, to_bytes
-
-EMPHASIS = 4
-"""The power that weights are raised to before their joints' colours are mixed."""
 
 
 def weights_scene(
@@ -62,11 +59,47 @@ def weight_colors(
     """Return the fields of the body's `Actor` that colour it, and how to read them."""
     weights = np.asarray(weights, float)
     if joint is not None:
-        legend = Legend(f"Weight of {rig.skeleton.names[joint]}", "weight", "0", "1")
-        return {"scalars": weights[:, joint].astype(np.float32), "colormap": "weight"}, legend
+        name = rig.skeleton.names[joint]
+        legend = Legend(f"Weight of {name}", "weight", "0", "1")
+        scalars = np.ascontiguousarray(weights[:, joint], np.float32)
+        return {"scalars": scalars, "colormap": "weight", "reading": Reading(f"{name} ")}, legend
     # Many small weights mix to grey; a power lets the strongest show its colour.
-    strong = weights**EMPHASIS
+    strong = np.square(np.square(weights))
     total = strong.sum(axis=1, keepdims=True)
     mixed = strong @ joint_colors(rig.skeleton.parents) / np.where(total > 0, total, 1)
     mixed = np.where(total > 0, mixed, UNREACHED)
-    return {"colors": to_bytes(np.clip(mixed, 0, 1))}, None
+    return {"colors": to_bytes(np.clip(mixed, 0, 1)), "reading": _strongest(rig, weights)}, None
+
+
+def dominant_colors(rig: Rig, weights: ArrayLike) -> tuple[dict[str, Any], Legend | None]:
+    """Colour each vertex by the joint that holds most of it; see `weight_colors`."""
+    reading = _strongest(rig, np.asarray(weights, float))
+    colors = to_bytes(joint_colors(rig.skeleton.parents))
+    assert reading.values is not None
+    return {"colors": colors[reading.values.astype(int)], "reading": reading}, None
+
+
+def count_colors(rig: Rig, weights: ArrayLike) -> tuple[dict[str, Any], Legend]:
+    """Colour each vertex by the number of joints that it follows; see `weight_colors`."""
+    count = (np.asarray(weights) > 0).sum(axis=1).astype(np.float32)
+    most = max(int(count.max(initial=1)), 2)
+    legend = Legend("Joints that a vertex follows", "count", "1", f"{most}")
+    look = {"scalars": count, "colormap": "count", "limits": (1.0, float(most))}
+    return {**look, "reading": Reading("joints: ")}, legend
+
+
+def difference_colors(
+    rig: Rig, weights: ArrayLike, other: ArrayLike
+) -> tuple[dict[str, Any], Legend]:
+    """Colour each vertex by the part of its weight that two matrices give to different joints.
+
+    See `weight_colors`.
+    """
+    moved = np.abs(np.asarray(weights, np.float32) - np.asarray(other, np.float32)).sum(axis=1) / 2
+    legend = Legend("Weight that sits on other joints", "error", "0", "1: all of it")
+    look = {"scalars": moved.astype(np.float32), "colormap": "error", "limits": (0.0, 1.0)}
+    return {**look, "reading": Reading("held otherwise: ")}, legend
+
+
+def _strongest(rig: Rig, weights: NDArray[np.float64]) -> Reading:
+    return Reading("", weights.argmax(axis=1).astype(np.float32), rig.skeleton.names)

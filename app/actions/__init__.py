@@ -6,6 +6,6 @@ are what the panels call.
 
 from __future__ import annotations
 
-from . import compare, geodesics, pose
+from . import compare, geodesics, pose, weights
 
-WATCHERS = (geodesics.watch, pose.watch, compare.watch)
+WATCHERS = (geodesics.watch, pose.watch, compare.watch, weights.watch)

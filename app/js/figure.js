@@ -1,6 +1,7 @@
 // One actor of the scene, drawn by vtk.js; changed in place by what the server sends.
 
 const MANY_LINES = 40000
+const QUIET = [201, 206, 214]  // the body's own grey
 
 // Arrays arrive as Bokeh's own subclasses, whose names vtk.js does not know.
 function plain(array) {
@@ -54,6 +55,11 @@ class Figure {
       [this.overlay, this.view] = [part.place.overlay, part.place.view]
       this.place()
     }
+    if ("reading" in part) {
+      const {reading} = part
+      this.reading = reading && {...reading, values: reading.values && plain(reading.values)}
+    }
+    if ("film" in part) { this.film = part.film }
     if ("clipped" in part) { [this.clipped, this.slab] = [part.clipped, part.slab] }
     if ("visible" in part) { this.visible = part.visible }
     this.cut(cut)
@@ -82,6 +88,8 @@ class Figure {
       data.modified()
     }
     put(this.data, 1)
+    if (this.kind === "surface") { this.triangles = cells }
+    if (this.kind === "lines") { this.pairs = cells }
     this.count = cells.length / corners
     // While the camera moves, a twin with fewer lines stands in.
     if (this.kind === "lines" && this.count > MANY_LINES && this.made.length < 2) {
@@ -125,6 +133,7 @@ class Figure {
   }
 
   setColors(colors) {
+    this.table = null
     this.setArray(colors, 3)
     for (const {mapper} of this.made) {
       mapper.setColorModeToDirectScalars()
@@ -134,28 +143,43 @@ class Figure {
 
   setScalars(values, table, limits) {
     this.setArray(values, 1)
+    this.values = values
+    this.table = table
     this.limits = limits
-    const {vtkLookupTable, vtkDataArray} = this.vtk.Common.Core
-    const size = table.length / 3
-    const rgba = new Uint8Array(size * 4).fill(255)
-    for (let i = 0; i < size; i++) { rgba.set(table.subarray(3 * i, 3 * i + 3), 4 * i) }
-    const lookup = vtkLookupTable.newInstance()
-    lookup.setTable(vtkDataArray.newInstance({numberOfComponents: 4, values: rgba}))
-    lookup.setRange(limits[0], limits[1])
     for (const {mapper} of this.made) {
       mapper.setColorModeToMapScalars()
       mapper.setInterpolateScalarsBeforeMapping(true)
       mapper.setUseLookupTableScalarRange(true)
-      mapper.setLookupTable(lookup)
     }
+    this.setTable(this.front)
+  }
+
+  // Values beyond the front are left grey.
+  setTable(front) {
+    this.front = front
+    if (!this.table) { return }
+    const {vtkLookupTable, vtkDataArray} = this.vtk.Common.Core
+    const size = this.table.length / 3
+    const [low, high] = this.limits
+    const last = !this.film || front === null || front === undefined
+      ? size : Math.floor((front - low) / (high - low || 1) * (size - 1)) + 1
+    const rgba = new Uint8Array(size * 4).fill(255)
+    for (let i = 0; i < size; i++) {
+      rgba.set(i < last ? this.table.subarray(3 * i, 3 * i + 3) : QUIET, 4 * i)
+    }
+    const lookup = vtkLookupTable.newInstance()
+    lookup.setTable(vtkDataArray.newInstance({numberOfComponents: 4, values: rgba}))
+    lookup.setRange(low, high)
+    for (const {mapper} of this.made) { mapper.setLookupTable(lookup) }
   }
 
   setArray(values, numberOfComponents) {
     const {vtkDataArray} = this.vtk.Common.Core
-    this.data.getPointData().setScalars(vtkDataArray.newInstance({
-      name: "values", numberOfComponents, values,
-    }))
-    this.data.modified()
+    const array = vtkDataArray.newInstance({name: "values", numberOfComponents, values})
+    for (const {data} of this.made) {
+      data.getPointData().setScalars(array)
+      data.modified()
+    }
   }
 
   paint({color, opacity, width, ambient, coloured, behind}) {
@@ -184,6 +208,11 @@ class Figure {
     for (const {actor} of this.made) {
       for (const layer of this.layers) { layer.addActor(actor) }
     }
+  }
+
+  // Whether it is seen in a view.
+  standsIn(view) {
+    return typeof this.view !== "number" || this.view === view
   }
 
   leave() {

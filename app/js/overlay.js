@@ -17,6 +17,10 @@ const STYLE = `
 .legend canvas { width: 100%; height: 8px; border-radius: 4px; display: block; }
 .legend span { display: flex; justify-content: space-between; margin-top: 4px; opacity: .75;
   font-variant-numeric: tabular-nums; }
+.legend i { font-style: normal; }
+.legend p { margin: 5px 0 0; display: flex; align-items: center; gap: 8px; opacity: .9; }
+.legend p::before { content: ""; width: 14px; height: 8px; border-radius: 3px; flex: none;
+  background: var(--swatch); }
 .bone { padding: 4px 8px; transform: translate(14px, -110%); white-space: nowrap; }
 .caption { padding: 5px 12px; transform: translateX(-50%); white-space: nowrap; overflow: hidden;
   text-overflow: ellipsis; font-weight: 500; }
@@ -91,7 +95,7 @@ class Overlay {
     this.angle = make("div", "card angle", this.root)
     this.transport = make("div", "card transport", this.root)
     this.hint = make("div", "card hint", this.root, false)
-    this.hint.textContent = "drag to turn · right-drag to move · scroll to zoom · click a bone"
+    this.hint.textContent = "drag to turn · right-drag to move · scroll to zoom · click a bone or the body"
     this.failed = make("div", "card failed", this.root)
     this.drop = make("div", "card drop", this.root)
   }
@@ -105,27 +109,27 @@ class Overlay {
   showLegend(legend) {
     this.legend.hidden = !legend
     if (!legend) { return }
-    const {title, low, high} = legend
-    const table = plain(legend.table)
+    const {title, low, high, swatches} = legend
     this.legend.replaceChildren()
-    const name = document.createElement("b")
-    name.textContent = title
-    const bar = document.createElement("canvas")
-    bar.width = table.length / 3
-    bar.height = 1
-    const image = new ImageData(bar.width, 1)
-    for (let i = 0; i < bar.width; i++) {
-      image.data.set([...table.subarray(3 * i, 3 * i + 3), 255], 4 * i)
+    const add = (tag, text) => {
+      const element = document.createElement(tag)
+      element.textContent = text
+      this.legend.append(element)
+      return element
     }
-    bar.getContext("2d").putImageData(image, 0, 0)
-    const ends = document.createElement("span")
-    for (const text of [low, high]) {
-      const end = document.createElement("i")
-      end.style.fontStyle = "normal"
-      end.textContent = text
-      ends.append(end)
+    add("b", title)
+    if (legend.table) {
+      this.legend.append(colorBar(plain(legend.table)))
+      const ends = add("span", "")
+      for (const text of [low, high]) {
+        const end = document.createElement("i")
+        end.textContent = text
+        ends.append(end)
+      }
     }
-    this.legend.append(name, bar, ends)
+    for (const [color, text] of swatches || []) {
+      add("p", text).style.setProperty("--swatch", color)
+    }
   }
 
   // What stands in each view, and the seams between them.
@@ -154,9 +158,9 @@ class Overlay {
     })
   }
 
-  showBone(name, x, y) {
+  showBone(name, x, y, isBone = true) {
     this.bone.hidden = !name
-    this.canvas.classList.toggle("over-bone", Boolean(name))
+    this.canvas.classList.toggle("over-bone", Boolean(name) && isBone)
     if (!name) { return }
     this.bone.textContent = name
     this.bone.style.left = `${x}px`
@@ -172,4 +176,16 @@ class Overlay {
     this.failed.hidden = false
     this.failed.textContent = message
   }
+}
+
+function colorBar(table) {
+  const bar = document.createElement("canvas")
+  bar.width = table.length / 3
+  bar.height = 1
+  const image = new ImageData(bar.width, 1)
+  for (let i = 0; i < bar.width; i++) {
+    image.data.set([...table.subarray(3 * i, 3 * i + 3), 255], 4 * i)
+  }
+  bar.getContext("2d").putImageData(image, 0, 0)
+  return bar
 }

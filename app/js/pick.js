@@ -1,8 +1,9 @@
 // Which bone lies under the pointer: the segment nearest on the screen, within reach.
 
 const REACH = 16
+const TOUCH = 6  // over the body, a bone must be met as well as it is drawn
 
-function pickBone(stage, bones, pose, x, y) {
+function pickBone(stage, bones, pose, x, y, reach = REACH) {
   if (!bones) { return null }
   let best = null
   const view = stage.viewAt(x, y)
@@ -10,7 +11,7 @@ function pickBone(stage, bones, pose, x, y) {
     const [a, b] = boneEnds(stage, bones, pose, i, view)
     if (!a || !b) { return }
     const [distance, along] = toSegment(x, y, a, b)
-    if (distance > REACH) { return }
+    if (distance > reach) { return }
     const depth = a[2] + along * (b[2] - a[2])
     // Near misses count less than depth only among bones that are hit about equally well.
     const score = distance + REACH * 0.25 * depth / stage.camera.getDistance()

@@ -187,6 +187,23 @@ class Stage {
     ]
   }
 
+  // From pixels of the canvas to a ray of the scene.
+  ray(x, y) {
+    const [left, top, w, h] = this.tiles[this.viewAt(x, y)]
+    const origin = this.camera.getPosition()
+    const unit = (v) => v.map((c) => c / Math.hypot(...v))
+    const cross = (a, b) => [0, 1, 2].map((k) => {
+      const [i, j] = [(k + 1) % 3, (k + 2) % 3]
+      return a[i] * b[j] - a[j] * b[i]
+    })
+    const ahead = unit(this.camera.getFocalPoint().map((c, i) => c - origin[i]))
+    const right = unit(cross(ahead, [0, 1, 0]))
+    const up = cross(right, ahead)
+    const slope = Math.tan(VIEW_ANGLE * Math.PI / 360)
+    const [a, b] = [(2 * (x - left) / w - 1) * slope * w / h, (1 - 2 * (y - top) / h) * slope]
+    return {origin, direction: unit(ahead.map((c, i) => c + a * right[i] + b * up[i]))}
+  }
+
   remove() {
     for (const figure of this.figures.values()) { figure.remove() }
     this.texture?.remove()

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import panel_material_ui as pmui
 
 from ..session import Session
-from .parts import caption, cutting, section, when
+from ..state import State
+from .parts import GAP, caption, cutting, section, slider, when
 
 
 def geodesics(session: Session) -> pmui.Column:
@@ -19,4 +22,58 @@ def geodesics(session: Session) -> pmui.Column:
             state.param.joint,
         ),
     )
-    return section("Distance from the bone", idle, *cutting(state))
+    return pmui.Column(
+        section("Distance from the bone", idle, *cutting(state)),
+        section("Shown with it", *_more(state)),
+        section("Wavefront", *_wave(state)),
+        margin=0,
+        sizing_mode="stretch_width",
+    )
+
+
+def _more(state: State) -> list[Any]:
+    hint = caption(
+        "Click the body: the shortest way from there back to the bone is drawn.",
+        visible=when(
+            lambda vertex, path: path and vertex is None, state.param.vertex, state.param.path
+        ),
+    )
+    explain = caption(
+        "Points on the bone look for their nearest nodes of the graph. These sources begin "
+        "with their straight distance to the bone.",
+        visible=state.param.starts,
+    )
+    return [switch(state.param.path), hint, switch(state.param.starts), explain]
+
+
+def _wave(state: State) -> list[Any]:
+    def play(event: Any) -> None:
+        state.param.update(wave=True, filming=not state.filming)
+
+    button = pmui.Button(
+        label=when(lambda on: "Halt the wave" if on else "Let it run", state.param.filming),
+        icon=when(lambda on: "pause" if on else "play_arrow", state.param.filming),
+        size="small",
+        variant="outlined",
+        on_click=play,
+        margin=GAP,
+        sizing_mode="stretch_width",
+    )
+    front = slider(
+        state.param.front,
+        "How far it came",
+        step=0.005,
+        visible=when(lambda on, runs: on and not runs, state.param.wave, state.param.filming),
+    )
+    return [
+        switch(state.param.wave),
+        front,
+        button,
+    ]
+
+
+def switch(parameter: Any) -> pmui.Switch:
+    """Return a switch that follows a parameter, under the parameter's own label."""
+    return pmui.Switch.from_param(
+        parameter, label=parameter.label, size="small", margin=(3, 0), description=""
+    )

@@ -1,20 +1,125 @@
-"""The graph: how fine it is, which of its layers are seen, and where it is cut."""
+"""The graph: how it is built, which of its layers are seen, and where it is cut."""
 
 from __future__ import annotations
 
 from typing import Any
 
-import panel as pn
+import numpy as np
 import panel_material_ui as pmui
 
+from cutcell.graph import INTERIOR, MESH, SURFACE
+
 from ..session import Session
-from ..state import LAYERS
+from ..state import LAYERS, State
 from ..theme import LAYER_COLORS
-from .parts import GAP, cutting, section, when
+from .parts import GAP, caption, choice, cutting, section, slider, when
+
+KINDS = {"mesh_edges": MESH, "interior_edges": INTERIOR, "surface_edges": SURFACE}
+AXES = {"X": "x", "Y": "y", "Z": "z"}
 
 
 def graph(session: Session) -> pmui.Column:
-    """Return the section of the graph."""
+    """Return the controls of the panel Graph."""
+    state = session.state
+    return pmui.Column(
+        section("Layers", *[_layer(state, name) for name in LAYERS], *_colors(state)),
+        section("Look inside", *_inside(state)),
+        section("Build", *_build(session)),
+        margin=0,
+        sizing_mode="stretch_width",
+    )
+
+
+def _layer(state: State, name: str) -> pmui.Row:
+    color = LAYER_COLORS.get(name)
+    checked = "& .MuiSwitch-switchBase.Mui-checked"
+    look = {checked: {"color": color}, f"{checked} + .MuiSwitch-track": {"bgcolor": color}}
+    switch = pmui.Switch.from_param(
+        state.param[name],
+        label=state.param[name].label,
+        size="small",
+        margin=(1, 0),
+        sx=look if color else {},
+    )
+    number = pmui.Typography(
+        when(lambda *_: count(state, name), state.param.binding, state.param.rig),
+        sx={
+            "fontSize": "12px",
+            "color": "text.secondary",
+            "fontVariantNumeric": "tabular-nums",
+            "textAlign": "right",
+        },
+        margin=(3, 0),
+        width=110,
+    )
+    spacer = pmui.Column(sizing_mode="stretch_width", margin=0)
+    return pmui.Row(switch, spacer, number, sizing_mode="stretch_width", margin=0)
+
+
+def count(state: State, layer: str) -> str:
+    """Return how many faces or edges a layer has, as text."""
+    if layer == "body":
+        return "" if state.rig is None else f"{len(state.rig.mesh.faces):,} faces"
+    if state.binding is None:
+        return ""
+    return f"{np.count_nonzero(state.binding.graph.edge_kind == KINDS[layer]):,}"
+
+
+def _colors(state: State) -> list[Any]:
+    idle = caption(
+        "The chosen bone carries no weight, so no distance begins at it.",
+        visible=when(
+            lambda shown, rig, joint: (
+                shown == "distance" and rig is not None and not rig.skeleton.deform[joint]
+            ),
+            state.param.edge_colors,
+            state.param.rig,
+            state.param.joint,
+        ),
+    )
+    options = {"By kind": "kind", "By depth": "depth", "By distance": "distance"}
+    return [choice(state.param.edge_colors, options), idle]
+
+
+def _inside(state: State) -> list[Any]:
+    whole = when(lambda slicing: not slicing, state.param.slicing)
+    cut = when(lambda axis, slicing: axis != "off" and not slicing, *_cut(state))
+    thick = when(
+        lambda axis, slicing, keeps: axis != "off" and not slicing and keeps == "slab",
+        *_cut(state),
+        state.param.cut_keeps,
+    )
+    keeps = {"Half": "half", "Face only": "face", "Slab": "slab"}
+    return [
+        pmui.Column(*cutting(state), margin=0, sizing_mode="stretch_width", visible=whole),
+        choice(state.param.cut_keeps, keeps, visible=cut),
+        slider(state.param.slab, "Thickness of the slab", step=0.01, visible=thick),
+        pmui.Switch.from_param(
+            state.param.slicing,
+            label="One slice and its rays",
+            size="small",
+            margin=(6, 0, 2, 0),
+            description="",
+        ),
+        pmui.Column(
+            caption("The slice is perpendicular to", margin=(2, 0, 0, 0)),
+            choice(state.param.slice_axis, AXES),
+            caption("Its rays run along", margin=(2, 0, 0, 0)),
+            choice(state.param.slice_rays, AXES),
+            slider(state.param.slice_position, "Where the slice lies", step=0.005),
+            caption("Rest the pointer on a ray: it tells the winding number there."),
+            margin=0,
+            sizing_mode="stretch_width",
+            visible=state.param.slicing,
+        ),
+    ]
+
+
+def _cut(state: State) -> tuple[Any, Any]:
+    return state.param.cut_axis, state.param.slicing
+
+
+def _build(session: Session) -> list[Any]:
     state = session.state
     resolution = pmui.EditableIntSlider(
         label="Resolution",
@@ -30,7 +135,12 @@ def graph(session: Session) -> pmui.Column:
     def chosen(event: Any) -> None:
         state.resolution = event.new
 
+    def shown(event: Any) -> None:
+        resolution.value = event.new
+
     resolution.param.watch(chosen, "value_throttled")
+    state.param.watch(shown, "resolution")
+    threshold = slider(state.param.winding_threshold, "Winding threshold τ", step=0.01)
     again = pmui.Button(
         label="Compute again",
         size="small",
@@ -45,28 +155,10 @@ def graph(session: Session) -> pmui.Column:
             state.param.busy,
         ),
     )
-    layers = pn.GridBox(
-        *[_layer(state, name) for name in LAYERS],
-        ncols=2,
-        sizing_mode="stretch_width",
-        margin=GAP,
-    )
-    cut = when(lambda axis: axis != "off", state.param.cut_axis)
-    thin = pmui.Switch.from_param(
-        state.param.thin, label="Thin slice of the interior", size="small", visible=cut,
-        margin=GAP, description="",
-    )  # fmt: skip
-    return section("Graph", resolution, again, layers, *cutting(state), thin)
-
-
-def _layer(state: Any, name: str) -> pmui.Switch:
-    color = LAYER_COLORS.get(name)
-    checked = "& .MuiSwitch-switchBase.Mui-checked"
-    look = {checked: {"color": color}, f"{checked} + .MuiSwitch-track": {"bgcolor": color}}
-    return pmui.Switch.from_param(
-        state.param[name],
-        label=state.param[name].label,
-        size="small",
-        margin=(1, 0),
-        sx=look if color else {},
-    )
+    return [
+        resolution,
+        threshold,
+        caption("Paths inside run along", margin=(4, 0, 0, 0)),
+        choice(state.param.connectivity, {"6 axes": 6, "26 diagonals": 26, "Any angle": "any"}),
+        again,
+    ]

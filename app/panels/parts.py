@@ -52,16 +52,21 @@ def choice(parameter: Any, options: dict[str, Any], **params: Any) -> pmui.Radio
     )
 
 
+def slider(parameter: Any, label: str, whole: bool = False, **params: Any) -> Any:
+    """Return a slider that follows a parameter while it is dragged."""
+    kind = pmui.IntSlider if whole else pmui.FloatSlider
+    look = {"size": "small", "margin": GAP, "sizing_mode": "stretch_width", "description": ""}
+    if not whole:
+        look["format"] = "0.00"
+    return kind.from_param(parameter, **{"label": label, **look, **params})
+
+
 def cutting(state: Any) -> list[Any]:
     """Return the choice of a cutting plane and the slider that moves it."""
-    position = pmui.FloatSlider.from_param(
+    position = slider(
         state.param.cut_position,
-        label="Where the cut lies",
+        "Where the cut lies",
         step=0.005,
-        format="0.00",
-        size="small",
-        margin=GAP,
-        sizing_mode="stretch_width",
         visible=when(lambda axis: axis != "off", state.param.cut_axis),
     )
     axes = {"Whole": "off", "Cut X": "x", "Cut Y": "y", "Cut Z": "z"}

@@ -1,15 +1,81 @@
-"""Weights: how much each bone holds."""
+"""Weights: how much each bone holds, and how it falls with distance."""
 
 from __future__ import annotations
 
+from typing import Any
+
+import numpy as np
 import panel_material_ui as pmui
 
-from ..session import Session
-from .parts import choice, section
+from cutcell.skinning import FALLOFFS
 
-SHOWN = {"All bones": "mix", "Chosen bone": "bone"}
+from ..session import Session
+from ..state import State
+from .parts import GAP, caption, choice, section, slider, when
+
+SHOWN = {
+    "All bones, mixed": "mix",
+    "Dominant bone": "dominant",
+    "The chosen bone": "bone",
+    "Number of influences": "count",
+}
+DIFFERENCE = {"Difference to the file's weights": "difference"}
+FALLOFF_TITLES = {"paper": "Paper", "rig": "For rigs"}
 
 
 def weights(session: Session) -> pmui.Column:
     """Return the controls of the panel Weights."""
-    return section("Weights", choice(session.state.param.weights_shown, SHOWN))
+    state = session.state
+    shown = pmui.Select(
+        label="Colours show", options=SHOWN, size="small", margin=GAP, sizing_mode="stretch_width"
+    )
+
+    def listed(*events: Any) -> None:
+        own = state.rig is not None and state.rig.weights is not None
+        options = {**SHOWN, **(DIFFERENCE if own else {})}
+        value = state.weights_shown if state.weights_shown in options.values() else "mix"
+        shown.param.update(options=options, value=value)
+
+    def chosen(event: Any) -> None:
+        if event.new is not None:
+            state.weights_shown = event.new
+
+    state.param.watch(listed, ["rig", "weights_shown"])
+    shown.param.watch(chosen, "value")
+    listed()
+    facts = caption(when(lambda *_: told(state), state.param.binding, state.param.rig))
+    return pmui.Column(
+        section("Weights", shown, facts),
+        section("Falloff", *_falloff(state)),
+        margin=0,
+        sizing_mode="stretch_width",
+    )
+
+
+def _falloff(state: State) -> list[Any]:
+    kernels = {FALLOFF_TITLES.get(name, name.capitalize()): name for name in FALLOFFS}
+    alpha = slider(
+        state.param.alpha,
+        "Smoothness α",
+        step=0.01,
+        visible=when(lambda falloff: falloff == "paper", state.param.falloff),
+    )
+    return [
+        *([choice(state.param.falloff, kernels)] if len(kernels) > 1 else []),
+        alpha,
+        slider(state.param.max_influences, "Most influences", whole=True),
+        slider(state.param.threshold, "Drop weights below", step=0.005, end=0.3),
+    ]
+
+
+def told(state: State) -> str:
+    """Return what there is to say of the weights in a line."""
+    if state.binding is None:
+        return ""
+    held = state.binding.weights
+    text = f"{np.count_nonzero(held) / max(len(held), 1):.1f} influences a vertex"
+    own = state.rig.weights
+    if own is not None and own.shape == held.shape:
+        apart = np.abs(held - own).sum(axis=1).mean() / 2
+        text += f"; {apart:.0%} of the weight sits on other joints than in the file"
+    return text + "."

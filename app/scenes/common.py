@@ -12,7 +12,9 @@ from cutcell.rig import Rig
 from viewers.character import attachments, body, bones, drawn_segments
 from viewers.description import Actor, Cut, Description
 from viewers.graph_scene import cut_at
+from viewers.marks import vertex_mark
 from viewers.palette import THEMES, Theme
+from viewers.skin import skin_of_weights
 
 from ..state import State
 from .memo import Memo
@@ -21,8 +23,12 @@ SEE_THROUGH = 0.22
 """How opaque the body is while what lies inside is looked at."""
 
 
+POSED = ("pose", "compare")
+"""The panels on which the character moves; on all others it rests."""
+
+
 def character(state: State, memo: Memo, **look: Any) -> dict[str, Actor]:
-    """Return the body, what hangs on it, and the bones.
+    """Return the body, what hangs on it, the bones, and the mark of the chosen vertex.
 
     Parameters
     ----------
@@ -34,12 +40,21 @@ def character(state: State, memo: Memo, **look: Any) -> dict[str, Actor]:
         it as well.
     """
     rig = state.rig
-    plain = memo("body", (rig, state.weights), lambda: body(rig, state.weights))
+    plain = memo("body", (rig,), lambda: body(rig))
+    skin = None
+    if state.panel in POSED and state.weights is not None:
+        skin = memo("skin", (rig, state.weights), lambda: skin_of_weights(state.weights))
     hung = memo("attachments", (rig,), lambda: attachments(rig))
+    mark = {}
+    if state.vertex is not None and state.vertex < len(rig.mesh.vertices):
+        held = state.weights if skin is not None else None
+        of = (rig, held, state.vertex)
+        mark["vertex"] = memo("vertex", of, lambda: vertex_mark(rig, state.vertex, held))
     seen = {name: look[name] for name in ("visible", "opacity", "clipped") if name in look}
     return {
-        "body": replace(plain, **look),
+        "body": replace(plain, skin=skin, **look),
         **{name: replace(actor, **seen) for name, actor in hung.items()},
+        **mark,
         "bones": memo(
             "bones",
             (rig, state.joint, state.skeleton),

@@ -1,41 +1,136 @@
-"""The distance from the chosen bone."""
+"""The distance from the chosen bone: the field, where it begins, and the way back."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 from typing import Any
 
-from viewers.description import Description
-from viewers.distance_scene import distance_colors
-from viewers.graph_scene import graph_scene
+import numpy as np
+
+from cutcell.geodesics import path_length, shortest_path
+from viewers.character import to_scene
+from viewers.description import Actor, Cut, Description, Legend
+from viewers.distance_scene import (
+    distance_colors,
+    distance_legend,
+    distance_limits,
+    shown_distance,
+)
+from viewers.marks import path_tube
+from viewers.palette import MARK, SOURCE
+from viewers.section_scene import section, section_rays, section_resolution
+from viewers.slice_scene import slice_place
+from viewers.start_scene import first_distances, start_scene
 
 from ..state import State
-from .common import cells_of, character, cut_of, theme_of
-from .graph import SLICE_CELLS
+from .common import character, theme_of
 from .memo import Memo
+
+SEE_PATH = 0.42
+"""How opaque the body is while something inside it is to be seen."""
 
 
 def geodesics(state: State, memo: Memo) -> Description:
     """Return the scene of the panel Geodesics: a bone's field, on the surface and inside."""
-    cut = cut_of(state)
+    if state.binding is None:
+        return Description(character(state, memo))
+    normal, index, cut = _cut(state)
     if not has_field(state):
         return Description(character(state, memo), cut=cut)
+    colors, legend = _surface(state, memo)
+    way = way_of(state, memo)
+    inside = way is not None or state.starts
+    see = SEE_PATH if inside and cut is None else 1.0
+    actors = character(state, memo, **colors, film=state.wave, opacity=see)
+    swatches: tuple[Any, ...] = ()
+    if cut is not None:
+        actors |= _section(state, memo, normal, index, colors["limits"])
+    if state.starts:
+        parts, swatch = _starts(state, memo)
+        actors |= parts
+        swatches += (swatch,)
+    if way is not None:
+        rig = state.rig
+        actors["path"] = memo("tube", (rig, way), lambda: path_tube(rig, _in_scene(state, way)))
+        swatches += ((MARK, f"way back, {path_length(way):.3f} long"),)
+    front = state.front * colors["limits"][1] if state.wave else None
+    return Description(actors, cut=cut, legend=replace(legend, swatches=swatches), front=front)
+
+
+def _surface(state: State, memo: Memo) -> tuple[dict[str, Any], Legend]:
+    """Return the colours of the body: the field at its vertices."""
     rig, binding, joint = state.rig, state.binding, state.joint
-    colors, legend = memo(
-        "distance",
-        (binding, joint),
-        lambda: distance_colors(rig, binding.distances.on_mesh(joint), joint),
+    field = field_of(state)
+
+    def make() -> tuple[dict[str, Any], Legend]:
+        near = binding.distances.joint[joint]
+        if field is None:
+            return distance_colors(rig, near, joint)
+        at = field[binding.graph.vertex_node]
+        # What no path reaches has a straight distance, if this bone is among the nearest.
+        colors, _ = distance_colors(rig, np.where(np.isfinite(at), at, near), joint)
+        limits = distance_limits(field)
+        scalars = shown_distance(np.where(np.isfinite(at), at, near), limits)
+        return {**colors, "limits": limits, "scalars": scalars}, distance_legend(rig, joint, limits)
+
+    return memo("distance", (binding.distances, joint, field), make)
+
+
+def _cut(state: State) -> tuple[int, int, Cut | None]:
+    """Return the cut, along the lattice's own axes, so that rays lie in its plane."""
+    if state.cut_axis == "off":
+        return 0, 0, None
+    return slice_place(
+        state.rig, state.cut_axis, state.cut_position, section_resolution(state.binding.graph)
     )
-    actors = character(state, memo, **colors)
-    field, theme = field_of(state), theme_of(state)
-    if cut is not None and field is not None:
-        inside = memo(
-            "inside",
-            (rig, binding, field, theme.name),
-            lambda: graph_scene(rig, binding.graph, field=field, theme=theme).actors,
-        )["interior edges"]
-        actors["interior edges"] = replace(inside, slab=cells_of(state, SLICE_CELLS))
-    return Description(actors, cut=cut, legend=legend)
+
+
+def _section(
+    state: State, memo: Memo, normal: int, index: int, limits: tuple[float, float]
+) -> dict[str, Actor]:
+    """Return the inside of the cut; nothing before the field is there."""
+    rig, graph, field = state.rig, state.binding.graph, field_of(state)
+    if field is None:
+        return {}
+    tau = state.winding_threshold
+    rays = memo(
+        "section rays",
+        (rig, graph, normal, index, tau),
+        lambda: section_rays(rig, graph, normal, index, tau),
+    )
+    inside = memo("section", (rays, field), lambda: section(rig, graph, rays, normal, field))
+    return {"inside": replace(inside, colormap="distance", limits=limits, film=state.wave)}
+
+
+def _starts(state: State, memo: Memo) -> tuple[dict[str, Actor], tuple[Any, str]]:
+    """Return the samples and sources, and what to write about them."""
+    rig, distances, joint, theme = state.rig, state.binding.distances, state.joint, theme_of(state)
+    parts = memo(
+        "starts",
+        (rig, distances, joint, theme.name),
+        lambda: start_scene(rig, distances, joint, theme),
+    )
+    first = first_distances(distances, joint)
+    most = float(first.max(initial=0))
+    return parts, (SOURCE, f"{len(first)} sources, up to {most:.3f} from the bone")
+
+
+def way_of(state: State, memo: Memo) -> Any:
+    """Return the way from the clicked vertex to the bone, shape (p, 3); None without one."""
+    field = field_of(state)
+    if not state.path or state.vertex is None or field is None:
+        return None
+    distances, joint, vertex = state.binding.distances, state.joint, state.vertex
+    way = memo(
+        "way",
+        (distances, joint, vertex, field),
+        lambda: shortest_path(distances, joint, vertex, field),
+    )
+    return way if len(way) else None
+
+
+def _in_scene(state: State, way: np.ndarray) -> np.ndarray:
+    return to_scene(state.rig, state.binding.graph.lattice.to_file(way))
 
 
 def has_field(state: State) -> bool:
@@ -45,12 +140,16 @@ def has_field(state: State) -> bool:
 
 def wants_field(state: State) -> bool:
     """Whether the distance is to be known at every node of the graph."""
-    return state.panel == "geodesics" and has_field(state) and state.cut_axis != "off"
+    wanted = state.panel == "geodesics" or (
+        state.panel == "graph" and state.edge_colors == "distance"
+    )
+    return wanted and has_field(state)
 
 
 def field_of(state: State) -> Any:
     """Return the distance at every graph node, shape (N,), if it is there."""
     if state.field is None:
         return None
-    binding, joint, field = state.field
-    return field if binding is state.binding and joint == state.joint else None
+    distances, joint, field = state.field
+    current = state.binding is not None and distances is state.binding.distances
+    return field if current and joint == state.joint else None

@@ -1,47 +1,124 @@
-"""The graph inside the character."""
+"""The graph inside the character, or one slice of the lattice that it comes from."""
 
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
-from viewers.description import Actor, Cut, Description
-from viewers.graph_scene import graph_scene
+from cutcell.graph import INTERIOR, MESH, SURFACE, slice_rays
+from viewers.description import Actor, Cut, Description, Legend
+from viewers.distance_scene import distance_legend, distance_limits
+from viewers.graph_scene import depth_field, graph_scene
+from viewers.slice_scene import file_axis, slice_place, slice_scene
 
 from ..state import LAYERS, State
 from .common import SEE_THROUGH, cells_of, character, cut_of, theme_of
+from .geodesics import field_of
 from .memo import Memo
 
-SLICE_CELLS = 3
-"""How thick a thin slice of the interior is."""
+FACE_CELLS = 3
+"""How many cells behind a cut are its face."""
+SHELL = 0.5
+"""How opaque the body is behind a slice."""
 
 
 def graph(state: State, memo: Memo) -> Description:
-    """Return the scene of the panel Graph: the layers of the graph, at rest."""
+    """Return the scene of the panel Graph: the layers of the graph, or a slice's rays."""
+    if state.slicing and state.binding is not None:
+        return _slice(state, memo)
     cut = cut_of(state)
+    thick = slab_of(state) if cut is not None else {}
     actors = character(state, memo, visible=state.body, opacity=body_opacity(state))
-    return Description({**actors, **graph_layers(state, cut, memo)}, cut=cut)
+    layers, legend = graph_layers(state, memo)
+    actors |= layers
+    for name, actor in actors.items():
+        if actor.clipped:
+            slab = thick.get("interior" if name == "interior edges" else "rest", 0.0)
+            actors[name] = replace(actor, slab=slab)
+    return Description(actors, cut=cut, legend=legend)
 
 
-def graph_layers(state: State, cut: Cut | None, memo: Memo) -> dict[str, Actor]:
-    """Return the graph's actors."""
+def graph_layers(state: State, memo: Memo) -> tuple[dict[str, Actor], Legend | None]:
+    """Return the graph's actors, and how to read their colours."""
     if state.binding is None:
-        return {}
+        return {}, None
     rig, lattice, theme = state.rig, state.binding.graph, theme_of(state)
+    field, look, legend = _field(state, memo)
     drawn = memo(
         "graph",
-        (rig, lattice, theme.name),
-        lambda: graph_scene(rig, lattice, theme=theme).actors,
+        (rig, lattice, theme.name, field, look.get("shades", "")),
+        lambda: graph_scene(rig, lattice, theme=theme, field=field, **look).actors,
     )
-    slab = cells_of(state, SLICE_CELLS) if cut is not None and state.thin else 0.0
-    result = {}
-    for layer, name in LAYERS.items():
-        if name in drawn:
-            behind = slab if name == "interior edges" else 0.0
-            result[name] = replace(drawn[name], visible=getattr(state, layer), slab=behind)
-    return result
+    seen = {
+        name: replace(drawn[name], visible=getattr(state, layer))
+        for layer, name in LAYERS.items()
+        if name in drawn
+    }
+    return seen, legend
+
+
+def _field(state: State, memo: Memo) -> tuple[Any, dict[str, Any], Legend | None]:
+    """Return what edges are coloured by: values at nodes, how they are shown, the legend."""
+    if state.edge_colors == "depth":
+        depth = memo("depth", (state.binding.graph,), lambda: depth_field(state.binding.graph))
+        most = distance_limits(depth)[1]
+        legend = Legend("Depth below the surface", "depth", "0", f"{most:.3f} of the longest side")
+        return depth, {"shades": "depth"}, legend
+    field = field_of(state) if state.edge_colors == "distance" else None
+    if field is None:
+        return None, {}, None
+    legend = distance_legend(state.rig, state.joint, distance_limits(field))
+    return field, {"kinds": (MESH, INTERIOR, SURFACE)}, legend
 
 
 def body_opacity(state: State) -> float:
-    """Return how opaque the body is: see-through where the interior would else be hidden."""
-    looks_inside = state.interior_edges and state.cut_axis == "off"
+    """Return how opaque the body is: see-through where the graph would else be hidden."""
+    whole = state.cut_axis == "off"
+    looks_inside = whole and (state.interior_edges or state.surface_edges)
     return SEE_THROUGH if looks_inside and state.binding is not None else 1.0
+
+
+def slab_of(state: State) -> dict[str, float]:
+    """Return how much is kept behind the cut, of the interior and of the rest; 0 is all."""
+    if state.binding is None or state.cut_keeps == "half":
+        return {}
+    if state.cut_keeps == "face":
+        return {"interior": cells_of(state, FACE_CELLS)}
+    thick = cells_of(state, state.slab * state.binding.graph.lattice.resolution)
+    return {"interior": thick, "rest": thick}
+
+
+def _slice(state: State, memo: Memo) -> Description:
+    """Return the scene of one slice: its rays, and the body behind it."""
+    rig, theme = state.rig, theme_of(state)
+    resolution = state.binding.graph.lattice.resolution
+    place = slice_place(rig, state.slice_axis, state.slice_position, resolution)
+    normal, index, cut = place
+    axis, _ = file_axis(rig, state.slice_rays)
+    if axis == normal:
+        axis = (normal + 1) % 3
+    inputs = (rig, resolution, axis, normal, index, state.winding_threshold)
+    found = memo(
+        "slice",
+        inputs,
+        lambda: slice_rays(
+            rig.mesh,
+            resolution,
+            axis=axis,
+            normal=normal,
+            index=index,
+            winding_threshold=state.winding_threshold,
+        ),
+    )
+    actors, legend = memo(
+        "slice scene", (found, theme.name), lambda: slice_scene(rig, found, theme)
+    )
+    shell = character(state, memo, visible=state.body, opacity=SHELL)
+    return Description({**shell, **actors}, cut=_pulled(cut, state), legend=legend)
+
+
+def _pulled(cut: Cut, state: State) -> Cut:
+    """Move a cut half a cell back, so that the slice stands clear of the body."""
+    back = cells_of(state, 0.25)
+    origin = tuple(o - back * n for o, n in zip(cut.origin, cut.normal, strict=True))
+    return Cut(origin, cut.normal)  # type: ignore[arg-type]

@@ -16,12 +16,10 @@ from viewers.pose_scene import joint_turns, swing, turn
 from viewers.skin import skin_of_weights
 
 from ..state import State
-from .common import character
+from .common import POSED, character
 from .memo import Memo
 
 SWING_DEGREES = 50.0
-POSED = ("pose", "compare")
-"""The panels on which the character moves; on all others it rests."""
 GHOST_OPACITY = 0.38
 VIEWS = ("cutcell", "The file's own weights")
 

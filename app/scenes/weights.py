@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from viewers.description import Description
-from viewers.weights_scene import weight_colors
+from typing import Any
+
+from viewers.description import Description, Legend
+from viewers.weights_scene import count_colors, difference_colors, dominant_colors, weight_colors
 
 from ..state import State
 from .common import character
@@ -12,11 +14,30 @@ from .memo import Memo
 
 def weights(state: State, memo: Memo) -> Description:
     """Return the scene of the panel Weights; plain before anything is computed."""
-    rig, binding = state.rig, state.binding
-    if binding is None:
+    if state.binding is None:
         return Description(character(state, memo))
-    which = state.joint if state.weights_shown == "bone" else None
+    shown = weights_shown(state)
+    which = state.joint if shown == "bone" else -1
     colors, legend = memo(
-        "weights", (binding, which), lambda: weight_colors(rig, binding.weights, which)
+        "weights", (state.rig, state.weights, shown, which), lambda: coloring(state, shown)
     )
     return Description(character(state, memo, **colors), legend=legend)
+
+
+def weights_shown(state: State) -> str:
+    """Return what is seen of the weights: there may be none to differ from."""
+    if state.weights_shown == "difference" and state.rig.weights is None:
+        return "mix"
+    return state.weights_shown
+
+
+def coloring(state: State, shown: str) -> tuple[dict[str, Any], Legend | None]:
+    """Return the fields of the body's `Actor` that colour it, and how to read them."""
+    rig, held = state.rig, state.weights
+    if shown == "difference":
+        return difference_colors(rig, held, rig.weights)
+    if shown == "count":
+        return count_colors(rig, held)
+    if shown == "dominant":
+        return dominant_colors(rig, held)
+    return weight_colors(rig, held, state.joint if shown == "bone" else None)

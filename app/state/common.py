@@ -20,6 +20,7 @@ class Common(param.Parameterized):
     binding: Any = param.Parameter(None, doc="What was computed for it, or None so far.")
 
     joint: Any = param.Integer(0, doc="The chosen joint.")
+    vertex: Any = param.Integer(None, allow_None=True, doc="The clicked vertex, or None.")
     skeleton: Any = param.Boolean(True, label="Skeleton")
 
     cut_axis: Any = param.Selector(default="off", objects=["off", "x", "y", "z"])

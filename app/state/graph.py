@@ -6,6 +6,8 @@ from typing import Any
 
 import param
 
+from .method import default
+
 LAYERS = {
     "body": "body",
     "mesh_edges": "mesh edges",
@@ -16,13 +18,33 @@ LAYERS = {
 
 
 class GraphChoices(param.Parameterized):
-    """How fine the graph is, and what of it is seen."""
+    """How the graph is built, and what of it is seen."""
 
-    resolution: Any = param.Integer(64, doc="Lattice cells along the longest side.")
+    resolution: Any = param.Integer(
+        default("resolution"), doc="Lattice cells along the longest side."
+    )
+    connectivity: Any = param.Selector(default=default("connectivity"), objects=[6, 26, "any"])
+    winding_threshold: Any = param.Number(default("winding_threshold"), bounds=(0, 1))
 
     body: Any = param.Boolean(True, label="Surface")
     mesh_edges: Any = param.Boolean(False, label="Mesh edges")
     interior_edges: Any = param.Boolean(True, label="Interior edges")
     surface_edges: Any = param.Boolean(False, label="Surface edges")
+    edge_colors: Any = param.Selector(default="kind", objects=["kind", "depth", "distance"])
 
-    thin: Any = param.Boolean(True, doc="Show only a thin slice of the interior behind a cut.")
+    cut_keeps: Any = param.Selector(
+        default="face",
+        objects=["half", "face", "slab"],
+        doc="Behind a cut: all, of the interior the first cells only, or what lies between two "
+        "planes.",
+    )
+    slab: Any = param.Number(
+        0.1, bounds=(0.01, 0.6), doc="Between the planes, of the longest side."
+    )
+
+    slicing: Any = param.Boolean(False, label="One slice and its rays")
+    slice_axis: Any = param.Selector(default="z", objects=["x", "y", "z"], doc="Its normal.")
+    slice_rays: Any = param.Selector(
+        default="x", objects=["x", "y", "z"], doc="Which way they run."
+    )
+    slice_position: Any = param.Number(0.5, bounds=(0, 1), doc="Across the box of the body.")

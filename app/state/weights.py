@@ -6,8 +6,19 @@ from typing import Any
 
 import param
 
+from cutcell.skinning import FALLOFFS
+
+from .method import default
+
+SHOWN = ("bone", "dominant", "mix", "count", "difference")
+
 
 class WeightsChoices(param.Parameterized):
-    """Which weights are seen."""
+    """Which weights are seen, and how they fall with distance."""
 
-    weights_shown: Any = param.Selector(default="mix", objects=["mix", "bone"])
+    weights_shown: Any = param.Selector(default="mix", objects=list(SHOWN))
+
+    falloff: Any = param.Selector(default=default("falloff"), objects=list(FALLOFFS))
+    alpha: Any = param.Number(default("alpha"), bounds=(0, 1))
+    max_influences: Any = param.Integer(default("max_influences"), bounds=(1, 8))
+    threshold: Any = param.Number(default("threshold"), bounds=(0, 1))

@@ -106,6 +106,36 @@ class Sources:
     distance: NDArray[np.float64]
 
 
+def bone_samples(
+    graph: CutCellGraph, bones: Bones, samples: int = 5
+) -> tuple[NDArray[np.float64], NDArray[np.intp]]:
+    """Place evenly spaced points on each bone.
+
+    Parameters
+    ----------
+    graph : CutCellGraph
+    bones : Bones
+        In the unit cube.
+    samples : int
+        N, as of `find_sources`.
+
+    Returns
+    -------
+    points : array, shape (p, 3), float64
+        In the unit cube, bone by bone.
+    bone : array, shape (p,)
+        The bone of each.
+    """
+    counts = np.full(len(bones.joint), samples)
+    if graph.connectivity == "any":
+        # Every lattice point along the bone is to see it.
+        length = np.linalg.norm(bones.end - bones.start, axis=1)
+        counts = np.maximum(counts, np.ceil(length * graph.lattice.resolution).astype(int) + 1)
+    bone = np.repeat(np.arange(len(counts)), counts)
+    place_on_bone = np.concatenate([np.linspace(0, 1, n) if n > 1 else [0.5] for n in counts])
+    return bones.start[bone] + place_on_bone[:, None] * (bones.end - bones.start)[bone], bone
+
+
 def find_sources(graph: CutCellGraph, bones: Bones, samples: int) -> Sources:
     """Find the graph nodes nearest to evenly spaced points on each bone.
 
@@ -126,14 +156,7 @@ def find_sources(graph: CutCellGraph, bones: Bones, samples: int) -> Sources:
     connected = np.flatnonzero(graph.degree > 0)
     if len(connected) == 0:
         raise MeshError("every triangle of the mesh has collapsed into a point")
-    counts = np.full(len(bones.joint), samples)
-    if graph.connectivity == "any":
-        # Every lattice point along the bone is to see it.
-        length = np.linalg.norm(bones.end - bones.start, axis=1)
-        counts = np.maximum(counts, np.ceil(length * graph.lattice.resolution).astype(int) + 1)
-    bone = np.repeat(np.arange(len(counts)), counts)
-    place_on_bone = np.concatenate([np.linspace(0, 1, n) if n > 1 else [0.5] for n in counts])
-    points = bones.start[bone] + place_on_bone[:, None] * (bones.end - bones.start)[bone]
+    points, bone = bone_samples(graph, bones, samples)
     near = min(8, len(connected))
     # Few queries: a tree that is quick to build rather than to ask.
     tree = cKDTree(graph.nodes[connected], balanced_tree=False, compact_nodes=False)

@@ -54,16 +54,16 @@ def test_nothing_is_sent_when_nothing_changed(scene, rig):
 
 def test_other_weights_send_values_not_geometry(scene, rig):
     message = changes(scene, weights_scene(rig, rig.weights, 2), set(scene.actors))
-    assert set(message["actors"]["body"]) == {"scalars", "table", "limits"}
+    assert set(message["actors"]["body"]) == {"scalars", "table", "limits", "reading"}
     assert set(message["actors"]["bones"]) == {"colors"}
 
 
 def test_from_values_to_colours_and_back(scene, rig):
     every = weights_scene(rig, rig.weights)
     there = changes(scene, every, set(scene.actors))["actors"]["body"]
-    assert set(there) == {"colors"}
+    assert set(there) == {"colors", "reading"}
     back = changes(every, scene, set(scene.actors))["actors"]["body"]
-    assert set(back) == {"scalars", "table", "limits"}
+    assert set(back) == {"scalars", "table", "limits", "reading"}
 
 
 def test_a_hidden_actor_waits_until_it_is_seen(rig):

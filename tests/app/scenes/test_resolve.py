@@ -170,8 +170,13 @@ def test_the_cut_and_its_slab(state):
     assert scene.actors["interior edges"].slab == pytest.approx(3 * 3.0 / 16)
     assert scene.actors["interior edges"].slab == cells_of(state, 3)
     assert scene.actors["mesh edges"].slab == 0
-    state.thin = False
+    state.cut_keeps = "half"
     assert resolve(state).actors["interior edges"].slab == 0
+    state.param.update(cut_keeps="slab", slab=0.2)
+    scene = resolve(state)
+    for name in ("body", "mesh edges", "interior edges"):
+        assert scene.actors[name].slab == pytest.approx(0.2 * 3.0)
+    assert not scene.actors["bones"].clipped
 
 
 @pytest.mark.parametrize("panel", ["graph", "geodesics", "weights"])
@@ -182,19 +187,21 @@ def test_the_character_rests_where_it_is_not_posed(state, panel):
     assert resolve(state).pose is None
 
 
-def test_the_field_is_used_only_for_its_own_joint_and_binding(state, binding):
-    state.panel = "geodesics"
+def test_the_field_is_used_only_for_its_own_joint_and_distances(state, binding):
     assert not wants_field(state)
-    state.cut_axis = "x"
+    state.param.update(panel="geodesics", cut_axis="x")
     assert wants_field(state)
     assert field_of(state) is None
+    assert "inside" not in resolve(state).actors
     field = binding.distances.field(1)
-    state.field = (binding, 1, field)
+    state.field = (binding.distances, 1, field)
     assert field_of(state) is field
-    assert resolve(state).actors["interior edges"].scalars is not None
+    assert "inside" in resolve(state).actors
+    state.binding = replace(binding, weights=binding.weights.copy())
+    assert field_of(state) is field
     state.joint = 2
     assert field_of(state) is None
-    assert "interior edges" not in resolve(state).actors
+    assert "inside" not in resolve(state).actors
 
 
 def test_a_joint_without_weight_has_no_field(state, rig):

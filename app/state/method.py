@@ -1,0 +1,24 @@
+"""The parameters of the method, with the defaults of `cutcell.bind`."""
+
+from __future__ import annotations
+
+import inspect
+from typing import Any
+
+import cutcell
+
+GRAPH = ("resolution", "connectivity", "winding_threshold")
+"""What a new graph is built for."""
+
+WEIGHTS = ("falloff", "alpha", "max_influences", "threshold")
+"""What changes weights without measuring any distance again."""
+
+
+def default(name: str) -> Any:
+    """Return what `cutcell.bind` takes when it is not told."""
+    return inspect.signature(cutcell.bind).parameters[name].default
+
+
+def method_of(state: Any, names: tuple[str, ...] = (*GRAPH, *WEIGHTS)) -> dict[str, Any]:
+    """Return the parameters that a state holds, by their names."""
+    return {name: getattr(state, name) for name in names}

@@ -1,0 +1,142 @@
+"""Marks on a character: a ball at a vertex, a tube along a path."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from cutcell.rig import Rig
+
+from .character import smooth_normals, to_scene
+from .description import Actor
+from .palette import MARK
+from .skin import skin_of_weights
+
+BALL = 0.006
+TUBE = 0.0035
+"""Radii, in parts of the diagonal of the character's box."""
+
+
+def vertex_mark(rig: Rig, vertex: int, weights: ArrayLike | None = None) -> Actor:
+    """Return a ball at a vertex, drawn over everything; it follows the vertex's weights."""
+    points, faces = _ball()
+    centre = to_scene(rig, rig.mesh.vertices[vertex])
+    placed = centre + BALL * _size(rig) * points
+    skin = None
+    if weights is not None:
+        row = np.asarray(weights, float)[vertex]
+        skin = skin_of_weights(np.broadcast_to(row, (len(points), len(row))))
+    return Actor(
+        "surface",
+        placed.astype(np.float32),
+        faces,
+        normals=points.astype(np.float32),
+        color=MARK,
+        skin=skin,
+        overlay=True,
+        clipped=False,
+    )
+
+
+def path_tube(rig: Rig, path: ArrayLike) -> Actor:
+    """Return a tube along a path (p, 3) in the scene's space."""
+    points, faces = tube(np.asarray(path, float), TUBE * _size(rig))
+    return Actor(
+        "surface",
+        points.astype(np.float32),
+        faces,
+        normals=smooth_normals(points, faces).astype(np.float32),
+        color=MARK,
+        clipped=False,
+    )
+
+
+def tube(path: NDArray[np.float64], radius: float, sides: int = 10) -> tuple[NDArray, NDArray]:
+    """Return the points and triangles of one open tube a piece of a path, with balls between."""
+    ball, ball_faces = _ball()
+    points = [path[:, None] + radius * ball]
+    faces = [np.arange(len(path))[:, None, None] * len(ball) + ball_faces]
+    start, along = path[:-1], np.diff(path, axis=0)
+    length = np.linalg.norm(along, axis=1, keepdims=True)
+    along = np.where(length > 0, along / np.where(length > 0, length, 1), [0.0, 1, 0])
+    helper = np.where(np.abs(along[:, 1:2]) < 0.9, [0.0, 1, 0], [1.0, 0, 0])
+    side = np.cross(along, helper)
+    side /= np.linalg.norm(side, axis=1, keepdims=True)
+    other = np.cross(along, side)
+    angle = 2 * np.pi * np.arange(sides) / sides
+    ring = np.cos(angle)[:, None] * side[:, None] + np.sin(angle)[:, None] * other[:, None]
+    rings = np.stack([start[:, None] + radius * ring, path[1:, None] + radius * ring], axis=1)
+    points.append(rings.reshape(len(start), -1, 3))
+    k = np.arange(sides)
+    after = (k + 1) % sides
+    strip = np.stack([k, after, k + sides, after, after + sides, k + sides], axis=1)
+    first = len(path) * len(ball)
+    offset = first + np.arange(len(start)) * 2 * sides
+    faces.append(offset[:, None, None] + strip.reshape(-1, 3))
+    return (
+        np.concatenate([p.reshape(-1, 3) for p in points]),
+        np.concatenate([f.reshape(-1, 3) for f in faces]).astype(np.int32),
+    )
+
+
+def rods(
+    start: NDArray[np.float64], end: NDArray[np.float64], thickness: ArrayLike
+) -> tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.intp]]:
+    """Return one square rod a piece (s, 3): points, triangles, and the piece of each point."""
+    along = end - start
+    along = along / np.maximum(np.linalg.norm(along, axis=1, keepdims=True), 1e-300)
+    helper = np.where(np.abs(along[:, 1:2]) < 0.9, [0.0, 1, 0], [1.0, 0, 0])
+    side = np.cross(along, helper)
+    side /= np.linalg.norm(side, axis=1, keepdims=True)
+    other = np.cross(along, side)
+    half = np.broadcast_to(thickness, len(start))[:, None] / 2
+    ring = [half * (a * side + b * other) for a, b in ((1, 1), (-1, 1), (-1, -1), (1, -1))]
+    points = np.stack([*(start + r for r in ring), *(end + r for r in ring)], axis=1)
+    k = np.arange(4)
+    after = (k + 1) % 4
+    sides = np.stack([k, after, k + 4, after, after + 4, k + 4], axis=1).reshape(-1, 3)
+    faces = 8 * np.arange(len(start))[:, None, None] + sides
+    of = np.repeat(np.arange(len(start)), 8)
+    return points.reshape(-1, 3), faces.reshape(-1, 3).astype(np.int32), of
+
+
+def beads(centres: NDArray[np.float64], radius: float) -> tuple[NDArray, NDArray]:
+    """Return the points and triangles of an octahedron at each centre (c, 3)."""
+    points = centres[:, None] + radius * _OCTAHEDRON
+    faces = 6 * np.arange(len(centres))[:, None, None] + _OCTAHEDRON_FACES
+    return points.reshape(-1, 3), faces.reshape(-1, 3).astype(np.int32)
+
+
+_OCTAHEDRON = np.array([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1.0]])
+_OCTAHEDRON_FACES = np.array(
+    [[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]]
+)
+
+
+def _ball(rows: int = 7, columns: int = 12) -> tuple[NDArray, NDArray]:
+    """Return the points and triangles of a ball of radius 1."""
+    up = np.pi * np.arange(1, rows) / rows
+    around = 2 * np.pi * np.arange(columns) / columns
+    inner = np.stack(
+        [
+            np.outer(np.sin(up), np.cos(around)),
+            np.outer(np.cos(up), np.ones(columns)),
+            np.outer(np.sin(up), np.sin(around)),
+        ],
+        axis=2,
+    ).reshape(-1, 3)
+    points = np.concatenate([inner, [[0, 1, 0], [0, -1, 0]]])
+    k = np.arange(columns)
+    after = (k + 1) % columns
+    faces = [np.stack([k, np.full(columns, len(inner)), after], axis=1)]
+    last = (rows - 2) * columns
+    faces.append(np.stack([last + k, last + after, np.full(columns, len(inner) + 1)], axis=1))
+    for row in range(rows - 2):
+        a, b = row * columns, (row + 1) * columns
+        faces.append(np.stack([a + k, a + after, b + k], axis=1))
+        faces.append(np.stack([a + after, b + after, b + k], axis=1))
+    return points, np.concatenate(faces).astype(np.int32)
+
+
+def _size(rig: Rig) -> float:
+    return float(np.linalg.norm(np.ptp(to_scene(rig, rig.mesh.vertices), axis=0)))

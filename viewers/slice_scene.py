@@ -1,0 +1,186 @@
+"""One slice of the lattice with its rays (paper section 3.1, figure "ray segments")."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cutcell.graph import RaySlice
+from cutcell.rig import Rig
+
+from .character import to_scene
+from .description import Actor, Cut, Legend, Reading
+from .marks import beads, rods
+from .palette import BONE_IDLE, INTERIOR, SURFACE, Theme
+
+KEPT, DROPPED = 0.13, 0.045
+"""How thick a segment is drawn, in cells of the lattice."""
+BEAD = 0.2
+MARGIN = 1.5
+"""How far beyond the body rays are drawn, in cells."""
+ALIKE = 0.005
+"""Winding numbers that differ by less are told as one."""
+
+
+def slice_scene(rig: Rig, found: RaySlice, theme: Theme) -> tuple[dict[str, Actor], Legend]:
+    """Return a slice's rays as actors, and how to read them.
+
+    Parameters
+    ----------
+    rig : Rig
+    found : RaySlice
+        Of the rig's mesh.
+    theme : Theme
+
+    Returns
+    -------
+    actors : dict of str to Actor
+        "slice rays", thick where kept and coloured by the winding number; "slice crossings",
+        "slice points" (of the lattice, inside) and "slice outline" (of the mesh).
+    legend : Legend
+    """
+    lattice = found.lattice
+    cell = lattice.size / lattice.resolution * float(np.linalg.norm(rig.world[:3, 0]))
+
+    def placed(points: NDArray) -> NDArray[np.float64]:
+        return to_scene(rig, lattice.to_file(points))
+
+    low, high, winding, kept = _joined(found, _reach(rig, found))
+    size = cell * np.where(kept, KEPT, DROPPED)
+    points, faces, of = rods(placed(low), placed(high), size)
+    number = winding[of].astype(np.float32)
+    actors = {
+        "slice rays": _solid(
+            points,
+            faces,
+            scalars=np.clip(number, 0, 1),
+            colormap="winding",
+            reading=Reading("winding number ", number),
+        )
+    }
+    tips = found.high[found.kept]
+    inside = tips[_on_lattice(tips, lattice.resolution)]
+    for name, at, color in (
+        ("slice points", inside, INTERIOR),
+        ("slice crossings", found.crossing, SURFACE),
+    ):
+        points, faces = beads(placed(at), BEAD * cell)
+        actors[name] = _solid(points, faces, color=color)
+    outline = _outline(rig, found)
+    actors["slice outline"] = Actor(
+        "lines",
+        placed(outline.reshape(-1, 3)).astype(np.float32),
+        np.arange(2 * len(outline), dtype=np.int32).reshape(-1, 2),
+        color=theme.mesh_edge,
+        clipped=False,
+    )
+    legend = Legend(
+        "Winding number of ray segments",
+        "winding",
+        "0",
+        "1",
+        ((INTERIOR, "thick: kept"), (BONE_IDLE, "thin: dropped"), (SURFACE, "crossings")),
+    )
+    return actors, legend
+
+
+def slice_place(rig: Rig, axis: str, position: float, resolution: int) -> tuple[int, int, Cut]:
+    """Return which slice of the lattice lies at a part of the body's box.
+
+    Parameters
+    ----------
+    rig : Rig
+    axis : {"x", "y", "z"}
+        Of the scene: the slice's normal.
+    position : float
+        From 0 to 1 across the faces' box.
+    resolution : int
+
+    Returns
+    -------
+    normal : int
+        The axis of the rig's own space that is nearest to it.
+    index : int
+        The slice, from 0 to R - 1.
+    cut : Cut
+        The plane of the slice, which takes away what lies before it.
+    """
+    from cutcell.graph import Lattice
+
+    normal, sign = file_axis(rig, axis)
+    lattice = Lattice.around(rig.mesh, resolution)
+    low, high = lattice.to_unit(rig.mesh.bounds)
+    part = position if sign > 0 else 1 - position
+    level = low[normal] + part * (high[normal] - low[normal])
+    index = int(np.clip(level * resolution, 0, resolution - 1))
+    place = lattice.to_unit(np.mean(rig.mesh.bounds, axis=0))
+    place[normal] = (index + 0.5) / resolution
+    direction = sign * rig.world[:3, normal]
+    direction = direction / np.linalg.norm(direction)
+    origin = to_scene(rig, lattice.to_file(place))
+    return normal, index, Cut(tuple(origin.tolist()), tuple(direction.tolist()))
+
+
+def file_axis(rig: Rig, axis: str) -> tuple[int, int]:
+    """Return the axis of the rig's space nearest to one of the scene's, and its direction."""
+    row = rig.world["xyz".index(axis), :3]
+    nearest = int(np.argmax(np.abs(row)))
+    return nearest, 1 if row[nearest] > 0 else -1
+
+
+def _reach(rig: Rig, found: RaySlice) -> NDArray[np.float64]:
+    """Return the corners of the body's box with some space around, in the unit cube."""
+    margin = MARGIN / found.lattice.resolution
+    return found.lattice.to_unit(rig.mesh.bounds) + np.array([[-margin], [margin]])
+
+
+def _joined(
+    found: RaySlice, box: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], NDArray[np.bool_]]:
+    """Join neighbouring segments that are alike, and leave out what is far from the body."""
+    middle = (found.low + found.high) / 2
+    near = ((middle >= box[0]) & (middle <= box[1])).all(axis=1)
+    low, high, winding, kept = (
+        values[near] for values in (found.low, found.high, found.winding, found.kept)
+    )
+    follows = (np.abs(low[1:] - high[:-1]) < 1e-12).all(axis=1)
+    alike = (kept[1:] == kept[:-1]) & (np.abs(winding[1:] - winding[:-1]) < ALIKE)
+    first = np.flatnonzero(np.concatenate([[True], ~(follows & alike)]))
+    last = np.append(first[1:], len(low)) - 1
+    return low[first], high[last], winding[first], kept[first]
+
+
+def _on_lattice(points: NDArray[np.float64], resolution: int) -> NDArray[np.bool_]:
+    cells = points * resolution - 0.5
+    return np.asarray((np.abs(cells - cells.round()) < 1e-9).all(axis=1))
+
+
+def _outline(rig: Rig, found: RaySlice) -> NDArray[np.float64]:
+    """Return where the slice's plane meets the triangles, shape (s, 2, 3), in the unit cube."""
+    level = found.low[0]
+    normal = int(np.argmin(np.ptp(found.low, axis=0) + np.ptp(found.high, axis=0)))
+    corners = found.lattice.to_unit(rig.mesh.vertices)[rig.mesh.faces]
+    height = corners[:, :, normal] - level[normal]
+    above = height > 0
+    met = above.any(axis=1) & ~above.all(axis=1)
+    corners, height, above = corners[met], height[met], above[met]
+    ends = []
+    for k in range(3):
+        a, b = corners[:, k], corners[:, (k + 1) % 3]
+        ha, hb = height[:, k], height[:, (k + 1) % 3]
+        crosses = above[:, k] != above[:, (k + 1) % 3]
+        part = np.where(crosses, ha / np.where(crosses, ha - hb, 1), np.nan)
+        ends.append(a + part[:, None] * (b - a))
+    three = np.stack(ends, axis=1)
+    found_ends = ~np.isnan(three[:, :, 0])
+    return three[found_ends].reshape(-1, 2, 3)
+
+
+def _solid(points: NDArray, faces: NDArray, **look: object) -> Actor:
+    return Actor(
+        "surface",
+        points.astype(np.float32),
+        faces.astype(np.int32),
+        clipped=False,
+        **look,  # type: ignore[arg-type]
+    )
