@@ -58,6 +58,7 @@ class Session:
         )
         self._jobs: dict[str, Jobs] = {}
         self._closed = False
+        self._bound_for: dict[str, Any] = {}
         self._timer: threading.Timer | None = None
         self.memo = Memo()
         seen = [name for name in self.state.param if name not in UNSEEN]
@@ -65,7 +66,7 @@ class Session:
         for watch in WATCHERS:
             watch(self)
         self.state.param.watch(self._theme, "dark")
-        self.state.param.watch(lambda *events: self._soon(self.bind), list(GRAPH))
+        self.state.param.watch(lambda *events: self._soon(self._rebind), list(GRAPH))
         self._theme()
 
     def later(self, action: Callable[[], Any]) -> None:
@@ -151,6 +152,7 @@ class Session:
         rig, method = state.rig, method_of(state)
         if rig is None:
             return
+        self._bound_for = method_of(state, GRAPH)
 
         def done(binding: Any) -> None:
             state.param.update(binding=binding, field=None, message=None)
@@ -158,6 +160,11 @@ class Session:
                 weigh(self)  # another falloff was chosen in the meantime
 
         self.start(lambda progress: cutcell.bind(rig, progress=progress, **method), done)
+
+    def _rebind(self) -> None:
+        """Compute again if the graph's parameters are others than those last computed for."""
+        if method_of(self.state, GRAPH) != self._bound_for:
+            self.bind()
 
     def cancel(self) -> None:
         """Stop computing; what was there stays."""

@@ -36,25 +36,35 @@ def write_legend(picture: NDArray[np.uint8], legend: Legend, theme: Theme) -> ND
     pad, bar = round(1.1 * unit), round(0.75 * unit)
     widest = picture.shape[1] - 4 * pad
     least = ends.getlength(f"{legend.low}     {legend.high}")
+    indent = 2 * bar + round(0.6 * unit)
+    least = max([least, *(indent + ends.getlength(text) for _, text in legend.swatches)])
     width = round(min(max(18 * unit, title.getlength(legend.title), least), widest))
     name = _shortened(legend.title, title, width)
-    lines = [_height(title), bar, _height(ends)]
-    height = sum(lines) + round(0.7 * unit) * 2
+    scale = bar + round(0.6 * unit) + _height(ends) if legend.colormap else 0
+    row = _height(ends) + round(0.4 * unit)
+    height = _height(title) + round(0.7 * unit) + scale + row * len(legend.swatches)
     left, top = 2 * pad, picture.shape[0] - height - 3 * pad
     image, draw = _open(picture)
     box = (left - pad, top - pad, left + width + pad, top + height + pad)
     draw.rounded_rectangle(box, round(0.7 * unit), fill=CARD[theme.name])
     ink = _ink(theme.ink)
     draw.text((left, top), name, font=title, fill=ink)
-    top += lines[0] + round(0.7 * unit)
-    table = colormap(legend.colormap)
-    strip = Image.fromarray(table[np.newaxis], "RGB").resize(
-        (width, bar), Image.Resampling.BILINEAR
-    )
-    image.paste(strip, (left, top), _rounded(width, bar))
-    top += bar + round(0.6 * unit)
-    draw.text((left, top), legend.low, font=ends, fill=ink)
-    draw.text((left + width, top), legend.high, font=ends, fill=ink, anchor="ra")
+    top += _height(title) + round(0.7 * unit)
+    if legend.colormap:
+        strip = Image.fromarray(colormap(legend.colormap)[np.newaxis], "RGB").resize(
+            (width, bar), Image.Resampling.BILINEAR
+        )
+        image.paste(strip, (left, top), _rounded(width, bar))
+        below = top + bar + round(0.6 * unit)
+        draw.text((left, below), legend.low, font=ends, fill=ink)
+        draw.text((left + width, below), legend.high, font=ends, fill=ink, anchor="ra")
+    top += scale
+    for color, text in legend.swatches:
+        middle = top + row // 2
+        patch = (left, middle - bar // 2, left + 2 * bar, middle + bar // 2)
+        draw.rounded_rectangle(patch, bar // 3, fill=_ink(color))
+        draw.text((left + indent, middle), text, font=ends, fill=ink, anchor="lm")
+        top += row
     return np.asarray(image)
 
 

@@ -75,7 +75,7 @@ def slice_scene(rig: Rig, found: RaySlice, theme: Theme) -> tuple[dict[str, Acto
         clipped=False,
     )
     legend = Legend(
-        "Winding number of ray segments",
+        "Winding number",
         "winding",
         "0",
         "1",

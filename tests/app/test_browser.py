@@ -82,7 +82,7 @@ def test_the_cutting_plane_moves_through_the_body(visit):
     visit.slide("Where the cut lies", "ArrowLeft", 30)
     less = visit.look()
     assert changed(half, less) > 0.001
-    visit.switch("Thin slice of the interior")
+    visit.button("Half").click()
     thick = visit.look()
     assert changed(less, thick) > 0.0005
     visit.switch("Interior edges")
