@@ -84,6 +84,8 @@ def messages(session: Session) -> pmui.Column:
     )  # fmt: skip
 
     def told(*events: Any) -> None:
+        if events and all(only_weights(event) for event in events):
+            return  # what was warned of stays as it was
         severity, text = state.message or warning(state) or ("info", "")
         alert.param.update(severity=severity, title=text, closed=False, visible=bool(text))
 
@@ -103,6 +105,13 @@ _PLACE = """
 @media (max-width: 900px) { :host { left: 8px !important; bottom: 8px;
   max-width: calc(100% - 16px) !important; } }
 """
+
+
+def only_weights(event: Any) -> bool:
+    """Whether a change of the binding left the distances as they were."""
+    old, new = event.old, event.new
+    known = event.name == "binding" and old is not None and new is not None
+    return known and old.distances is new.distances
 
 
 def warning(state: State) -> tuple[str, str] | None:

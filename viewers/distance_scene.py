@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ from cutcell.rig import Rig
 
 from .character import attachments, body, bones
 from .description import Description, Legend, Reading
+from .palette import TEXELS, UNREACHED, UNREACHED_TEXELS
 
 
 def distance_scene(
@@ -51,13 +53,31 @@ def distance_scene(
     return Description(actors, legend=legend)
 
 
-def distance_colors(rig: Rig, distance: ArrayLike, joint: int) -> tuple[dict[str, Any], Legend]:
-    """Return the fields of the body's `Actor` that colour it, and how to read them."""
-    limits = distance_limits(distance)
-    values = shown_distance(distance, limits)
-    reading = Reading(f"from {rig.skeleton.names[joint]}: ")
-    colors = {"scalars": values, "colormap": "distance", "limits": limits, "reading": reading}
-    return colors, distance_legend(rig, joint, limits)
+def distance_colors(
+    rig: Rig, distance: ArrayLike, joint: int, limits: tuple[float, float] | None = None
+) -> tuple[dict[str, Any], Legend]:
+    """Return the fields of the body's `Actor` that colour it, and how to read them.
+
+    What is not reached is grey. The limits are those of the distances when left out.
+    """
+    limits = limits or distance_limits(distance)
+    look, unreached = distance_look(distance, limits)
+    legend = distance_legend(rig, joint, limits)
+    if unreached:
+        legend = replace(legend, swatches=((UNREACHED, "no path leads there"),))
+    return {**look, "reading": Reading(f"from {rig.skeleton.names[joint]}: ")}, legend
+
+
+def distance_look(distance: ArrayLike, limits: tuple[float, float]) -> tuple[dict[str, Any], bool]:
+    """Return the fields of an `Actor` that show distances, and whether any is infinite."""
+    distance = np.asarray(distance, float)
+    unreached = ~np.isfinite(distance)
+    if not unreached.any():
+        values = distance.astype(np.float32)
+        return {"scalars": values, "colormap": "distance", "limits": limits}, False
+    end = limits[1] * TEXELS / (TEXELS - UNREACHED_TEXELS)
+    values = np.where(unreached, end, np.minimum(distance, limits[1])).astype(np.float32)
+    return {"scalars": values, "colormap": "reached", "limits": (0.0, end)}, True
 
 
 def distance_limits(distance: ArrayLike) -> tuple[float, float]:

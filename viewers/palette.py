@@ -27,7 +27,7 @@ BONE = _rgb(236, 239, 244)
 BONE_IDLE = _rgb(150, 158, 172)
 BONE_CHOSEN = _rgb(0, 122, 255)
 GHOST = _rgb(64, 132, 255)
-UNREACHED = _rgb(120, 116, 132)
+UNREACHED = _rgb(148, 150, 160)
 
 
 # What a person marks: the clicked vertex, the way back from it.
@@ -130,6 +130,8 @@ _MAPS: dict[str, tuple[tuple[int, int, int], ...]] = {
     "winding": ((150, 158, 172), (176, 172, 168), (226, 158, 110), (255, 108, 12)),
 }
 TEXELS = 512
+UNREACHED_TEXELS = 8
+"""The last texels of the map "reached", which is else like "distance"."""
 ISO_LINES = 16
 """How many equal distances are drawn as lines over the range of a distance field."""
 
@@ -140,19 +142,21 @@ def colormap(name: str) -> NDArray[np.uint8]:
 
     Parameters
     ----------
-    name : {"weight", "distance", "error", "difference", "count", "depth", "winding"}
+    name : {"weight", "distance", "reached", "error", "difference", "count", "depth", "winding"}
 
     Returns
     -------
     array, shape (512, 3), uint8
         The colour of values from the lower to the upper limit.
     """
-    stops = _srgb_to_oklab(np.array(_MAPS[name]) / 255)
+    stops = _srgb_to_oklab(np.array(_MAPS["distance" if name == "reached" else name]) / 255)
     at = np.linspace(0, len(stops) - 1, TEXELS)
     mixed = np.stack([np.interp(at, np.arange(len(stops)), c) for c in stops.T], axis=1)
     table = np.clip(_oklab_to_srgb(mixed), 0, 1)
     if name == "distance":
         table = _with_iso_lines(table)
+    if name == "reached":
+        table = _with_unreached(_with_iso_lines(table))
     colors = to_bytes(table)
     colors.flags.writeable = False
     return colors
@@ -217,6 +221,11 @@ def _with_iso_lines(table: NDArray[np.float64]) -> NDArray[np.float64]:
     line = (np.arange(TEXELS) % step) < 2.5
     line[: int(step / 2)] = False
     return np.where(line[:, None], table * 0.62, table)
+
+
+def _with_unreached(table: NDArray[np.float64]) -> NDArray[np.float64]:
+    at = np.linspace(0, TEXELS - 1, TEXELS - UNREACHED_TEXELS).round().astype(int)
+    return np.concatenate([table[at], np.tile(UNREACHED, (UNREACHED_TEXELS, 1))])
 
 
 def _to_linear(rgb: NDArray[np.float64]) -> NDArray[np.float64]:

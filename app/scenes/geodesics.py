@@ -10,12 +10,7 @@ import numpy as np
 from cutcell.geodesics import path_length, shortest_path
 from viewers.character import to_scene
 from viewers.description import Actor, Cut, Description, Legend
-from viewers.distance_scene import (
-    distance_colors,
-    distance_legend,
-    distance_limits,
-    shown_distance,
-)
+from viewers.distance_scene import distance_colors, distance_limits
 from viewers.marks import path_tube
 from viewers.palette import MARK, SOURCE
 from viewers.section_scene import section, section_rays, section_resolution
@@ -37,41 +32,39 @@ def geodesics(state: State, memo: Memo) -> Description:
     normal, index, cut = _cut(state)
     if not has_field(state):
         return Description(character(state, memo), cut=cut)
-    colors, legend = _surface(state, memo)
+    colors, legend, limits = _surface(state, memo)
     way = way_of(state, memo)
-    inside = way is not None or state.starts
+    inside = (way is not None and len(way) > 0) or state.starts
     see = SEE_PATH if inside and cut is None else 1.0
     actors = character(state, memo, **colors, film=state.wave, opacity=see)
-    swatches: tuple[Any, ...] = ()
+    swatches = legend.swatches
     if cut is not None:
-        actors |= _section(state, memo, normal, index, colors["limits"])
+        actors |= _section(state, memo, normal, index, limits)
     if state.starts:
         parts, swatch = _starts(state, memo)
         actors |= parts
         swatches += (swatch,)
-    if way is not None:
+    if way is not None and not len(way):
+        swatches += ((MARK, "no way leads from the vertex to the bone"),)
+    elif way is not None:
         rig = state.rig
         actors["path"] = memo("tube", (rig, way), lambda: path_tube(rig, _in_scene(state, way)))
         swatches += ((MARK, f"way back, {path_length(way):.3f} long"),)
-    front = state.front * colors["limits"][1] if state.wave else None
+    front = state.front * limits[1] if state.wave else None
     return Description(actors, cut=cut, legend=replace(legend, swatches=swatches), front=front)
 
 
-def _surface(state: State, memo: Memo) -> tuple[dict[str, Any], Legend]:
-    """Return the colours of the body: the field at its vertices."""
+def _surface(state: State, memo: Memo) -> tuple[dict[str, Any], Legend, tuple[float, float]]:
+    """Return the colours of the body, the field at its vertices; the legend; its limits."""
     rig, binding, joint = state.rig, state.binding, state.joint
     field = field_of(state)
 
-    def make() -> tuple[dict[str, Any], Legend]:
-        near = binding.distances.joint[joint]
-        if field is None:
-            return distance_colors(rig, near, joint)
-        at = field[binding.graph.vertex_node]
-        # What no path reaches has a straight distance, if this bone is among the nearest.
-        colors, _ = distance_colors(rig, np.where(np.isfinite(at), at, near), joint)
-        limits = distance_limits(field)
-        scalars = shown_distance(np.where(np.isfinite(at), at, near), limits)
-        return {**colors, "limits": limits, "scalars": scalars}, distance_legend(rig, joint, limits)
+    def make() -> tuple[dict[str, Any], Legend, tuple[float, float]]:
+        # Until the whole field is there, the vertices' own distances stand in for it.
+        whole = binding.distances.joint[joint] if field is None else field
+        at = whole if field is None else whole[binding.graph.vertex_node]
+        limits = distance_limits(whole)
+        return *distance_colors(rig, at, joint, limits), limits
 
     return memo("distance", (binding.distances, joint, field), make)
 
@@ -116,17 +109,16 @@ def _starts(state: State, memo: Memo) -> tuple[dict[str, Actor], tuple[Any, str]
 
 
 def way_of(state: State, memo: Memo) -> Any:
-    """Return the way from the clicked vertex to the bone, shape (p, 3); None without one."""
+    """Return the way from the clicked vertex to the bone, shape (p, 3); None if none is asked."""
     field = field_of(state)
     if not state.path or state.vertex is None or field is None:
         return None
     distances, joint, vertex = state.binding.distances, state.joint, state.vertex
-    way = memo(
+    return memo(
         "way",
         (distances, joint, vertex, field),
         lambda: shortest_path(distances, joint, vertex, field),
     )
-    return way if len(way) else None
 
 
 def _in_scene(state: State, way: np.ndarray) -> np.ndarray:

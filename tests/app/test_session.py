@@ -322,3 +322,48 @@ def test_methods_are_compared_one_after_the_other_and_one_that_fails_stops_none(
     bound.open_rig(arm_rig())
     assert state.compared == {}
     loop.run_until(lambda: state.binding is not None)
+
+
+def test_another_falloff_changes_weights_and_nothing_else(bound):
+    state = bound.state
+    before = state.binding
+    state.param.update(alpha=0.9, max_influences=2)
+    assert state.binding.distances is before.distances
+    expected = cutcell.skinning.skinning_weights(
+        before.distances, falloff=state.falloff, alpha=0.9, max_influences=2
+    )
+    np.testing.assert_array_equal(state.binding.weights, expected)
+    assert not state.busy
+
+
+def test_a_falloff_chosen_while_distances_are_measured_counts(session, loop):
+    session.state.resolution = 16
+    session.open_rig(arm_rig())
+    session.state.max_influences = 1
+    loop.run_until(lambda: session.state.binding is not None)
+    assert ((session.state.binding.weights > 0).sum(axis=1) == 1).all()
+
+
+def test_a_vertex_is_chosen_and_forgotten_with_its_character(bound, loop):
+    bound.pick_vertex(3)
+    assert bound.state.vertex == 3
+    bound.pick_vertex(10**6)
+    assert bound.state.vertex == 3
+    bound.open_rig(arm_rig())
+    assert bound.state.vertex is None
+    bound.pick_vertex(1)
+    bound.pick_vertex(None)
+    assert bound.state.vertex is None
+
+
+def test_the_wave_is_told_once_and_not_frame_by_frame(bound, loop):
+    told = []
+    bound.view.tell = lambda **parts: told.append(parts)
+    bound.state.panel = "geodesics"
+    loop.run_until(lambda: bound.state.field is not None)
+    bound.state.param.update(wave=True, filming=True)
+    films = [parts["film"] for parts in told if "film" in parts]
+    assert len(films) == 1
+    assert films[0]["end"] > 0
+    bound.state.front = 0.5
+    assert [parts for parts in told if "film" in parts] == [{"film": films[0]}]

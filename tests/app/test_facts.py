@@ -1,0 +1,74 @@
+"""What the inspector tells of a vertex, without a browser."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import cutcell
+from app.facts import components, vertex_facts
+from app.scenes import Memo
+from app.state import State
+from cutcell.rig import TriangleMesh
+from tests.viewers.arm import arm_rig
+
+
+@pytest.fixture(scope="module")
+def rig():
+    return arm_rig()
+
+
+@pytest.fixture(scope="module")
+def binding(rig):
+    return cutcell.bind(rig, 16)
+
+
+def facts(rig, binding, vertex):
+    return vertex_facts(State(rig=rig, binding=binding, vertex=vertex), Memo())
+
+
+def test_without_a_vertex_there_is_nothing_to_tell(rig, binding):
+    assert facts(rig, binding, None) is None
+    assert facts(None, None, 3) is None
+
+
+def test_before_anything_is_computed_only_the_vertex_is_known(rig):
+    assert facts(rig, None, 3) == {"vertex": 3, "computed": False}
+
+
+def test_weights_and_distances_are_those_of_the_vertex(rig, binding):
+    found = facts(rig, binding, 7)
+    ours = {bone["joint"]: bone["ours"] for bone in found["weights"]}
+    assert ours == {j: w for j, w in enumerate(binding.weights[7]) if max(w, rig.weights[7, j]) > 0}
+    shown = [max(bone["ours"], bone["artist"]) for bone in found["weights"]]
+    assert shown == sorted(shown, reverse=True)
+    assert sum(bone["artist"] for bone in found["weights"]) == pytest.approx(1)
+    distances = [bone["distance"] for bone in found["distances"]]
+    np.testing.assert_allclose(distances, np.sort(binding.distances.joint[:, 7]))
+    assert found["distances"][0]["name"] in rig.skeleton.names
+    assert found["reached"]
+    assert found["component"] == {"number": 1, "of": 1, "vertices": len(rig.mesh.vertices)}
+
+
+def test_a_file_without_weights_has_none_to_compare(rig, binding):
+    found = facts(replace(rig, weights=None), binding, 7)
+    assert not found["artist"]
+    assert all(bone["artist"] == 0 for bone in found["weights"])
+
+
+def test_a_vertex_apart_from_the_rest_says_why_it_fell_back(rig):
+    vertices, faces = rig.mesh.vertices, rig.mesh.faces
+    apart = vertices[:4] * 0.05 + np.array([0, 2.0, 0])
+    faces = np.concatenate(
+        [faces, np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]) + len(vertices)]
+    )
+    mesh = TriangleMesh(np.concatenate([vertices, apart]), faces)
+    both = replace(rig, mesh=mesh, weights=None, clips=(), attachments=())
+    binding = cutcell.bind(both, 16)
+    found = facts(both, binding, len(vertices))
+    assert found["component"] == {"number": 2, "of": 2, "vertices": 4}
+    assert not found["reached"]
+    assert "no path through the body" in found["reason"]
+    which, sizes = components(binding.graph)
+    assert sizes.tolist() == [len(vertices), 4]
+    assert (which == np.repeat([0, 1], sizes)).all()
