@@ -63,6 +63,7 @@ class Session:
         self.memo = Memo()
         seen = [name for name in self.state.param if name not in UNSEEN]
         self.state.param.watch(self._refresh, seen)
+        self.view.listen("pick-vertex", lambda message: self.pick_vertex(int(message["vertex"])))
         for watch in WATCHERS:
             watch(self)
         self.state.param.watch(self._theme, "dark")

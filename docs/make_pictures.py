@@ -54,7 +54,7 @@ def scenes() -> None:
     bound, held = cutcell.bind(walker, 64), cutcell.bind(octopus, 96)
     write("graph", cutaway(walker, 48), closer(walker, 0.4, 0.76), DARK)
     arm = octopus.skeleton.names.index(OCTOPUS_ARM)
-    distance = distance_scene(octopus, held.distances.joint[arm], arm)
+    distance = distance_scene(octopus, held.distances.on_mesh(arm), arm)
     write("distance", distance, closer(octopus, 0.8), LIGHT)
     thigh = walker.skeleton.names.index("thigh.L")
     write("weights", weights_scene(walker, bound.weights, thigh), closer(walker, 0.62, 0.42), DARK)

@@ -20,9 +20,15 @@ def watch(session: Session) -> None:
     session.state.param.watch(
         lambda *events: find_field(session), ["panel", "binding", "joint", "edge_colors"]
     )
+    session.view.listen("front", lambda message: halt_wave(session, message["front"]))
     session.state.param.watch(
         lambda *events: run_wave(session), ["panel", "wave", "filming", "field", "joint", "rig"]
     )
+
+
+def halt_wave(session: Session, front: float | None) -> None:
+    """Take over where the wave halted in the browser, as a part of the whole way."""
+    session.state.front = min(max(front or 0.0, 0.0), 1.0)
 
 
 def run_wave(session: Session) -> None:

@@ -30,9 +30,10 @@ def geodesics(state: State, memo: Memo) -> Description:
     if state.binding is None:
         return Description(character(state, memo))
     normal, index, cut = _cut(state)
-    if not has_field(state):
+    surface = _surface(state, memo) if has_field(state) else None
+    if surface is None:
         return Description(character(state, memo), cut=cut)
-    colors, legend, limits = _surface(state, memo)
+    colors, legend, limits = surface
     way = way_of(state, memo)
     inside = (way is not None and len(way) > 0) or state.starts
     see = SEE_PATH if inside and cut is None else 1.0
@@ -54,19 +55,21 @@ def geodesics(state: State, memo: Memo) -> Description:
     return Description(actors, cut=cut, legend=replace(legend, swatches=swatches), front=front)
 
 
-def _surface(state: State, memo: Memo) -> tuple[dict[str, Any], Legend, tuple[float, float]]:
-    """Return the colours of the body, the field at its vertices; the legend; its limits."""
-    rig, binding, joint = state.rig, state.binding, state.joint
-    field = field_of(state)
+def _surface(state: State, memo: Memo) -> tuple[dict[str, Any], Legend, tuple[float, float]] | None:
+    """Return the colours of the body, the legend, the field's limits; None before one is there.
+
+    While another bone's field is computed the last one stays.
+    """
+    rig, binding = state.rig, state.binding
+    if state.field is None or state.field[0] is not binding.distances:
+        return None
+    _, joint, field = state.field
 
     def make() -> tuple[dict[str, Any], Legend, tuple[float, float]]:
-        # Until the whole field is there, the vertices' own distances stand in for it.
-        whole = binding.distances.joint[joint] if field is None else field
-        at = whole if field is None else whole[binding.graph.vertex_node]
-        limits = distance_limits(whole)
-        return *distance_colors(rig, at, joint, limits), limits
+        limits = distance_limits(field)
+        return *distance_colors(rig, field[binding.graph.vertex_node], joint, limits), limits
 
-    return memo("distance", (binding.distances, joint, field), make)
+    return memo("distance", (rig, field, joint), make)
 
 
 def _cut(state: State) -> tuple[int, int, Cut | None]:

@@ -12,6 +12,7 @@ from viewers import palette
 from viewers.character import body, bones, drawn_segments, pose_in_scene, smooth_normals, to_scene
 from viewers.distance_scene import distance_scene
 from viewers.graph_scene import LAYERS, cut_at, graph_scene
+from viewers.palette import UNREACHED, colormap, to_bytes
 from viewers.pose_scene import joint_turns, pose_at, pose_scene, swing, turn
 from viewers.skin import moved
 from viewers.weights_scene import weights_scene
@@ -92,14 +93,20 @@ def test_weights_of_one_joint_and_of_all(rig):
     assert every.legend is None
 
 
-def test_distances_that_reach_nothing_are_shown_as_farthest(rig, binding):
+def test_what_no_path_reaches_is_grey_and_the_legend_says_so(rig, binding):
     distance = binding.distances.joint[1].copy()
     distance[0] = np.inf
     scene = distance_scene(rig, distance, 1)
     actor = scene.actors["body"]
     assert np.isfinite(actor.scalars).all()
-    assert actor.limits == (0, pytest.approx(distance[1:].max()))
-    assert actor.scalars[0] == pytest.approx(actor.limits[1])
+    table = colormap(actor.colormap)
+    low, high = actor.limits
+    texel = ((actor.scalars - low) / (high - low) * (len(table) - 1)).astype(int)
+    grey = to_bytes(UNREACHED)
+    assert (table[texel[0]] == grey).all()
+    assert not (table[texel[1:]] == grey).all(axis=1).any()
+    assert "no path" in scene.legend.swatches[0][1]
+    assert distance_scene(rig, binding.distances.joint[1], 1).legend.swatches == ()
 
 
 def test_nothing_reached_at_all_is_a_scene_still(rig):

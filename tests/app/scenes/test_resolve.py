@@ -141,10 +141,14 @@ def test_the_weights_of_all_bones_or_of_one(state, binding):
 
 def test_the_distance_on_the_surface(state, binding):
     state.panel = "geodesics"
+    assert resolve(state).legend is None  # until the field is there the body is plain
+    state.field = (binding.distances, 1, binding.distances.field(1))
     scene = resolve(state)
     distance = binding.distances.on_mesh(1)
     np.testing.assert_allclose(scene.actors["body"].scalars, distance, rtol=1e-5, atol=1e-6)
     assert "elbow" in scene.legend.title
+    state.joint = 2
+    assert "elbow" in resolve(state).legend.title  # the last one stays until the next is there
 
 
 def test_the_body_is_see_through_only_where_it_would_hide_the_graph(state):
