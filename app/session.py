@@ -18,13 +18,12 @@ from cutcell.progress import Progress
 from cutcell.rig import Rig
 from viewers.scene import framing
 
-from .actions import WATCHERS
-from .actions.weights import weigh
+from .actions import WATCHERS, weights
 from .jobs import COMPUTING, Jobs, Schedule
 from .scenes import Memo, resolve
 from .scenes.common import bones_part, bounds_of, first_joint, theme_of
 from .state import UNSEEN, State
-from .state.method import GRAPH, WEIGHTS, method_of
+from .state.method import GRAPH, method_of
 from .upload import Receiver
 from .view import SceneView, camera_part, theme_part
 
@@ -58,6 +57,7 @@ class Session:
         )
         self._jobs: dict[str, Jobs] = {}
         self._closed = False
+        self.falloffs: dict[str, tuple[Any, float, Any]] = {}
         self._bound_for: dict[str, Any] = {}
         self._timer: threading.Timer | None = None
         self.memo = Memo()
@@ -150,15 +150,16 @@ class Session:
     def bind(self) -> None:
         """Compute graph, distances and weights of the character that stands there."""
         state = self.state
-        rig, method = state.rig, method_of(state)
+        rig, method = state.rig, weights.generous(self)
         if rig is None:
             return
         self._bound_for = method_of(state, GRAPH)
 
         def done(binding: Any) -> None:
+            binding = weights.bound(self, binding, method)
             state.param.update(binding=binding, field=None, message=None)
-            if method_of(state, WEIGHTS) != {name: method[name] for name in WEIGHTS}:
-                weigh(self)  # another falloff was chosen in the meantime
+            if (state.falloff, state.alpha) != (method["falloff"], method["alpha"]):
+                weights.weigh(self)  # another falloff was chosen in the meantime
 
         self.start(lambda progress: cutcell.bind(rig, progress=progress, **method), done)
 

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import panel_material_ui as pmui
 
+from cutcell.geodesics import LEAVES
 from cutcell.graph import INTERIOR, MESH, SURFACE
 
 from ..session import Session
@@ -15,6 +16,7 @@ from ..theme import LAYER_COLORS
 from .parts import GAP, caption, choice, cutting, section, slider, when
 
 KINDS = {"mesh_edges": MESH, "interior_edges": INTERIOR, "surface_edges": SURFACE}
+LEAF_TITLES = {"point": "A point", "extend": "Extended", "fit": "Fitted"}
 AXES = {"X": "x", "Y": "y", "Z": "z"}
 
 
@@ -160,5 +162,7 @@ def _build(session: Session) -> list[Any]:
         threshold,
         caption("Paths inside run along", margin=(4, 0, 0, 0)),
         choice(state.param.connectivity, {"6 axes": 6, "26 diagonals": 26, "Any angle": "any"}),
+        caption("Bones of joints without children", margin=(4, 0, 0, 0)),
+        choice(state.param.leaf, {LEAF_TITLES.get(leaf, leaf): leaf for leaf in LEAVES}),
         again,
     ]

@@ -20,7 +20,7 @@ SHOWN = {
     "Number of influences": "count",
 }
 DIFFERENCE = {"Difference to the file's weights": "difference"}
-FALLOFF_TITLES = {"paper": "Paper", "rig": "For rigs"}
+FALLOFF_TITLES = {"rig": "Ours, to animate with", "paper": "The paper's"}
 
 
 def weights(session: Session) -> pmui.Column:

@@ -7,8 +7,8 @@ from typing import Any
 
 import cutcell
 
-GRAPH = ("resolution", "connectivity", "winding_threshold")
-"""What a new graph is built for."""
+GRAPH = ("resolution", "connectivity", "winding_threshold", "leaf")
+"""What distances are measured again for."""
 
 WEIGHTS = ("falloff", "alpha", "max_influences", "threshold")
 """What changes weights without measuring any distance again."""

@@ -10,6 +10,9 @@ from cutcell.skinning import FALLOFFS
 
 from .method import default
 
+MOST = 8
+"""Influences that a vertex is measured for, and the most that can be chosen."""
+
 SHOWN = ("bone", "dominant", "mix", "count", "difference")
 
 
@@ -20,5 +23,5 @@ class WeightsChoices(param.Parameterized):
 
     falloff: Any = param.Selector(default=default("falloff"), objects=list(FALLOFFS))
     alpha: Any = param.Number(default("alpha"), bounds=(0, 1))
-    max_influences: Any = param.Integer(default("max_influences"), bounds=(1, 8))
+    max_influences: Any = param.Integer(default("max_influences"), bounds=(1, MOST))
     threshold: Any = param.Number(default("threshold"), bounds=(0, 1))

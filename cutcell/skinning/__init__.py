@@ -2,6 +2,14 @@
 
 from .bind import Binding, bind
 from .refine import refine_weights
-from .weights import DEFAULT_LEAF, FALLOFFS, skinning_weights
+from .weights import DEFAULT_LEAF, FALLOFFS, keep_strongest, skinning_weights
 
-__all__ = ["DEFAULT_LEAF", "FALLOFFS", "Binding", "bind", "refine_weights", "skinning_weights"]
+__all__ = [
+    "DEFAULT_LEAF",
+    "FALLOFFS",
+    "Binding",
+    "bind",
+    "keep_strongest",
+    "refine_weights",
+    "skinning_weights",
+]

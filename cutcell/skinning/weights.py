@@ -78,6 +78,41 @@ def skinning_weights(
     return prune(weights, max_influences, threshold, _by_position(distances))
 
 
+def keep_strongest(
+    distances: BoneDistances,
+    weights: NDArray[np.float64],
+    max_influences: int | None = 4,
+    threshold: float = 0.0,
+) -> NDArray[np.float64]:
+    """Keep the largest weights of each vertex: the last step of `skinning_weights`.
+
+    Weights that were kept generously once can be pruned in many ways after.
+
+    Parameters
+    ----------
+    distances : BoneDistances
+        What the weights were made from.
+    weights : array, shape (n, j)
+        Rows sum to one.
+    max_influences, threshold
+        See `skinning_weights`.
+
+    Returns
+    -------
+    array, shape (n, j), float64
+        Rows sum to one.
+
+    Raises
+    ------
+    ParameterError
+        A parameter is out of its range.
+    """
+    threshold = check_number("threshold", threshold, 0, 1)
+    if max_influences is not None:
+        max_influences = check_integer("max_influences", max_influences, 1, MOST_INFLUENCES)
+    return prune(weights, max_influences, threshold, _by_position(distances))
+
+
 def joints_needed(falloff: str, max_influences: int | None) -> int | None:
     """Return from how many nearest joints of each vertex a falloff needs distances."""
     if falloff == "paper" or max_influences is None:

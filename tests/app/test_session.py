@@ -324,24 +324,34 @@ def test_methods_are_compared_one_after_the_other_and_one_that_fails_stops_none(
     loop.run_until(lambda: state.binding is not None)
 
 
-def test_another_falloff_changes_weights_and_nothing_else(bound):
+@pytest.mark.parametrize("falloff", cutcell.skinning.FALLOFFS)
+def test_another_falloff_changes_weights_and_measures_nothing(bound, loop, falloff):
     state = bound.state
     before = state.binding
-    state.param.update(alpha=0.9, max_influences=2)
+    state.falloff = falloff
+    state.param.update(alpha=0.9, max_influences=2, threshold=0.1)
+    loop.run_until(lambda: not state.busy)
     assert state.binding.distances is before.distances
     expected = cutcell.skinning.skinning_weights(
-        before.distances, falloff=state.falloff, alpha=0.9, max_influences=2
+        before.distances, falloff=falloff, alpha=0.9, max_influences=2, threshold=0.1
     )
-    np.testing.assert_array_equal(state.binding.weights, expected)
-    assert not state.busy
+    np.testing.assert_allclose(state.binding.weights, expected, atol=1e-9)
+    assert (state.binding.weights > 0).sum(axis=1).max() <= 2
+
+
+def test_what_is_bound_is_what_the_command_binds(bound):
+    state = bound.state
+    expected = cutcell.bind(state.rig, 16)
+    np.testing.assert_allclose(state.binding.weights, expected.weights, atol=1e-9)
 
 
 def test_a_falloff_chosen_while_distances_are_measured_counts(session, loop):
     session.state.resolution = 16
     session.open_rig(arm_rig())
-    session.state.max_influences = 1
-    loop.run_until(lambda: session.state.binding is not None)
+    session.state.param.update(max_influences=1, falloff="paper")
+    loop.run_until(lambda: session.state.binding is not None and not session.state.busy)
     assert ((session.state.binding.weights > 0).sum(axis=1) == 1).all()
+    assert "paper" in session.falloffs
 
 
 def test_a_vertex_is_chosen_and_forgotten_with_its_character(bound, loop):
