@@ -7,6 +7,7 @@ import weakref
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
+from urllib.parse import urlencode
 
 import panel as pn
 import panel_material_ui as pmui
@@ -21,6 +22,7 @@ from .session import Session
 from .sidebar import sidebar
 from .status import messages, status_line
 from .theme import LOADER_STYLE, PAGE_STYLE, THEME
+from .tour_card import tour_card
 
 NARROW = 600
 """Windows that are less wide than this, in pixels, show the sidebar on demand only."""
@@ -44,11 +46,22 @@ def page(path: Path | None = None) -> pmui.Page:
     pn.config.exception_handler = lambda error: _told(fail(), error)
     result = layout(session)
     document.on_session_destroyed(functools.partial(_close, session, result))
-    if path is None:
-        session.open_demo(next(demo.id for demo in DEMOS if demo.path.exists()))
-    else:
-        session.open_files([path])
+
+    def otherwise() -> None:
+        if path is None:
+            session.open_demo(next(demo.id for demo in DEMOS if demo.path.exists()))
+        else:
+            session.open_files([path])
+
+    session.arrive(asked(), otherwise)
     return result
+
+
+def asked() -> str:
+    """Return what the address that was asked for says behind its question mark."""
+    given = pn.state.session_args or {}
+    pairs = [(name, value) for name, values in given.items() for value in values[:1]]
+    return urlencode(pairs)
 
 
 def _close(session: Session, shown: pmui.Page, context: Any) -> None:
@@ -74,6 +87,7 @@ def layout(session: Session) -> pmui.Page:
             session.view,
             messages(session),
             inspector(session),
+            tour_card(session),
             sizing_mode="stretch_both",
             margin=0,
             styles={"position": "relative"},
@@ -99,6 +113,11 @@ def layout(session: Session) -> pmui.Page:
 
     def themed(event: Any) -> None:
         session.state.dark = event.new
+        session.view.tell(dark=event.new)
+
+    def remembered(event: Any) -> None:
+        if event.new is not None:
+            session.later(lambda: result.param.update(dark_theme=event.new))
 
     def sized(event: Any) -> None:
         # The canvas comes first where both have no room side by side.
@@ -107,5 +126,6 @@ def layout(session: Session) -> pmui.Page:
 
     result.param.watch(themed, "dark_theme")
     session.view.param.watch(sized, "window_width")
+    session.view.param.watch(remembered, "dark")
     session.state.dark = result.dark_theme
     return result

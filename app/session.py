@@ -16,10 +16,12 @@ from assets import DEMOS, demo_path
 from cutcell.errors import CutcellError, FileError
 from cutcell.progress import Progress
 from cutcell.rig import Rig
-from viewers.scene import framing
+from viewers.scene import Camera, framing
 
 from .actions import WATCHERS, weights
+from .choices import from_query
 from .jobs import COMPUTING, Jobs, Schedule
+from .keep import KEEP
 from .scenes import Memo, resolve
 from .scenes.common import bones_part, bounds_of, first_joint, theme_of
 from .state import UNSEEN, State
@@ -31,6 +33,11 @@ logger = logging.getLogger("cutcell.app")
 
 PAUSE = 0.2
 """Seconds without a change of the graph's parameters before it is built again."""
+
+GONE = (
+    "The character of this address was uploaded, and the server no longer has it; here is "
+    "another. Drop the file again to go on with it."
+)
 
 COMPANIONS = {".txt", ".json", ".mtl", ".bin", ".png", ".jpg", ".jpeg"}
 """Files that come along with the one that is opened."""
@@ -47,6 +54,7 @@ class Session:
 
     def __init__(self, schedule: Schedule) -> None:
         self.state = State()
+        self.habits: Any = None
         self._schedule = schedule
         self._files = tempfile.TemporaryDirectory(prefix="cutcell-", ignore_cleanup_errors=True)
         self.folder = Path(self._files.name)
@@ -60,6 +68,10 @@ class Session:
         self.falloffs: dict[str, tuple[Any, float, Any]] = {}
         self._bound_for: dict[str, Any] = {}
         self._timer: threading.Timer | None = None
+        self.kept = ""
+        self._held: set[str] = set()
+        self._note = ""
+        self._arrival: dict[str, Any] = {}
         self.memo = Memo()
         seen = [name for name in self.state.param if name not in UNSEEN]
         self.state.param.watch(self._refresh, seen)
@@ -99,38 +111,101 @@ class Session:
 
     # Opening
 
-    def open_demo(self, id: str) -> None:
-        """Show a demo character and bind it."""
+    def open_demo(self, id: str, then: Callable[[], None] = lambda: None) -> None:
+        """Show a demo character and bind it; do something more when it stands there."""
         self.state.demo = id
         title = next(demo.title for demo in DEMOS if demo.id == id)
-        self._open(lambda: demo_rig(id), f"opening {title}")
+        self._open(lambda: demo_rig(id), f"opening {title}", lambda: self._keep(""), then)
 
-    def open_files(self, paths: list[Path]) -> None:
-        """Show the character in files that a person dropped, and bind it."""
+    def open_files(self, paths: list[Path], key: str = "") -> None:
+        """Show the character in some files, and bind it.
+
+        Parameters
+        ----------
+        paths : list of Path
+            The file, and those that belong to it.
+        key : str
+            That of kept files, if they are; see `keep`.
+        """
         try:
             path = main_file(paths)
         except CutcellError as error:
             self.fail(error)
+            self._keep(self.kept)
             return
-        self._open(lambda: cutcell.load(path), f"opening {path.name}", demo="")
+        opened = functools.partial(self._keep, key)
+        self._open(lambda: cutcell.load(path), f"opening {path.name}", opened, demo="")
+
+    def open_upload(self, paths: list[Path]) -> None:
+        """Show the character in files that a person dropped; keep them for a while."""
+        key, here = KEEP.put(paths)
+        self._held.add(key)
+        self.open_files(here, key)
+
+    def arrive(self, query: str, otherwise: Callable[[], None]) -> None:
+        """Show what an address says.
+
+        Parameters
+        ----------
+        query : str
+        otherwise : callable
+            Opens a character where the address names none that is there.
+        """
+        choices, arrival, problems = from_query(query, self.state)
+        self.state.param.update(**choices)
+        self._arrival = arrival
+        rig = arrival.get("rig", "")
+        kept = KEEP.take(rig[1:]) if rig.startswith("~") else None
+        demo = any(demo.id == rig and demo.path.exists() for demo in DEMOS)
+        if rig and not rig.startswith("~") and not demo:
+            problems.append(f"rig={rig}"[:60])
+        if rig.startswith("~") and kept is None:
+            arrival["told"] = GONE
+        elif problems:
+            arrival["told"] = (
+                f"The address says what this page does not know ({', '.join(problems)}); "
+                "the rest of it was taken."
+            )
+        if kept is not None:
+            self._held.add(rig[1:])
+            self.open_files(kept, rig[1:])
+        elif demo:
+            self.open_demo(rig)
+        else:
+            otherwise()
+
+    def _keep(self, key: str) -> None:
+        self.kept = key
+        for other in self._held - {key}:
+            self._held.remove(other)
+            KEEP.leave(other)
 
     def receiver(self) -> Receiver:
         """Return what takes files from the browser and opens them."""
-        return Receiver(self.folder, self.open_files, self.fail)
+        return Receiver(self.folder, self.open_upload, self.fail)
 
     def open_rig(self, rig: Rig) -> None:
         """Show a character that is loaded already, and bind it."""
         self.state.demo = ""
         self._stand(rig)
 
-    def _open(self, load: Callable[[], Rig], stage: str, **then: Any) -> None:
+    def _open(
+        self,
+        load: Callable[[], Rig],
+        stage: str,
+        opened: Callable[[], None] = lambda: None,
+        stood: Callable[[], None] = lambda: None,
+        **then: Any,
+    ) -> None:
         def work(progress: Progress) -> Rig:
             progress(stage, 0.0)
             return load()
 
         def done(rig: Rig) -> None:
+            opened()
             self.state.param.update(**then)
             self._stand(rig)
+            stood()
 
         self.start(work, done)
 
@@ -142,8 +217,26 @@ class Session:
             clip=0 if rig.clips else -1, message=None, joint=first_joint(rig), vertex=None,
         )  # fmt: skip
         self.view.camera = framing(bounds_of(state), 1.2)
-        self.view.tell(bones=bones_part(state), camera=camera_part(self.view.camera))
+        self.view.at_home = True
+        camera = camera_part(self.view.camera)
+        arrival, self._arrival = self._arrival, {}
+        self._land(rig, arrival)
+        self.view.tell(bones=bones_part(state), camera=camera)
+        if "camera" in arrival:
+            eye, target = arrival["camera"][:3], arrival["camera"][3:]
+            self.look(Camera(tuple(eye), tuple(target)))
+        self.habits.begin()
         self.bind()
+
+    def _land(self, rig: Rig, arrival: dict[str, Any]) -> None:
+        names, state = rig.skeleton.names, self.state
+        if arrival.get("bone") in names:
+            state.joint = names.index(arrival["bone"])
+        state.turns = {j: t for j, t in arrival.get("turns", {}).items() if j < len(names)}
+        state.tour = arrival.get("tour", state.tour)
+        if 0 <= arrival.get("vertex", -1) < len(rig.mesh.vertices):
+            state.vertex = arrival["vertex"]
+        self._note = arrival.get("told", "")
 
     # Computing
 
@@ -157,7 +250,9 @@ class Session:
 
         def done(binding: Any) -> None:
             binding = weights.bound(self, binding, method)
-            state.param.update(binding=binding, field=None, message=None)
+            note, self._note = self._note, ""
+            message = ("info", note) if note else None
+            state.param.update(binding=binding, field=None, message=message)
             if (state.falloff, state.alpha) != (method["falloff"], method["alpha"]):
                 weights.weigh(self)  # another falloff was chosen in the meantime
 
@@ -225,6 +320,17 @@ class Session:
             return
         state.vertex = vertex
 
+    def look(self, camera: Camera | None, aside: bool = False) -> None:
+        """Look from somewhere; None for the view that one begins with.
+
+        With `aside`, what is looked at stands left of the middle, beside a card.
+        """
+        home = camera_part(framing(bounds_of(self.state), 1.2))
+        if camera is not None:
+            self.view.camera, self.view.at_home = camera, False
+            home["now"] = {**camera_part(camera), "aside": aside}
+        self.view.tell(camera=home)
+
     def _refresh(self, *events: Any) -> None:
         self.view.present(resolve(self.state, self.memo))
 
@@ -238,6 +344,7 @@ class Session:
             self._timer.cancel()
         for jobs in self._jobs.values():
             jobs.close()
+        self._keep("")
         self._files.cleanup()
 
 

@@ -98,11 +98,11 @@ def messages(session: Session) -> pmui.Column:
     return pmui.Column(alert, margin=0, sizing_mode="stretch_width", stylesheets=[_PLACE])
 
 
-# Over the canvas, so that the character stays where it is; at its foot, beside the legend.
+# Over the canvas, so that the character stays where it is; at its top, beside the tools.
 _PLACE = """
-:host { position: absolute; z-index: 5; bottom: 16px; left: 240px !important;
-  width: auto !important; max-width: min(760px, calc(100% - 256px)) !important; }
-@media (max-width: 900px) { :host { left: 8px !important; bottom: 8px;
+:host { position: absolute; z-index: 5; top: 12px; left: 12px !important; width: auto !important;
+  max-width: min(760px, calc(100% - 190px)) !important; }
+@media (max-width: 700px) { :host { top: 60px; left: 8px !important;
   max-width: calc(100% - 16px) !important; } }
 """
 

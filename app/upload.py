@@ -50,6 +50,7 @@ class Receiver:
             "upload-begin": self._begin,
             "upload-piece": self._piece,
             "upload-end": self._end,
+            "upload-cancel": self._cancel,
         }.get(str(message.get("type")))
         if act is None:
             return None
@@ -99,6 +100,9 @@ class Receiver:
         if short or not paths:
             raise FileError(f'"{", ".join(short)}" did not arrive whole; try again')
         self._received(paths)
+
+    def _cancel(self, message: dict[str, Any]) -> None:
+        self._drop()
 
     def _drop(self) -> None:
         for path in self._paths:

@@ -33,11 +33,13 @@ class SceneView(JSComponent):
         doc="Where Panel's own server keeps vtk.js.",
     )
 
+    dark = param.Boolean(None, allow_None=True, doc="The theme this browser had last time.")
+
     window_width = param.Integer(0, doc="Width of the browser's window, once it is known.")
 
-    _rename = {"window_width": None}  # noqa: RUF012
+    _rename = {"window_width": None, "dark": None}  # noqa: RUF012
     _esm = script("orbit", "skin", "figure", "stage", "pick", "surface", "gizmo", "transport",
-                  "upload", "overlay", "view")  # fmt: skip
+                  "upload", "keys", "connection", "overlay", "view")  # fmt: skip
 
     def __init__(
         self,
@@ -49,6 +51,8 @@ class SceneView(JSComponent):
         self._on_pick = on_pick
         self._receiver = receiver
         self.camera: Camera | None = None
+        self.at_home = True
+        self.on_camera: Callable[[], None] = lambda: None
         self.aspect = 4 / 3
         self.time = 0.0
         self._ready = False
@@ -99,6 +103,7 @@ class SceneView(JSComponent):
             self._send_msg({"upload": answer})
         if kind == "ready":
             self._ready = True
+            self.dark = {"1": True, "0": False}.get(str(data.get("dark")))
             self.window_width = int(data.get("width", 0))
             self._sent.clear()
             first = {"lights": LIGHTS, **changes(Description(), self._wanted, self._sent)}
@@ -113,6 +118,8 @@ class SceneView(JSComponent):
         elif kind == "camera":
             self.camera = Camera(tuple(data["position"]), tuple(data["focal_point"]))
             self.aspect = min(max(float(data.get("aspect", self.aspect)), 0.3), 4.0)
+            self.at_home = bool(data.get("home", False))
+            self.on_camera()
 
 
 def changes(old: Description, new: Description, sent: set[str]) -> dict[str, Any]:
@@ -157,7 +164,8 @@ def theme_part(theme: Theme) -> dict[str, str]:
     """Return how a theme is told to the view."""
     card = "rgba(255,255,255,.72)" if theme.name == "light" else "rgba(24,28,36,.72)"
     top, bottom, ink = to_hex(theme.top), to_hex(theme.bottom), to_hex(theme.ink)
-    return {"top": top, "bottom": bottom, "ink": ink, "card": card}
+    paper = "#ffffff" if theme.name == "light" else "#1b2028"
+    return {"top": top, "bottom": bottom, "ink": ink, "card": card, "paper": paper}
 
 
 def camera_part(camera: Camera) -> dict[str, Any]:

@@ -6,6 +6,6 @@ are what the panels call.
 
 from __future__ import annotations
 
-from . import compare, geodesics, pose, weights
+from . import compare, geodesics, habits, pose, weights
 
-WATCHERS = (geodesics.watch, pose.watch, compare.watch, weights.watch)
+WATCHERS = (geodesics.watch, pose.watch, compare.watch, weights.watch, habits.watch)

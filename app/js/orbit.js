@@ -14,7 +14,10 @@ class Orbit {
     this.pointers = new Map()
     this.moving = false
     const on = (type, handler) => element.addEventListener(type, handler, {passive: false})
+    // Arrow keys turn when the canvas was reached by keys; after a click they change the bone.
+    on("blur", () => { this.byMouse = false })
     on("pointerdown", (e) => {
+      this.byMouse = true
       element.setPointerCapture(e.pointerId)
       this.pointers.set(e.pointerId, [e.clientX, e.clientY])
       this.pressed = this.pointers.size === 1 ? [e.clientX, e.clientY, e.button] : null
@@ -59,6 +62,22 @@ class Orbit {
   scale(factor) {
     this.home.distance *= factor
     this.distance *= factor
+  }
+
+  // Looks from a place at another, and leaves the start as it is.
+  look(position, target) {
+    const d = position.map((x, i) => x - target[i])
+    this.distance = Math.hypot(...d)
+    this.target = [...target]
+    this.yaw = Math.atan2(d[0], d[2])
+    this.pitch = Math.asin(d[1] / this.distance)
+  }
+
+  get atHome() {
+    const {home} = this
+    const near = (a, b) => Math.abs(a - b) < 1e-6 * Math.max(1, home.distance)
+    return near(this.yaw, home.yaw) && near(this.pitch, home.pitch)
+      && near(this.distance, home.distance) && this.target.every((x, i) => near(x, home.target[i]))
   }
 
   get position() {
@@ -120,8 +139,10 @@ class Orbit {
       "+": () => this.zoom(0.88), "=": () => this.zoom(0.88), "-": () => this.zoom(1.14),
       Home: () => { this.reset(); this.move() },
     }[e.key]
-    if (!act) { return }
+    if (!act || e.ctrlKey || e.metaKey || e.altKey) { return }
+    if (this.byMouse && e.key.startsWith("Arrow")) { return }
     e.preventDefault()
+    e.stopPropagation()
     act()
     this.rest(180)
   }

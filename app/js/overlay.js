@@ -63,7 +63,10 @@ const STYLE = `
 .failed { inset: 0; margin: auto; width: min(420px, 80%); height: max-content; padding: 20px;
   font-size: 14px; text-align: center; }
 .drop { inset: 12px; border: 2px dashed #ff6c0c; border-radius: 14px; display: grid;
-  place-items: center; font-size: 18px; }
+  place-content: center; justify-items: center; gap: 14px; font-size: 18px; }
+.drop button { pointer-events: auto; font: 500 14px Roboto, system-ui, sans-serif; cursor: pointer;
+  padding: 6px 16px; border-radius: 8px; border: 1px solid currentColor; background: none;
+  color: inherit; }
 [hidden] { display: none !important; }
 @media (max-width: 700px) { .hint { display: none } .legend { left: 8px; bottom: 8px; width: 160px } }
 `
@@ -100,7 +103,8 @@ class Overlay {
     this.drop = make("div", "card drop", this.root)
   }
 
-  theme({top, bottom, ink, card}) {
+  theme({top, bottom, ink, card, paper}) {
+    this.root.style.setProperty("--paper", paper)
     this.root.style.background = `linear-gradient(${top}, ${bottom})`
     this.root.style.setProperty("--ink", ink)
     this.root.style.setProperty("--card", card)
@@ -167,9 +171,17 @@ class Overlay {
     this.bone.style.top = `${y}px`
   }
 
-  say(text) {
+  // A notice over the canvas, with a button if there is something to stop.
+  say(text, stop) {
     this.drop.hidden = !text
     this.drop.textContent = text || ""
+    if (text && stop) {
+      const button = document.createElement("button")
+      button.type = "button"
+      button.textContent = "Cancel"
+      button.addEventListener("click", stop)
+      this.drop.append(button)
+    }
   }
 
   fail(message) {

@@ -19,10 +19,16 @@ class Uploader {
     })
   }
 
+  // Stops after the piece that is on its way; the server forgets what it has.
+  cancel() {
+    this.stopped = true
+  }
+
   async send(files) {
     files = [...files]
     if (!files.length || this.busy) { return }
     this.busy = true
+    this.stopped = false
     try {
       const list = files.map(({name, size}) => ({name, size}))
       const total = list.reduce((sum, {size}) => sum + size, 0)
@@ -30,14 +36,16 @@ class Uploader {
       let answer = await this.ask({type: "upload-begin", files: list})
       let sent = 0
       for (let index = 0; index < files.length && answer.ok; index++) {
-        for (let at = 0; at < files[index].size && answer.ok; at += PIECE) {
+        for (let at = 0; at < files[index].size && answer.ok && !this.stopped; at += PIECE) {
           const data = await files[index].slice(at, at + PIECE).arrayBuffer()
           answer = await this.ask({type: "upload-piece", index, data})
           sent += data.byteLength
           this.moved(sent / total)
         }
       }
-      if (answer.ok) { answer = await this.ask({type: "upload-end"}) }
+      if (answer.ok) {
+        answer = await this.ask({type: this.stopped ? "upload-cancel" : "upload-end"})
+      }
       if (!answer.ok) { this.refused?.(answer.message) }
     } finally {
       this.busy = false

@@ -22,12 +22,17 @@ class View {
       seek: (time) => { this.time = time; this.applyPose(); this.changed(); this.tellTime() },
     })
     const uploader = new Uploader(model, {
-      started: (files) => overlay.say(`Sending ${files.map((f) => f.name).join(", ")}`),
+      started: (files) => overlay.say(`Sending ${files.map((f) => f.name).join(", ")}`, () => uploader.cancel()),
       moved: () => {},
       ended: () => overlay.say(null),
     })
     const over = (hanging) => overlay.say(hanging ? "Drop the character here" : null)
     acceptDrops(overlay.root, over, (files) => uploader.send(files))
+    this.keys = new Keys(overlay, {
+      act: (act) => model.send_msg({type: "act", act}),
+      turnable: () => document.activeElement && overlay.canvas.matches(":focus") && !this.orbit.byMouse,
+    })
+    this.connection = new Connection(overlay)
     this.messages = 0
     this.posed = 0
     this.observer = new ResizeObserver(() => this.changed())
@@ -44,6 +49,7 @@ class View {
     }
     if (message.lights) { stage.light(message.lights) }
     if (message.theme) { this.overlay.theme(message.theme) }
+    if ("dark" in message) { localStorage.setItem("cutcell dark", message.dark ? "1" : "0") }
     if ("legend" in message) { this.overlay.showLegend(message.legend) }
     if ("cut" in message) {
       this.cut = message.cut
@@ -83,19 +89,26 @@ class View {
     if ("pose" in message || "clip" in message) { this.applyPose() }
     if ("front" in message && !this.film) { this.setFront(message.front) }
     if ("film" in message) { this.playFilm(message.film) }
-    if (message.camera) {
-      this.frame(message.camera)
+    if (message.camera) { this.frame(message.camera) }
+    if (message.home) { this.orbit.reset(); this.rested() }
+    if (message.address) {
+      history.replaceState(history.state, "", location.pathname + message.address)
+      this.keys.able(message.able)
     }
     this.messages = message.id
     this.changed()
   }
 
   // Looks from where the server says, from as far as this window needs.
-  frame({position, focal_point: target}) {
+  frame({position, focal_point: target, now}) {
     const offset = position.map((x, i) => x - target[i])
     const direction = offset.map((x) => x / Math.hypot(...offset))
     const distance = this.stage.fitting(direction, target)
     this.orbit.setHome(direction.map((x, i) => target[i] + distance * x), target)
+    if (now) { this.orbit.look(now.position, now.focal_point) }
+    // Where a card covers a side of a wide canvas, the middle of what is left is elsewhere.
+    if (now?.aside && this.overlay.canvas.clientWidth > 760) { this.orbit.pan(-170, 0) }
+    this.orbit.moving = false
     this.rested()
   }
 
@@ -156,7 +169,7 @@ class View {
   rested() {
     this.changed()
     this.model.send_msg({
-      type: "camera", position: this.orbit.position, focal_point: this.orbit.target,
+      type: "camera", home: this.orbit.atHome, position: this.orbit.position, focal_point: this.orbit.target,
       aspect: this.overlay.canvas.clientWidth / Math.max(this.overlay.canvas.clientHeight, 1),
     })
   }
@@ -287,6 +300,8 @@ class View {
   remove() {
     this.gone = true
     this.playing = false
+    this.keys.remove()
+    this.connection.remove()
     this.observer.disconnect()
     cancelAnimationFrame(this.waiting)
     cancelAnimationFrame(this.ticking)
@@ -318,7 +333,8 @@ export function render({model}) {
     view = new View(model, vtk, overlay)
     model.on("msg:custom", (message) => view.receive(message))
     window.__cutcell = view
-    model.send_msg({type: "ready", width: window.innerWidth})
+    const dark = localStorage.getItem("cutcell dark")
+    model.send_msg({type: "ready", width: window.innerWidth, dark})
   }).catch((error) => {
     console.error(error)
     overlay.fail(`The 3D view cannot be shown: ${error.message}.`)

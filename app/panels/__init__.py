@@ -10,6 +10,7 @@ from ..session import Session
 from .compare import compare
 from .geodesics import geodesics
 from .graph import graph
+from .learn import learn
 from .pose import pose
 from .weights import weights
 
@@ -70,6 +71,13 @@ PANELS = (
         "Compare",
         '<path d="M4 5h6v14H4zM14 5h6v14h-6zM12 2.5v19"/>',
         compare,
+    ),
+    Panel(
+        "learn",
+        "Learn",
+        '<path d="M2.5 9.5L12 5l9.5 4.5L12 14z"/>'
+        '<path d="M6.5 11.5v5c3 2.6 8 2.6 11 0v-5M21.5 9.5v6"/>',
+        learn,
     ),
 )
 """In the order in which they are offered; the ids are those of `state.PANELS`."""

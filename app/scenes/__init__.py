@@ -23,6 +23,7 @@ SCENES: dict[str, Callable[[State, Memo], Description]] = {
     "weights": weights,
     "pose": pose,
     "compare": compare,
+    "learn": weights,
 }
 """The scene of each panel, for a state with a rig."""
 

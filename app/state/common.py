@@ -26,6 +26,8 @@ class Common(param.Parameterized):
     cut_axis: Any = param.Selector(default="off", objects=["off", "x", "y", "z"])
     cut_position: Any = param.Number(0.5, bounds=(0, 1))
 
+    tour: Any = param.Integer(-1, doc="Which step of the tour is told; -1 for none.")
+
     dark: Any = param.Boolean(False)
 
     busy: Any = param.Boolean(False, doc="Whether something is being computed.")
@@ -41,5 +43,5 @@ class Common(param.Parameterized):
         return None if self.rig is None else self.rig.weights
 
 
-UNSEEN = frozenset({"name", "demo", "busy", "stage", "fraction", "message"})
+UNSEEN = frozenset({"name", "demo", "tour", "busy", "stage", "fraction", "message"})
 """What the scene does not depend on."""

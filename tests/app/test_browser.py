@@ -133,7 +133,9 @@ def test_dragging_turns_the_character_and_picks_nothing(visit):
     visit.page.mouse.dblclick(box["x"] + 20, box["y"] + 20)
     assert changed(before, visit.look()) < 0.002
     assert visit.page.get_by_text("Weight of").count() == 0
-    visit.page.get_by_role("application").focus()
+    canvas = visit.page.get_by_role("application")
+    canvas.blur()
+    canvas.focus()
     visit.page.keyboard.press("ArrowLeft")
     assert changed(before, visit.look()) > 0.01
 

@@ -70,6 +70,15 @@ def test_less_than_announced_is_refused(receiver):
     assert "a.glb" in answer["message"]
 
 
+def test_a_cancelled_upload_leaves_nothing(receiver, tmp_path):
+    receiver.answer({"type": "upload-begin", "files": [{"name": "a.glb", "size": 4}]})
+    receiver.answer({"type": "upload-piece", "index": 0, "data": b"12"})
+    assert receiver.answer({"type": "upload-cancel"}) == {"ok": True}
+    assert not [p for p in tmp_path.rglob("*") if p.is_file()]
+    assert not receiver.received
+    assert not receiver.refused
+
+
 def test_pieces_of_nothing_are_refused(receiver):
     assert not receiver.answer({"type": "upload-piece", "index": 0, "data": b"1"})["ok"]
     assert not receiver.answer({"type": "upload-end"})["ok"]

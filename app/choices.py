@@ -1,0 +1,149 @@
+"""What a person chose, as plain values: for the address, for undo, for coming back."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+from urllib.parse import parse_qsl, quote, urlencode
+
+import param
+
+from .state import State
+
+OWN = frozenset({"name", "demo", "joint", "dark", "moving", "playing", "clip", "skipped",
+                 "busy", "stage", "fraction", "message", "tour", "vertex", "filming"})  # fmt: skip
+"""What goes with one person or one moment, or has a word of its own in the address."""
+
+CAMERA = 6
+"""Numbers of a camera: where the eye is, and what it looks at."""
+
+
+def simple(state: State) -> dict[str, param.Parameter]:
+    """Return the parameters that hold a plain choice: a switch, a number, one of a few."""
+    kinds = (param.Boolean, param.Selector, param.Number)
+    found = state.param.objects("existing")
+    return {n: p for n, p in found.items() if n not in OWN and isinstance(p, kinds)}
+
+
+def taken(state: State) -> dict[str, Any]:
+    """Return all choices as they are, with the bone, the turns and the clip."""
+    names = (*simple(state), "joint", "turns", "clip")
+    return {name: getattr(state, name) for name in names}
+
+
+def defaults(state: State) -> dict[str, Any]:
+    """Return the plain choices that a person begins with; the panel is left alone."""
+    return {name: p.default for name, p in simple(state).items() if name != "panel"}
+
+
+def to_query(state: State, kept: str = "", camera: list[float] | None = None) -> str:
+    """Return what the address says behind its question mark.
+
+    Parameters
+    ----------
+    state : State
+    kept : str
+        The key of an uploaded character, where one stands there.
+    camera : list of 6 float, optional
+        Where the eye is and what it looks at; left out where it is as at the start.
+    """
+    said: dict[str, str] = {}
+    if state.demo or kept:
+        said["rig"] = state.demo or f"~{kept}"
+    said["panel"] = state.panel
+    if state.rig is not None:
+        said["bone"] = state.rig.skeleton.names[state.joint]
+        if state.vertex is not None:
+            said["vertex"] = str(state.vertex)
+    for name, parameter in simple(state).items():
+        value = getattr(state, name)
+        if name != "panel" and value != parameter.default:
+            said[name] = _text(value)
+    turned = {j: t for j, t in state.turns.items() if any(t)}
+    if turned:
+        said["turns"] = ";".join(f"{j}:{','.join(f'{a:g}' for a in t)}" for j, t in turned.items())
+    if state.tour >= 0:
+        said["step"] = str(state.tour + 1)
+    if camera is not None:
+        said["camera"] = ",".join(f"{x:.4g}" for x in camera)
+    return urlencode(said, quote_via=quote, safe=",:;~")
+
+
+def from_query(query: str, state: State) -> tuple[dict[str, Any], dict[str, Any], list[str]]:
+    """Read an address.
+
+    Returns
+    -------
+    choices : dict
+        Values for the state's parameters that need no character.
+    arrival : dict
+        "rig", "bone", "vertex", "turns", "tour" and "camera", as far as they are said.
+    problems : list of str
+        What could not be read, each as the address says it.
+    """
+    known = simple(state)
+    choices: dict[str, Any] = {}
+    arrival: dict[str, Any] = {}
+    problems: list[str] = []
+    for name, text in parse_qsl(query.lstrip("?"), keep_blank_values=True)[:64]:
+        try:
+            if name in ("rig", "bone"):
+                arrival[name] = text
+            elif name == "turns":
+                arrival[name] = _turns(text)
+            elif name == "step":
+                arrival["tour"] = int(text) - 1
+            elif name == "vertex":
+                arrival["vertex"] = int(text)
+            elif name == "camera":
+                arrival[name] = _numbers(text, CAMERA)
+            elif name in known:
+                choices[name] = _value(known[name], text)
+            else:
+                raise ValueError(name)
+        except ValueError:
+            problems.append(f"{name}={text}"[:60])
+    return choices, arrival, problems
+
+
+def _text(value: Any) -> str:
+    if isinstance(value, bool):
+        return "1" if value else "0"
+    return f"{value:.6g}" if isinstance(value, float) else str(value)
+
+
+def _value(parameter: param.Parameter, text: str) -> Any:
+    if isinstance(parameter, param.Boolean):
+        if text not in ("0", "1"):
+            raise ValueError(text)
+        return text == "1"
+    if isinstance(parameter, param.Selector):
+        for one in parameter.objects:
+            if str(one) == text:
+                return one
+        raise ValueError(text)
+    value = int(text) if isinstance(parameter, param.Integer) else float(text)
+    if parameter.bounds is not None:
+        low, high = parameter.bounds
+        if (low is not None and value < low) or (high is not None and value > high):
+            raise ValueError(text)
+    if not abs(value) < 1e9:
+        raise ValueError(text)
+    return value
+
+
+def _turns(text: str) -> dict[int, tuple[float, ...]]:
+    turns = {}
+    for part in filter(None, text.split(";")):
+        found = re.fullmatch(r"(\d{1,5}):([-+.\de,]+)", part)
+        if not found:
+            raise ValueError(part)
+        turns[int(found.group(1))] = tuple(_numbers(found.group(2), 3))
+    return turns
+
+
+def _numbers(text: str, count: int) -> list[float]:
+    values = [float(part) for part in text.split(",")]
+    if len(values) != count or not all(abs(value) < 1e6 for value in values):
+        raise ValueError(text)
+    return values

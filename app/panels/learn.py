@@ -1,0 +1,50 @@
+"""Learn: the list of the tour's steps, each of which can be gone to."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import panel_material_ui as pmui
+
+from ..actions.learn import go
+from ..session import Session
+from ..tour import TOUR
+from .parts import GAP, caption, section, when
+
+
+def learn(session: Session) -> pmui.Column:
+    """Return the controls of the panel Learn."""
+    state = session.state
+
+    def begin(event: Any) -> None:
+        go(session, max(state.tour, 0))
+
+    start = pmui.Button(
+        label=when(lambda at: "Start the tour" if at < 0 else "Go on", state.param.tour),
+        icon="school",
+        size="small",
+        margin=GAP,
+        sizing_mode="stretch_width",
+        on_click=begin,
+    )
+    return section(
+        "Learn",
+        caption(
+            f"How skin comes to follow bones, in {len(TOUR)} short steps. Each sets the page so "
+            "that its point is seen; look around, and change what you like."
+        ),
+        start,
+        *[_entry(session, index) for index in range(len(TOUR))],
+    )
+
+
+def _entry(session: Session, index: int) -> pmui.Button:
+    return pmui.Button(
+        label=f"{index + 1}. {TOUR[index].title}",
+        variant="text",
+        size="small",
+        margin=0,
+        sizing_mode="stretch_width",
+        on_click=lambda event: go(session, index),
+        sx={"justifyContent": "flex-start", "textAlign": "left", "color": "text.primary"},
+    )

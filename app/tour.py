@@ -1,0 +1,223 @@
+"""The guided tour: what each step says, and what the page shows meanwhile."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+
+@dataclass(frozen=True)
+class Step:
+    """One step of the tour.
+
+    Parameters
+    ----------
+    title : str
+    text : str
+        Two or three short paragraphs, parted by empty lines.
+    formula : str
+        In TeX; empty for none.
+    look : str
+        What to look at, or to try, in one sentence.
+    panels : tuple of str
+        Where it is seen: the first of these that the page has.
+    choices : dict
+        What is chosen, beside what one begins with.
+    demo : str
+    bone : str
+    focus : str
+        The joint that the camera looks at; the whole character without one.
+    near : float
+        How near: 1 sees the whole, 0.3 a third of it.
+    angles : tuple of float
+        Degrees: around the character, and from above.
+    """
+
+    title: str
+    text: str
+    formula: str
+    look: str
+    panels: tuple[str, ...]
+    choices: dict[str, Any] = field(default_factory=dict)
+    demo: str = "biped"
+    bone: str = "hand.L"
+    focus: str = ""
+    near: float = 1.0
+    angles: tuple[float, float] = (22.0, 9.0)
+
+
+TOUR = (
+    Step(
+        "A skin on bones",
+        "A character on a screen is a skin of triangles. To move it, one puts a skeleton inside: "
+        "bones that meet in joints. An animator turns the joints, never the thousands of points "
+        "of the skin.\n\n"
+        "So every point of the skin must know which bones it goes along with, and how much. These "
+        "shares are its weights. They add up to one, and the point goes where the bones take it, "
+        "each by its share.",
+        r"v' = \sum_j w_j\, T_j\, v \qquad \sum_j w_j = 1",
+        "The walk moves the bones; the weights that were just computed move the skin.",
+        ("pose",),
+        {"moving": True, "playing": True},
+        bone="upper_arm.L",
+    ),
+    Step(
+        "One bone's share",
+        "Here are the weights of one bone, the left upper arm. Where the skin glows it follows "
+        "this bone alone; where it is grey it does not care.\n\n"
+        "What matters lies between: around the elbow and the shoulder two bones share the skin, "
+        "and it bends smoothly. Where nothing is shared it would break like a hinge; where too "
+        "much is shared it turns to rubber.",
+        r"0 \le w_j(v) \le 1",
+        "Press → to go from bone to bone.",
+        ("weights",),
+        {"weights_shown": "bone"},
+        bone="upper_arm.L",
+        focus="upper_arm.L",
+        near=0.42,
+    ),
+    Step(
+        "Near is not the same as together",
+        "The simplest thought: a point belongs to the bones that are near. But look at the hand. "
+        "It hangs a finger's breadth from the hip; in a straight line the thigh is about as near "
+        "to the hand's bone as the hand's own fingertips.\n\n"
+        "With straight distances the hand would pull the trousers along whenever it is lifted. "
+        "The weights leak across the gap of air.",
+        r"\|v - b\|_2 \;\text{ sees no air}",
+        "Beside each other: distances through the body, and straight ones.",
+        ("compare", "weights"),
+        {"methods": ["now", "euclidean"], "compare_field": "bone", "weights_shown": "bone"},
+        focus="hand.L",
+        near=0.3,
+        angles=(8.0, 6.0),
+    ),
+    Step(
+        "Through the body",
+        "So we measure the way an ant would have to go that may walk inside the body but not "
+        "through the air: from the hand up the arm, over the shoulder, down to the hip. That is "
+        "the geodesic distance.\n\n"
+        "In a straight line the thigh is 4 cm from the hand's bone, when the character is one "
+        "metre tall. Through the body it is 37 cm. Lines of equal distance are drawn; where the "
+        "colour jumps from the hand to the hip, air lies between.",
+        r"d(v, b) = \min_{\gamma: b \to v,\ \gamma \subset \text{body}} \text{length}(\gamma)",
+        "Look from the palm to the hip, then follow the lines up the arm.",
+        ("geodesics",),
+        {"cut_axis": "z", "cut_position": 0.52},
+        focus="hand.L",
+        near=0.55,
+        angles=(6.0, 6.0),
+    ),
+    Step(
+        "A graph to walk on",
+        "A computer needs a map of the ways. We shoot rays through the body, along three axes, a "
+        "lattice of them. Each ray is cut by the skin into pieces, some inside and some outside. "
+        "The pieces inside become streets of the map.\n\n"
+        "Where a ray meets the skin, the crossing is tied to the corners of the triangle it hit. "
+        "So every point of the skin is on the map: blue streets follow the skin, orange ones run "
+        "inside, green ones tie both together.",
+        r"G = \underbrace{E_{\text{mesh}}}_{\text{blue}} \cup "
+        r"\underbrace{E_{\text{inside}}}_{\text{orange}} \cup "
+        r"\underbrace{E_{\text{surface}}}_{\text{green}}",
+        "Move the cut with its slider, and go through the body.",
+        ("graph",),
+        {"cut_axis": "z", "cut_position": 0.5, "surface_edges": True, "resolution": 48},
+        bone="chest",
+        focus="chest",
+        near=0.45,
+        angles=(14.0, 10.0),
+    ),
+    Step(
+        "How fine a map",
+        "R says how many cells of the lattice lie along the longest side. With few cells the map "
+        "is quick to draw, but thin parts have no street inside: at R = 20 a cell is as wide as "
+        "three fingers, and fingers are left to the streets on their skin.\n\n"
+        "Twice as many cells show twice as fine details, and there are eight times as many of "
+        "them. R = 64 does for most characters.",
+        r"h = \frac{\text{longest side}}{R} \qquad \text{cells} \propto R^3",
+        "Move Resolution, and watch the fingers fill.",
+        ("graph",),
+        {"resolution": 20},
+        focus="hand.L",
+        near=0.3,
+        angles=(16.0, 6.0),
+    ),
+    Step(
+        "Diamonds and circles",
+        "Who may walk along the axes alone goes round corners, as in a city of blocks: one step "
+        "right and one up are two, where the crow flies 1.41. Places equally far from a bone "
+        "then form diamonds, and that does not get better with more streets.\n\n"
+        "So the default lets the way run straight as far as it can see, at any angle. Equal "
+        "distances become round, as they are in truth.",
+        r"\|x\|_1 = |x_1| + |x_2| + |x_3| \;\ge\; \|x\|_2",
+        "Here only axes are allowed (connectivity 6). Choose “any” for round lines.",
+        ("geodesics",),
+        {"connectivity": 6, "cut_axis": "z", "cut_position": 0.5},
+        bone="spine2",
+        focus="chest",
+        near=0.42,
+        angles=(0.0, 4.0),
+    ),
+    Step(
+        "From distance to weight",
+        "Near bones shall count much, far ones little. The paper turns the distance d, measured "
+        "by the body's diagonal D, into a weight by this formula, and divides by the sum over all "
+        "bones.\n\n"
+        "α says how steep it falls: at 0 like 1/d², at 1 like 1/d⁴. Steep is stiff, each bone "
+        "keeps to its own; flat is soft, and far bones have a say.",
+        r"w = \left(\frac{1}{(1-\alpha)\,\frac{d}{D} + \alpha\,(\frac{d}{D})^2}\right)^{2}",
+        "Move α, or choose another falloff: no distance is measured again.",
+        ("weights",),
+        {"weights_shown": "bone", "falloff": "paper", "alpha": 0.5},
+        bone="chest",
+        focus="chest",
+        near=0.6,
+    ),
+    Step(
+        "Why this one fails: inside out",
+        "How does a ray know that it is inside? It asks for the winding number: how often the "
+        "skin wraps around a point, counted with a sign. It is 1 inside and 0 outside; what has "
+        "at least τ = ½ is kept.\n\n"
+        "On this twin the triangles of the right arm face inwards. The skin wraps the other way "
+        "round and the number is −1: for the map the arm is hollow. It has no orange streets, "
+        "and its distances creep along the skin.",
+        r"w(p) = \frac{1}{4\pi}\sum_{t} \Omega_t(p) \;\ge\; \tau",
+        "Compare the two arms in the cut. The remedy is to turn the arm's faces round.",
+        ("graph",),
+        {"cut_axis": "z", "cut_position": 0.5},
+        demo="biped_flipped_arm",
+        bone="forearm.R",
+        near=0.75,
+        angles=(4.0, 6.0),
+    ),
+    Step(
+        "Why this one fails: no way in",
+        "The cape is a single sheet of cloth that touches nothing. It has no inside, and no "
+        "street leads to it: its distance from every bone is infinite.\n\n"
+        "The page says so instead of guessing in silence, and lets these points follow the three "
+        "bones that are nearest in a straight line. For a cape on a back that looks fair; for a "
+        "coat between two legs it would leak again.",
+        r"d(v, b) = \infty \;\Rightarrow\; \|v - b\|_2 \text{ of 3 bones}",
+        "Turn the character, and see from which bones the cape takes its colours.",
+        ("weights",),
+        {"weights_shown": "mix"},
+        demo="biped_cape",
+        bone="spine2",
+        angles=(152.0, 12.0),
+    ),
+    Step(
+        "Torn, and still whole",
+        "This twin has a vertex of its own for every corner, and holes: no triangle knows its "
+        "neighbour. Methods that walk on the skin cannot take a step here, and those that fill "
+        "it with tetrahedra refuse.\n\n"
+        "The map does not mind. Corners at one place count as one, and the winding number only "
+        "sinks a little near a hole: just inside it is still more than ½. The body is there, so "
+        "the weights are.",
+        r"w(p) \approx 1 - \frac{\Omega_{\text{hole}}(p)}{4\pi} \;>\; \tfrac12",
+        "That was the tour. Drop a character of your own, and see what it says.",
+        ("weights",),
+        {"weights_shown": "mix"},
+        demo="biped_soup",
+        bone="spine2",
+    ),
+)
+"""In the order in which they are told."""

@@ -1,0 +1,148 @@
+"""The address, undo, reset, keys, and files that are kept for whoever comes back."""
+
+import pytest
+
+from app.choices import from_query, to_query
+from app.history import TOGETHER, History
+from app.keep import Keep
+from app.session import GONE, Session
+from app.state import State
+from assets import demo_path
+from tests.app.loop import Loop
+from tests.viewers.arm import arm_rig
+
+
+@pytest.fixture
+def loop():
+    return Loop()
+
+
+@pytest.fixture
+def session(loop):
+    session = Session(loop)
+    yield session
+    session.close()
+
+
+def said(session):
+    return session.view._parts["address"]
+
+
+def test_an_address_brings_back_what_was_chosen():
+    rig = arm_rig()
+    state = State(rig=rig, demo="robot", joint=1, panel="graph", resolution=48, thin=False)
+    state.param.update(cut_axis="y", cut_position=0.25, turns={1: (0, 0, 30), 0: (0, 0, 0)})
+    query = to_query(state, camera=[1, 2, 3, 0, 0.5, 0])
+    choices, arrival, problems = from_query(query, State())
+    assert problems == []
+    assert arrival == {
+        "rig": "robot",
+        "bone": rig.skeleton.names[1],
+        "turns": {1: (0, 0, 30)},
+        "camera": [1, 2, 3, 0, 0.5, 0],
+    }
+    other = State(rig=rig, demo="robot", joint=1, turns=arrival["turns"], **choices)
+    assert to_query(other, camera=arrival["camera"]) == query
+
+
+def test_what_is_ones_own_or_of_the_moment_is_not_in_the_address():
+    state = State(demo="robot", dark=True, moving=True, playing=True, busy=True, stage="graph")
+    assert to_query(state) == "rig=robot&panel=weights"
+
+
+@pytest.mark.parametrize(
+    "query",
+    ["resolution=many", "panel=kitchen", "thin=yes", "turns=1:2", "camera=1,2,3",
+     "camera=nan,0,0,0,0,0", "turns=a:1,2,3", "cut_position=7", "x=1", "resolution=1e99"],
+)  # fmt: skip
+def test_what_an_address_says_wrongly_is_named(query):
+    choices, arrival, problems = from_query(query, State())
+    assert (choices, arrival) == ({}, {})
+    assert problems == [query]
+
+
+def test_a_link_opens_as_it_was_shared(session, loop):
+    session.arrive("?rig=robot&panel=graph&bone=hand.L&resolution=16&kitchen=1", lambda: None)
+    loop.run_until(lambda: session.state.binding is not None)
+    assert session.state.demo == "robot"
+    assert session.state.rig.skeleton.names[session.state.joint] == "hand.L"
+    assert session.state.binding.graph.lattice.resolution == 16
+    assert "kitchen=1" in session.state.message[1]
+    assert "bone=hand.L" in said(session)
+
+
+def test_an_uploaded_character_is_there_again_while_it_is_kept(session, loop, tmp_path):
+    path = tmp_path / "mine.glb"
+    path.write_bytes(demo_path("robot").read_bytes())
+    session.state.resolution = 16
+    session.open_upload([path])
+    loop.run_until(lambda: session.state.binding is not None)
+    query = said(session)
+    assert f"rig=~{session.kept}" in query
+    session.close()
+    again = Session(loop)
+    again.arrive(query, lambda: pytest.fail("it is kept"))
+    loop.run_until(lambda: again.state.rig is not None)
+    assert again.kept == session.kept or again.kept in query
+    again.close()
+
+
+def test_an_address_of_a_file_that_is_gone_says_so(session, loop):
+    session.state.resolution = 16
+    session.arrive("?rig=~gone", lambda: session.open_rig(arm_rig()))
+    loop.run_until(lambda: session.state.message is not None)
+    assert session.state.message == ("info", GONE)
+
+
+def test_files_go_some_time_after_they_were_left(tmp_path):
+    keep = Keep(seconds=0.0)
+    (tmp_path / "a.glb").write_bytes(b"1")
+    key, (path,) = keep.put([tmp_path / "a.glb"])
+    assert path.read_bytes() == b"1"
+    assert keep.take(key) == [path]
+    keep.leave(key)
+    assert path.exists()
+    keep.leave(key)
+    assert not path.exists()
+    assert keep.take(key) is None
+    keep.close()
+
+
+def test_undo_and_redo():
+    history = History({"a": 1, "panel": "x"})
+    history.note({"a": 2, "panel": "x"}, 0)
+    history.note({"a": 3, "panel": "x"}, TOGETHER / 2)  # one drag of a slider
+    history.note({"a": 3, "panel": "y"}, 5)  # going elsewhere is no step
+    history.note({"a": 4, "panel": "y"}, 9)
+    assert history.undo() == {"a": 3, "panel": "y"}
+    assert history.undo() == {"a": 1, "panel": "x"}
+    assert history.undo() is None
+    assert history.redo() == {"a": 3, "panel": "y"}
+    history.note({"a": 7, "panel": "y"}, 20)
+    assert not history.can_redo
+
+
+def test_keys(session, loop):
+    session.state.resolution = 16
+    session.open_rig(arm_rig())
+    loop.run_until(lambda: session.state.binding is not None)
+    state, act = session.state, lambda name: session.habits.act({"act": name})
+    first = state.joint
+    act("next")
+    assert state.joint == (first + 1) % len(state.rig.skeleton.names)
+    act("previous")
+    assert state.joint == first
+    act("parent")
+    act("child")
+    state.cut_axis = "x"
+    act("undo")
+    assert state.cut_axis == "off"
+    act("redo")
+    assert state.cut_axis == "x"
+    act("play")
+    assert (state.panel, state.moving, state.playing) == ("pose", True, True)
+    act("play")
+    assert not state.playing
+    act("reset")
+    assert (state.cut_axis, state.turns, state.moving) == ("off", {}, False)
+    act("dance")

@@ -1,0 +1,173 @@
+"""What people do to a page: share it, go back, leave, come again, lose the line, break things."""
+
+import re
+
+import pytest
+from playwright.sync_api import sync_playwright
+
+from app.state import MAX_UPLOAD
+from assets import demo_path
+from scripts.get_chromium import FLAGS
+from tests.app.browser import LOAD_MS, Visit, changed, served
+
+ROBOT = demo_path("robot")
+
+
+@pytest.fixture(scope="module")
+def browser(chromium):
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=chromium, args=list(FLAGS))
+        yield browser
+        browser.close()
+
+
+@pytest.fixture(scope="module")
+def url():
+    with served(str(ROBOT)) as url:
+        yield url
+
+
+@pytest.fixture
+def visit(browser, url):
+    visit = Visit(browser, url)
+    visit.wait_until_bound()
+    visit.dismiss()
+    yield visit
+    visit.close()
+
+
+def address(visit, has):
+    """Wait until the address says something; return it."""
+    code = "text => location.search.includes(text)"
+    visit.page.wait_for_function(code, arg=has, timeout=LOAD_MS)
+    return visit.page.url
+
+
+def test_a_link_shows_a_colleague_the_same_and_a_refresh_brings_it_back(browser, visit):
+    visit.page.get_by_role("tab", name="Graph").click()
+    visit.button("Cut Z").click()
+    box = visit.page.get_by_role("application").bounding_box()
+    visit.page.mouse.move(box["x"] + 200, box["y"] + 300)
+    visit.page.mouse.down()
+    visit.page.mouse.move(box["x"] + 320, box["y"] + 320, steps=4)
+    visit.page.mouse.up()
+    link = address(visit, "camera=")
+    assert "panel=graph" in link
+    assert "cut_axis=z" in link
+    seen = visit.look()
+    other = Visit(browser, link)
+    other.wait_until_bound()
+    other.dismiss()
+    assert changed(seen, other.look()) < 0.002
+    visit.page.reload()
+    visit.wait_until_bound()
+    visit.dismiss()
+    assert changed(seen, visit.look()) < 0.002
+    visit.page.mouse.click(700, 690)
+    visit.button("Cut X").click()
+    address(visit, "cut_axis=x")
+    visit.page.mouse.click(700, 690)
+    visit.page.keyboard.press("Control+z")
+    address(visit, "cut_axis=z")
+    visit.button("Redo").click()
+    address(visit, "cut_axis=x")
+    visit.button("Reset all choices").click()
+    visit.page.wait_for_function("!/cut_axis|camera/.test(location.search)", timeout=LOAD_MS)
+    assert "cut_axis=z" in other.page.url
+    other.close()
+
+
+def test_keys_change_the_bone_play_and_list_themselves(visit):
+    bone = visit.page.get_by_role("combobox", name="Bone")
+    before = bone.inner_text()
+    visit.page.mouse.click(700, 690)
+    visit.page.keyboard.press("ArrowRight")
+    address(visit, "bone=")
+    visit.page.wait_for_function(
+        "name => !location.search.endsWith('bone=' + name)", arg=before, timeout=LOAD_MS
+    )
+    visit.settle()
+    assert bone.inner_text() != before
+    visit.page.keyboard.press("?")
+    card = visit.page.get_by_role("dialog", name="Keyboard")
+    card.wait_for(timeout=LOAD_MS)
+    visit.page.keyboard.press("Escape")
+    card.wait_for(state="hidden", timeout=LOAD_MS)
+    visit.page.keyboard.press("Space")
+    visit.page.wait_for_function("__cutcell.report().playing", timeout=LOAD_MS)
+    visit.page.keyboard.press("Space")
+    visit.page.wait_for_function("!__cutcell.report().playing", timeout=LOAD_MS)
+
+
+def test_a_lost_connection_is_told_tried_again_and_comes_back(browser, url):
+    sockets, away = [], [2]
+    visit = Visit(browser, "about:blank")
+
+    def through(socket):
+        socket.connect_to_server()
+        sockets.append(socket)
+
+    def head(route):
+        if route.request.method == "HEAD" and away[0]:
+            away[0] -= 1
+            route.abort()
+        else:
+            route.continue_()
+
+    visit.page.route_web_socket(re.compile(r"/ws"), through)
+    visit.page.route(re.compile(r":\d+/$"), head)
+    visit.page.goto(url + "/?panel=graph&resolution=32")
+    visit.wait_until_bound()
+    visit.complaints.clear()
+    sockets[-1].close()
+    visit.expect_text(re.compile("connection to the server is lost"))
+    visit.page.wait_for_function(
+        "window.__cutcell && !document.querySelector('.lost:not([hidden])')", timeout=LOAD_MS
+    )
+    while len(sockets) < 2:
+        visit.page.wait_for_timeout(200)
+    visit.wait_until_bound()
+    assert away == [0]
+    assert "panel=graph" in visit.page.url
+    assert "resolution=32" in visit.page.url
+    visit.complaints.clear()  # the browser itself tells of the lost line
+    visit.close()
+
+
+def test_too_large_a_file_is_refused_before_it_is_sent(visit, tmp_path):
+    visit.expect_text(re.compile("up to 200 MB"))
+    huge = tmp_path / "huge.glb"
+    with huge.open("wb") as file:
+        file.truncate(MAX_UPLOAD + 1)
+    points = len(visit.points())
+    visit.drop(huge)
+    visit.expect_text(re.compile(r"huge\.glb.*takes files of up to 200 MB"))
+    visit.dismiss()
+    assert len(visit.points()) == points
+
+
+def test_a_cancelled_upload_leaves_all_as_it_was(visit, tmp_path):
+    big = tmp_path / "big.glb"
+    with big.open("wb") as file:
+        file.truncate(150 * 2**20)
+    points = len(visit.points())
+    visit.drop(big)
+    visit.expect_text(re.compile(r"Sending big\.glb"))
+    visit.page.locator("label + button", has_text="Cancel").click()
+    visit.page.get_by_text("Drop a character here").wait_for(timeout=LOAD_MS)
+    visit.page.wait_for_function("!document.body.innerText.includes('Sending')", timeout=LOAD_MS)
+    assert len(visit.points()) == points
+    visit.drop(demo_path("rabbit"))
+    visit.page.wait_for_function(
+        "n => __cutcell.report().actors.body.points !== n", arg=points, timeout=LOAD_MS
+    )
+
+
+def test_two_clicks_at_once_leave_one_result(visit):
+    rabbit = visit.page.get_by_role("combobox", name="Demo character")
+    visit.choose("Demo character", "Rabbit")
+    visit.choose("Demo character", "Octopus")
+    visit.page.wait_for_function("location.search.includes('rig=octopus')", timeout=LOAD_MS)
+    visit.wait_until_bound()
+    assert rabbit.inner_text() == "Octopus"
+    assert visit.page.get_by_text("unexpected").count() == 0
