@@ -37,8 +37,8 @@ class Inspector(JSComponent):
 
 
 _PLACE = """
-:host { position: absolute; z-index: 6; top: 14px; right: 14px; width: 268px;
-  max-height: calc(100% - 28px); pointer-events: none; }
+:host { position: absolute; z-index: 6; top: 62px; right: 14px; width: 268px;
+  max-height: calc(100% - 76px); pointer-events: none; }
 @media (max-width: 700px) { :host { top: auto; bottom: 8px; right: 8px; left: 8px; width: auto;
   max-height: 52%; } }
 """

@@ -30,7 +30,7 @@ def said(session):
 
 def test_an_address_brings_back_what_was_chosen():
     rig = arm_rig()
-    state = State(rig=rig, demo="robot", joint=1, panel="graph", resolution=48, thin=False)
+    state = State(rig=rig, demo="robot", joint=1, panel="graph", resolution=48, surface_edges=True)
     state.param.update(cut_axis="y", cut_position=0.25, turns={1: (0, 0, 30), 0: (0, 0, 0)})
     query = to_query(state, camera=[1, 2, 3, 0, 0.5, 0])
     choices, arrival, problems = from_query(query, State())
