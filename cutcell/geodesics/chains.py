@@ -84,8 +84,8 @@ def find_chains(skeleton: Skeleton, joints: NDArray[np.float64], probe: BodyProb
 
 
 def _has_bones(skeleton: Skeleton) -> bool:
-    has_parent = skeleton.parents >= 0
-    return bool((skeleton.deform & has_parent & skeleton.deform[skeleton.parents]).any())
+    above = skeleton.parents[skeleton.parents >= 0]
+    return bool(skeleton.deform[above].any())
 
 
 def _directions(
@@ -93,18 +93,18 @@ def _directions(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return direction and length of the bone that ends at each joint, zero where none does.
 
-    The link to a parent is a bone if the parent may move skin, and the link runs through the
-    body: a root on the ground, or a helper that moves nothing, is no place to come from.
+    The link to a parent is a bone if it begins in the body and runs through it: a root on the
+    ground is no place to come from.
     """
     parent = skeleton.parents.copy()
     for j in range(len(parent)):
         above = parent[j]
-        while above >= 0 and skeleton.deform[above] and _at_one_place(joints, above, j):
+        while above >= 0 and _at_one_place(joints, above, j):
             above = skeleton.parents[above]
         parent[j] = above
     away = joints - joints[parent]
     length = np.linalg.norm(away, axis=1)
-    bone = (parent >= 0) & skeleton.deform[parent] & near[parent] & (length >= SAME_PLACE)
+    bone = (parent >= 0) & near[parent] & (length >= SAME_PLACE)
     bone[bone] = probe.inner_part(joints[parent[bone]], joints[bone]) >= IN_BODY
     length = np.where(bone, length, 0.0)
     direction = np.divide(away, length[:, None], out=np.zeros_like(away), where=bone[:, None])

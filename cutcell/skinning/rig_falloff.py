@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from ..geodesics import BoneDistances
 from .diffusion import diffuse
-from .laplacian import vertex_areas
+from .laplacian import vertex_areas, vertex_normals
 from .pieces import bones_held, find_pieces
 from .worn import dress, foreign_bones
 
@@ -15,6 +16,9 @@ POWER = 20
 """Skin belongs to its nearest joint; another that is 10 % farther counts a seventh."""
 NEAREST_JOINTS = 8
 """Of each vertex, as some of the very nearest may turn out to be another piece's."""
+TOWARDS = 1 / 6
+"""Nearness of a bone to skin that looks right at it, as part of what it is to skin that looks
+away: skin covers the bones that it looks away from."""
 LEAST_CELLS = 0.01
 """Lattice cells: distances that are all shorter are equal."""
 
@@ -39,19 +43,67 @@ def rig_kernel(
     graph, bones = distances.graph, distances.bones
     places, first = np.unique(graph.vertex_node, return_index=True)
     points, faces = graph.nodes[: len(places)], _whole(graph.faces)
-    distance = np.maximum(distances.joint[:, first], LEAST_CELLS / graph.lattice.resolution)
-    depth = distance.min(axis=0)
+    near = LEAST_CELLS / graph.lattice.resolution
+    distance = np.maximum(distances.joint[:, first].T, near)
 
     piece = find_pieces(faces, len(places))
-    held = _by_joint(bones_held(points, faces, piece, bones), bones.joint, len(distance))
-    farther = foreign_bones(piece, held)
-    if farther is not None:
-        distance = distance * farther
-    ratio = (distance.min(axis=0) / distance) ** POWER
-    weights = (ratio / ratio.sum(axis=0)).T
-    weights = diffuse(points, faces, weights, depth, graph.lattice.resolution)
+    held = _by_joint(bones_held(points, faces, piece, bones), bones.joint, distance.shape[1])
+    weights = _shares(
+        points,
+        vertex_normals(points, faces),
+        distance,
+        foreign_bones(held),
+        piece,
+        np.searchsorted(bones.joint, np.arange(distance.shape[1] + 1)),
+        bones.start,
+        bones.end,
+    )
+    weights = diffuse(points, faces, weights, distance.min(axis=1), graph.lattice.resolution)
     weights = dress(graph, vertex_areas(points, faces), piece, held, weights)
     return _permitted(weights[graph.vertex_node], distances.joint, allowed)
+
+
+@njit(cache=True, nogil=True)
+def _shares(points, normals, distance, foreign, piece, bone, start, end):
+    """Divide each place among joints by distance; `bone` tells where each joint's bones begin."""
+    weights = np.zeros(distance.shape)
+    for v in range(len(distance)):
+        least = np.inf
+        for j in range(distance.shape[1]):
+            if distance[v, j] == np.inf:
+                continue
+            away = foreign[piece[v], j] * distance[v, j]
+            away /= _facing(points[v], normals[v], start, end, bone[j], bone[j + 1])
+            weights[v, j] = away
+            least = min(least, away)
+        total = 0.0
+        for j in range(distance.shape[1]):
+            if distance[v, j] < np.inf:
+                weights[v, j] = (least / weights[v, j]) ** POWER
+                total += weights[v, j]
+        weights[v] /= total
+    return weights
+
+
+@njit(cache=True, nogil=True)
+def _facing(point, normal, start, end, first, last):
+    """Return how much skin looks away from the nearest of some bones, `TOWARDS` to 1."""
+    nearest, cosine = np.inf, 0.0
+    for b in range(first, last):
+        along, squared = 0.0, 0.0
+        for c in range(3):
+            along += (point[c] - start[b, c]) * (end[b, c] - start[b, c])
+            squared += (end[b, c] - start[b, c]) ** 2
+        t = min(max(along / squared, 0.0), 1.0) if squared > 0 else 0.0
+        length, out = 0.0, 0.0
+        for c in range(3):
+            way = point[c] - start[b, c] - t * (end[b, c] - start[b, c])
+            length += way * way
+            out += way * normal[c]
+        if length < nearest:
+            nearest = length
+            cosine = out / np.sqrt(length) if length > 0 else 0.0
+    return TOWARDS + (1 - TOWARDS) * (1 + cosine) / 2
 
 
 def _whole(faces: NDArray[np.int32]) -> NDArray[np.int32]:

@@ -20,31 +20,27 @@ RIGID = 0.6
 """A worn piece follows one joint alone if its wearer does by this much where they touch."""
 
 
-def foreign_bones(
-    piece: NDArray[np.int32], held: NDArray[np.float64]
-) -> NDArray[np.float64] | None:
-    """Tell how many times farther each joint counts to be from each place.
+def foreign_bones(held: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Tell how many times farther each joint counts to be from each piece of the mesh.
 
     An arm whose mesh is a piece of its own reaches into the shoulder, and its bone with it; the
     chest's skin there is not the arm's.
 
     Parameters
     ----------
-    piece : array, shape (k,)
     held : array, shape (pieces, j)
         Which part of each joint's bones each piece holds.
 
     Returns
     -------
-    array, shape (j, k), or None where it is 1 everywhere
+    array, shape (pieces, j)
+        1 for pieces without bones.
     """
-    if len(held) == 1:
-        return None
     most = held.max(axis=0)
     home = np.divide(held, most, out=np.ones_like(held), where=most > 0)
     farther = 1 + FOREIGN * (1 - home)
     farther[held.max(axis=1) == 0] = 1
-    return farther[piece].T
+    return farther
 
 
 def dress(
@@ -63,8 +59,10 @@ def dress(
     graph : CutCellGraph
     areas : array, shape (k,)
         Of the skin around each place.
-    piece, held
-        See `foreign_bones`.
+    piece : array, shape (k,)
+        Of each place; see `find_pieces`.
+    held : array, shape (pieces, j)
+        Which part of each joint's bones each piece holds.
     weights : array, shape (k, j)
 
     Returns
