@@ -1,4 +1,4 @@
-"""The `cutcell` command: app, bind, graph, compare.
+"""The `cutcell` command: app, bind, graph, compare; render has a file of its own.
 
 Nothing heavy is imported before a command runs, so that `--help` answers at once.
 """
@@ -33,6 +33,7 @@ from .options import (
     Threshold,
     WindingThreshold,
 )
+from .render_command import EPILOG, render
 from .report import report_rows
 
 if TYPE_CHECKING:
@@ -340,6 +341,9 @@ def compare(
         typer.echo(comparison_markdown(comparison))
     else:
         print_comparison(comparison)
+
+
+app.command(epilog=EPILOG)(render)
 
 
 def main() -> None:

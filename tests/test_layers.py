@@ -37,7 +37,7 @@ ORDER = [
     {"workers"},
     {"baselines", "diagnose", "dataset"},
     {"summary", "compare"},
-    {"options", "console", "report", "cli", "__main__"},
+    {"options", "console", "report", "render_command", "cli", "__main__"},
 ]
 RANK = {part: rank for rank, parts in enumerate(ORDER) for part in parts}
 

@@ -1,0 +1,99 @@
+"""Scenes of what the core computes, described as plain data and drawn by PyVista.
+
+In a notebook::
+
+    import cutcell, viewers
+    from viewers.weights_scene import weights_scene
+
+    rig = cutcell.load("character.glb")
+    binding = cutcell.bind(rig)
+    viewers.show(weights_scene(rig, binding.weights))
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from PIL.Image import Image
+
+    from .description import Description
+    from .scene import Camera
+
+__all__ = ["plotter", "show"]
+
+
+def show(
+    description: Description,
+    *,
+    size: tuple[int, int] = (900, 675),
+    dark: bool = False,
+    camera: Camera | None = None,
+    legend: bool = True,
+) -> Image:
+    """Draw a scene; a notebook shows what comes back.
+
+    Parameters
+    ----------
+    description : Description
+        As `weights_scene` and its kin return, or `app.render.describe`.
+    size : (int, int)
+        Width and height in pixels.
+    dark : bool
+    camera : Camera, optional
+        Sees all of the scene when left out.
+    legend : bool
+
+    Returns
+    -------
+    PIL.Image.Image
+
+    Raises
+    ------
+    MissingLibraryError
+        This machine has no OpenGL. Drawn in a process of its own, it does not end yours.
+    """
+    from io import BytesIO
+    from pathlib import Path
+    from tempfile import TemporaryDirectory
+
+    from PIL import Image
+
+    from .film import Order
+    from .worker import draw_apart
+
+    theme = "dark" if dark else "light"
+    with TemporaryDirectory(prefix="cutcell-show-") as folder:
+        path = Path(folder) / "scene.png"
+        draw_apart(Order(description, theme, size, camera, legend=legend), path)
+        return Image.open(BytesIO(path.read_bytes()))
+
+
+def plotter(
+    description: Description, *, size: tuple[int, int] = (900, 675), dark: bool = False
+) -> Any:
+    """Return a scene as a PyVista plotter, to be gone on with or shown by its `show()`.
+
+    Parameters
+    ----------
+    description : Description
+        With a single view; its legend is left out.
+    size : (int, int)
+        Width and height in pixels.
+    dark : bool
+
+    Returns
+    -------
+    pyvista.Plotter
+    """
+    from .opengl import require_opengl
+    from .palette import DARK, LIGHT
+    from .scene import Scene, framing
+
+    require_opengl()
+    scene = Scene(DARK if dark else LIGHT, size)
+    scene.show(description)
+    scene.look(framing(description.bounds, size[0] / size[1]))
+    result: Any = scene.plotter
+    result.set_background(scene.theme.bottom, top=scene.theme.top)
+    return result

@@ -78,9 +78,7 @@ class Scene:
     """
 
     def __init__(self, theme: Theme = LIGHT, size: tuple[int, int] = (1200, 900)) -> None:
-        self.plotter = pv.Plotter(
-            off_screen=True, window_size=list(size), lighting="none", border=False
-        )
+        self.plotter = pv.Plotter(off_screen=True, window_size=list(size), lighting="none")
         self.plotter.enable_anti_aliasing("msaa", multi_samples=8)
         self._overlay = _add_overlay(self.plotter)
         self.theme = theme
@@ -251,7 +249,7 @@ def behind_front(
 
 
 def _add_overlay(plotter: pv.Plotter) -> pv.Renderer:
-    renderer = pv.Renderer(plotter)
+    renderer = pv.Renderer(plotter, border=False)
     renderer.SetLayer(1)
     renderer.SetActiveCamera(plotter.renderer.GetActiveCamera())
     window: Any = plotter.render_window

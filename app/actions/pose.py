@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from cutcell.progress import Progress
+from cutcell.progress import Progress, silent
+from cutcell.rig import Clip, Rig
 from viewers.character import pose_in_scene
-from viewers.error_scene import WHOLE, scene_error
+from viewers.error_scene import WHOLE, Gap, scene_error
 from viewers.pose_scene import turn
 
 from ..scenes.pose import (
@@ -156,18 +157,33 @@ def find_motion_error(session: Session) -> None:
     gap = gap_of(state, session.memo)
 
     def work(progress: Progress) -> Any:
-        frames = np.unique(np.linspace(0, len(clip.times) - 1, FRAMES).round().astype(int))
-        mean = highest = most = 0.0
-        for done, frame in enumerate(frames):
-            progress("error", done / len(frames))
-            squared = gap.squared(pose_in_scene(rig, clip.transforms[frame]))
-            mean += float(squared.mean()) / len(frames)
-            highest = max(highest, float(squared.max()))
-            most = max(most, float(np.quantile(squared, WHOLE)))
-        return mean, highest, most
+        return motion_error(rig, clip, gap, progress)
 
     def done(error: Any) -> None:
         if state.binding is binding:
             state.motion_error = (binding, motion, error)
 
     session.jobs("motion error").start(work, done, session.fail, lambda stage, fraction: None)
+
+
+def motion_error(
+    rig: Rig, clip: Clip, gap: Gap, progress: Progress = silent
+) -> tuple[float, float, float]:
+    """Return how far two weightings are apart over a motion, in cm².
+
+    Returns
+    -------
+    mean : float
+    greatest : float
+    most : float
+        What nearly all vertices stay below, in every frame.
+    """
+    frames = np.unique(np.linspace(0, len(clip.times) - 1, FRAMES).round().astype(int))
+    mean = greatest = most = 0.0
+    for done, frame in enumerate(frames[frames >= 0]):
+        progress("error", done / len(frames))
+        squared = gap.squared(pose_in_scene(rig, clip.transforms[frame]))
+        mean += float(squared.mean()) / len(frames)
+        greatest = max(greatest, float(squared.max()))
+        most = max(most, float(np.quantile(squared, WHOLE)))
+    return mean, greatest, most

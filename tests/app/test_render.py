@@ -1,0 +1,204 @@
+"""`cutcell render`, and the page's scenes in a notebook."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+from typer.testing import CliRunner
+
+import cutcell
+import viewers
+from app.render import VIEWS, Choices, check, describe, find_bone, find_clip, order
+from assets import demo_path
+from cutcell.cli import app
+from cutcell.errors import FileError, ParameterError
+from cutcell.io.numbers import save_numbers
+from tests.viewers.arm import arm_rig
+
+DOCUMENT = Path(__file__).resolve().parents[2] / "docs" / "pictures.md"
+
+
+@pytest.fixture(scope="module")
+def rig():
+    return arm_rig()
+
+
+@pytest.fixture(scope="module")
+def binding(rig):
+    return cutcell.bind(rig, 16)
+
+
+@pytest.fixture
+def drawn(monkeypatch):
+    """Instead of drawing, remember what was to be drawn."""
+    orders = []
+
+    def remember(order, path, progress):
+        orders.append(order)
+        path.write_bytes(b"drawn")
+
+    monkeypatch.setattr("viewers.worker.draw_apart", remember)
+    return orders
+
+
+def run(*arguments):
+    words = [str(argument) for argument in arguments]
+    return CliRunner().invoke(app, ["render", *words, "--resolution", "16"])
+
+
+def test_a_picture_comes_out(tmp_path):
+    out = tmp_path / "hand.png"
+    result = run(demo_path("robot"), out, "--size", "320x240", "--dark", "--view", "front")
+    assert result.exit_code == 0, result.stderr
+    assert "320 x 240 pixels" in result.stdout
+    with Image.open(out) as picture:
+        assert picture.size == (320, 240)
+        assert len(picture.getcolors(100_000)) > 200
+        assert np.asarray(picture.convert("L")).mean() < 128
+
+
+def test_each_choice_of_the_command_reaches_the_picture(drawn, tmp_path):
+    robot = cutcell.load(demo_path("robot"))
+    bone = robot.skeleton.names[3]
+    clip = robot.clips[0].name
+    for panel in ("graph", "distance", "weights", "pose", "compare"):
+        result = run(
+            demo_path("robot"), tmp_path / "a.png", "--panel", panel, "--bone", bone.upper()
+        )
+        assert result.exit_code == 0, result.stderr
+    titles = [one.description.legend and one.description.legend.title for one in drawn]
+    assert titles[1] == f"Distance from {bone}"
+    assert titles[2] == f"Weight of {bone}"
+    assert len(drawn[4].description.views) == 3
+    films = [("--turntable",), ("--clip", "1"), ("--turntable", "--clip", clip)]
+    for options in films:
+        result = run(demo_path("robot"), tmp_path / "a.mp4", "--panel", "pose", *options)
+        assert result.exit_code == 0, result.stderr
+    assert [one.turntable for one in drawn[5:]] == [True, False, True]
+    assert [one.motion is not None for one in drawn[5:]] == [False, True, True]
+    assert drawn[5].size == (960, 720)
+    options = "--panel pose --turn z=-30.5 --no-bones --no-legend --view back --error".split()
+    result = run(demo_path("robot"), tmp_path / "a.png", "--bone", bone, *options)
+    assert result.exit_code == 0, result.stderr
+    last = drawn[-1]
+    assert last.description.pose is not None
+    assert not last.description.actors["bones"].visible
+    assert not last.legend
+    assert last.direction == VIEWS["back"]
+    assert last.description.legend.high.endswith("cm²")
+
+
+@pytest.mark.parametrize(
+    ("out", "options", "words"),
+    [
+        ("a.png", ("--bone", "antena"), 'has no bone "antena"; the nearest names are'),
+        ("a.png", ("--panel", "grap"), "panel must be one of"),
+        ("a.png", ("--view", "below"), "view must be one of"),
+        ("a.png", ("--size", "huge"), "such as 1600x1200"),
+        ("a.png", ("--size", "9000x9000"), "16 to 8192"),
+        ("a.png", ("--turn", "30"), "such as z=30"),
+        ("a.png", ("--cut", "w"), "cut must be one of"),
+        ("a.png", ("--methods", "magic", "--panel", "compare"), "method must be one of"),
+        ("a.png", ("--time", "1"), "name the clip"),
+        ("a.gif", ("--clip", "no such clip"), 'has no clip "no such clip"'),
+        ("a.png", ("--turntable",), ".mp4 or .gif"),
+        ("a.mp4", (), "ask for a turntable or a clip"),
+        ("a.tga", (), "cannot be saved"),
+        ("no/a.png", (), "no folder"),
+    ],
+)
+def test_what_cannot_be_drawn_is_told_in_one_sentence(drawn, tmp_path, out, options, words):
+    result = run(demo_path("robot"), tmp_path / out, *options)
+    assert result.exit_code == 2
+    assert words in result.stderr.replace("\n", " ")
+    assert result.stderr.count("error:") == 1
+    assert not (tmp_path / out).exists()
+    assert drawn == []
+
+
+def test_names_are_found_as_people_write_them(rig):
+    assert find_bone(rig, "elbow") == find_bone(rig, "ELBOW") == 1
+    with pytest.raises(ParameterError, match='nearest names are "elbow"'):
+        find_bone(rig, "elbo")
+    with pytest.raises(ParameterError, match="there are"):
+        find_bone(rig, "xyz")
+    assert find_clip(rig, "wave") is find_clip(rig, "1") is rig.clips[0]
+    with pytest.raises(ParameterError, match="no clips"):
+        find_clip(cutcell.Rig(rig.mesh, rig.skeleton), "wave")
+
+
+def test_an_error_needs_weights_to_tell_it_against(rig):
+    with pytest.raises(ParameterError, match="no weights of its own"):
+        check(rig.with_weights(None), Choices("pose", error=True))
+
+
+def test_the_error_of_a_clip_has_the_scale_of_the_whole_clip(rig, binding):
+    choices = Choices("pose", clip="wave", error=True)
+    scene = describe(rig, choices, binding=binding)
+    assert scene.actors["body"].limits[1] > 0.1
+    film = order(rig, scene, choices)
+    assert len(film.motion.times) == 2
+    moment = Choices("pose", clip="wave", error=True, time=0.5)
+    still = order(rig, describe(rig, moment, binding=binding), moment)
+    assert still.motion is None
+    assert not np.allclose(still.description.pose, scene.pose)
+
+
+def test_a_notebook_gets_a_picture_or_a_plotter(rig, binding):
+    scene = describe(rig, Choices("weights", bone="elbow"), binding=binding)
+    picture = viewers.show(scene, size=(160, 120))
+    assert picture.size == (160, 120)
+    assert picture._repr_png_().startswith(b"\x89PNG")
+    plotter = viewers.plotter(scene, size=(160, 120), dark=True)
+    assert plotter.window_size == [160, 120]
+    plotter.close()
+
+
+def test_the_documents_commands_are_understood(drawn, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "character.glb").symlink_to(demo_path("biped"))
+    commands = re.findall(r"^cutcell render (.*)$", DOCUMENT.read_text(), re.MULTILINE)
+    assert len(commands) >= 5
+    for command in commands:
+        result = run(*command.split())
+        assert result.exit_code == 0, (command, result.stderr)
+
+
+def test_the_documents_examples_run(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "assets").symlink_to(demo_path("biped").parent)
+    monkeypatch.setattr("viewers.film.TURN_SECONDS", 0.2)
+    names: dict = {}
+    for example in re.findall(r"```python\n(.*?)```", DOCUMENT.read_text(), re.DOTALL):
+        exec(example, names)
+    assert (tmp_path / "turn.gif").exists()
+
+
+def test_numbers_are_saved_and_read_back(rig, binding, tmp_path):
+    save_numbers(tmp_path / "a.csv", rig, weights=binding.weights)
+    table = np.genfromtxt(tmp_path / "a.csv", delimiter=",", skip_header=1)
+    np.testing.assert_array_equal(table[:, 0], np.arange(len(binding.weights)))
+    np.testing.assert_allclose(table[:, 1:], binding.weights, rtol=1e-6)
+    save_numbers(tmp_path / "a.npz", rig, weights=binding.weights, other=2 * binding.weights)
+    with np.load(tmp_path / "a.npz") as numbers:
+        np.testing.assert_array_equal(numbers["other"], 2 * binding.weights)
+        np.testing.assert_array_equal(numbers["parents"], rig.skeleton.parents)
+        assert len(numbers["vertex_indices"]) == len(binding.weights)
+
+
+@pytest.mark.parametrize(
+    ("name", "tables", "error", "words"),
+    [
+        ("a.xls", {"w": 1}, FileError, "saved as .csv or .npz"),
+        ("no/a.csv", {"w": 1}, FileError, "no folder"),
+        ("a.csv", {"w": 1, "v": 1}, ParameterError, "one table"),
+        ("a.npz", {}, ParameterError, "no numbers"),
+        ("a.npz", {"w": None}, ParameterError, "w has the shape"),
+    ],
+)
+def test_numbers_that_cannot_be_saved_are_told(rig, tmp_path, name, tables, error, words):
+    tables = {k: np.zeros(2) if v is None else rig.weights for k, v in tables.items()}
+    with pytest.raises(error, match=words):
+        save_numbers(tmp_path / name, rig, **tables)
