@@ -22,8 +22,10 @@ from .actions.compare import measured
 from .actions.pose import motion_error
 from .scenes import resolve
 from .scenes.common import first_joint
+from .scenes.geodesics import wants_field
 from .state import State
 from .state.compare import NOW
+from .state.weights import SHOWN
 
 PANELS = {
     "graph": "graph",
@@ -57,6 +59,8 @@ class Choices:
         One of `PANELS`.
     bone : str, optional
         Whose weights, distance or graph field, or which bone turns.
+    shown : str, optional
+        On the panel "weights": "bone", "mix", "dominant", "count" or "difference".
     turn : (str, float), optional
         An axis and degrees, by which the bone turns.
     error : bool
@@ -74,6 +78,7 @@ class Choices:
 
     panel: str = "weights"
     bone: str | None = None
+    shown: str | None = None
     turn: tuple[str, float] | None = None
     error: bool = False
     methods: Sequence[str] = ()
@@ -123,6 +128,9 @@ def describe(
     choices = choices or Choices()
     state = _state(rig, choices)
     state.binding = bind(rig, resolution, progress=progress) if binding is None else binding
+    if wants_field(state):
+        distances = state.binding.distances
+        state.field = (distances, state.joint, distances.field(state.joint))
     if state.panel == "compare":
         for name in state.methods:
             found = measured(rig, name, state.binding, resolution, progress)
@@ -231,6 +239,8 @@ def _state(rig: Rig, choices: Choices) -> State:
     state.joint = first_joint(rig) if choices.bone is None else find_bone(rig, choices.bone)
     if choices.bone is not None:
         state.weights_shown = "bone"
+    if choices.shown is not None:
+        state.weights_shown = check_choice("shown", choices.shown, SHOWN)
     if choices.cut is not None:
         state.cut_axis = check_choice("cut", choices.cut, TURN_AXES)
     if choices.turn is not None:

@@ -61,6 +61,15 @@ def render(
             rich_help_panel=WHAT,
         ),
     ] = None,
+    shown: Annotated[
+        str | None,
+        typer.Option(
+            "--show",
+            metavar="WHAT",
+            help="Of the weights: bone, mix, dominant, count, or difference to the file's own.",
+            rich_help_panel=WHAT,
+        ),
+    ] = None,
     turn: Annotated[
         str | None,
         typer.Option(
@@ -168,6 +177,7 @@ def render(
     choices = scenes.Choices(
         panel=panel,
         bone=bone,
+        shown=shown,
         turn=_turn(turn),
         error=error,
         methods=[name.strip() for name in methods.split(",") if name.strip()],

@@ -79,7 +79,17 @@ def test_each_choice_of_the_command_reaches_the_picture(drawn, tmp_path):
     assert [one.turntable for one in drawn[5:]] == [True, False, True]
     assert [one.motion is not None for one in drawn[5:]] == [False, True, True]
     assert drawn[5].size == (960, 720)
-    options = "--panel pose --turn z=-30.5 --no-bones --no-legend --view back --error".split()
+    options = [
+        "--panel",
+        "pose",
+        "--turn",
+        "z=-30.5",
+        "--no-bones",
+        "--no-legend",
+        "--view",
+        "back",
+        "--error",
+    ]
     result = run(demo_path("robot"), tmp_path / "a.png", "--bone", bone, *options)
     assert result.exit_code == 0, result.stderr
     last = drawn[-1]
@@ -96,6 +106,7 @@ def test_each_choice_of_the_command_reaches_the_picture(drawn, tmp_path):
         ("a.png", ("--bone", "antena"), 'has no bone "antena"; the nearest names are'),
         ("a.png", ("--panel", "grap"), "panel must be one of"),
         ("a.png", ("--view", "below"), "view must be one of"),
+        ("a.png", ("--show", "all"), "shown must be one of"),
         ("a.png", ("--size", "huge"), "such as 1600x1200"),
         ("a.png", ("--size", "9000x9000"), "16 to 8192"),
         ("a.png", ("--turn", "30"), "such as z=30"),
