@@ -36,6 +36,8 @@ SHELL = (0.13, 0.16, 0.21)
 COLORS = 256
 MAX_BYTES = 390_000
 OCTOPUS_ARM = "armA4"
+TOE, CHEST = 10876, 4911
+"""Vertices of the walker."""
 
 
 def main() -> None:
@@ -112,8 +114,39 @@ def page() -> None:
             visit.page.screenshot(path=PICTURES / f"page-{name}.png")
             visit.button("Toggle theme").click()
             visit.page.mouse.move(700, 895)
+        panels(visit)
         visit.close()
         browser.close()
+
+
+def panels(visit: Visit) -> None:
+    """Take a picture of each thing that docs/page.md tells of."""
+
+    def write(name: str) -> None:
+        visit.page.mouse.move(700, 895)
+        visit.settle()
+        visit.page.wait_for_timeout(1200)
+        visit.page.screenshot(path=PICTURES / f"panel-{name}.png")
+
+    visit.panel("Graph")
+    visit.switch("One slice and its rays")
+    visit.page.mouse.move(860, 330)
+    for _ in range(5):
+        visit.page.mouse.wheel(0, -300)
+    write("slice")
+    visit.page.mouse.dblclick(1300, 800)
+    visit.panel("Distance")
+    visit.click_vertex(TOE)
+    write("distance")
+    visit.page.keyboard.press("Escape")
+    visit.button("Cut Z").click()
+    visit.switch("Wavefront")
+    write("wave")
+    visit.button("Whole").click()
+    visit.panel("Weights")
+    visit.choose("Colours show", "Difference to the file's weights")
+    visit.click_vertex(CHEST)
+    write("weights")
 
 
 def shrink(path: Path) -> None:

@@ -38,9 +38,9 @@ SOURCE = _rgb(146, 72, 190)
 # What is enough of a difference to people who see few colours, too: of all colours of middle
 # lightness each was chosen farthest from those before it, to every one of `EYES`.
 JOINT_COLORS = (
-    (221, 165, 82), (89, 111, 187), (95, 230, 252), (173, 91, 51), (0, 168, 169),
-    (169, 166, 250), (187, 221, 169), (209, 116, 101), (66, 202, 180), (139, 135, 216),
-    (143, 99, 139), (239, 206, 111),
+    (219, 175, 113), (100, 119, 179), (142, 186, 244), (163, 108, 60), (190, 222, 195),
+    (179, 140, 151), (129, 149, 211), (236, 210, 138), (132, 230, 247), (140, 112, 137),
+    (145, 161, 92), (170, 191, 159),
 )  # fmt: skip
 EVENNESS = 0.012
 """How much of a difference in OKLab it is worth to use all colours equally often."""

@@ -33,7 +33,17 @@ def bone(session: Session) -> pmui.Column:
     state.param.watch(listed, ["rig", "joint"])
     select.param.watch(chosen, "value")
     listed()
-    return section("", select, margin=(2, 20, 4, 20))
+    seen = pmui.ToggleIcon.from_param(
+        state.param.skeleton,
+        label="",
+        icon="visibility_off",
+        active_icon="visibility",
+        description="Show the bones",
+        size="18px",
+        margin=(4, 0, 0, 8),
+    )
+    row = pmui.Row(select, seen, margin=0, sizing_mode="stretch_width")
+    return section("", row, margin=(2, 20, 4, 20))
 
 
 def unique_options(names: tuple[str, ...]) -> dict[str, int]:

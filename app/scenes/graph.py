@@ -114,6 +114,7 @@ def _slice(state: State, memo: Memo) -> Description:
         "slice scene", (found, theme.name), lambda: slice_scene(rig, found, theme)
     )
     shell = character(state, memo, visible=state.body, opacity=SHELL)
+    shell["bones"] = replace(shell["bones"], visible=False)  # they would hide the slice
     return Description({**shell, **actors}, cut=_pulled(cut, state), legend=legend)
 
 

@@ -173,6 +173,11 @@ class Visit:
         x, y = self.page.evaluate("joint => __cutcell.bonePoint(joint)", joint)
         self.page.mouse.click(x, y)
 
+    def click_vertex(self, vertex: int) -> None:
+        """Click where a vertex of the body is in the canvas."""
+        x, y = self.page.evaluate("vertex => __cutcell.vertexPoint(vertex)", vertex)
+        self.page.mouse.click(x, y)
+
     def expect_text(self, text: str | re.Pattern[str]) -> None:
         """Wait until some text is seen."""
         expect(self.page.get_by_text(text).first).to_be_visible(timeout=LOAD_MS)
