@@ -29,8 +29,7 @@ from ..graph.interior import OUTSIDE, point_number
 from ..progress import Progress, silent
 from ..threads import in_threads
 from .bones import TIE, Bones, Sources
-from .heap import heap_pop, heap_push
-from .queue import END, SETTLED, bucket_of, bucket_queue, join, leave
+from .queue import END, SETTLED, bucket_of, bucket_queue, join, leave, move_on
 
 NOBODY, NOTHING = -1, -(2**31)
 """The joint and the anchor of a label that is not there."""
@@ -38,11 +37,11 @@ NEAR = 2
 """Lattice cells. A far corner of a triangle may lie behind a bend of the surface."""
 AT_ONCE = 4
 """Joints that spread together where all are wanted everywhere."""
-FINENESS = 32
-"""Buckets a lattice cell."""
-SPAN = 4
-"""Sides of the unit cube. What lies further away shares the last bucket."""
-PAUSES = 16
+FINENESS = 4
+"""Times R squared: buckets a unit of distance. One is a hundredth of a cell wide, or less."""
+SPAN = 1
+"""Units of distance that the buckets cover at a time."""
+PAUSES = 8
 """How often a unit of distance is interrupted, to report and to be cancelled."""
 
 
@@ -155,10 +154,10 @@ def _start(
         np.full(count, np.inf),
         np.full(count, NOTHING, np.int32),
     )
-    scale = FINENESS * graph.lattice.resolution
+    scale = FINENESS * graph.lattice.resolution**2
     queue = bucket_queue(count, SPAN * scale, scale)
     _enter_sources(
-        labels, queue, sources.node[chosen], bone[chosen], rank, sources.distance[chosen]
+        *labels, *queue, sources.node[chosen], bone[chosen], rank, sources.distance[chosen]
     )
     table = np.concatenate([start, way, inverse[:, None]], axis=1)
     return _Front(joints[by_place], table, labels, queue)
@@ -184,34 +183,41 @@ def _spread(
     """Settle all labels; return the ranks and distances of each node's, both (N, k)."""
     each, rank, distance, _ = front.labels
     scale, head = front.queue[:2]
-    step = int(scale) // PAUSES
-    for bucket in range(0, len(head), step):
-        progress("distances", bucket / len(head))
-        last = min(bucket + step, len(head))
-        if not _settle(graph.adjacency, body, front.bones, front.labels, front.queue, bucket, last):
-            break
+    step = len(head) // (SPAN * PAUSES)
+    waiting, origin = True, 0.0
+    while waiting:
+        for bucket in range(0, len(head) - 1, step):
+            progress("distances", min(origin + bucket / scale, 0.99))
+            last = min(bucket + step, len(head) - 1)
+            waiting = _settle(
+                graph.adjacency, body, front.bones, front.labels, front.queue, origin, bucket, last
+            )
+            if not waiting:
+                break
+        else:
+            origin = move_on(*front.queue, distance)
     return rank.reshape(-1, each), distance.reshape(-1, each)
 
 
 @njit(cache=True)
-def _enter_sources(labels, queue, node, bone, rank, first_distance):
-    _, joint, distance, anchor = labels
+def _enter_sources(
+    each, joint, distance, anchor, scale, head, after, before, node, bone, rank, first_distance
+):
     for s in range(len(node)):
-        slot = _slot(labels, node[s], rank[bone[s]], ~bone[s])
+        j, a = rank[bone[s]], ~bone[s]
+        slot = _slot(each, joint, distance, anchor, node[s], j, a)
         if slot >= 0 and first_distance[s] < distance[slot]:
-            leave(queue, slot)
-            joint[slot], distance[slot] = rank[bone[s]], first_distance[s]
-            anchor[slot] = ~bone[s]
-            join(queue, bucket_of(queue, first_distance[s]), slot)
+            leave(head, after, before, slot)
+            joint[slot], distance[slot], anchor[slot] = j, first_distance[s], a
+            join(head, after, before, bucket_of(head, scale, first_distance[s]), slot)
 
 
 @njit(cache=True, inline="always")
-def _slot(labels, v, j, a):
+def _slot(each, joint, distance, anchor, v, j, a):
     """Return where node v keeps the label of joint j or, if it has none, its farthest label.
 
     -1 if v follows the anchor a already.
     """
-    each, joint, distance, anchor = labels
     farthest = v * each
     for slot in range(v * each, v * each + each):
         if anchor[slot] == a:
@@ -224,88 +230,84 @@ def _slot(labels, v, j, a):
 
 
 @njit(cache=True, nogil=True)
-def _settle(adjacency, body, bones, labels, queue, first, last):
+def _settle(adjacency, body, bones, labels, queue, origin, first, last):
     """Settle labels by distance, bucket after bucket; tell whether any are left beyond."""
     indptr, indices, lengths = adjacency
+    resolution, first_point, first_crossing, nodes, _, _ = body
     each, joint, distance, anchor = labels
-    head, after = queue[1], queue[2]
-    bend = np.empty(3)
-    keys, heap, size = np.empty(64), np.empty(64, np.int32), 0
+    scale, head, after, before = queue
     for bucket in range(first, last):
         while head[bucket] != END:
             label = head[bucket]
-            leave(queue, label)
-            keys, heap, size = heap_push(keys, heap, size, distance[label], label)
-        while size > 0:
-            label, d = heap[0], keys[0]
-            size = heap_pop(keys, heap, size)
-            if after[label] == SETTLED or distance[label] != d:
-                continue  # a shorter path was found after this one had been put here
+            d = distance[label]
+            leave(head, after, before, label)
             after[label] = SETTLED
             u, j, a = label // each, joint[label], anchor[label]
-            before = distance[a] if a >= 0 else 0.0
+            to_anchor = distance[a] if a >= 0 else 0.0
             for e in range(indptr[u], indptr[u + 1]):
                 v = indices[e]
-                slot = _slot(labels, v, j, a)
+                slot = _slot(each, joint, distance, anchor, v, j, a)
                 if slot < 0 or after[slot] == SETTLED:
                     continue
-                new_anchor = a
                 # Of joints equally near, the first by position stays.
                 limit = distance[slot]
                 if joint[slot] != j:
                     limit *= 1 + TIE if j < joint[slot] else 1 - TIE
-                reached = before + _straight(body, bones, each, a, v, bend)
+                here = nodes[v, 0], nodes[v, 1], nodes[v, 2]
+                bend = _bend(nodes, bones, each, a, here)
+                reached = to_anchor + _straight(here, bend)
                 if reached >= limit:
                     continue  # a bend at u would be no shorter
-                if not _sees(body, labels, u, v, lengths[e], a, bend):
+                # Off the lattice, what is one step from a lattice point that sees the bend does,
+                # too: a crossing, and from there a corner of its triangle if it is near.
+                if v >= first_crossing:
+                    seen = first_point <= u < first_crossing
+                elif v < first_point:
+                    seen = u >= first_crossing and lengths[e] * resolution < NEAR
+                else:
+                    seen = _sees(body, each, anchor, u, here, a, bend)
+                new_anchor = a
+                if not seen:
                     new_anchor = label
                     reached = d + lengths[e]
                     if reached >= limit:
                         continue
-                leave(queue, slot)
+                leave(head, after, before, slot)
                 joint[slot], distance[slot], anchor[slot] = j, reached, new_anchor
-                into = bucket_of(queue, reached)
-                if into > bucket:
-                    join(queue, into, slot)
-                else:
-                    keys, heap, size = heap_push(keys, heap, size, reached, slot)
+                join(
+                    head, after, before, max(bucket_of(head, scale, reached - origin), bucket), slot
+                )
     return (head[last:] != END).any()
 
 
 @njit(cache=True, inline="always")
-def _straight(body, bones, each, a, v, bend):
-    """Return how far v is from anchor a, and put the place of a into `bend`."""
-    nodes = body[3]
-    x, y, z = nodes[v, 0], nodes[v, 1], nodes[v, 2]
+def _bend(nodes, bones, each, a, here):
+    """Return the place of anchor a; of a bone, the point nearest to here."""
     if a >= 0:
         n = a // each
-        bend[0], bend[1], bend[2] = nodes[n, 0], nodes[n, 1], nodes[n, 2]
-    else:
-        bone = bones[~a]
-        along = (x - bone[0]) * bone[3] + (y - bone[1]) * bone[4] + (z - bone[2]) * bone[5]
-        t = min(max(along * bone[6], 0.0), 1.0)
-        bend[0] = bone[0] + t * bone[3]
-        bend[1] = bone[1] + t * bone[4]
-        bend[2] = bone[2] + t * bone[5]
-    x, y, z = x - bend[0], y - bend[1], z - bend[2]
+        return nodes[n, 0], nodes[n, 1], nodes[n, 2]
+    b = ~a
+    x, y, z = bones[b, 0], bones[b, 1], bones[b, 2]
+    ex, ey, ez, inverse = bones[b, 3], bones[b, 4], bones[b, 5], bones[b, 6]
+    along = (here[0] - x) * ex + (here[1] - y) * ey + (here[2] - z) * ez
+    t = min(max(along * inverse, 0.0), 1.0)
+    return x + t * ex, y + t * ey, z + t * ez
+
+
+@njit(cache=True, inline="always")
+def _straight(p, q):
+    x, y, z = p[0] - q[0], p[1] - q[1], p[2] - q[2]
     return np.sqrt(x * x + y * y + z * z)
 
 
 @njit(cache=True, inline="always")
-def _sees(body, labels, u, v, step, a, bend):
-    """Tell whether the straight way from the bend to v stays inside, u being seen.
+def _sees(body, each, anchor, u, here, a, bend):
+    """Tell whether the straight way from the bend to a lattice point stays inside.
 
-    Off the lattice, what is one step from a lattice point that sees the bend does, too:
-    a crossing, and from there a corner of its triangle if it is near.
+    It does from the node u beside that point.
     """
-    resolution, first_point, first_crossing, nodes, table, whole = body
-    if v >= first_crossing:
-        return first_point <= u < first_crossing
-    if v < first_point:
-        return u >= first_crossing and step * resolution < NEAR
-    x = int(nodes[v, 0] * resolution)
-    y = int(nodes[v, 1] * resolution)
-    z = int(nodes[v, 2] * resolution)
+    resolution, first_point, _, _, table, whole = body
+    x, y, z = int(here[0] * resolution), int(here[1] * resolution), int(here[2] * resolution)
     dx = bend[0] * resolution - 0.5 - x
     dy = bend[1] * resolution - 0.5 - y
     dz = bend[2] * resolution - 0.5 - z
@@ -314,7 +316,6 @@ def _sees(body, labels, u, v, step, a, bend):
         sx, sy, sz = int(np.rint(dx / far)), int(np.rint(dy / far)), int(np.rint(dz / far))
         w = _point(table, resolution, x + sx, y + sy, z + sz)
         if w != OUTSIDE:
-            each, _, _, anchor = labels
             w += first_point
             if w == u:
                 return True

@@ -1,8 +1,8 @@
 """Labels that wait for their turn, sorted into buckets by distance (Dial 1969).
 
 A bucket is a doubly linked list through the labels themselves: joining and leaving take no
-search, and no memory is needed beyond two integers a label. Buckets are served in order;
-within a bucket `heap` sorts.
+search, and no memory is needed beyond two integers a label. Buckets are served in order and
+are so narrow that the order within one does not matter.
 """
 
 import numpy as np
@@ -20,7 +20,7 @@ def bucket_queue(labels, buckets, scale):
     labels : int
         How many labels there are.
     buckets : int
-        The last one holds everything that lies beyond.
+        The last one holds everything that lies beyond, until `move_on`.
     scale : float
         Buckets per unit of distance.
 
@@ -38,15 +38,14 @@ def bucket_queue(labels, buckets, scale):
 
 
 @njit(cache=True, inline="always")
-def bucket_of(queue, distance):
+def bucket_of(head, scale, distance):
     """Return the bucket of a distance."""
-    return min(int(distance * queue[0]), len(queue[1]) - 1)
+    return min(int(distance * scale), len(head) - 1)
 
 
 @njit(cache=True, inline="always")
-def join(queue, bucket, label):
+def join(head, after, before, bucket, label):
     """Put a label that is in no bucket into one."""
-    _, head, after, before = queue
     follower = head[bucket]
     head[bucket], after[label], before[label] = label, follower, ~bucket
     if follower != END:
@@ -54,9 +53,8 @@ def join(queue, bucket, label):
 
 
 @njit(cache=True, inline="always")
-def leave(queue, label):
+def leave(head, after, before, label):
     """Take a label out of its bucket, if it is in one."""
-    _, head, after, before = queue
     if after[label] < END:
         return
     if before[label] >= 0:
@@ -66,3 +64,18 @@ def leave(queue, label):
     if after[label] != END:
         before[after[label]] = before[label]
     after[label] = LOOSE
+
+
+@njit(cache=True)
+def move_on(scale, head, after, before, distance):
+    """Spread what lies beyond the last bucket over all; return the distance they begin at."""
+    label, origin = head[-1], np.inf
+    while label != END:
+        origin = min(origin, distance[label])
+        label = after[label]
+    label, head[-1] = head[-1], END
+    while label != END:
+        follower = after[label]
+        join(head, after, before, bucket_of(head, scale, distance[label] - origin), label)
+        label = follower
+    return origin
