@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 from ..graph import CutCellGraph
 from ..graph.interior import OUTSIDE, point_number
 from ..progress import Progress, silent
-from ..threads import in_threads
+from ..threads import in_threads, threads
 from .bones import TIE, Bones, Sources
 from .queue import END, SETTLED, bucket_of, bucket_queue, join, leave, move_on
 
@@ -95,10 +95,13 @@ def any_angle_paths(
         row = np.searchsorted(joints, front.joints[ranked[at, slot]])
         result[row, at] = distance[at, slot]
 
-    step = 8
-    for first in range(0, len(groups), step):
-        progress("distances", first / len(groups))
-        in_threads(spread, groups[first : first + step])
+    if len(groups) == 1:
+        spread(groups[0])
+    else:
+        step = 4 * threads()
+        for first in range(0, len(groups), step):
+            progress("distances", first / len(groups))
+            in_threads(spread, groups[first : first + step])
     progress("distances", 1.0)
     return result
 
@@ -156,9 +159,8 @@ def _start(
     )
     scale = FINENESS * graph.lattice.resolution**2
     queue = bucket_queue(count, SPAN * scale, scale)
-    _enter_sources(
-        *labels, *queue, sources.node[chosen], bone[chosen], rank, sources.distance[chosen]
-    )
+    first_distance = sources.distance[chosen]
+    _enter_sources(labels, queue, sources.node[chosen], bone[chosen], rank, first_distance)
     table = np.concatenate([start, way, inverse[:, None]], axis=1)
     return _Front(joints[by_place], table, labels, queue)
 
@@ -195,14 +197,14 @@ def _spread(
             if not waiting:
                 break
         else:
-            origin = move_on(*front.queue, distance)
+            origin = move_on(front.queue, distance)
     return rank.reshape(-1, each), distance.reshape(-1, each)
 
 
 @njit(cache=True)
-def _enter_sources(
-    each, joint, distance, anchor, scale, head, after, before, node, bone, rank, first_distance
-):
+def _enter_sources(labels, queue, node, bone, rank, first_distance):
+    each, joint, distance, anchor = labels
+    scale, head, after, before = queue
     for s in range(len(node)):
         j, a = rank[bone[s]], ~bone[s]
         slot = _slot(each, joint, distance, anchor, node[s], j, a)

@@ -67,8 +67,9 @@ def leave(head, after, before, label):
 
 
 @njit(cache=True)
-def move_on(scale, head, after, before, distance):
+def move_on(queue, distance):
     """Spread what lies beyond the last bucket over all; return the distance they begin at."""
+    scale, head, after, before = queue
     label, origin = head[-1], np.inf
     while label != END:
         origin = min(origin, distance[label])
