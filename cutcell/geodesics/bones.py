@@ -81,11 +81,15 @@ def bone_segments(skeleton: Skeleton, leaf: str = "point") -> Bones:
 def distance_to_segment(points: ArrayLike, start: ArrayLike, end: ArrayLike) -> NDArray:
     """Compute the distance from points (..., 3) to segments (..., 3), broadcast."""
     points, start, end = (np.asarray(x, np.float64) for x in (points, start, end))
-    along = end - start
-    squared = (along * along).sum(axis=-1)
-    travel = ((points - start) * along).sum(axis=-1)
-    fraction = np.clip(travel / np.where(squared > 0, squared, 1), 0, 1)
-    return np.linalg.norm(points - start - fraction[..., None] * along, axis=-1)
+    along, away = end - start, points - start
+    squared = _dot(along, along)
+    fraction = np.clip(_dot(away, along) / np.where(squared > 0, squared, 1), 0, 1)
+    apart = away - fraction[..., None] * along
+    return np.sqrt(_dot(apart, apart))
+
+
+def _dot(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
+    return np.einsum("...i,...i->...", a, b)  # faster than a sum over the last axis
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,7 +136,9 @@ def bone_samples(
         length = np.linalg.norm(bones.end - bones.start, axis=1)
         counts = np.maximum(counts, np.ceil(length * graph.lattice.resolution).astype(int) + 1)
     bone = np.repeat(np.arange(len(counts)), counts)
-    place_on_bone = np.concatenate([np.linspace(0, 1, n) if n > 1 else [0.5] for n in counts])
+    before = np.repeat(np.cumsum(counts) - counts, counts)
+    steps = counts[bone] - 1
+    place_on_bone = np.where(steps > 0, (np.arange(len(bone)) - before) / np.maximum(steps, 1), 0.5)
     return bones.start[bone] + place_on_bone[:, None] * (bones.end - bones.start)[bone], bone
 
 
