@@ -22,7 +22,8 @@ the bone that leads to it."""
 GIVEN = 2.0
 """Depths of the body that it is given at most."""
 REGION_JOINTS = 3
-"""Nearest joints among which skin is divided to see what a tip moves."""
+"""Nearest joints among which skin is divided to see what a tip moves. Two would be one too few
+in the middle between left and right."""
 REGION_POWER = 20
 """Skin belongs to joints by this power of how much nearer the nearest one is."""
 

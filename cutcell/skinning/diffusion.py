@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 from scipy.sparse import diags_array
 from scipy.sparse.linalg import splu
 
+from ..threads import in_threads
 from .laplacian import cotangent_laplacian, vertex_areas
 
 SHARPNESS = 3.0
 """c: weights spread over about 1 / sqrt(c) of the distance from skin to bone."""
+LANES = 16
+"""Joints that are solved for side by side."""
 LEAST_CELLS = 0.25
 """Lattice cells; skin on a bone itself would not let go of its weights at all."""
 
@@ -54,8 +58,45 @@ def diffuse(
     # A place without area conducts nothing; any positive number lets it keep its own weights.
     hold = np.maximum(vertex_areas(points, faces), 1e-12) * SHARPNESS / depth**2
     system = (cotangent_laplacian(points, faces) + diags_array(hold)).tocsc()
+    factors = splu(
+        system,
+        permc_spec="MMD_AT_PLUS_A",
+        diag_pivot_thresh=0.0,
+        options={"SymmetricMode": True},
+    )
+    lower, order = factors.L, factors.perm_c
+    triangle = lower.indptr, lower.indices, lower.data, factors.U.diagonal()
     used = np.flatnonzero(weights.any(axis=0))
     spread = np.zeros_like(weights)
-    factors = splu(system, permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
-    spread[:, used] = np.maximum(factors.solve(hold[:, None] * weights[:, used]), 0)
+
+    def some(first: int) -> None:
+        joints = used[first : first + LANES]
+        rows = np.empty((len(points), len(joints)))
+        rows[order] = hold[:, None] * weights[:, joints]
+        _substitute(*triangle, rows)
+        spread[:, joints] = np.maximum(rows[order], 0)
+
+    in_threads(some, range(0, len(used), LANES))
     return spread / spread.sum(axis=1, keepdims=True)
+
+
+@njit(cache=True, nogil=True)
+def _substitute(indptr, indices, values, diagonal, rows):
+    """Solve L D Lᵀ x = b for many b side by side, in place; L has ones on its diagonal."""
+    count, lanes = rows.shape
+    for c in range(count):
+        if not rows[c].any():
+            continue
+        for p in range(indptr[c], indptr[c + 1]):
+            r = indices[p]
+            if r > c:
+                for lane in range(lanes):
+                    rows[r, lane] -= values[p] * rows[c, lane]
+    for c in range(count - 1, -1, -1):
+        for lane in range(lanes):
+            rows[c, lane] /= diagonal[c]
+        for p in range(indptr[c], indptr[c + 1]):
+            r = indices[p]
+            if r > c:
+                for lane in range(lanes):
+                    rows[c, lane] -= values[p] * rows[r, lane]

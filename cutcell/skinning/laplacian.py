@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 from scipy.sparse import coo_array, csr_array
 
 THINNEST = 1e-4
-"""Sine of an angle below which a triangle counts as no thinner: needles would outweigh all."""
+"""Height of a triangle, as part of its longest side, below which it counts as no thinner: needles
+would outweigh all."""
 
 
 def cotangent_laplacian(points: NDArray[np.float64], faces: NDArray[np.int32]) -> csr_array:
@@ -41,50 +43,83 @@ def vertex_areas(points: NDArray[np.float64], faces: NDArray[np.int32]) -> NDArr
     In an acute triangle each corner gets the part that is nearest to it; else the wide
     corner gets half, the others a quarter each.
     """
-    corners = points[faces]
-    area = np.linalg.norm(
-        np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1
-    )
-    area /= 2
-    cotangent = _cotangents(points, faces)
-    opposite = np.stack(
-        [((corners[:, (c + 1) % 3] - corners[:, (c + 2) % 3]) ** 2).sum(axis=1) for c in range(3)],
-        axis=1,
-    )
-    voronoi = cotangent * opposite / 8  # at the two ends of each side
-    parts = np.roll(voronoi, 1, axis=1) + np.roll(voronoi, -1, axis=1)
-    wide = cotangent < 0
-    blunt = wide.any(axis=1)
-    parts[blunt] = np.where(wide[blunt], area[blunt, None] / 2, area[blunt, None] / 4)
     total = np.zeros(len(points))
-    np.add.at(total, faces, parts)
+    _add_areas(points, faces, total)
     return total
 
 
 def vertex_normals(points: NDArray[np.float64], faces: NDArray[np.int32]) -> NDArray[np.float64]:
     """Return unit normals, shape (k, 3): the faces' average by area; zero where there is none."""
-    corners = points[faces]
-    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    normals = np.stack(
-        [
-            np.bincount(faces.ravel(), np.repeat(across[:, axis], 3), minlength=len(points))
-            for axis in range(3)
-        ],
-        axis=1,
-    )
+    normals = np.zeros((len(points), 3))
+    _add_normals(points, faces, normals)
     length = np.linalg.norm(normals, axis=1, keepdims=True)
     return np.divide(normals, length, out=np.zeros_like(normals), where=length > 0)
 
 
 def _cotangents(points: NDArray[np.float64], faces: NDArray[np.int32]) -> NDArray[np.float64]:
     """Return the cotangent of the angle at each corner, shape (m, 3)."""
-    corners = points[faces]
     result = np.empty(faces.shape)
-    for corner in range(3):
-        a = corners[:, (corner + 1) % 3] - corners[:, corner]
-        b = corners[:, (corner + 2) % 3] - corners[:, corner]
-        sides = np.linalg.norm(a, axis=1) * np.linalg.norm(b, axis=1)
-        sine = np.maximum(np.linalg.norm(np.cross(a, b), axis=1), THINNEST * sides)
-        cosine = (a * b).sum(axis=1)
-        result[:, corner] = np.divide(cosine, sine, out=np.zeros(len(a)), where=sine > 0)
+    _fill_cotangents(points, faces, result)
     return result
+
+
+@njit(cache=True, nogil=True)
+def _fill_cotangents(points, faces, result):
+    for f in range(len(faces)):
+        for corner in range(3):
+            p = points[faces[f, corner]]
+            result[f, corner] = _cotangent(
+                p, points[faces[f, (corner + 1) % 3]], points[faces[f, (corner + 2) % 3]]
+            )
+
+
+@njit(cache=True, nogil=True)
+def _cotangent(p, q, r):
+    """Return the cotangent of the angle at p; zero where two corners are at one place."""
+    ax, ay, az = q[0] - p[0], q[1] - p[1], q[2] - p[2]
+    bx, by, bz = r[0] - p[0], r[1] - p[1], r[2] - p[2]
+    x, y, z = ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
+    cx, cy, cz = bx - ax, by - ay, bz - az
+    longest = max(
+        ax * ax + ay * ay + az * az, bx * bx + by * by + bz * bz, cx * cx + cy * cy + cz * cz
+    )
+    # The same for all three corners: then no triangle, however thin, conducts uphill.
+    double_area = max(np.sqrt(x * x + y * y + z * z), THINNEST * longest)
+    return (ax * bx + ay * by + az * bz) / double_area if longest > 0 else 0.0
+
+
+@njit(cache=True, nogil=True)
+def _across(p, q, r):
+    ax, ay, az = q[0] - p[0], q[1] - p[1], q[2] - p[2]
+    bx, by, bz = r[0] - p[0], r[1] - p[1], r[2] - p[2]
+    return ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
+
+
+@njit(cache=True, nogil=True)
+def _add_normals(points, faces, normals):
+    for f in range(len(faces)):
+        x, y, z = _across(points[faces[f, 0]], points[faces[f, 1]], points[faces[f, 2]])
+        for corner in range(3):
+            normals[faces[f, corner], 0] += x
+            normals[faces[f, corner], 1] += y
+            normals[faces[f, corner], 2] += z
+
+
+@njit(cache=True, nogil=True)
+def _add_areas(points, faces, total):
+    cotangent, opposite = np.empty(3), np.empty(3)
+    for f in range(len(faces)):
+        x, y, z = _across(points[faces[f, 0]], points[faces[f, 1]], points[faces[f, 2]])
+        area = np.sqrt(x * x + y * y + z * z) / 2
+        for corner in range(3):
+            p = points[faces[f, corner]]
+            q, r = points[faces[f, (corner + 1) % 3]], points[faces[f, (corner + 2) % 3]]
+            cotangent[corner] = _cotangent(p, q, r)
+            opposite[corner] = ((q - r) ** 2).sum()
+        for corner in range(3):
+            if cotangent.min() < 0:
+                part = area / 2 if cotangent[corner] < 0 else area / 4
+            else:  # half of each side's part belongs to either of its ends
+                i, j = (corner + 1) % 3, (corner + 2) % 3
+                part = (cotangent[i] * opposite[i] + cotangent[j] * opposite[j]) / 8
+            total[faces[f, corner]] += part

@@ -66,14 +66,17 @@ def _crossed(
     Returns the face, the sample, and +1 where a ray from the sample leaves through the face,
     -1 where it enters.
     """
-    counted = _list_crossings(points, faces, samples, *_room(0))
-    face, sample, sign = _room(counted)
-    _list_crossings(points, faces, samples, face, sample, sign)
-    return face, sample, sign
-
-
-def _room(count: int) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int8]]:
-    return np.empty(count, np.int64), np.empty(count, np.int64), np.empty(count, np.int8)
+    room = 4 * len(samples)
+    while True:
+        face, sample, sign = (
+            np.empty(room, np.int64),
+            np.empty(room, np.int64),
+            np.empty(room, np.int8),
+        )
+        count = _list_crossings(points, faces, samples, face, sample, sign)
+        if count <= room:
+            return face[:count], sample[:count], sign[:count]
+        room = count
 
 
 @njit(cache=True, nogil=True)
@@ -84,10 +87,14 @@ def _list_crossings(points, faces, samples, face, sample, sign):
         a, b, c = faces[f]
         low = min(points[a, 0], points[b, 0], points[c, 0])
         high = max(points[a, 0], points[b, 0], points[c, 0])
+        nearest = min(points[a, 1], points[b, 1], points[c, 1])
+        farthest = max(points[a, 1], points[b, 1], points[c, 1])
         for s in range(np.searchsorted(u, low), np.searchsorted(u, high)):
+            p, q = samples[s, 0], samples[s, 1]
+            if not nearest <= q <= farthest:
+                continue
             # On the line u = const, how many edges of the face lie on the side of larger v.
             above, turn = 0, 0
-            p, q = samples[s, 0], samples[s, 1]
             for k in range(3):
                 i, j = faces[f, k], faces[f, (k + 1) % 3]
                 up = 1 if (points[j, 0] > p) and (points[i, 0] <= p) else 0
@@ -102,7 +109,7 @@ def _list_crossings(points, faces, samples, face, sample, sign):
                     turn += up - down
             if above != 1:
                 continue
-            if len(face):
+            if count < len(face):
                 height = _height(points[a], points[b], points[c], p, q)
                 # turn is +1 where the face is seen turning clockwise from above: facing down
                 facing = -turn

@@ -16,6 +16,8 @@ SMALL = 0.25
 CONTACT = 1.0
 """Lattice cells: a worn piece touches its wearer wherever it is this much farther than at its
 nearest."""
+AROUND = 0.05
+"""Of the longest side: how far from worn pieces their wearer is looked for at first."""
 RIGID = 0.6
 """A worn piece follows one joint alone if its wearer does by this much where they touch."""
 
@@ -75,15 +77,14 @@ def dress(
     # What is in patches all over is no body with things on it.
     if not worn.any() or areas[wearer].sum() < areas.sum() / 2:
         return weights
-    where, corners = _wearer_skin(graph, wearer)
     mine = np.flatnonzero(~wearer)
-    away, place = cKDTree(where).query(points[mine])
+    away, corners = _nearest_skin(graph, wearer, points[mine])
     label = piece[mine]
     least = np.full(len(held), np.inf)
     np.minimum.at(least, label, away)
     touching = away <= least[label] + CONTACT / graph.lattice.resolution
     share = np.where(touching, areas[mine] + 1e-12, 0)
-    there = weights[corners[place]].mean(axis=1) * share[:, None]
+    there = weights[corners].mean(axis=1) * share[:, None]
     total = np.zeros((len(held), weights.shape[1]))
     np.add.at(total, label, there)
     mean = total / np.maximum(total.sum(axis=1, keepdims=True), 1e-300)
@@ -103,16 +104,26 @@ def _longest_sides(points: NDArray[np.float64], piece: NDArray[np.int32]) -> NDA
     return (high - low).max(axis=1)
 
 
-def _wearer_skin(
-    graph: CutCellGraph, wearer: NDArray[np.bool_]
+def _nearest_skin(
+    graph: CutCellGraph, wearer: NDArray[np.bool_], points: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
-    """List points on the wearers' skin: its vertices, and where rays cross it.
+    """Measure from points to the wearers' skin: its vertices, and where rays cross it.
 
-    And for each point the three places that its weights are the mean of.
+    Returns the distances, and for each point of the skin found the three places that its
+    weights are the mean of.
     """
-    vertices = np.flatnonzero(wearer)
+    vertices = np.flatnonzero(wearer).astype(np.int32)
     crossings = np.flatnonzero(graph.node_kind == SURFACE)
-    corners = graph.faces[graph.triangle[crossings]]
-    kept = wearer[corners[:, 0]]
-    where = np.concatenate([graph.nodes[vertices], graph.nodes[crossings[kept]]])
-    return where, np.concatenate([np.stack([vertices] * 3, axis=1), corners[kept]])
+    hit = graph.faces[graph.triangle[crossings]]
+    kept = wearer[hit[:, 0]]
+    node = np.concatenate([vertices, crossings[kept]])
+    corners = np.concatenate([np.stack([vertices] * 3, axis=1), hit[kept]])
+    # Most of the skin is far from all that is worn: look at what is near first.
+    low, high = points.min(axis=0) - AROUND, points.max(axis=0) + AROUND
+    close = ((graph.nodes[node] >= low) & (graph.nodes[node] <= high)).all(axis=1)
+    if close.any():
+        away, place = cKDTree(graph.nodes[node[close]]).query(points)
+        if away.max() <= AROUND:
+            return away, corners[close][place]
+    away, place = cKDTree(graph.nodes[node]).query(points)
+    return away, corners[place]
