@@ -41,17 +41,27 @@ def meshers_table(characters: list[Character], options: argparse.Namespace) -> T
 
 def run_mesher(library: str, character: Character, options: argparse.Namespace) -> str:
     """Run one mesher on one rig and put into words what came of it."""
+    result = attempt(library, character, options.mesher_python, options.mesher_limit)
+    if isinstance(result, str):
+        return result
+    return f"{seconds(result['seconds'])} ({result['cells']:,} tets)"
+
+
+def attempt(
+    library: str, character: Character, python: str, limit: float, edge: float | None = None
+) -> dict | str:
+    """Run one mesher on one rig: seconds and number of cells, or why there are none."""
     mesh = prepare(character.rig.mesh, 64)
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "mesh.npz"
         np.savez(path, vertices=mesh.vertices, faces=mesh.faces)
-        command = [options.mesher_python, str(SCRIPT), library, str(path)]
+        command = [python, str(SCRIPT), library, str(path), *([str(edge)] if edge else [])]
         try:
             done = subprocess.run(
-                command, cwd=folder, capture_output=True, text=True, timeout=options.mesher_limit
+                command, cwd=folder, capture_output=True, text=True, timeout=limit
             )
         except subprocess.TimeoutExpired:
-            return f"over {options.mesher_limit:g} s"
+            return f"over {limit:g} s"
     if done.returncode < 0:
         return f"crashed (signal {-done.returncode})"
     lines = [line for line in done.stdout.splitlines() if line.startswith('{"')]
@@ -60,4 +70,4 @@ def run_mesher(library: str, character: Character, options: argparse.Namespace) 
     result = json.loads(lines[-1])
     if "missing" in result:
         return "not installed"
-    return f"{seconds(result['seconds'])} ({result['cells']:,} tets)"
+    return result

@@ -50,7 +50,7 @@ def bbw(
     Returns
     -------
     BaselineBinding
-        Stages "tetrahedra", "weights".
+        Stages "tetrahedra", "weights"; the start of processes does not count.
 
     Raises
     ------
@@ -163,10 +163,11 @@ def _bind(
         "iterations": iterations,
     }
     try:
-        found = run_apart(method, job, limit, SOLVERS[method])["weights"]
+        result = run_apart(method, job, limit, SOLVERS[method])
     except MethodFailedError as error:
         seconds["weights"] = perf_counter() - begin
         return BaselineBinding(None, seconds, filled.warnings, failed=str(error))
+    begin, found = perf_counter() - float(result["seconds"]), result["weights"]
     weights = np.zeros((len(body.points), body.joints))
     at_places = np.einsum("kc,kcj->kj", filled.shares, found[filled.corners])
     weights[np.ix_(filled.used, names)] = at_places

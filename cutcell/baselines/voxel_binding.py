@@ -70,6 +70,31 @@ def voxel(
     alpha = check_number("alpha", alpha, 0, 1)
     begin = perf_counter()
     body = Body.of(rig, leaf, resolution)
+    distance, built = voxel_distances(body)
+    warnings = _follow_nearest(body, distance)
+    found = perf_counter()
+    weights = paper_kernel(body.joint_minimum(distance), body.lattice.diagonal, alpha)
+    weights, more = finish(rig, body, weights, max_influences=max_influences, threshold=threshold)
+    ticks = np.diff([begin, built, found, perf_counter()]).tolist()
+    seconds = dict(zip(("graph", "distances", "weights"), ticks, strict=True))
+    return BaselineBinding(weights, seconds, warnings + more)
+
+
+def voxel_distances(body: Body) -> tuple[NDArray[np.float64], float]:
+    """Measure how far every place is from every bone along solid voxels.
+
+    Parameters
+    ----------
+    body : Body
+        Its lattice says how many voxels.
+
+    Returns
+    -------
+    distance : array, shape (b, k)
+        In the unit cube; infinite where no path leads.
+    built : float
+        The time, by `perf_counter`, when the voxels and their links were there.
+    """
     voxels = voxelize(body)
     links, lengths = voxels.links()
     built = perf_counter()
@@ -81,14 +106,7 @@ def voxel(
     by_voxel = path_lengths(len(voxels.centres), links, lengths, sources, starts)
     home = voxels.at(body.points)
     inside = np.linalg.norm(body.points - voxels.centres[home], axis=1)
-    distance = by_voxel[:, home] + inside
-    warnings = _follow_nearest(body, distance)
-    found = perf_counter()
-    weights = paper_kernel(body.joint_minimum(distance), body.lattice.diagonal, alpha)
-    weights, more = finish(rig, body, weights, max_influences=max_influences, threshold=threshold)
-    ticks = np.diff([begin, built, found, perf_counter()]).tolist()
-    seconds = dict(zip(("graph", "distances", "weights"), ticks, strict=True))
-    return BaselineBinding(weights, seconds, warnings + more)
+    return by_voxel[:, home] + inside, built
 
 
 def voxel_unirig(

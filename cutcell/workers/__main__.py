@@ -1,9 +1,13 @@
-"""Read a job, do it, write its result: arrays by name, or in `failed` why there are none."""
+"""Read a job, do it, write its result: arrays by name, or in `failed` why there are none.
+
+The result also tells the `seconds` that the task took, the process's start left out.
+"""
 
 from __future__ import annotations
 
 import sys
 from importlib import import_module
+from time import perf_counter
 
 import numpy as np
 
@@ -23,6 +27,7 @@ def main(task: str, job_path: str, result_path: str) -> None:
     module, function = TASKS[task].split(":")
     with np.load(job_path) as job:
         given = {name: job[name] for name in job.files}
+    begin = perf_counter()
     try:
         result = getattr(import_module(f"cutcell.workers.{module}"), function)(**given)
     except ModuleNotFoundError as error:
@@ -30,7 +35,7 @@ def main(task: str, job_path: str, result_path: str) -> None:
         result = {"failed": failed}
     except (RuntimeError, ValueError, MemoryError) as error:
         result = {"failed": str(error) or type(error).__name__}
-    np.savez(result_path, **result)
+    np.savez(result_path, **result, seconds=perf_counter() - begin)
 
 
 if __name__ == "__main__":

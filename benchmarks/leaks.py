@@ -1,0 +1,144 @@
+"""What leaks from a hand to the hip beside it: through voxels, through a cage, through ours.
+
+    python -m benchmarks.leaks [--resolution 48] [--picture FILE.png] [--out DOCUMENT]
+
+The paper's Figures "voxelBinding" and "cage", on the demo biped: the distance from the left
+forearm along voxels and in ours, and the weight that harmonic coordinates of a cage, and ours,
+give to its hand.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+import cutcell
+from cutcell.baselines.body import Body
+from cutcell.baselines.cage_methods import harmonic
+from cutcell.baselines.voxel_binding import voxel_distances
+from cutcell.rig import Rig
+
+from .document import fill
+from .rigs import ROOT
+from .tables import Table
+
+ARM, HIPS = ("forearm.L", "hand.L"), ("thigh.L", "hips")
+NEAR = 0.06
+"""Of the longest side: a vertex of the hip this near to the arm is beside it."""
+SIZE = (560, 700)
+
+
+def fields(rig: Rig, resolution: int) -> dict[str, NDArray[np.float64]]:
+    """Compute both distances from the arm, and both weights of it; one value for each vertex."""
+    arm = [rig.skeleton.names.index(name) for name in ARM]
+    body = Body.of(rig, resolution=resolution)
+    voxels = body.joint_minimum(voxel_distances(body)[0])[arm].min(axis=0)[body.index]
+    binding = cutcell.bind(rig, resolution, max_influences=None)
+    caged = harmonic(rig, resolution)
+    if caged.weights is None:
+        raise SystemExit(caged.failed)
+    return {
+        "voxel distance": voxels,
+        "our distance": binding.distances.joint[arm].min(axis=0),
+        "cage weight": caged.weights[:, arm].sum(axis=1),
+        "our weight": binding.weights[:, arm].sum(axis=1),
+    }
+
+
+def beside(rig: Rig) -> NDArray[np.intp]:
+    """Find the vertices of hip and thigh that the arm hangs beside."""
+    assert rig.weights is not None
+    owner = rig.weights.argmax(axis=1)
+    names = rig.skeleton.names
+    arm = np.isin(owner, [names.index(name) for name in ARM])
+    hip = np.flatnonzero(np.isin(owner, [names.index(name) for name in HIPS]))
+    size = float(np.ptp(rig.mesh.vertices, axis=0).max())
+    away = cKDTree(rig.mesh.vertices[arm]).query(rig.mesh.vertices[hip])[0]
+    return hip[away < NEAR * size]
+
+
+def leak_table(
+    found: dict[str, NDArray[np.float64]], at: NDArray[np.intp], resolution: int
+) -> Table:
+    """Write what the hip beside the arm gets."""
+    table = Table(
+        "A hand beside a hip",
+        ["at the hip, from forearm and hand", "median", "nearest or most"],
+        f"The demo biped, R = {resolution}, {len(at)} vertices of thigh and hips within "
+        f"{NEAR:.0%} of the longest side of the arm. Distances are parts of the longest side. "
+        "Weights are of the cage's nearest bones, and of the paper's kernel for ours.",
+    )
+    for name, values in found.items():
+        least = values[at].min() if "distance" in name else values[at].max()
+        table.add(name, f"{np.median(values[at]):.3f}", f"{least:.3f}")
+    return table
+
+
+def picture(rig: Rig, found: dict[str, NDArray[np.float64]], path: Path) -> None:
+    """Draw the four fields beside each other, the arm and the hip large."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    from viewers.distance_scene import distance_scene
+    from viewers.palette import LIGHT
+    from viewers.scene import Camera, framing, render_png
+    from viewers.weights_scene import weights_scene
+
+    joint = rig.skeleton.names.index(ARM[1])
+    longest = max(float(found[name].max()) for name in found if "distance" in name)
+    bounds = np.stack([rig.mesh.vertices.min(axis=0), rig.mesh.vertices.max(axis=0)])
+    whole = framing(bounds, SIZE[0] / SIZE[1])
+    target = np.array(whole.focal_point)
+    offset = 0.52 * (np.array(whole.position) - target)
+    target[1] = bounds[0, 1] + 0.52 * np.ptp(bounds[:, 1])
+    camera = Camera(tuple((target + offset).tolist()), tuple(target.tolist()))
+    titles = ("Along voxels", "Ours", "Harmonic in a cage", "Ours")
+    heads = (
+        "distance from the arm",
+        "distance from the arm",
+        "weight of the arm",
+        "weight of the arm",
+    )
+    figure = Figure(figsize=(11.2, 3.72), facecolor="white")
+    FigureCanvasAgg(figure)
+    for k, (name, values) in enumerate(found.items()):
+        if "distance" in name:
+            scene = distance_scene(rig, values, joint, skeleton=False)
+            skin = replace(scene.actors["body"], limits=(0.0, longest))  # the same for both
+            scene = replace(scene, actors={**scene.actors, "body": skin})
+        else:
+            column = np.zeros((len(values), len(rig.skeleton.joints)))
+            column[:, joint] = values
+            scene = weights_scene(rig, column, joint, skeleton=False)
+        axes = figure.add_axes((k / 4 + 0.003, 0.0, 0.244, 0.93))
+        axes.imshow(render_png(scene, theme=LIGHT, size=SIZE, camera=camera))
+        axes.set_axis_off()
+        axes.set_title(f"{titles[k]}: {heads[k]}", fontsize=9.5, loc="left")
+    figure.savefig(path, dpi=110, facecolor="white")
+
+
+def main(given: Sequence[str] | None = None) -> None:
+    """Read the command line, measure, print, draw."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.leaks", description=__doc__)
+    parser.add_argument("--resolution", type=int, default=48)
+    parser.add_argument("--picture", type=Path)
+    parser.add_argument("--out", type=Path, help="a document with marks for it")
+    options = parser.parse_args(given)
+    rig = cutcell.load(ROOT / "assets" / "biped.glb")
+    found = fields(rig, options.resolution)
+    text = leak_table(found, beside(rig), options.resolution).markdown()
+    print(text)
+    if options.picture:
+        picture(rig, found, options.picture)
+    if options.out:
+        fill(options.out, {"leaks": text})
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,114 @@
+"""The scripts behind the paper's own tables and figures, in a tiny configuration."""
+
+import sys
+
+import numpy as np
+import pytest
+
+import cutcell
+from benchmarks import crosstalk, graph_construction, gvb, leaks, optimisation, runtime
+from benchmarks.rigs import ROOT
+from tests.bars import bar
+from tests.benchmarks.markdown import read_tables
+
+DEMO = str(ROOT / "assets" / "rabbit.glb")
+
+
+@pytest.fixture
+def document(tmp_path):
+    """Make a document with marks for every table."""
+    path = tmp_path / "paper.md"
+    names = ("gvb", "runtime", "optimisation", "construction", "leaks", "crosstalk")
+    path.write_text("".join(f"<!-- {name} -->\n<!-- /{name} -->\n" for name in names))
+    return path
+
+
+def test_gvb(document, tmp_path, capsys):
+    plot = tmp_path / "gvb.png"
+    given = [DEMO, "--resolutions", "8", "16", "--plot", str(plot), "--out", str(document)]
+    gvb.main(given)
+    text = capsys.readouterr().out
+    assert text.strip() in document.read_text()
+    tables = read_tables(text)
+    rows = tables[gvb.TITLE]
+    assert [row["R"] for row in rows] == ["8", "8", "16", "16"]
+    assert all("**" in "".join(row[name] for name in gvb.SIDES) for row in rows)
+    assert len(tables["Cost over R"]) == 2
+    assert plot.stat().st_size > 10_000
+
+
+def test_runtime(document, tmp_path, capsys):
+    plot = tmp_path / "runtime.png"
+    given = [DEMO, "--resolutions", "8", "16", "--repeats", "1", "--out", str(document)]
+    runtime.main([*given, "--plot", str(plot)])
+    (rows,) = read_tables(capsys.readouterr().out).values()
+    assert [row["method"] for row in rows] == [*gvb.SIDES] * 2
+    assert plot.stat().st_size > 10_000
+
+
+def test_optimisation(document, tmp_path, capsys):
+    rig = bar(6)
+    weights = np.tile([1.0, 0, 0], (len(rig.mesh.vertices), 1))
+    path = tmp_path / "bar.glb"
+    cutcell.save(path, rig.with_weights(weights))
+    given = [str(path), "--resolution", "8", "--repeats", "1", "--out", str(document)]
+    optimisation.main(given)
+    (rows,) = read_tables(capsys.readouterr().out).values()
+    assert rows[0]["rig"].startswith("bar (")
+    assert rows[0]["bbw"].endswith("x)")
+    optimisation.main([*given, "--limit", "0"])
+    (rows,) = read_tables(capsys.readouterr().out).values()
+    assert rows[0]["bbw"] == "failed"
+
+
+def test_graph_construction(document, tmp_path, capsys, monkeypatch):
+    """Whatever meshers do, a cell says it."""
+    script = tmp_path / "mesher.py"
+    script.write_text(
+        "import sys\n"
+        "if sys.argv[1] == 'tetgen': sys.exit(3)\n"
+        'print(\'{"seconds": 60, "cells": 7}\')\n'
+    )
+    monkeypatch.setattr("benchmarks.meshers.SCRIPT", script)
+    given = [DEMO, "--resolutions", "8", "--repeats", "1", "--out", str(document)]
+    graph_construction.main(given)
+    (rows,) = read_tables(capsys.readouterr().out).values()
+    assert rows[0]["tetgen"] == "failed"
+    assert rows[0]["pytetwild"].startswith("60 s (")
+
+
+def test_the_edge_reaches_the_mesher(tmp_path, monkeypatch):
+    script = tmp_path / "mesher.py"
+    script.write_text("import sys; print('{\"seconds\": ' + sys.argv[3] + ', \"cells\": 1}')")
+    monkeypatch.setattr("benchmarks.meshers.SCRIPT", script)
+    (character,) = graph_construction.load_characters([DEMO])
+    found = graph_construction.attempt("any", character, sys.executable, 60, 0.125)
+    assert found == {"seconds": 0.125, "cells": 1}
+    mixed = graph_construction._cell([found, "over 1 s"], [0.0625, 1.0])
+    assert mixed == "125 ms (2.0x, 1 of 2 rigs)"
+
+
+def test_leaks(document, capsys):
+    leaks.main(["--resolution", "32", "--out", str(document)])
+    (rows,) = read_tables(capsys.readouterr().out).values()
+    median = {row["at the hip, from forearm and hand"]: float(row["median"]) for row in rows}
+    assert median["our distance"] > 2 * median["voxel distance"]
+    assert median["cage weight"] > 4 * median["our weight"]
+
+
+def test_crosstalk(document, capsys, monkeypatch):
+    monkeypatch.setattr(crosstalk, "PLACES", crosstalk.PLACES[2:3])
+    monkeypatch.setattr(crosstalk.crosstalk_table, "__defaults__", (crosstalk.PLACES,))
+    crosstalk.main(["--methods", "cutcell,voxel", "--out", str(document)])
+    (rows,) = read_tables(capsys.readouterr().out).values()
+    assert rows[0]["ears on a back (rabbit)"].endswith(" / 0.000")
+    assert "cutcell" in document.read_text()
+    with pytest.raises(SystemExit, match="unknown: wishes"):
+        crosstalk.main(["--methods", "wishes"])
+
+
+@pytest.mark.parametrize("script", [gvb])
+def test_without_rigs_there_is_nothing_to_do(script, tmp_path, monkeypatch):
+    monkeypatch.setattr(script, "SHARED", tmp_path)
+    with pytest.raises(SystemExit, match="there are no rigs"):
+        script.main([])
