@@ -8,13 +8,11 @@ import numpy as np
 
 from cutcell import TriangleMesh
 from cutcell.graph import Lattice
-from cutcell.graph.caps import cap_holes
-from cutcell.graph.holes import find_needs
+from cutcell.graph.boundary import find_boundary
 from cutcell.graph.midpoints import list_segments
-from cutcell.graph.rays import Crossings, cast_rays
+from cutcell.graph.rays import Crossings, cast_all_rays
 from cutcell.graph.segments import Runs, find_runs
 from cutcell.graph.weld import weld
-from cutcell.graph.winding import find_boundary
 
 
 @dataclass(frozen=True)
@@ -35,21 +33,13 @@ def prepare(mesh: TriangleMesh, resolution: int) -> Prepared:
 
 def cast(prepared: Prepared) -> list[Crossings]:
     """Cast the rays of all three axes."""
-    return [
-        cast_rays(prepared.vertices, prepared.faces, prepared.resolution, axis) for axis in range(3)
-    ]
+    return cast_all_rays(prepared.vertices, prepared.faces, prepared.resolution)
 
 
 def decide(prepared: Prepared, crossings: list[Crossings], threshold: float = 0.5) -> list[Runs]:
     """Decide which segments are inside, along all three axes."""
-    vertices, resolution = prepared.vertices, prepared.resolution
     boundary = find_boundary(prepared.faces)
-    caps = cap_holes(vertices, boundary)
-    needs = find_needs(caps, resolution, threshold)
-    return [
-        find_runs(vertices, found, boundary, caps, needs, resolution, axis, threshold)
-        for axis, found in enumerate(crossings)
-    ]
+    return find_runs(prepared.vertices, crossings, boundary, prepared.resolution, threshold)
 
 
 def midpoints(prepared: Prepared, crossings: list[Crossings]) -> np.ndarray:

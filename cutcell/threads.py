@@ -4,8 +4,11 @@ numba's own parallel loops are not used: where its threading layer is the plain 
 threads that start such a loop at once, say two sessions of the page, end the process.
 """
 
+import os
+import threading
 from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
+from functools import cache
 from itertools import pairwise
 from typing import TypeVar
 
@@ -14,6 +17,8 @@ import numba
 Item = TypeVar("Item")
 Result = TypeVar("Result")
 
+_here = threading.local()
+
 
 def threads() -> int:
     """Return how many threads kernels run on; NUMBA_NUM_THREADS sets it."""
@@ -21,9 +26,15 @@ def threads() -> int:
 
 
 def in_threads(work: Callable[[Item], Result], items: Iterable[Item]) -> list[Result]:
-    """Apply `work`, which should spend its time in nogil kernels, to each item."""
-    with ThreadPoolExecutor(threads()) as pool:
-        return list(pool.map(work, items))
+    """Apply `work`, which should spend its time in nogil kernels, to each item.
+
+    The threads are kept for the next call: a graph is built in less time than it takes to
+    start them for each of its steps. Work that calls for threads itself runs in its own.
+    """
+    items = list(items)
+    if len(items) < 2 or threads() < 2 or getattr(_here, "is_worker", False):
+        return [work(item) for item in items]
+    return list(_pool(threads()).map(work, items))
 
 
 def parts(count: int, at_once: int = 0) -> list[slice]:
@@ -31,3 +42,17 @@ def parts(count: int, at_once: int = 0) -> list[slice]:
     pieces = max(1, min(count, at_once or 4 * threads()))
     bounds = [count * k // pieces for k in range(pieces + 1)]
     return [slice(a, b) for a, b in pairwise(bounds)]
+
+
+@cache
+def _pool(count: int) -> ThreadPoolExecutor:
+    return ThreadPoolExecutor(count, "cutcell", initializer=_mark_worker)
+
+
+def _mark_worker() -> None:
+    _here.is_worker = True
+
+
+# A forked process would inherit the pool, but none of its threads.
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_pool.cache_clear)

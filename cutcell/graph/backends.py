@@ -16,10 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import MissingLibraryError
+from .boundary import find_boundary
 from .midpoints import list_segments
 from .rays import AXES, Crossings
 from .segments import Runs
-from .winding import find_boundary
 
 Vertices = NDArray[np.float64]
 Faces = NDArray[np.int32]
@@ -142,7 +142,7 @@ def find_runs_fast(
     clouds", 2018.
     """
     igl = _import("igl", 'winding="fast"', "libigl")
-    closed = len(find_boundary(faces).edges) == 0
+    closed = len(find_boundary(faces).loop) == 0
     pieces = list_segments(crossings, resolution, closed)
     kept = np.zeros(len(pieces.ray), bool)
     asked = np.flatnonzero(pieces.has_ends)

@@ -1,77 +1,133 @@
-"""Fans that close the holes of a mesh, so that counting crossings is nearly enough.
+"""Caps that close the holes of a mesh, so that counting crossings is nearly enough.
 
 With every hole capped, the signed count of crossings is a whole number: the winding
-number of the closed surface. The mesh's own number differs from it by the solid angle of
-the caps, at most area / (4 pi distance^2) of each, and that is seldom enough to matter.
+number of the closed surface. The mesh's own number is less by what the caps cover of the
+view, see `holes.py`. Any caps will do; small ones leave less in doubt.
+
+A loop of edges is capped by a fan of triangles around its middle. That is far from small
+where many loops have narrow gaps between them, as in a soup of triangles that nearly touch:
+there all rims are first drawn together. Each edge a -> b is tied by a strip a, b, b', a' to
+the edge between the places where its ends are drawn to; what then fits together cancels, and
+only what is left needs fans.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
-from .winding import Boundary
+from .boundary import Boundary, boundary_of
+from .weld import weld
+
+PULLS = 3e-4, 3e-3
+"""Rims are drawn together from up to this far in chains, where that makes the caps smaller."""
 
 
-@dataclass(frozen=True, eq=False)
-class Caps:
-    """One fan of triangles for each component of a boundary.
+class Caps(NamedTuple):
+    """Closed loops of edges that add up to the boundary, a fan of triangles for each.
 
     Parameters
     ----------
     vertices : array, shape (n + k, 3)
-        The mesh's vertices, then the apex of each of the k fans.
-    faces : array, shape (e, 3), int32
-        Ordered by fan.
-    start : array, shape (k + 1,), int64
-        The triangles of fan i are those from start[i] to start[i + 1].
-    count : array, shape (e,), int64
-        How often each triangle must be laid; negative when turned round.
-    centre : array, shape (k, 3)
-    radius : array, shape (k,)
-        Sphere that holds the fan.
-    area : array, shape (k,)
-        Of the fan, triangles laid twice counted twice.
+        The mesh's, then the middles of those k loops that have more than four edges.
+    faces : array, shape (t, 3), int32
+        Of all fans. With the mesh's own they make a closed surface.
+    loop, start : arrays, shapes (e,) and (l + 1,), int64
+        As of a `Boundary`.
+    apex : array, shape (l,), int64
+        The vertex that the triangles of a fan share: of a short loop its first.
     """
 
     vertices: NDArray[np.float64]
     faces: NDArray[np.int32]
+    loop: NDArray[np.int64]
     start: NDArray[np.int64]
-    count: NDArray[np.int64]
-    centre: NDArray[np.float64]
-    radius: NDArray[np.float64]
-    area: NDArray[np.float64]
+    apex: NDArray[np.int64]
+
+    @property
+    def area(self) -> float:
+        """Of all triangles."""
+        a, b, c = (self.vertices[self.faces[:, k]] for k in range(3))
+        return float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2)
 
 
 def cap_holes(vertices: NDArray[np.float64], boundary: Boundary) -> Caps:
-    """Close each component of a boundary by a fan around the mean of its edges' ends."""
-    order = np.argsort(boundary.component, kind="stable")
-    edges, component = boundary.edges[order], boundary.component[order]
-    count = boundary.count[order]
-    size = int(component.max()) + 1 if len(edges) else 0
-    ends = vertices[edges]
-    uses = np.bincount(component, minlength=size)
-    centre = np.stack(
-        [np.bincount(component, ends[:, :, k].sum(axis=1), size) / (2 * uses) for k in range(3)],
-        axis=1,
+    """Close the boundary of a mesh whose vertices, shape (n, 3), are in the unit cube."""
+    ways = [_capped(vertices, boundary)]
+    if len(boundary.loop):
+        ways += [_capped(vertices, _drawn_together(vertices, boundary, pull)) for pull in PULLS]
+    return min(ways, key=lambda caps: caps.area)
+
+
+def _capped(vertices: NDArray[np.float64], loops: Boundary) -> Caps:
+    apex, middles, faces = _fans(vertices, *loops)
+    return Caps(np.concatenate([vertices, middles]), faces, *loops, apex)
+
+
+def _drawn_together(vertices: NDArray[np.float64], boundary: Boundary, pull: float) -> Boundary:
+    """Return the loops of the strips, and those that are left when they are laid."""
+    a, b = boundary.loop, boundary.following
+    rim = np.unique(a)
+    _, group = weld(vertices[rim], pull)
+    one = np.empty(group.max() + 1, np.int64)
+    one[group[::-1]] = rim[::-1]  # any vertex of the group
+    drawn = np.arange(len(vertices))
+    drawn[rim] = one[group]
+    loop, start = _strips(a, b, drawn)
+
+    a, b = drawn[a], drawn[b]
+    key, index = np.unique(np.minimum(a, b) * len(vertices) + np.maximum(a, b), return_inverse=True)
+    balance = np.bincount(index, np.sign(b - a)).astype(np.int32)
+    edges = np.stack([key // len(vertices), key % len(vertices)], axis=1).astype(np.int32)
+    left = boundary_of(edges, balance)
+    return Boundary(
+        np.concatenate([loop, left.loop]), np.concatenate([start, left.start[1:] + start[-1]])
     )
-    reach = np.linalg.norm(ends - centre[component][:, None], axis=2).max(axis=1)
-    radius = np.zeros(size)
-    np.maximum.at(radius, component, reach)
-    # The chain's edge a -> b must be undone, so its triangle runs b -> a.
-    faces = np.stack([edges[:, 1], edges[:, 0], len(vertices) + component], axis=1)
-    apex = centre[component]
-    cross = np.cross(ends[:, 0] - apex, ends[:, 1] - apex)
-    each = np.abs(count) * np.linalg.norm(cross, axis=1) / 2
-    area = np.bincount(component, each, size).astype(np.float64)
-    return Caps(
-        np.concatenate([vertices, centre]),
-        faces.astype(np.int32),
-        np.searchsorted(component, np.arange(size + 1)),
-        count.astype(np.int64),
-        centre,
-        radius,
-        area,
-    )
+
+
+@njit(cache=True)
+def _strips(a, b, drawn):
+    loop, start = np.empty(4 * len(a), np.int64), np.empty(len(a) + 1, np.int64)
+    size = count = start[0] = 0
+    for e in range(len(a)):
+        from_a, from_b = drawn[a[e]], drawn[b[e]]
+        stays = from_a == a[e] and from_b == b[e]
+        if stays or from_a == b[e] or from_b == a[e]:
+            continue  # nothing to span
+        loop[size], loop[size + 1] = a[e], b[e]
+        size += 2
+        if from_b != b[e]:
+            loop[size] = from_b
+            size += 1
+        if from_a != a[e] and from_a != from_b:
+            loop[size] = from_a
+            size += 1
+        count += 1
+        start[count] = size
+    return loop[:size].copy(), start[: count + 1].copy()
+
+
+@njit(cache=True)
+def _fans(vertices, loop, start):
+    apex, middles = np.empty(len(start) - 1, np.int64), np.zeros((len(start) - 1, 3))
+    faces = np.empty((len(loop), 3), np.int32)
+    fans = count = 0
+    for k in range(len(start) - 1):
+        begin, end = start[k], start[k + 1]
+        if end - begin <= 4:
+            apex[k] = loop[begin]
+        else:
+            apex[k] = len(vertices) + fans
+            for i in range(begin, end):
+                middles[fans] += vertices[loop[i]] / (end - begin)
+            fans += 1
+        for i in range(begin, end):
+            after = loop[i + 1] if i + 1 < end else loop[begin]
+            if apex[k] != loop[i] and apex[k] != after:
+                # The chain's edge a -> b must be undone, so its triangle runs b -> a.
+                faces[count, 0], faces[count, 1], faces[count, 2] = after, loop[i], apex[k]
+                count += 1
+    return apex, middles[:fans].copy(), faces[:count].copy()

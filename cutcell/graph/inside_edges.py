@@ -10,86 +10,79 @@ from .interior import OUTSIDE, InteriorPoints, place_on_ray, point_number
 from .segments import NONE, Runs
 
 
-def segment_edges(
+def edge_starts(runs: Runs, first: int) -> NDArray[np.int64]:
+    """Return where the edges of each run begin, and of all end, shape (r + 1,)."""
+    return _edge_starts(runs.first, runs.last, runs.low, runs.high, first)
+
+
+def fill_edges(
     runs: Runs,
+    run_start: NDArray[np.int64],
     axis: int,
     points: InteriorPoints,
     first_point: int,
-    crossing_node: NDArray[np.int32],
+    ends: tuple[NDArray[np.float64], NDArray[np.int32]],
+    edges: NDArray[np.int32],
+    lengths: NDArray[np.float64],
     whole: NDArray[np.bool_],
-) -> NDArray[np.int32]:
-    """List the kept segments along one axis as pairs of nodes, shape (s, 2).
+) -> None:
+    """List the kept segments along one axis as edges.
 
     Parameters
     ----------
     runs : Runs
+    run_start : array, shape (r + 1,)
+        See `edge_starts`.
     axis : int
     points : InteriorPoints
     first_point : int
         The node of the first interior point.
-    crossing_node : array, shape (c,), int32
-        The node of each of the axis' crossings.
+    ends : tuple of two arrays, shape (c,)
+        Positions of the axis' crossings, and their nodes.
+    edges, lengths : arrays, shapes (e, 2) and (e,)
+        Written to.
     whole : array, shape (p,), bool
         Set true for each interior point whose segment to the next point along the axis
         is kept and not crossed.
     """
-    count = np.maximum(runs.last.astype(np.int64) - runs.first + 1, 0) - 1
-    count += (runs.low != NONE).astype(np.int64) + (runs.high != NONE)
-    start = np.concatenate([[0], np.cumsum(count)])
-    edges = np.empty((start[-1], 2), np.int32)
-    _list_segments(
-        runs.ray,
-        runs.first,
-        runs.last,
-        runs.low,
-        runs.high,
-        start,
-        axis,
-        points.resolution,
-        *points.table,
-        first_point,
-        crossing_node,
-        edges,
-        whole,
-    )
-    return edges
+    run = runs.ray, runs.first, runs.last, runs.low, runs.high, run_start
+    place = points.resolution, axis, first_point
+    _fill_edges(place, run, points.table, ends, edges, lengths, whole)
 
 
-@njit(cache=True)
-def _list_segments(
-    ray,
-    first_k,
-    last_k,
-    low,
-    high,
-    run_start,
-    axis,
-    resolution,
-    start,
-    first,
-    last,
-    number,
-    first_point,
-    crossing_node,
-    edges,
-    whole,
-):
+@njit(cache=True, nogil=True)
+def _edge_starts(first, last, low, high, start):
+    starts = np.empty(len(first) + 1, np.int64)
+    starts[0] = start
+    for r in range(len(first)):
+        stops = last[r] - first[r] + 1 + (low[r] != NONE) + (high[r] != NONE)
+        starts[r + 1] = starts[r] + stops - 1
+    return starts
+
+
+@njit(cache=True, nogil=True)
+def _fill_edges(place, runs, table, ends, edges, lengths, whole):
+    resolution, axis, first_point = place
+    ray, first, last, low, high, start = runs
+    position, crossing_node = ends
     for r in range(len(ray)):
-        e = run_start[r]
-        previous = crossing_node[low[r]] if low[r] != NONE else np.int32(NONE)
-        before = OUTSIDE
-        for k in range(first_k[r], last_k[r] + 1):
+        e = start[r]
+        here, before, at = NONE, OUTSIDE, 0.0  # the last stop: its node, its point, its place
+        if low[r] != NONE:
+            here, at = crossing_node[low[r]], position[low[r]]
+        for k in range(first[r], last[r] + 1):
             column, z = place_on_ray(axis, ray[r], k, resolution)
-            point = point_number(start, first, last, number, column, z)
-            if previous != NONE:
-                edges[e, 0], edges[e, 1] = previous, first_point + point
-                e += 1
+            point = point_number(table[0], table[1], table[2], table[3], column, z)
             if before != OUTSIDE:
                 whole[before] = True
-            before = point
-            previous = np.int32(first_point + point)
+            if here != NONE:
+                edges[e, 0], edges[e, 1] = here, first_point + point
+                lengths[e] = (k + 0.5) / resolution - at
+                e += 1
+            here, before, at = first_point + point, point, (k + 0.5) / resolution
         if high[r] != NONE:
-            edges[e, 0], edges[e, 1] = previous, crossing_node[high[r]]
+            edges[e, 0], edges[e, 1] = here, crossing_node[high[r]]
+            lengths[e] = position[high[r]] - at
 
 
 def diagonal_edges(

@@ -13,6 +13,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from ..threads import in_threads
+from .rays import in_space
 from .segments import Runs
 
 OUTSIDE = -1
@@ -48,36 +50,51 @@ class InteriorPoints:
         """What `point_number` looks a point up in."""
         return self.start, self.first, self.last, self.number
 
-    def positions(self) -> NDArray[np.float64]:
-        """Return the points in the unit cube, shape (len, 3)."""
-        index = np.empty((len(self), 3), np.int32)
-        _list_points(self.resolution, *self.table, index)
-        return (index + 0.5) / self.resolution
+    def put_positions(self, out: NDArray[np.float64]) -> None:
+        """Write where the points are in the unit cube into an array (len, 3)."""
+        _put_positions(self.resolution, *self.table, out)
 
 
 def interior_points(runs: Sequence[Runs], resolution: int) -> InteriorPoints:
     """Collect the lattice points of the runs along x, y and z."""
     along_z = runs[2]
-    filled = along_z.first <= along_z.last
-    column, first, last = (a[filled] for a in (along_z.ray, along_z.first, along_z.last))
-    points = _numbered(column, first, last, resolution)
+    points = _number_stretches(along_z.ray, along_z.first, along_z.last, resolution)
     # Where the surface runs through a lattice point, or an open mesh's winding number is
     # close to the threshold, a point may have kept segments along x or y alone.
-    missed = [_missed_points(runs[axis], axis, points) for axis in (0, 1)]
+    missed = in_threads(lambda axis: _missed_points(runs[axis], axis, points), (0, 1))
     extra = np.unique(np.concatenate(missed))
     if len(extra) == 0:
         return points
-    column = np.concatenate([column, (extra // resolution).astype(np.int32)])
-    first = np.concatenate([first, (extra % resolution).astype(np.int32)])
-    last = np.concatenate([last, (extra % resolution).astype(np.int32)])
+    single = (extra % resolution).astype(np.int32)
+    column = np.concatenate([along_z.ray, (extra // resolution).astype(np.int32)])
+    first, last = (np.concatenate([a, single]) for a in (along_z.first, along_z.last))
     order = np.lexsort((first, column))
-    return _numbered(column[order], first[order], last[order], resolution)
+    return _number_stretches(column[order], first[order], last[order], resolution)
 
 
-def _numbered(column: NDArray, first: NDArray, last: NDArray, resolution: int) -> InteriorPoints:
-    start = np.searchsorted(column, np.arange(resolution**2 + 1))
-    number = np.concatenate([[0], np.cumsum(last.astype(np.int64) - first + 1)])
-    return InteriorPoints(resolution, start, first, last, number)
+def _number_stretches(
+    column: NDArray, first: NDArray, last: NDArray, resolution: int
+) -> InteriorPoints:
+    return InteriorPoints(resolution, *_count_stretches(column, first, last, resolution))
+
+
+@njit(cache=True, nogil=True)
+def _count_stretches(column, first, last, resolution):
+    """Drop empty stretches, and count stretches and points up to each column and stretch."""
+    filled = 0
+    for s in range(len(first)):
+        filled += first[s] <= last[s]
+    start = np.zeros(resolution * resolution + 1, np.int64)
+    low, high = np.empty(filled, np.int32), np.empty(filled, np.int32)
+    number = np.zeros(filled + 1, np.int64)
+    n = 0
+    for s in range(len(first)):
+        if first[s] <= last[s]:
+            start[column[s] + 1] += 1
+            low[n], high[n] = first[s], last[s]
+            number[n + 1] = number[n] + last[s] - first[s] + 1
+            n += 1
+    return np.cumsum(start), low, high, number
 
 
 def _missed_points(runs: Runs, axis: int, points: InteriorPoints) -> NDArray[np.int64]:
@@ -101,16 +118,12 @@ def point_number(start, first, last, number, column, z):
 
 @njit(cache=True, inline="always")
 def place_on_ray(axis, ray, k, resolution):
-    """Return column and z of the lattice point k on a ray of `rays.AXES[axis]`."""
-    i, j = ray // resolution, ray % resolution
-    if axis == 0:
-        return k * resolution + i, j
-    if axis == 1:
-        return i * resolution + k, j
-    return ray, k
+    """Return column and z of the lattice point k on a ray."""
+    x, y, z = in_space(axis, ray // resolution, ray % resolution, k)
+    return x * resolution + y, z
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _find_missed(ray, first_k, last_k, axis, resolution, start, first, last, number, missed):
     count = 0
     for r in range(len(ray)):
@@ -123,12 +136,12 @@ def _find_missed(ray, first_k, last_k, axis, resolution, start, first, last, num
     return count
 
 
-@njit(cache=True)
-def _list_points(resolution, start, first, last, number, index):
+@njit(cache=True, nogil=True)
+def _put_positions(resolution, start, first, last, number, out):
     for column in range(resolution * resolution):
         for s in range(start[column], start[column + 1]):
             for z in range(first[s], last[s] + 1):
                 n = number[s] + z - first[s]
-                index[n, 0] = column // resolution
-                index[n, 1] = column % resolution
-                index[n, 2] = z
+                out[n, 0] = (column // resolution + 0.5) / resolution
+                out[n, 1] = (column % resolution + 0.5) / resolution
+                out[n, 2] = (z + 0.5) / resolution

@@ -4,9 +4,8 @@ Casting every ray of an axis is drawing the triangles seen along it: for each tr
 visit the lattice columns inside its projection. Each column line u = const meets the
 outline of a triangle in no edge or in two, and the ray at height v hits the triangle
 when it lies between these two. The height of an edge on a column line is computed from
-its ends in one fixed order, so two triangles that share the edge see the same number,
-to the last bit: whatever rounding does, a ray leaves a closed surface as often as it
-enters it.
+its left end, so two triangles that share the edge see the same number, to the last bit:
+whatever rounding does, a ray leaves a closed surface as often as it enters it.
 
 A ray exactly through an edge or a vertex counts as moved by infinitesimal amounts, far
 less along u than along v: a vertex on the column line lies left of it, and an edge at the
@@ -17,6 +16,7 @@ so the three families of rays see one and the same movement.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numba import njit
@@ -27,8 +27,8 @@ from ..threads import in_threads
 AXES = ((1, 2, 0), (0, 2, 1), (0, 1, 2))
 """For rays along x, y, z: the two axes (u, v) of the plane they cross, and their own."""
 
-STRIPS = 8
-"""Strips of columns drawn in parallel for each axis; more than cores, so that none idles."""
+STRIPS = 4
+"""Strips of columns drawn in parallel for each axis: enough that no core idles for long."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,7 +62,7 @@ def cast_rays(
     Parameters
     ----------
     vertices : array, shape (n, 3), float64
-        Unit-cube coordinates. The fixed order of an edge's ends is their numbering.
+        Unit-cube coordinates.
     faces : array, shape (m, 3), int32
     resolution : int
         R.
@@ -73,18 +73,48 @@ def cast_rays(
     -------
     Crossings
     """
-    u, v, along = AXES[axis]
-    projected = np.ascontiguousarray(vertices[:, [u, v, along]])
-    flip = -1 if axis == 1 else 1  # x cross z points along -y
-    bounds = np.arange(STRIPS + 1) * resolution // STRIPS
-    strips = in_threads(
-        lambda k: _draw_strip(projected, faces, resolution, flip, *bounds[k : k + 2]),
-        range(STRIPS),
-    )
-    counts, position, triangle, sign = (
-        np.concatenate(parts) for parts in zip(*strips, strict=True)
-    )
-    return Crossings(np.concatenate([[0], np.cumsum(counts)]), position, triangle, sign)
+    return _cast(vertices, faces, resolution, (axis,))[0]
+
+
+def cast_all_rays(
+    vertices: NDArray[np.float64], faces: NDArray[np.int32], resolution: int
+) -> list[Crossings]:
+    """Cast the rays along x, y and z, see `cast_rays`."""
+    return _cast(vertices, faces, resolution, (0, 1, 2))
+
+
+def _cast(vertices, faces, resolution, axes):
+    bounds = strip_bounds(resolution)
+    projected = {axis: np.ascontiguousarray(vertices[:, AXES[axis]]) for axis in axes}
+
+    def draw(part):
+        axis, first, last = part
+        flip = -1 if axis == 1 else 1  # x cross z points along -y
+        return _draw_strip(projected[axis], faces, resolution, flip, first, last)
+
+    strips = in_threads(draw, [(axis, *bound) for axis in axes for bound in bounds])
+    found = []
+    for k in range(len(axes)):
+        parts = zip(*strips[k * len(bounds) : (k + 1) * len(bounds)], strict=True)
+        counts, position, triangle, sign = (np.concatenate(part) for part in parts)
+        start = np.concatenate([[0], np.cumsum(counts)])
+        found.append(Crossings(start, position, triangle, sign))
+    return found
+
+
+def strip_bounds(resolution: int) -> list[tuple[int, int]]:
+    """Cut the columns 0 to R - 1 into strips, which can be worked on in parallel."""
+    return list(pairwise(np.arange(STRIPS + 1) * resolution // STRIPS))
+
+
+@njit(cache=True, inline="always")
+def in_space(axis, u, v, along):
+    """Return (x, y, z) of what the rays along an axis see as (u, v, along)."""
+    if axis == 0:
+        return along, u, v
+    if axis == 1:
+        return u, along, v
+    return u, v, along
 
 
 @njit(cache=True, nogil=True)
@@ -166,11 +196,10 @@ def column_span(vertices, faces, f, pu):
         a_left = vertices[a, 0] <= pu
         if a_left == (vertices[b, 0] <= pu):
             continue
-        v, along = edge_height(vertices, min(a, b), max(a, b), pu)
         if a_left:
-            right_v, right_a = v, along
+            right_v, right_a = edge_height(vertices, a, b, pu)
         else:
-            left_v, left_a = v, along
+            left_v, left_a = edge_height(vertices, b, a, pu)
     if right_v <= left_v:
         return right_v, right_a, left_v, left_a, 1
     return left_v, left_a, right_v, right_a, -1
@@ -178,7 +207,10 @@ def column_span(vertices, faces, f, pu):
 
 @njit(cache=True, inline="always")
 def edge_height(vertices, a, b, pu):
-    """Return v and the third coordinate of the edge a, b at u = pu; a < b, always."""
+    """Return v and the third coordinate of an edge at u = pu; a is its end on the left.
+
+    The left end, on which a column line may run, is thus met to the last bit.
+    """
     width = vertices[b, 0] - vertices[a, 0]
     step = pu - vertices[a, 0]
     v = vertices[a, 1] + step * (vertices[b, 1] - vertices[a, 1]) / width

@@ -7,6 +7,7 @@ stored as a run, so memory grows with the surface, not with the volume.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -15,12 +16,25 @@ from numba import njit
 from numpy.typing import NDArray
 
 from ..threads import in_threads
-from .caps import Caps
-from .holes import BLOCK, UNSURE, Needs
-from .rays import AXES, STRIPS, Crossings, cast_rays, first_at_least, grown
-from .winding import Boundary, boundary_turns
+from .boundary import Boundary
+from .caps import cap_holes
+from .clusters import view
+from .holes import (
+    BLOCK,
+    NEED,
+    UNSURE,
+    code_at,
+    find_doubt,
+    need_at,
+    need_between,
+    on_plane,
+)
+from .rays import AXES, Crossings, cast_all_rays, first_at_least, grown, in_space, strip_bounds
+from .winding import boundary_turns
 
 NONE = -1
+MANY = 1000
+"""Boundary edges above which approximating their sum first is faster than summing them."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,16 +46,15 @@ class Runs:
 
     Parameters
     ----------
-    ray, first, last : arrays, shape (r,), int32
-    low, high : arrays, shape (r,), int64
-        Indices into the axis' `Crossings`, or -1.
+    ray, first, last, low, high : arrays, shape (r,), int32
+        `low` and `high` are indices into the axis' `Crossings`, or -1.
     """
 
     ray: NDArray[np.int32]
     first: NDArray[np.int32]
     last: NDArray[np.int32]
-    low: NDArray[np.int64]
-    high: NDArray[np.int64]
+    low: NDArray[np.int32]
+    high: NDArray[np.int32]
 
 
 def kernels_are_compiled() -> bool:
@@ -51,151 +64,153 @@ def kernels_are_compiled() -> bool:
 
 def find_runs(
     vertices: NDArray[np.float64],
-    crossings: Crossings,
+    crossings: Sequence[Crossings],
     boundary: Boundary,
-    caps: Caps,
-    needs: Needs,
     resolution: int,
-    axis: int,
     winding_threshold: float,
-) -> Runs:
-    """Find the kept segments along one axis.
+) -> list[Runs]:
+    """Find the kept segments along x, y and z.
 
     Parameters
     ----------
-    vertices : array, shape (n, 3)
+    vertices : array, shape (n, 3), float64
         Unit-cube coordinates.
-    crossings : Crossings
-        Of the rays along `axis`.
+    crossings : sequence of Crossings
+        Of the rays along x, y and z.
     boundary : Boundary
-    caps : Caps
-        Of that boundary.
-    needs : Needs
-        Of those caps.
-    resolution, axis : int
+        Of the mesh.
+    resolution : int
     winding_threshold : float
         tau: segments with at least this winding number are kept.
     """
-    u, v, along = AXES[axis]
-    closing = cast_rays(caps.vertices, caps.faces, resolution, axis)
-    weight = closing.sign * caps.count[closing.triangle]
-    projected = np.ascontiguousarray(vertices[:, [u, v, along]])
-    # The blocks as this family of rays sees them: by u, v, and along.
-    seen = [
-        np.ascontiguousarray(a)
-        for a in (
-            needs.coarse.transpose(u, v, along),
-            needs.row.transpose(u, v, along),
-            needs.fine.transpose(0, u + 1, v + 1, along + 1),
-        )
-    ]
-    lowest, highest = seen[0].min(axis=2), seen[0].max(axis=2)
-    calm = np.where((lowest == highest) & (highest < UNSURE), lowest, np.int8(UNSURE))
-    turn = -1.0 if axis == 1 else 1.0  # (x, z, y) is left-handed
-    inputs = (
-        (resolution, winding_threshold, turn, projected, boundary.edges, boundary.count),
-        (calm, *seen),
-        (crossings.start, crossings.position, crossings.sign),
-        (closing.start, closing.position, weight),
-    )
-    strips = np.linspace(0, resolution**2, STRIPS + 1).astype(np.int64)
-    rows = in_threads(lambda k: _walk_rays(*inputs, strips[k], strips[k + 1]), range(STRIPS))
-    ray, first, last, low, high = np.concatenate(rows).T
-    ray, first, last = (a.astype(np.int32) for a in (ray, first, last))
-    return Runs(ray, first, last, low.copy(), high.copy())
+    caps = cap_holes(vertices, boundary)
+    closing = cast_all_rays(caps.vertices, caps.faces, resolution)
+    doubt, clusters = find_doubt(caps, resolution, winding_threshold)
+    shared = resolution, winding_threshold, doubt, clusters, boundary
+    views = []
+    for axis, (u, v, along) in enumerate(AXES):
+        needs = doubt.coarse.min(axis=along)
+        calm = np.where(needs == doubt.coarse.max(axis=along), needs, 0)
+        calm = np.where(calm < 0, calm - NEED, UNSURE).astype(np.int32)
+        found = tuple((c.start, c.position, c.sign) for c in (crossings[axis], closing[axis]))
+        views.append((axis, np.ascontiguousarray(vertices[:, [u, v, along]]), calm, *found))
+
+    strips = strip_bounds(resolution)
+    work = [(seen, i * resolution, j * resolution) for seen in views for i, j in strips]
+    rows = in_threads(lambda part: _walk_rays(shared, *part), work)
+    count = len(strips)
+    of_axes = [np.concatenate(rows[count * k : count * (k + 1)]) for k in range(3)]
+    return [Runs(*np.ascontiguousarray(of_axis.T)) for of_axis in of_axes]
 
 
 @njit(cache=True, nogil=True)
-def _walk_rays(surface, needs, crossings, closing, first_ray, last_ray):
+def _walk_rays(shared, seen, first_ray, last_ray):
     """List the runs of a strip of rays, as rows (ray, first, last, low, high)."""
-    resolution = surface[0]
-    tau = surface[1]
-    rows = np.empty((256, 5), np.int64)
+    resolution = shared[0]
+    doubt = shared[2]
+    axis = seen[0]
+    calm, (start, position, sign), (cap_start, cap_position, cap_sign) = seen[2:]
+    rows = np.empty((256, 5), np.int32)
     count = 0
-    line = np.empty(resolution, np.int8)
+    torn = np.empty(2, np.int64)
     for r in range(first_ray, last_ray):
-        begin, end = crossings[0][r], crossings[0][r + 1]
+        begin, end = start[r], start[r + 1]
+        passed, last_cap = cap_start[r], cap_start[r + 1]
         chi = 0
         for c in range(begin, end):
-            chi += crossings[2][c]
+            chi += sign[c]
         # Far from holes, no winding number changes between two crossings.
-        need = needs[0][r // resolution // BLOCK, r % resolution // BLOCK]
-        calm = need < UNSURE and closing[0][r] == closing[0][r + 1]
-        if calm and begin == end and chi < need:
+        i, j = r // resolution, r % resolution
+        need = calm[i // BLOCK, j // BLOCK]
+        is_calm = need < UNSURE and passed == last_cap
+        if is_calm and begin == end and chi < need:
             continue
-        if not calm:
-            _needs_along(needs, r, line)
-        passed = closing[0][r]
         lid = 0  # crossings ahead with the caps, counted like chi
-        for c in range(passed, closing[0][r + 1]):
-            lid += closing[2][c]
+        for c in range(passed, last_cap):
+            lid += cap_sign[c]
+        torn[0] = NONE
         k = 0
         # Gap by gap: from the crossing c - 1 (or the cube's wall) to the crossing c.
         for c in range(begin, end + 1):
             if c > begin:
-                chi -= crossings[2][c - 1]
-            before = crossings[1][c - 1] if c > begin else 0.0
-            after = crossings[1][c] if c < end else 1.0
+                chi -= sign[c - 1]
+            before = position[c - 1] if c > begin else 0.0
+            after = position[c] if c < end else 1.0
             beyond = first_at_least(after, resolution) if c < end else resolution
-            if calm:
-                # From the wall straight to a crossing there is no segment.
-                if chi >= need and (beyond > k or begin < c < end):
-                    if count == len(rows):
-                        rows = grown(rows)
-                    rows[count, 0], rows[count, 1], rows[count, 2] = r, k, beyond - 1
-                    rows[count, 3] = c - 1 if c > begin else NONE
-                    rows[count, 4] = c if c < end else NONE
-                    count += 1
-                k = beyond
-                continue
             # Segment s of the gap ends at lattice point s; the last one at crossing c.
-            is_open = False
-            for s in range(k, beyond + 1):
-                kept = False
-                if (s > k or c > begin) and (s < beyond or c < end):  # not to a wall
+            s, is_open = k, False
+            while s <= beyond:
+                if is_calm:
+                    kept, until = chi >= need, beyond + 1
+                elif (s == k and c == begin) or (s == beyond and c == end):  # to a wall
+                    kept, until = False, s + 1
+                else:
                     left = before if s == k else (s - 0.5) / resolution
                     right = after if s == beyond else (s + 0.5) / resolution
                     middle = 0.5 * (left + right)
-                    while passed < closing[0][r + 1] and closing[1][passed] <= middle:
-                        lid -= closing[2][passed]
+                    while passed < last_cap and cap_position[passed] <= middle:
+                        lid -= cap_sign[passed]
                         passed += 1
-                    need = line[min(int(middle * resolution), resolution - 1)]
-                    if need < UNSURE:
-                        kept = chi + lid >= need
+                    cell = min(int(middle * resolution), resolution - 1)
+                    code, is_block = code_at(doubt, in_space(axis, i, j, cell))
+                    if code < 0:
+                        # So it stays to the end of the block, or the next crossing.
+                        kept, until = chi + lid >= code - NEED, cell + 1
+                        if is_block:
+                            ahead = cap_position[passed] if passed < last_cap else 1.0
+                            until = min((cell // BLOCK + 1) * BLOCK, int(ahead * resolution))
                     else:
-                        kept = chi + _boundary_turns(surface, r, middle) >= tau
+                        p = (i + 0.5) / resolution, (j + 0.5) / resolution, middle
+                        kept, until = _is_inside(shared, seen, p, code, chi, lid, torn), cell + 1
+                    until = max(s + 1, min(until, beyond + (c < end)))
                 if kept and not is_open:
                     if count == len(rows):
                         rows = grown(rows)
                     rows[count, 0] = r
                     rows[count, 1] = k if s == k else s - 1
-                    rows[count, 3] = c - 1 if s == k else NONE
-                # A run ends before a dropped segment, and at every crossing: what follows
-                # starts from the same node as a run of its own.
-                if (is_open and not kept) or (kept and s == beyond):
-                    rows[count, 2] = s - 1
-                    rows[count, 4] = c if kept else NONE
+                    rows[count, 3] = c - 1 if s == k and c > begin else NONE
+                elif is_open and not kept:
+                    rows[count, 2], rows[count, 4] = s - 1, NONE
                     count += 1
-                is_open = kept
+                s, is_open = until, kept
+            # A run ends at every crossing: what follows starts there as a run of its own.
+            # From the wall straight to a crossing there is no segment.
+            if is_open and (beyond > k or begin < c < end):
+                rows[count, 2] = beyond - 1
+                rows[count, 4] = c if c < end else NONE
+                count += 1
             k = beyond
     return rows[:count]
 
 
 @njit(cache=True)
-def _needs_along(needs, r, line):
-    """Put what each cell along ray r needs into `line`."""
-    _, coarse, row, fine = needs
-    resolution = len(line)
-    i, j = r // resolution, r % resolution
-    for k in range(resolution):
-        line[k] = coarse[i // BLOCK, j // BLOCK, k // BLOCK]
-        if line[k] == UNSURE:
-            block = row[i // BLOCK, j // BLOCK, k // BLOCK]
-            line[k] = fine[block, i % BLOCK, j % BLOCK, k % BLOCK]
+def _is_inside(shared, seen, p, code, chi, lid, torn):
+    """Tell whether a midpoint is inside, in a cell that is not so altogether.
 
-
-@njit(cache=True)
-def _boundary_turns(surface, r, height):
-    resolution, _, turn, vertices, edges, count = surface
-    pu, pv = (r // resolution + 0.5) / resolution, (r % resolution + 0.5) / resolution
-    return turn * boundary_turns(vertices, edges, count, pu, pv, height)
+    `torn` keeps the last torn block that the ray came through, and the number of caps
+    ahead that its plane goes with.
+    """
+    _, tau, doubt, clusters, boundary = shared
+    axis, vertices = seen[:2]
+    point = in_space(axis, p[0], p[1], p[2])
+    turn = -1.0 if axis == 1 else 1.0  # (x, z, y) is left-handed
+    if code < UNSURE:
+        value, error = on_plane(doubt, code, point)
+        need = need_between(tau + value, error)
+        if need < UNSURE:
+            if doubt.planes[code, 8] == 0:
+                return chi + lid >= need
+            if torn[0] != code:
+                turns = np.inf
+                if len(boundary.loop) > MANY:
+                    share, _, off, _ = view(clusters, point, 0.0, 1e-2, 0.5)
+                    turns = lid - share if off + error < 0.5 else np.inf
+                if turns == np.inf:
+                    turns = turn * boundary_turns(vertices, boundary, p[0], p[1], p[2])
+                torn[0], torn[1] = code, np.int64(np.round(turns + value))
+            return chi + torn[1] >= need
+    if len(boundary.loop) > MANY:
+        need = need_at(clusters, point, tau)
+        if need < UNSURE:
+            return chi + lid >= need
+    return chi + turn * boundary_turns(vertices, boundary, p[0], p[1], p[2]) >= tau

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
-from scipy.spatial import cKDTree
 
 WELD_TOLERANCE = 1e-6
 """Of the bounding box's longest side: far above float32 rounding, far below any detail."""
+
+SKEW = 0.7548777, 0.5698403, 0.3183099
+"""Points are sorted along this direction. It is shorter than 1, so no two points are further
+apart along it than in space; and it lies askew to walls and floors, so few share a place."""
 
 
 def weld(
@@ -17,7 +19,8 @@ def weld(
 ) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
     """Merge points that lie within `tolerance` of each other, also in chains.
 
-    The result is sorted by coordinates, so it does not depend on the order of the input.
+    The result is sorted along a skew direction, so it does not depend on the order of the
+    input.
 
     Parameters
     ----------
@@ -28,25 +31,79 @@ def weld(
     Returns
     -------
     welded : array, shape (k, 3)
-        One of the given points for each group: the first by coordinates.
+        One of the given points for each group: the first along that direction.
     index : array, shape (n,), int32
         The group of each point.
     """
-    order = np.lexsort(points.T[::-1])
-    ordered = points[order]
-    first = np.ones(len(points), bool)
-    first[1:] = (ordered[1:] != ordered[:-1]).any(axis=1)
-    distinct = ordered[first]
+    x, y, z = points.T
+    place = SKEW[0] * x + SKEW[1] * y + SKEW[2] * z
+    order = np.argsort(place)
+    place, ordered = place[order], points[order]
+    _sort_ties(place, ordered, order)
+    # Rounding moves a place by less than this.
+    slack = tolerance + 8 * np.finfo(float).eps * np.abs(points).max(initial=0)
+    welded, group = _merge(place, ordered, tolerance, slack)
     index = np.empty(len(points), np.int32)
-    index[order] = np.cumsum(first) - 1
+    index[order] = group
+    return welded, index
 
-    pairs = cKDTree(distinct).query_pairs(tolerance, output_type="ndarray")
-    if len(pairs) == 0:
-        return distinct, index
-    shape = (len(distinct), len(distinct))
-    links = coo_array((np.ones(len(pairs), bool), (pairs[:, 0], pairs[:, 1])), shape=shape)
-    # Labels count up in the order of each group's first point, so they stay sorted.
-    labels = connected_components(links, directed=False)[1]
-    _, lowest = np.unique(labels, return_index=True)
-    rank = np.argsort(np.argsort(lowest))
-    return distinct[np.sort(lowest)], rank[labels[index]].astype(np.int32)
+
+@njit(cache=True, nogil=True)
+def _sort_ties(place, points, order):
+    """Sort points at the same place along the direction by their coordinates."""
+    for i in range(1, len(place)):
+        k = i
+        while k > 0 and place[k - 1] == place[k] and _precedes(points[k], points[k - 1]):
+            for axis in range(3):
+                points[k, axis], points[k - 1, axis] = points[k - 1, axis], points[k, axis]
+            order[k], order[k - 1] = order[k - 1], order[k]
+            k -= 1
+
+
+@njit(cache=True, inline="always")
+def _precedes(a, b):
+    if a[0] != b[0]:
+        return a[0] < b[0]
+    if a[1] != b[1]:
+        return a[1] < b[1]
+    return a[2] < b[2]
+
+
+@njit(cache=True, nogil=True)
+def _merge(place, points, tolerance, slack):
+    """Return the first point of each group, and the group of each point."""
+    count = len(points)
+    parent = np.arange(count)
+    for i in range(count):
+        j = i + 1
+        while j < count and place[j] - place[i] <= slack:
+            x = points[j, 0] - points[i, 0]
+            y = points[j, 1] - points[i, 1]
+            z = points[j, 2] - points[i, 2]
+            squared = x * x + y * y + z * z
+            if squared <= tolerance * tolerance:
+                a, b = _root(parent, i), _root(parent, j)
+                parent[max(a, b)] = min(a, b)
+            if squared == 0:  # j, at the very same point, meets whatever follows
+                break
+            j += 1
+    group = np.empty(count, np.int32)
+    welded = np.empty((count, 3))
+    groups = 0
+    for i in range(count):
+        first = _root(parent, i)
+        if first == i:
+            group[i] = groups
+            welded[groups] = points[i]
+            groups += 1
+        else:
+            group[i] = group[first]
+    return welded[:groups], group
+
+
+@njit(cache=True, inline="always")
+def _root(parent, i):
+    while parent[i] != i:
+        parent[i] = parent[parent[i]]
+        i = parent[i]
+    return i

@@ -15,58 +15,22 @@ the mesh by a curtain that the ray cannot meet.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numba import njit
 from numpy.typing import ArrayLike, NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from ..errors import ParameterError
 from ..rig import TriangleMesh
 from ..threads import in_threads, parts
+from .boundary import find_boundary
 from .lattice import Lattice
 from .rays import column_span, edge_height, height_between
 from .weld import weld
 
 INFINITESIMAL = 1e-150
 """Smaller than any distance; its products with them do not vanish."""
-
-
-@dataclass(frozen=True, eq=False)
-class Boundary:
-    """The boundary chain of a mesh: what its faces leave open.
-
-    Parameters
-    ----------
-    edges : array, shape (e, 2), int32
-        Vertex indices, lower one first, sorted.
-    count : array, shape (e,), float64
-        Uses by the faces from lower to higher index less those the other way; never 0.
-    component : array, shape (e,), int32
-        Edges that hang together: a hole, or several that touch.
-    """
-
-    edges: NDArray[np.int32]
-    count: NDArray[np.float64]
-    component: NDArray[np.int32]
-
-
-def find_boundary(faces: NDArray[np.int32]) -> Boundary:
-    """Find the boundary chain of welded faces, shape (m, 3); empty on a closed mesh."""
-    ends = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]).astype(np.int64)
-    size = int(faces.max()) + 1
-    key = ends.min(axis=1) * size + ends.max(axis=1)
-    direction = np.sign(ends[:, 1] - ends[:, 0])
-    keys, inverse = np.unique(key, return_inverse=True)
-    count = np.bincount(inverse, weights=direction)
-    keys, count = keys[count != 0], count[count != 0]
-    edges = np.stack([keys // size, keys % size], axis=1).astype(np.int32)
-    links = coo_array((np.ones(len(edges), bool), (edges[:, 0], edges[:, 1])), shape=(size, size))
-    labels = connected_components(links, directed=False)[1][edges[:, 0]]
-    component = np.unique(labels, return_inverse=True)[1].astype(np.int32)
-    return Boundary(edges, count, component)
+TINY = 1e-100
+"""Numbers this small are scaled before their products vanish."""
 
 
 def winding_number(mesh: TriangleMesh, points: ArrayLike) -> NDArray[np.float64]:
@@ -107,7 +71,7 @@ def winding_number(mesh: TriangleMesh, points: ArrayLike) -> NDArray[np.float64]
     boundary = find_boundary(faces)
     points = lattice.to_unit(points)
     cells, start, listed = _bin_faces(vertices, faces)
-    surface = vertices, faces, cells, start, listed, boundary.edges, boundary.count
+    surface = vertices, faces, cells, start, listed, boundary
     return np.concatenate(
         in_threads(lambda part: _number_at(points[part], *surface), parts(len(points)))
     )
@@ -138,7 +102,7 @@ def _list_faces(low, high, cells, cursor, listed):
 
 
 @njit(cache=True, nogil=True)
-def _number_at(points, vertices, faces, cells, start, listed, edges, count):
+def _number_at(points, vertices, faces, cells, start, listed, boundary):
     number = np.empty(len(points))
     for q in range(len(points)):
         pu, pv, height = points[q, 0], points[q, 1], points[q, 2]
@@ -151,46 +115,67 @@ def _number_at(points, vertices, faces, cells, start, listed, edges, count):
                     continue
                 if height_between(low_v, low_a, high_v, high_a, pv) > height:
                     chi += side
-        number[q] = chi + boundary_turns(vertices, edges, count, pu, pv, height)
+        number[q] = chi + boundary_turns(vertices, boundary, pu, pv, height)
     return number
 
 
 @njit(cache=True)
-def boundary_turns(vertices, edges, count, pu, pv, height):
+def boundary_turns(vertices, boundary, pu, pv, height):
     """Return what the boundary adds to the signed count of crossings ahead, in full turns.
 
     The ray runs from (pu, pv, height) along the third coordinate of the vertices.
     """
-    turns = 0.0
-    for e in range(len(edges)):
-        a, b = edges[e, 0], edges[e, 1]
-        au, av, aw = vertices[a, 0] - pu, vertices[a, 1] - pv, vertices[a, 2] - height
-        bu, bv, bw = vertices[b, 0] - pu, vertices[b, 1] - pv, vertices[b, 2] - height
-        # A ray right through a vertex passes it at an infinitesimal distance, see rays.py.
-        if au == 0 and av == 0:
-            av = -INFINITESIMAL
-        if bu == 0 and bv == 0:
-            bv = -INFINITESIMAL
-        # The formula's real part is (|a| + a.d)(|b| + b.d) + au bu + av bv, free of the
-        # cancellation near the ray that its four terms suffer.
-        real = _less_height(au, av, aw) * _less_height(bu, bv, bw) + au * bu + av * bv
-        imaginary = av * bu - au * bv
-        if real < 0:
-            # The edge lies ahead: the angle jumps by a turn where the ray runs into it,
-            # and must jump exactly where the count of crossings does.
-            imaginary = abs(imaginary) * _side(vertices, a, b, pu, pv, imaginary)
-        turns += count[e] * np.arctan2(imaginary, real)
-    return turns / (2 * np.pi)
+    loop, start = boundary
+    # Each edge's angle is that of a complex number, their sum that of the numbers' product
+    # (x, y), but for whole turns: two angles on one side of the real axis have made one if
+    # their sum does not stay there.
+    x, y, turns = 1.0, 0.0, 0.0
+    for k in range(len(start) - 1):
+        b = loop[start[k + 1] - 1]
+        bu, bv, less_b = _seen(vertices, b, pu, pv, height)
+        for e in range(start[k], start[k + 1]):
+            a, au, av, less_a = b, bu, bv, less_b
+            b = loop[e]
+            bu, bv, less_b = _seen(vertices, b, pu, pv, height)
+            # The formula's real part is (|a| + a.d)(|b| + b.d) + au bu + av bv, free of
+            # the cancellation near the ray that its four terms suffer.
+            real = less_a * less_b + au * bu + av * bv
+            imaginary = av * bu - au * bv
+            if real < 0:
+                # The edge lies ahead: the angle jumps by a turn where the ray runs into
+                # it, and must jump exactly where the count of crossings does.
+                side = _side(vertices, a, b, pu, pv, imaginary)
+                if imaginary == 0:
+                    turns += side / 2
+                    continue
+                imaginary = abs(imaginary) * side
+            size = abs(real) + abs(imaginary)
+            if size == 0:
+                continue  # the point lies on the edge
+            if size < TINY:
+                real, imaginary = real / size, imaginary / size
+            was, y = y, x * imaginary + y * real + 0.0  # never -0.0
+            x = x * real - was * imaginary
+            if was >= 0 and imaginary >= 0 and y < 0:
+                turns += 1
+            elif was < 0 and imaginary < 0 and y >= 0:
+                turns -= 1
+            size = abs(x) + abs(y)
+            if size < TINY:
+                x, y = x / size, y / size
+    return turns + np.arctan2(y, x) / (2 * np.pi)
 
 
 @njit(cache=True, inline="always")
-def _less_height(u, v, w):
-    """Return |(u, v, w)| - w."""
+def _seen(vertices, a, pu, pv, height):
+    """Return u and v of a vertex seen from the ray's start, and its distance less its height."""
+    u, v, w = vertices[a, 0] - pu, vertices[a, 1] - pv, vertices[a, 2] - height
+    # A ray right through a vertex passes it at an infinitesimal distance, see rays.py.
+    if u == 0 and v == 0:
+        v = -INFINITESIMAL
     beside = u * u + v * v
     length = np.sqrt(beside + w * w)
-    if w > 0:
-        return beside / (length + w)
-    return length - w
+    return u, v, beside / (length + w) if w > 0 else length - w
 
 
 @njit(cache=True)
@@ -198,7 +183,8 @@ def _side(vertices, a, b, pu, pv, imaginary):
     """Return on which side of the edge a -> b the ray passes: +1 right, -1 left."""
     a_left = vertices[a, 0] <= pu
     if a_left != (vertices[b, 0] <= pu):
-        above = edge_height(vertices, a, b, pu)[0] > pv
+        left, right = (a, b) if a_left else (b, a)
+        above = edge_height(vertices, left, right, pu)[0] > pv
         return 1.0 if above == a_left else -1.0
     if imaginary != 0:
         return np.sign(imaginary)
