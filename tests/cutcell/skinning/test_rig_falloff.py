@@ -9,6 +9,7 @@ from cutcell.compare import compare
 from cutcell.metrics import deformation_error, vertex_shares, weight_l1
 from cutcell.skinning.diffusion import SHARPNESS, diffuse
 from cutcell.skinning.laplacian import cotangent_laplacian, vertex_areas
+from cutcell.skinning.rig_falloff import TOWARDS, _facing
 from tests import meshes
 from tests.bars import grid_box
 
@@ -43,6 +44,17 @@ def test_thicker_limbs_bend_over_a_longer_stretch():
         return np.interp(-0.1, -first, x) - np.interp(-0.9, -first, x)
 
     assert stretch(0.3) > 1.5 * stretch(0.1)
+
+
+def test_skin_is_given_to_the_bone_that_it_looks_away_from():
+    point, start, end = np.zeros(3), np.array([[0, 1.0, -1]]), np.array([[0, 1.0, 1]])
+    for normal, expected in (([0, -1, 0], 1), ([0, 1, 0], TOWARDS), ([1, 0, 0], (1 + TOWARDS) / 2)):
+        found = _facing(point, np.array(normal, float), start, end, 0, 1)
+        assert found == pytest.approx(expected)
+    # Of a joint's bones the nearest counts; a place on the bone itself looks at nothing.
+    both = np.array([[0, 1.0, 0], [0, -2.0, 0]])
+    assert _facing(point, np.array([0, 1.0, 0]), both, both, 0, 2) == pytest.approx(TOWARDS)
+    assert _facing(start[0], np.ones(3), start, end, 0, 1) == pytest.approx((1 + TOWARDS) / 2)
 
 
 def test_diffusion_is_the_solution_of_its_equation():
