@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 from PIL import Image
-from playwright.sync_api import sync_playwright
+from playwright.sync_api import expect, sync_playwright
 
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT))
@@ -115,38 +115,56 @@ def page() -> None:
             visit.button("Toggle theme").click()
             visit.page.mouse.move(700, 895)
         panels(visit)
+        comparisons(visit)
         visit.close()
         browser.close()
 
 
 def panels(visit: Visit) -> None:
     """Take a picture of each thing that docs/page.md tells of."""
-
-    def write(name: str) -> None:
-        visit.page.mouse.move(700, 895)
-        visit.settle()
-        visit.page.wait_for_timeout(1200)
-        visit.page.screenshot(path=PICTURES / f"panel-{name}.png")
-
     visit.panel("Graph")
     visit.switch("One slice and its rays")
     visit.page.mouse.move(860, 330)
     for _ in range(5):
         visit.page.mouse.wheel(0, -300)
-    write("slice")
+    take(visit, "slice")
     visit.page.mouse.dblclick(1300, 800)
     visit.panel("Distance")
     visit.click_vertex(TOE)
-    write("distance")
+    take(visit, "distance")
     visit.page.keyboard.press("Escape")
     visit.button("Cut Z").click()
     visit.switch("Wavefront")
-    write("wave")
+    take(visit, "wave")
     visit.button("Whole").click()
     visit.panel("Weights")
     visit.choose("Colours show", "Difference to the file's weights")
     visit.click_vertex(CHEST)
-    write("weights")
+    take(visit, "weights")
+
+
+def comparisons(visit: Visit) -> None:
+    """Take a picture of each panel that holds other weights against ours."""
+    visit.page.keyboard.press("Escape")
+    visit.panel("Pose")
+    worst = visit.page.get_by_role("list", name="The worst turns").get_by_role("button")
+    worst.first.click()
+    visit.button("Side by side").click()
+    take(visit, "pose")
+    visit.button("Rest pose").click()
+    visit.panel("Compare")
+    row = visit.page.get_by_role("row").filter(has_text="Euclidean")
+    expect(row.get_by_role("cell").nth(3)).not_to_have_text("", timeout=60_000)
+    visit.choose("Bone", "upper_arm.L")
+    take(visit, "compare")
+
+
+def take(visit: Visit, name: str) -> None:
+    """Take a picture of a panel once it has come to rest."""
+    visit.page.mouse.move(700, 895)
+    visit.settle()
+    visit.page.wait_for_timeout(1200)
+    visit.page.screenshot(path=PICTURES / f"panel-{name}.png")
 
 
 def shrink(path: Path) -> None:

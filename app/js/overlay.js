@@ -12,8 +12,8 @@ const STYLE = `
 .card { position: absolute; color: var(--ink); background: var(--card); pointer-events: none;
   backdrop-filter: blur(6px); border-radius: 8px; font-size: 12px; line-height: 1.3; }
 .legend { left: 16px; bottom: 16px; width: 208px; padding: 10px 12px 9px; }
-.legend b { display: block; font-weight: 500; margin-bottom: 6px; overflow: hidden;
-  text-overflow: ellipsis; white-space: nowrap; }
+.legend b { display: -webkit-box; -webkit-line-clamp: 2; -webkit-box-orient: vertical;
+  font-weight: 500; margin-bottom: 6px; overflow: hidden; overflow-wrap: anywhere; }
 .legend canvas { width: 100%; height: 8px; border-radius: 4px; display: block; }
 .legend span { display: flex; justify-content: space-between; margin-top: 4px; opacity: .75;
   font-variant-numeric: tabular-nums; }
@@ -22,7 +22,7 @@ const STYLE = `
 .legend p::before { content: ""; width: 14px; height: 8px; border-radius: 3px; flex: none;
   background: var(--swatch); }
 .bone { padding: 4px 8px; transform: translate(14px, -110%); white-space: nowrap; }
-.caption { padding: 5px 12px; transform: translateX(-50%); white-space: nowrap; overflow: hidden;
+.caption { padding: 5px 12px; white-space: nowrap; overflow: hidden;
   text-overflow: ellipsis; font-weight: 500; }
 .seam { position: absolute; background: var(--ink); opacity: .14; pointer-events: none; }
 .gizmo { position: absolute; inset: 0; width: 100%; height: 100%; pointer-events: none; }
@@ -154,7 +154,7 @@ class Overlay {
       const [left, top, width, height] = tiles[i]
       const px = (value) => `${value}px`
       put("card caption", text, {
-        left: px(left + width / 2), top: px(top + 12), maxWidth: px(width - 24),
+        left: px(left + 14), top: px(top + 14), maxWidth: px(width - 28),
         boxSizing: "border-box",
       })
       if (left > 0) { put("seam", "", {left: px(left), top: px(top), width: "1px", height: px(height)}) }

@@ -61,7 +61,8 @@ def compare(session: Session) -> pmui.Column:
 
 def _minus(state: State) -> pmui.Select:
     select = pmui.Select(
-        label="Difference to", options={}, size="small", margin=GAP, sizing_mode="stretch_width",
+        label="Difference to", options={}, size="small", margin=(10, 0, 4, 0),
+        sizing_mode="stretch_width",
         visible=when(lambda field: field != "error", state.param.compare_field),
     )  # fmt: skip
 

@@ -26,6 +26,7 @@ TITLES = {
     "bbw": "Bounded biharmonic",
     "cutcell": "Cut-cell, the paper's",
     "cutcell_any": "Cut-cell, any angle",
+    "cutcell_rig": "Cut-cell, to animate with",
     "voxel": "Voxel binding",
     "voxel_unirig": "Voxel binding, UniRig's",
 }
