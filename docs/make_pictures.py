@@ -139,7 +139,6 @@ def panels(visit: Visit) -> None:
     visit.button("Whole").click()
     visit.panel("Weights")
     visit.choose("Colours show", "Difference to the file's weights")
-    visit.page.wait_for_timeout(1000)  # the menu's curtain takes clicks while it opens
     visit.click_vertex(CHEST)
     take(visit, "weights")
 
