@@ -72,7 +72,7 @@ def leak_table(
         ["at the hip, from forearm and hand", "median", "nearest or most"],
         f"The demo biped, R = {resolution}, {len(at)} vertices of thigh and hips within "
         f"{NEAR:.0%} of the longest side of the arm. Distances are parts of the longest side. "
-        "Weights are of the cage's nearest bones, and of the paper's kernel for ours.",
+        "The cage's vertices follow their nearest bone; ours is `bind` as it is by default.",
     )
     for name, values in found.items():
         least = values[at].min() if "distance" in name else values[at].max()

@@ -4,8 +4,8 @@
     python -m benchmarks.quality --methods A,B         these again, keep what is known of others
     python -m benchmarks.quality RIG... [--methods A,B] [--json FILE] [--plot FILE]
 
-The first form takes about half an hour on two cores, most of it tetrahedra, and keeps what it has
-in docs/quality.json after each rig: with --resume it goes on after what is there. It measures
+The first form takes an hour or more, most of it tetrahedra, and keeps what it has in
+docs/quality.json after each rig: with --resume it goes on after what is there. It measures
 the rigs in ../shared/data/rigs; where ../shared/data/bone_heat holds Blender's automatic weights
 of a rig, they are a method of their own. With rigs named it only prints.
 """
