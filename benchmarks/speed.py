@@ -203,18 +203,20 @@ def bind_table(characters: list[Character], options: argparse.Namespace) -> Tabl
     blender = "Blender bone heat, elsewhere"
     sheet = Sheet(
         "Rig to weights",
-        "cutcell, paper",
-        ["cutcell, default", "recipe", blender],
+        "cutcell",
+        ["paper's falloff", "connectivity 6", "recipe", blender],
         ["recipe", blender],
-        '`bind`, warm, at R=64: `connectivity=6, falloff="paper"`, as the recipe does it, and '
-        "with the defaults. Blender's seconds came with the reference weights; they were "
-        "measured elsewhere, on another machine.",
+        "`bind`, warm, at R=64: with the defaults; with any-angle distances and the paper's "
+        'falloff (`falloff="paper"`); and the paper\'s graph too (`connectivity=6`), as the '
+        "recipe does it. Blender's seconds came with the reference weights; they were measured "
+        "elsewhere, on another machine.",
     )
     for character in characters:
         rig = character.rig
         ways: dict[str, Callable[[], object]] = {
-            "cutcell, paper": lambda r=rig: cutcell.bind(r, 64, connectivity=6, falloff="paper"),
-            "cutcell, default": lambda r=rig: cutcell.bind(r, 64),
+            "cutcell": lambda r=rig: cutcell.bind(r, 64),
+            "paper's falloff": lambda r=rig: cutcell.bind(r, 64, falloff="paper"),
+            "connectivity 6": lambda r=rig: cutcell.bind(r, 64, connectivity=6, falloff="paper"),
             "recipe": lambda r=rig: recipe.bind(r, 64, _caster()),
         }
         times: dict[str, Times | None] = dict(_timed(ways, options))

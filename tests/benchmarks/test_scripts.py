@@ -31,7 +31,7 @@ def test_speed_of_binding(capsys):
     (rows,) = read_tables(capsys.readouterr().out).values()
     assert [row["rig"][:5] for row in rows] == ["robot", "**med"]
     assert rows[0]["Blender bone heat, elsewhere"] == "-"
-    assert rows[0]["cutcell, paper vs recipe"].endswith("x")
+    assert rows[0]["cutcell vs recipe"].endswith("x")
 
 
 def test_start_up(capsys, monkeypatch):
