@@ -84,12 +84,13 @@ TOUR = (
         "With straight distances the hand would pull the trousers along whenever it is lifted. "
         "The weights leak across the gap of air.",
         r"\|v - b\|_2 \;\text{ sees no air}",
-        "Beside each other: distances through the body, and straight ones.",
-        ("compare", "weights"),
-        {"methods": ["now", "euclidean"], "compare_field": "bone", "weights_shown": "bone"},
+        "By straight distances the hand's weights shine faintly on the trousers. Tick “cutcell” in "
+        "the list to see ours beside them.",
+        ("compare",),
+        {"methods": ["euclidean"], "compare_field": "bone", "minus": ""},
         focus="hand.L",
-        near=0.3,
-        angles=(8.0, 6.0),
+        near=0.42,
+        angles=(30.0, 8.0),
     ),
     Step(
         "Through the body",
@@ -149,7 +150,7 @@ TOUR = (
         "So the default lets the way run straight as far as it can see, at any angle. Equal "
         "distances become round, as they are in truth.",
         r"\|x\|_1 = |x_1| + |x_2| + |x_3| \;\ge\; \|x\|_2",
-        "Here only axes are allowed (connectivity 6). Choose “any” for round lines.",
+        "Here only axes are allowed. Choose “Any angle” on the panel Graph, and come back.",
         ("geodesics",),
         {"connectivity": 6, "cut_axis": "z", "cut_position": 0.5},
         bone="spine2",

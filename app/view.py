@@ -39,7 +39,7 @@ class SceneView(JSComponent):
 
     _rename = {"window_width": None, "dark": None}  # noqa: RUF012
     _esm = script("orbit", "skin", "figure", "stage", "pick", "surface", "gizmo", "transport",
-                  "upload", "keys", "connection", "overlay", "view")  # fmt: skip
+                  "upload", "keys", "connection", "names", "overlay", "view")  # fmt: skip
 
     def __init__(
         self,

@@ -109,7 +109,9 @@ export function render({model}) {
   }
 
   const pressed = (e) => {
-    if (card.hidden || e.ctrlKey || e.metaKey || e.altKey) { return }
+    if (card.hidden || e.ctrlKey || e.metaKey || e.altKey || e.defaultPrevented) { return }
+    const path = e.composedPath().filter((part) => part instanceof Element)
+    if (path.some((part) => part.matches("input, textarea, [role=slider], [role=listbox]"))) { return }
     if (e.key === "PageDown" && model.step + 1 < model.steps.length) { e.preventDefault(); ask(model.step + 1) }
     if (e.key === "PageUp" && model.step > 0) { e.preventDefault(); ask(model.step - 1) }
     if (e.key === "Escape" && e.composedPath().includes(card)) { ask(-1) }

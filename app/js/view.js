@@ -33,6 +33,7 @@ class View {
       turnable: () => document.activeElement && overlay.canvas.matches(":focus") && !this.orbit.byMouse,
     })
     this.connection = new Connection(overlay)
+    this.names = new Names(overlay.root)
     this.messages = 0
     this.posed = 0
     this.observer = new ResizeObserver(() => this.changed())
@@ -302,6 +303,7 @@ class View {
     this.playing = false
     this.keys.remove()
     this.connection.remove()
+    this.names.remove()
     this.observer.disconnect()
     cancelAnimationFrame(this.waiting)
     cancelAnimationFrame(this.ticking)

@@ -5,6 +5,7 @@ import pytest
 from app.actions.learn import camera_of, go, shown_panels
 from app.scenes import resolve
 from app.session import Session
+from app.state import State
 from app.tour import TOUR
 from assets import DEMOS
 from tests.app.loop import Loop
@@ -29,6 +30,8 @@ def test_every_step_can_be_told():
         assert shown_panels() & set(step.panels), step.title
         assert step.text.count("\n\n") == 1, step.title
         assert len(step.text) < 700, step.title
+        unknown = set(step.choices) - set(State().param)
+        assert not unknown, f"{step.title}: the page has no {unknown}"
 
 
 def test_a_step_sets_the_scene_and_can_be_left_and_taken_up(session, loop):

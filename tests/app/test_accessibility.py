@@ -1,0 +1,65 @@
+"""No panel has a serious fault for people who use a keyboard or a screen reader."""
+
+import pytest
+from axe_playwright_python.sync_playwright import Axe
+from playwright.sync_api import sync_playwright
+
+from app.panels import PANELS
+from assets import demo_path
+from scripts.get_chromium import FLAGS
+from tests.app.browser import Visit, served
+
+SERIOUS = ("serious", "critical")
+
+
+@pytest.fixture(scope="module")
+def visit(chromium):
+    with sync_playwright() as playwright, served(str(demo_path("robot"))) as url:
+        browser = playwright.chromium.launch(executable_path=chromium, args=list(FLAGS))
+        visit = Visit(browser, url + "/?resolution=24")
+        visit.wait_until_bound()
+        yield visit
+        visit.close()
+        browser.close()
+
+
+def faults(visit):
+    """Return the serious faults, each with the elements at fault."""
+    found = Axe().run(visit.page).response["violations"]
+    return [
+        f"{fault['id']} ({fault['help']}): {node['target']} {node['html'][:160]} "
+        f"{(node.get('any') or [{}])[0].get('message', '')}"
+        for fault in found
+        if fault["impact"] in SERIOUS
+        for node in fault["nodes"]
+    ]
+
+
+def lasting(visit):
+    """Return the faults that are still there when everything has taken its colours."""
+    found = faults(visit)
+    for _ in range(6):
+        if not found:
+            break
+        visit.page.wait_for_timeout(700)
+        found = faults(visit)
+    return found
+
+
+@pytest.mark.parametrize("theme", ["light", "dark"])
+def test_no_panel_has_a_serious_fault(visit, theme):
+    if theme == "dark":
+        visit.button("Toggle theme").click()
+        visit.page.wait_for_timeout(600)
+    told = []
+    for panel in PANELS:
+        visit.page.get_by_role("tab", name=panel.title).click()
+        visit.page.wait_for_function(
+            "id => location.search.includes('panel=' + id)", arg=panel.id, timeout=30_000
+        )
+        visit.settle()
+        told += [f"{panel.id}: {fault}" for fault in lasting(visit)]
+    visit.page.keyboard.press("?")
+    told += [f"keys: {fault}" for fault in lasting(visit)]
+    visit.page.keyboard.press("Escape")
+    assert told == [], "\n".join(sorted(set(told)))
