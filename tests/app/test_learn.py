@@ -34,12 +34,15 @@ def test_every_step_can_be_told():
         assert not unknown, f"{step.title}: the page has no {unknown}"
 
 
+def computed_at(state, resolution):
+    return state.binding is not None and state.binding.graph.lattice.resolution == resolution
+
+
 def test_a_step_sets_the_scene_and_can_be_left_and_taken_up(session, loop):
     go(session, 5)
-    loop.run_until(lambda: session.state.binding is not None)
     state, step = session.state, TOUR[5]
+    loop.run_until(lambda: computed_at(state, step.choices["resolution"]), 90)
     assert (state.tour, state.demo, state.panel) == (5, step.demo, "graph")
-    assert state.binding.graph.lattice.resolution == step.choices["resolution"]
     assert state.rig.skeleton.names[state.joint] == step.bone
     assert session.view.camera == camera_of(session, step)
     assert "interior edges" in resolve(state).actors
