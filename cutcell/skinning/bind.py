@@ -153,7 +153,9 @@ def _compile(connectivity: int | str) -> None:
     corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
     mesh = TriangleMesh(np.array(corners), np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]))
     graph = build_graph(mesh, 4, connectivity=connectivity)
-    distances = bone_distances(graph, Skeleton(np.full((1, 3), 0.2), np.array([-1])))
+    # A joint inside, and one so far away that its labels outlast the queue's buckets.
+    skeleton = Skeleton(np.array([[0.2, 0.2, 0.2], [3, 3, 3]]), np.array([-1, -1]))
+    distances = bone_distances(graph, skeleton)
     skinning_weights(distances)
 
 
