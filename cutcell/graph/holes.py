@@ -217,7 +217,7 @@ def on_plane(doubt, code, p):
 @njit(cache=True)
 def need_at(clusters, p, tau):
     """Return the need at a point, or UNSURE if only an exact sum can tell."""
-    for tolerance in (1e-2, 3e-4, 1e-6):
+    for tolerance in (2e-3, 1e-4, 1e-6):
         value, _, error, _ = view(clusters, p, 0.0, tolerance, 0.5)
         if error == np.inf:
             break
