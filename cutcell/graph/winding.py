@@ -30,7 +30,7 @@ from .weld import weld
 INFINITESIMAL = 1e-150
 """Smaller than any distance; its products with them do not vanish."""
 TINY = 1e-100
-"""Numbers this small are scaled before their products vanish."""
+"""Numbers this small, or their inverse large, are scaled before products leave the floats."""
 
 
 def winding_number(mesh: TriangleMesh, points: ArrayLike) -> NDArray[np.float64]:
@@ -161,7 +161,7 @@ def boundary_turns(vertices, boundary, pu, pv, height):
             elif was < 0 and imaginary < 0 and y >= 0:
                 turns -= 1
             size = abs(x) + abs(y)
-            if size < TINY:
+            if size < TINY or size > 1 / TINY:
                 x, y = x / size, y / size
     return turns + np.arctan2(y, x) / (2 * np.pi)
 

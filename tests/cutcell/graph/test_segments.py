@@ -1,0 +1,48 @@
+"""Runs of kept segments equal those that exact winding numbers give, one by one."""
+
+import numpy as np
+import pytest
+
+from cutcell import TriangleMesh, winding_number
+from cutcell.graph.boundary import find_boundary
+from cutcell.graph.midpoints import list_segments
+from cutcell.graph.rays import cast_all_rays
+from cutcell.graph.segments import MANY, find_runs
+from cutcell.graph.weld import weld
+from tests import meshes
+
+
+def apart(share):
+    """Shrink the triangles of a ball so that no two of them touch."""
+    vertices, faces = meshes.ball(3)
+    corners = vertices[faces]
+    middle = corners.mean(axis=1, keepdims=True)
+    points = (middle + share * (corners - middle)).reshape(-1, 3)
+    return points, np.arange(len(points), dtype=np.int32).reshape(-1, 3)
+
+
+SHAPES = {"narrow gaps": lambda: apart(0.99), "wide gaps": lambda: apart(0.7)} | meshes.OPEN
+
+
+@pytest.mark.parametrize("tau", [0.3, 0.5])
+@pytest.mark.parametrize("name", [n for n in SHAPES if "soup" not in n])
+def test_runs_equal_those_of_exact_numbers(name, tau):
+    vertices, index = weld(SHAPES[name]()[0])
+    faces = index[SHAPES[name]()[1]]
+    tau -= 1e-9  # symmetric meshes have the number 1/2 at many places, up to rounding
+    boundary = find_boundary(faces)
+    if "gaps" in name:
+        assert len(boundary.loop) > MANY
+    crossings = cast_all_rays(vertices, faces, 16)
+    runs = find_runs(vertices, crossings, boundary, 16, tau)
+    for axis in range(3):
+        segments = list_segments(crossings[axis], 16, closed=False)
+        number = winding_number(TriangleMesh(vertices, faces), segments.points(16, axis))
+        expected = segments.runs(segments.has_ends & (number >= tau))
+        long = expected.first <= expected.last  # without length, the number is anyone's
+        rows, others = (
+            np.stack([r.ray, r.first, r.last, r.low, r.high], axis=1)[r.first <= r.last]
+            for r in (runs[axis], expected)
+        )
+        assert long.any()
+        np.testing.assert_array_equal(rows, others)
