@@ -10,6 +10,11 @@ const UNNAMED = [
     const title = part.getRootNode().querySelector("label, .MuiFormLabel-root, .MuiTypography-root")
     part.setAttribute("aria-label", title?.textContent.replace(/:.*/, "") || "Value")
   }],
+  // The name of an icon that is a switch stands on what surrounds its input.
+  [".MuiCheckbox-root[aria-label]", (part) => {
+    part.querySelector("input").setAttribute("aria-label", part.getAttribute("aria-label"))
+    part.removeAttribute("aria-label")
+  }],
   ["[aria-label='Resize sidebar']:not([role])", (part) => {
     part.setAttribute("role", "separator")
     part.setAttribute("aria-orientation", "vertical")
