@@ -52,4 +52,5 @@ def test_ours_share_nothing_where_voxels_leak(place, demo_paths):
         "voxel", None
     )
     assert leak("voxel") > 0.05
-    assert leak("euclidean") > 0.04
+    # Straight to the nearest bone, fingers may stay apart by luck; with all joints none do.
+    assert leak("euclidean", None) > leak("cutcell_any", None)
