@@ -22,6 +22,12 @@ COLUMN = np.array([0, 0, 1, 1])
 
 
 @pytest.fixture(autouse=True)
+def _in_a_folder_of_its_own(tmp_path, monkeypatch):
+    """Run where fTetWild may leave its files."""
+    monkeypatch.chdir(tmp_path)
+
+
+@pytest.fixture(autouse=True)
 def nothing_remembered():
     """Let no test see tetrahedra that another one made."""
     fill.cache_clear()
