@@ -9,10 +9,14 @@ from urllib.parse import parse_qsl, quote, urlencode
 import param
 
 from .state import State
+from .state.compare import FEWEST_VIEWS, MOST_VIEWS, offered, standard
 
 OWN = frozenset({"name", "demo", "joint", "dark", "moving", "playing", "clip", "skipped",
                  "busy", "stage", "fraction", "message", "tour", "vertex", "filming"})  # fmt: skip
 """What goes with one person or one moment, or has a word of its own in the address."""
+
+NOTED = ("joint", "turns", "clip", "methods", "minus")
+"""What is chosen, too, but only means something on the character that stands there."""
 
 CAMERA = 6
 """Numbers of a camera: where the eye is, and what it looks at."""
@@ -26,14 +30,14 @@ def simple(state: State) -> dict[str, param.Parameter]:
 
 
 def taken(state: State) -> dict[str, Any]:
-    """Return all choices as they are, with the bone, the turns and the clip."""
-    names = (*simple(state), "joint", "turns", "clip")
-    return {name: getattr(state, name) for name in names}
+    """Return all choices as they are, with those that are `NOTED`."""
+    return {name: getattr(state, name) for name in (*simple(state), *NOTED)}
 
 
 def defaults(state: State) -> dict[str, Any]:
-    """Return the plain choices that a person begins with; the panel is left alone."""
-    return {name: p.default for name, p in simple(state).items() if name != "panel"}
+    """Return the choices that a person begins with; panel, bone and clip are left alone."""
+    plain = {name: p.default for name, p in simple(state).items() if name != "panel"}
+    return {**plain, "turns": {}, "methods": standard(state.rig), "minus": ""}
 
 
 def to_query(state: State, kept: str = "", camera: list[float] | None = None) -> str:
@@ -59,6 +63,12 @@ def to_query(state: State, kept: str = "", camera: list[float] | None = None) ->
         value = getattr(state, name)
         if name != "panel" and value != parameter.default:
             said[name] = _text(value)
+    if state.clip != first_clip(state.rig):
+        said["clip"] = str(state.clip)
+    if state.methods != standard(state.rig):
+        said["methods"] = ",".join(state.methods)
+    if state.minus:
+        said["minus"] = state.minus
     turned = {j: t for j, t in state.turns.items() if any(t)}
     if turned:
         said["turns"] = ";".join(f"{j}:{','.join(f'{a:g}' for a in t)}" for j, t in turned.items())
@@ -77,7 +87,8 @@ def from_query(query: str, state: State) -> tuple[dict[str, Any], dict[str, Any]
     choices : dict
         Values for the state's parameters that need no character.
     arrival : dict
-        "rig", "bone", "vertex", "turns", "tour" and "camera", as far as they are said.
+        "rig", "bone", "vertex", "turns", "clip", "methods", "minus", "tour" and "camera", as
+        far as they are said.
     problems : list of str
         What could not be read, each as the address says it.
     """
@@ -93,8 +104,12 @@ def from_query(query: str, state: State) -> tuple[dict[str, Any], dict[str, Any]
                 arrival[name] = _turns(text)
             elif name == "step":
                 arrival["tour"] = int(text) - 1
-            elif name == "vertex":
-                arrival["vertex"] = int(text)
+            elif name in ("vertex", "clip"):
+                arrival[name] = int(text)
+            elif name == "methods":
+                arrival[name] = _methods(text, FEWEST_VIEWS)
+            elif name == "minus":
+                (arrival[name],) = _methods(text, 1)
             elif name == "camera":
                 arrival[name] = _numbers(text, CAMERA)
             elif name in known:
@@ -104,6 +119,11 @@ def from_query(query: str, state: State) -> tuple[dict[str, Any], dict[str, Any]
         except ValueError:
             problems.append(f"{name}={text}"[:60])
     return choices, arrival, problems
+
+
+def first_clip(rig: Any) -> int:
+    """Return the motion that is chosen at first: the file's first, else a swing."""
+    return 0 if rig is not None and rig.clips else -1
 
 
 def _text(value: Any) -> str:
@@ -140,6 +160,13 @@ def _turns(text: str) -> dict[int, tuple[float, ...]]:
             raise ValueError(part)
         turns[int(found.group(1))] = tuple(_numbers(found.group(2), 3))
     return turns
+
+
+def _methods(text: str, fewest: int) -> list[str]:
+    names = list(dict.fromkeys(text.split(",")))
+    if not fewest <= len(names) <= MOST_VIEWS or not {*names} <= {*offered(None), "artist"}:
+        raise ValueError(text)
+    return names
 
 
 def _numbers(text: str, count: int) -> list[float]:

@@ -24,7 +24,7 @@ from .scenes import resolve
 from .scenes.common import first_joint
 from .scenes.geodesics import wants_field
 from .state import State
-from .state.compare import NOW
+from .state.compare import NOW, standard
 from .state.weights import SHOWN
 
 PANELS = {
@@ -266,5 +266,4 @@ def _methods(rig: Rig, names: Sequence[str]) -> list[str]:
 
     for name in names:
         check_choice("method", name, [NOW, *METHODS])
-    own = ["artist"] if rig.weights is not None else []
-    return list(names) or [NOW, *own, "euclidean"]
+    return list(names) or standard(rig)

@@ -19,12 +19,13 @@ from cutcell.rig import Rig
 from viewers.scene import Camera, framing
 
 from .actions import WATCHERS, weights
-from .choices import from_query
+from .choices import first_clip, from_query
 from .jobs import COMPUTING, Jobs, Schedule
 from .keep import KEEP
 from .scenes import Memo, resolve
 from .scenes.common import bones_part, bounds_of, first_joint, theme_of
 from .state import UNSEEN, State
+from .state.compare import FEWEST_VIEWS, offered
 from .state.method import GRAPH, method_of
 from .upload import Receiver
 from .view import SceneView, camera_part, theme_part
@@ -214,7 +215,7 @@ class Session:
         self.jobs("field").cancel()
         state.param.update(
             rig=rig, binding=None, field=None, turns={}, moving=False, playing=False,
-            clip=0 if rig.clips else -1, message=None, joint=first_joint(rig), vertex=None,
+            clip=first_clip(rig), message=None, joint=first_joint(rig), vertex=None,
         )  # fmt: skip
         self.view.camera = framing(bounds_of(state), 1.2)
         self.view.at_home = True
@@ -233,6 +234,13 @@ class Session:
         if arrival.get("bone") in names:
             state.joint = names.index(arrival["bone"])
         state.turns = {j: t for j, t in arrival.get("turns", {}).items() if j < len(names)}
+        if -1 <= arrival.get("clip", -2) < len(rig.clips):
+            state.clip = arrival["clip"]
+        methods = [name for name in arrival.get("methods", ()) if name in offered(rig)]
+        if len(methods) >= FEWEST_VIEWS:
+            state.methods = methods
+        if arrival.get("minus") in state.methods:
+            state.minus = arrival["minus"]
         state.tour = arrival.get("tour", state.tour)
         if 0 <= arrival.get("vertex", -1) < len(rig.mesh.vertices):
             state.vertex = arrival["vertex"]

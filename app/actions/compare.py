@@ -24,7 +24,7 @@ from cutcell.rig import Rig
 from ..jobs import COMPARING
 from ..scenes.compare import found_of
 from ..state import State
-from ..state.compare import MOST_VIEWS, NOW
+from ..state.compare import FEWEST_VIEWS, MOST_VIEWS, NOW, offered, standard
 
 if TYPE_CHECKING:
     from ..session import Session
@@ -66,7 +66,7 @@ class Compared:
 def watch(session: Session) -> None:
     """Compute what is wanted and not there, while the panel is looked at."""
     state = session.state
-    state.param.watch(lambda *events: _forget(session), ["rig", "resolution"])
+    state.param.watch(lambda *events: _forget(session, events), ["rig", "resolution"])
     state.param.watch(lambda *events: find(session), ["panel", "binding", "methods"])
 
 
@@ -75,17 +75,10 @@ def choose(session: Session, name: str, chosen: bool) -> None:
     state = session.state
     names = [one for one in state.methods if one != name]
     if chosen:
-        names = [one for one in methods(state) if one in {*names, name}]
-    if 2 <= len(names) <= MOST_VIEWS:
+        names = [one for one in offered(state.rig) if one in {*names, name}]
+    if FEWEST_VIEWS <= len(names) <= MOST_VIEWS:
         minus = state.minus if state.minus in names else ""
         state.param.update(methods=names, minus=minus)
-
-
-def methods(state: State) -> list[str]:
-    """Return all methods by name: what is on the page, and those that are registered."""
-    known = [name for name in METHODS if name != "artist"]
-    own = ["artist"] if state.rig is not None and state.rig.weights is not None else []
-    return [NOW, *own, *known]
 
 
 def wanted(state: State) -> str | None:
@@ -131,8 +124,8 @@ def cancel(session: Session) -> None:
     state = session.state
     session.jobs("compare").cancel()
     there = [name for name in state.methods if name in state.compared or name == NOW]
-    spare = [name for name in ("artist", "euclidean") if name in methods(state)]
-    names = (there + [name for name in spare if name not in there])[: max(len(there), 2)]
+    spare = [name for name in ("artist", "euclidean") if name in offered(state.rig)]
+    names = (there + [name for name in spare if name not in there])[: max(len(there), FEWEST_VIEWS)]
     state.param.update(comparing="", methods=names)
 
 
@@ -167,12 +160,13 @@ def options_of(method: Method, **options: Any) -> Mapping[str, Any]:
     return {name: value for name, value in options.items() if every or name in known}
 
 
-def _forget(session: Session) -> None:
+def _forget(session: Session, events: tuple[Any, ...]) -> None:
+    """Forget what was computed; what was chosen stays, as far as the character allows."""
     state = session.state
     session.jobs("compare").cancel()
-    names = [name for name in state.methods if name in methods(state)]
-    if len(names) < 2:
-        names = [NOW, "euclidean"]
-    if state.rig is not None and state.rig.weights is not None and not state.compared:
-        names = [NOW, "artist", "euclidean"]
-    state.param.update(compared={}, comparing="", methods=names, minus="")
+    before = next((event.old for event in events if event.name == "rig"), state.rig)
+    names = [name for name in state.methods if name in offered(state.rig)]
+    if state.methods == standard(before) or len(names) < FEWEST_VIEWS:
+        names = standard(state.rig)
+    minus = state.minus if state.minus in names else ""
+    state.param.update(compared={}, comparing="", methods=names, minus=minus)

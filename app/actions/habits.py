@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from typing import TYPE_CHECKING, Any
 
-from ..choices import defaults, simple, taken, to_query
+from ..choices import NOTED, defaults, simple, taken, to_query
 from ..history import History
 from ..scenes.common import first_joint
 
@@ -17,7 +17,7 @@ def watch(session: Session) -> None:
     """Keep the address and the history up to what is chosen; obey the keys."""
     habits = Habits(session)
     session.habits = habits
-    names = [*simple(session.state), "joint", "turns", "clip"]
+    names = [*simple(session.state), *NOTED]
     session.state.param.watch(habits.chose, names)
     session.state.param.watch(habits.begin, "rig")
     session.state.param.watch(habits.looked, ["tour", "vertex"])
@@ -99,7 +99,7 @@ class Habits:
         """Choose what one begins with, at rest, on the panel that is open."""
         session = self._session
         state = session.state
-        first = {**defaults(state), "turns": {}, "moving": False, "playing": False}
+        first = {**defaults(state), "moving": False, "playing": False}
         state.param.update(**first, joint=first_joint(state.rig))
         session.view.tell(home=True)
 

@@ -36,7 +36,7 @@ def show(session: Session, step: Step) -> None:
     """Make the page what a step asks for; its character stands there."""
     state = session.state
     names = state.rig.skeleton.names
-    wanted = {**defaults(state), "turns": {}, "moving": False, "playing": False, **step.choices}
+    wanted = {**defaults(state), "moving": False, "playing": False, **step.choices}
     panel = next(panel for panel in step.panels if panel in shown_panels())
     known = {name: value for name, value in wanted.items() if _fits(state, name, value)}
     if step.bone in names:

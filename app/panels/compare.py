@@ -12,7 +12,7 @@ from ..methods import Methods
 from ..scenes.compare import found_of, title_of
 from ..session import Session
 from ..state import State
-from ..state.compare import MOST_VIEWS
+from ..state.compare import FEWEST_VIEWS, MOST_VIEWS, offered
 from .parts import GAP, caption, choice, section, when
 
 FIELDS = {"Chosen bone": "bone", "All bones": "all", "Error": "error"}
@@ -105,7 +105,7 @@ def _motion(session: Session) -> pmui.Row:
 
 def rows_of(state: State) -> list[dict[str, Any]]:
     """Return the rows of the table, as `js/methods.js` takes them."""
-    names = actions.methods(state)
+    names = offered(state.rig)
     found = {name: found_of(state, name) for name in names}
     best = {
         measure: min(
@@ -135,7 +135,7 @@ def rows_of(state: State) -> list[dict[str, Any]]:
                 "note": note,
                 "state": kind,
                 "chosen": chosen,
-                "fixed": len(state.methods) <= 2 if chosen else full,
+                "fixed": len(state.methods) <= FEWEST_VIEWS if chosen else full,
             }
         )
     return rows

@@ -6,10 +6,24 @@ from typing import Any
 
 import param
 
+from cutcell.baselines import METHODS
+
 NOW = "now"
 """Stands among the methods for what the page computed, as it is set."""
 
+FEWEST_VIEWS = 2
 MOST_VIEWS = 4
+
+
+def offered(rig: Any) -> list[str]:
+    """Return all methods by name: what is on the page, the file's own, and the registered."""
+    own = ["artist"] if rig is not None and rig.weights is not None else []
+    return [NOW, *own, *(name for name in METHODS if name != "artist")]
+
+
+def standard(rig: Any) -> list[str]:
+    """Return the methods that stand side by side before any is chosen."""
+    return [name for name in offered(rig) if name in (NOW, "artist", "euclidean")]
 
 
 class CompareChoices(param.Parameterized):

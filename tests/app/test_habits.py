@@ -2,11 +2,13 @@
 
 import pytest
 
-from app.choices import from_query, to_query
+from app.actions.compare import choose
+from app.choices import first_clip, from_query, to_query
 from app.history import TOGETHER, History
 from app.keep import Keep
 from app.session import GONE, Session
 from app.state import State
+from app.state.compare import standard
 from assets import demo_path
 from tests.app.loop import Loop
 from tests.viewers.arm import arm_rig
@@ -32,6 +34,7 @@ def test_an_address_brings_back_what_was_chosen():
     rig = arm_rig()
     state = State(rig=rig, demo="robot", joint=1, panel="graph", resolution=48, surface_edges=True)
     state.param.update(cut_axis="y", cut_position=0.25, turns={1: (0, 0, 30), 0: (0, 0, 0)})
+    state.param.update(clip=first_clip(rig), methods=standard(rig))  # as when it was opened
     query = to_query(state, camera=[1, 2, 3, 0, 0.5, 0])
     choices, arrival, problems = from_query(query, State())
     assert problems == []
@@ -41,7 +44,10 @@ def test_an_address_brings_back_what_was_chosen():
         "turns": {1: (0, 0, 30)},
         "camera": [1, 2, 3, 0, 0.5, 0],
     }
-    other = State(rig=rig, demo="robot", joint=1, turns=arrival["turns"], **choices)
+    other = State(
+        rig=rig, demo="robot", joint=1, turns=arrival["turns"], clip=state.clip,
+        methods=state.methods, **choices,
+    )  # fmt: skip
     assert to_query(other, camera=arrival["camera"]) == query
 
 
@@ -53,7 +59,9 @@ def test_what_is_ones_own_or_of_the_moment_is_not_in_the_address():
 @pytest.mark.parametrize(
     "query",
     ["resolution=many", "panel=kitchen", "thin=yes", "turns=1:2", "camera=1,2,3",
-     "camera=nan,0,0,0,0,0", "turns=a:1,2,3", "cut_position=7", "x=1", "resolution=1e99"],
+     "methods=magic", "methods=now,euclidean,voxel,artist,bbw", "minus=magic", "minus=now,artist",
+     "methods=now", "clip=walk", "camera=nan,0,0,0,0,0", "turns=a:1,2,3", "cut_position=7", "x=1",
+     "resolution=1e99"],
 )  # fmt: skip
 def test_what_an_address_says_wrongly_is_named(query):
     choices, arrival, problems = from_query(query, State())
@@ -69,6 +77,45 @@ def test_a_link_opens_as_it_was_shared(session, loop):
     assert session.state.binding.graph.lattice.resolution == 16
     assert "kitchen=1" in session.state.message[1]
     assert "bone=hand.L" in said(session)
+
+
+def test_a_comparison_opens_as_it_was_shared(session, loop):
+    query = "?rig=robot&panel=compare&compare_field=all&methods=voxel,euclidean&minus=euclidean"
+    session.arrive(query + "&resolution=16&clip=-1", lambda: None)
+    loop.run_until(lambda: len(session.state.compared) == 2, 60)
+    state = session.state
+    assert (state.methods, state.minus) == (["voxel", "euclidean"], "euclidean")
+    assert state.compare_field == "all"
+    assert state.clip == -1
+    for part in ("methods=voxel,euclidean", "minus=euclidean", "compare_field=all", "clip=-1"):
+        assert part in said(session)
+    session.open_rig(arm_rig())  # what was chosen holds for the next character, too
+    assert (state.methods, state.minus) == (["voxel", "euclidean"], "euclidean")
+    session.habits.reset()
+    assert (state.methods, state.minus) == (["now", "artist", "euclidean"], "")
+    assert "methods" not in said(session)
+
+
+def test_methods_that_a_character_does_not_offer_are_left_out(session):
+    session.state.resolution = 16
+    session._arrival = {"methods": ["now", "artist"], "minus": "artist"}
+    session.open_rig(arm_rig().with_weights(None))
+    assert (session.state.methods, session.state.minus) == (["now", "euclidean"], "")
+
+
+def test_the_choice_of_methods_can_be_undone(session):
+    session.open_rig(arm_rig())
+    state, act = session.state, lambda name: session.habits.act({"act": name})
+    choose(session, "voxel", True)
+    state.minus = "euclidean"
+    assert state.methods == ["now", "artist", "euclidean", "voxel"]
+    act("undo")
+    assert state.minus == ""
+    act("undo")
+    assert state.methods == ["now", "artist", "euclidean"]
+    act("redo")
+    act("redo")
+    assert (len(state.methods), state.minus) == (4, "euclidean")
 
 
 def test_an_uploaded_character_is_there_again_while_it_is_kept(session, loop, tmp_path):

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 import cutcell
-from app.actions.compare import Compared, choose, measured, methods, options_of, wanted
+from app.actions.compare import Compared, choose, measured, options_of, wanted
 from app.panels.compare import rows_of
 from app.scenes import Memo, resolve
 from app.scenes.compare import WAITING, caption_of, title_of
 from app.state import State
-from app.state.compare import NOW
+from app.state.compare import NOW, offered
 from cutcell.baselines import METHODS, BaselineBinding
 from cutcell.metrics import deformation_error, weight_l1
 from cutcell.progress import silent
@@ -127,7 +127,7 @@ def test_without_the_files_weights_only_times_are_measured(rig, binding):
     found = measured(rig.with_weights(None), "euclidean", binding, 16, silent)
     assert (found.l1, found.deformation, found.errors) == (None, None, None)
     assert found.seconds > 0
-    assert "artist" not in methods(State(rig=rig.with_weights(None)))
+    assert "artist" not in offered(rig.with_weights(None))
 
 
 def test_a_method_that_fails_says_why(rig, binding, monkeypatch):
@@ -142,7 +142,7 @@ def test_a_method_that_fails_says_why(rig, binding, monkeypatch):
     found = measured(rig, "gives_up", binding, 16, silent)
     assert (found.weights, found.failed, found.seconds) == (None, "nothing is inside", 0.5)
     assert measured(rig, "raises", binding, 16, silent).failed == "the mesh is open"
-    assert {"gives_up", "raises"} <= set(methods(State(rig=rig)))
+    assert {"gives_up", "raises"} <= set(offered(rig))
     assert title_of("gives_up") == "Gives up"
 
 
