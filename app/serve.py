@@ -12,6 +12,9 @@ from pathlib import Path
 import panel as pn
 import panel_material_ui  # noqa: F401  its components must be known before a page is served
 
+from cutcell.graph import kernels_are_compiled
+from cutcell.skinning import load_kernels
+
 from .page import page
 
 PORTS_TRIED = 20
@@ -49,6 +52,9 @@ def serve(
         print(f"Port {port} is taken.", flush=True)
     host = "localhost" if address in ("0.0.0.0", "::", *LOCAL) else address
     print(f"The page is at http://{host}:{chosen} (stop with Ctrl+C)", flush=True)
+    if kernels_are_compiled():
+        # While the browser starts. The first compile ever is left to the page, which tells of it.
+        threading.Thread(target=load_kernels, daemon=True).start()
     if threading.current_thread() is threading.main_thread():
         # An orderly end, so that what was uploaded is removed.
         signal.signal(signal.SIGTERM, lambda number, frame: sys.exit(0))

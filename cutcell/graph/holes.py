@@ -94,7 +94,7 @@ def find_doubt(caps: Caps, resolution: int, winding_threshold: float) -> tuple[D
         lambda k: _decide_blocks(clusters, resolution, winding_threshold, top, corners[k], coarse),
         range(len(corners)),
     )
-    unsure = np.argwhere(coarse == UNSURE)
+    unsure = np.ascontiguousarray(np.argwhere(coarse == UNSURE))
     if len(unsure) == 0:
         return Doubt(coarse, fine, planes), clusters
     fine = np.full((len(unsure), BLOCK, BLOCK, BLOCK), UNSURE, np.int32)

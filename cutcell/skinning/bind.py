@@ -13,7 +13,8 @@ from ..checks import check_choice, check_integer
 from ..geodesics import FALLBACK_REASONS, BoneDistances, bone_distances
 from ..graph import CutCellGraph, build_graph, kernels_are_compiled
 from ..progress import Progress, silent
-from ..rig import Rig, Skeleton, TriangleMesh
+from ..rig import Rig
+from .kernels import load_kernels
 from .refine import refine_weights
 from .weights import DEFAULT_LEAF, FALLOFFS, MOST_INFLUENCES, joints_needed, skinning_weights
 
@@ -99,12 +100,12 @@ def bind(
     """
     if max_influences is not None:
         max_influences = check_integer("max_influences", max_influences, 1, MOST_INFLUENCES)
-    if not kernels_are_compiled():
-        progress("compile", 0.0)
-        _compile(connectivity)
-        progress("compile", 1.0)
     check_choice("falloff", falloff, FALLOFFS)
     leaf = leaf or DEFAULT_LEAF[falloff]
+    if not kernels_are_compiled():
+        progress("compile", 0.0)
+        load_kernels()
+        progress("compile", 1.0)
     ticks = [perf_counter()]
     graph = build_graph(
         rig.mesh,
@@ -146,17 +147,6 @@ def bind(
     ticks.append(perf_counter())
     seconds = dict(zip(("graph", "distances", "weights"), np.diff(ticks).tolist(), strict=True))
     return Binding(weights, graph, distances, seconds, _warnings(graph, distances))
-
-
-def _compile(connectivity: int | str) -> None:
-    """Run every kernel on a tetrahedron: compiled once, they are kept on disk."""
-    corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
-    mesh = TriangleMesh(np.array(corners), np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]))
-    graph = build_graph(mesh, 4, connectivity=connectivity)
-    # A joint inside, and one so far away that its labels outlast the queue's buckets.
-    skeleton = Skeleton(np.array([[0.2, 0.2, 0.2], [3, 3, 3]]), np.array([-1, -1]))
-    distances = bone_distances(graph, skeleton)
-    skinning_weights(distances)
 
 
 def _warnings(graph: CutCellGraph, distances: BoneDistances) -> tuple[str, ...]:
