@@ -10,6 +10,7 @@ import param
 
 from .state import State
 from .state.compare import FEWEST_VIEWS, MOST_VIEWS, offered, standard
+from .tour import TOUR
 
 OWN = frozenset({"name", "demo", "joint", "dark", "moving", "playing", "clip", "skipped",
                  "busy", "stage", "fraction", "message", "tour", "vertex", "filming"})  # fmt: skip
@@ -103,7 +104,7 @@ def from_query(query: str, state: State) -> tuple[dict[str, Any], dict[str, Any]
             elif name == "turns":
                 arrival[name] = _turns(text)
             elif name == "step":
-                arrival["tour"] = int(text) - 1
+                arrival["tour"] = range(len(TOUR))[_positive(text) - 1]
             elif name in ("vertex", "clip"):
                 arrival[name] = int(text)
             elif name == "methods":
@@ -116,7 +117,7 @@ def from_query(query: str, state: State) -> tuple[dict[str, Any], dict[str, Any]
                 choices[name] = _value(known[name], text)
             else:
                 raise ValueError(name)
-        except ValueError:
+        except (ValueError, IndexError):
             problems.append(f"{name}={text}"[:60])
     return choices, arrival, problems
 
@@ -150,6 +151,12 @@ def _value(parameter: param.Parameter, text: str) -> Any:
     if not abs(value) < 1e9:
         raise ValueError(text)
     return value
+
+
+def _positive(text: str) -> int:
+    if int(text) < 1:
+        raise ValueError(text)
+    return int(text)
 
 
 def _turns(text: str) -> dict[int, tuple[float, ...]]:

@@ -7,6 +7,7 @@ from typing import Any
 import param
 from panel.custom import JSComponent
 
+from .actions.learn import points_out
 from .facts import vertex_facts
 from .scripts import script
 from .session import Session
@@ -23,11 +24,13 @@ class Inspector(JSComponent):
         super().__init__(**params)
         self._session = session
         self._follow()
-        names = ["rig", "binding", "vertex"]
+        names = ["rig", "binding", "vertex", "tour"]
         session.state.param.watch(self._follow, names)
 
     def _follow(self, *events: Any) -> None:
-        self.facts = vertex_facts(self._session.state, self._session.memo)
+        state = self._session.state
+        # What the tour clicks shows its point in the scene, and needs no card.
+        self.facts = None if points_out(state) else vertex_facts(state, self._session.memo)
 
     def _handle_msg(self, data: dict[str, Any]) -> None:
         if data.get("type") == "close":
@@ -43,7 +46,19 @@ _PLACE = """
   max-height: 52%; } }
 """
 
+_LEFT = """
+@media (min-width: 701px) { :host { right: auto; left: 14px; } }
+"""
+"""Where the card of the tour stands at the right."""
+
 
 def inspector(session: Session) -> Inspector:
     """Return the card of a session, in its place over the canvas."""
-    return Inspector(session, stylesheets=[_PLACE], margin=0)
+    card = Inspector(session, margin=0)
+
+    def place(*events: Any) -> None:
+        card.stylesheets = [_PLACE, _LEFT] if session.state.tour >= 0 else [_PLACE]
+
+    session.state.param.watch(place, "tour")
+    place()
+    return card

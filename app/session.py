@@ -18,7 +18,7 @@ from cutcell.progress import Progress
 from cutcell.rig import Rig
 from viewers.scene import Camera, framing
 
-from .actions import WATCHERS, weights
+from .actions import WATCHERS, learn, weights
 from .choices import first_clip, from_query
 from .jobs import COMPUTING, Jobs, Schedule
 from .keep import KEEP
@@ -167,7 +167,9 @@ class Session:
                 f"The address says what this page does not know ({', '.join(problems)}); "
                 "the rest of it was taken."
             )
-        if kept is not None:
+        if learn.opens(arrival):
+            learn.go(self, arrival["tour"], frozenset({**choices, **arrival}))
+        elif kept is not None:
             self._held.add(rig[1:])
             self.open_files(kept, rig[1:])
         elif demo:

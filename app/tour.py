@@ -5,6 +5,42 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
+Angles = tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Look:
+    """What the page shows during a step.
+
+    Parameters
+    ----------
+    panel : str
+    bone : str
+    focus : str
+        The joint that the camera looks at; the whole character without one.
+    near : float
+        How near: 1 sees the whole, 0.3 a third of it.
+    angles : tuple of float
+        Degrees: around the character, and from above.
+    turns : dict
+        Degrees about x, y and z by which joints are turned.
+    clicked : str
+        A vertex is clicked: the one nearest to the bone, of those that follow this joint.
+    demo : str
+    choices : dict
+        What else is chosen, beside what one begins with.
+    """
+
+    panel: str
+    bone: str
+    focus: str = ""
+    near: float = 1.0
+    angles: tuple[float, float] = (22.0, 9.0)
+    turns: dict[str, Angles] = field(default_factory=dict)
+    clicked: str = ""
+    demo: str = "biped"
+    choices: dict[str, Any] = field(default_factory=dict)
+
 
 @dataclass(frozen=True)
 class Step:
@@ -17,33 +53,20 @@ class Step:
         Two or three short paragraphs, parted by empty lines.
     formula : str
         In TeX; empty for none.
-    look : str
+    task : str
         What to look at, or to try, in one sentence.
-    panels : tuple of str
-        Where it is seen: the first of these that the page has.
-    choices : dict
-        What is chosen, beside what one begins with.
-    demo : str
-    bone : str
-    focus : str
-        The joint that the camera looks at; the whole character without one.
-    near : float
-        How near: 1 sees the whole, 0.3 a third of it.
-    angles : tuple of float
-        Degrees: around the character, and from above.
+    look : Look
     """
 
     title: str
     text: str
     formula: str
-    look: str
-    panels: tuple[str, ...]
-    choices: dict[str, Any] = field(default_factory=dict)
-    demo: str = "biped"
-    bone: str = "hand.L"
-    focus: str = ""
-    near: float = 1.0
-    angles: tuple[float, float] = (22.0, 9.0)
+    task: str
+    look: Look
+
+
+CUT = {"cut_axis": "z", "cut_position": 0.5, "skeleton": False}
+"""Through the middle of the body, seen from its front, with no bones before it."""
 
 
 TOUR = (
@@ -57,9 +80,7 @@ TOUR = (
         "each by its share.",
         r"v' = \sum_j w_j\, T_j\, v \qquad \sum_j w_j = 1",
         "The walk moves the bones; the weights that were just computed move the skin.",
-        ("pose",),
-        {"moving": True, "playing": True},
-        bone="upper_arm.L",
+        Look("pose", bone="upper_arm.L", choices={"moving": True, "playing": True}),
     ),
     Step(
         "One bone's share",
@@ -70,27 +91,32 @@ TOUR = (
         "much is shared it turns to rubber.",
         r"0 \le w_j(v) \le 1",
         "Press → to go from bone to bone.",
-        ("weights",),
-        {"weights_shown": "bone"},
-        bone="upper_arm.L",
-        focus="upper_arm.L",
-        near=0.42,
+        Look(
+            "weights",
+            bone="upper_arm.L",
+            focus="upper_arm.L",
+            near=0.42,
+            choices={"weights_shown": "bone"},
+        ),
     ),
     Step(
         "Near is not the same as together",
         "The simplest thought: a point belongs to the bones that are near. But look at the hand. "
         "It hangs a finger's breadth from the hip; in a straight line the thigh is about as near "
         "to the hand's bone as the hand's own fingertips.\n\n"
-        "With straight distances the hand would pull the trousers along whenever it is lifted. "
-        "The weights leak across the gap of air.",
+        "Now the arm is lifted. With straight distances the hand pulls the trousers along: its "
+        "weights have leaked across the gap of air.",
         r"\|v - b\|_2 \;\text{ sees no air}",
-        "By straight distances the hand's weights shine faintly on the trousers. Tick “cutcell” in "
-        "the list to see ours beside them.",
-        ("compare",),
-        {"methods": ["euclidean"], "compare_field": "bone", "minus": ""},
-        focus="hand.L",
-        near=0.42,
-        angles=(30.0, 8.0),
+        "On the left by straight distance, on the right through the body, as the next step tells. "
+        "The colours are the hand's weights: they should end at the wrist.",
+        Look(
+            "compare",
+            bone="hand.L",
+            focus="hand.L",
+            near=0.75,
+            turns={"upper_arm.L": (0, 0, 45)},
+            choices={"methods": ["euclidean", "now"], "skeleton": False},
+        ),
     ),
     Step(
         "Through the body",
@@ -98,15 +124,20 @@ TOUR = (
         "through the air: from the hand up the arm, over the shoulder, down to the hip. That is "
         "the geodesic distance.\n\n"
         "In a straight line the thigh is 4 cm from the hand's bone, when the character is one "
-        "metre tall. Through the body it is 37 cm. Lines of equal distance are drawn; where the "
-        "colour jumps from the hand to the hip, air lies between.",
+        "metre tall. Through the body it is 37 cm. Lines of equal distance are "
+        "drawn; where the colour jumps from the hand to the hip, air lies between.",
         r"d(v, b) = \min_{\gamma: b \to v,\ \gamma \subset \text{body}} \text{length}(\gamma)",
-        "Look from the palm to the hip, then follow the lines up the arm.",
-        ("geodesics",),
-        {"cut_axis": "z", "cut_position": 0.52},
-        focus="hand.L",
-        near=0.55,
-        angles=(6.0, 6.0),
+        "Follow the red line: it is the shortest way from the thigh to the hand. Click any other "
+        "place to see its way.",
+        Look(
+            "geodesics",
+            bone="hand.L",
+            focus="forearm.L",
+            near=0.5,
+            angles=(6.0, 6.0),
+            clicked="thigh.L",
+            choices={**CUT, "cut_position": 0.52},
+        ),
     ),
     Step(
         "A graph to walk on",
@@ -120,12 +151,14 @@ TOUR = (
         r"\underbrace{E_{\text{inside}}}_{\text{orange}} \cup "
         r"\underbrace{E_{\text{surface}}}_{\text{green}}",
         "Move the cut with its slider, and go through the body.",
-        ("graph",),
-        {"cut_axis": "z", "cut_position": 0.5, "surface_edges": True, "resolution": 48},
-        bone="chest",
-        focus="chest",
-        near=0.45,
-        angles=(14.0, 10.0),
+        Look(
+            "graph",
+            bone="chest",
+            focus="upper_arm.L",
+            near=0.24,
+            angles=(14.0, 10.0),
+            choices={**CUT, "mesh_edges": True, "surface_edges": True, "resolution": 40},
+        ),
     ),
     Step(
         "How fine a map",
@@ -135,12 +168,15 @@ TOUR = (
         "Twice as many cells show twice as fine details, and there are eight times as many of "
         "them. R = 64 does for most characters.",
         r"h = \frac{\text{longest side}}{R} \qquad \text{cells} \propto R^3",
-        "Move Resolution, and watch the fingers fill.",
-        ("graph",),
-        {"resolution": 20},
-        focus="hand.L",
-        near=0.3,
-        angles=(16.0, 6.0),
+        "Not one orange street leads into the fingers. Move Resolution, and watch them fill.",
+        Look(
+            "graph",
+            bone="hand.L",
+            focus="middle1.L",
+            near=0.2,
+            angles=(10.0, 4.0),
+            choices={"resolution": 20, "skeleton": False},
+        ),
     ),
     Step(
         "Diamonds and circles",
@@ -151,12 +187,14 @@ TOUR = (
         "distances become round, as they are in truth.",
         r"\|x\|_1 = |x_1| + |x_2| + |x_3| \;\ge\; \|x\|_2",
         "Here only axes are allowed. Choose “Any angle” on the panel Graph, and come back.",
-        ("geodesics",),
-        {"connectivity": 6, "cut_axis": "z", "cut_position": 0.5},
-        bone="spine2",
-        focus="chest",
-        near=0.42,
-        angles=(0.0, 4.0),
+        Look(
+            "geodesics",
+            bone="spine2",
+            focus="spine2",
+            near=0.36,
+            angles=(0.0, 4.0),
+            choices={**CUT, "connectivity": 6},
+        ),
     ),
     Step(
         "From distance to weight",
@@ -166,12 +204,15 @@ TOUR = (
         "α says how steep it falls: at 0 like 1/d², at 1 like 1/d⁴. Steep is stiff, each bone "
         "keeps to its own; flat is soft, and far bones have a say.",
         r"w = \left(\frac{1}{(1-\alpha)\,\frac{d}{D} + \alpha\,(\frac{d}{D})^2}\right)^{2}",
-        "Move α, or choose another falloff: no distance is measured again.",
-        ("weights",),
-        {"weights_shown": "bone", "falloff": "paper", "alpha": 0.5},
-        bone="chest",
-        focus="chest",
-        near=0.6,
+        "Even the far head is tinged. Move α, or choose another falloff: no distance is measured "
+        "again.",
+        Look(
+            "weights",
+            bone="chest",
+            focus="chest",
+            near=0.6,
+            choices={"weights_shown": "bone", "falloff": "paper", "alpha": 0.5},
+        ),
     ),
     Step(
         "Why this one fails: inside out",
@@ -183,12 +224,15 @@ TOUR = (
         "and its distances creep along the skin.",
         r"w(p) = \frac{1}{4\pi}\sum_{t} \Omega_t(p) \;\ge\; \tau",
         "Compare the two arms in the cut. The remedy is to turn the arm's faces round.",
-        ("graph",),
-        {"cut_axis": "z", "cut_position": 0.5},
-        demo="biped_flipped_arm",
-        bone="forearm.R",
-        near=0.75,
-        angles=(4.0, 6.0),
+        Look(
+            "graph",
+            bone="forearm.R",
+            focus="spine2",
+            near=0.5,
+            angles=(4.0, 6.0),
+            demo="biped_flipped_arm",
+            choices=CUT,
+        ),
     ),
     Step(
         "Why this one fails: no way in",
@@ -199,11 +243,7 @@ TOUR = (
         "coat between two legs it would leak again.",
         r"d(v, b) = \infty \;\Rightarrow\; \|v - b\|_2 \text{ of 3 bones}",
         "Turn the character, and see from which bones the cape takes its colours.",
-        ("weights",),
-        {"weights_shown": "mix"},
-        demo="biped_cape",
-        bone="spine2",
-        angles=(152.0, 12.0),
+        Look("weights", bone="spine2", angles=(152.0, 12.0), demo="biped_cape"),
     ),
     Step(
         "Torn, and still whole",
@@ -215,10 +255,7 @@ TOUR = (
         "the weights are.",
         r"w(p) \approx 1 - \frac{\Omega_{\text{hole}}(p)}{4\pi} \;>\; \tfrac12",
         "That was the tour. Drop a character of your own, and see what it says.",
-        ("weights",),
-        {"weights_shown": "mix"},
-        demo="biped_soup",
-        bone="spine2",
+        Look("weights", bone="spine2", focus="chest", near=0.6, demo="biped_soup"),
     ),
 )
 """In the order in which they are told."""

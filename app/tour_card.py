@@ -38,9 +38,14 @@ class TourCard(JSComponent):
 
 def tour_card(session: Session) -> TourCard:
     """Return the card of a session's tour."""
-    steps = [{"title": s.title, "text": s.text, "formula": s.formula, "look": s.look} for s in TOUR]
+    steps = [{"title": s.title, "text": s.text, "formula": s.formula, "task": s.task} for s in TOUR]
     card = TourCard(session, step=session.state.tour, steps=steps, stylesheets=[_PLACE], margin=0)
-    session.state.param.watch(lambda event: card.param.update(step=event.new), "tour")
+
+    def told(*events: Any) -> None:
+        card.step = session.state.tour
+        session.view.tell(beside=card.step >= 0)
+
+    session.state.param.watch(told, "tour")
     return card
 
 
@@ -48,6 +53,6 @@ _PLACE = """
 :host { position: absolute; z-index: 4; right: 12px; top: 62px; left: auto !important;
   width: min(360px, calc(100% - 24px)) !important; height: auto !important;
   max-height: calc(100% - 74px); display: flex; }
-@media (max-width: 700px) { :host { top: auto; bottom: 8px; right: 8px;
+@media (max-width: 1020px) { :host { top: auto; bottom: 8px; right: 8px;
   width: calc(100% - 16px) !important; max-height: 46%; } }
 """

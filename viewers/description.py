@@ -159,8 +159,12 @@ class Description:
 
     @property
     def bounds(self) -> NDArray[np.float64]:
-        """Lowest and highest corner of all actors at rest, shape (2, 3)."""
-        points = [a.points for a in self.actors.values() if len(a.points)]
+        """Lowest and highest corner of all that is to be seen whole, at rest, shape (2, 3).
+
+        That is all but what is drawn over the scene: bones may reach far out of the body, those
+        above all that move nothing.
+        """
+        points = [a.points for a in self.actors.values() if len(a.points) and not a.overlay]
         if not points:
             return np.array([[-1.0, -1, -1], [1, 1, 1]])
         low = np.min([p.min(axis=0) for p in points], axis=0)

@@ -5,72 +5,108 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import param
 
+from cutcell.rig import Rig
 from viewers.character import to_scene
 from viewers.scene import Camera, framing
 
 from ..choices import defaults
 from ..scenes.common import bounds_of
-from ..tour import TOUR, Step
+from ..tour import TOUR, Look
 
 if TYPE_CHECKING:
     from ..session import Session
 
 
-def go(session: Session, index: int) -> None:
-    """Show a step of the tour; -1 leaves it, and the page stays as it is."""
+def go(session: Session, index: int, said: frozenset[str] = frozenset()) -> None:
+    """Show a step of the tour; -1 leaves it, and the page stays as it is.
+
+    Parameters
+    ----------
+    session : Session
+    index : int
+    said : set of str
+        What an address that names the step says beside it, and what therefore stays.
+    """
     state = session.state
     if not 0 <= index < len(TOUR):
         state.tour = -1
         return
-    step = TOUR[index]
+    look = TOUR[index].look
     state.tour = index
-    if state.demo == step.demo and state.rig is not None:
-        show(session, step)
+    if _stands(state, look.demo):
+        show(session, look, said)
     else:
-        session.open_demo(step.demo, lambda: show(session, step))
+        session.open_demo(look.demo, lambda: show(session, look, said))
 
 
-def show(session: Session, step: Step) -> None:
+def opens(arrival: dict[str, Any]) -> bool:
+    """Whether an address leaves the scene to the step that it names.
+
+    One that the page made tells the bone, and all that a person changed since.
+    """
+    if "tour" not in arrival or "bone" in arrival:
+        return False
+    demo = TOUR[arrival["tour"]].look.demo
+    return bool(arrival.get("rig", demo) == demo)
+
+
+def show(session: Session, look: Look, said: frozenset[str] = frozenset()) -> None:
     """Make the page what a step asks for; its character stands there."""
     state = session.state
-    names = state.rig.skeleton.names
-    wanted = {**defaults(state), "moving": False, "playing": False, **step.choices}
-    panel = next(panel for panel in step.panels if panel in shown_panels())
-    known = {name: value for name, value in wanted.items() if _fits(state, name, value)}
-    if step.bone in names:
-        known["joint"] = names.index(step.bone)
-    state.param.update(panel=panel, **known)
-    session.look(camera_of(session, step), aside=True)
+    names = list(state.rig.skeleton.names)
+    scene = {
+        **defaults(state),
+        "panel": look.panel,
+        "joint": names.index(look.bone),
+        "turns": {names.index(name): angles for name, angles in look.turns.items()},
+        "vertex": clicked(state.rig, look),
+        "moving": False,
+        "playing": False,
+        **look.choices,
+    }
+    kept = said - {"panel"} if state.panel == "learn" else said
+    state.param.update(**{name: value for name, value in scene.items() if name not in kept})
+    if "camera" not in said:
+        session.look(camera_of(session, look), aside=look.panel != "compare")
+    if said:
+        session.habits.begin()
 
 
-def shown_panels() -> frozenset[str]:
-    """Return the ids of the panels that the page has."""
-    from ..panels import PANELS
+def points_out(state: Any) -> bool:
+    """Whether the chosen vertex is one that the tour clicked, not a person."""
+    if state.tour < 0 or state.rig is None or state.vertex is None:
+        return False
+    look = TOUR[state.tour].look
+    return state.demo == look.demo and state.vertex == clicked(state.rig, look)
 
-    return frozenset(panel.id for panel in PANELS)
+
+def clicked(rig: Rig, look: Look) -> int | None:
+    """Return the vertex that a step clicks, or None."""
+    if not look.clicked or rig.weights is None:
+        return None
+    names = rig.skeleton.names
+    away = np.linalg.norm(rig.mesh.vertices - rig.skeleton.joints[names.index(look.bone)], axis=1)
+    away[rig.weights.argmax(axis=1) != names.index(look.clicked)] = np.inf
+    return int(away.argmin())
 
 
-def camera_of(session: Session, step: Step) -> Camera | None:
-    """Return where a step looks from; None for the view that one begins with."""
-    state = session.state
-    around, above = np.radians(step.angles)
-    bounds = bounds_of(state)
-    whole = framing(bounds, 1.0)
+def camera_of(session: Session, look: Look) -> Camera:
+    """Return where a step looks from."""
+    rig = session.state.rig
+    around, above = np.radians(look.angles)
+    whole = framing(bounds_of(session.state), 1.0)
     target = np.array(whole.focal_point)
-    distance = float(np.linalg.norm(np.array(whole.position) - target)) * step.near
-    names = state.rig.skeleton.names
-    if step.focus in names:
-        joint = state.rig.skeleton.joints[names.index(step.focus)]
-        target = to_scene(state.rig, joint[None])[0]
+    distance = float(np.linalg.norm(np.array(whole.position) - target)) * look.near
+    if look.focus:
+        joint = rig.skeleton.joints[rig.skeleton.names.index(look.focus)]
+        target = to_scene(rig, joint[None])[0]
     way = np.array([np.cos(above) * np.sin(around), np.sin(above), np.cos(above) * np.cos(around)])
     eye = target + distance * way
     return Camera(tuple(eye.tolist()), tuple(target.tolist()))
 
 
-def _fits(state: Any, name: str, value: Any) -> bool:
-    if name not in state.param:
-        return False
-    parameter = state.param[name]
-    return not isinstance(parameter, param.Selector) or value in parameter.objects
+def _stands(state: Any, demo: str) -> bool:
+    """Whether a demo character is there, and not just on its way."""
+    here = state.rig is not None and state.rig.name == demo
+    return bool(state.demo == demo and here)

@@ -60,11 +60,17 @@ class Stage {
 
   // Where each view lies, in the canvas' own pixels; divided as pictures are (viewers/tiles.py).
   get tiles() {
-    const {clientWidth: w, clientHeight: h} = this.element
-    const b = this.bounds()
+    const {clientHeight: h} = this.element
+    const w = this.element.clientWidth - this.taken
+    const b = this.bounds(isCharacter)
     const [wide, high, deep] = [0, 1, 2].map((i) => Math.max(b[2 * i + 1] - b[2 * i], 1e-9))
     const shape = Math.min(Math.max(Math.max(wide, deep) / high, 0.4), 2.5)
     return tiles(this.views.length, w, h, shape)
+  }
+
+  // What a card at the right takes of the width of views that stand side by side.
+  get taken() {
+    return this.views.length > 1 && this.cardBeside && this.element.clientWidth > 860 ? 384 : 0
   }
 
   light(lights) {
@@ -132,10 +138,10 @@ class Stage {
     return [Math.max(toCentre - radius, distance * 0.02), toCentre + radius * 1.5]
   }
 
-  bounds() {
+  bounds(those = () => true) {
     const b = [Infinity, -Infinity, Infinity, -Infinity, Infinity, -Infinity]
     for (const figure of this.figures.values()) {
-      if (!figure.bounds || !figure.rest?.length) { continue }
+      if (!figure.bounds || !figure.rest?.length || !those(figure)) { continue }
       for (let i = 0; i < 6; i += 2) {
         b[i] = Math.min(b[i], figure.bounds[i])
         b[i + 1] = Math.max(b[i + 1], figure.bounds[i + 1])
@@ -148,7 +154,7 @@ class Stage {
   fitting(direction, target) {
     const [, , w, h] = this.tiles.reduce((a, b) => a[2] / a[3] < b[2] / b[3] ? a : b)
     const slope = Math.tan(VIEW_ANGLE * Math.PI / 360)
-    const b = this.bounds()
+    const b = this.bounds(isCharacter)
     const flat = Math.hypot(direction[0], direction[2]) || 1
     const right = [direction[2] / flat, 0, -direction[0] / flat]
     const up = [0, 1, 2].map((k) => {
@@ -211,6 +217,11 @@ class Stage {
     this.gl.delete()
     this.window.delete()
   }
+}
+
+// What is to be seen whole; bones may reach far out of it, those above all that move nothing.
+function isCharacter(figure) {
+  return !figure.overlay
 }
 
 // Divides a canvas among views so that what stands in each is seen as large as can be.

@@ -94,7 +94,7 @@ export function render({model}) {
     title.textContent = step.title
     body.replaceChildren(...step.text.split("\n\n").map((text) => make("p", "", text)))
     const formula = make("div", "formula")
-    body.append(formula, make("p", "look", step.look))
+    body.append(formula, make("p", "look", step.task))
     back.disabled = model.step === 0
     next.textContent = model.step + 1 < model.steps.length ? "Next" : "Done"
     ;[...dots.children].forEach((dot, i) => {

@@ -56,13 +56,10 @@ class View {
       this.cut = message.cut
       for (const figure of stage.figures.values()) { figure.cut(this.cut) }
     }
+    if ("beside" in message) { this.reframe(() => { stage.cardBeside = message.beside }) }
     if (message.views) {
       this.views = message.views
-      const {position, target} = this.orbit
-      const way = position.map((x, i) => (x - target[i]) / this.orbit.distance)
-      const before = stage.fitting(way, target)
-      stage.divide(this.views)
-      this.orbit.scale(stage.fitting(way, target) / before)
+      this.reframe(() => stage.divide(this.views))
     }
     for (const [name, part] of entries(message.actors)) {
       if (!stage.figures.has(name)) {
@@ -100,6 +97,15 @@ class View {
     this.changed()
   }
 
+  // Divides the window anew; the same is seen in it, nearer or farther.
+  reframe(divide) {
+    const {position, target, distance} = this.orbit
+    const way = position.map((x, i) => (x - target[i]) / distance)
+    const before = this.stage.fitting(way, target)
+    divide()
+    this.orbit.scale(this.stage.fitting(way, target) / before)
+  }
+
   // Looks from where the server says, from as far as this window needs.
   frame({position, focal_point: target, now}) {
     const offset = position.map((x, i) => x - target[i])
@@ -108,7 +114,8 @@ class View {
     this.orbit.setHome(direction.map((x, i) => target[i] + distance * x), target)
     if (now) { this.orbit.look(now.position, now.focal_point) }
     // Where a card covers a side of a wide canvas, the middle of what is left is elsewhere.
-    if (now?.aside && this.overlay.canvas.clientWidth > 760) { this.orbit.pan(-170, 0) }
+    const alone = !(this.views?.length > 1)
+    if (now?.aside && alone && this.overlay.canvas.clientWidth > 760) { this.orbit.pan(-170, 0) }
     this.orbit.moving = false
     this.rested()
   }

@@ -1,11 +1,12 @@
 """The tour: every step finds what it needs, and shows it."""
 
+import numpy as np
 import pytest
 
-from app.actions.learn import camera_of, go, shown_panels
+from app.actions.learn import camera_of, go
 from app.scenes import resolve
 from app.session import Session
-from app.state import State
+from app.state import PANELS, State
 from app.tour import TOUR
 from assets import DEMOS
 from tests.app.loop import Loop
@@ -26,11 +27,11 @@ def session(loop):
 def test_every_step_can_be_told():
     demos = {demo.id for demo in DEMOS}
     for step in TOUR:
-        assert step.demo in demos
-        assert shown_panels() & set(step.panels), step.title
+        assert step.look.demo in demos
+        assert step.look.panel in PANELS, step.title
         assert step.text.count("\n\n") == 1, step.title
         assert len(step.text) < 700, step.title
-        unknown = set(step.choices) - set(State().param)
+        unknown = set(step.look.choices) - set(State().param)
         assert not unknown, f"{step.title}: the page has no {unknown}"
 
 
@@ -40,11 +41,11 @@ def computed_at(state, resolution):
 
 def test_a_step_sets_the_scene_and_can_be_left_and_taken_up(session, loop):
     go(session, 5)
-    state, step = session.state, TOUR[5]
-    loop.run_until(lambda: computed_at(state, step.choices["resolution"]), 90)
-    assert (state.tour, state.demo, state.panel) == (5, step.demo, "graph")
-    assert state.rig.skeleton.names[state.joint] == step.bone
-    assert session.view.camera == camera_of(session, step)
+    state, look = session.state, TOUR[5].look
+    loop.run_until(lambda: computed_at(state, look.choices["resolution"]), 90)
+    assert (state.tour, state.demo, state.panel) == (5, look.demo, "graph")
+    assert state.rig.skeleton.names[state.joint] == look.bone
+    assert session.view.camera == camera_of(session, look)
     assert "interior edges" in resolve(state).actors
     assert "step=6" in session.view._parts["address"]
     go(session, -1)
@@ -54,15 +55,70 @@ def test_a_step_sets_the_scene_and_can_be_left_and_taken_up(session, loop):
 
 
 def test_a_step_on_another_character_opens_it(session, loop):
-    index = next(i for i, step in enumerate(TOUR) if step.demo == "biped_cape")
+    index = next(i for i, step in enumerate(TOUR) if step.look.demo == "biped_cape")
     go(session, index)
     loop.run_until(lambda: session.state.binding is not None)
     assert session.state.demo == "biped_cape"
-    assert session.state.rig.skeleton.names[session.state.joint] == TOUR[index].bone
+    assert session.state.rig.skeleton.names[session.state.joint] == TOUR[index].look.bone
 
 
-def test_a_link_to_a_step_goes_on_from_there(session, loop):
-    session.arrive("?rig=biped&panel=graph&step=5&resolution=20", lambda: None)
+def test_a_link_to_a_step_alone_sets_its_scene(session, loop):
+    session.arrive("?panel=learn&step=7", lambda: pytest.fail("the step has a character"))
+    state, look = session.state, TOUR[6].look
+    loop.run_until(lambda: state.binding is not None)
+    assert (state.tour, state.demo, state.panel) == (6, "biped", "geodesics")
+    assert state.rig.skeleton.names[state.joint] == look.bone
+    assert (state.connectivity, state.cut_axis) == (6, "z")
+    assert session.view.camera == camera_of(session, look)
+    assert not session.habits._history.can_undo
+
+
+def test_what_a_link_says_beside_a_step_is_set_on_its_scene(session, loop):
+    session.arrive("?panel=weights&step=5&resolution=20&camera=1,2,3,0,1,0&kitchen=1", lambda: None)
+    state = session.state
+    loop.run_until(lambda: computed_at(state, 20))
+    assert (state.tour, state.panel, state.cut_axis) == (4, "weights", "z")
+    assert session.view.camera.position == (1, 2, 3)
+    assert "kitchen=1" in state.message[1]
+
+
+def test_a_link_of_a_person_on_the_tour_brings_back_what_they_made_of_it(session, loop):
+    go(session, 6)
     loop.run_until(lambda: session.state.binding is not None)
-    assert session.state.tour == 4
-    assert session.state.resolution == 20
+    session.state.param.update(connectivity="any", panel="learn")
+    query = session.view.told("address")
+    again = Session(loop)
+    again.arrive(query, lambda: None)
+    loop.run_until(lambda: again.state.binding is not None)
+    assert (again.state.tour, again.state.panel) == (6, "learn")
+    assert again.state.connectivity == "any"
+    again.close()
+
+
+@pytest.mark.parametrize("step", ["0", "99", "-3", "two"])
+def test_a_link_to_a_step_that_there_is_not_says_so(session, loop, step):
+    session.arrive(f"?step={step}&rig=robot&resolution=16", lambda: None)
+    loop.run_until(lambda: session.state.binding is not None)
+    assert session.state.tour == -1
+    assert f"step={step}" in session.state.message[1]
+
+
+def test_the_vertex_of_a_step_lies_where_its_text_says(session, loop):
+    go(session, 3)
+    loop.run_until(lambda: session.state.rig is not None)
+    state = session.state
+    names, joints = state.rig.skeleton.names, state.rig.skeleton.joints
+    assert names[state.rig.weights[state.vertex].argmax()] == "thigh.L"
+    gap = state.rig.mesh.vertices[state.vertex] - joints[names.index("hand.L")]
+    assert np.linalg.norm(gap) < 0.1
+
+
+def test_two_steps_at_once_show_the_last(session, loop):
+    go(session, 8)
+    go(session, 0)
+    loop.run_until(lambda: session.state.binding is not None)
+    assert (session.state.tour, session.state.demo) == (0, TOUR[0].look.demo)
+    go(session, 9)
+    go(session, 10)
+    loop.run_until(lambda: session.state.rig.name == "biped_soup", 60)
+    assert session.state.tour == 10

@@ -7,9 +7,11 @@ import pytest
 
 import cutcell
 from cutcell.graph import INTERIOR, MESH, SURFACE
+from cutcell.rig import Skeleton
 from tests.viewers.arm import WORLD, arm_rig
 from viewers import palette
 from viewers.character import body, bones, drawn_segments, pose_in_scene, smooth_normals, to_scene
+from viewers.description import Description
 from viewers.distance_scene import distance_scene
 from viewers.graph_scene import LAYERS, cut_at, graph_scene
 from viewers.palette import UNREACHED, colormap, to_bytes
@@ -211,3 +213,14 @@ def test_a_motion_can_be_read_between_its_frames_and_repeats(rig):
     np.testing.assert_allclose(pose_at(rig, clip, 3.5), half)
     still = cutcell.Clip("still", np.zeros(1), clip.transforms[:1])
     np.testing.assert_allclose(pose_at(rig, still, 2.0), pose_in_scene(rig, clip.transforms[0]))
+
+
+def test_bones_far_out_of_the_body_do_not_shrink_it(rig):
+    body_alone = Description({"body": body(rig)}).bounds
+    skeleton = Skeleton(
+        [*rig.skeleton.joints, [0, 50, 0]], [*rig.skeleton.parents, -1],
+        (*rig.skeleton.names, "target"),
+    )  # fmt: skip
+    far = replace(rig, skeleton=skeleton, weights=None, clips=())
+    scene = Description({"body": body(far), "bones": bones(far)})
+    np.testing.assert_array_equal(scene.bounds, body_alone)
