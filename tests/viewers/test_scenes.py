@@ -218,7 +218,7 @@ def test_a_motion_can_be_read_between_its_frames_and_repeats(rig):
 def test_bones_far_out_of_the_body_do_not_shrink_it(rig):
     body_alone = Description({"body": body(rig)}).bounds
     skeleton = Skeleton(
-        [*rig.skeleton.joints, [0, 50, 0]], [*rig.skeleton.parents, -1],
+        [*rig.skeleton.joints, [0, 5, 0]], [*rig.skeleton.parents, -1],
         (*rig.skeleton.names, "target"),
     )  # fmt: skip
     far = replace(rig, skeleton=skeleton, weights=None, clips=())
