@@ -26,6 +26,27 @@ REPORT_EVERY = 0.08
 """Seconds between two reports of progress; more would only keep the page busy."""
 
 
+def on_its_thread(document: Any, loop: Any) -> Schedule:
+    """Return what runs functions later on a document's own thread; from any thread.
+
+    `document.add_next_tick_callback` alone will not do: called from another thread in the very
+    moment in which the document lets go of the changes that it held together, it is put with
+    them, and waits until something else is changed.
+
+    Parameters
+    ----------
+    document : bokeh.document.Document
+    loop : tornado.ioloop.IOLoop
+        That of the document's thread.
+    """
+
+    def add(action: Callable[[], Any]) -> None:
+        if document.session_context is not None:  # else its browser is gone
+            document.add_next_tick_callback(action)
+
+    return lambda action: loop.add_callback(add, action)
+
+
 class Gate:
     """Holds scheduled actions back until a page is there to show what they do.
 

@@ -11,12 +11,13 @@ from urllib.parse import urlencode
 
 import panel as pn
 import panel_material_ui as pmui
+from tornado.ioloop import IOLoop
 
 from assets import DEMOS
 
 from .favicon import FAVICON
 from .inspector import inspector
-from .jobs import Gate
+from .jobs import Gate, on_its_thread
 from .memory import let_go, tidy_soon
 from .session import Session
 from .sidebar import sidebar
@@ -37,7 +38,7 @@ def page(path: Path | None = None) -> pmui.Page:
         The character to open; the first demo when left out.
     """
     document: Any = pn.state.curdoc
-    gate = Gate(document.add_next_tick_callback)
+    gate = Gate(on_its_thread(document, IOLoop.current()))
     pn.state.onload(gate.open)
     session = Session(gate)
     # Panel keeps its settings per document for as long as the document lives: what they hold

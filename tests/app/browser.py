@@ -156,8 +156,8 @@ class Visit:
         """Take an option of a menu."""
         self.page.get_by_role("combobox", name=label).click()
         self.page.get_by_role("menuitem", name=option, exact=True).click()
-        # Until the menu is gone its curtain takes what is clicked.
-        self.page.get_by_role("menuitem").first.wait_for(state="hidden", timeout=LOAD_MS)
+        # Until the menu is gone, and not only its entries, its curtain takes what is clicked.
+        expect(self.page.locator(".MuiPopover-root")).to_have_count(0, timeout=LOAD_MS)
 
     def slide(self, label: str, key: str, times: int = 1) -> None:
         """Move a slider by a key."""

@@ -1,10 +1,11 @@
 """Work off the event loop: results, progress, errors; stopped and superseded work."""
 
 import threading
+from types import SimpleNamespace
 
 import pytest
 
-from app.jobs import Gate, Jobs
+from app.jobs import Gate, Jobs, on_its_thread
 from tests.app.loop import Loop
 
 
@@ -170,3 +171,31 @@ def test_a_gate_holds_actions_back_and_keeps_their_order(loop):
     gate(lambda: told.append(3))
     loop.run_until(lambda: len(told) == 4)
     assert told == [0, 1, 2, 3]
+
+
+class Document:
+    """Notes on which threads it is asked for something."""
+
+    def __init__(self):
+        self.session_context = object()
+        self.threads = []
+
+    def add_next_tick_callback(self, action):
+        self.threads.append(threading.current_thread())
+        action()
+
+
+def test_a_document_is_only_touched_on_its_own_thread(loop, told):
+    document = Document()
+    tornado = SimpleNamespace(add_callback=lambda act, *given: loop(lambda: act(*given)))
+    schedule = on_its_thread(document, tornado)
+    worker = threading.Thread(target=lambda: [schedule(lambda: told.append(i)) for i in "ab"])
+    worker.start()
+    worker.join()
+    assert told == document.threads == []
+    loop.run_until(lambda: len(told) == 2)
+    assert document.threads == [threading.current_thread()] * 2
+    document.session_context = None  # its browser is gone
+    schedule(lambda: told.append("c"))
+    loop.run_for(0.05)
+    assert len(told) == 2
