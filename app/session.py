@@ -11,6 +11,8 @@ from pathlib import Path
 from threading import Lock
 from typing import Any
 
+from param.parameterized import batch_call_watchers
+
 import cutcell
 from assets import DEMOS, demo_path
 from cutcell.errors import CutcellError, FileError
@@ -112,11 +114,25 @@ class Session:
 
     # Opening
 
-    def open_demo(self, id: str, then: Callable[[], None] = lambda: None) -> None:
-        """Show a demo character and bind it; do something more when it stands there."""
+    def open_demo(
+        self,
+        id: str,
+        chosen: Callable[[], None] = lambda: None,
+        then: Callable[[], None] = lambda: None,
+    ) -> None:
+        """Show a demo character and bind it.
+
+        Parameters
+        ----------
+        id : str
+        chosen : callable
+            Chooses more, together with the character.
+        then : callable
+            Called when it stands there.
+        """
         self.state.demo = id
         title = next(demo.title for demo in DEMOS if demo.id == id)
-        self._open(lambda: demo_rig(id), f"opening {title}", lambda: self._keep(""), then)
+        self._open(lambda: demo_rig(id), f"opening {title}", lambda: self._keep(""), chosen, then)
 
     def open_files(self, paths: list[Path], key: str = "") -> None:
         """Show the character in some files, and bind it.
@@ -197,8 +213,9 @@ class Session:
         load: Callable[[], Rig],
         stage: str,
         opened: Callable[[], None] = lambda: None,
-        stood: Callable[[], None] = lambda: None,
-        **then: Any,
+        chosen: Callable[[], None] = lambda: None,
+        then: Callable[[], None] = lambda: None,
+        **more: Any,
     ) -> None:
         def work(progress: Progress) -> Rig:
             progress(stage, 0.0)
@@ -206,24 +223,27 @@ class Session:
 
         def done(rig: Rig) -> None:
             opened()
-            self.state.param.update(**then)
-            self._stand(rig)
-            stood()
+            self.state.param.update(**more)
+            self._stand(rig, chosen)
+            then()
 
         self.start(work, done)
 
-    def _stand(self, rig: Rig) -> None:
+    def _stand(self, rig: Rig, chosen: Callable[[], None] = lambda: None) -> None:
         state = self.state
         self.jobs("field").cancel()
-        state.param.update(
-            rig=rig, binding=None, field=None, turns={}, moving=False, playing=False,
-            clip=first_clip(rig), message=None, joint=first_joint(rig), vertex=None,
-        )  # fmt: skip
+        arrival, self._arrival = self._arrival, {}
+        # All at once: a menu whose value changes twice in a moment may tell the first one back.
+        with batch_call_watchers(state):
+            state.param.update(
+                rig=rig, binding=None, field=None, turns={}, moving=False, playing=False,
+                clip=first_clip(rig), message=None, joint=first_joint(rig), vertex=None,
+            )  # fmt: skip
+            self._land(rig, arrival)
+            chosen()
         self.view.camera = framing(bounds_of(state), 1.2)
         self.view.at_home = True
         camera = camera_part(self.view.camera)
-        arrival, self._arrival = self._arrival, {}
-        self._land(rig, arrival)
         self.view.tell(bones=bones_part(state), camera=camera)
         if "camera" in arrival:
             eye, target = arrival["camera"][:3], arrival["camera"][3:]
@@ -241,7 +261,7 @@ class Session:
         methods = [name for name in arrival.get("methods", ()) if name in offered(rig)]
         if len(methods) >= FEWEST_VIEWS:
             state.methods = methods
-        if arrival.get("minus") in state.methods:
+        if arrival.get("minus") in offered(rig):
             state.minus = arrival["minus"]
         state.tour = arrival.get("tour", state.tour)
         if 0 <= arrival.get("vertex", -1) < len(rig.mesh.vertices):

@@ -36,8 +36,13 @@ def go(session: Session, index: int, said: frozenset[str] = frozenset()) -> None
     state.tour = index
     if _stands(state, look.demo):
         show(session, look, said)
+        aim(session, look)
     else:
-        session.open_demo(look.demo, lambda: show(session, look, said))
+        session.open_demo(
+            look.demo,
+            lambda: show(session, look, said),
+            lambda: None if "camera" in said else aim(session, look),
+        )
 
 
 def opens(arrival: dict[str, Any]) -> bool:
@@ -52,7 +57,7 @@ def opens(arrival: dict[str, Any]) -> bool:
 
 
 def show(session: Session, look: Look, said: frozenset[str] = frozenset()) -> None:
-    """Make the page what a step asks for; its character stands there."""
+    """Choose what a step asks for, but for what an address said; its character is there."""
     state = session.state
     names = list(state.rig.skeleton.names)
     scene = {
@@ -67,10 +72,11 @@ def show(session: Session, look: Look, said: frozenset[str] = frozenset()) -> No
     }
     kept = said - {"panel"} if state.panel == "learn" else said
     state.param.update(**{name: value for name, value in scene.items() if name not in kept})
-    if "camera" not in said:
-        session.look(camera_of(session, look), aside=look.panel != "compare")
-    if said:
-        session.habits.begin()
+
+
+def aim(session: Session, look: Look) -> None:
+    """Look from where a step does."""
+    session.look(camera_of(session, look), aside=look.panel != "compare")
 
 
 def points_out(state: Any) -> bool:

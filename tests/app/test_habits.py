@@ -96,6 +96,15 @@ def test_a_comparison_opens_as_it_was_shared(session, loop):
     assert "methods" not in said(session)
 
 
+def test_a_difference_to_the_files_own_weights_is_shared_without_naming_the_methods(session):
+    session.state.resolution = 16
+    session._arrival = {"minus": "artist"}
+    session.open_rig(arm_rig())
+    assert session.state.methods == ["now", "artist", "euclidean"]
+    assert session.state.minus == "artist"
+    assert not session.habits._history.can_undo
+
+
 def test_methods_that_a_character_does_not_offer_are_left_out(session):
     session.state.resolution = 16
     session._arrival = {"methods": ["now", "artist"], "minus": "artist"}
