@@ -1,7 +1,6 @@
 // One actor of the scene, drawn by vtk.js; changed in place by what the server sends.
 
 const MANY_LINES = 40000
-const QUIET = [201, 206, 214]  // the body's own grey
 
 // Arrays arrive as Bokeh's own subclasses, whose names vtk.js does not know.
 function plain(array) {
@@ -30,6 +29,7 @@ class Figure {
     this.stage = stage
     this.data = vtk.Common.DataModel.vtkPolyData.newInstance()
     this.made = [this.make(this.data)]
+    this.colours = new Colours(stage.context)
     this.visible = true
   }
 
@@ -48,9 +48,13 @@ class Figure {
     if (part.normals) { this.setNormals(plain(part.normals)) }
     if (part.cells) { this.setCells(plain(part.cells)) }
     if ("skin" in part || "apart" in part) { this.setSkins(part) }
-    if (part.colors) { this.setColors(plain(part.colors)) }
-    if (part.scalars) { this.setScalars(plain(part.scalars), plain(part.table), part.limits) }
+    if (part.colors) { this.colours.setColors(plain(part.colors)) }
+    if (part.scalars) {
+      this.values = plain(part.scalars)
+      this.colours.setValues(this.values, plain(part.table), part.limits)
+    }
     if (part.paint) { this.paint(part.paint) }
+    this.shade()
     if (part.place) {
       [this.overlay, this.view] = [part.place.overlay, part.place.view]
       this.place()
@@ -108,81 +112,57 @@ class Figure {
     if (apart !== undefined) {
       this.apart = apart && {...plainSkin(apart), unit: apart.unit}
     }
-    if (!this.skin) { return }
-    const {vtkDataArray} = this.vtk.Common.Core
-    const arrays = [
-      ...skinArrays("skin", this.skin), ...(this.apart ? skinArrays("other", this.apart) : []),
-    ]
-    const data = this.data.getPointData()
-    for (const [name, values] of arrays) {
-      data.removeArray(name)
-      data.addArray(vtkDataArray.newInstance({name, numberOfComponents: 4, values}))
-    }
+    this.shaded = null
+  }
+
+  // Changes the shaders to what moves and colours the points now; nothing while that is the same.
+  shade() {
+    const {skin, apart} = this
     const sets = (of) => of ? Math.ceil(of.count / 4) : 0
-    for (const {mapper} of this.made) {
+    const needs = {sets: sets(skin), otherSets: sets(skin && apart), by: this.coloured ? this.colours.by : ""}
+    const shaded = JSON.stringify([needs, this.made.length])
+    if (shaded === this.shaded || !(needs.sets || needs.by || this.shaded)) { return }
+    this.shaded = shaded
+    const arrays = [
+      ...needs.by ? [["pointId", pointIds(this.rest.length / 3), 1]] : [],
+      ...needs.sets ? skinArrays("skin", skin) : [],
+      ...needs.otherSets ? skinArrays("other", apart) : [],
+    ]
+    for (const {data, mapper} of this.made) {
+      this.attach(data, arrays)
       mapper.setCustomShaderAttributes(arrays.map(([name]) => name))
       Object.assign(mapper.getViewSpecificProperties(), {
-        OpenGL: {ShaderReplacements: skinShader(sets(this.skin), sets(this.apart))},
-        ShadersCallbacks: [{callback: (_, primitive) => this.stage.poses.use(
-          primitive.getProgram(), primitive.getCABO(), this.limits || [0, 1], this.apart?.unit,
-        )}],
+        OpenGL: {ShaderReplacements: shaderSwaps(needs)},
+        ShadersCallbacks: [{callback: (_, primitive) => this.use(primitive)}],
       })
       mapper.modified()
     }
-    this.data.modified()
   }
 
-  setColors(colors) {
-    this.table = null
-    this.setArray(colors, 3)
-    for (const {mapper} of this.made) {
-      mapper.setColorModeToDirectScalars()
-      mapper.setInterpolateScalarsBeforeMapping(false)
+  attach(data, arrays) {
+    const {vtkDataArray} = this.vtk.Common.Core
+    const held = data.getPointData()
+    for (const [name, values, numberOfComponents = 4] of arrays) {
+      held.removeArray(name)
+      held.addArray(vtkDataArray.newInstance({name, numberOfComponents, values}))
     }
+    data.modified()
   }
 
-  setScalars(values, table, limits) {
-    this.setArray(values, 1)
-    this.values = values
-    this.table = table
-    this.limits = limits
-    for (const {mapper} of this.made) {
-      mapper.setColorModeToMapScalars()
-      mapper.setInterpolateScalarsBeforeMapping(true)
-      mapper.setUseLookupTableScalarRange(true)
-    }
-    this.setTable(this.front)
+  // Called by vtk.js before it draws.
+  use(primitive) {
+    const program = primitive.getProgram()
+    this.stage.poses.use(program, primitive.getCABO(), this.apart?.unit)
+    this.colours.use(program)
   }
 
   // Values beyond the front are left grey.
-  setTable(front) {
-    this.front = front
-    if (!this.table) { return }
-    const {vtkLookupTable, vtkDataArray} = this.vtk.Common.Core
-    const size = this.table.length / 3
-    const [low, high] = this.limits
-    const last = !this.film || front === null || front === undefined
-      ? size : Math.floor((front - low) / (high - low || 1) * (size - 1)) + 1
-    const rgba = new Uint8Array(size * 4).fill(255)
-    for (let i = 0; i < size; i++) {
-      rgba.set(i < last ? this.table.subarray(3 * i, 3 * i + 3) : QUIET, 4 * i)
-    }
-    const lookup = vtkLookupTable.newInstance()
-    lookup.setTable(vtkDataArray.newInstance({numberOfComponents: 4, values: rgba}))
-    lookup.setRange(low, high)
-    for (const {mapper} of this.made) { mapper.setLookupTable(lookup) }
-  }
-
-  setArray(values, numberOfComponents) {
-    const {vtkDataArray} = this.vtk.Common.Core
-    const array = vtkDataArray.newInstance({name: "values", numberOfComponents, values})
-    for (const {data} of this.made) {
-      data.getPointData().setScalars(array)
-      data.modified()
-    }
+  setFront(front) {
+    this.colours.front = this.film ? front ?? ALL : ALL
   }
 
   paint({color, opacity, width, ambient, coloured, behind}) {
+    this.coloured = coloured
     for (const {mapper, actor} of this.made) {
       const look = actor.getProperty()
       look.setColor(...color)
@@ -191,7 +171,6 @@ class Figure {
       look.setAmbient(ambient)
       look.setLighting(this.kind === "surface")
       if (!this.restNormals) { look.setInterpolationToFlat() }
-      mapper.setScalarVisibility(coloured)
       if (behind) { mapper.setRelativeCoincidentTopologyPolygonOffsetParameters(2, 30) }
       if (this.kind === "lines") {
         mapper.setRelativeCoincidentTopologyLineOffsetParameters(0, -4)
@@ -250,6 +229,7 @@ class Figure {
 
   remove() {
     this.leave()
+    this.colours.remove()
     for (const {actor, mapper} of this.made) {
       actor.delete()
       mapper.delete()

@@ -37,7 +37,7 @@ class PoseTexture {
   }
 
   // Called by vtk.js before it draws a figure.
-  use(program, buffer, limits, unit) {
+  use(program, buffer, unit) {
     if (!program.isUniformUsed("poseOn")) { return }
     this.bind()
     this.gl.activeTexture(this.gl.TEXTURE0)
@@ -47,9 +47,7 @@ class PoseTexture {
     const m = buffer.getCoordShiftAndScaleEnabled() ? buffer.getInverseShiftAndScaleMatrix() : null
     program.setUniform3fArray("trueScale", m ? [m[0], m[5], m[10]] : [1, 1, 1])
     program.setUniform3fArray("trueShift", m ? [m[12], m[13], m[14]] : [0, 0, 0])
-    if (program.isUniformUsed("apartLimits")) {
-      program.setUniform3fArray("apartLimits", [limits[0], limits[1], unit])
-    }
+    if (program.isUniformUsed("apartUnit")) { program.setUniformf("apartUnit", unit) }
   }
 
   remove() {
@@ -74,9 +72,10 @@ function skinArrays(name, {joints, weights, count}) {
   return arrays
 }
 
-// What is changed in vtk.js' own vertex shader. `other`: a second skin, whose distance from the
-// first colours the figure.
-function skinShader(sets, otherSets) {
+// What is added to vtk.js' vertex shader. `otherSets`: of a second skin; how far it takes a point
+// from where the first one does is the point's value.
+function skinVertex(sets, otherSets) {
+  if (!sets) { return {declared: "", main: "", swaps: []} }
   const attributes = (name, count) => Array.from({length: count}, (_, s) =>
     `attribute vec4 ${name}Joints${s}MC; attribute vec4 ${name}Weights${s}MC;`).join("\n")
   const blend = (name, count) => Array.from({length: count}, (_, s) =>
@@ -89,14 +88,16 @@ function skinShader(sets, otherSets) {
     if (poseOn > 0.5) { ${blend(name, count)} }
     if (held == 0.0) { a = vec4(1, 0, 0, 0); b = vec4(0, 1, 0, 0); c = vec4(0, 0, 1, 0); }
   }`
-  const declared = `
+  const turned = "vec3(dot(rowX.xyz, normalMC), dot(rowY.xyz, normalMC), dot(rowZ.xyz, normalMC))"
+  return {
+    declared: `
   ${attributes("skin", sets)}
   ${otherSets ? attributes("other", otherSets) : ""}
   uniform highp sampler2D poses;
   uniform float poseOn;
   uniform vec3 trueScale;
   uniform vec3 trueShift;
-  ${otherSets ? "uniform vec3 apartLimits;" : ""}
+  uniform float apartUnit;
   vec4 rowX; vec4 rowY; vec4 rowZ; vec4 posedMC; float apart;
   void addPose(float joint, float w, inout vec4 a, inout vec4 b, inout vec4 c, inout float held) {
     if (w == 0.0) { return; }
@@ -107,9 +108,8 @@ function skinShader(sets, otherSets) {
     held += w;
   }
   ${blender("skin", sets)}
-  ${otherSets ? blender("other", otherSets) : ""}
-  void main()
-  {
+  ${otherSets ? blender("other", otherSets) : ""}`,
+    main: `
     vec4 truePoint = vec4(vertexMC.xyz * trueScale + trueShift, 1.0);
     skinBlend(rowX, rowY, rowZ);
     vec3 posed = vec3(dot(rowX, truePoint), dot(rowY, truePoint), dot(rowZ, truePoint));
@@ -117,24 +117,14 @@ function skinShader(sets, otherSets) {
     ${otherSets ? `vec4 a; vec4 b; vec4 c;
     otherBlend(a, b, c);
     vec3 gap = posed - vec3(dot(a, truePoint), dot(b, truePoint), dot(c, truePoint));
-    float span = (apartLimits.y - apartLimits.x) / 512.0;
-    apart = (apartLimits.z * dot(gap, gap) - apartLimits.x + span)
-      / (apartLimits.y - apartLimits.x + 2.0 * span);` : ""}`
-  const turned = "vec3(dot(rowX.xyz, normalMC), dot(rowY.xyz, normalMC), dot(rowZ.xyz, normalMC))"
-  const swap = (from, to) => ({
-    shaderType: "Vertex", originalValue: from, replaceFirst: false, replacementValue: to,
-    replaceAll: false,
-  })
-  return [
-    swap("void main()\n{", declared),
-    swap("MCVCMatrix * vertexMC", "MCVCMatrix * posedMC"),
-    swap("MCPCMatrix * vertexMC", "MCPCMatrix * posedMC"),
-    swap("normalMatrix * normalMC", `normalMatrix * ${turned}`),
-    swap("dot(clipPlanes[planeNum], vertexMC)", "dot(clipPlanes[planeNum], posedMC)"),
-    ...(otherSets
-      ? [swap("tcoordVCVSOutput = tcoordMC", "tcoordVCVSOutput = vec2(min(apart, 1.0), 0.49)")]
-      : []),
-  ]
+    apart = apartUnit * dot(gap, gap);` : ""}`,
+    swaps: [
+      ["MCVCMatrix * vertexMC", "MCVCMatrix * posedMC"],
+      ["MCPCMatrix * vertexMC", "MCPCMatrix * posedMC"],
+      ["normalMatrix * normalMC", `normalMatrix * ${turned}`],
+      ["dot(clipPlanes[planeNum], vertexMC)", "dot(clipPlanes[planeNum], posedMC)"],
+    ],
+  }
 }
 
 // The same sum for all points, on the processor: to know where they are, not to draw them.

@@ -27,13 +27,16 @@ class Stage {
     this.views = []
     this.figures = new Map()
     this.gl = vtk.Rendering.OpenGL.vtkRenderWindow.newInstance()
+    // Made before vtk.js asks for it: what smooths edges is chosen for each frame (smooth.js).
+    this.context = this.gl.getCanvas().getContext("webgl2", {
+      antialias: false, depth: true, alpha: true, powerPreference: "high-performance",
+    })
+    this.smooth = new Smooth(this.context)
     this.gl.setContainer(element)
     this.window.addView(this.gl)
     this.pose = null
     this.divide([])
     this.frames = 0
-    this.scale = 1
-    this.cost = 0
   }
 
   // Side by side, under one camera: as many views as there are captions, or a single one.
@@ -87,7 +90,7 @@ class Stage {
   }
 
   get poses() {
-    this.texture ??= new PoseTexture(this.gl.getContext() || this.gl.get3DContext())
+    this.texture ??= new PoseTexture(this.context)
     return this.texture
   }
 
@@ -96,11 +99,9 @@ class Stage {
     this.poses.set(pose)
   }
 
-  resize(moving = false) {
+  resize(coarse = false) {
     const {clientWidth: w, clientHeight: h} = this.element
-    // A slow machine gets a coarser picture while things move, and a full one at rest.
-    const coarse = moving && this.cost > 60 ? 0.6 : 1
-    const ratio = Math.min(window.devicePixelRatio || 1, 2) * coarse
+    const ratio = Math.min(window.devicePixelRatio || 1, 2) * (coarse ? 0.6 : 1)
     const size = [Math.max(1, Math.round(w * ratio)), Math.max(1, Math.round(h * ratio))]
     if (this.size?.join() === size.join()) { return }
     this.size = size
@@ -111,8 +112,12 @@ class Stage {
     this.camera.set({position: orbit.position, focalPoint: orbit.target, viewUp: [0, 1, 0]})
   }
 
-  draw(moving) {
-    this.resize(moving)
+  // A machine that is slow at it gets rough edges while things change, fewer lines and larger
+  // pixels while they move, and the full picture when they rest.
+  draw(moving, resting) {
+    const {smooth} = this
+    this.rough = !resting && smooth.slow
+    this.resize(moving && smooth.slower)
     const {clientWidth: w, clientHeight: h} = this.element
     this.tiles.forEach(([left, top, width, height], i) => {
       const part = [left / w, 1 - (top + height) / h, (left + width) / w, 1 - top / h]
@@ -120,11 +125,8 @@ class Stage {
       for (const renderer of [base, over]) { renderer.setViewport(...part) }
     })
     for (const figure of this.figures.values()) { figure.show(moving) }
-    const start = performance.now()
-    const range = this.depthRange()
-    this.camera.setClippingRange(...range)
-    this.gl.traverseAllPasses()
-    if (!moving) { this.cost = performance.now() - start }
+    this.camera.setClippingRange(...this.depthRange())
+    smooth.draw(this.size, this.rough, () => this.gl.traverseAllPasses())
     this.frames += 1
   }
 
@@ -213,6 +215,7 @@ class Stage {
   remove() {
     for (const figure of this.figures.values()) { figure.remove() }
     this.texture?.remove()
+    this.smooth.remove()
     this.gl.setContainer(null)
     this.gl.delete()
     this.window.delete()

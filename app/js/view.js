@@ -1,6 +1,8 @@
 // The page's 3D view. The server says what stands in the scene; turning it, picking bones
 // and playing motions happen here.
 
+const CALM = 150  // milliseconds without a change, after which a slow machine draws in full
+
 class View {
   constructor(model, vtk, overlay) {
     this.model = model
@@ -67,7 +69,7 @@ class View {
       }
       const figure = stage.figures.get(name)
       figure.update(part, this.cut)
-      if ("film" in part || part.scalars) { figure.setTable(this.front) }
+      if ("film" in part) { figure.setFront(this.front) }
     }
     if (message.bones) {
       const {start, end, joint, names} = message.bones
@@ -162,16 +164,19 @@ class View {
     })
   }
 
-  draw() {
+  draw(resting = false) {
     if (this.gone || !this.overlay.canvas.clientWidth) { return }
+    clearTimeout(this.calming)
+    const moving = this.orbit.moving || Boolean(this.playing)
     this.stage.look(this.orbit)
     const tiles = this.views?.length ? this.stage.tiles : []
     if (String(tiles) !== this.divided || this.captioned !== this.views) {
       [this.divided, this.captioned] = [String(tiles), this.views]
       this.overlay.showViews(this.views || [], tiles)
     }
-    this.stage.draw(this.orbit.moving || this.playing)
+    this.stage.draw(moving, resting)
     this.gizmo.draw()
+    if (this.stage.rough && !moving) { this.calming = setTimeout(() => this.draw(true), CALM) }
   }
 
   rested() {
@@ -250,7 +255,7 @@ class View {
   setFront(front) {
     this.front = front
     for (const figure of this.stage.figures.values()) {
-      if (figure.film) { figure.setTable(front) }
+      if (figure.film) { figure.setFront(front) }
     }
     this.changed()
   }
@@ -295,8 +300,8 @@ class View {
   report() {
     return {
       messages: this.messages, frames: this.stage.frames, posed: this.posed,
-      cost: this.stage.cost, playing: Boolean(this.playing), time: this.time || 0,
-      idle: !this.waiting,
+      cost: this.stage.smooth.cost, playing: Boolean(this.playing), time: this.time || 0,
+      idle: !this.waiting && !this.stage.rough,
       actors: Object.fromEntries([...this.stage.figures].map(([name, figure]) => [
         name, {visible: figure.visible, cells: figure.count, points: figure.rest.length / 3},
       ])),
@@ -312,6 +317,7 @@ class View {
     this.connection.remove()
     this.names.remove()
     this.observer.disconnect()
+    clearTimeout(this.calming)
     cancelAnimationFrame(this.waiting)
     cancelAnimationFrame(this.ticking)
     cancelAnimationFrame(this.filming)
