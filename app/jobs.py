@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable
-from typing import Any
+from typing import Any, Protocol
 
 from cutcell.errors import Cancelled
 from cutcell.progress import Progress
@@ -16,11 +16,15 @@ Schedule = Callable[[Callable[[], Any]], Any]
 COMPUTING = threading.Lock()
 """Numeric libraries share one pool of threads: sessions compute in turn."""
 
-COMPARING = threading.Lock()
-"""Methods that are compared may take minutes: nobody else waits for them."""
+COMPARING = threading.BoundedSemaphore(4)
+"""Methods that are compared may take minutes, most of them in processes of their own: some
+sessions do so at once, so that none waits for another's slow method."""
 
 DRAWING = threading.Lock()
 """Pictures and films are drawn in turn, while others compute."""
+
+WAITING = "waiting for another computation"
+"""The stage of work that waits for its turn."""
 
 REPORT_EVERY = 0.08
 """Seconds between two reports of progress; more would only keep the page busy."""
@@ -45,6 +49,16 @@ def on_its_thread(document: Any, loop: Any) -> Schedule:
             document.add_next_tick_callback(action)
 
     return lambda action: loop.add_callback(add, action)
+
+
+class Turn(Protocol):
+    """What work waits for, a lock or a semaphore: so many have it at a time."""
+
+    def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
+        """Take it, or tell after some seconds that it was not free."""
+
+    def release(self) -> None:
+        """Give it back."""
 
 
 class Gate:
@@ -101,10 +115,10 @@ class Job:
         """Run an action on the page's own thread, unless the job is stopped till then."""
         self._schedule(lambda: None if self.cancelled.is_set() else action())
 
-    def wait_for(self, turn: threading.Lock) -> None:
-        """Wait until no other session does work of the kind."""
+    def wait_for(self, turn: Turn) -> None:
+        """Wait until no other session, or few enough of them, do work of the kind."""
         while not turn.acquire(timeout=0.05):
-            self.progress("waiting for another computation", 0.0)
+            self.progress(WAITING, 0.0)
 
 
 class Jobs:
@@ -132,11 +146,12 @@ class Jobs:
         done: Callable[[Any], None],
         failed: Callable[[Exception], None],
         report: Progress,
-        turn: threading.Lock = COMPUTING,
+        turn: Turn = COMPUTING,
     ) -> Job | None:
         """Do some work in a thread; `done`, `failed` and `report` run on the page's thread.
 
-        It waits until no other session does work that takes turns by the same lock.
+        It waits until no other session does work that takes turns by the same lock (or fewer
+        do than a semaphore lets).
         Whatever ran before is stopped, and none of its results arrive any more.
         """
         self.cancel()
@@ -174,7 +189,7 @@ def _run(
     work: Callable[[Progress], Any],
     done: Callable[[Any], None],
     failed: Callable[[Exception], None],
-    turn: threading.Lock,
+    turn: Turn,
 ) -> None:
     try:
         job.wait_for(turn)

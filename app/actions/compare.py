@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from numpy.typing import NDArray
 
 from cutcell.baselines import METHODS, Method
+from cutcell.baselines.apart import stoppable
 from cutcell.errors import CutcellError
 from cutcell.metrics import (
     DeformationError,
@@ -21,7 +22,7 @@ from cutcell.metrics import (
 from cutcell.progress import Progress
 from cutcell.rig import Rig
 
-from ..jobs import COMPARING
+from ..jobs import COMPARING, WAITING
 from ..scenes.compare import found_of
 from ..state import State
 from ..state.compare import FEWEST_VIEWS, MOST_VIEWS, NOW, offered, standard
@@ -99,7 +100,7 @@ def find(session: Session) -> None:
         state.comparing = ""
         return
     rig, binding, resolution = state.rig, state.binding, state.resolution
-    state.comparing = name
+    state.param.update(comparing=name, queued=False)
 
     def work(progress: Progress) -> Compared:
         return measured(rig, name, binding, resolution, progress)
@@ -116,7 +117,10 @@ def find(session: Session) -> None:
             )
         )
 
-    jobs.start(work, done, failed, lambda stage, fraction: None, COMPARING)
+    def report(stage: str, fraction: float) -> None:
+        state.queued = stage == WAITING
+
+    jobs.start(work, done, failed, report, COMPARING)
 
 
 def cancel(session: Session) -> None:
@@ -137,7 +141,8 @@ def measured(rig: Rig, name: str, binding: Any, resolution: int, progress: Progr
     else:
         try:
             method = METHODS[name]
-            found = method(rig, **options_of(method, resolution=resolution, progress=progress))
+            with stoppable(lambda: progress(name, 0.0)):
+                found = method(rig, **options_of(method, resolution=resolution, progress=progress))
         except CutcellError as error:
             return Compared(rig, None, str(error))
         if found.weights is None:

@@ -21,7 +21,7 @@ COLUMNS = [
     ("cm²", "Deformation error against the file's own, the longest side scaled to 1 m"),
     ("s", "Seconds it took"),
 ]
-WATCHED = ["methods", "compared", "comparing", "binding", "rig"]
+WATCHED = ["methods", "compared", "comparing", "queued", "binding", "rig"]
 
 
 def compare(session: Session) -> pmui.Column:
@@ -147,7 +147,11 @@ def _note(state: State, name: str, one: Any, chosen: bool) -> tuple[str, str]:
     if one is not None and one.unweighted:
         return f"{one.unweighted:.1%} without weight", "told"
     if one is None and chosen:
-        return ("Computing", "running") if state.comparing == name else ("Waiting", "told")
+        if state.comparing != name:
+            return "Waiting", "told"
+        if state.queued:
+            return "Waiting for what others compare", "told"
+        return "Computing", "running"
     return "", ""
 
 

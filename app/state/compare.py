@@ -32,5 +32,6 @@ class CompareChoices(param.Parameterized):
     methods: Any = param.List([NOW, "euclidean"], doc="Names of the methods, two to four.")
     compared: Any = param.Dict({}, doc="A Compared for each method that was tried on this rig.")
     comparing: Any = param.String("", doc="The method that is being computed; empty for none.")
+    queued: Any = param.Boolean(False, doc="Whether it waits for what other sessions compare.")
     compare_field: Any = param.Selector(default="bone", objects=["bone", "all", "error"])
     minus: Any = param.String("", doc="The method that is taken away from all; empty for none.")

@@ -6,7 +6,10 @@ import os
 import subprocess
 import sys
 import tempfile
-from collections.abc import Mapping
+import time
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from contextvars import ContextVar
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +21,28 @@ ROOT = Path(__file__).resolve().parents[2]
 COMMAND = (sys.executable, "-m", "cutcell.workers")
 LIMIT = 120.0
 """Seconds that any such process may take, unless told otherwise."""
+
+ASK_EVERY = 0.1
+"""Seconds between two questions whether the result is still wanted."""
+
+_WANTED: ContextVar[Callable[[], object]] = ContextVar("_WANTED", default=lambda: None)
+
+
+@contextmanager
+def stoppable(wanted: Callable[[], object]) -> Iterator[None]:
+    """Let a function be asked, in this block, whether what runs apart is still wanted.
+
+    Parameters
+    ----------
+    wanted : callable
+        Raises, `cutcell.Cancelled` for one, when it is not: the process is ended then, and
+        the exception goes through.
+    """
+    token = _WANTED.set(wanted)
+    try:
+        yield
+    finally:
+        _WANTED.reset(token)
 
 
 def run_apart(task: str, job: Mapping[str, Any], limit: float, who: str) -> dict[str, Any]:
@@ -41,24 +66,15 @@ def run_apart(task: str, job: Mapping[str, Any], limit: float, who: str) -> dict
     ------
     MethodFailedError
         There is no result; the sentence says why.
+    Exception
+        Whatever `stoppable` was given raises.
     """
     with tempfile.TemporaryDirectory() as folder:
         job_path, result_path = Path(folder, "job.npz"), Path(folder, "result.npz")
         np.savez(job_path, **job)
         command = [*COMMAND, task, str(job_path), str(result_path)]
         path = os.pathsep.join(filter(None, [str(ROOT), os.environ.get("PYTHONPATH")]))
-        try:
-            done = subprocess.run(
-                command,
-                capture_output=True,
-                text=True,
-                timeout=limit,
-                check=False,
-                cwd=folder,  # some leave files where they run
-                env={**os.environ, "PYTHONPATH": path},
-            )
-        except subprocess.TimeoutExpired:
-            raise MethodFailedError(f"{who} took longer than {limit:g} seconds") from None
+        done = _done(command, folder, {**os.environ, "PYTHONPATH": path}, limit, who)
         if done.returncode != 0 or not result_path.exists():
             raise MethodFailedError(_last_words(done, who))
         with np.load(result_path) as result:
@@ -66,6 +82,34 @@ def run_apart(task: str, job: Mapping[str, Any], limit: float, who: str) -> dict
     if "failed" in found:
         raise MethodFailedError(str(found["failed"]))
     return found
+
+
+def _done(
+    command: list[str], folder: str, environment: dict[str, str], limit: float, who: str
+) -> subprocess.CompletedProcess:
+    wanted, end = _WANTED.get(), time.monotonic() + limit
+    # Some leave files where they run.
+    process = subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=folder,
+        env=environment,
+    )  # fmt: skip
+    with process:
+        try:
+            while True:
+                wanted()
+                left = end - time.monotonic()
+                try:
+                    out, err = process.communicate(timeout=max(min(ASK_EVERY, left), 0))
+                except subprocess.TimeoutExpired:
+                    if left <= 0:
+                        raise MethodFailedError(
+                            f"{who} took longer than {limit:g} seconds"
+                        ) from None
+                    continue
+                return subprocess.CompletedProcess(command, process.returncode, out, err)
+        except BaseException:
+            process.kill()
+            raise
 
 
 def _last_words(done: subprocess.CompletedProcess, who: str) -> str:

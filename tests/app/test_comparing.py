@@ -1,0 +1,84 @@
+"""What several sessions compare at once: none waits for another's slow method."""
+
+import threading
+
+import pytest
+
+from app.actions import compare
+from app.jobs import COMPARING
+from app.panels.compare import rows_of
+from app.session import Session
+from cutcell.baselines import METHODS, BaselineBinding
+from cutcell.baselines.apart import _WANTED
+from tests.app.loop import Loop
+from tests.viewers.arm import arm_rig
+
+
+@pytest.fixture
+def loop():
+    return Loop()
+
+
+@pytest.fixture
+def sessions(loop):
+    there = [Session(loop) for _ in range(2)]
+    for session in there:
+        session.state.resolution = 16
+        session.open_rig(arm_rig())
+    loop.run_until(lambda: all(session.state.binding is not None for session in there), 60)
+    yield there
+    for session in there:
+        session.close()
+
+
+@pytest.fixture
+def slow(monkeypatch):
+    """Return a method that goes on until it is unwanted, and what tells that it began."""
+    began, stopped = threading.Event(), threading.Event()
+
+    def method(rig):
+        began.set()
+        try:
+            while not stopped.wait(0.02):
+                _WANTED.get()()
+        finally:
+            stopped.set()
+        return BaselineBinding(None, failed="it was let go")
+
+    monkeypatch.setitem(METHODS, "slow", method)
+    yield began, stopped
+    stopped.set()
+
+
+def note(session, name):
+    return next(row["note"] for row in rows_of(session.state) if row["id"] == name)
+
+
+def test_a_slow_method_of_one_session_does_not_hold_up_another(sessions, loop, slow):
+    one, other = sessions
+    began, stopped = slow
+    one.state.param.update(panel="compare", methods=["slow", "now"])
+    assert began.wait(20)
+    other.state.param.update(panel="compare", methods=["now", "euclidean"])
+    loop.run_until(lambda: len(other.state.compared) == 2, 60)
+    assert one.state.comparing == "slow"
+    assert note(one, "slow") == "Computing"
+    compare.cancel(one)
+    assert stopped.wait(20)  # it was asked whether it is still wanted
+    assert "slow" not in one.state.methods
+
+
+def test_who_waits_is_told_so_and_can_leave(sessions, loop):
+    session = sessions[0]
+    places = COMPARING._initial_value
+    for _ in range(places):
+        COMPARING.acquire()
+    try:
+        session.state.param.update(panel="compare", methods=["now", "euclidean"])
+        loop.run_until(lambda: session.state.queued)
+        assert note(session, "now") == "Waiting for what others compare"
+    finally:
+        for _ in range(places):
+            COMPARING.release()
+    loop.run_until(lambda: len(session.state.compared) == 2, 60)
+    assert not session.state.queued

@@ -1,0 +1,51 @@
+"""Work in a process of its own: it ends by its time limit, or when it is unwanted."""
+
+import sys
+import time
+
+import psutil
+import pytest
+
+from cutcell.baselines import apart
+from cutcell.baselines.result import MethodFailedError
+from cutcell.errors import Cancelled
+
+
+def sleepers():
+    return [p for p in psutil.Process().children() if "time.sleep(61)" in " ".join(p.cmdline())]
+
+
+@pytest.fixture
+def sleeping(monkeypatch):
+    monkeypatch.setattr(apart, "COMMAND", (sys.executable, "-c", "import time; time.sleep(61)"))
+
+
+def test_what_is_no_longer_wanted_ends_with_its_process(sleeping):
+    begin, asked = time.monotonic(), []
+
+    def wanted():
+        asked.append(len(sleepers()))
+        if time.monotonic() - begin > 0.5:
+            raise Cancelled
+
+    with apart.stoppable(wanted), pytest.raises(Cancelled):
+        apart.run_apart("bbw", {}, 60.0, "the sleeper")
+    assert time.monotonic() - begin < 20
+    assert max(asked) == 1  # it ran
+    assert not sleepers()
+
+
+def test_what_takes_too_long_is_ended_and_says_so(sleeping):
+    with pytest.raises(MethodFailedError, match=r"the sleeper took longer than 0\.3 seconds"):
+        apart.run_apart("bbw", {}, 0.3, "the sleeper")
+    assert not sleepers()
+
+
+def test_nobody_is_asked_outside_the_block(sleeping):
+    def never():
+        raise AssertionError
+
+    with apart.stoppable(never):
+        pass
+    with pytest.raises(MethodFailedError):
+        apart.run_apart("bbw", {}, 0.1, "the sleeper")
