@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -175,7 +175,12 @@ def joint_colors(parents: ArrayLike) -> NDArray[np.float64]:
         Red, green and blue from 0 to 1, each one of `JOINT_COLORS`. Parents, grandparents and
         siblings of a joint have others.
     """
-    parents = np.asarray(parents)
+    return np.array(_joint_colors(tuple(np.asarray(parents).tolist())))
+
+
+@lru_cache(maxsize=16)
+def _joint_colors(told: tuple[int, ...]) -> NDArray[np.float64]:
+    parents = np.array(told, int)
     apart = _differences()
     used = np.zeros(len(apart))
     chosen = np.zeros(len(parents), int)

@@ -57,23 +57,23 @@ def weight_colors(
     rig: Rig, weights: ArrayLike, joint: int | None = None
 ) -> tuple[dict[str, Any], Legend | None]:
     """Return the fields of the body's `Actor` that colour it, and how to read them."""
-    weights = np.asarray(weights, float)
     if joint is not None:
         name = rig.skeleton.names[joint]
         legend = Legend(f"Weight of {name}", "weight", "0", "1")
-        scalars = np.ascontiguousarray(weights[:, joint], np.float32)
+        scalars = np.ascontiguousarray(np.asarray(weights)[:, joint], np.float32)
         return {"scalars": scalars, "colormap": "weight", "reading": Reading(f"{name} ")}, legend
     # Many small weights mix to grey; a power lets the strongest show its colour.
+    weights = np.asarray(weights, np.float32)
     strong = np.square(np.square(weights))
     total = strong.sum(axis=1, keepdims=True)
-    mixed = strong @ joint_colors(rig.skeleton.parents) / np.where(total > 0, total, 1)
-    mixed = np.where(total > 0, mixed, UNREACHED)
+    mixed = strong @ joint_colors(rig.skeleton.parents).astype(np.float32)
+    mixed = np.where(total > 0, mixed / np.where(total > 0, total, 1), UNREACHED)
     return {"colors": to_bytes(np.clip(mixed, 0, 1)), "reading": _strongest(rig, weights)}, None
 
 
 def dominant_colors(rig: Rig, weights: ArrayLike) -> tuple[dict[str, Any], Legend | None]:
     """Colour each vertex by the joint that holds most of it; see `weight_colors`."""
-    reading = _strongest(rig, np.asarray(weights, float))
+    reading = _strongest(rig, np.asarray(weights, np.float32))
     colors = to_bytes(joint_colors(rig.skeleton.parents))
     assert reading.values is not None
     return {"colors": colors[reading.values.astype(int)], "reading": reading}, None
@@ -101,5 +101,5 @@ def difference_colors(
     return {**look, "reading": Reading("held otherwise: ")}, legend
 
 
-def _strongest(rig: Rig, weights: NDArray[np.float64]) -> Reading:
+def _strongest(rig: Rig, weights: NDArray[np.float32]) -> Reading:
     return Reading("", weights.argmax(axis=1).astype(np.float32), rig.skeleton.names)

@@ -6,6 +6,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from ..threads import in_threads, parts
+
 
 def paper_kernel(
     distance: NDArray[np.float64], diagonal: float, alpha: float
@@ -30,24 +32,38 @@ def paper_kernel(
         of the formula.
     """
     weights = np.empty(distance.shape[::-1])
-    _paper_kernel(distance, diagonal, alpha, weights)
+    in_threads(
+        lambda part: _paper_kernel(distance, diagonal, alpha, weights, part.start, part.stop),
+        parts(len(weights)),
+    )
     return weights
 
 
-@njit(cache=True)
-def _paper_kernel(distance, diagonal, alpha, weights):
-    for v in range(len(weights)):
-        least = np.inf
+BLOCK = 64
+"""Vertices whose weights fit into the nearest cache: distances are stored by joint."""
+
+
+@njit(cache=True, nogil=True)
+def _paper_kernel(distance, diagonal, alpha, weights, begin, stop):
+    for first in range(begin, stop, BLOCK):
+        end = min(first + BLOCK, stop)
         for j in range(len(distance)):
-            x = distance[j, v] / diagonal
-            steepness = (1 - alpha) * x + alpha * x * x if x < np.inf else np.inf
-            weights[v, j] = steepness
-            least = min(least, steepness)
-        # Relative to the nearest joint nothing overflows, however small the distances.
-        total = 0.0
-        for j in range(len(distance)):
-            steepness = weights[v, j]
-            ratio = least / steepness if steepness > 0 else 1.0
-            weights[v, j] = ratio * ratio
-            total += ratio * ratio
-        weights[v] /= total
+            for v in range(first, end):
+                x = distance[j, v] / diagonal
+                weights[v, j] = (1 - alpha) * x + alpha * x * x if x < np.inf else np.inf
+        for v in range(first, end):
+            _normalise(weights[v])
+
+
+@njit(cache=True, nogil=True)
+def _normalise(row):
+    least = np.inf
+    for steepness in row:
+        least = min(least, steepness)
+    # Relative to the nearest joint nothing overflows, however small the distances.
+    total = 0.0
+    for j, steepness in enumerate(row):
+        ratio = least / steepness if steepness > 0 else 1.0
+        row[j] = ratio * ratio
+        total += ratio * ratio
+    row /= total

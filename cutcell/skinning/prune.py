@@ -6,6 +6,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from ..threads import in_threads, parts
+
 EQUAL = 1 + 1e-9
 """Times a weight: what is less counts as equal to it. Two bones that meet in a joint weigh the
 same wherever that joint is the nearest of both, and rounding must not choose between them."""
@@ -37,11 +39,14 @@ def prune(
     """
     most = weights.shape[1] if max_influences is None else max_influences
     pruned = np.zeros_like(weights, order="C")
-    _prune(weights, most, threshold, priority, pruned)
+    in_threads(
+        lambda part: _prune(weights[part], most, threshold, priority, pruned[part]),
+        parts(len(weights)),
+    )
     return pruned
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _prune(weights, most, threshold, priority, pruned):
     kept = np.empty(len(priority), np.intp)
     for v in range(len(weights)):
