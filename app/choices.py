@@ -12,7 +12,7 @@ from .state import State
 from .state.compare import FEWEST_VIEWS, MOST_VIEWS, offered, standard
 from .tour import TOUR
 
-OWN = frozenset({"name", "demo", "joint", "dark", "moving", "playing", "clip", "skipped",
+OWN = frozenset({"name", "demo", "queued", "joint", "dark", "moving", "playing", "clip", "skipped",
                  "busy", "stage", "fraction", "message", "tour", "vertex", "filming"})  # fmt: skip
 """What goes with one person or one moment, or has a word of its own in the address."""
 

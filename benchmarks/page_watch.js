@@ -78,6 +78,12 @@ const watch = {
 
   expect() { this.changed = 0; this.waiting = true },
 
+  // Note when the next event of a kind arrives in the page.
+  hear(kind) {
+    this.heard = 0
+    window.addEventListener(kind, () => { this.heard = this.now() }, {capture: true, once: true})
+  },
+
   stop() { this.running = false },
 
   count() {

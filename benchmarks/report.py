@@ -38,6 +38,12 @@ def machine() -> str:
     )
 
 
+def circumstances() -> str:
+    """Say when and where something is measured, and how busy the machine is with other work."""
+    date, busy = datetime.date.today().isoformat(), os.getloadavg()[0]
+    return f"Printed on {date}, on {machine()}; load before it began: {busy:.1f}."
+
+
 def processor() -> str:
     """Name the processor."""
     info = Path("/proc/cpuinfo")
