@@ -58,7 +58,7 @@ def slider(parameter: Any, label: str, whole: bool = False, **params: Any) -> An
     look = {"size": "small", "margin": GAP, "sizing_mode": "stretch_width", "description": ""}
     if not whole:
         look["format"] = "0.00"
-    made = kind.from_param(parameter, **{"label": label, **look, **params})
+    made: Any = kind.from_param(parameter, **{"label": label, **look, **params})
     # Panel holds a change back for 50 ms in case another follows; what is seen must not wait.
     made._priority_changes = ["value"]
     return made
