@@ -6,12 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.spatial import cKDTree
 
 from ..checks import check_choice
 from ..errors import MeshError
 from ..graph import CutCellGraph
 from ..rig import Skeleton
+from .nearest import nearest_nodes
 
 LEAVES = ("point", "extend", "fit")
 TIE = 1e-9
@@ -159,17 +159,13 @@ def find_sources(graph: CutCellGraph, bones: Bones, samples: int) -> Sources:
     MeshError
         The graph has no edges, so that nothing can be reached.
     """
-    connected = np.flatnonzero(graph.degree > 0)
-    if len(connected) == 0:
+    connected = graph.degree > 0
+    if not connected.any():
         raise MeshError("every triangle of the mesh has collapsed into a point")
     points, bone = bone_samples(graph, bones, samples)
-    near = min(8, len(connected))
-    # Few queries: a tree that is quick to build rather than to ask.
-    tree = cKDTree(graph.nodes[connected], balanced_tree=False, compact_nodes=False)
-    distance, place = tree.query(points, k=list(range(1, near + 1)))
-    chosen = distance <= distance[:, :1] * (1 + TIE)
-    bone = np.broadcast_to(bone[:, None], chosen.shape)[chosen]
-    pairs = np.unique(np.stack([bone, connected[place[chosen]]], axis=1), axis=0)
-    bone, node = pairs.T.astype(np.int32)
+    point, node = nearest_nodes(graph.nodes, connected, points, graph.lattice.resolution, TIE)
+    pairs = np.unique(bone[point] * len(graph.nodes) + node)
+    bone, node = np.divmod(pairs, len(graph.nodes))
+    bone, node = bone.astype(np.int32), node.astype(np.int32)
     straight = distance_to_segment(graph.nodes[node], bones.start[bone], bones.end[bone])
     return Sources(node, bone, straight)

@@ -1,0 +1,121 @@
+"""The nodes nearest to points in space, by a grid over the unit cube.
+
+There are a few hundred points and many nodes: sorting the nodes into a coarse grid, which
+takes one pass, is far quicker than growing a tree over them.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+IN_A_CELL = 4
+"""Lattice cells along each side of a cell of the grid."""
+MOST_CELLS = 64
+"""Along each side of the grid, so that it never takes more memory than the nodes."""
+
+
+def nearest_nodes(
+    nodes: NDArray[np.float64],
+    chosen: NDArray[np.bool_],
+    points: NDArray[np.float64],
+    resolution: int,
+    tie: float,
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Find the nodes nearest to each point, and all that are as near but for rounding.
+
+    Parameters
+    ----------
+    nodes : array, shape (N, 3)
+        In the unit cube.
+    chosen : array, shape (N,), bool
+        Which of them may be found; one at least.
+    points : array, shape (p, 3)
+        Anywhere.
+    resolution : int
+        R, of the lattice that the nodes are of.
+    tie : float
+        Relative: how much farther a node may be than the nearest.
+
+    Returns
+    -------
+    point, node : arrays, shape (f,), int64
+        What was found, ascending by point.
+    """
+    side = max(1, min(resolution // IN_A_CELL, MOST_CELLS))
+    start, order = _sort_into_cells(nodes, chosen, side)
+    room = 8 * len(points)  # the middle of a lattice cell is as near to all its corners
+    while True:
+        found = np.empty((2, room), np.int64)
+        count = _find_nearest(nodes, start, order, side, points, 1 + tie, found)
+        if count <= room:
+            return found[0, :count], found[1, :count]
+        room = count
+
+
+@njit(cache=True, inline="always")
+def _cell(x, side):
+    return min(max(int(np.floor(x * side)), 0), side - 1)
+
+
+@njit(cache=True, nogil=True)
+def _sort_into_cells(nodes, chosen, side):
+    """Sort the chosen nodes by cell; return where each cell begins, and their order."""
+    count = len(nodes)
+    cell = np.full(count, -1, np.int32)
+    start = np.zeros(side * side * side + 1, np.int64)
+    for n in range(count):
+        if chosen[n]:
+            x, y, z = _cell(nodes[n, 0], side), _cell(nodes[n, 1], side), _cell(nodes[n, 2], side)
+            cell[n] = (x * side + y) * side + z
+            start[cell[n] + 1] += 1
+    start = np.cumsum(start)
+    cursor, order = start.copy(), np.empty(start[-1], np.int64)
+    for n in range(count):
+        if cell[n] >= 0:
+            order[cursor[cell[n]]] = n
+            cursor[cell[n]] += 1
+    return start, order
+
+
+@njit(cache=True, nogil=True)
+def _find_nearest(nodes, start, order, side, points, slack, found):
+    """List nodes for each point; return how many there are, also beyond the room for them."""
+    count = 0
+    for p in range(len(points)):
+        x, y, z = points[p]
+        cx, cy, cz = _cell(x, side), _cell(y, side), _cell(z, side)
+        least, reach = np.inf, 0
+        # All that is within `reach` cells around has been seen.
+        while True:
+            for i in range(max(cx - reach, 0), min(cx + reach + 1, side)):
+                for j in range(max(cy - reach, 0), min(cy + reach + 1, side)):
+                    # Only the shell is new: of an inner row of cells, both ends.
+                    inner = abs(i - cx) < reach and abs(j - cy) < reach
+                    for k in range(cz - reach, cz + reach + 1, 2 * reach if inner else 1):
+                        if 0 <= k < side:
+                            c = (i * side + j) * side + k
+                            for o in range(start[c], start[c + 1]):
+                                least = min(least, _squared(nodes, order[o], x, y, z))
+            if least <= (reach / side) ** 2 or reach >= side:
+                break
+            reach += 1
+        limit = least * slack * slack
+        around = np.sqrt(limit)
+        for i in range(_cell(x - around, side), _cell(x + around, side) + 1):
+            for j in range(_cell(y - around, side), _cell(y + around, side) + 1):
+                first = (i * side + j) * side
+                low, high = first + _cell(z - around, side), first + _cell(z + around, side)
+                for o in range(start[low], start[high + 1]):
+                    if _squared(nodes, order[o], x, y, z) <= limit:
+                        if count < found.shape[1]:
+                            found[0, count], found[1, count] = p, order[o]
+                        count += 1
+    return count
+
+
+@njit(cache=True, inline="always")
+def _squared(nodes, n, x, y, z):
+    x, y, z = nodes[n, 0] - x, nodes[n, 1] - y, nodes[n, 2] - z
+    return x * x + y * y + z * z
