@@ -24,7 +24,7 @@ from ..graph import CutCellGraph
 from ..progress import Progress, silent
 from ..threads import in_threads, threads
 from .bones import TIE, Bones, Sources
-from .labels import NOBODY, find_room, no_labels
+from .labels import NOBODY, find_room, least_distance, no_labels
 from .queue import END, SETTLED, bucket_of, join, leave, move_on
 from .sight import bend_of, body_of, sees, straight
 
@@ -46,6 +46,7 @@ def any_angle_paths(
     bones: Bones,
     targets: NDArray[np.int32],
     nearest: int | None = None,
+    within: float = np.inf,
     progress: Progress = silent,
 ) -> NDArray[np.float64]:
     """Compute how long the shortest path of straight pieces from each joint to each node is.
@@ -63,6 +64,8 @@ def any_angle_paths(
         Nodes whose distances are wanted.
     nearest : int, optional
         k: a node gets the distances of its k nearest joints alone; of all when left out.
+    within : float
+        Paths do not pass where another joint is so many times nearer.
     progress : callable
         Called with the stage "distances".
 
@@ -84,7 +87,7 @@ def any_angle_paths(
     def spread(group: NDArray[np.int32]) -> None:
         report = progress if len(groups) == 1 else silent
         front = _start(graph, sources, bones, group, nearest)
-        _spread(graph, body, front, report)
+        _spread(graph, body, front, within, report)
         found = front.labels.reshape(-1, nearest)[targets]
         at, which = np.nonzero(found["joint"] != NOBODY)
         found = found[at, which]
@@ -151,19 +154,21 @@ def _start(
     return _Front(joints[by_place], table, each, labels)
 
 
-def _spread(graph: CutCellGraph, body: tuple, front: _Front, progress: Progress) -> None:
+def _spread(
+    graph: CutCellGraph, body: tuple, front: _Front, within: float, progress: Progress
+) -> None:
     """Settle all labels."""
     each, labels = front.each, front.labels
     scale = float(FINENESS * graph.lattice.resolution**2)
     head = np.full(int(SPAN * scale), END, np.int32)
     _line_up(labels, head, scale)
     step = len(head) // (SPAN * PAUSES)
+    given = graph.adjacency, body, front.bones, labels, each, head, scale, within
     waiting, origin = True, 0.0
     while waiting:
         for bucket in range(0, len(head) - 1, step):
             progress("distances", min(origin + bucket / scale, 0.99))
-            part = origin, bucket, min(bucket + step, len(head) - 1)
-            waiting = _settle(graph.adjacency, body, front.bones, labels, each, head, scale, *part)
+            waiting = _settle(*given, origin, bucket, min(bucket + step, len(head) - 1))
             if not waiting:
                 break
         else:
@@ -188,7 +193,7 @@ def _line_up(labels, head, scale):
 
 
 @njit(cache=True, nogil=True)
-def _settle(adjacency, body, bones, labels, each, head, scale, origin, first, last):
+def _settle(adjacency, body, bones, labels, each, head, scale, within, origin, first, last):
     """Settle labels by distance, bucket after bucket; tell whether any are left beyond."""
     indptr, indices, lengths = adjacency
     resolution, first_point, first_crossing, nodes, _, _ = body
@@ -213,6 +218,8 @@ def _settle(adjacency, body, bones, labels, each, head, scale, origin, first, la
                 reached, bent = to_anchor + straight(here, bend), anchor
                 if reached >= limit:
                     continue  # a bend at u would be no shorter
+                if reached > within * least_distance(labels, each, v):
+                    continue
                 # Off the lattice, what is one step from a lattice point that sees the bend does,
                 # too: a crossing, and from there a corner of its triangle if it is near.
                 if v >= first_crossing:

@@ -24,6 +24,8 @@ GIVEN = 2.0
 REGION_JOINTS = 3
 """Nearest joints among which skin is divided to see what a tip moves. Two would be one too few
 in the middle between left and right."""
+REGION_WITHIN = 1.5
+"""Skin from which another joint is so many times nearer belongs to that one altogether."""
 REGION_POWER = 20
 """Skin belongs to joints by this power of how much nearer the nearest one is."""
 

@@ -13,7 +13,7 @@ from ..graph import CutCellGraph
 from ..progress import Progress, silent
 from ..rig import Skeleton
 from .any_angle import any_angle_paths
-from .bone_extents import REGION_JOINTS, aim_tips, fit_bones
+from .bone_extents import REGION_JOINTS, REGION_WITHIN, aim_tips, fit_bones
 from .bones import LEAVES, Bones, Sources, bone_segments, find_sources
 from .fallback import NOT_ALLOWED, REACHED, UNREACHED, UNUSED, straight_to_nearest
 from .shortest_paths import shortest_paths
@@ -39,6 +39,9 @@ class BoneDistances:
         0 for vertices reached through the body, else why not: an index into
         `geodesics.FALLBACK_REASONS`. These hold straight distances to a few bones.
     graph : CutCellGraph
+    by_place : bool
+        Whether vertices at one place have equal distances: they have, unless some may not
+        follow what others may.
     """
 
     joint: NDArray[np.float64]
@@ -47,6 +50,7 @@ class BoneDistances:
     sources: Sources
     fallback: NDArray[np.uint8]
     graph: CutCellGraph
+    by_place: bool = False
 
     @property
     def source_node(self) -> NDArray[np.int32]:
@@ -101,7 +105,8 @@ class BoneDistances:
         """Compute all joints' distances at every vertex, nearest or not, shape (j, n)."""
         if self.nearest_joints is None:
             return self.joint
-        by_node = _paths(self.graph, self.sources, self.bones, _on_mesh(self.graph), None, progress)
+        on_mesh = _on_mesh(self.graph)
+        by_node = _paths(self.graph, self.sources, self.bones, on_mesh, progress=progress)
         joint = self.joint.copy()
         reached = np.flatnonzero(self.fallback == REACHED)
         place = np.ix_(np.unique(self.bones.joint), reached)
@@ -175,20 +180,22 @@ def bone_distances(
         bones, tip = fit_bones(graph, skeleton)
         if tip.any():
             sources = find_sources(graph, bones, samples)
-            own = _paths(graph, sources, bones, targets, REGION_JOINTS, progress)
+            region = REGION_JOINTS, REGION_WITHIN
+            own = _paths(graph, sources, bones, targets, *region, progress)
             bones = aim_tips(graph, bones, tip, own)
     else:
         bones = bone_segments(skeleton, leaf)
         ends = graph.lattice.to_unit(bones.start), graph.lattice.to_unit(bones.end)
         bones = Bones(*ends, bones.joint)
     sources = find_sources(graph, bones, samples)
-    by_node = _paths(graph, sources, bones, targets, nearest_joints, progress)
+    by_node = _paths(graph, sources, bones, targets, nearest_joints, progress=progress)
     measured = np.unique(bones.joint)
-    joint = np.full((len(skeleton.joints), len(graph.vertex_node)), np.inf)
-    joint[measured] = by_node[:, graph.vertex_node]
+    of_joint = np.full((len(skeleton.joints), len(targets)), np.inf)
+    of_joint[measured] = by_node
+    joint = of_joint.take(graph.vertex_node, axis=1)
 
-    reached = np.isfinite(joint).any(axis=0)
-    fallback = np.where(reached, REACHED, UNREACHED).astype(np.uint8)
+    reached = np.isfinite(by_node.min(axis=0))
+    fallback = np.where(reached, REACHED, UNREACHED).astype(np.uint8)[graph.vertex_node]
     fallback[graph.degree[graph.vertex_node] == 0] = UNUSED
     if allowed is not None:
         joint[~allowed.T] = np.inf
@@ -199,7 +206,8 @@ def bone_distances(
         points = graph.nodes[graph.vertex_node[lost]]
         straight = straight_to_nearest(points, bones, nearest, may_follow)
         joint[np.ix_(measured, lost)] = _least(straight, bones)
-    return BoneDistances(joint, nearest_joints, bones, sources, fallback, graph)
+    by_place = allowed is None
+    return BoneDistances(joint, nearest_joints, bones, sources, fallback, graph, by_place)
 
 
 def _on_mesh(graph: CutCellGraph) -> NDArray[np.int32]:
@@ -213,11 +221,12 @@ def _paths(
     bones: Bones,
     targets: NDArray[np.int32],
     nearest_joints: int | None = None,
+    within: float = np.inf,
     progress: Progress = silent,
 ) -> NDArray[np.float64]:
     """Measure from each joint that has bones, in ascending order, to the target nodes."""
     if graph.connectivity == "any":
-        return any_angle_paths(graph, sources, bones, targets, nearest_joints, progress)
+        return any_angle_paths(graph, sources, bones, targets, nearest_joints, within, progress)
     joints, place = np.unique(bones.joint, return_inverse=True)
     owner = place[sources.bone].astype(np.int32)
     # A joint's paths begin on all of its bones; where they share a node, on the nearest.

@@ -32,9 +32,16 @@ and before: neighbours in a bucket, see `queue`."""
 def no_labels(nodes: int, each: int) -> NDArray[np.void]:
     """Make room for `each` labels a node; label s of node v is number v * each + s."""
     labels = np.empty(nodes * each, LABEL)
-    empty = np.array((np.inf, NOBODY, NOTHING, LOOSE, 0), LABEL)
-    labels[:] = empty
+    _empty(labels)
     return labels
+
+
+@njit(cache=True, nogil=True)
+def _empty(labels):
+    for label in range(len(labels)):
+        labels[label].distance, labels[label].joint = np.inf, NOBODY
+        labels[label].anchor, labels[label].after = NOTHING, LOOSE
+        labels[label].before = 0
 
 
 @njit(cache=True, inline="always")
@@ -67,3 +74,12 @@ def follows_anchor(labels, each, v, anchor):
     for label in range(v * each, v * each + each):
         found |= labels[label].anchor == anchor
     return found
+
+
+@njit(cache=True, inline="always")
+def least_distance(labels, each, v):
+    """Return the distance of a node's nearest joint."""
+    least = np.inf
+    for label in range(v * each, v * each + each):
+        least = min(least, labels[label].distance)
+    return least

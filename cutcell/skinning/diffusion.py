@@ -57,7 +57,7 @@ def diffuse(
     depth = np.maximum(depth, LEAST_CELLS / resolution)
     # A place without area conducts nothing; any positive number lets it keep its own weights.
     hold = np.maximum(vertex_areas(points, faces), 1e-12) * SHARPNESS / depth**2
-    system = (cotangent_laplacian(points, faces) + diags_array(hold)).tocsc()
+    system = (cotangent_laplacian(points, faces) + diags_array(hold)).T  # itself, by columns
     factors = splu(
         system,
         permc_spec="MMD_AT_PLUS_A",

@@ -26,15 +26,9 @@ def cotangent_laplacian(points: NDArray[np.float64], faces: NDArray[np.int32]) -
     csr_array, shape (k, k)
         Minus half the cotangents of the angles that face each edge.
     """
-    half = _cotangents(points, faces) / 2
-    rows, columns, values = [], [], []
-    for corner in range(3):
-        a, b = faces[:, (corner + 1) % 3], faces[:, (corner + 2) % 3]
-        rows += [a, b, a, b]
-        columns += [b, a, a, b]
-        values += [-half[:, corner], -half[:, corner], half[:, corner], half[:, corner]]
-    entries = (np.concatenate(values), (np.concatenate(rows), np.concatenate(columns)))
-    return coo_array(entries, shape=(len(points),) * 2).tocsr()
+    place, value = np.empty((2, 9 * len(faces)), np.int32), np.empty(9 * len(faces))
+    _fill_laplacian(points, faces, place, value)
+    return coo_array((value, place), shape=(len(points),) * 2).tocsr()
 
 
 def vertex_areas(points: NDArray[np.float64], faces: NDArray[np.int32]) -> NDArray[np.float64]:
@@ -56,21 +50,20 @@ def vertex_normals(points: NDArray[np.float64], faces: NDArray[np.int32]) -> NDA
     return np.divide(normals, length, out=np.zeros_like(normals), where=length > 0)
 
 
-def _cotangents(points: NDArray[np.float64], faces: NDArray[np.int32]) -> NDArray[np.float64]:
-    """Return the cotangent of the angle at each corner, shape (m, 3)."""
-    result = np.empty(faces.shape)
-    _fill_cotangents(points, faces, result)
-    return result
-
-
 @njit(cache=True, nogil=True)
-def _fill_cotangents(points, faces, result):
+def _fill_laplacian(points, faces, place, value):
+    n = 0
     for f in range(len(faces)):
         for corner in range(3):
-            p = points[faces[f, corner]]
-            result[f, corner] = _cotangent(
-                p, points[faces[f, (corner + 1) % 3]], points[faces[f, (corner + 2) % 3]]
-            )
+            p, q, r = faces[f, corner], faces[f, (corner + 1) % 3], faces[f, (corner + 2) % 3]
+            # What conducts from q to r, and at p what conducts along its two edges.
+            facing = _cotangent(points[p], points[q], points[r]) / 2
+            beside = _cotangent(points[q], points[r], points[p]) / 2
+            beside += _cotangent(points[r], points[p], points[q]) / 2
+            place[0, n], place[1, n], value[n] = q, r, -facing
+            place[0, n + 1], place[1, n + 1], value[n + 1] = r, q, -facing
+            place[0, n + 2], place[1, n + 2], value[n + 2] = p, p, beside
+            n += 3
 
 
 @njit(cache=True, nogil=True)
@@ -107,19 +100,26 @@ def _add_normals(points, faces, normals):
 
 @njit(cache=True, nogil=True)
 def _add_areas(points, faces, total):
-    cotangent, opposite = np.empty(3), np.empty(3)
     for f in range(len(faces)):
-        x, y, z = _across(points[faces[f, 0]], points[faces[f, 1]], points[faces[f, 2]])
+        p, q, r = points[faces[f, 0]], points[faces[f, 1]], points[faces[f, 2]]
+        x, y, z = _across(p, q, r)
         area = np.sqrt(x * x + y * y + z * z) / 2
-        for corner in range(3):
-            p = points[faces[f, corner]]
-            q, r = points[faces[f, (corner + 1) % 3]], points[faces[f, (corner + 2) % 3]]
-            cotangent[corner] = _cotangent(p, q, r)
-            opposite[corner] = ((q - r) ** 2).sum()
-        for corner in range(3):
-            if cotangent.min() < 0:
-                part = area / 2 if cotangent[corner] < 0 else area / 4
-            else:  # half of each side's part belongs to either of its ends
-                i, j = (corner + 1) % 3, (corner + 2) % 3
-                part = (cotangent[i] * opposite[i] + cotangent[j] * opposite[j]) / 8
-            total[faces[f, corner]] += part
+        # The cotangent at each corner, and its part of the triangle.
+        at_p, at_q, at_r = _cotangent(p, q, r), _cotangent(q, r, p), _cotangent(r, p, q)
+        if min(at_p, at_q, at_r) < 0:
+            of_p = area / 2 if at_p < 0 else area / 4
+            of_q = area / 2 if at_q < 0 else area / 4
+            of_r = area / 2 if at_r < 0 else area / 4
+        else:  # half of each side's part belongs to either of its ends
+            by_p, by_q, by_r = at_p * _apart(q, r), at_q * _apart(r, p), at_r * _apart(p, q)
+            of_p, of_q, of_r = (by_q + by_r) / 8, (by_r + by_p) / 8, (by_p + by_q) / 8
+        total[faces[f, 0]] += of_p
+        total[faces[f, 1]] += of_q
+        total[faces[f, 2]] += of_r
+
+
+@njit(cache=True, nogil=True)
+def _apart(p, q):
+    """Return the squared distance of two points."""
+    x, y, z = p[0] - q[0], p[1] - q[1], p[2] - q[2]
+    return x * x + y * y + z * z

@@ -23,30 +23,27 @@ LEAST_CELLS = 0.01
 """Lattice cells: distances that are all shorter are equal."""
 
 
-def rig_kernel(
-    distances: BoneDistances, allowed: NDArray[np.bool_] | None = None
-) -> NDArray[np.float64]:
+def rig_kernel(distances: BoneDistances, first: NDArray[np.intp]) -> NDArray[np.float64]:
     """Turn distances into weights for animation.
 
     Parameters
     ----------
     distances : BoneDistances
         Best with bones fitted to the body, `leaf="fit"`.
-    allowed : array, shape (n, j), bool, optional
-        Which joints each vertex may follow.
+    first : array, shape (k,)
+        The first vertex at each place of the mesh.
 
     Returns
     -------
-    array, shape (n, j)
-        Rows sum to one.
+    array, shape (k, j)
+        For the places. Rows sum to one.
     """
     graph, bones = distances.graph, distances.bones
-    places, first = np.unique(graph.vertex_node, return_index=True)
-    points, faces = graph.nodes[: len(places)], _whole(graph.faces)
+    points, faces = graph.nodes[: len(first)], _whole(graph.faces)
     near = LEAST_CELLS / graph.lattice.resolution
-    distance = np.maximum(distances.joint[:, first].T, near)
+    distance = np.ascontiguousarray(np.maximum(distances.joint.take(first, axis=1), near).T)
 
-    piece = find_pieces(faces, len(places))
+    piece = find_pieces(faces, len(first))
     held = _by_joint(bones_held(points, faces, piece, bones), bones.joint, distance.shape[1])
     weights = _shares(
         points,
@@ -59,8 +56,7 @@ def rig_kernel(
         bones.end,
     )
     weights = diffuse(points, faces, weights, distance.min(axis=1), graph.lattice.resolution)
-    weights = dress(graph, vertex_areas(points, faces), piece, held, weights)
-    return _permitted(weights[graph.vertex_node], distances.joint, allowed)
+    return dress(graph, vertex_areas(points, faces), piece, held, weights)
 
 
 @njit(cache=True, nogil=True)
@@ -121,14 +117,22 @@ def _by_joint(
     return result
 
 
-def _permitted(
-    weights: NDArray[np.float64],
-    distance: NDArray[np.float64],
-    allowed: NDArray[np.bool_] | None,
+def permitted(
+    weights: NDArray[np.float64], distance: NDArray[np.float64], allowed: NDArray[np.bool_]
 ) -> NDArray[np.float64]:
-    """Take away what a vertex may not follow; one left with nothing follows its nearest joint."""
-    if allowed is None:
-        return weights
+    """Take away what a vertex may not follow; one left with nothing follows its nearest joint.
+
+    Parameters
+    ----------
+    weights : array, shape (n, j)
+    distance : array, shape (j, n)
+    allowed : array, shape (n, j)
+
+    Returns
+    -------
+    array, shape (n, j)
+        Rows sum to one.
+    """
     kept = np.where(allowed, weights, 0.0)
     lost = np.flatnonzero(kept.sum(axis=1) == 0)
     kept[lost, distance[:, lost].argmin(axis=0)] = 1

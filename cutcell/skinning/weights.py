@@ -10,7 +10,7 @@ from ..errors import ParameterError
 from ..geodesics import BoneDistances
 from .kernel import paper_kernel
 from .prune import prune
-from .rig_falloff import NEAREST_JOINTS, rig_kernel
+from .rig_falloff import NEAREST_JOINTS, permitted, rig_kernel
 
 FALLOFFS = ("rig", "paper")
 DEFAULT_LEAF = {"rig": "fit", "paper": "point"}
@@ -71,11 +71,19 @@ def skinning_weights(
             f"{known} nearest joints of each vertex alone: measure them again with more "
             f"nearest_joints, or with None for all"
         )
+    place: NDArray[np.integer] = distances.graph.vertex_node
+    first = first_vertices(place)
     if falloff == "rig":
-        weights = rig_kernel(distances, allowed)
+        weights = rig_kernel(distances, first)
     else:
-        weights = paper_kernel(distances.joint, distances.graph.lattice.diagonal, alpha)
-    return prune(weights, max_influences, threshold, _by_position(distances))
+        if not distances.by_place:
+            place = first = np.arange(len(place))
+        distance = distances.joint.take(first, axis=1)
+        weights = paper_kernel(distance, distances.graph.lattice.diagonal, alpha)
+    kept = max_influences, threshold, _by_position(distances)
+    if allowed is None:  # what is at one place gets the same
+        return prune(weights, *kept).take(place, axis=0)
+    return prune(permitted(weights[place], distances.joint, allowed), *kept)
 
 
 def keep_strongest(
@@ -118,6 +126,13 @@ def joints_needed(falloff: str, max_influences: int | None) -> int | None:
     if falloff == "paper" or max_influences is None:
         return max_influences
     return max(max_influences, NEAREST_JOINTS)
+
+
+def first_vertices(place: NDArray[np.integer]) -> NDArray[np.intp]:
+    """Return the first vertex at each place, given the place of each vertex."""
+    first = np.empty(int(place.max()) + 1, np.intp)
+    first[place[::-1]] = np.arange(len(place))[::-1]  # the last to be written stays
+    return first
 
 
 def _by_position(distances: BoneDistances) -> NDArray[np.intp]:
