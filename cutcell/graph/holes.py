@@ -7,10 +7,14 @@ of the view: w = chi' - w_caps, so that
     w >= tau   <=>   chi' >= need,   need = ceil(tau + w_caps).
 
 w_caps is small and smooth away from the holes. This file bounds it over whole blocks of
-cells, see `clusters.py` for the proof: in most blocks `need` is one number. Around the
+cells, see `view.py` for the proof: in most blocks `need` is one number. Around the
 surfaces where it changes, w_caps is as good as linear over blocks of a few cells, and what
 is on which side of a plane is quickly told. Only next to the rims of holes, and nearly on
 these surfaces, the winding number itself must be asked.
+
+Blocks are halved from the whole cube down to single cells. Each hands down to its parts what
+it knows: the field of the caps that are far from all of it, and a list of the others. So a
+midpoint in doubt has but a short list to sum.
 
 A block that a cap runs through is torn: w_caps jumps there, as chi' does. Its smooth part is
 still as good as linear, and a single number asked on a ray tells which whole number to add.
@@ -27,21 +31,56 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from ..threads import in_threads, parts
+from ..threads import in_threads
 from .caps import Caps
-from .clusters import Clusters, cluster, view
+from .clusters import ROOT, Clusters, cluster
+from .rays import grown
+from .view import NOTHING, Field, gather, moved, view
 
 BLOCK = 8
 """Cells along the side of the blocks that are decided as a whole, or else cell by cell."""
 WORTH = 20
 """Midpoints in doubt for which it is worth the time to halve a block."""
-TOLERANCE = 0.004
-"""What one cluster may leave out of a block's bound."""
+CLOSEST = 0.0, 0.8, 0.7, 0.0, 0.5
+"""How near caps may be to a block of so many cells to count as far, see `view.gather`."""
+MANY = 32
+"""Caps near to a block above which to halve it is quicker than to look at each of them."""
+SPLIT = 0.1, 4e-3
+"""What one of the others may leave out in a block: less if the first bound is not enough."""
+TOLERANCES = 3e-2, 1e-4, 1e-6
+"""What a cluster may leave out at a midpoint: less and less until the bound is enough."""
 UNSURE = 1 << 30
-"""Codes: from here on, where the number must be asked; from 0 on, rows of leaves; below,
-NEED + need."""
+"""No need: the number must be asked."""
 NEED = -(1 << 20)
+"""Codes of cells are NEED + need, which is negative, or else the row of a leaf."""
 ROUNDING = 1e-9
+
+
+class Leaves(NamedTuple):
+    """Blocks of cells that are not halved, though inside and outside are in doubt there.
+
+    Parameters
+    ----------
+    place : array, shape (n, 3)
+        The middle of each block.
+    far, plane : arrays, shape (n, 5)
+        Fields around it, of all caps that are far from the block, and of all caps. The
+        error of the latter is infinite where it is far from linear.
+    is_torn : array, shape (n,), bool
+        Whether `plane` is only right up to whole numbers.
+    begin, end : arrays, shape (n,), int64
+        The caps that are not far are near[begin] to near[end - 1].
+    near : array, int64
+        Clusters.
+    """
+
+    place: NDArray[np.float64]
+    far: NDArray[np.float64]
+    plane: NDArray[np.float64]
+    is_torn: NDArray[np.bool_]
+    begin: NDArray[np.int64]
+    end: NDArray[np.int64]
+    near: NDArray[np.int64]
 
 
 class Doubt(NamedTuple):
@@ -50,20 +89,21 @@ class Doubt(NamedTuple):
     Parameters
     ----------
     coarse : array, shape (b, b, b), int32
-        For each block of BLOCK^3 cells NEED + need; or the row of `fine`.
+        The code of each block of BLOCK^3 cells; or the row of `fine`.
     fine : array, shape (u, BLOCK, BLOCK, BLOCK), int32
-        For each cell NEED + need; or the row of `planes`; or UNSURE.
-    planes : array, shape (p, 9)
-        Of blocks where w_caps is as good as linear: a place, w_caps there, its gradient,
-        how far it may be from that, and whether the block is torn.
+        The code of each cell.
+    leaves : Leaves
+    clusters : Clusters
+        Of the caps.
     """
 
     coarse: NDArray[np.int32]
     fine: NDArray[np.int32]
-    planes: NDArray[np.float64]
+    leaves: Leaves
+    clusters: Clusters
 
 
-def find_doubt(caps: Caps, resolution: int, winding_threshold: float) -> tuple[Doubt, Clusters]:
+def find_doubt(caps: Caps, resolution: int, winding_threshold: float) -> Doubt:
     """Bound the caps' winding number over the cells of the lattice.
 
     Parameters
@@ -72,127 +112,145 @@ def find_doubt(caps: Caps, resolution: int, winding_threshold: float) -> tuple[D
     resolution : int
     winding_threshold : float
         tau.
-
-    Returns
-    -------
-    Doubt
-    Clusters
-        Of the caps.
     """
     clusters = cluster(caps)
     blocks = -(-resolution // BLOCK)
     coarse = np.full((blocks,) * 3, NEED + int(np.ceil(winding_threshold)), np.int32)
-    fine, planes = np.empty((0, BLOCK, BLOCK, BLOCK), np.int32), np.empty((0, 9))
-    if len(caps.faces) == 0:
-        return Doubt(coarse, fine, planes), clusters
-    top = BLOCK
-    while 4 * top < resolution:
-        top *= 2
-    along = np.arange(0, resolution, top)
-    corners = np.stack(np.meshgrid(along, along, along, indexing="ij"), -1).reshape(-1, 3)
-    in_threads(
-        lambda k: _decide_blocks(clusters, resolution, winding_threshold, top, corners[k], coarse),
-        range(len(corners)),
-    )
-    unsure = np.ascontiguousarray(np.argwhere(coarse == UNSURE))
-    if len(unsure) == 0:
-        return Doubt(coarse, fine, planes), clusters
-    fine = np.full((len(unsure), BLOCK, BLOCK, BLOCK), UNSURE, np.int32)
-    pieces = parts(len(unsure), len(unsure) // 8 + 1)
+    corners, top = np.zeros((0, 3), np.int64), BLOCK
+    if len(caps.faces):
+        while 4 * top < resolution:
+            top *= 2
+        along = np.arange(0, resolution, top)
+        corners = np.stack(np.meshgrid(along, along, along, indexing="ij"), -1).reshape(-1, 3)
     found = in_threads(
-        lambda part: _refine_blocks(
-            clusters, resolution, winding_threshold, unsure[part], fine[part]
-        ),
-        pieces,
+        lambda corner: _decide(clusters, resolution, winding_threshold, corner, top, coarse),
+        [*corners, np.full(3, resolution)],  # the last one lies outside: never an empty list
     )
-    first = 0
-    for part, rows in zip(pieces, found, strict=True):
-        of_plane = (fine[part] >= 0) & (fine[part] < UNSURE)
-        fine[part][of_plane] += first
-        first += len(rows)
-    coarse[tuple(unsure.T)] = np.arange(len(unsure))
-    return Doubt(coarse, fine, np.concatenate(found)), clusters
+    rows = leaves = near = 0
+    for blocks, fine, part in found:
+        coarse[tuple(blocks.T)] += rows
+        fine[fine >= 0] += leaves
+        part.begin[:] += near
+        part.end[:] += near
+        rows, leaves, near = rows + len(fine), leaves + len(part.place), near + len(part.near)
+    columns = zip(*(part for *_, part in found), strict=True)
+    joined = Leaves(*(np.concatenate(column) for column in columns))
+    return Doubt(coarse, np.concatenate([fine for _, fine, _ in found]), joined, clusters)
 
 
 @njit(cache=True, nogil=True)
-def _decide_blocks(clusters, resolution, tau, top, corner, coarse):
-    """Put the need of each block in a cube of `top` cells into `coarse`, or UNSURE."""
-    stack = np.empty((64, 4), np.int64)
-    stack[0, :3], stack[0, 3], count = corner, top, 1
-    plane = np.empty(9)
+def _decide(clusters, resolution, tau, corner, top, coarse):
+    """Put the codes of the blocks in a cube of `top` cells into `coarse`.
+
+    Returns which blocks are not decided as a whole, shape (u, 3); the codes of their cells;
+    and the leaves that these name.
+    """
+    blocks, fine = np.empty((16, 3), np.int64), np.empty((16, BLOCK, BLOCK, BLOCK), np.int32)
+    place, far, plane = np.empty((64, 3)), np.empty((64, 5)), np.empty((64, 5))
+    is_torn, near_range = np.empty(64, np.bool_), np.zeros((64, 2), np.int64)
+    near = np.empty(1024, np.int64)
+    rows = leaves = 0
+    # Blocks that wait: corner, size, the list that they look at; and the field around a place.
+    waiting, known = np.empty((64, 6), np.int64), np.zeros((64, 8))
+    listed = np.empty(1024, np.int64)
+    listed[0] = ROOT
+    waiting[0, :3], waiting[0, 3], waiting[0, 4], waiting[0, 5], count = corner, top, 0, 1, 1
     while count:
         count -= 1
-        x, y, z, size = stack[count]
+        x, y, z, size, begin, end = waiting[count]
         if max(x, y, z) >= resolution:
             continue
-        code = _look(clusters, resolution, tau, x, y, z, size, plane)
-        if code < 0 or size == BLOCK:
+        half = size / (2 * resolution)
+        q = x / resolution + half, y / resolution + half, z / resolution + half
+        field = moved(_field(known[count, 3:]), known[count, :3], q)
+        # What lies beyond `end` in the list belonged to blocks that are done.
+        reach = half * np.sqrt(3)
+        closest = CLOSEST[min(size, 4)]
+        listed, last, field = gather(clusters, listed, begin, end, q, reach, closest, field)
+        for tolerance in SPLIT:
+            whole, tears = view(clusters, listed[end:last], field, q, reach, tolerance, 0.5)
+            code = _code(whole, tears, half, size, tau)
+            if code < 0 or whole.error == np.inf or size == 1 or last - end > MANY:
+                break
+        if size >= BLOCK:
             a, b, c, wide = x // BLOCK, y // BLOCK, z // BLOCK, size // BLOCK
-            coarse[a : a + wide, b : b + wide, c : c + wide] = code if code < 0 else UNSURE
-            continue
-        half = size // 2
-        for corner8 in range(8):
-            stack[count, 0] = x + half * (corner8 >> 2)
-            stack[count, 1] = y + half * (corner8 >> 1 & 1)
-            stack[count, 2] = z + half * (corner8 & 1)
-            stack[count, 3] = half
-            count += 1
-
-
-@njit(cache=True, nogil=True)
-def _refine_blocks(clusters, resolution, tau, unsure, fine):
-    """Put a code for each cell of unsure blocks into `fine`; return the planes."""
-    planes, count = np.empty((16, 9)), 0
-    stack = np.empty((64, 4), np.int64)
-    for u in range(len(unsure)):
-        corner = unsure[u] * BLOCK
-        stack[0, :3], stack[0, 3], waiting = 0, BLOCK, 1
-        while waiting:
-            waiting -= 1
-            x, y, z, size = stack[waiting]
-            if count == len(planes):
-                larger = np.empty((2 * count, 9))
-                larger[:count] = planes
-                planes = larger
-            plane = planes[count]
-            code = _look(
-                clusters, resolution, tau, corner[0] + x, corner[1] + y, corner[2] + z, size, plane
-            )
-            if code == UNSURE and size > 1:
-                half = size // 2
-                for corner8 in range(8):
-                    stack[waiting, 0] = x + half * (corner8 >> 2)
-                    stack[waiting, 1] = y + half * (corner8 >> 1 & 1)
-                    stack[waiting, 2] = z + half * (corner8 & 1)
-                    stack[waiting, 3] = half
-                    waiting += 1
+            if code < 0:
+                coarse[a : a + wide, b : b + wide, c : c + wide] = code
                 continue
-            if code == 0:
-                code = count
+            if size == BLOCK:
+                if rows == len(fine):
+                    blocks, fine = grown(blocks), grown(fine)
+                blocks[rows, 0], blocks[rows, 1], blocks[rows, 2] = a, b, c
+                coarse[a, b, c] = rows
+                rows += 1
+        if size > BLOCK or (code == UNSURE and size > 1):
+            for corner8 in range(8):
+                child = waiting[count]
+                child[0] = x + size // 2 * (corner8 >> 2)
+                child[1] = y + size // 2 * (corner8 >> 1 & 1)
+                child[2] = z + size // 2 * (corner8 & 1)
+                child[3], child[4], child[5] = size // 2, end, last
+                known[count, 0], known[count, 1], known[count, 2] = q
+                _put(known[count, 3:], field)
                 count += 1
-            fine[u, x : x + size, y : y + size, z : z + size] = code
-    return planes[:count].copy()
+            continue
+        if code >= 0:
+            if leaves == len(place):
+                place, far, plane = grown(place), grown(far), grown(plane)
+                is_torn, near_range = grown(is_torn), grown(near_range)
+            place[leaves, 0], place[leaves, 1], place[leaves, 2] = q
+            _put(far[leaves], field)
+            _put(plane[leaves], whole)
+            if code == UNSURE:
+                plane[leaves, 4] = np.inf
+            is_torn[leaves] = tears
+            first = near_range[leaves - 1, 1] if leaves else 0
+            while first + last - end > len(near):
+                near = grown(near)
+            near[first : first + last - end] = listed[end:last]
+            near_range[leaves, 0], near_range[leaves, 1] = first, first + last - end
+            code = leaves
+            leaves += 1
+        i, j, k = x % BLOCK, y % BLOCK, z % BLOCK
+        fine[rows - 1, i : i + size, j : j + size, k : k + size] = code
+    return (
+        blocks[:rows].copy(),
+        fine[:rows].copy(),
+        Leaves(
+            place[:leaves].copy(),
+            far[:leaves].copy(),
+            plane[:leaves].copy(),
+            is_torn[:leaves].copy(),
+            near_range[:leaves, 0].copy(),
+            near_range[:leaves, 1].copy(),
+            near[: near_range[leaves - 1, 1] if leaves else 0].copy(),
+        ),
+    )
+
+
+@njit(cache=True, inline="always")
+def _field(row):
+    return Field(row[0], row[1], row[2], row[3], row[4])
+
+
+@njit(cache=True, inline="always")
+def _put(row, field):
+    row[0], row[1], row[2], row[3], row[4] = field
 
 
 @njit(cache=True)
-def _look(clusters, resolution, tau, x, y, z, size, plane):
-    """Return NEED + need of a block; or 0 and its plane; or UNSURE."""
-    half = size / (2 * resolution)
-    q = x / resolution + half, y / resolution + half, z / resolution + half
-    value, gradient, error, is_torn = view(clusters, q, half * np.sqrt(3), TOLERANCE, 0.5)
-    error += ROUNDING
+def _code(field, is_torn, half, size, tau):
+    """Return NEED + need of a block; or 0 if its field is to be kept; or UNSURE."""
+    error = field.error + ROUNDING
     if error >= 0.5:
         return UNSURE
-    slope = half * (abs(gradient[0]) + abs(gradient[1]) + abs(gradient[2]))
-    low = np.ceil(tau + value - slope - error)
-    if low == np.ceil(tau + value + slope + error):
+    slope = half * (abs(field.x) + abs(field.y) + abs(field.z))
+    low = np.ceil(tau + field.value - slope - error)
+    if low == np.ceil(tau + field.value + slope + error):
         if not is_torn:
             return NEED + np.int64(low)
     elif 3 * size**3 * min(error, slope) > WORTH * slope and size > 1:
         return UNSURE  # the plane that parts the block is thick: many midpoints lie in it
-    plane[0], plane[1], plane[2] = q
-    plane[3], plane[7], plane[8] = value, error, is_torn
-    plane[4], plane[5], plane[6] = gradient
     return 0
 
 
@@ -207,21 +265,40 @@ def code_at(doubt, cell):
 
 
 @njit(cache=True, inline="always")
-def on_plane(doubt, code, p):
-    """Return w_caps at a point in a cell with that code, and how far it may be off."""
-    q = doubt.planes[code]
-    value = q[3] + q[4] * (p[0] - q[0]) + q[5] * (p[1] - q[1]) + q[6] * (p[2] - q[2])
-    return value, q[7]
+def on_plane(leaves, leaf, p):
+    """Return what all caps cover at a point in a leaf, and how far that may be off."""
+    field = moved(_field(leaves.plane[leaf]), leaves.place[leaf], p)
+    return field.value, field.error + ROUNDING
 
 
 @njit(cache=True)
-def need_at(clusters, p, tau):
-    """Return the need at a point, or UNSURE if only an exact sum can tell."""
-    for tolerance in (2e-3, 1e-4, 1e-6):
-        value, _, error, _ = view(clusters, p, 0.0, tolerance, 0.5)
+def summed(doubt, leaf, p, tolerance):
+    """Return the same by summing what is near."""
+    leaves, clusters = doubt.leaves, doubt.clusters
+    far = moved(_field(leaves.far[leaf]), leaves.place[leaf], p)
+    near = leaves.near[leaves.begin[leaf] : leaves.end[leaf]]
+    field, _ = view(clusters, near, far, p, 0.0, tolerance, 0.5)
+    return field.value, field.error + ROUNDING
+
+
+@njit(cache=True)
+def need_at(doubt, leaf, p, tau):
+    """Return the need at a point in a leaf, or UNSURE if only an exact sum can tell."""
+    for tolerance in TOLERANCES:
+        value, error = summed(doubt, leaf, p, tolerance)
         if error == np.inf:
+            return UNSURE
+        need = need_between(tau + value, error)
+        if need < UNSURE:
+            return need
+        if error < 2 * doubt.leaves.far[leaf, 4]:
+            break  # most of it is what the far caps leave out
+    everything = np.array([ROOT])
+    for tolerance in (1e-4, 1e-6):
+        field, _ = view(doubt.clusters, everything, NOTHING, p, 0.0, tolerance, 0.5)
+        if field.error == np.inf:
             break
-        need = need_between(tau + value, error + ROUNDING)
+        need = need_between(tau + field.value, field.error + ROUNDING)
         if need < UNSURE:
             return need
     return UNSURE

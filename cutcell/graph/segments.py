@@ -18,7 +18,6 @@ from numpy.typing import NDArray
 from ..threads import in_threads
 from .boundary import Boundary
 from .caps import cap_holes
-from .clusters import view
 from .holes import (
     BLOCK,
     NEED,
@@ -28,13 +27,12 @@ from .holes import (
     need_at,
     need_between,
     on_plane,
+    summed,
 )
 from .rays import AXES, Crossings, cast_all_rays, first_at_least, grown, in_space, strip_bounds
 from .winding import boundary_turns
 
 NONE = -1
-MANY = 1000
-"""Boundary edges above which approximating their sum first is faster than summing them."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,8 +83,8 @@ def find_runs(
     """
     caps = cap_holes(vertices, boundary)
     closing = cast_all_rays(caps.vertices, caps.faces, resolution)
-    doubt, clusters = find_doubt(caps, resolution, winding_threshold)
-    shared = resolution, winding_threshold, doubt, clusters, boundary
+    doubt = find_doubt(caps, resolution, winding_threshold)
+    shared = resolution, winding_threshold, doubt, boundary
     views = []
     for axis, (u, v, along) in enumerate(AXES):
         needs = doubt.coarse.min(axis=along)
@@ -184,33 +182,29 @@ def _walk_rays(shared, seen, first_ray, last_ray):
 
 
 @njit(cache=True)
-def _is_inside(shared, seen, p, code, chi, lid, torn):
+def _is_inside(shared, seen, p, leaf, chi, lid, torn):
     """Tell whether a midpoint is inside, in a cell that is not so altogether.
 
     `torn` keeps the last torn block that the ray came through, and the number of caps
     ahead that its plane goes with.
     """
-    _, tau, doubt, clusters, boundary = shared
+    _, tau, doubt, boundary = shared
     axis, vertices = seen[:2]
     point = in_space(axis, p[0], p[1], p[2])
     turn = -1.0 if axis == 1 else 1.0  # (x, z, y) is left-handed
-    if code < UNSURE:
-        value, error = on_plane(doubt, code, point)
-        need = need_between(tau + value, error)
-        if need < UNSURE:
-            if doubt.planes[code, 8] == 0:
-                return chi + lid >= need
-            if torn[0] != code:
-                turns = np.inf
-                if len(boundary.loop) > MANY:
-                    share, _, off, _ = view(clusters, point, 0.0, 1e-2, 0.5)
-                    turns = lid - share if off + error < 0.5 else np.inf
-                if turns == np.inf:
-                    turns = turn * boundary_turns(vertices, boundary, p[0], p[1], p[2])
-                torn[0], torn[1] = code, np.int64(np.round(turns + value))
-            return chi + torn[1] >= need
-    if len(boundary.loop) > MANY:
-        need = need_at(clusters, point, tau)
-        if need < UNSURE:
+    value, error = on_plane(doubt.leaves, leaf, point)
+    need = need_between(tau + value, error) if error < 0.5 else UNSURE
+    if need < UNSURE:
+        if not doubt.leaves.is_torn[leaf]:
             return chi + lid >= need
+        if torn[0] != leaf:
+            share, off = summed(doubt, leaf, point, 1e-2)
+            turns = lid - share
+            if off + error >= 0.5:
+                turns = turn * boundary_turns(vertices, boundary, p[0], p[1], p[2])
+            torn[0], torn[1] = leaf, np.int64(np.round(turns + value))
+        return chi + torn[1] >= need
+    need = need_at(doubt, leaf, point, tau)
+    if need < UNSURE:
+        return chi + lid >= need
     return chi + turn * boundary_turns(vertices, boundary, p[0], p[1], p[2]) >= tau

@@ -5,7 +5,8 @@ import pytest
 
 from cutcell.graph.boundary import find_boundary
 from cutcell.graph.caps import cap_holes
-from cutcell.graph.clusters import cluster, view
+from cutcell.graph.clusters import ROOT, cluster
+from cutcell.graph.view import NOTHING, gather, moved, view
 from tests import meshes, naive
 
 
@@ -14,6 +15,11 @@ def confetti():
     rng = np.random.default_rng(0)
     vertices = rng.uniform(0.2, 0.5, (300, 1, 3)) + rng.normal(0, 0.01, (300, 3, 3))
     return vertices.reshape(-1, 3), np.arange(900, dtype=np.int32).reshape(-1, 3)
+
+
+def view_all(clusters, place, reach, tolerance):
+    """View all caps, from scratch."""
+    return view(clusters, np.array([ROOT]), NOTHING, tuple(place), reach, tolerance, 10.0)
 
 
 SHAPES = meshes.OPEN | {"confetti": confetti}
@@ -40,25 +46,57 @@ def test_view_is_right_within_its_error(name):
     for reach in (0.0, 0.003, 0.02, 0.1):
         for tolerance in (1e-2, 1e-4):
             for place in rng.uniform(0, 1, (25, 3)):
-                value, gradient, error, is_torn = view(
-                    clusters, tuple(place), reach, tolerance, 10.0
-                )
-                if not np.isfinite(error):
+                field, is_torn = view_all(clusters, place, reach, tolerance)
+                if not np.isfinite(field.error):
                     continue
                 offset = rng.normal(size=(20, 3))
                 offset *= reach / np.linalg.norm(offset, axis=1, keepdims=True)
                 covered = naive.winding_number(caps.vertices, caps.faces, place + offset)
-                off = covered - value - offset @ np.array(gradient)
+                off = covered - field.value - offset @ np.array([field.x, field.y, field.z])
                 off -= np.round(off) if is_torn else 0
-                assert np.abs(off).max() <= error + 1e-9
+                assert np.abs(off).max() <= field.error + 1e-9
                 compared += 1
     assert compared > 150
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_what_is_handed_down_is_right_within_its_error(name):
+    """Balls within balls: each takes over the field of the larger one and its list."""
+    vertices, faces = SHAPES[name]()
+    caps = cap_holes(vertices, find_boundary(faces))
+    clusters = cluster(caps)
+    rng = np.random.default_rng(2)
+    compared = 0
+    for place in rng.uniform(0, 1, (30, 3)):
+        listed, end, field, reach = np.array([ROOT]), 1, NOTHING, 0.3
+        begin = 0
+        for closest in (0.5, 0.5, 0.7, 0.8):
+            listed, last, field = gather(
+                clusters, listed, begin, end, tuple(place), reach, closest, field
+            )
+            begin, end = end, last
+            nearer = place + rng.uniform(-1, 1, 3) * reach / 8
+            field = moved(field, tuple(place), tuple(nearer))
+            place, reach = nearer, reach / 4
+            found, is_torn = view(
+                clusters, listed[begin:end], field, tuple(place), reach, 1e-2, 10.0
+            )
+            if not np.isfinite(found.error):
+                continue
+            offset = rng.normal(size=(20, 3))
+            offset *= reach / np.linalg.norm(offset, axis=1, keepdims=True)
+            covered = naive.winding_number(caps.vertices, caps.faces, place + offset)
+            off = covered - found.value - offset @ np.array([found.x, found.y, found.z])
+            off -= np.round(off) if is_torn else 0
+            assert np.abs(off).max() <= found.error + 1e-9
+            compared += 1
+    assert compared > 20
 
 
 def test_far_clusters_are_not_halved_and_nearly_right():
     vertices, faces = confetti()
     caps = cap_holes(vertices, find_boundary(faces))
-    value, _, error, is_torn = view(cluster(caps), (0.9, 0.9, 0.95), 0.0, 1e-3, 10.0)
+    (value, *_, error), is_torn = view_all(cluster(caps), (0.9, 0.9, 0.95), 0.0, 1e-3)
     expected = naive.winding_number(caps.vertices, caps.faces, np.array([[0.9, 0.9, 0.95]]))[0]
     assert 0 < error < 0.01
     assert not is_torn
@@ -70,12 +108,12 @@ def test_a_ball_that_a_cap_enters_is_torn():
     caps = cap_holes(vertices, find_boundary(faces))
     clusters = cluster(caps)
     middle = caps.vertices[caps.faces[0]].mean(axis=0)
-    assert view(clusters, tuple(middle + 1e-3), 0.01, 1e-2, 10.0)[3]
-    assert not view(clusters, tuple(middle + 0.1), 0.01, 1e-2, 10.0)[3]
+    assert view_all(clusters, middle + 1e-3, 0.01, 1e-2)[1]
+    assert not view_all(clusters, middle + 0.1, 0.01, 1e-2)[1]
 
 
 def test_a_point_on_a_cap_is_not_decided_by_rounding():
     vertices, faces = meshes.open_box()
     caps = cap_holes(vertices, find_boundary(faces))
     spot = np.array([0.4, 0.35, 0.25]) @ caps.vertices[caps.faces[0]]
-    assert view(cluster(caps), tuple(spot), 0.0, 1e-6, 0.5)[2] == np.inf
+    assert view_all(cluster(caps), spot, 0.0, 1e-6)[0].error == np.inf
