@@ -53,6 +53,6 @@ _PLACE = """
 :host { position: absolute; z-index: 4; right: 12px; top: 62px; left: auto !important;
   width: min(360px, calc(100% - 24px)) !important; height: auto !important;
   max-height: calc(100% - 74px); display: flex; }
-@media (max-width: 1020px) { :host { top: auto; bottom: 8px; right: 8px;
+@media (max-width: 1180px) { :host { top: auto; bottom: 8px; right: 8px;
   width: calc(100% - 16px) !important; max-height: 46%; } }
 """

@@ -63,17 +63,18 @@ class Stage {
 
   // Where each view lies, in the canvas' own pixels; divided as pictures are (viewers/tiles.py).
   get tiles() {
-    const {clientHeight: h} = this.element
-    const w = this.element.clientWidth - this.taken
+    const [w, h] = this.free
     const b = this.bounds(isCharacter)
     const [wide, high, deep] = [0, 1, 2].map((i) => Math.max(b[2 * i + 1] - b[2 * i], 1e-9))
     const shape = Math.min(Math.max(Math.max(wide, deep) / high, 0.4), 2.5)
     return tiles(this.views.length, w, h, shape)
   }
 
-  // What a card at the right takes of the width of views that stand side by side.
-  get taken() {
-    return this.views.length > 1 && this.cardBeside && this.element.clientWidth > 860 ? 384 : 0
+  // Width and height that views which stand side by side may take: a card leaves them the rest.
+  get free() {
+    const {clientWidth: w, clientHeight: h} = this.element
+    if (this.views.length < 2 || !this.card) { return [w, h] }
+    return cardIsBelow() ? [w, h * (1 - CARD_SHARE) - 8] : [w - CARD_WIDTH, h]
   }
 
   light(lights) {
@@ -220,6 +221,14 @@ class Stage {
     this.gl.delete()
     this.window.delete()
   }
+}
+
+// The tour's card: at the right of wide windows, else at the bottom (app/tour_card.py).
+const CARD_WIDTH = 384
+const CARD_SHARE = 0.46
+
+function cardIsBelow() {
+  return window.matchMedia("(max-width: 1180px)").matches
 }
 
 // What is to be seen whole; bones may reach far out of it, those above all that move nothing.

@@ -58,7 +58,7 @@ class View {
       this.cut = message.cut
       for (const figure of stage.figures.values()) { figure.cut(this.cut) }
     }
-    if ("beside" in message) { this.reframe(() => { stage.cardBeside = message.beside }) }
+    if ("beside" in message) { this.reframe(() => { stage.card = message.beside }) }
     if (message.views) {
       this.views = message.views
       this.reframe(() => stage.divide(this.views))
@@ -115,9 +115,11 @@ class View {
     const distance = this.stage.fitting(direction, target)
     this.orbit.setHome(direction.map((x, i) => target[i] + distance * x), target)
     if (now) { this.orbit.look(now.position, now.focal_point) }
-    // Where a card covers a side of a wide canvas, the middle of what is left is elsewhere.
-    const alone = !(this.views?.length > 1)
-    if (now?.aside && alone && this.overlay.canvas.clientWidth > 760) { this.orbit.pan(-170, 0) }
+    // Where a card covers a part of the canvas, the middle of what is left is elsewhere.
+    if (now?.aside) {
+      const up = CARD_SHARE / 2 * this.overlay.canvas.clientHeight
+      this.orbit.pan(...cardIsBelow() ? [0, -up] : [-170, 0])
+    }
     this.orbit.moving = false
     this.rested()
   }

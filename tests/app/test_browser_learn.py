@@ -1,0 +1,76 @@
+"""The tour in a browser, and links that another person opens."""
+
+import re
+
+import pytest
+from playwright.sync_api import expect, sync_playwright
+
+from app.tour import TOUR
+from assets import demo_path
+from scripts.get_chromium import FLAGS
+from tests.app.browser import LOAD_MS, Visit, served
+
+
+@pytest.fixture(scope="module")
+def browser(chromium):
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=chromium, args=list(FLAGS))
+        yield browser
+        browser.close()
+
+
+@pytest.fixture(scope="module")
+def url():
+    with served(str(demo_path("robot"))) as url:
+        yield url
+
+
+def card(visit):
+    return visit.page.get_by_role("article", name="Tour")
+
+
+def test_a_link_to_a_step_shows_its_scene_and_the_tour_goes_on(browser, url):
+    visit = Visit(browser, url + "?panel=learn&step=4")
+    visit.wait_until_bound()
+    expect(card(visit)).to_contain_text(TOUR[3].title)
+    expect(visit.page.get_by_role("tab", name="Distance")).to_have_attribute(
+        "aria-selected", "true"
+    )
+    expect(visit.page.get_by_role("combobox", name="Bone")).to_have_text("hand.L")
+    visit.page.wait_for_function("'path' in __cutcell.report().actors", timeout=LOAD_MS)
+    assert not visit.page.get_by_text(re.compile("^Vertex ")).is_visible()
+    visit.button("Back").click()
+    expect(card(visit)).to_contain_text(TOUR[2].title)
+    visit.page.wait_for_function("__cutcell.stage.views.length === 2", timeout=LOAD_MS)
+    visit.settle()
+    # The card covers none of the methods that stand side by side.
+    right = visit.page.evaluate("Math.max(...__cutcell.stage.tiles.map(([x, , w]) => x + w))")
+    place = visit.page.get_by_role("application").bounding_box()
+    covered = card(visit).bounding_box()
+    beside = place["x"] + right <= covered["x"]
+    assert beside or covered["y"] > place["y"] + place["height"] / 2
+    visit.button("Leave").click()
+    expect(card(visit)).to_be_hidden()
+    visit.close()
+
+
+def test_another_person_sees_the_same_comparison(browser, url):
+    one = Visit(browser, url + "?rig=robot&panel=compare&resolution=24")
+    one.wait_until_bound()
+    one.page.get_by_role("checkbox", name="The file's own").uncheck()
+    one.choose("Difference to", "Euclidean")
+    one.expect_text("difference")
+    one.page.wait_for_function("location.search.includes('minus=euclidean')", timeout=LOAD_MS)
+    one.settle()
+    captions = one.page.locator(".caption").all_inner_texts()
+    assert captions == ["cutcell, as set here − Euclidean", "Euclidean itself"]
+    other = Visit(browser, one.page.url)
+    other.wait_until_bound()
+    expect(other.page.locator(".caption")).to_have_text(captions, timeout=LOAD_MS)
+    other.expect_text("difference")
+    one.button("Undo").click()
+    one.page.wait_for_function("!location.search.includes('minus')", timeout=LOAD_MS)
+    one.button("Undo").click()
+    one.page.wait_for_function("!location.search.includes('methods')", timeout=LOAD_MS)
+    other.close()
+    one.close()
