@@ -54,5 +54,5 @@ _PLACE = """
   width: min(360px, calc(100% - 24px)) !important; height: auto !important;
   max-height: calc(100% - 74px); display: flex; }
 @media (max-width: 1180px) { :host { top: auto; bottom: 8px; right: 8px;
-  width: calc(100% - 16px) !important; max-height: 46%; } }
+  width: calc(100% - 16px) !important; max-height: 50%; } }
 """

@@ -73,8 +73,7 @@ class Stage {
   // Width and height that views which stand side by side may take: a card leaves them the rest.
   get free() {
     const {clientWidth: w, clientHeight: h} = this.element
-    if (this.views.length < 2 || !this.card) { return [w, h] }
-    return cardIsBelow() ? [w, h * (1 - CARD_SHARE) - 8] : [w - CARD_WIDTH, h]
+    return this.views.length < 2 || !this.card ? [w, h] : beside(w, h)
   }
 
   light(lights) {
@@ -225,10 +224,14 @@ class Stage {
 
 // The tour's card: at the right of wide windows, else at the bottom (app/tour_card.py).
 const CARD_WIDTH = 384
-const CARD_SHARE = 0.46
+const CARD_SHARE = 0.5
 
 function cardIsBelow() {
   return window.matchMedia("(max-width: 1180px)").matches
+}
+
+function beside(w, h) {
+  return cardIsBelow() ? [w, h * (1 - CARD_SHARE) - 8] : [w - CARD_WIDTH, h]
 }
 
 // What is to be seen whole; bones may reach far out of it, those above all that move nothing.

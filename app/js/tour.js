@@ -30,6 +30,7 @@ footer { display: flex; align-items: center; justify-content: space-between; gap
 .close { all: unset; padding: 3px 8px; border-radius: 6px; cursor: pointer; font-size: 13px;
   color: var(--mui-palette-text-secondary, #5c6675); }
 button:focus-visible { outline: 2px solid #e05a00; outline-offset: 1px; }
+@media (max-width: 1180px) { article { max-height: calc((100dvh - 100px) / 2); } }
 @media (max-width: 700px) { article { padding: 12px 14px 10px; font-size: 13.5px; } }
 `
 

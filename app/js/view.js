@@ -115,13 +115,18 @@ class View {
     const distance = this.stage.fitting(direction, target)
     this.orbit.setHome(direction.map((x, i) => target[i] + distance * x), target)
     if (now) { this.orbit.look(now.position, now.focal_point) }
-    // Where a card covers a part of the canvas, the middle of what is left is elsewhere.
-    if (now?.aside) {
-      const up = CARD_SHARE / 2 * this.overlay.canvas.clientHeight
-      this.orbit.pan(...cardIsBelow() ? [0, -up] : [-170, 0])
-    }
+    if (now?.aside) { this.stepAside() }
     this.orbit.moving = false
     this.rested()
+  }
+
+  // Where a card covers a part of the canvas, the middle of what is left is elsewhere; and what
+  // filled a wide canvas has to be seen in it.
+  stepAside() {
+    const {clientWidth: w, clientHeight: h} = this.overlay.canvas
+    const [free, high] = beside(w, h)
+    this.orbit.distance *= Math.max(1, 0.85 * h / high, 0.75 * h / Math.max(free, 1))
+    this.orbit.pan((free - w) / 2, (high - h) / 2)
   }
 
   get currentPose() {
