@@ -20,14 +20,13 @@ from cutcell.progress import Progress
 from cutcell.rig import Rig
 from viewers.scene import Camera, framing
 
-from .actions import WATCHERS, learn, weights
+from .actions import WATCHERS, compare, learn, weights
 from .choices import first_clip, from_query
 from .jobs import COMPUTING, Jobs, Schedule
 from .keep import KEEP
 from .scenes import Memo, resolve
 from .scenes.common import bones_part, bounds_of, first_joint, theme_of
 from .state import UNSEEN, State
-from .state.compare import FEWEST_VIEWS, offered
 from .state.method import GRAPH, method_of
 from .upload import Receiver
 from .view import SceneView, camera_part, theme_part
@@ -232,7 +231,7 @@ class Session:
     def _stand(self, rig: Rig, chosen: Callable[[], None] = lambda: None) -> None:
         state = self.state
         self.jobs("field").cancel()
-        arrival, self._arrival = self._arrival, {}
+        before, arrival, self._arrival = state.rig, self._arrival, {}
         # All at once: a menu whose value changes twice in a moment may tell the first one back.
         with batch_call_watchers(state):
             state.param.update(
@@ -240,6 +239,7 @@ class Session:
                 clip=first_clip(rig), message=None, joint=first_joint(rig), vertex=None,
             )  # fmt: skip
             self._land(rig, arrival)
+            compare.carry(state, before, arrival)
             chosen()
         self.view.camera = framing(bounds_of(state), 1.2)
         self.view.at_home = True
@@ -258,11 +258,6 @@ class Session:
         state.turns = {j: t for j, t in arrival.get("turns", {}).items() if j < len(names)}
         if -1 <= arrival.get("clip", -2) < len(rig.clips):
             state.clip = arrival["clip"]
-        methods = [name for name in arrival.get("methods", ()) if name in offered(rig)]
-        if len(methods) >= FEWEST_VIEWS:
-            state.methods = methods
-        if arrival.get("minus") in offered(rig):
-            state.minus = arrival["minus"]
         state.tour = arrival.get("tour", state.tour)
         if 0 <= arrival.get("vertex", -1) < len(rig.mesh.vertices):
             state.vertex = arrival["vertex"]

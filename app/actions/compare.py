@@ -67,7 +67,7 @@ class Compared:
 def watch(session: Session) -> None:
     """Compute what is wanted and not there, while the panel is looked at."""
     state = session.state
-    state.param.watch(lambda *events: _forget(session, events), ["rig", "resolution"])
+    state.param.watch(lambda *events: _forget(session), ["rig", "resolution"])
     state.param.watch(lambda *events: find(session), ["panel", "binding", "methods"])
 
 
@@ -165,13 +165,26 @@ def options_of(method: Method, **options: Any) -> Mapping[str, Any]:
     return {name: value for name, value in options.items() if every or name in known}
 
 
-def _forget(session: Session, events: tuple[Any, ...]) -> None:
-    """Forget what was computed; what was chosen stays, as far as the character allows."""
-    state = session.state
-    session.jobs("compare").cancel()
-    before = next((event.old for event in events if event.name == "rig"), state.rig)
-    names = [name for name in state.methods if name in offered(state.rig)]
-    if state.methods == standard(before) or len(names) < FEWEST_VIEWS:
+def carry(state: State, before: Rig | None, arrival: Mapping[str, Any]) -> None:
+    """Set the methods for a new character: those of an address, else those chosen before.
+
+    Parameters
+    ----------
+    state : State
+        With the new character.
+    before : Rig or None
+        The one that stood there.
+    arrival : mapping
+        "methods" and "minus", as far as an address says them.
+    """
+    chosen = [] if state.methods == standard(before) else state.methods
+    names = [name for name in arrival.get("methods", chosen) if name in offered(state.rig)]
+    if len(names) < FEWEST_VIEWS:
         names = standard(state.rig)
-    minus = state.minus if state.minus in names else ""
-    state.param.update(compared={}, comparing="", methods=names, minus=minus)
+    minus = arrival.get("minus", state.minus)
+    state.param.update(methods=names, minus=minus if minus in names else "")
+
+
+def _forget(session: Session) -> None:
+    session.jobs("compare").cancel()
+    session.state.param.update(compared={}, comparing="")
