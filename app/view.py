@@ -235,6 +235,7 @@ def _settings(actor: Actor) -> dict[str, Any]:
         "width": actor.width,
         "ambient": AMBIENT,
         "behind": actor.behind,
+        "closed": actor.closed and actor.opacity == 1,
         "coloured": actor.colors is not None or actor.scalars is not None,
     }
     place = {"overlay": actor.overlay, "view": actor.view}

@@ -6,6 +6,8 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
 
 from cutcell.rig import Rig, Skeleton, TriangleMesh
 
@@ -148,8 +150,34 @@ def _surface(rig: Rig, mesh: TriangleMesh, skin: Skin | None, **look: Any) -> Ac
         faces.astype(np.int32),
         normals=smooth_normals(points, faces).astype(np.float32),
         skin=skin,
+        closed=is_closed(points, faces),
         **look,
     )
+
+
+def is_closed(points: NDArray[np.float64], faces: NDArray) -> bool:
+    """Whether faces enclose what is behind them: no border, and every part faces outwards.
+
+    Vertices at the same place count as one.
+
+    Parameters
+    ----------
+    points : array, shape (n, 3)
+    faces : array, shape (m, 3)
+    """
+    _, place = np.unique(points, axis=0, return_inverse=True)
+    corners = place.ravel()[faces]
+    whole = (corners != np.roll(corners, 1, axis=1)).all(axis=1)
+    corners, count = corners[whole], int(place.max(initial=0)) + 1
+    a, b = corners.ravel(), np.roll(corners, -1, axis=1).ravel()
+    # Each edge is run along as often one way as the other.
+    if not len(corners) or not np.array_equal(np.sort(a * count + b), np.sort(b * count + a)):
+        return False
+    _, part = connected_components(coo_matrix((np.ones(len(a)), (a, b)), (count, count)))
+    three = points[faces[whole]]
+    volume = np.einsum("fi,fi->f", three[:, 0], np.cross(three[:, 1], three[:, 2]))
+    volumes = np.bincount(part[corners[:, 0]], volume)
+    return bool((volumes[np.unique(part[corners])] > 0).all())
 
 
 def smooth_normals(points: NDArray[np.float64], faces: NDArray) -> NDArray[np.float64]:

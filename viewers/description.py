@@ -77,6 +77,8 @@ class Actor:
         Drawn over all that is no overlay, as bones are.
     behind : bool
         Gives way where it coincides with another surface.
+    closed : bool
+        Whether the surface has an inside, which is not seen: its back need not be drawn.
     clipped : bool
         Whether the scene's cut takes away what lies before it.
     slab : float
@@ -101,6 +103,7 @@ class Actor:
     visible: bool = True
     overlay: bool = False
     behind: bool = False
+    closed: bool = False
     clipped: bool = True
     slab: float = 0.0
     skin: Skin | None = None

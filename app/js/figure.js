@@ -161,7 +161,8 @@ class Figure {
     this.colours.front = this.film ? front ?? ALL : ALL
   }
 
-  paint({color, opacity, width, ambient, coloured, behind}) {
+  paint({color, opacity, width, ambient, coloured, behind, closed}) {
+    this.closed = closed
     this.coloured = coloured
     for (const {mapper, actor} of this.made) {
       const look = actor.getProperty()
@@ -201,6 +202,7 @@ class Figure {
   }
 
   cut(cut) {
+    this.opened = Boolean(cut && this.clipped)
     for (const {mapper} of this.made) {
       mapper.removeAllClippingPlanes()
       if (!cut || !this.clipped) { continue }
@@ -214,7 +216,10 @@ class Figure {
     }
   }
 
-  show(moving) {
+  // `outside`: the eye is, so that of a closed surface no back is seen unless it is cut.
+  show(moving, outside) {
+    const whole = this.closed && outside && !this.opened
+    this.made[0].actor.getProperty().setBackfaceCulling(Boolean(whole))
     const few = moving && this.made.length > 1
     this.made.forEach(({actor}, i) => {
       actor.setVisibility(this.visible && (this.made.length === 1 || few === (i === 1)))

@@ -124,10 +124,19 @@ class Stage {
       const {base, over} = this.views[i]
       for (const renderer of [base, over]) { renderer.setViewport(...part) }
     })
-    for (const figure of this.figures.values()) { figure.show(moving) }
+    const outside = this.isOutside()
+    for (const figure of this.figures.values()) { figure.show(moving, outside) }
     this.camera.setClippingRange(...this.depthRange())
     smooth.draw(this.size, this.rough, () => this.gl.traverseAllPasses())
     this.frames += 1
+  }
+
+  // Whether the eye is well outside all that is there, in any pose.
+  isOutside() {
+    const b = this.bounds()
+    const eye = this.camera.getPosition()
+    const room = Math.max(...[0, 1, 2].map((i) => b[2 * i + 1] - b[2 * i])) / 2
+    return eye.some((x, i) => x < b[2 * i] - room || x > b[2 * i + 1] + room)
   }
 
   depthRange() {

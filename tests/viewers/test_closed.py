@@ -1,0 +1,36 @@
+"""Whether a surface has an inside that is not seen."""
+
+import numpy as np
+import trimesh
+
+from viewers.character import is_closed
+
+
+def box(**how):
+    mesh = trimesh.creation.box(**how)
+    return np.array(mesh.vertices), np.array(mesh.faces)
+
+
+def test_a_box_is_closed_seams_or_not():
+    points, faces = box()
+    assert is_closed(points, faces)
+    assert is_closed(points[faces].reshape(-1, 3), np.arange(faces.size).reshape(-1, 3))
+
+
+def test_a_box_with_a_hole_is_not():
+    points, faces = box()
+    assert not is_closed(points, faces[1:])
+
+
+def test_a_box_inside_out_is_not_even_beside_a_larger_one():
+    points, faces = box()
+    large, other = box(extents=[5, 5, 5])
+    assert not is_closed(points, faces[:, ::-1])
+    both = np.concatenate([points, large + 9])
+    assert is_closed(both, np.concatenate([faces, other + len(points)]))
+    assert not is_closed(both, np.concatenate([faces[:, ::-1], other + len(points)]))
+
+
+def test_nothing_is_not():
+    assert not is_closed(np.zeros((3, 3)), np.array([[0, 1, 2]]))
+    assert not is_closed(np.zeros((0, 3)), np.zeros((0, 3), int))
