@@ -5,6 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
+from .rigs import ROOT
+
+PAGE_SPEED = ROOT / "docs" / "page-speed.md"
+
 
 def fill(path: Path, blocks: Mapping[str, str]) -> None:
     """Replace what stands between `<!-- NAME -->` and `<!-- /NAME -->` of a document.

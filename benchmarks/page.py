@@ -17,17 +17,15 @@ from playwright.sync_api import Browser, sync_playwright
 
 from scripts.get_chromium import FLAGS, find
 
-from .document import fill
+from .document import PAGE_SPEED, fill
 from .page_subjects import SIZE, Material, material, ours, theirs
 from .page_visitor import Visitor, served
 from .page_weights import weights_table
 from .report import circumstances
-from .rigs import ROOT
 from .tables import Table, ratio, seconds
 from .timing import Times
 
 OURS, THEIRS = "cutcell", "pn.pane.VTK"
-DOCUMENT = ROOT / "docs" / "page-speed.md"
 
 Taken = dict[str, dict[str, list[float]]]
 
@@ -143,7 +141,7 @@ def main(given: Sequence[str] | None = None) -> None:
     text = "\n\n".join([where, *(table.markdown() for table in tables(options))]) + "\n"
     print(text, end="")
     if options.write:
-        fill(DOCUMENT, {"page": text})
+        fill(PAGE_SPEED, {"page": text})
 
 
 if __name__ == "__main__":

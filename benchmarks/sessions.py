@@ -1,6 +1,6 @@
 """How much memory the page's server takes for its sessions, and whether it gives it back.
 
-python -m benchmarks.sessions [--sessions 20] [--rounds 3] [--markdown FILE]
+python -m benchmarks.sessions [--sessions 20] [--rounds 2] [--write]
 """
 
 from __future__ import annotations
@@ -8,20 +8,32 @@ from __future__ import annotations
 import argparse
 import time
 from collections.abc import Sequence
-from pathlib import Path
 
+from .document import PAGE_SPEED, fill
+from .report import circumstances
 from .tables import Table
 from .visitors import BOUND, Server, Visitor, served
 
 GIVEN_BACK = 30.0
 """Seconds in which the server must have let go of what visitors left."""
 
+DOES = {
+    "the first demo bound": "",
+    "a vertex chosen and three methods compared": "/?panel=compare&vertex=100",
+}
+"""What each session has done when it is weighed, and the address that makes it do so."""
 
-def visit(server: Server, count: int) -> list[Visitor]:
-    """Open that many sessions at once, and wait until all have their weights."""
-    visitors = [Visitor(server.address) for _ in range(count)]
+COMPARED = r'(?s)^(?!.*(?:Computing|Waiting)).*"fixed"'
+"""What the page says when its table of methods is filled."""
+
+
+def visit(server: Server, count: int, query: str) -> list[Visitor]:
+    """Open that many sessions at once, and wait until all have done what they should."""
+    visitors = [Visitor(server.address, query) for _ in range(count)]
     for visitor in visitors:
         visitor.wait_for(BOUND)
+        if "compare" in query:
+            visitor.wait_for(COMPARED)
     return visitors
 
 
@@ -39,18 +51,19 @@ def sessions_table(options: argparse.Namespace) -> Table:
     table = Table(
         "Memory of sessions",
         ["", "server, MB", "a session, MB"],
-        f"{count} sessions open at once, each with the first demo bound; then they leave, and as "
-        "many others come. Memory that the server's process has to itself.",
+        f"{count} sessions open at once; then they leave, and as many others come. Memory that "
+        "the server's process has to itself.",
     )
-    with served() as server:
-        before = leave(server, visit(server, 1))
-        table.add("one session came and left", f"{before:.0f}", "-")
-        for turn in range(options.rounds):
-            visitors = visit(server, count)
-            held = server.megabytes()
-            each = (held - before) / count
-            table.add(f"{count} sessions, round {turn + 1}", f"{held:.0f}", f"{each:.1f}")
-            table.add("they left", f"{leave(server, visitors):.0f}", "-")
+    for does, query in DOES.items():
+        with served() as server:
+            before = leave(server, visit(server, 1, query))
+            table.add(f"each with {does}: one came and left", f"{before:.0f}", "-")
+            for turn in range(options.rounds):
+                visitors = visit(server, count, query)
+                held = server.megabytes()
+                each = (held - before) / count
+                table.add(f"{count} sessions, round {turn + 1}", f"{held:.0f}", f"{each:.1f}")
+                table.add("they left", f"{leave(server, visitors):.0f}", "-")
     return table
 
 
@@ -58,18 +71,18 @@ def arguments(given: Sequence[str] | None = None) -> argparse.Namespace:
     """Read the command line."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.sessions", description=__doc__)
     parser.add_argument("--sessions", type=int, default=20)
-    parser.add_argument("--rounds", type=int, default=3)
-    parser.add_argument("--markdown", type=Path)
+    parser.add_argument("--rounds", type=int, default=2)
+    parser.add_argument("--write", action="store_true", help="into docs/page-speed.md")
     return parser.parse_args(given)
 
 
 def main(given: Sequence[str] | None = None) -> None:
     """Print the table."""
     options = arguments(given)
-    text = sessions_table(options).markdown() + "\n"
+    text = f"{circumstances()}\n\n{sessions_table(options).markdown()}\n"
     print(text, end="")
-    if options.markdown:
-        options.markdown.write_text(text)
+    if options.write:
+        fill(PAGE_SPEED, {"sessions": text})
 
 
 if __name__ == "__main__":
