@@ -6,7 +6,8 @@ from app.actions.compare import choose
 from app.choices import first_clip, from_query, to_query
 from app.history import TOGETHER, History
 from app.keep import Keep
-from app.session import GONE, Session
+from app.opening import GONE
+from app.session import Session
 from app.state import State
 from app.state.compare import standard
 from assets import demo_path

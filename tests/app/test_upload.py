@@ -2,7 +2,7 @@
 
 import pytest
 
-from app.session import main_file
+from app.opening import main_file
 from app.state import MAX_UPLOAD
 from app.upload import Receiver, safe_name
 from cutcell.errors import FileError

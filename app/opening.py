@@ -1,0 +1,255 @@
+"""How a character comes to stand on the page: a demo, files, or what an address says."""
+
+from __future__ import annotations
+
+import functools
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, cast
+
+from param.parameterized import batch_call_watchers
+
+import cutcell
+from assets import DEMOS, demo_path
+from cutcell.errors import CutcellError, FileError
+from cutcell.progress import Progress
+from cutcell.rig import Rig
+from viewers.scene import Camera, framing
+
+from .actions import compare, learn
+from .choices import first_clip, from_query
+from .jobs import Jobs
+from .keep import KEEP
+from .scenes.common import bones_part, bounds_of, first_joint
+from .state import State
+from .upload import Receiver
+from .view import SceneView, camera_part
+
+if TYPE_CHECKING:
+    from .session import Session
+
+GONE = (
+    "The character of this address was uploaded, and the server no longer has it; here is "
+    "another. Drop the file again to go on with it."
+)
+
+COMPANIONS = {".txt", ".json", ".mtl", ".bin", ".png", ".jpg", ".jpeg"}
+"""Files that come along with the one that is opened."""
+
+
+class Opening(ABC):
+    """The part of a `Session` that opens characters.
+
+    Attributes
+    ----------
+    kept : str
+        The key of the uploaded character that stands there; empty for any other.
+    """
+
+    state: State
+    view: SceneView
+    folder: Path
+    habits: Any
+
+    def __init__(self) -> None:
+        self.kept = ""
+        self._held: set[str] = set()
+        self._note = ""
+        self._arrival: dict[str, Any] = {}
+
+    @abstractmethod
+    def start(self, work: Callable[[Progress], Any], done: Callable[[Any], None]) -> None:
+        """Do some work that the page shows progress of."""
+
+    @abstractmethod
+    def jobs(self, name: str) -> Jobs:
+        """Return the work of one name."""
+
+    @abstractmethod
+    def bind(self) -> None:
+        """Compute graph, distances and weights of the character that stands there."""
+
+    @abstractmethod
+    def look(self, camera: Camera | None, aside: bool = False) -> None:
+        """Look from somewhere."""
+
+    @abstractmethod
+    def fail(self, error: Exception) -> None:
+        """Tell what went wrong."""
+
+    def open_demo(
+        self,
+        id: str,
+        chosen: Callable[[], None] = lambda: None,
+        then: Callable[[], None] = lambda: None,
+    ) -> None:
+        """Show a demo character and bind it.
+
+        Parameters
+        ----------
+        id : str
+        chosen : callable
+            Chooses more, together with the character.
+        then : callable
+            Called when it stands there.
+        """
+        self.state.demo = id
+        title = next(demo.title for demo in DEMOS if demo.id == id)
+        self._open(lambda: demo_rig(id), f"opening {title}", lambda: self._keep(""), chosen, then)
+
+    def open_files(self, paths: list[Path], key: str = "") -> None:
+        """Show the character in some files, and bind it.
+
+        Parameters
+        ----------
+        paths : list of Path
+            The file, and those that belong to it.
+        key : str
+            That of kept files, if they are; see `keep`.
+        """
+        try:
+            path = main_file(paths)
+        except CutcellError as error:
+            self.fail(error)
+            self._keep(self.kept)
+            return
+        opened = functools.partial(self._keep, key)
+        self._open(lambda: cutcell.load(path), f"opening {path.name}", opened, demo="")
+
+    def open_upload(self, paths: list[Path]) -> None:
+        """Show the character in files that a person dropped; keep them for a while."""
+        key, here = KEEP.put(paths)
+        self._held.add(key)
+        self.open_files(here, key)
+
+    def arrive(self, query: str, otherwise: Callable[[], None]) -> None:
+        """Show what an address says.
+
+        Parameters
+        ----------
+        query : str
+        otherwise : callable
+            Opens a character where the address names none that is there.
+        """
+        choices, arrival, problems = from_query(query, self.state)
+        self.state.param.update(**choices)
+        self._arrival = arrival
+        rig = arrival.get("rig", "")
+        kept = KEEP.take(rig[1:]) if rig.startswith("~") else None
+        demo = any(demo.id == rig and demo.path.exists() for demo in DEMOS)
+        if rig and not rig.startswith("~") and not demo:
+            problems.append(f"rig={rig}"[:60])
+        if rig.startswith("~") and kept is None:
+            arrival["told"] = GONE
+        elif problems:
+            arrival["told"] = (
+                f"The address says what this page does not know ({', '.join(problems)}); "
+                "the rest of it was taken."
+            )
+        if learn.opens(arrival):
+            learn.go(cast("Session", self), arrival["tour"], frozenset({**choices, **arrival}))
+        elif kept is not None:
+            self._held.add(rig[1:])
+            self.open_files(kept, rig[1:])
+        elif demo:
+            self.open_demo(rig)
+        else:
+            otherwise()
+
+    def _keep(self, key: str) -> None:
+        self.kept = key
+        for other in self._held - {key}:
+            self._held.remove(other)
+            KEEP.leave(other)
+
+    def receiver(self) -> Receiver:
+        """Return what takes files from the browser and opens them."""
+        return Receiver(self.folder, self.open_upload, self.fail)
+
+    def open_rig(self, rig: Rig) -> None:
+        """Show a character that is loaded already, and bind it."""
+        self.state.demo = ""
+        self._stand(rig)
+
+    def _open(
+        self,
+        load: Callable[[], Rig],
+        stage: str,
+        opened: Callable[[], None] = lambda: None,
+        chosen: Callable[[], None] = lambda: None,
+        then: Callable[[], None] = lambda: None,
+        **more: Any,
+    ) -> None:
+        def work(progress: Progress) -> Rig:
+            progress(stage, 0.0)
+            return load()
+
+        def done(rig: Rig) -> None:
+            opened()
+            self.state.param.update(**more)
+            self._stand(rig, chosen)
+            then()
+
+        self.start(work, done)
+
+    def _stand(self, rig: Rig, chosen: Callable[[], None] = lambda: None) -> None:
+        state = self.state
+        self.jobs("field").cancel()
+        before, arrival, self._arrival = state.rig, self._arrival, {}
+        # All at once: a menu whose value changes twice in a moment may tell the first one back.
+        with batch_call_watchers(state):
+            state.param.update(
+                rig=rig, binding=None, field=None, turns={}, moving=False, playing=False,
+                clip=first_clip(rig), message=None, joint=first_joint(rig), vertex=None,
+            )  # fmt: skip
+            self._land(rig, arrival)
+            compare.carry(state, before, arrival)
+            chosen()
+        self.view.camera = framing(bounds_of(state), 1.2)
+        self.view.at_home = True
+        camera = camera_part(self.view.camera)
+        self.view.tell(bones=bones_part(state), camera=camera)
+        if "camera" in arrival:
+            eye, target = arrival["camera"][:3], arrival["camera"][3:]
+            self.look(Camera(tuple(eye), tuple(target)))
+        self.habits.begin()
+        self.bind()
+
+    def _land(self, rig: Rig, arrival: dict[str, Any]) -> None:
+        names, state = rig.skeleton.names, self.state
+        if arrival.get("bone") in names:
+            state.joint = names.index(arrival["bone"])
+        state.turns = {j: t for j, t in arrival.get("turns", {}).items() if j < len(names)}
+        if -1 <= arrival.get("clip", -2) < len(rig.clips):
+            state.clip = arrival["clip"]
+        state.tour = arrival.get("tour", state.tour)
+        if 0 <= arrival.get("vertex", -1) < len(rig.mesh.vertices):
+            state.vertex = arrival["vertex"]
+        self._note = arrival.get("told", "")
+
+
+@functools.cache
+def demo_rig(id: str) -> Rig:
+    """Return a demo character; it is read once, and nothing can write to it."""
+    return cutcell.load(demo_path(id))
+
+
+def main_file(paths: list[Path]) -> Path:
+    """Return the one file of a dropped group that is to be opened.
+
+    Raises
+    ------
+    FileError
+        There is none, or more than one.
+    """
+    found = [path for path in paths if path.suffix.lower() not in COMPANIONS]
+    names = ", ".join(path.name for path in paths)
+    if not found:
+        raise FileError(
+            f"no character among the dropped files ({names}); drop a GLB, glTF, OBJ, PLY, STL, "
+            "OFF or NPZ file, and the files that belong to it together with it"
+        )
+    if len(found) > 1:
+        raise FileError(f"more than one character was dropped ({names}); drop one at a time")
+    return found[0]
