@@ -13,6 +13,9 @@ STEP = 0.25
 """Lattice cells between the points at which a ray is looked at."""
 ENTRY = 5
 """Steps within which a ray must have come inside; a joint may lie right under the skin."""
+MARGIN = 2
+"""Cells around the cube that get keys. Skin may lie right on its side, in the first of them;
+the second stays empty, so that counting on from the end of a column finds nothing."""
 ALONG = np.linspace(0, 1, 17)
 """Where a segment is looked at."""
 
@@ -31,6 +34,7 @@ class BodyProbe:
     def __init__(self, graph: CutCellGraph) -> None:
         self._graph = graph
         self._resolution = graph.lattice.resolution
+        self._side = self._resolution + 2 * MARGIN
         self._skin = graph.nodes[graph.node_kind != INTERIOR]
         self._filled = np.sort(self._keys(self._cells(graph.nodes)))
 
@@ -44,12 +48,9 @@ class BodyProbe:
     def near(self, points: ArrayLike) -> NDArray[np.bool_]:
         """Tell for each point (..., 3) whether the body is in its lattice cell or next to it."""
         points = np.asarray(points, np.float64)
-        cells = self._cells(points.reshape(-1, 3))
-        around = np.stack(np.meshgrid(*[[-1, 0, 1]] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
-        keys = self._keys(cells[:, None] + around)
-        place = np.searchsorted(self._filled, keys)
-        found = self._filled[np.minimum(place, len(self._filled) - 1)] == keys
-        return found.any(axis=1).reshape(points.shape[:-1])
+        # What is far outside goes where neither it nor its neighbours have skin.
+        cells = np.clip(self._cells(points.reshape(-1, 3)) + MARGIN, 0, self._side)
+        return _near(cells, self._side, self._filled).reshape(points.shape[:-1])
 
     def inner_part(
         self, start: ArrayLike, end: ArrayLike, *, strictly: bool = False
@@ -78,11 +79,24 @@ class BodyProbe:
         return np.floor(points * self._resolution).astype(np.int64)
 
     def _keys(self, cells: NDArray[np.int64]) -> NDArray[np.int64]:
-        # With two cells around the cube: skin may lie right on its side, and what is far
-        # outside must have a key without skin.
-        inner = np.clip(cells + 2, 0, self._resolution + 3)
-        side = self._resolution + 4
-        return (inner[..., 0] * side + inner[..., 1]) * side + inner[..., 2]
+        x, y, z = (cells + MARGIN).T
+        return (x * self._side + y) * self._side + z
+
+
+@njit(cache=True, nogil=True)
+def _near(cells, side, filled):
+    """Tell for each cell whether it or one of the 26 around it is among the filled."""
+    found = np.zeros(len(cells), np.bool_)
+    for p in range(len(cells)):
+        for i in range(cells[p, 0] - 1, cells[p, 0] + 2):
+            for j in range(cells[p, 1] - 1, cells[p, 1] + 2):
+                # Of the three that lie above each other, the first that is filled or beyond.
+                low = (i * side + j) * side + cells[p, 2] - 1
+                k = np.searchsorted(filled, low)
+                found[p] |= k < len(filled) and filled[k] <= low + 2
+            if found[p]:
+                break
+    return found
 
 
 @njit(cache=True, nogil=True)
