@@ -30,6 +30,8 @@ from .sight import bend_of, body_of, sees, straight
 
 NEAR = 2
 """Lattice cells. A far corner of a triangle may lie behind a bend of the surface."""
+ON_BONE = 0.5
+"""Lattice cells: of what is as near as this, no joint is told to be so many times nearer."""
 AT_ONCE = 4
 """Joints that spread together where all are wanted everywhere."""
 FINENESS = 4
@@ -65,7 +67,8 @@ def any_angle_paths(
     nearest : int, optional
         k: a node gets the distances of its k nearest joints alone; of all when left out.
     within : float
-        Paths do not pass where another joint is so many times nearer.
+        Where only some joints are measured, paths do not pass where another joint is so many
+        times nearer; half a lattice cell counts as the nearest that one can be.
     progress : callable
         Called with the stage "distances".
 
@@ -79,7 +82,7 @@ def any_angle_paths(
     if nearest is not None and nearest < len(joints):
         groups = [joints]
     else:
-        nearest = min(AT_ONCE, len(joints))
+        nearest, within = min(AT_ONCE, len(joints)), np.inf  # a group knows not who is nearest
         groups = [joints[k : k + nearest] for k in range(0, len(joints), nearest)]
     body = body_of(graph)
     result = np.full((len(joints), len(targets)), np.inf)
@@ -218,7 +221,7 @@ def _settle(adjacency, body, bones, labels, each, head, scale, within, origin, f
                 reached, bent = to_anchor + straight(here, bend), anchor
                 if reached >= limit:
                     continue  # a bend at u would be no shorter
-                if reached > within * least_distance(labels, each, v):
+                if reached > within * max(least_distance(labels, each, v), ON_BONE / resolution):
                     continue
                 # Off the lattice, what is one step from a lattice point that sees the bend does,
                 # too: a crossing, and from there a corner of its triangle if it is near.

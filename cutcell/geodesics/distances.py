@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..checks import check_choice, check_integer
+from ..checks import check_choice, check_integer, check_number
 from ..errors import ParameterError, WeightsError
 from ..graph import CutCellGraph
 from ..progress import Progress, silent
@@ -122,6 +122,7 @@ def bone_distances(
     leaf: str = "point",
     nearest: int = 3,
     nearest_joints: int | None = None,
+    within: float = np.inf,
     allowed: NDArray[np.bool_] | None = None,
     progress: Progress = silent,
 ) -> BoneDistances:
@@ -143,6 +144,9 @@ def bone_distances(
         Measure from each vertex' nearest joints alone, 1 or more, and from all when left
         out. Fewer take less time with connectivity "any"; with others they do not, and
         neither where `allowed` is given: then all are measured.
+    within : float
+        Leave out joints that are so many times as far as the nearest, 1 or more. Only where
+        `nearest_joints` are measured, and to about half a lattice cell.
     allowed : array, shape (n, j), bool, optional
         Which joints each vertex may follow; see `Rig.allowed`.
     progress : callable
@@ -169,6 +173,7 @@ def bone_distances(
     nearest = check_integer("nearest", nearest, 1, 1_000_000)
     if nearest_joints is not None:
         nearest_joints = check_integer("nearest_joints", nearest_joints, 1, 1_000_000)
+    within = check_number("within", within, 1, np.inf)
     if graph.connectivity != "any" or allowed is not None:
         nearest_joints = None
     progress("distances", 0.0)
@@ -188,7 +193,7 @@ def bone_distances(
         ends = graph.lattice.to_unit(bones.start), graph.lattice.to_unit(bones.end)
         bones = Bones(*ends, bones.joint)
     sources = find_sources(graph, bones, samples)
-    by_node = _paths(graph, sources, bones, targets, nearest_joints, progress=progress)
+    by_node = _paths(graph, sources, bones, targets, nearest_joints, within, progress)
     measured = np.unique(bones.joint)
     of_joint = np.full((len(skeleton.joints), len(targets)), np.inf)
     of_joint[measured] = by_node

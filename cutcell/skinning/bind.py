@@ -16,7 +16,14 @@ from ..progress import Progress, silent
 from ..rig import Rig
 from .kernels import load_kernels
 from .refine import refine_weights
-from .weights import DEFAULT_LEAF, FALLOFFS, MOST_INFLUENCES, joints_needed, skinning_weights
+from .weights import (
+    DEFAULT_LEAF,
+    FALLOFFS,
+    MOST_INFLUENCES,
+    joints_needed,
+    reach_needed,
+    skinning_weights,
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,6 +128,7 @@ def bind(
         samples=samples,
         leaf=leaf,
         nearest_joints=joints_needed(falloff, max_influences),
+        within=reach_needed(falloff),
         allowed=rig.allowed,
         progress=progress,
     )

@@ -10,7 +10,7 @@ from ..errors import ParameterError
 from ..geodesics import BoneDistances
 from .kernel import paper_kernel
 from .prune import prune
-from .rig_falloff import NEAREST_JOINTS, permitted, rig_kernel
+from .rig_falloff import NEAREST_JOINTS, TOWARDS, permitted, rig_kernel
 
 FALLOFFS = ("rig", "paper")
 DEFAULT_LEAF = {"rig": "fit", "paper": "point"}
@@ -126,6 +126,11 @@ def joints_needed(falloff: str, max_influences: int | None) -> int | None:
     if falloff == "paper" or max_influences is None:
         return max_influences
     return max(max_influences, NEAREST_JOINTS)
+
+
+def reach_needed(falloff: str) -> float:
+    """Return how many times as far as the nearest a joint may be and still get some weight."""
+    return 1 / TOWARDS if falloff == "rig" else np.inf
 
 
 def first_vertices(place: NDArray[np.integer]) -> NDArray[np.intp]:

@@ -139,6 +139,25 @@ def test_the_nearest_joints_are_those_of_all(nearest):
     assert error.max() < 0.15
 
 
+def test_what_is_many_times_farther_than_the_nearest_is_left_out():
+    vertices, faces = meshes.ball(3)
+    skeleton = Skeleton([[0.5, 0.5, 0.15 * k] for k in range(1, 7)], range(-1, 5))
+    graph = build_graph(TriangleMesh(vertices, faces), 16, connectivity="any")
+    some, near = (
+        bone_distances(graph, skeleton, nearest_joints=4, within=w).joint for w in (np.inf, 1.5)
+    )
+    kept = np.isfinite(near)
+    np.testing.assert_allclose(near[kept], some[kept], rtol=1e-9)
+    limit = 1.5 * np.maximum(some.min(axis=0), 0.5 / 16)
+    np.testing.assert_array_equal(kept, some <= limit)
+    assert kept.sum() < np.isfinite(some).sum()
+    # Only who knows all joints can tell which is the nearest.
+    whole = bone_distances(graph, skeleton, nearest_joints=6, within=1.5).joint
+    assert np.isfinite(whole).all()
+    with pytest.raises(ParameterError, match="within must be a number from 1"):
+        bone_distances(graph, skeleton, nearest_joints=4, within=0.5)
+
+
 def test_all_joints_are_measured_where_as_many_are_wanted():
     graph, skeleton = chain_in_the_l()
     every = bone_distances(graph, skeleton)
