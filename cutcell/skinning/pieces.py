@@ -5,8 +5,6 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from ..geodesics import Bones
 
@@ -18,9 +16,36 @@ INSIDE = 0.5
 
 def find_pieces(faces: NDArray[np.int32], count: int) -> NDArray[np.int32]:
     """Return for each of `count` places the number of its piece: what edges join is one."""
-    ends = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]]])
-    links = coo_array((np.ones(len(ends), np.int8), ends.T), shape=(count, count))
-    return connected_components(links, directed=False)[1]
+    return _pieces(faces, count)
+
+
+@njit(cache=True, nogil=True)
+def _pieces(faces, count):
+    first = np.arange(count)  # some place of the same piece, no later one
+    for f in range(len(faces)):
+        a = _root(first, faces[f, 0])
+        for k in range(1, 3):
+            b = _root(first, faces[f, k])
+            first[max(a, b)] = min(a, b)
+            a = min(a, b)
+    piece = np.empty(count, np.int32)
+    pieces = 0
+    for v in range(count):
+        root = _root(first, v)
+        if root == v:
+            piece[v] = pieces
+            pieces += 1
+        else:
+            piece[v] = piece[root]
+    return piece
+
+
+@njit(cache=True, inline="always")
+def _root(first, v):
+    while first[v] != v:
+        first[v] = first[first[v]]
+        v = first[v]
+    return v
 
 
 def bones_held(
