@@ -70,7 +70,7 @@ def bones(rig: Rig, chosen: int | None = None, visible: bool = True) -> Actor:
     """
     start, end, joint = drawn_segments(rig)
     size = float(np.linalg.norm(np.ptp(to_scene(rig, rig.mesh.vertices), axis=0)))
-    points = _octahedra(start, end, size)
+    points = _octahedra(start, end, size, rig.skeleton.deform[joint])
     color = np.where(rig.skeleton.deform[joint, None], BONE, BONE_IDLE)
     color[joint == chosen] = BONE_CHOSEN
     cells = _OCTAHEDRON + 6 * np.arange(len(joint))[:, None, None]
@@ -126,7 +126,9 @@ _OCTAHEDRON = np.array(
 )
 
 
-def _octahedra(start: NDArray, end: NDArray, size: float) -> NDArray[np.float64]:
+def _octahedra(
+    start: NDArray, end: NDArray, size: float, deform: NDArray[np.bool_]
+) -> NDArray[np.float64]:
     along = end - start
     length = np.linalg.norm(along, axis=1, keepdims=True)
     along = np.where(length > 0, along / np.where(length > 0, length, 1), [0.0, 1, 0])
@@ -134,7 +136,9 @@ def _octahedra(start: NDArray, end: NDArray, size: float) -> NDArray[np.float64]
     side = np.cross(along, helper)
     side /= np.linalg.norm(side, axis=1, keepdims=True)
     other = np.cross(along, side)
-    radius = np.clip(0.1 * length, 0.0025 * size, 0.014 * size)
+    # Bones that move nothing are thin: some reach far out of the body.
+    most = np.where(deform[:, None], 0.014, 0.003) * size
+    radius = np.clip(0.1 * length, 0.0025 * size, most)
     ring = start + along * np.minimum(0.14 * length, 1.5 * radius)
     around = [ring + radius * d for d in (side, other, -side, -other)]
     return np.stack([start, *around, end], axis=1)

@@ -57,7 +57,7 @@ const STYLE = `
 @container (max-width: 900px) {
   .moving .legend { bottom: 70px; }
   .transport { width: calc(100% - 32px); max-width: 460px; } }
-@container (max-width: 560px) { .hint { display: none; } }
+@container (max-width: 640px) { .hint { display: none; } }
 .moving .hint { display: none; }
 .hint { right: 16px; bottom: 16px; padding: 0; background: none; opacity: .5; backdrop-filter: none; }
 .failed { inset: 0; margin: auto; width: min(420px, 80%); height: max-content; padding: 20px;

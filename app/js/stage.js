@@ -165,7 +165,6 @@ class Stage {
   fitting(direction, target) {
     const [, , w, h] = this.tiles.reduce((a, b) => a[2] / a[3] < b[2] / b[3] ? a : b)
     const slope = Math.tan(VIEW_ANGLE * Math.PI / 360)
-    const b = this.bounds(isCharacter)
     const flat = Math.hypot(direction[0], direction[2]) || 1
     const right = [direction[2] / flat, 0, -direction[0] / flat]
     const up = [0, 1, 2].map((k) => {
@@ -174,14 +173,20 @@ class Stage {
     })
     // Captions stand above, so as much stays free below.
     const room = this.views.length > 1 ? Math.min(84, h / 3) : 0
+    const [high, wide] = [h / (h - room) / slope, h / Math.max(w, 1) / slope]
     let distance = 0
-    for (let corner = 0; corner < 8; corner++) {
-      const p = [0, 1, 2].map((i) => b[2 * i + (corner >> i & 1)] - target[i])
+    const see = (x, y, z) => {
+      const p = [x - target[0], y - target[1], z - target[2]]
       const along = (v) => p[0] * v[0] + p[1] * v[1] + p[2] * v[2]
-      const needed = Math.max(Math.abs(along(up)) * h / (h - room), Math.abs(along(right)) * h / Math.max(w, 1))
-      distance = Math.max(distance, needed / slope + along(direction))
+      const needed = Math.max(Math.abs(along(up)) * high, Math.abs(along(right)) * wide)
+      distance = Math.max(distance, needed + along(direction))
     }
-    return 1.08 * distance
+    for (const figure of this.figures.values()) {
+      if (!figure.rest || !isCharacter(figure)) { continue }
+      const step = 3 * Math.ceil(figure.rest.length / 3 / FITTED)
+      for (let i = 0; i < figure.rest.length; i += step) { see(...figure.rest.subarray(i, i + 3)) }
+    }
+    return 1.15 * (distance || Math.hypot(...target) || 4)
   }
 
   // Which view a pixel of the canvas belongs to.
@@ -230,6 +235,8 @@ class Stage {
     this.window.delete()
   }
 }
+
+const FITTED = 4000  // points of a figure that are looked at to see all of it
 
 // The tour's card: at the right of wide windows, else at the bottom (app/tour_card.py).
 const CARD_WIDTH = 384
