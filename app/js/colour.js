@@ -53,10 +53,12 @@ class Colours {
 
   // Called before the figure is drawn.
   use(program) {
-    if (!program.isUniformUsed("points")) { return }
-    this.points.bind()
-    program.setUniformi("points", POINT_UNIT)
-    if (this.by === "values") {
+    // Values that are worked out from the pose are read from no texture.
+    if (program.isUniformUsed("points")) {
+      this.points.bind()
+      program.setUniformi("points", POINT_UNIT)
+    }
+    if (this.by === "values" && program.isUniformUsed("colourTable")) {
       const [low, high] = this.limits
       this.table.bind()
       program.setUniformi("colourTable", TABLE_UNIT)

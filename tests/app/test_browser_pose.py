@@ -128,6 +128,8 @@ def test_the_worst_turns_are_a_click_away(visit):
     visit.expect_text(re.compile(r"Mean [\d.e-]+ cm² in this pose"))
     coloured = visit.look()
     assert changed(before, coloured) > 0.01
+    black = (coloured.max(axis=2) < 25).mean()  # no value is without a colour, nor any place
+    assert black < 0.002
     visit.switch("Error as colours")
     assert changed(coloured, visit.look()) > 0.0005
 
