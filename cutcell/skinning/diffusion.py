@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
-from scipy.sparse import diags_array
 from scipy.sparse.linalg import splu
 
 from ..threads import in_threads
@@ -57,7 +56,7 @@ def diffuse(
     depth = np.maximum(depth, LEAST_CELLS / resolution)
     # A place without area conducts nothing; any positive number lets it keep its own weights.
     hold = np.maximum(vertex_areas(points, faces), 1e-12) * SHARPNESS / depth**2
-    system = (cotangent_laplacian(points, faces) + diags_array(hold)).T  # itself, by columns
+    system = cotangent_laplacian(points, faces, hold).T  # itself, column by column
     factors = splu(
         system,
         permc_spec="MMD_AT_PLUS_A",

@@ -5,14 +5,18 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
-from scipy.sparse import coo_array, csr_array
+from scipy.sparse import csr_array
 
 THINNEST = 1e-4
 """Height of a triangle, as part of its longest side, below which it counts as no thinner: needles
 would outweigh all."""
 
 
-def cotangent_laplacian(points: NDArray[np.float64], faces: NDArray[np.int32]) -> csr_array:
+def cotangent_laplacian(
+    points: NDArray[np.float64],
+    faces: NDArray[np.int32],
+    diagonal: NDArray[np.float64] | None = None,
+) -> csr_array:
     """Return the stiffness matrix of linear elements; positive, rows sum to zero.
 
     Parameters
@@ -20,15 +24,20 @@ def cotangent_laplacian(points: NDArray[np.float64], faces: NDArray[np.int32]) -
     points : array, shape (k, 3)
     faces : array, shape (m, 3)
         Any triangles; at an edge of more than two all count.
+    diagonal : array, shape (k,), optional
+        Added to the diagonal.
 
     Returns
     -------
     csr_array, shape (k, k)
         Minus half the cotangents of the angles that face each edge.
     """
-    place, value = np.empty((2, 9 * len(faces)), np.int32), np.empty(9 * len(faces))
-    _fill_laplacian(points, faces, place, value)
-    return coo_array((value, place), shape=(len(points),) * 2).tocsr()
+    if diagonal is None:
+        diagonal = np.zeros(len(points))
+    start, column, value = _assemble(points, faces, diagonal)
+    matrix = csr_array((value, column, start), shape=(len(points),) * 2)
+    matrix.sort_indices()
+    return matrix
 
 
 def vertex_areas(points: NDArray[np.float64], faces: NDArray[np.int32]) -> NDArray[np.float64]:
@@ -51,19 +60,47 @@ def vertex_normals(points: NDArray[np.float64], faces: NDArray[np.int32]) -> NDA
 
 
 @njit(cache=True, nogil=True)
-def _fill_laplacian(points, faces, place, value):
-    n = 0
+def _assemble(points, faces, diagonal):
+    """Return where each row of the matrix begins, and its columns and values."""
+    count = len(points)
+    start = np.ones(count + 1, np.int32)
+    start[0] = 0
+    for f in range(len(faces)):
+        for corner in range(3):
+            start[faces[f, corner] + 1] += 2
+    start = np.cumsum(start).astype(np.int32)
+    column, value = np.empty(start[-1], np.int32), np.empty(start[-1])
+    # The diagonal comes first in each row, then both other corners of each face.
+    column[start[:-1]] = np.arange(count)
+    value[start[:-1]] = diagonal
+    cursor = start[:-1] + 1
     for f in range(len(faces)):
         for corner in range(3):
             p, q, r = faces[f, corner], faces[f, (corner + 1) % 3], faces[f, (corner + 2) % 3]
-            # What conducts from q to r, and at p what conducts along its two edges.
-            facing = _cotangent(points[p], points[q], points[r]) / 2
-            beside = _cotangent(points[q], points[r], points[p]) / 2
-            beside += _cotangent(points[r], points[p], points[q]) / 2
-            place[0, n], place[1, n], value[n] = q, r, -facing
-            place[0, n + 1], place[1, n + 1], value[n + 1] = r, q, -facing
-            place[0, n + 2], place[1, n + 2], value[n + 2] = p, p, beside
-            n += 3
+            half = _cotangent(points[p], points[q], points[r]) / 2
+            for here, there in ((q, r), (r, q)):
+                column[cursor[here]], value[cursor[here]] = there, -half
+                value[start[here]] += half
+                cursor[here] += 1
+    return _merge(start, column, value)
+
+
+@njit(cache=True, nogil=True)
+def _merge(start, column, value):
+    """Add up what is at one place of the matrix."""
+    place = np.full(len(start) - 1, -1)
+    end, first = 0, 0
+    for row in range(len(start) - 1):
+        begin, last = end, start[row + 1]
+        for e in range(first, last):
+            if place[column[e]] >= begin:
+                value[place[column[e]]] += value[e]
+            else:
+                place[column[e]] = end
+                column[end], value[end] = column[e], value[e]
+                end += 1
+        start[row + 1], first = end, last
+    return start, column[:end], value[:end]
 
 
 @njit(cache=True, nogil=True)
