@@ -40,7 +40,7 @@ class SceneView(JSComponent):
     _rename = {"window_width": None, "dark": None}  # noqa: RUF012
     _esm = script("orbit", "skin", "colour", "shade", "figure", "smooth", "stage", "pick",
                   "surface", "gizmo", "transport", "upload", "keys", "connection", "names",
-                  "overlay", "view")  # fmt: skip
+                  "overlay", "pointer", "film", "view")  # fmt: skip
 
     def __init__(
         self,

@@ -11,9 +11,11 @@ class View {
     this.orbit = new Orbit(overlay.canvas, {
       changed: () => this.changed(),
       rested: () => this.rested(),
-      clicked: (e) => this.clicked(e),
-      hovered: (e) => this.hovered(e),
+      clicked: (e) => this.pointer.clicked(e),
+      hovered: (e) => this.pointer.hovered(e),
     })
+    this.pointer = new Pointer(this)
+    this.film = new Film(this)
     this.gizmo = new Gizmo(overlay, this.stage, {
       turned: (pose) => { this.pose = pose; this.applyPose(); this.changed() },
       tell: (message) => model.send_msg(message),
@@ -69,7 +71,7 @@ class View {
       }
       const figure = stage.figures.get(name)
       figure.update(part, this.cut)
-      if ("film" in part) { figure.setFront(this.front) }
+      if ("film" in part) { figure.setFront(this.film.front) }
     }
     if (message.bones) {
       const {start, end, joint, names} = message.bones
@@ -87,8 +89,8 @@ class View {
       if (this.clip) { this.transport.tick(this.clip, this.time || 0) }
     }
     if ("pose" in message || "clip" in message) { this.applyPose() }
-    if ("front" in message && !this.film) { this.setFront(message.front) }
-    if ("film" in message) { this.playFilm(message.film) }
+    if ("front" in message && !this.film.playing) { this.film.set(message.front) }
+    if ("film" in message) { this.film.play(message.film) }
     if (message.camera) { this.frame(message.camera) }
     if (message.home) { this.orbit.reset(); this.rested() }
     if (message.address) {
@@ -194,100 +196,6 @@ class View {
     })
   }
 
-  place(e) {
-    const box = this.overlay.canvas.getBoundingClientRect()
-    return [e.clientX - box.left, e.clientY - box.top]
-  }
-
-  // What lies under the pointer: a bone if it is met well or nothing else is, else a vertex.
-  under(x, y) {
-    const {stage} = this
-    const bones = stage.figures.get("bones")?.visible ? this.bones : null
-    const pick = (reach) => pickBone(stage, bones, this.currentPose, x, y, reach)
-    const touched = pick(TOUCH)
-    if (touched !== null) { return {joint: touched} }
-    const hit = this.bodyAt(x, y)
-    if (hit) { return hit }
-    const near = pick(REACH)
-    return near === null ? null : {joint: near}
-  }
-
-  bodyAt(x, y, those = (name) => name.startsWith("body")) {
-    let best = null
-    const view = this.stage.viewAt(x, y)
-    for (const [name, figure] of this.stage.figures) {
-      if (!those(name, figure) || !figure.standsIn(view)) { continue }
-      const hit = hitSurface(this.stage, figure, x, y, this.cut)
-      if (hit && (!best || hit.far < best.far)) { best = {...hit, vertex: hit.point, figure} }
-    }
-    return best
-  }
-
-  clicked(e) {
-    const found = this.under(...this.place(e))
-    if (!found) { return }
-    const {joint, vertex} = found
-    this.model.send_msg(
-      joint === undefined ? {type: "pick-vertex", vertex} : {type: "pick", joint},
-    )
-  }
-
-  hovered(e) {
-    if (!e || this.playing) { this.overlay.showBone(null); return }
-    const [x, y] = this.place(e)
-    const found = this.under(x, y)
-    if (found?.joint !== undefined) {
-      this.overlay.showBone(this.bones.names[found.joint], x, y)
-      return
-    }
-    const text = this.lineReading(x, y) ?? this.surfaceReading(x, y)
-    this.overlay.showBone(text, x, y, false)
-  }
-
-  surfaceReading(x, y) {
-    const hit = this.bodyAt(x, y, (name, figure) => figure.reading)
-    return hit && told(hit.figure, hit.point)
-  }
-
-  lineReading(x, y) {
-    for (const figure of this.stage.figures.values()) {
-      if (figure.kind !== "lines" || !figure.reading) { continue }
-      const cell = hitLine(this.stage, figure, x, y, TOUCH)
-      if (cell !== null) { return told(figure, cell) }
-    }
-    return null
-  }
-
-  // The film of a field: all up to the front is coloured, and the front moves on.
-  setFront(front) {
-    this.front = front
-    for (const figure of this.stage.figures.values()) {
-      if (figure.film) { figure.setFront(front) }
-    }
-    this.changed()
-  }
-
-  // As a part of the whole way.
-  tellFront() {
-    this.model.send_msg({type: "front", front: this.front / this.film.end})
-  }
-
-  playFilm(film) {
-    cancelAnimationFrame(this.filming)
-    if (this.film && !film) { this.tellFront() }
-    this.film = film
-    let last = null
-    const step = (now) => {
-      if (!this.film || this.gone) { return }
-      const moved = last === null ? 0 : Math.min(now - last, 100) / 1000 / film.seconds
-      last = now
-      const at = (this.front ?? film.end) + moved * film.end
-      this.setFront(at >= film.end ? 0 : at)
-      this.filming = requestAnimationFrame(step)
-    }
-    if (film) { this.filming = requestAnimationFrame(step) }
-  }
-
   // Where on the page a joint's first bone is: its middle. For tests.
   bonePoint(joint) {
     const i = this.bones.joint.indexOf(joint)
@@ -313,7 +221,7 @@ class View {
         name, {visible: figure.visible, cells: figure.count, points: figure.rest.length / 3},
       ])),
       bones: this.bones ? this.bones.joint.length : 0,
-      camera: this.orbit.position, front: this.front ?? null, filming: Boolean(this.film),
+      camera: this.orbit.position, front: this.film.front ?? null, filming: Boolean(this.film.playing),
     }
   }
 
@@ -327,7 +235,7 @@ class View {
     clearTimeout(this.calming)
     cancelAnimationFrame(this.waiting)
     cancelAnimationFrame(this.ticking)
-    cancelAnimationFrame(this.filming)
+    this.film.remove()
     this.stage.remove()
   }
 }
