@@ -10,7 +10,7 @@ watch in the browser samples the canvas at every frame: what is timed ends when 
 from __future__ import annotations
 
 import argparse
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from playwright.sync_api import Browser, sync_playwright
@@ -30,15 +30,14 @@ OURS, THEIRS = "cutcell", "pn.pane.VTK"
 Taken = dict[str, dict[str, list[float]]]
 
 
-def tables(options: argparse.Namespace) -> list[Table]:
-    """Measure; return what is printed."""
+def tables(options: argparse.Namespace) -> Iterator[Table]:
+    """Measure; give each table when it is there."""
     chromium = find()
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=chromium, args=list(FLAGS))
-        beside = _beside(browser, options)
-        live = weights_table(browser, options.vertices, options.weights)
+        yield from _beside(browser, options)
+        yield weights_table(browser, options.vertices, options.weights)
         browser.close()
-    return [*beside, live]
 
 
 def _beside(browser: Browser, options: argparse.Namespace) -> list[Table]:
@@ -137,11 +136,13 @@ def arguments(given: Sequence[str] | None = None) -> argparse.Namespace:
 def main(given: Sequence[str] | None = None) -> None:
     """Print the tables."""
     options = arguments(given)
-    where = circumstances()
-    text = "\n\n".join([where, *(table.markdown() for table in tables(options))]) + "\n"
-    print(text, end="")
+    told = [circumstances()]
+    print(told[0], flush=True)
+    for table in tables(options):
+        told.append(table.markdown())
+        print("", told[-1], sep="\n", flush=True)
     if options.write:
-        fill(PAGE_SPEED, {"page": text})
+        fill(PAGE_SPEED, {"page": "\n\n".join(told)})
 
 
 if __name__ == "__main__":

@@ -52,10 +52,16 @@ def _moved(browser: Browser, address: str, slider: str, shown: str, rounds: int)
     visitor = Watched(browser, f"{address}/{START}&weights_shown={shown}", 1100, 720)
     page = visitor.page
     page.get_by_text("interior,").first.wait_for(timeout=90_000)
-    page.get_by_role("slider", name=slider).focus()
+    page.wait_for_timeout(1500)  # the sidebar follows what was bound
+    thumb = page.get_by_role("slider", name=slider)
     key = "ArrowLeft" if slider == "Most influences" else "Shift+ArrowRight"
     back = "ArrowRight" if slider == "Most influences" else "Shift+ArrowLeft"
-    visitor.seen_after_key(key)  # not counted: the first one draws what was not drawn before
-    taken = [visitor.seen_after_key((back, key)[turn % 2]) for turn in range(rounds)]
+
+    def seen(key: str) -> float:
+        thumb.focus()
+        return visitor.seen_after_key(key)
+
+    seen(key)  # not counted: the first one draws what was not drawn before
+    taken = [seen((back, key)[turn % 2]) for turn in range(rounds)]
     page.close()
     return taken
