@@ -39,6 +39,21 @@ def test_rows_sum_to_one(distances, influences):
     assert (weights > 0).sum(axis=1).max() == (influences or 6)
 
 
+def test_vertices_at_one_place_may_follow_different_joints():
+    vertices, faces = meshes.ball()
+    corners = vertices[faces.ravel()]  # each triangle has corners of its own
+    mesh = TriangleMesh(corners, np.arange(len(corners)).reshape(-1, 3))
+    graph = build_graph(mesh, 12)
+    allowed = np.random.default_rng(0).random((len(corners), 6)) < 0.6
+    allowed[:, 0] = True
+    distances = bone_distances(graph, CHAIN, allowed=allowed)
+    assert not distances.by_place
+    found = skinning_weights(distances, max_influences=None, allowed=allowed)
+    free = skinning_weights(bone_distances(graph, CHAIN), max_influences=None)
+    expected = np.where(allowed, free, 0)
+    np.testing.assert_allclose(found, expected / expected.sum(axis=1, keepdims=True), atol=1e-12)
+
+
 def test_pruning_keeps_the_largest():
     weights = np.array([[0.1, 0.4, 0.2, 0.3], [0.25, 0.25, 0.25, 0.25]])
     order = np.array([3, 2, 1, 0])
