@@ -1,0 +1,101 @@
+"""`cutcell bind`: the options reach the library, what it computes reaches the file."""
+
+import json
+
+import numpy as np
+import pytest
+
+import cutcell
+from cutcell.cli import ENDINGS
+from cutcell.skinning.weights import DEFAULT_LEAF
+from tests.cutcell.cli.files import BAR, JOINTS, bar_faces, refused, write_obj
+
+
+def test_saves_what_the_library_computes(run, bar, tmp_path):
+    out = tmp_path / "bound.glb"
+    result = run("bind", bar, out, "-r", 16)
+    assert result.exit_code == 0
+    assert "12 vertices" in result.stdout
+    expected = cutcell.bind(cutcell.load(bar), resolution=16).weights
+    found = cutcell.load(out)
+    assert found.skeleton.names == ("root", "tip")
+    np.testing.assert_allclose(found.weights, expected, atol=1e-6)
+
+
+def test_options_reach_the_library(run, bar, tmp_path):
+    options = {
+        "resolution": 12,
+        "connectivity": 26,
+        "winding_threshold": 0.25,
+        "samples": 2,
+        "leaf": "extend",
+        "falloff": "paper",
+        "alpha": 0.75,
+        "max_influences": 1,
+        "threshold": 0.125,
+        "smoothing": 3,
+    }
+    words = [w for k, v in options.items() for w in (f"--{k.replace('_', '-')}", v)]
+    result = run("bind", bar, tmp_path / "bound.glb", *words, "--json")
+    document = json.loads(result.stdout)
+    assert document["parameters"] == {**options, "symmetric": False, "locked": []}
+    assert document["influences"] == {"mean": 1.0, "most": 1}
+    assert set(document["seconds"]) == {"graph", "distances", "weights"}
+
+
+def test_defaults_are_those_of_the_library(run, bar, tmp_path):
+    document = json.loads(run("bind", bar, tmp_path / "bound.glb", "--json").stdout)
+    defaults = {**cutcell.bind.__kwdefaults__, "resolution": cutcell.bind.__defaults__[0]}
+    del defaults["progress"]
+    defaults["leaf"] = DEFAULT_LEAF[defaults["falloff"]]
+    assert document["parameters"] == {**defaults, "locked": list(defaults["locked"])}
+
+
+def test_touching_up_reaches_the_library(run, bar, tmp_path):
+    result = run("bind", bar, tmp_path / "bound.glb", "--symmetric")
+    assert "is not mirrored across x, y or z" in refused(result)
+    result = run("bind", bar, tmp_path / "bound.glb", "--lock", "tip", "--lock", "toe")
+    assert 'there is no joint "toe"' in refused(result)
+
+
+def test_quiet_says_nothing(run, bar, tmp_path):
+    result = run("bind", bar, tmp_path / "bound.glb", "-r", 8, "--quiet")
+    assert (result.exit_code, result.stdout, result.stderr) == (0, "", "")
+
+
+def test_takes_a_skeleton_from_elsewhere(run, tmp_path):
+    mesh = write_obj(tmp_path / "bar.obj")
+    skeleton = tmp_path / "bones.json"
+    skeleton.write_text(json.dumps({"joints": JOINTS}))
+    assert run("bind", mesh, tmp_path / "o.glb", "--skeleton", skeleton).exit_code == 0
+
+
+def test_warns_of_vertices_that_no_path_reaches(run, tmp_path):
+    vertices = [*BAR, [5, 5, 5], [6, 5, 5], [5, 6, 5]]
+    path = write_obj(tmp_path / "two.obj", vertices, [*bar_faces(), [12, 13, 14]], JOINTS)
+    result = run("bind", path, tmp_path / "o.glb", "--json")
+    document = json.loads(result.stdout)
+    assert document["fallback"]["vertices"] == 3
+    assert document["fallback"]["share"] == pytest.approx(0.2)
+    assert sum(document["fallback"]["reasons"].values()) == 3
+    assert len(document["warnings"]) == 1
+    assert result.stderr.startswith("warning: 3 of 15 vertices")
+    assert "20.0% of the vertices" in run("bind", path, tmp_path / "o.glb").stdout
+
+
+@pytest.mark.parametrize(
+    ("name", "sentence"),
+    [("o.fbx", 'cannot be saved as ".fbx"'), ("no/where/o.glb", "there is no folder")],
+)
+def test_a_wrong_output_is_told_before_the_work(run, bar, tmp_path, name, sentence):
+    assert sentence in refused(run("bind", bar, tmp_path / name, "-r", 10_000))
+
+
+@pytest.mark.parametrize("ending", ENDINGS)
+def test_every_ending_it_lets_through_can_be_saved(run, bar, tmp_path, ending):
+    result = run("bind", bar, tmp_path / f"out{ending}", "-r", 8)
+    if ending == ".gltf":  # only what came from glTF
+        assert "saved as .glb" in refused(result)
+    else:
+        assert result.exit_code == 0
+        assert cutcell.load(tmp_path / f"out{ending}").weights is not None

@@ -1,0 +1,118 @@
+"""The command as a whole: help, bars, JSON, exit codes, real processes, real files."""
+
+import json
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import cutcell
+from cutcell.cli import main
+from cutcell.console import print_json, progress_bars
+from cutcell.skinning.weights import FALLOFFS
+from tests.conftest import ROOT
+
+
+class TestHelp:
+    def test_no_arguments_show_help(self, run):
+        shown = run()
+        assert "Usage" in shown.stdout + shown.stderr
+
+    def test_version(self, run):
+        assert run("--version").stdout == f"cutcell {cutcell.__version__}\n"
+
+    @pytest.mark.parametrize("command", ["app", "bind", "graph", "render"])
+    def test_each_command_shows_examples(self, run, command):
+        shown = run(command, "--help")
+        assert shown.exit_code == 0
+        assert f"cutcell {command} " in shown.stdout.partition("Example")[2]
+
+    def test_every_falloff_is_explained(self, run):
+        shown = run("bind", "--help").stdout
+        assert all(f"{name}:" in shown for name in FALLOFFS)
+
+
+def test_ctrl_c_stops_with_130(run, bar, monkeypatch, tmp_path):
+    def interrupted(*_, **__):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("cutcell.skinning.bind", interrupted)
+    result = run("bind", bar, tmp_path / "out.glb")
+    assert result.exit_code == 130
+    assert "Traceback" not in result.stderr
+    assert not (tmp_path / "out.glb").exists()
+
+
+def test_bars_are_drawn_on_a_terminal_only(monkeypatch, capsys):
+    with progress_bars() as report:
+        report("graph", 0.5)
+    assert capsys.readouterr() == ("", "")
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    with progress_bars() as report:
+        report("graph", 0.5)
+        report("graph", 1.0)
+        report("distances", 0.1)
+    drawn = capsys.readouterr()
+    assert "Building the graph" in drawn.err
+    assert drawn.out == ""
+
+
+def test_json_never_holds_what_is_not_json():
+    with pytest.raises(ValueError, match="not JSON compliant"):
+        print_json({"seconds": float("nan")})
+
+
+def test_python_m_cutcell_is_the_command(bar, tmp_path):
+    command = [sys.executable, "-m", "cutcell", "bind", str(bar), str(tmp_path / "o.glb"), "--json"]
+    done = subprocess.run(command, capture_output=True, text=True, cwd=ROOT)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert json.loads(done.stdout)["output"].endswith("o.glb")
+
+
+def test_a_real_process_refuses_with_2(tmp_path):
+    command = [sys.executable, "-m", "cutcell", "graph", str(tmp_path / "nope.glb")]
+    done = subprocess.run(command, capture_output=True, text=True, cwd=ROOT)
+    assert done.returncode == 2
+    assert done.stderr.endswith("nope.glb: there is no such file\n")
+
+
+def test_a_real_process_stops_at_ctrl_c(bar, tmp_path):
+    code = f"""
+import os, signal, sys, time
+import cutcell.cli, cutcell.skinning
+
+def long_work(*_, **__):
+    os.kill(os.getpid(), signal.SIGINT)
+    time.sleep(60)
+
+cutcell.skinning.bind = long_work
+sys.argv = ["cutcell", "bind", {str(bar)!r}, {str(tmp_path / "o.glb")!r}]
+cutcell.cli.main()
+"""
+    command = [sys.executable, "-c", code]
+    done = subprocess.run(command, capture_output=True, text=True, cwd=ROOT, timeout=50)
+    assert (done.returncode, done.stderr) == (130, "stopped: by Ctrl-C\n")
+    assert not (tmp_path / "o.glb").exists()
+
+
+def test_main_runs_the_command(monkeypatch, capsys):
+    monkeypatch.setattr(sys, "argv", ["cutcell", "--version"])
+    with pytest.raises(SystemExit) as stop:
+        main()
+    assert stop.value.code == 0
+    assert capsys.readouterr().out.startswith("cutcell ")
+
+
+def test_real_characters_bind_and_stay_in_order(run, rigs, tmp_path):
+    for path in rigs[:3]:
+        out = tmp_path / path.name
+        assert run("bind", path, out, "-r", 24, "--quiet").exit_code == 0
+        before, after = cutcell.load(path), cutcell.load(out)
+        np.testing.assert_array_equal(before.mesh.vertices, after.mesh.vertices)
+        np.testing.assert_allclose(after.weights.sum(axis=1), 1, atol=1e-6)
+
+
+def test_demo_characters_have_a_graph(run, demo_paths):
+    document = json.loads(run("graph", demo_paths[0], "-r", 16, "--json").stdout)
+    assert document["graph"]["nodes"]["total"] > 0
