@@ -46,7 +46,7 @@ def boundary_of(edges: NDArray[np.int32], balance: NDArray[np.int32]) -> Boundar
     return Boundary(*_loops(edges[is_open], balance[is_open], int(edges.max()) + 1))
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _loops(edges, count, vertices):
     """Cut the boundary chain into closed loops without repeated vertices.
 

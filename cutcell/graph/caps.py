@@ -19,6 +19,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from ..threads import in_threads
 from .boundary import Boundary, boundary_of
 from .weld import weld
 
@@ -56,10 +57,15 @@ class Caps(NamedTuple):
 
 def cap_holes(vertices: NDArray[np.float64], boundary: Boundary) -> Caps:
     """Close the boundary of a mesh whose vertices, shape (n, 3), are in the unit cube."""
-    ways = [_capped(vertices, boundary)]
-    if len(boundary.loop):
-        ways += [_capped(vertices, _drawn_together(vertices, boundary, pull)) for pull in PULLS]
-    return min(ways, key=lambda caps: caps.area)
+    if len(boundary.loop) == 0:
+        return _capped(vertices, boundary)
+
+    def cap(pull: float) -> tuple[float, Caps]:
+        loops = _drawn_together(vertices, boundary, pull) if pull else boundary
+        caps = _capped(vertices, loops)
+        return caps.area, caps
+
+    return min(in_threads(cap, (0.0, *PULLS)), key=lambda way: way[0])[1]
 
 
 def _capped(vertices: NDArray[np.float64], loops: Boundary) -> Caps:
@@ -88,7 +94,7 @@ def _drawn_together(vertices: NDArray[np.float64], boundary: Boundary, pull: flo
     )
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _strips(a, b, drawn):
     loop, start = np.empty(4 * len(a), np.int64), np.empty(len(a) + 1, np.int64)
     size = count = start[0] = 0
@@ -110,7 +116,7 @@ def _strips(a, b, drawn):
     return loop[:size].copy(), start[: count + 1].copy()
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _fans(vertices, loop, start):
     apex, middles = np.empty(len(start) - 1, np.int64), np.zeros((len(start) - 1, 3))
     faces = np.empty((len(loop), 3), np.int32)
