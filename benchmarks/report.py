@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
-from . import accuracy, growth, speed
+from . import accuracy, growth, memory, speed
 from .rigs import ROOT
 
 PACKAGES = ("numpy", "numba", "scipy", "libigl", "embreex", "open3d")
@@ -24,7 +24,7 @@ What `python -m benchmarks.report` printed on {date}, on {machine}.
 Times are medians, the range of all runs in brackets; peers are timed in turn, A B A B, in
 one process. Other work on the same machine shows as a wide range.
 
-Each part can be run by itself: `python -m benchmarks.speed`, `.growth`, `.accuracy`.
+Each part can be run by itself: `python -m benchmarks.speed`, `.growth`, `.accuracy`, `.memory`.
 """
 
 
@@ -96,8 +96,16 @@ def _growth(options: argparse.Namespace) -> list:
     return growth.tables(growth.arguments(quick if options.quick else []))
 
 
-PARTS = {"speed": _speed, "accuracy": _accuracy, "growth": _growth}
-HEADINGS = {"speed": "Speed beside peers", "accuracy": "Accuracy", "growth": "Growth"}
+def _memory(options: argparse.Namespace) -> list:
+    given = [str(path) for path in options.rigs]
+    if options.quick:
+        given = given or [str(ROOT / "assets" / f"{name}.glb") for name in ("biped", "robot")]
+        given += ["--resolution", "64"]
+    return memory.tables(memory.arguments(given))
+
+
+PARTS = {"speed": _speed, "accuracy": _accuracy, "growth": _growth, "memory": _memory}
+HEADINGS = {name: name.capitalize() for name in PARTS} | {"speed": "Speed beside peers"}
 
 
 def main(given: Sequence[str] | None = None) -> None:

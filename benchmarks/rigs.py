@@ -34,11 +34,18 @@ def load_characters(paths: Sequence[str | Path] = ()) -> list[Character]:
     These are the demo characters in assets/ and whatever lies in shared/data/rigs beside
     the checkout.
     """
-    chosen = [Path(path) for path in paths] or [
+    return [
+        Character(path.stem, cutcell.load(path), _blender_seconds(path))
+        for path in rig_paths(paths)
+    ]
+
+
+def rig_paths(paths: Sequence[str | Path] = ()) -> list[Path]:
+    """Return the files of rigs, see `load_characters`."""
+    return [Path(path) for path in paths] or [
         *sorted((ROOT / "assets").glob("*.glb")),
         *sorted((SHARED / "rigs").glob("*.glb")),
     ]
-    return [Character(path.stem, cutcell.load(path), _blender_seconds(path)) for path in chosen]
 
 
 def _blender_seconds(path: Path) -> float | None:

@@ -8,8 +8,10 @@ from pathlib import Path
 
 from ..errors import ParameterError
 
-BYTES_PER_NODE = {6: 450, 26: 950, "any": 330}
-"""Peak of a graph and its distances, by connectivity; measured by benchmarks/growth.py."""
+BYTES_PER_NODE = {6: 345, 26: 950, "any": 345}
+"""Peak of a graph and its distances, by connectivity; measured by benchmarks/memory.py."""
+BYTES_BESIDES = 64 << 20
+"""What does not grow with the nodes: the mesh, its holes and its weights, at most."""
 SHARE = 0.8
 """Of the free memory that one graph may take."""
 
@@ -35,7 +37,7 @@ def check_memory(
     def needed(scale: float) -> float:
         # Points fill the volume, crossings the surface, and vertices stay as they are.
         nodes = vertices + crossings * scale**2 + points * scale**3
-        return nodes * BYTES_PER_NODE[connectivity]
+        return needed_memory(nodes, connectivity)
 
     free = available_memory() * SHARE
     if needed(1) <= free:
@@ -46,6 +48,11 @@ def check_memory(
         f"resolution {resolution} needs about {needed(1) / 1e9:.2g} GB, but only "
         f"{free / 1e9:.2g} GB of memory are free for it; {advice}"
     )
+
+
+def needed_memory(nodes: float, connectivity: int | str) -> float:
+    """Return how many bytes a graph of so many nodes and its distances take at their peak."""
+    return nodes * BYTES_PER_NODE[connectivity] + BYTES_BESIDES
 
 
 def available_memory() -> int:

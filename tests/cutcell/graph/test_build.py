@@ -1,6 +1,8 @@
 """The graph equals a slow one, segment by segment."""
 
 import re
+from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -8,9 +10,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.sparse.csgraph import connected_components
 
+from benchmarks.growth import run
 from cutcell import Cancelled, ParameterError, TriangleMesh, build_graph
 from cutcell.graph import INTERIOR, MESH, SURFACE
+from cutcell.graph.memory import needed_memory
 from tests import meshes, naive
+
+RABBIT = Path(__file__).resolve().parents[3] / "assets" / "rabbit.glb"
 
 
 def in_unit_cube(vertices, faces):
@@ -152,12 +158,21 @@ def test_resolutions_out_of_range_are_refused(resolution):
 
 
 def test_a_graph_that_does_not_fit_is_refused(monkeypatch):
-    monkeypatch.setattr("cutcell.graph.memory.available_memory", lambda: 10**7)
+    monkeypatch.setattr("cutcell.graph.memory.available_memory", lambda: 10**8)
     sentence = r"resolution 64 needs about [\d.]+ GB, .* a resolution of (\d+) would fit"
     with pytest.raises(ParameterError, match=sentence) as refusal:
         build_graph(TriangleMesh(*meshes.ball()), 64)
     fits = int(re.search(sentence, str(refusal.value))[1])
     assert build_graph(TriangleMesh(*meshes.ball()), fits).lattice.resolution == fits
+
+
+@pytest.mark.parametrize("connectivity", ["any", 6])
+def test_what_is_reckoned_for_a_graph_is_what_binding_takes(connectivity):
+    """In a process of its own: never less than the peak that is measured, nor far more."""
+    case = {"rig": str(RABBIT), "resolution": 160, "connectivity": connectivity}
+    found = run(case, SimpleNamespace(limit=300))
+    taken = (found["peak"] - found["before"]) * 2**20
+    assert taken <= needed_memory(found["nodes"], connectivity) <= 2.5 * taken
 
 
 def test_other_parameters_are_checked():
