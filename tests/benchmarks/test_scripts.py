@@ -5,7 +5,7 @@ import sys
 import numpy as np
 import pytest
 
-from benchmarks import accuracy, growth, meshers, report, speed, tables, timing
+from benchmarks import accuracy, growth, memory, meshers, report, speed, tables, timing
 from benchmarks.rigs import ROOT, load_characters
 from tests.benchmarks.markdown import read_tables
 
@@ -50,6 +50,14 @@ def test_accuracy(capsys, tmp_path):
     rows = found["Accuracy of distances"]
     assert [row["connectivity"] for row in rows[:2]] == ["6", "26"]
     assert {"ball", "box", "L-bar", "**all**"} == {row["shape"] for row in rows}
+
+
+def test_memory(capsys, tmp_path):
+    out = tmp_path / "memory.md"
+    memory.main([DEMO, "--resolution", "8", "--connectivity", "6", "--markdown", str(out)])
+    (rows,) = read_tables(capsys.readouterr().out).values()
+    assert [row["rig"] for row in rows] == ["robot", "**most**"]
+    assert read_tables(out.read_text())["Peak memory"] == rows
 
 
 def test_a_connectivity_that_is_not_there_is_said(capsys, monkeypatch):
