@@ -60,7 +60,7 @@ def click_vertex(visit, code="true"):
           for (let vertex = 0; vertex < points; vertex++) {
             if (!wanted(vertex)) { continue }
             const [x, y] = view.vertexPoint(vertex)
-            const hit = view.under(x - box.left, y - box.top)
+            const hit = view.pointer.under(x - box.left, y - box.top)
             if (hit?.vertex !== undefined && wanted(hit.vertex)) { return [hit.vertex, x, y] }
           }
         }""",
@@ -132,7 +132,7 @@ def test_a_slab_and_a_slice_with_its_rays(visit):
           const figure = view.stage.figures.get("slice rays")
           for (let i = 0; i < figure.rest.length / 3; i += 8) {
             const [x, y] = view.stage.project([...figure.rest.slice(3 * i, 3 * i + 3)])
-            const text = view.surfaceReading(x, y)
+            const text = view.pointer.surfaceReading(x, y)
             if (text && text.startsWith("winding number 1")) { return text }
           }
         }"""
