@@ -236,6 +236,7 @@ def _settings(actor: Actor) -> dict[str, Any]:
         "ambient": AMBIENT,
         "behind": actor.behind,
         "closed": actor.closed and actor.opacity == 1,
+        "hull": actor.hull,
         "coloured": actor.colors is not None or actor.scalars is not None,
     }
     place = {"overlay": actor.overlay, "view": actor.view}

@@ -12,11 +12,13 @@ from scipy.sparse.csgraph import connected_components
 from cutcell.rig import Rig, Skeleton, TriangleMesh
 
 from .description import Actor
-from .palette import ATTACHMENT, BODY, BONE, BONE_CHOSEN, BONE_IDLE, to_bytes
+from .palette import ATTACHMENT, BODY, BONE, BONE_CHOSEN, BONE_EDGE, BONE_IDLE, to_bytes
 from .skin import Skin, rigid_skin, skin_of_weights
 
 CREASE = np.cos(np.radians(45))
 """Faces that meet at a sharper angle than this keep their edge."""
+OUTLINE = 0.0009
+"""Of a bone: in parts of the diagonal of the character's box."""
 
 
 def to_scene(rig: Rig, points: ArrayLike) -> NDArray[np.float64]:
@@ -58,8 +60,14 @@ def attachments(rig: Rig, **look: Any) -> dict[str, Actor]:
     }
 
 
-def bones(rig: Rig, chosen: int | None = None, visible: bool = True) -> Actor:
-    """Return the skeleton as one octahedron a bone, drawn over everything.
+def bones(
+    rig: Rig,
+    chosen: int | None = None,
+    visible: bool = True,
+    colors: ArrayLike | None = None,
+    shown: ArrayLike | None = None,
+) -> dict[str, Actor]:
+    """Return the skeleton, one octahedron a bone with an outline, drawn over everything.
 
     Parameters
     ----------
@@ -67,23 +75,52 @@ def bones(rig: Rig, chosen: int | None = None, visible: bool = True) -> Actor:
     chosen : int, optional
         The joint whose bones are highlighted.
     visible : bool
+    colors : array_like, shape (j, 3), optional
+        The colour of each joint's bones; the chosen one is then told by its outline.
+    shown : array_like, shape (b,), bool, optional
+        Which of the bones of `drawn_segments` there are; all when left out.
+
+    Returns
+    -------
+    dict
+        The actors "bones" and "bone outlines".
     """
     start, end, joint = drawn_segments(rig)
+    if shown is not None:
+        kept = np.asarray(shown, bool)
+        start, end, joint = start[kept], end[kept], joint[kept]
     size = float(np.linalg.norm(np.ptp(to_scene(rig, rig.mesh.vertices), axis=0)))
-    points = _octahedra(start, end, size, rig.skeleton.deform[joint])
-    color = np.where(rig.skeleton.deform[joint, None], BONE, BONE_IDLE)
-    color[joint == chosen] = BONE_CHOSEN
-    cells = _OCTAHEDRON + 6 * np.arange(len(joint))[:, None, None]
-    return Actor(
-        "surface",
-        points.reshape(-1, 3).astype(np.float32),
-        cells.reshape(-1, 3).astype(np.int32),
-        colors=np.repeat(to_bytes(color), 6, axis=0),
-        skin=rigid_skin(np.repeat(joint, 6)),
-        overlay=True,
-        clipped=False,
-        visible=visible,
-    )
+    of_chosen = joint == chosen
+    edge = np.where(of_chosen[:, None] & (colors is not None), BONE_CHOSEN, BONE_EDGE)
+    if colors is None:
+        color = np.where(rig.skeleton.deform[joint, None], BONE, BONE_IDLE)
+        color[of_chosen] = BONE_CHOSEN
+    else:
+        color = np.asarray(colors, float)[joint]
+    thick = np.where(of_chosen & (colors is not None), 3.0, 1.0) * OUTLINE * size
+    common: dict[str, Any] = {
+        "cells": (_OCTAHEDRON + 6 * np.arange(len(joint))[:, None, None]).reshape(-1, 3),
+        "skin": rigid_skin(np.repeat(joint, 6)),
+        "overlay": True,
+        "clipped": False,
+        "visible": visible,
+    }
+    common["cells"] = common["cells"].astype(np.int32)
+    return {
+        name: Actor(
+            "surface",
+            _octahedra(start, end, size, rig.skeleton.deform[joint], wider)
+            .reshape(-1, 3)
+            .astype(np.float32),
+            colors=np.repeat(to_bytes(own), 6, axis=0),
+            hull=name != "bones",
+            **common,
+        )
+        for name, own, wider in (
+            ("bones", color, np.zeros(len(joint))),
+            ("bone outlines", edge, thick),
+        )
+    }
 
 
 def drawn_segments(
@@ -127,7 +164,7 @@ _OCTAHEDRON = np.array(
 
 
 def _octahedra(
-    start: NDArray, end: NDArray, size: float, deform: NDArray[np.bool_]
+    start: NDArray, end: NDArray, size: float, deform: NDArray[np.bool_], wider: NDArray
 ) -> NDArray[np.float64]:
     along = end - start
     length = np.linalg.norm(along, axis=1, keepdims=True)
@@ -137,11 +174,13 @@ def _octahedra(
     side /= np.linalg.norm(side, axis=1, keepdims=True)
     other = np.cross(along, side)
     # Bones that move nothing are thin: some reach far out of the body.
-    most = np.where(deform[:, None], 0.014, 0.003) * size
-    radius = np.clip(0.1 * length, 0.0025 * size, most)
+    most = np.where(deform[:, None], 0.0105, 0.003) * size
+    radius = np.clip(0.085 * length, 0.0025 * size, most)
     ring = start + along * np.minimum(0.14 * length, 1.5 * radius)
-    around = [ring + radius * d for d in (side, other, -side, -other)]
-    return np.stack([start, *around, end], axis=1)
+    wide = radius + 1.4 * wider[:, None]
+    around = [ring + wide * d for d in (side, other, -side, -other)]
+    more = 2 * wider[:, None] * along
+    return np.stack([start - more, *around, end + 2 * more], axis=1)
 
 
 def _surface(rig: Rig, mesh: TriangleMesh, skin: Skin | None, **look: Any) -> Actor:

@@ -79,6 +79,8 @@ class Actor:
         Gives way where it coincides with another surface.
     closed : bool
         Whether the surface has an inside, which is not seen: its back need not be drawn.
+    hull : bool
+        Only faces that look away are drawn: an outline of what it encloses.
     clipped : bool
         Whether the scene's cut takes away what lies before it.
     slab : float
@@ -104,6 +106,7 @@ class Actor:
     overlay: bool = False
     behind: bool = False
     closed: bool = False
+    hull: bool = False
     clipped: bool = True
     slab: float = 0.0
     skin: Skin | None = None

@@ -48,7 +48,7 @@ def distance_scene(
     actors = {
         "body": body(rig, weights, **colors, **look),
         **attachments(rig),
-        "bones": bones(rig, joint, skeleton),
+        **bones(rig, joint, skeleton),
     }
     return Description(actors, legend=legend)
 

@@ -88,7 +88,7 @@ def error_scene(
     actors = {
         "body": body(rig, weights, **look),
         **attachments(rig),
-        "bones": bones(rig, chosen, skeleton),
+        **bones(rig, chosen, skeleton),
     }
     return Description(actors, pose=pose, legend=error_legend(limits))
 

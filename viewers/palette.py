@@ -25,6 +25,7 @@ BODY = _rgb(201, 206, 214)
 ATTACHMENT = _rgb(163, 170, 182)
 BONE = _rgb(236, 239, 244)
 BONE_IDLE = _rgb(150, 158, 172)
+BONE_EDGE = _rgb(38, 45, 58)
 BONE_CHOSEN = _rgb(0, 122, 255)
 GHOST = _rgb(64, 132, 255)
 UNREACHED = _rgb(148, 150, 160)
@@ -35,12 +36,12 @@ MARK = _rgb(232, 30, 99)
 # The paper's purple: nodes where distances begin.
 SOURCE = _rgb(146, 72, 190)
 
-# What is enough of a difference to people who see few colours, too: of all colours of middle
-# lightness each was chosen farthest from those before it, to every one of `EYES`.
+# What is enough of a difference to people who see few colours, too: of all lively colours of
+# middle lightness each was chosen farthest from those before it, to every one of `EYES`.
 JOINT_COLORS = (
-    (219, 175, 113), (100, 119, 179), (142, 186, 244), (163, 108, 60), (190, 222, 195),
-    (179, 140, 151), (129, 149, 211), (236, 210, 138), (132, 230, 247), (140, 112, 137),
-    (145, 161, 92), (170, 191, 159),
+    (235, 167, 95), (62, 137, 247), (93, 232, 245), (225, 64, 116), (180, 143, 191),
+    (177, 225, 161), (194, 110, 18), (102, 204, 186), (240, 208, 60), (173, 99, 196),
+    (232, 122, 105), (173, 176, 246),
 )  # fmt: skip
 EVENNESS = 0.012
 """How much of a difference in OKLab it is worth to use all colours equally often."""

@@ -39,7 +39,7 @@ def pose_scene(
     actors = {
         "body": body(rig, weights),
         **attachments(rig),
-        "bones": bones(rig, chosen, skeleton),
+        **bones(rig, chosen, skeleton),
     }
     return posed(Description(actors), rig, transforms)
 

@@ -212,7 +212,7 @@ def _paint(drawn: pv.Actor, actor: Actor, front: float | None = None) -> None:
     look = drawn.prop
     look.color, look.opacity, look.line_width = actor.color, actor.opacity, actor.width
     look.ambient, look.diffuse = AMBIENT, 1.0
-    look.lighting = actor.kind == "surface"
+    look.lighting = actor.kind == "surface" and not actor.hull
     look.point_size = actor.width
     look.interpolation = "flat" if actor.normals is None else "phong"
     mapper = drawn.mapper
@@ -231,6 +231,8 @@ def _paint(drawn: pv.Actor, actor: Actor, front: float | None = None) -> None:
         opaque = np.full((len(table), 1), 255, np.uint8)
         mapper.lookup_table = pv.LookupTable(values=np.hstack([table, opaque]))
         mapper.scalar_range = actor.limits
+    if actor.hull:
+        look.culling = "front"
     if actor.behind:
         mapper.SetResolveCoincidentTopologyToPolygonOffset()
         mapper.SetRelativeCoincidentTopologyPolygonOffsetParameters(2, 30)

@@ -13,6 +13,9 @@ from .character import attachments, body, bones
 from .description import Description, Legend, Reading
 from .palette import UNREACHED, joint_colors, to_bytes
 
+MIXED = "Each bone's colour, mixed by weight"
+MOST = "The bone that holds most"
+
 
 def weights_scene(
     rig: Rig,
@@ -48,14 +51,19 @@ def weights_scene(
     actors = {
         "body": body(rig, weights, **colors, **look),
         **attachments(rig),
-        "bones": bones(rig, joint if chosen is None else chosen, skeleton),
+        **bones(
+            rig,
+            joint if chosen is None else chosen,
+            skeleton,
+            joint_colors(rig.skeleton.parents) if joint is None else None,
+        ),
     }
     return Description(actors, legend=legend)
 
 
 def weight_colors(
     rig: Rig, weights: ArrayLike, joint: int | None = None
-) -> tuple[dict[str, Any], Legend | None]:
+) -> tuple[dict[str, Any], Legend]:
     """Return the fields of the body's `Actor` that colour it, and how to read them."""
     if joint is not None:
         name = rig.skeleton.names[joint]
@@ -68,15 +76,17 @@ def weight_colors(
     total = strong.sum(axis=1, keepdims=True)
     mixed = strong @ joint_colors(rig.skeleton.parents).astype(np.float32)
     mixed = np.where(total > 0, mixed / np.where(total > 0, total, 1), UNREACHED)
-    return {"colors": to_bytes(np.clip(mixed, 0, 1)), "reading": _strongest(rig, weights)}, None
+    colors = to_bytes(np.clip(mixed, 0, 1))
+    return {"colors": colors, "reading": _strongest(rig, weights)}, Legend(MIXED)
 
 
-def dominant_colors(rig: Rig, weights: ArrayLike) -> tuple[dict[str, Any], Legend | None]:
+def dominant_colors(rig: Rig, weights: ArrayLike) -> tuple[dict[str, Any], Legend]:
     """Colour each vertex by the joint that holds most of it; see `weight_colors`."""
     reading = _strongest(rig, np.asarray(weights, np.float32))
     colors = to_bytes(joint_colors(rig.skeleton.parents))
     assert reading.values is not None
-    return {"colors": colors[reading.values.astype(int)], "reading": reading}, None
+    look = {"colors": colors[reading.values.astype(int)], "reading": reading}
+    return look, Legend(MOST)
 
 
 def count_colors(rig: Rig, weights: ArrayLike) -> tuple[dict[str, Any], Legend]:

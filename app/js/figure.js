@@ -161,8 +161,9 @@ class Figure {
     this.colours.front = this.film ? front ?? ALL : ALL
   }
 
-  paint({color, opacity, width, ambient, coloured, behind, closed}) {
+  paint({color, opacity, width, ambient, coloured, behind, closed, hull}) {
     this.closed = closed
+    this.hull = hull
     this.coloured = coloured
     for (const {mapper, actor} of this.made) {
       const look = actor.getProperty()
@@ -170,7 +171,8 @@ class Figure {
       look.setOpacity(opacity)
       look.setPointSize(width)
       look.setAmbient(ambient)
-      look.setLighting(this.kind === "surface")
+      look.setLighting(this.kind === "surface" && !hull)
+      look.setFrontfaceCulling(hull)
       if (!this.restNormals) { look.setInterpolationToFlat() }
       if (behind) { mapper.setRelativeCoincidentTopologyPolygonOffsetParameters(2, 30) }
       if (this.kind === "lines") {

@@ -118,6 +118,8 @@ export function render({model}) {
   style.textContent = CARD_STYLE
   const show = () => {
     root.replaceChildren(style, ...(model.facts ? [card(model, model.facts)] : []))
+    window.__cutcellCard = root  // for a canvas that comes later
+    window.dispatchEvent(new CustomEvent("cutcell card", {detail: root}))
   }
   const escape = (e) => {
     if (e.key === "Escape" && model.facts) { model.send_msg({type: "close"}) }

@@ -13,8 +13,10 @@ const STYLE = `
   backdrop-filter: blur(6px); border-radius: 8px; font-size: 12px; line-height: 1.3; }
 .legend { left: 16px; bottom: 16px; width: 208px; padding: 10px 12px 9px; }
 .legend b { display: -webkit-box; -webkit-line-clamp: 2; -webkit-box-orient: vertical;
-  font-weight: 500; margin-bottom: 6px; overflow: hidden; overflow-wrap: anywhere; }
-.legend canvas { width: 100%; height: 8px; border-radius: 4px; display: block; }
+  font-weight: 500; overflow: hidden; overflow-wrap: anywhere; }
+.legend b + * { margin-top: 7px !important; }
+.legend canvas { width: 100%; height: 8px; border-radius: 4px; display: block;
+  box-shadow: 0 0 0 1px color-mix(in srgb, var(--ink) 22%, transparent); }
 .legend span { display: flex; justify-content: space-between; margin-top: 4px; opacity: .75;
   font-variant-numeric: tabular-nums; }
 .legend i { font-style: normal; }
@@ -57,9 +59,11 @@ const STYLE = `
 @container (max-width: 900px) {
   .moving .legend { bottom: 70px; }
   .transport { width: calc(100% - 32px); max-width: 460px; } }
-@container (max-width: 640px) { .hint { display: none; } }
+@container (max-width: 760px) { .hint { display: none; } }
 .moving .hint { display: none; }
-.hint { right: 16px; bottom: 16px; padding: 0; background: none; opacity: .5; backdrop-filter: none; }
+.hint { right: 16px; bottom: 16px; padding: 0; background: none; opacity: .72; backdrop-filter: none; }
+.waiting { inset: 0; margin: auto; width: max-content; height: max-content; background: none;
+  backdrop-filter: none; font-size: 14px; padding: 76px 0 0; opacity: .8; }
 .failed { inset: 0; margin: auto; width: min(420px, 80%); height: max-content; padding: 20px;
   font-size: 14px; text-align: center; }
 .drop { inset: 12px; border: 2px dashed #ff6c0c; border-radius: 14px; display: grid;
@@ -99,6 +103,8 @@ class Overlay {
     this.transport = make("div", "card transport", this.root)
     this.hint = make("div", "card hint", this.root, false)
     this.hint.textContent = "drag to turn · right-drag to move · scroll to zoom · click a bone or the body"
+    this.waiting = make("div", "card waiting", this.root, false)
+    this.waiting.textContent = "The character is on its way …"
     this.failed = make("div", "card failed", this.root)
     this.drop = make("div", "card drop", this.root)
   }
@@ -187,6 +193,7 @@ class Overlay {
   }
 
   fail(message) {
+    this.waiting.hidden = true
     this.failed.hidden = false
     this.failed.textContent = message
   }

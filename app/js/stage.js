@@ -12,6 +12,8 @@ function loadVtk(url) {
   return window.__cutcellVtk
 }
 
+const NO_CARDS = {right: 0, top: 0, bottom: 0}
+
 class Stage {
   constructor(vtk, element) {
     this.vtk = vtk
@@ -35,6 +37,7 @@ class Stage {
     this.gl.setContainer(element)
     this.window.addView(this.gl)
     this.pose = null
+    this.room = NO_CARDS
     this.divide([])
     this.frames = 0
   }
@@ -109,7 +112,10 @@ class Stage {
   }
 
   look(orbit) {
-    this.camera.set({position: orbit.position, focalPoint: orbit.target, viewUp: [0, 1, 0]})
+    const windowCenter = this.middle.map((x) => -x)
+    this.camera.set({
+      position: orbit.position, focalPoint: orbit.target, viewUp: [0, 1, 0], windowCenter,
+    })
   }
 
   // A machine that is slow at it gets rough edges while things change, fewer lines and larger
@@ -172,21 +178,37 @@ class Stage {
       return direction[i] * right[j] - direction[j] * right[i]
     })
     // Captions stand above, so as much stays free below.
-    const room = this.views.length > 1 ? Math.min(84, h / 3) : 0
-    const [high, wide] = [h / (h - room) / slope, h / Math.max(w, 1) / slope]
+    const several = this.views.length > 1
+    const {right: aside, top, bottom} = several ? NO_CARDS : this.room
+    const high = Math.max(h - (several ? Math.min(84, h / 3) : top + bottom), h / 4, 1)
+    const wide = Math.max(w - aside, w / 4, 1)
     let distance = 0
-    const see = (x, y, z) => {
+    this.eachPoint((x, y, z) => {
       const p = [x - target[0], y - target[1], z - target[2]]
-      const along = (v) => p[0] * v[0] + p[1] * v[1] + p[2] * v[2]
-      const needed = Math.max(Math.abs(along(up)) * high, Math.abs(along(right)) * wide)
-      distance = Math.max(distance, needed + along(direction))
-    }
+      const u = Math.abs(p[0] * up[0] + p[1] * up[1] + p[2] * up[2])
+      const r = Math.abs(p[0] * right[0] + p[1] * right[1] + p[2] * right[2])
+      const d = p[0] * direction[0] + p[1] * direction[1] + p[2] * direction[2]
+      distance = Math.max(distance, Math.max(u / high, r / wide) * h / slope + d)
+    })
+    return 1.05 * (distance || Math.hypot(...target) || 4)
+  }
+
+  // What a first look must see: the character, all points of it or a good part.
+  eachPoint(see) {
     for (const figure of this.figures.values()) {
-      if (!figure.rest || !isCharacter(figure)) { continue }
-      const step = 3 * Math.ceil(figure.rest.length / 3 / FITTED)
-      for (let i = 0; i < figure.rest.length; i += step) { see(...figure.rest.subarray(i, i + 3)) }
+      const {rest, kind} = figure
+      if (kind !== "surface" || !rest?.length || !isCharacter(figure)) { continue }
+      const step = 3 * Math.max(1, Math.floor(rest.length / 3 / FITTED))
+      for (let i = 0; i < rest.length; i += step) { see(rest[i], rest[i + 1], rest[i + 2]) }
     }
-    return 1.15 * (distance || Math.hypot(...target) || 4)
+  }
+
+  // Where the middle of what cards leave free lies, in halves of the canvas from its own middle.
+  get middle() {
+    if (this.views.length > 1) { return [0, 0] }
+    const {clientWidth: w, clientHeight: h} = this.element
+    const {right, top, bottom} = this.room
+    return [-right / Math.max(w, 1), (bottom - top) / Math.max(h, 1)]
   }
 
   // Which view a pixel of the canvas belongs to.
@@ -222,7 +244,10 @@ class Stage {
     const right = unit(cross(ahead, [0, 1, 0]))
     const up = cross(right, ahead)
     const slope = Math.tan(VIEW_ANGLE * Math.PI / 360)
-    const [a, b] = [(2 * (x - left) / w - 1) * slope * w / h, (1 - 2 * (y - top) / h) * slope]
+    const [aside, above] = this.middle
+    const [a, b] = [
+      (2 * (x - left) / w - 1 - aside) * slope * w / h, (1 - 2 * (y - top) / h - above) * slope,
+    ]
     return {origin, direction: unit(ahead.map((c, i) => c + a * right[i] + b * up[i]))}
   }
 
@@ -236,7 +261,7 @@ class Stage {
   }
 }
 
-const FITTED = 4000  // points of a figure that are looked at to see all of it
+const FITTED = 20000  // points of a figure that are looked at to see all of it
 
 // The tour's card: at the right of wide windows, else at the bottom (app/tour_card.py).
 const CARD_WIDTH = 384

@@ -2,6 +2,7 @@
 // and playing motions happen here.
 
 const CALM = 150  // milliseconds without a change, after which a slow machine draws in full
+const SLIM = 700  // a canvas less wide than this has no room beside its cards
 
 class View {
   constructor(model, vtk, overlay) {
@@ -40,8 +41,18 @@ class View {
     this.names = new Names(overlay.root)
     this.messages = 0
     this.posed = 0
-    this.observer = new ResizeObserver(() => this.changed())
+    this.observer = new ResizeObserver(() => { this.makeRoom(); this.changed() })
     this.observer.observe(overlay.canvas)
+    this.observer.observe(overlay.legend)
+    // A card that comes over the canvas tells so; what is shown makes room for it.
+    this.carded = (e) => {
+      this.card = e.detail
+      this.observer.observe(this.card)
+      this.makeRoom()
+      this.changed()
+    }
+    window.addEventListener("cutcell card", this.carded)
+    if (window.__cutcellCard) { this.carded({detail: window.__cutcellCard}) }
   }
 
   receive(message) {
@@ -65,6 +76,7 @@ class View {
       this.views = message.views
       this.reframe(() => stage.divide(this.views))
     }
+    if (message.actors) { this.overlay.waiting.hidden = true }
     for (const [name, part] of entries(message.actors)) {
       if (!stage.figures.has(name)) {
         stage.figures.set(name, new Figure(stage))
@@ -101,21 +113,57 @@ class View {
     this.changed()
   }
 
-  // Divides the window anew; the same is seen in it, nearer or farther.
-  reframe(divide) {
+  // Does something that changes how much room there is; as much as before is seen after it.
+  reframe(change) {
     const {position, target, distance} = this.orbit
     const way = position.map((x, i) => (x - target[i]) / distance)
     const before = this.stage.fitting(way, target)
-    divide()
-    this.orbit.scale(this.stage.fitting(way, target) / before)
+    change()
+    if (this.overlay.canvas.clientHeight) { this.orbit.scale(this.stage.fitting(way, target) / before) }
+    this.fitted = this.fitNow()
+  }
+
+  // Keeps the character clear of what is written over the canvas.
+  makeRoom() {
+    const {canvas, legend} = this.overlay
+    const box = canvas.getBoundingClientRect()
+    if (!box.height) { return }
+    const room = {right: 0, top: 20, bottom: 20}
+    if (box.width < SLIM) {
+      room.top = 62
+      if (!legend.hidden) { room.bottom = legend.offsetHeight + 20 }
+    }
+    const card = this.card?.isConnected && this.card.getBoundingClientRect()
+    if (card?.height && box.width - card.width < 60) {
+      room.bottom = Math.max(room.bottom, box.bottom - card.top)
+    } else if (card?.height && card.width > 0.28 * box.width) {
+      room.right = box.right - card.left
+    }
+    const size = [box.width, box.height]
+    if (JSON.stringify([room, size]) === this.roomFor) { return }
+    this.roomFor = JSON.stringify([room, size])
+    // What was fitted before the window had another size, must fit again.
+    const before = this.fitted
+    this.stage.room = room
+    this.fitted = this.fitNow()
+    if (before && this.framed) { this.orbit.scale(this.fitted / before) }
+  }
+
+  fitNow() {
+    const {yaw, pitch, target} = this.orbit.home
+    const way = [Math.cos(pitch) * Math.sin(yaw), Math.sin(pitch), Math.cos(pitch) * Math.cos(yaw)]
+    return this.stage.fitting(way, target)
   }
 
   // Looks from where the server says, from as far as this window needs.
   frame({position, focal_point: target, now}) {
+    this.makeRoom()
     const offset = position.map((x, i) => x - target[i])
     const direction = offset.map((x) => x / Math.hypot(...offset))
     const distance = this.stage.fitting(direction, target)
     this.orbit.setHome(direction.map((x, i) => target[i] + distance * x), target)
+    this.fitted = distance
+    this.framed = true
     if (now) { this.orbit.look(now.position, now.focal_point) }
     if (now?.aside) { this.stepAside() }
     this.orbit.moving = false
@@ -229,6 +277,7 @@ class View {
     this.gone = true
     this.playing = false
     this.keys.remove()
+    window.removeEventListener("cutcell card", this.carded)
     this.connection.remove()
     this.names.remove()
     this.observer.disconnect()

@@ -7,13 +7,14 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from cutcell.rig import Rig
 from viewers.character import attachments, body, bones, drawn_segments
 from viewers.description import Actor, Cut, Description
 from viewers.graph_scene import cut_at
 from viewers.marks import vertex_mark
-from viewers.palette import THEMES, Theme
+from viewers.palette import THEMES, Theme, joint_colors
 from viewers.skin import skin_of_weights
 
 from ..state import State
@@ -26,8 +27,13 @@ SEE_THROUGH = 0.22
 POSED = ("pose", "compare")
 """The panels on which the character moves; on all others it rests."""
 
+CUT = ("graph", "geodesics")
+"""The panels on which it can be cut."""
 
-def character(state: State, memo: Memo, **look: Any) -> dict[str, Actor]:
+
+def character(
+    state: State, memo: Memo, *, bones_coloured: bool = False, **look: Any
+) -> dict[str, Actor]:
     """Return the body, what hangs on it, the bones, and the mark of the chosen vertex.
 
     Parameters
@@ -35,6 +41,8 @@ def character(state: State, memo: Memo, **look: Any) -> dict[str, Actor]:
     state : State
         With a rig.
     memo : Memo
+    bones_coloured : bool
+        Whether each bone has the colour that its weights are shown in.
     **look
         Fields of the body's `Actor`; those that say how it is seen hold for what hangs on
         it as well.
@@ -55,12 +63,31 @@ def character(state: State, memo: Memo, **look: Any) -> dict[str, Actor]:
         "body": replace(plain, skin=skin, **look),
         **{name: replace(actor, **seen) for name, actor in hung.items()},
         **mark,
-        "bones": memo(
-            "bones",
-            (rig, state.joint, state.skeleton),
-            lambda: bones(rig, state.joint, state.skeleton),
-        ),
+        **_skeleton(state, memo, bones_coloured),
     }
+
+
+def _skeleton(state: State, memo: Memo, coloured: bool) -> dict[str, Actor]:
+    rig = state.rig
+    shown = memo("segments", (rig,), lambda: drawn_segments(rig))
+    kept = _behind_cut(state, *shown) if state.panel in CUT else None
+
+    def make() -> dict[str, Actor]:
+        colors = joint_colors(rig.skeleton.parents) if coloured else None
+        return bones(rig, state.joint, state.skeleton, colors, kept)
+
+    known = (rig, state.joint, state.skeleton, coloured, None if kept is None else kept.tobytes())
+    return memo("bones", known, make)
+
+
+def _behind_cut(state: State, start: NDArray, end: NDArray, joint: NDArray) -> NDArray | None:
+    """Return which bones are left by a cut: the chosen ones, and all not before it; None for all."""
+    cut = cut_of(state)
+    if cut is None:
+        return None
+    nearer = np.minimum((start - cut.origin) @ cut.normal, (end - cut.origin) @ cut.normal)
+    kept = (nearer <= 0) | (joint == state.joint)
+    return None if kept.all() else kept
 
 
 def plain(state: State, memo: Memo) -> Description:

@@ -12,7 +12,7 @@ from viewers.character import to_scene
 from viewers.description import Actor, Cut, Description, Legend
 from viewers.distance_scene import distance_colors, distance_limits
 from viewers.marks import path_tube
-from viewers.palette import MARK, SOURCE
+from viewers.palette import BODY, MARK, SOURCE
 from viewers.section_scene import section, section_rays, section_resolution
 from viewers.slice_scene import slice_place
 from viewers.start_scene import first_distances, start_scene
@@ -30,10 +30,9 @@ def geodesics(state: State, memo: Memo) -> Description:
     if state.binding is None:
         return Description(character(state, memo))
     normal, index, cut = _cut(state)
-    surface = _surface(state, memo) if has_field(state) else None
-    if surface is None:
+    if not has_field(state):
         return Description(character(state, memo), cut=cut)
-    colors, legend, limits = surface
+    colors, legend, limits = _surface(state, memo)
     way = way_of(state, memo)
     inside = (way is not None and len(way) > 0) or state.starts
     see = SEE_PATH if inside and cut is None else 1.0
@@ -51,25 +50,28 @@ def geodesics(state: State, memo: Memo) -> Description:
         rig = state.rig
         actors["path"] = memo("tube", (rig, way), lambda: path_tube(rig, _in_scene(state, way)))
         swatches += ((MARK, f"way back, {path_length(way):.3f} long"),)
+    if state.wave:
+        swatches += ((BODY, "not reached yet"),)
     front = state.front * limits[1] if state.wave else None
     return Description(actors, cut=cut, legend=replace(legend, swatches=swatches), front=front)
 
 
-def _surface(state: State, memo: Memo) -> tuple[dict[str, Any], Legend, tuple[float, float]] | None:
-    """Return the colours of the body, the legend, the field's limits; None before one is there.
+def _surface(state: State, memo: Memo) -> tuple[dict[str, Any], Legend, tuple[float, float]]:
+    """Return the colours of the body, the legend and the field's limits.
 
-    While another bone's field is computed the last one stays.
+    The vertices' distances are known at once; those inside follow, and may reach farther.
     """
-    rig, binding = state.rig, state.binding
-    if state.field is None or state.field[0] is not binding.distances:
-        return None
-    _, joint, field = state.field
+    rig, binding, joint, field = state.rig, state.binding, state.joint, field_of(state)
 
     def make() -> tuple[dict[str, Any], Legend, tuple[float, float]]:
-        limits = distance_limits(field)
-        return *distance_colors(rig, field[binding.graph.vertex_node], joint, limits), limits
+        if field is None:
+            known = binding.distances.joint[joint]
+            limits = distance_limits(known)
+        else:
+            known, limits = field[binding.graph.vertex_node], distance_limits(field)
+        return *distance_colors(rig, known, joint, limits), limits
 
-    return memo("distance", (rig, field, joint), make)
+    return memo("distance", (rig, binding.distances, field, joint), make)
 
 
 def _cut(state: State) -> tuple[int, int, Cut | None]:

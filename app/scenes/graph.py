@@ -9,6 +9,8 @@ from cutcell.graph import INTERIOR, MESH, SURFACE, slice_rays
 from viewers.description import Actor, Cut, Description, Legend
 from viewers.distance_scene import distance_legend, distance_limits
 from viewers.graph_scene import depth_field, graph_scene
+from viewers.palette import INTERIOR as INTERIOR_COLOR
+from viewers.palette import SURFACE as SURFACE_COLOR
 from viewers.slice_scene import file_axis, slice_place, slice_scene
 
 from ..state import LAYERS, State
@@ -18,6 +20,12 @@ from .memo import Memo
 
 FACE_CELLS = 3
 """How many cells behind a cut are its face."""
+KINDS = {
+    "mesh_edges": "mesh: the edges of its triangles",
+    "interior_edges": "interior: the way through the body",
+    "surface_edges": "surface: between the two",
+}
+"""What each kind of edges is."""
 SHELL = 0.5
 """How opaque the body is behind a slice."""
 
@@ -66,9 +74,17 @@ def _field(state: State, memo: Memo) -> tuple[Any, dict[str, Any], Legend | None
         return depth, {"shades": "depth"}, legend
     field = field_of(state) if state.edge_colors == "distance" else None
     if field is None:
-        return None, {}, None
+        return None, {}, kinds_legend(state)
     legend = distance_legend(state.rig, state.joint, distance_limits(field))
     return field, {"kinds": (MESH, INTERIOR, SURFACE)}, legend
+
+
+def kinds_legend(state: State) -> Legend | None:
+    """Return what the colours of the layers of edges that are seen stand for."""
+    colors = {"mesh_edges": theme_of(state).mesh_edge, "interior_edges": INTERIOR_COLOR,
+              "surface_edges": SURFACE_COLOR}  # fmt: skip
+    seen = tuple((colors[name], text) for name, text in KINDS.items() if getattr(state, name))
+    return Legend("The graph's edges", swatches=seen) if seen else None
 
 
 def body_opacity(state: State) -> float:
@@ -114,7 +130,8 @@ def _slice(state: State, memo: Memo) -> Description:
         "slice scene", (found, theme.name), lambda: slice_scene(rig, found, theme)
     )
     shell = character(state, memo, visible=state.body, opacity=SHELL)
-    shell["bones"] = replace(shell["bones"], visible=False)  # they would hide the slice
+    for name in ("bones", "bone outlines"):
+        shell[name] = replace(shell[name], visible=False)  # they would hide the slice
     return Description({**shell, **actors}, cut=_pulled(cut, state), legend=legend)
 
 

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 from viewers.description import Description, Legend
+from viewers.palette import joint_colors
 from viewers.weights_scene import count_colors, difference_colors, dominant_colors, weight_colors
 
 from ..state import State
@@ -21,7 +23,12 @@ def weights(state: State, memo: Memo) -> Description:
     colors, legend = memo(
         "weights", (state.rig, state.weights, shown, which), lambda: coloring(state, shown)
     )
-    return Description(character(state, memo, **colors), legend=legend)
+    coloured = shown in ("mix", "dominant")
+    if coloured:
+        name = state.rig.skeleton.names[state.joint]
+        own = joint_colors(state.rig.skeleton.parents)[state.joint]
+        legend = replace(legend, swatches=((tuple(own.tolist()), name),))
+    return Description(character(state, memo, bones_coloured=coloured, **colors), legend=legend)
 
 
 def weights_shown(state: State) -> str:
@@ -31,7 +38,7 @@ def weights_shown(state: State) -> str:
     return state.weights_shown
 
 
-def coloring(state: State, shown: str) -> tuple[dict[str, Any], Legend | None]:
+def coloring(state: State, shown: str) -> tuple[dict[str, Any], Legend]:
     """Return the fields of the body's `Actor` that colour it, and how to read them."""
     rig, held = state.rig, state.weights
     if shown == "difference":

@@ -107,7 +107,7 @@ def test_a_scene_can_be_changed_in_place(rig, scenes):
     scene = Scene(size=SIZE)
     try:
         scene.show(scenes["weights"])
-        assert set(scene.names) == {"body", "bones", "attachment 0"}
+        assert set(scene.names) == {"body", "bones", "bone outlines", "attachment 0"}
         scene.show(scenes["graph"])
         assert set(scene.names) == {"mesh edges", "interior edges", "surface edges"}
         scene.look(framing(scenes["graph"].bounds))

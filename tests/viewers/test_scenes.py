@@ -72,16 +72,30 @@ def test_every_bone_is_drawn_and_leaves_get_a_stub(rig):
 
 def test_joints_in_one_place_do_not_break_the_bones(rig):
     skeleton = cutcell.Skeleton([[0, 0, 0], [0, 0, 0], [0, 0, 0]], [-1, 0, 1])
-    actor = bones(replace(rig, skeleton=skeleton, clips=(), attachments=()))
-    assert np.isfinite(actor.points).all()
+    for actor in bones(replace(rig, skeleton=skeleton, clips=(), attachments=())).values():
+        assert np.isfinite(actor.points).all()
 
 
 def test_the_chosen_bone_stands_out(rig):
-    actor = bones(rig, chosen=1)
+    actor = bones(rig, chosen=1)["bones"]
     chosen = (actor.colors == palette.to_bytes(palette.BONE_CHOSEN)).all(axis=1)
     assert chosen.reshape(3, 6).all(axis=1).tolist() == [False, True, False]
     assert actor.overlay
     assert not actor.clipped
+
+
+def test_bones_have_the_colours_of_their_joints_and_outlines_around_them(rig):
+    colors = palette.joint_colors(rig.skeleton.parents)
+    drawn = bones(rig, 1, colors=colors)
+    own = palette.to_bytes(colors)
+    assert (drawn["bones"].colors.reshape(3, 6, 3) == own[:, None]).all()
+    edge = drawn["bone outlines"].colors.reshape(3, 6, 3)
+    assert (edge[1] == palette.to_bytes(palette.BONE_CHOSEN)).all()
+    assert (edge[[0, 2]] == palette.to_bytes(palette.BONE_EDGE)).all()
+    inner, outer = (drawn[name].points.reshape(3, 6, 3) for name in ("bones", "bone outlines"))
+    wide = [np.ptp(points, axis=1).max(axis=1) for points in (inner, outer)]
+    assert (wide[1] > wide[0]).all()
+    assert len(bones(rig, 1, shown=[True, False, True])["bones"].points) == 12
 
 
 def test_weights_of_one_joint_and_of_all(rig):
@@ -92,7 +106,7 @@ def test_weights_of_one_joint_and_of_all(rig):
     every = weights_scene(rig, rig.weights)
     expected = palette.to_bytes(rig.weights @ palette.joint_colors(rig.skeleton.parents))
     np.testing.assert_array_equal(every.actors["body"].colors, expected)
-    assert every.legend is None
+    assert "Each bone" in every.legend.title
 
 
 def test_what_no_path_reaches_is_grey_and_the_legend_says_so(rig, binding):

@@ -41,7 +41,7 @@ def test_without_a_character_there_is_an_empty_scene():
 @pytest.mark.parametrize("panel", PANELS)
 def test_before_anything_is_computed_the_character_stands_there_plain(rig, panel):
     scene = resolve(State(rig=rig, panel=panel))
-    assert set(scene.actors) == {"body", "bones", "attachment 0"}
+    assert set(scene.actors) == {"body", "bones", "bone outlines", "attachment 0"}
     assert scene.actors["body"].scalars is None
     assert scene.actors["body"].colors is None
     assert scene.legend is None
@@ -141,14 +141,16 @@ def test_the_weights_of_all_bones_or_of_one(state, binding):
 
 def test_the_distance_on_the_surface(state, binding):
     state.panel = "geodesics"
-    assert resolve(state).legend is None  # until the field is there the body is plain
+    at_once = resolve(state)  # what lies inside comes later
+    known = binding.distances.joint[state.joint]
+    np.testing.assert_allclose(at_once.actors["body"].scalars, known, rtol=1e-6)
     state.field = (binding.distances, 1, binding.distances.field(1))
     scene = resolve(state)
     distance = binding.distances.on_mesh(1)
     np.testing.assert_allclose(scene.actors["body"].scalars, distance, rtol=1e-5, atol=1e-6)
     assert "elbow" in scene.legend.title
     state.joint = 2
-    assert "elbow" in resolve(state).legend.title  # the last one stays until the next is there
+    assert "wrist" in resolve(state).legend.title
 
 
 def test_the_body_is_see_through_only_where_it_would_hide_the_graph(state):
