@@ -236,5 +236,5 @@ def test_bones_far_out_of_the_body_do_not_shrink_it(rig):
         (*rig.skeleton.names, "target"),
     )  # fmt: skip
     far = replace(rig, skeleton=skeleton, weights=None, clips=())
-    scene = Description({"body": body(far), "bones": bones(far)})
+    scene = Description({"body": body(far), **bones(far)})
     np.testing.assert_array_equal(scene.bounds, body_alone)
