@@ -18,7 +18,7 @@ from .state import State
 
 MOST_WEIGHTS = 6
 MOST_DISTANCES = 5
-NO_WEIGHT = 5e-4
+NO_WEIGHT = 5e-3
 """Weights that would be shown as 0.00 are not shown."""
 
 

@@ -28,7 +28,7 @@ def panels(session: Session) -> tuple[Tabs, pmui.Column]:
     tabs = Tabs(
         value=state.panel,
         tabs=[(panel.id, panel.title, panel.icon) for panel in PANELS],
-        margin=(10, 16, 0, 16),
+        margin=(10, 20, 0, 20),
         sizing_mode="stretch_width",
     )
     place = pmui.Column(margin=0, sizing_mode="stretch_width")

@@ -21,6 +21,10 @@ TITLES = {
 }
 
 
+# The line keeps its height whatever it says: the canvas above must not jump.
+_ONE_LINE = {"whiteSpace": "nowrap", "overflow": "hidden", "textOverflow": "ellipsis"}
+
+
 def status_line(session: Session) -> pmui.Row:
     """Return the slim line under the canvas."""
     state = session.state
@@ -28,14 +32,14 @@ def status_line(session: Session) -> pmui.Row:
     counts = pmui.Typography(
         when(lambda *_: summary(state), state.param.rig, state.param.binding),
         visible=when(lambda busy: not busy, state.param.busy),
-        sx={**small, "color": "text.secondary"},
+        sx={**small, **_ONE_LINE, "color": "text.secondary"},
         margin=(10, 16),
         sizing_mode="stretch_width",
     )
     stage = pmui.Typography(
         when(stage_text, state.param.stage),
         visible=state.param.busy,
-        sx={**small, "minWidth": "150px"},
+        sx={**small, **_ONE_LINE, "minWidth": "150px", "maxWidth": "46vw"},
         margin=(10, 8, 10, 16),
     )
     bar = pmui.LinearProgress(
@@ -61,7 +65,8 @@ def status_line(session: Session) -> pmui.Row:
         sizing_mode="stretch_width",
         margin=0,
         sx={
-            "minHeight": "38px",
+            "height": "38px",
+            "overflow": "hidden",
             "borderTop": "1px solid",
             "borderColor": "divider",
             "bgcolor": "background.paper",

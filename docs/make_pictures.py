@@ -138,7 +138,7 @@ def panels(visit: Visit) -> None:
     take(visit, "wave")
     visit.button("Whole").click()
     visit.panel("Weights")
-    visit.choose("Colours show", "Difference to the file's weights")
+    visit.choose("Colours show", "Difference to the file's own")
     visit.click_vertex(CHEST)
     take(visit, "weights")
 

@@ -16,6 +16,14 @@ const CANVAS_KEYS = [
   ["Home", "the view one begins with"],
 ]
 
+const POINTER = [
+  ["drag", "turn", "drag"],
+  ["right-drag", "move (or Shift and drag)", "two fingers"],
+  ["wheel", "nearer, farther", "pinch"],
+  ["click", "choose a bone, or a point of the body", "tap"],
+  ["double click", "the view one begins with", "double tap"],
+]
+
 const KEYS_STYLE = `
 .tools { position: absolute; top: 12px; right: 12px; display: flex; gap: 2px; padding: 3px;
   border-radius: 10px; color: var(--ink); background: var(--card); backdrop-filter: blur(6px); }
@@ -27,11 +35,13 @@ const KEYS_STYLE = `
 .tools svg { width: 18px; height: 18px; fill: none; stroke: currentColor; stroke-width: 1.8;
   stroke-linecap: round; stroke-linejoin: round; }
 dialog.keys { color: var(--ink); background: var(--paper); border: 0; border-radius: 14px;
-  padding: 22px 26px 20px; width: min(430px, calc(100vw - 40px)); box-sizing: border-box;
+  padding: 22px 26px 20px; width: min(720px, calc(100vw - 32px)); max-height: calc(100vh - 32px); box-sizing: border-box;
   box-shadow: 0 18px 60px rgba(8, 14, 28, .35); font: 14px/1.45 Roboto, system-ui, sans-serif; }
 dialog.keys::backdrop { background: rgba(8, 12, 20, .38); }
 dialog.keys h2 { font-size: 17px; font-weight: 600; margin: 0 0 12px; }
-dialog.keys h3 { font-size: 12px; font-weight: 600; margin: 16px 0 6px; opacity: .75; }
+dialog.keys h3 { font-size: 12px; font-weight: 600; margin: 0 0 7px; opacity: .75; }
+dialog.keys > div { columns: 2 270px; column-gap: 34px; }
+dialog.keys section { break-inside: avoid; padding-bottom: 16px; }
 dialog.keys dl { display: grid; grid-template-columns: max-content 1fr; gap: 7px 16px; margin: 0; }
 dialog.keys dt { display: flex; gap: 4px; align-items: center; }
 dialog.keys dd { margin: 0; align-self: center; }
@@ -91,10 +101,15 @@ class Keys {
     const card = document.createElement("dialog")
     card.className = "keys"
     card.setAttribute("aria-labelledby", "keys-title")
+    const touch = matchMedia("(pointer: coarse)").matches
+    const pointer = POINTER.map(([mouse, what, fingers]) =>
+      [(touch ? fingers : mouse).replace(/ /g, "\u00a0"), touch ? what.replace(/ \(.*/, "") : what])
     const list = (keys) => `<dl>${keys.map(([key, what]) =>
       `<dt>${key.split(" ").map((k) => `<kbd>${k}</kbd>`).join("")}</dt><dd>${what}</dd>`).join("")}</dl>`
-    card.innerHTML = `<h2 id="keys-title">Keyboard</h2>${list(KEYS)}<h3>In the canvas</h3>`
-      + `${list(CANVAS_KEYS)}<button type="button">Close</button>`
+    card.innerHTML = `<h2 id="keys-title">How to get about</h2><div><section><h3>In the canvas</h3>`
+      + `${list(pointer)}</section><section><h3>Keys</h3>${list(KEYS)}</section><section>`
+      + `<h3>Keys in the canvas</h3>${list(CANVAS_KEYS)}</section></div>`
+      + `<button type="button">Close</button>`
     card.querySelector("button").addEventListener("click", () => card.close())
     card.addEventListener("click", (e) => { if (e.target === card) { card.close() } })
     card.addEventListener("keydown", (e) => {

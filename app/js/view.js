@@ -142,11 +142,12 @@ class View {
     const size = [box.width, box.height]
     if (JSON.stringify([room, size]) === this.roomFor) { return }
     this.roomFor = JSON.stringify([room, size])
-    // What was fitted before the window had another size, must fit again.
-    const before = this.fitted
+    // What was fitted before there was another room must fit again; a few pixels change nothing.
     this.stage.room = room
-    this.fitted = this.fitNow()
-    if (before && this.framed) { this.orbit.scale(this.fitted / before) }
+    const fitted = this.fitNow()
+    if (this.framed && Math.abs(fitted / this.fitted - 1) < 0.03) { return }
+    if (this.framed) { this.orbit.scale(fitted / this.fitted) }
+    this.fitted = fitted
   }
 
   fitNow() {

@@ -8,7 +8,7 @@ import panel_material_ui as pmui
 
 from ..session import Session
 from ..state import State
-from .parts import GAP, caption, cutting, section, slider, when
+from .parts import GAP, caption, cutting, lead, section, slider, when
 
 
 def geodesics(session: Session) -> pmui.Column:
@@ -23,7 +23,8 @@ def geodesics(session: Session) -> pmui.Column:
         ),
     )
     return pmui.Column(
-        section("Distance from the bone", idle, *cutting(state)),
+        lead("How far it is from the chosen bone, by the shortest way through the body."),
+        section("", idle, *cutting(state), margin=(8, 20, 4, 20)),
         section("Shown with it", *_more(state)),
         section("Wavefront", *_wave(state)),
         margin=0,

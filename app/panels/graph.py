@@ -13,7 +13,7 @@ from cutcell.graph import INTERIOR, MESH, SURFACE
 from ..session import Session
 from ..state import LAYERS, State
 from ..theme import LAYER_COLORS
-from .parts import GAP, caption, choice, cutting, section, slider, when
+from .parts import GAP, caption, choice, cutting, lead, section, slider, when
 
 KINDS = {"mesh_edges": MESH, "interior_edges": INTERIOR, "surface_edges": SURFACE}
 LEAF_TITLES = {"point": "A point", "extend": "Extended", "fit": "Fitted"}
@@ -24,6 +24,7 @@ def graph(session: Session) -> pmui.Column:
     """Return the controls of the panel Graph."""
     state = session.state
     return pmui.Column(
+        lead("The paths that distances are measured on: along the mesh and through the inside."),
         section("Layers", *[_layer(state, name) for name in LAYERS], *_colors(state)),
         section("Look inside", *_inside(state)),
         section("Build", *_build(session)),
@@ -142,7 +143,7 @@ def _build(session: Session) -> list[Any]:
 
     resolution.param.watch(chosen, "value_throttled")
     state.param.watch(shown, "resolution")
-    threshold = slider(state.param.winding_threshold, "Winding threshold τ", step=0.01)
+    threshold = slider(state.param.winding_threshold, "Counts as inside from τ", step=0.01)
     again = pmui.Button(
         label="Compute again",
         size="small",
@@ -162,7 +163,7 @@ def _build(session: Session) -> list[Any]:
         threshold,
         caption("Paths inside run along", margin=(4, 0, 0, 0)),
         choice(state.param.connectivity, {"6 axes": 6, "26 diagonals": 26, "Any angle": "any"}),
-        caption("Bones of joints without children", margin=(4, 0, 0, 0)),
+        caption("The last bone of a chain is", margin=(4, 0, 0, 0)),
         choice(state.param.leaf, {LEAF_TITLES.get(leaf, leaf): leaf for leaf in LEAVES}),
         again,
     ]

@@ -26,9 +26,15 @@ def section(title: str, *objects: Any, **params: Any) -> pmui.Column:
     return pmui.Column(heading, *objects, **params)
 
 
+def lead(text: Any) -> pmui.Typography:
+    """Return the sentence that a panel begins with: what is seen there."""
+    look = {"fontSize": "13px", "lineHeight": 1.45, "color": "text.primary", "display": "block"}
+    return pmui.Typography(text, sx=look, margin=(12, 20, 0, 20), sizing_mode="stretch_width")
+
+
 def caption(text: Any = "", **params: Any) -> pmui.Typography:
     """Return a line of small, quiet text."""
-    look = {"color": "text.secondary", "lineHeight": 1.45, "display": "block"}
+    look = {"color": "text.secondary", "lineHeight": 1.45, "display": "block", "letterSpacing": 0}
     params = {"margin": (2, 0, 6, 0), "sizing_mode": "stretch_width", **params}
     return pmui.Typography(text, variant="caption", sx=look, **params)
 

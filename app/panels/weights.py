@@ -11,16 +11,16 @@ from cutcell.skinning import FALLOFFS
 
 from ..session import Session
 from ..state import State
-from .parts import GAP, caption, choice, section, slider, when
+from .parts import GAP, caption, choice, lead, section, slider, when
 
 SHOWN = {
-    "All bones, mixed": "mix",
-    "Dominant bone": "dominant",
+    "All bones": "mix",
+    "The strongest bone": "dominant",
     "The chosen bone": "bone",
-    "Number of influences": "count",
+    "How many bones hold a point": "count",
 }
-DIFFERENCE = {"Difference to the file's weights": "difference"}
-FALLOFF_TITLES = {"rig": "Ours, to animate with", "paper": "The paper's"}
+DIFFERENCE = {"Difference to the file's own": "difference"}
+FALLOFF_TITLES = {"rig": "To animate with", "paper": "The paper's"}
 
 
 def weights(session: Session) -> pmui.Column:
@@ -45,8 +45,9 @@ def weights(session: Session) -> pmui.Column:
     listed()
     facts = caption(when(lambda *_: told(state), state.param.binding, state.param.rig))
     return pmui.Column(
-        section("Weights", shown, facts),
-        section("Falloff", *_falloff(state)),
+        lead("How much each bone moves each point of the skin."),
+        section("", shown, facts, margin=(8, 20, 4, 20)),
+        section("Falloff with distance", *_falloff(state)),
         margin=0,
         sizing_mode="stretch_width",
     )
@@ -63,7 +64,7 @@ def _falloff(state: State) -> list[Any]:
     return [
         *([choice(state.param.falloff, kernels)] if len(kernels) > 1 else []),
         alpha,
-        slider(state.param.max_influences, "Most influences", whole=True),
+        slider(state.param.max_influences, "Bones a vertex, at most", whole=True),
         slider(state.param.threshold, "Drop weights below", step=0.005, end=0.3),
     ]
 
@@ -73,9 +74,9 @@ def told(state: State) -> str:
     if state.binding is None:
         return ""
     held = state.binding.weights
-    text = f"{np.count_nonzero(held) / max(len(held), 1):.1f} influences a vertex"
+    text = f"{np.count_nonzero(held) / max(len(held), 1):.1f} bones a vertex"
     own = state.rig.weights
     if own is not None and own.shape == held.shape:
         apart = np.abs(held - own).sum(axis=1).mean() / 2
-        text += f"; {apart:.0%} of the weight sits on other joints than in the file"
+        text += f"; {apart:.0%} of the weight is held by other bones than in the file"
     return text + "."

@@ -26,6 +26,8 @@ KINDS = {
     "surface_edges": "surface: between the two",
 }
 """What each kind of edges is."""
+X_RAY = 0.14
+"""How opaque each edge inside is where nothing is cut."""
 SHELL = 0.5
 """How opaque the body is behind a slice."""
 
@@ -58,11 +60,17 @@ def graph_layers(state: State, memo: Memo) -> tuple[dict[str, Actor], Legend | N
         lambda: graph_scene(rig, lattice, theme=theme, field=field, **look).actors,
     )
     seen = {
-        name: replace(drawn[name], visible=getattr(state, layer))
+        name: replace(drawn[name], visible=getattr(state, layer), opacity=_thin(state, name))
         for layer, name in LAYERS.items()
         if name in drawn
     }
     return seen, legend
+
+
+def _thin(state: State, name: str) -> float:
+    """Return how opaque edges are: those inside a whole body would else be one orange blob."""
+    whole = state.cut_axis == "off" and name == "interior edges"
+    return X_RAY if whole and state.edge_colors == "kind" else 1.0
 
 
 def _field(state: State, memo: Memo) -> tuple[Any, dict[str, Any], Legend | None]:

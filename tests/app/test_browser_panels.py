@@ -80,7 +80,7 @@ def test_a_vertex_is_looked_at_closely(visit, robot):
     name, weight = robot.skeleton.names[strongest], binding.weights[vertex, strongest]
     row = card(visit).get_by_role("button", name=f"{name}: weight {weight:.2f}")
     expect(row).to_be_visible()
-    expect(card(visit)).to_contain_text("Nearest bones")
+    expect(card(visit)).to_contain_text("nearest bones")
     assert visit.report()["actors"]["vertex"]["visible"]
     row.click()
     visit.expect_text(f"Weight of {name}")
@@ -201,9 +201,9 @@ def test_weights_in_many_ways(visit):
     visit.panel("Weights")
     mixed = visit.look()
     for option, legend in (
-        ("Dominant bone", None),
+        ("The strongest bone", None),
         ("The chosen bone", "Weight of"),
-        ("Number of influences", "Joints that a vertex follows"),
+        ("How many bones hold a point", "Joints that a vertex follows"),
     ):
         before = visit.look()
         visit.choose("Colours show", option)
@@ -211,13 +211,13 @@ def test_weights_in_many_ways(visit):
             visit.expect_text(legend)
         assert changed(before, visit.look()) > 0.001, option
     one = visit.look()
-    visit.slide("Most influences", "Home")
-    visit.expect_text("1.0 influences a vertex")
+    visit.slide("Bones a vertex, at most", "Home")
+    visit.expect_text("1.0 bones a vertex")
     assert changed(one, visit.look()) > 0.0005
     for _ in range(3):
-        visit.slide("Most influences", "ArrowRight")
+        visit.slide("Bones a vertex, at most", "ArrowRight")
         visit.settle()
-    visit.choose("Colours show", "All bones, mixed")
+    visit.choose("Colours show", "All bones")
     assert changed(mixed, visit.look()) < 0.001
 
 
@@ -230,7 +230,7 @@ def test_a_real_character_on_every_panel(visit, tmp_path):
     visit.drop(path)
     visit.expect_text(re.compile(f"^{len(rig.mesh.vertices):,} vertices"))
     visit.wait_until_bound()
-    visit.choose("Colours show", "Difference to the file's weights")
+    visit.choose("Colours show", "Difference to the file's own")
     visit.expect_text("Weight that sits on other joints")
     vertex = click_vertex(visit)
     expect(card(visit)).to_contain_text("outlined: the file's own")

@@ -89,7 +89,7 @@ def test_keys_change_the_bone_play_and_list_themselves(visit):
     visit.settle()
     assert bone.inner_text() != before
     visit.page.keyboard.press("?")
-    card = visit.page.get_by_role("dialog", name="Keyboard")
+    card = visit.page.get_by_role("dialog", name="How to get about")
     card.wait_for(timeout=LOAD_MS)
     visit.page.keyboard.press("Escape")
     card.wait_for(state="hidden", timeout=LOAD_MS)
