@@ -81,7 +81,7 @@ def _skeleton(state: State, memo: Memo, coloured: bool) -> dict[str, Actor]:
 
 
 def _behind_cut(state: State, start: NDArray, end: NDArray, joint: NDArray) -> NDArray | None:
-    """Return which bones are left by a cut: the chosen ones, and all not before it; None for all."""
+    """Return which bones are left by a cut: the chosen one, all not before it; None: all."""
     cut = cut_of(state)
     if cut is None:
         return None

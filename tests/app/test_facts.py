@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import cutcell
-from app.facts import components, vertex_facts
+from app.facts import NO_WEIGHT, components, vertex_facts
 from app.scenes import Memo
 from app.state import State
 from cutcell.rig import TriangleMesh
@@ -39,7 +39,8 @@ def test_before_anything_is_computed_only_the_vertex_is_known(rig):
 def test_weights_and_distances_are_those_of_the_vertex(rig, binding):
     found = facts(rig, binding, 7)
     ours = {bone["joint"]: bone["ours"] for bone in found["weights"]}
-    assert ours == {j: w for j, w in enumerate(binding.weights[7]) if max(w, rig.weights[7, j]) > 0}
+    held = dict(enumerate(binding.weights[7]))
+    assert ours == {j: w for j, w in held.items() if max(w, rig.weights[7, j]) > NO_WEIGHT}
     shown = [max(bone["ours"], bone["artist"]) for bone in found["weights"]]
     assert shown == sorted(shown, reverse=True)
     assert sum(bone["artist"] for bone in found["weights"]) == pytest.approx(1)
