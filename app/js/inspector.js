@@ -91,8 +91,8 @@ function card(model, facts) {
     root.append(row(model, bone, bars, bone.ours.toFixed(2), spoken))
   }
 
-  const distances = element("h3", "", "Distance to the nearest bones")
-  distances.append(element("small", "", "longest side = 1"))
+  const distances = element("h3", "", "The nearest bones")
+  distances.append(element("small", "", "distance; longest side = 1"))
   root.append(distances)
   const most = Math.max(...facts.distances.map(({distance}) => distance), 1e-12)
   for (const bone of facts.distances) {
