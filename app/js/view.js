@@ -121,6 +121,7 @@ class View {
     change()
     if (this.overlay.canvas.clientHeight) { this.orbit.scale(this.stage.fitting(way, target) / before) }
     this.fitted = this.fitNow()
+    this.rested()  // pictures are drawn from where this camera is
   }
 
   // Keeps the character clear of what is written over the canvas.
