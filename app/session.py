@@ -88,6 +88,12 @@ class Session(Opening):
                 self._jobs[name].close()
         return self._jobs[name]
 
+    @property
+    def working(self) -> bool:
+        """Whether there is work that was neither finished nor stopped, or is about to begin."""
+        waiting = self._timer is not None and self._timer.is_alive()
+        return waiting or any(jobs.running for jobs in self._jobs.values())
+
     # Computing
 
     def bind(self) -> None:

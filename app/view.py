@@ -92,6 +92,10 @@ class SceneView(JSComponent):
         """Let the browser save a file."""
         self._send_msg({"download": {"name": name, "content": content}})
 
+    def answer(self, **message: Any) -> None:
+        """Tell the browser what it asked for; it is not told again to one that comes later."""
+        self._send_msg(message)
+
     def _send(self, message: dict[str, Any]) -> None:
         if message:
             self._count += 1

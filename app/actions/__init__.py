@@ -6,6 +6,8 @@ are what the panels call.
 
 from __future__ import annotations
 
-from . import compare, geodesics, habits, pose, weights
+from . import compare, geodesics, habits, pose, rest, weights
 
-WATCHERS = (geodesics.watch, pose.watch, compare.watch, weights.watch, habits.watch)
+WATCHERS = (
+    geodesics.watch, pose.watch, compare.watch, weights.watch, habits.watch, rest.watch,
+)  # fmt: skip

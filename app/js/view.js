@@ -58,6 +58,7 @@ class View {
   receive(message) {
     const {stage} = this
     if (message.download) { save(message.download) }
+    if ("rests" in message) { this.answered?.(message.rests) }
     if (!message.id) { return }
     for (const name of message.remove || []) {
       stage.figures.get(name)?.remove()
@@ -260,6 +261,14 @@ class View {
     const p = this.stage.figures.get("body").posed()
     const [x, y] = this.stage.project([...p.slice(3 * vertex, 3 * vertex + 3)])
     return [box.left + x, box.top + y]
+  }
+
+  // Whether the server has nothing under way, once it has done what it was asked before. For tests.
+  serverRests() {
+    return new Promise((done) => {
+      this.answered = done
+      this.model.send_msg({type: "rests?"})
+    })
   }
 
   report() {

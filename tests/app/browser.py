@@ -8,6 +8,7 @@ import re
 import subprocess
 import sys
 import threading
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -16,19 +17,44 @@ from urllib.parse import urlparse
 
 import numpy as np
 from PIL import Image
-from playwright.sync_api import Browser, ConsoleMessage, Locator, Page, expect
+from playwright.sync_api import Browser, ConsoleMessage, Error, Locator, Page, expect
+
+import cutcell
 
 ROOT = Path(__file__).resolve().parents[2]
-START_SECONDS = 60
-LOAD_MS = 60_000
-BIND_MS = 120_000
-SETTLED = """() => {
+START_SECONDS = 240
+LOAD_MS = 120_000
+BIND_MS = 240_000
+expect.set_options(timeout=LOAD_MS)  # a loaded machine is slow, and patience costs nothing
+ANSWER_MS = 10_000
+
+# What was clicked is in the server's hands before it is asked; twice, since what it then does may
+# let a person's choice begin the next thing.
+SETTLED = """async (limit) => {
+  const within = (promise) => Promise.race([promise, new Promise((no) => setTimeout(no, limit))])
   const view = window.__cutcell
-  if (!view || !view.messages) return false
-  const now = JSON.stringify(view.report())
-  const same = now === window.__before
-  window.__before = now
-  return same && view.report().idle
+  let before = null
+  for (let calm = 0; calm < 2; calm++) {
+    if (!await within(view.serverRests()) || !view.messages) return false
+    const now = JSON.stringify(view.report())
+    if (before !== null && now !== before || !view.report().idle) return false
+    before = now
+  }
+  return true
+}"""
+
+# A vertex of the body for which something holds, and where a click means it.
+IN_SIGHT = """(code) => {
+  const view = window.__cutcell
+  const wanted = new Function("vertex", `return ${code}`)
+  const points = view.stage.figures.get("body").rest.length / 3
+  const box = view.overlay.canvas.getBoundingClientRect()
+  for (let vertex = 0; vertex < points; vertex++) {
+    if (!wanted(vertex)) { continue }
+    const [x, y] = view.vertexPoint(vertex)
+    const hit = view.pointer.under(x - box.left, y - box.top)
+    if (hit?.vertex !== undefined && wanted(hit.vertex)) { return [hit.vertex, x, y] }
+  }
 }"""
 
 # What a browser says of its own software rendering, never of the page.
@@ -68,7 +94,7 @@ def served(*arguments: str) -> Iterator[str]:
     finally:
         code = process.poll()
         process.terminate()
-        process.wait(20)
+        process.wait(120)
         reader.join(5)
         assert process.stdout is not None
         process.stdout.close()
@@ -86,6 +112,7 @@ class Visit:
         self.context = browser.new_context(
             **{"viewport": {"width": 1100, "height": 720}, "accept_downloads": True, **context}
         )
+        self.context.set_default_timeout(LOAD_MS)
         self.page: Page = self.context.new_page()
         self.requests: list[str] = []
         self.complaints: list[str] = []
@@ -101,26 +128,68 @@ class Visit:
             self.complaints.append(f"{message.type}: {message.text}")
 
     def close(self) -> None:
-        """Leave; check that nothing was complained of and no request left the machine."""
+        """Leave; check what was heard until then."""
         self.context.close()
+        self.check()
+
+    def check(self) -> None:
+        """Check that nothing was complained of and no request left the machine; forget it."""
         hosts = {urlparse(url).hostname for url in self.requests if not _is_inline(url)}
         assert hosts <= {"localhost"}, f"requests went to {hosts}"
-        assert self.complaints == []
+        complaints, self.complaints = self.complaints, []
+        self.requests.clear()
+        assert complaints == []
+
+    @property
+    def beginning(self) -> tuple[str, str]:
+        """What the address says, and what the line at the bottom counts."""
+        counts = self.status.inner_text().rpartition("|")[0]
+        return self.page.evaluate("location.search"), counts
+
+    def remember_beginning(self) -> None:
+        """Note what `begin_anew` goes back to."""
+        self.first = self.beginning
+
+    def begin_anew(self) -> bool:
+        """Undo all that was chosen; return whether the page is as it was."""
+        try:
+            self.page.keyboard.press("Escape")
+            if self.button("Close").is_visible():
+                self.dismiss()
+            self.button("Reset all choices").click(timeout=ANSWER_MS)
+            self.page.get_by_role("tab", name="Weights", exact=True).click(timeout=ANSWER_MS)
+            self.page.mouse.move(2, 2)
+            self.settle()
+            return self.beginning == self.first
+        except (Error, AssertionError):
+            return False
+
+    @property
+    def status(self) -> Locator:
+        """The line at the bottom, once the graph is counted."""
+        return self.page.get_by_text(re.compile(r"interior, .* surface"))
+
+    @property
+    def bone(self) -> Locator:
+        """The list that says which bone is chosen."""
+        return self.page.get_by_role("combobox", name="Bone")
 
     def wait_until_bound(self) -> None:
         """Wait until the weights are there and drawn."""
-        self.page.get_by_text(re.compile(r"interior, .* surface")).wait_for(timeout=BIND_MS)
+        self.status.wait_for(timeout=BIND_MS)
         self.settle()
 
     def dismiss(self) -> None:
         """Close the message over the canvas."""
-        self.page.get_by_role("button", name="Close", exact=True).click(timeout=LOAD_MS)
-        self.page.get_by_role("alert").wait_for(state="hidden", timeout=LOAD_MS)
+        self.page.get_by_role("button", name="Close", exact=True).click()
+        self.page.get_by_role("alert").wait_for(state="hidden")
 
     def settle(self) -> None:
-        """Wait until nothing is on its way and nothing is drawn any more."""
-        self.page.wait_for_timeout(250)
-        self.page.wait_for_function(SETTLED, timeout=LOAD_MS, polling=250)
+        """Wait until all that was asked for is done, has arrived and is drawn."""
+        self.page.wait_for_function("window.__cutcell?.messages")
+        end = time.monotonic() + BIND_MS / 1000
+        while not self.page.evaluate(SETTLED, ANSWER_MS):
+            assert time.monotonic() < end, f"it never settles: {self.report()}"
 
     def look(self) -> np.ndarray:
         """Return the canvas as it is seen, shape (height, width, 3), int."""
@@ -157,7 +226,7 @@ class Visit:
         self.page.get_by_role("combobox", name=label).click()
         self.page.get_by_role("menuitem", name=option, exact=True).click()
         # Until the menu is gone, and not only its entries, its curtain takes what is clicked.
-        expect(self.page.locator(".MuiPopover-root")).to_have_count(0, timeout=LOAD_MS)
+        expect(self.page.locator(".MuiPopover-root")).to_have_count(0)
 
     def slide(self, label: str, key: str, times: int = 1) -> None:
         """Move a slider by a key."""
@@ -170,19 +239,48 @@ class Visit:
         """Give files to the page."""
         self.page.locator("input[type=file]").set_input_files([str(path) for path in paths])
 
+    def open(self, path: Path) -> None:
+        """Give a file of a character to the page; wait until its weights are there."""
+        count = len(cutcell.load(path).mesh.vertices)
+        # What is dropped while the page still loads may be opened before what its address names.
+        self.page.wait_for_function("window.__cutcell?.report().actors.body")
+        self.drop(path)
+        self.page.get_by_text(re.compile(f"^{count:,} vertices .* surface")).wait_for()
+        self.settle()
+
     def click_bone(self, joint: int) -> None:
         """Click the middle of a joint's bone in the canvas."""
         x, y = self.page.evaluate("joint => __cutcell.bonePoint(joint)", joint)
         self.page.mouse.click(x, y)
 
-    def click_vertex(self, vertex: int) -> None:
-        """Click where a vertex of the body is in the canvas."""
-        x, y = self.page.evaluate("vertex => __cutcell.vertexPoint(vertex)", vertex)
-        self.page.mouse.click(x, y)
+    @property
+    def card(self) -> Locator:
+        """The card of a clicked vertex."""
+        return self.page.get_by_role("region", name=re.compile("Vertex"))
+
+    def click_vertex(self, code: str = "true") -> int:
+        """Click a vertex of the body for which the click means that vertex; return its index.
+
+        Parameters
+        ----------
+        code : str
+            What must be true of `vertex`, in JavaScript.
+        """
+        self.settle()
+        found = self.page.evaluate(IN_SIGHT, code)
+        assert found, "no such vertex is in sight"
+        self.page.mouse.click(found[1], found[2])
+        expect(self.card).to_have_attribute("aria-label", f"Vertex {found[0]}")
+        return int(found[0])
+
+    def close_card(self) -> None:
+        """Leave the clicked vertex."""
+        self.page.keyboard.press("Escape")
+        expect(self.card).to_have_count(0)
 
     def expect_text(self, text: str | re.Pattern[str]) -> None:
         """Wait until some text is seen."""
-        expect(self.page.get_by_text(text).first).to_be_visible(timeout=LOAD_MS)
+        expect(self.page.get_by_text(text).first).to_be_visible()
 
 
 def changed(before: np.ndarray, after: np.ndarray) -> float:

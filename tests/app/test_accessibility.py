@@ -2,25 +2,19 @@
 
 import pytest
 from axe_playwright_python.sync_playwright import Axe
-from playwright.sync_api import sync_playwright
 
 from app.panels import PANELS
-from assets import demo_path
-from scripts.get_chromium import FLAGS
-from tests.app.browser import Visit, served
+from tests.app.browser import Visit
 
 SERIOUS = ("serious", "critical")
 
 
 @pytest.fixture(scope="module")
-def visit(chromium):
-    with sync_playwright() as playwright, served(str(demo_path("robot"))) as url:
-        browser = playwright.chromium.launch(executable_path=chromium, args=list(FLAGS))
-        visit = Visit(browser, url + "/?resolution=24")
-        visit.wait_until_bound()
-        yield visit
-        visit.close()
-        browser.close()
+def visit(browser, url):
+    visit = Visit(browser, url + "/?rig=robot&resolution=24")
+    visit.wait_until_bound()
+    yield visit
+    visit.close()
 
 
 def faults(visit):
@@ -38,7 +32,7 @@ def faults(visit):
 def lasting(visit):
     """Return the faults that are still there when everything has taken its colours."""
     found = faults(visit)
-    for _ in range(6):
+    for _ in range(20):
         if not found:
             break
         visit.page.wait_for_timeout(700)
@@ -50,13 +44,11 @@ def lasting(visit):
 def test_no_panel_has_a_serious_fault(visit, theme):
     if theme == "dark":
         visit.button("Toggle theme").click()
-        visit.page.wait_for_timeout(600)
+        visit.settle()
     told = []
     for panel in PANELS:
         visit.page.get_by_role("tab", name=panel.title).click()
-        visit.page.wait_for_function(
-            "id => location.search.includes('panel=' + id)", arg=panel.id, timeout=30_000
-        )
+        visit.page.wait_for_function("id => location.search.includes('panel=' + id)", arg=panel.id)
         visit.settle()
         told += [f"{panel.id}: {fault}" for fault in lasting(visit)]
     visit.page.keyboard.press("?")

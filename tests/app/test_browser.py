@@ -4,62 +4,27 @@ import re
 import shutil
 
 import numpy as np
-import pytest
-from playwright.sync_api import sync_playwright
 
 import cutcell
 from assets import demo_path
-from scripts.get_chromium import FLAGS
-from tests.app.browser import LOAD_MS, Visit, changed, served
+from tests.app.browser import Visit, changed
+from tests.conftest import SHARED_RIGS
 from viewers.character import pose_in_scene, to_scene
 from viewers.pose_scene import joint_turns, turn
 
 LAYERS = ["Surface", "Mesh edges", "Interior edges", "Surface edges"]
-ROBOT = demo_path("robot")
 
 
-@pytest.fixture(scope="module")
-def browser(chromium):
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=chromium, args=list(FLAGS))
-        yield browser
-        browser.close()
-
-
-@pytest.fixture(scope="module")
-def url():
-    # The robot is the smallest demo: software rendering is slow.
-    with served(str(ROBOT)) as url:
-        yield url
-
-
-@pytest.fixture
-def visit(browser, url):
+def test_the_first_demo_stands_there_without_a_click(browser, url):
     visit = Visit(browser, url)
     visit.wait_until_bound()
-    visit.expect_text("nearest bones")  # the robot's ring, which no bone reaches
-    visit.dismiss()
-    yield visit
+    seen = visit.look()
+    assert visit.page.get_by_role("combobox", name="Demo character").inner_text() == "Walker"
+    assert visit.report()["actors"]["body"]["visible"]
+    assert len(np.unique(seen.reshape(-1, 3), axis=0)) > 2000
+    visit.panel("Graph")
+    assert changed(seen, visit.look()) > 0.05
     visit.close()
-
-
-@pytest.fixture(scope="module")
-def robot():
-    return cutcell.load(ROBOT)
-
-
-def test_the_first_demo_stands_there_without_a_click(browser):
-    with served() as url:
-        visit = Visit(browser, url)
-        visit.page.wait_for_function("window.__cutcell?.report().actors.body", timeout=LOAD_MS)
-        visit.wait_until_bound()
-        seen = visit.look()
-        assert visit.page.get_by_role("combobox", name="Demo character").inner_text() == "Walker"
-        assert visit.report()["actors"]["body"]["visible"]
-        assert len(np.unique(seen.reshape(-1, 3), axis=0)) > 2000
-        visit.panel("Graph")
-        assert changed(seen, visit.look()) > 0.05
-        visit.close()
 
 
 def test_every_layer_can_be_switched(visit):
@@ -94,7 +59,7 @@ def test_the_cutting_plane_moves_through_the_body(visit):
 
 def test_a_bone_is_picked_by_clicking_it(visit, robot):
     names = robot.skeleton.names
-    chosen = visit.page.get_by_role("combobox", name="Bone")
+    chosen = visit.bone
     other = next(
         j
         for j in range(len(names))
@@ -142,14 +107,10 @@ def test_dragging_turns_the_character_and_picks_nothing(visit):
 
 def test_another_resolution_makes_another_graph(visit):
     visit.panel("Graph")
-    status = visit.page.get_by_text(re.compile(r"interior, .* surface"))
-    before = status.inner_text()
+    before = visit.status.inner_text()
     visit.slide("Resolution", "ArrowRight", 2)
-    visit.page.wait_for_function(
-        "([before]) => !document.body.innerText.includes(before)", arg=[before], timeout=LOAD_MS
-    )
     visit.wait_until_bound()
-    assert status.inner_text() != before
+    assert visit.status.inner_text() != before
 
 
 def test_an_impossible_resolution_is_told_and_the_page_lives_on(visit):
@@ -175,7 +136,7 @@ def test_a_joint_is_turned_as_the_core_turns_it(visit, robot):
     visit.slide("About Z", "ArrowRight", 25)
     after = visit.look()
     assert changed(before, after) > 0.002
-    joint = robot.skeleton.names.index(visit.page.get_by_role("combobox", name="Bone").inner_text())
+    joint = robot.skeleton.names.index(visit.bone.inner_text())
     weights = cutcell.bind(robot).weights
     transforms = cutcell.forward_kinematics(
         robot.skeleton, joint_turns(robot, {joint: turn("z", 25)})
@@ -188,44 +149,44 @@ def test_a_joint_is_turned_as_the_core_turns_it(visit, robot):
     np.testing.assert_allclose(visit.points(), rest, atol=1e-6)
 
 
+def play(visit):
+    """Let the motion run for a while."""
+    begin = visit.report()["time"]
+    visit.page.get_by_role("button", name="Play").click()
+    visit.page.wait_for_function("begin => __cutcell.report().time > begin + 0.4", arg=begin)
+
+
 def test_the_motion_plays_and_halts(visit):
     visit.panel("Pose")
     rest = visit.points()
-    visit.page.get_by_role("button", name="Play").click()
-    visit.page.wait_for_function("__cutcell.report().time > 0.3", timeout=LOAD_MS)
+    play(visit)
     moving = visit.points()
     assert np.abs(moving - rest).max() > 0.01
     visit.page.get_by_role("button", name="Pause").click()
-    visit.page.wait_for_function("!__cutcell.report().playing", timeout=LOAD_MS)
+    visit.page.wait_for_function("!__cutcell.report().playing")
     visit.settle()
     halted = visit.points()
     visit.page.wait_for_timeout(300)
     np.testing.assert_array_equal(visit.points(), halted)
     visit.choose("Motion", "Swing the bone")
-    visit.page.get_by_role("button", name="Play").click()
-    visit.page.wait_for_function("__cutcell.report().playing", timeout=LOAD_MS)
-    visit.page.wait_for_timeout(600)
+    play(visit)
     assert np.abs(visit.points() - halted).max() > 1e-3
     visit.button("Rest pose").click()
-    visit.page.wait_for_function("!__cutcell.report().playing", timeout=LOAD_MS)
+    visit.page.wait_for_function("!__cutcell.report().playing")
     visit.settle()
     np.testing.assert_allclose(visit.points(), rest, atol=1e-6)
 
 
-def test_a_file_goes_in_and_the_bound_one_comes_out(visit, request, tmp_path):
-    from tests.conftest import SHARED_RIGS
-
+def test_a_file_goes_in_and_the_bound_one_comes_out(visit, tmp_path):
     real = SHARED_RIGS / "khronos_CesiumMan.glb"
     source = real if real.exists() else demo_path("rabbit")
     path = tmp_path / "my character.glb"
     shutil.copy(source, path)
-    before = visit.look()
-    visit.drop(path)
     rig = cutcell.load(path)
-    visit.expect_text(re.compile(f"^{len(rig.mesh.vertices):,} vertices"))
-    visit.wait_until_bound()
+    before = visit.look()
+    visit.open(path)
     assert changed(before, visit.look()) > 0.02
-    with visit.page.expect_download(timeout=LOAD_MS) as download:
+    with visit.page.expect_download() as download:
         visit.button("Download the bound GLB", exact=False).click()
     bound = tmp_path / download.value.suggested_filename
     assert bound.name == "my character-bound.glb"
@@ -237,7 +198,7 @@ def test_a_file_goes_in_and_the_bound_one_comes_out(visit, request, tmp_path):
 
 
 def test_the_picture_comes_out_as_a_png(visit, tmp_path):
-    with visit.page.expect_download(timeout=LOAD_MS) as download:
+    with visit.page.expect_download() as download:
         visit.button("Picture, film", exact=False).click()
         visit.page.get_by_role("menuitem", name="Picture (PNG)").click()
     path = tmp_path / "picture.png"
@@ -257,7 +218,7 @@ def test_a_text_file_named_glb_is_told_and_the_old_character_stays(visit, tmp_pa
     assert changed(before, visit.look()) < 0.001
     visit.choose("Demo character", "Rabbit")
     visit.page.wait_for_function(
-        "n => __cutcell.report().actors.body.points !== n", arg=len(points), timeout=LOAD_MS
+        "n => __cutcell.report().actors.body.points !== n", arg=len(points)
     )
     visit.wait_until_bound()
 
@@ -265,28 +226,30 @@ def test_a_text_file_named_glb_is_told_and_the_old_character_stays(visit, tmp_pa
 def test_light_and_dark(visit):
     light = visit.look()
     visit.button("Toggle theme").click()
-    visit.page.wait_for_timeout(600)
     dark = visit.look()
+    visit.button("Toggle theme").click()
+    again = visit.look()
     assert light[2, 2].min() > 200
     assert dark[2, 2].max() < 80
+    assert changed(light, again) < 0.001
 
 
 def test_a_narrow_window_shows_the_canvas_first(browser, url):
-    visit = Visit(browser, url, viewport={"width": 420, "height": 800})
+    visit = Visit(browser, url + "/?rig=robot", viewport={"width": 420, "height": 800})
     visit.wait_until_bound()
-    visit.button("Open drawer").wait_for(timeout=LOAD_MS)
-    visit.page.wait_for_timeout(500)
+    visit.button("Open drawer").wait_for()
+    visit.settle()
     box = visit.page.get_by_role("application").bounding_box()
     assert box["width"] > 400
     assert box["height"] > 400
     visit.button("Open drawer").click()
     visit.panel("Graph")
-    visit.page.get_by_role("switch", name="Mesh edges").wait_for(timeout=LOAD_MS)
+    visit.page.get_by_role("switch", name="Mesh edges").wait_for()
     visit.close()
 
 
 def test_two_browsers_share_nothing(browser, url, visit):
-    other = Visit(browser, url)
+    other = Visit(browser, url + "/?rig=robot")
     other.wait_until_bound()
     before = other.look()
     visit.panel("Graph")
@@ -295,7 +258,6 @@ def test_two_browsers_share_nothing(browser, url, visit):
     visit.page.wait_for_function(
         "n => __cutcell.report().actors.body.points !== n",
         arg=other.report()["actors"]["body"]["points"],
-        timeout=LOAD_MS,
     )
     visit.wait_until_bound()
     assert changed(before, other.look()) == 0
@@ -309,7 +271,7 @@ def test_a_long_computation_can_be_cancelled(visit):
     box = visit.page.get_by_role("textbox")
     box.fill("320")
     box.press("Enter")
-    visit.button("Cancel").click(timeout=LOAD_MS)
+    visit.button("Cancel").click()
     visit.expect_text("Cancelled. The page keeps what it had.")
     visit.dismiss()
     visit.wait_until_bound()
@@ -330,8 +292,6 @@ def test_a_file_can_be_dropped_on_the_canvas(visit):
         }""",
         content,
     )
-    visit.page.wait_for_function(
-        "n => __cutcell.report().actors.body.points !== n", arg=points, timeout=LOAD_MS
-    )
+    visit.page.wait_for_function("n => __cutcell.report().actors.body.points !== n", arg=points)
     visit.wait_until_bound()
     visit.expect_text("dropped")

@@ -2,11 +2,10 @@
 
 import numpy as np
 import pytest
-from playwright.sync_api import expect, sync_playwright
+from playwright.sync_api import expect
 
 from assets import demo_path
-from scripts.get_chromium import FLAGS
-from tests.app.browser import LOAD_MS, Visit, changed, served
+from tests.app.browser import Visit, changed
 from tests.conftest import SHARED_RIGS
 
 REAL = SHARED_RIGS / "webxr_hand_right.glb"
@@ -14,15 +13,12 @@ SOURCE = REAL if REAL.exists() else demo_path("rabbit")
 
 
 @pytest.fixture(scope="module")
-def visit(chromium):
-    with sync_playwright() as playwright, served(str(SOURCE)) as url:
-        browser = playwright.chromium.launch(executable_path=chromium, args=list(FLAGS))
-        visit = Visit(browser, url, viewport={"width": 1000, "height": 640})
-        visit.wait_until_bound()
-        visit.panel("Compare")
-        yield visit
-        visit.close()
-        browser.close()
+def visit(browser, url):
+    visit = Visit(browser, url + "/?rig=robot", viewport={"width": 1000, "height": 640})
+    visit.open(SOURCE)
+    visit.panel("Compare")
+    yield visit
+    visit.close()
 
 
 def box(visit, name):
@@ -35,7 +31,7 @@ def captions(visit):
 
 def measured(visit, name):
     cells = visit.page.get_by_role("row").filter(has_text=name).get_by_role("cell")
-    expect(cells.nth(3)).not_to_have_text("", timeout=LOAD_MS)
+    expect(cells.nth(3)).not_to_have_text("")
     return [float(text) for text in cells.all_inner_texts()[1:]]
 
 
@@ -75,8 +71,8 @@ def test_one_camera_turns_all(visit):
 
 
 def test_a_bone_is_picked_in_any_view(visit):
-    expect(visit.page.get_by_role("combobox", name="Bone")).not_to_have_text("")
-    chosen = visit.page.get_by_role("combobox", name="Bone").inner_text()
+    expect(visit.bone).not_to_have_text("")
+    chosen = visit.bone.inner_text()
     ends = visit.page.evaluate("""() => {
       const {bones, stage, overlay} = __cutcell
       const box = overlay.canvas.getBoundingClientRect()
@@ -109,9 +105,9 @@ def test_differences_errors_and_poses_are_seen(visit):
     assert changed(difference, visit.look()) > 0.005
     still = visit.points("body 1")
     visit.button("Play").click()
-    visit.page.wait_for_function("__cutcell.report().time > 0.3", timeout=LOAD_MS)
+    visit.page.wait_for_function("__cutcell.report().time > 0.3")
     visit.button("Pause").click()
-    visit.page.wait_for_function("!__cutcell.report().playing", timeout=LOAD_MS)
+    visit.page.wait_for_function("!__cutcell.report().playing")
     assert np.abs(visit.points("body 1") - still).max() > 1e-3 * np.ptp(still)
     visit.button("Rest pose").click()
     visit.settle()

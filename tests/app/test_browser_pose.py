@@ -4,12 +4,11 @@ import re
 
 import numpy as np
 import pytest
-from playwright.sync_api import expect, sync_playwright
+from playwright.sync_api import expect
 
 import cutcell
 from assets import demo_path
-from scripts.get_chromium import FLAGS
-from tests.app.browser import LOAD_MS, Visit, changed, served
+from tests.app.browser import Visit, changed
 from tests.conftest import SHARED_RIGS
 from viewers.character import pose_in_scene
 from viewers.pose_scene import joint_turns, turn
@@ -19,15 +18,13 @@ SOURCE = REAL if REAL.exists() else demo_path("rabbit")
 
 
 @pytest.fixture(scope="module")
-def visit(chromium):
-    with sync_playwright() as playwright, served(str(SOURCE)) as url:
-        browser = playwright.chromium.launch(executable_path=chromium, args=list(FLAGS))
-        visit = Visit(browser, url, viewport={"width": 1000, "height": 640}, has_touch=True)
-        visit.wait_until_bound()
-        visit.panel("Pose")
-        yield visit
-        visit.close()
-        browser.close()
+def visit(browser, url):
+    size = {"width": 1000, "height": 640}
+    visit = Visit(browser, url + "/?rig=robot", viewport=size, has_touch=True)
+    visit.open(SOURCE)
+    visit.panel("Pose")
+    yield visit
+    visit.close()
 
 
 @pytest.fixture(scope="module")
@@ -66,7 +63,7 @@ def test_a_ring_turns_the_joint_and_the_server_agrees(visit, rig):
     degrees = angle(visit, "Z")
     assert abs(degrees) > 10
     assert angle(visit, "X") == angle(visit, "Y") == 0
-    name = visit.page.get_by_role("combobox", name="Bone").inner_text()
+    name = visit.bone.inner_text()
     joint = rig.skeleton.names.index(name)
     transforms = cutcell.forward_kinematics(
         rig.skeleton, joint_turns(rig, {joint: turn("z", degrees)})
@@ -116,13 +113,13 @@ def test_what_the_card_draws_is_where_the_points_are(visit):
 
 def test_the_worst_turns_are_a_click_away(visit):
     rows = visit.page.get_by_role("list", name="The worst turns").get_by_role("button")
-    rows.first.wait_for(timeout=LOAD_MS)
+    rows.first.wait_for()
     before = visit.look()
     name = rows.first.locator("span").inner_text()
     rows.first.click()
     visit.expect_text("Error against the file's weights")
     bone, axis = re.fullmatch(r"(.*) about ([XYZ])", name).groups()
-    expect(visit.page.get_by_role("combobox", name="Bone")).to_have_text(bone)
+    expect(visit.bone).to_have_text(bone)
     assert angle(visit, axis) == 30
     expect(rows.first).to_have_attribute("aria-current", "true")
     visit.expect_text(re.compile(r"Mean [\d.e-]+ cm² in this pose"))
@@ -155,9 +152,9 @@ def test_a_motion_runs_halts_and_is_moved_through(visit):
     rest(visit)
     still = visit.points()
     visit.button("Play").click()
-    visit.page.wait_for_function("__cutcell.report().time > 0.1", timeout=LOAD_MS)
+    visit.page.wait_for_function("__cutcell.report().time > 0.1")
     visit.button("Halt the motion").click()
-    visit.page.wait_for_function("!__cutcell.report().playing", timeout=LOAD_MS)
+    visit.page.wait_for_function("!__cutcell.report().playing")
     track = visit.page.get_by_role("slider", name="Time in the motion")
     track.focus()
     track.press("Home")
@@ -169,7 +166,7 @@ def test_a_motion_runs_halts_and_is_moved_through(visit):
     assert np.abs(visit.points() - first).max() > 1e-3
     assert visit.page.locator(".gizmo").is_hidden()
     visit.button("Speed: 1 times", exact=False).click()
-    visit.button("Speed: 2 times", exact=False).wait_for(timeout=LOAD_MS)
+    visit.button("Speed: 2 times", exact=False).wait_for()
     rest(visit)
     np.testing.assert_array_equal(visit.points(), still)
     assert visit.page.locator(".transport").is_hidden()
@@ -181,7 +178,7 @@ def test_a_film_and_the_numbers_come_out(visit, tmp_path):
         ("Numbers", "Weights (CSV)", b"vertex,"),
     ):
         visit.button(menu).click()
-        with visit.page.expect_download(timeout=LOAD_MS) as download:
+        with visit.page.expect_download() as download:
             visit.page.get_by_role("menuitem", name=item).click()
         path = tmp_path / download.value.suggested_filename
         download.value.save_as(path)

@@ -1,0 +1,63 @@
+"""What the browser tests share: one Chromium, one server, and a page that shows the robot."""
+
+from collections.abc import Iterator
+
+import pytest
+from playwright.sync_api import Browser, sync_playwright
+
+import cutcell
+from assets import demo_path
+from cutcell.rig import Rig
+from scripts.get_chromium import FLAGS
+from tests.app.browser import Visit, served
+
+
+@pytest.fixture(scope="package")
+def browser(chromium: str) -> Iterator[Browser]:
+    """Open a Chromium; each visit is a person of its own in it."""
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=chromium, args=list(FLAGS))
+        yield browser
+        browser.close()
+
+
+@pytest.fixture(scope="package")
+def url() -> Iterator[str]:
+    """Serve the page, which opens the first demo unless its address asks for another."""
+    with served() as url:
+        yield url
+
+
+@pytest.fixture(scope="package")
+def robot() -> Rig:
+    """Load what `visit` shows: the smallest demo, for software rendering is slow."""
+    return cutcell.load(demo_path("robot"))
+
+
+@pytest.fixture(scope="package")
+def kept() -> Iterator[list[Visit]]:
+    """Keep the page of `visit` from test to test."""
+    kept: list[Visit] = []
+    yield kept
+    for visit in kept:
+        visit.close()
+
+
+@pytest.fixture
+def visit(browser: Browser, url: str, kept: list[Visit]) -> Iterator[Visit]:
+    """Show the robot, bound, on the panel Weights, with nothing else chosen.
+
+    It is the page of the test before, where that can be brought back to its beginning.
+    """
+    visit = kept.pop() if kept else None
+    if visit is not None and not visit.begin_anew():
+        visit.context.close()
+        visit = None
+    if visit is None:
+        visit = Visit(browser, url + "/?rig=robot")
+        visit.wait_until_bound()
+        visit.dismiss()  # the robot's ring, which no bone reaches
+        visit.remember_beginning()
+    yield visit
+    kept.append(visit)
+    visit.check()

@@ -1,0 +1,127 @@
+"""Each panel on files from elsewhere, used as a person uses it: a visit each.
+
+Where the files are absent, since they are not part of the project, demo characters stand in.
+"""
+
+import re
+
+import numpy as np
+import pytest
+from playwright.sync_api import expect
+
+import cutcell
+from assets import demo_path
+from tests.app.browser import Visit, changed
+from tests.conftest import SHARED_RIGS
+from viewers.character import pose_in_scene
+from viewers.pose_scene import joint_turns, turn
+
+RESOLUTION = 24
+FILES = {
+    "a clothed human": ("makehuman_clothed_mixamo", "biped_cape"),
+    "a robot of many parts": ("quaternius_mech_george", "robot"),
+    "a hand whose joints hang on nothing": ("webxr_hand_right", "rabbit"),
+}
+
+
+@pytest.fixture
+def visit(browser, url):
+    visit = Visit(browser, f"{url}/?rig=robot&resolution={RESOLUTION}")
+    yield visit
+    visit.close()
+
+
+@pytest.fixture(params=FILES)
+def path(request):
+    real, demo = FILES[request.param]
+    path = SHARED_RIGS / f"{real}.glb"
+    return path if path.exists() else demo_path(demo)
+
+
+def test_every_panel_on_a_file_from_elsewhere(visit, path):
+    rig = cutcell.load(path)
+    binding = cutcell.bind(rig, RESOLUTION)
+    visit.open(path)
+    if visit.button("Close").is_visible():
+        visit.dismiss()
+    looks_at_weights(visit, rig, binding)
+    looks_at_the_graph(visit, binding)
+    follows_the_distance(visit, rig, binding)
+    turns_a_joint(visit, rig, binding)
+    compares(visit)
+    begins_the_tour(visit)
+
+
+def looks_at_weights(visit, rig, binding):
+    visit.panel("Weights")
+    mixed = visit.look()
+    vertex = visit.click_vertex()
+    strongest = int(binding.weights[vertex].argmax())
+    name, weight = rig.skeleton.names[strongest], binding.weights[vertex, strongest]
+    row = visit.card.get_by_role("button", name=f"{name}: weight {weight:.2f}")
+    row.click()
+    visit.expect_text(f"Weight of {name}")
+    assert changed(mixed, visit.look()) > 0.002
+    visit.close_card()
+    visit.choose("Colours show", "Difference to the file's own")
+    visit.expect_text("Weight that sits on other joints")
+
+
+def looks_at_the_graph(visit, binding):
+    visit.panel("Graph")
+    for kind in range(3):
+        visit.expect_text(f"{(binding.graph.edge_kind == kind).sum():,}")
+    before = visit.look()
+    visit.switch("One slice and its rays")
+    visit.expect_text("Winding number")
+    assert changed(before, visit.look()) > 0.002
+    assert visit.report()["actors"]["slice crossings"]["points"] > 0
+    visit.switch("One slice and its rays")
+
+
+def follows_the_distance(visit, rig, binding):
+    visit.panel("Distance")
+    name = visit.bone.inner_text()
+    visit.expect_text(f"Distance from {name}")
+    shown = "Array.from(__cutcell.stage.figures.get('body').values)"
+    visit.settle()
+    values = np.array(visit.page.evaluate(shown))
+    field = binding.distances.on_mesh(rig.skeleton.names.index(name))
+    near = np.isfinite(field) & ~binding.distances.fallback  # what is far was not measured here
+    assert near.mean() > 0.02
+    np.testing.assert_allclose(values[near], field[near], atol=1e-5)
+
+
+def turns_a_joint(visit, rig, binding):
+    visit.panel("Pose")
+    still = visit.points()
+    visit.slide("About Z", "ArrowRight", 20)
+    visit.settle()
+    joint = rig.skeleton.names.index(visit.bone.inner_text())
+    turns = joint_turns(rig, {joint: turn("z", 20)})
+    scene = pose_in_scene(rig, cutcell.forward_kinematics(rig.skeleton, turns))
+    expected = cutcell.linear_blend_skinning(still, binding.weights, scene)
+    assert np.abs(expected - still).max() > 1e-3 * np.ptp(still)
+    np.testing.assert_allclose(visit.points(), expected, atol=1e-4 * np.ptp(still))
+    visit.button("Rest pose").click()
+
+
+def compares(visit):
+    visit.panel("Compare")
+    cells = visit.page.get_by_role("row").filter(has_text="Euclidean").get_by_role("cell")
+    expect(cells.nth(3)).not_to_have_text("")
+    l1, deformation, _ = (float(text) for text in cells.all_inner_texts()[1:])
+    assert 0 < l1 < 2
+    assert deformation > 0
+    visit.settle()
+    captions = visit.page.locator(".caption").all_inner_texts()
+    assert captions == ["cutcell, as set here", "The file's own", "Euclidean"]
+
+
+def begins_the_tour(visit):
+    visit.panel("Learn")
+    visit.button("Start the tour").click()
+    tour = visit.page.get_by_role("article", name="Tour")
+    expect(tour).to_contain_text(re.compile(r"Step 1 of \d+"))
+    visit.button("Leave").click()
+    expect(tour).to_be_hidden()
