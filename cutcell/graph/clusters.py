@@ -83,7 +83,10 @@ def cluster(caps: Caps) -> Clusters:
     start = np.arange(leaves + 1) * loops // leaves
     centre, area, vector, moment = _sum_up(rim, first, apex, start)
     radius = np.zeros(len(centre))
-    in_threads(lambda part: _surround(rim, first, start, centre, part, radius), range(1, 17))
+    step = 16 if loops > 1000 else 1  # few are done before a thread has begun
+    in_threads(
+        lambda part: _surround(rim, first, start, centre, part, step, radius), range(1, step + 1)
+    )
     return Clusters(rim, first, apex, start, centre, radius, area, vector, moment)
 
 
@@ -144,10 +147,10 @@ def _add_fan(ring, apex, centre, vector, moment):
 
 
 @njit(cache=True, nogil=True)
-def _surround(rim, first, start, centre, part, radius):
-    """Find the radius of every 16th cluster."""
+def _surround(rim, first, start, centre, part, step, radius):
+    """Find the radius of each so-manieth cluster, from `part` on."""
     leaves = len(start) - 1
-    for k in range(part, 2 * leaves, 16):
+    for k in range(part, 2 * leaves, step):
         low = high = k
         while low < leaves:
             low, high = 2 * low, 2 * high + 1
