@@ -22,7 +22,12 @@ TITLES = {
 
 
 # The line keeps its height whatever it says: the canvas above must not jump.
-_ONE_LINE = {"whiteSpace": "nowrap", "overflow": "hidden", "textOverflow": "ellipsis"}
+_ONE_LINE = {
+    "display": "block",
+    "whiteSpace": "nowrap",
+    "overflow": "hidden",
+    "textOverflow": "ellipsis",
+}
 
 
 def status_line(session: Session) -> pmui.Row:

@@ -56,7 +56,7 @@ const TOOLS = [
   ["undo", "Undo", '<path d="M9 14L4 9l5-5M4 9h10a6 6 0 0 1 0 12h-3"/>'],
   ["redo", "Redo", '<path d="M15 14l5-5-5-5M20 9H10a6 6 0 0 0 0 12h3"/>'],
   ["reset", "Reset all choices", '<path d="M4 4v5h5M4.6 9A8 8 0 1 1 4 13"/>'],
-  ["keys", "Keyboard shortcuts",
+  ["keys", "Help: mouse, touch and keys",
     '<path d="M9.2 9.3a2.9 2.9 0 1 1 4.4 2.5c-1 .6-1.6 1.2-1.6 2.3M12 17.6v.1"/>'],
 ]
 

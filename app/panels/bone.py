@@ -23,7 +23,10 @@ def bone(session: Session) -> pmui.Column:
     )
 
     def listed(*events: Any) -> None:
-        names = state.rig.skeleton.names if state.rig is not None else ()
+        if state.rig is None:
+            select.param.update(options={}, value=None)
+            return
+        names = state.rig.skeleton.names
         select.param.update(options=unique_options(names), value=state.joint)
 
     def chosen(event: Any) -> None:

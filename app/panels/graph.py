@@ -56,7 +56,9 @@ def _layer(state: State, name: str) -> pmui.Row:
         width=110,
     )
     spacer = pmui.Column(sizing_mode="stretch_width", margin=0)
-    return pmui.Row(switch, spacer, number, sizing_mode="stretch_width", margin=0)
+    # A slice shows rays instead of edges.
+    visible = name == "body" or when(lambda slicing: not slicing, state.param.slicing)
+    return pmui.Row(switch, spacer, number, sizing_mode="stretch_width", margin=0, visible=visible)
 
 
 def count(state: State, layer: str) -> str:
@@ -72,16 +74,21 @@ def _colors(state: State) -> list[Any]:
     idle = caption(
         "The chosen bone carries no weight, so no distance begins at it.",
         visible=when(
-            lambda shown, rig, joint: (
-                shown == "distance" and rig is not None and not rig.skeleton.deform[joint]
+            lambda shown, rig, joint, slicing: (
+                shown == "distance"
+                and not slicing
+                and rig is not None
+                and not rig.skeleton.deform[joint]
             ),
             state.param.edge_colors,
             state.param.rig,
             state.param.joint,
+            state.param.slicing,
         ),
     )
     options = {"By kind": "kind", "By depth": "depth", "By distance": "distance"}
-    return [choice(state.param.edge_colors, options), idle]
+    seen = when(lambda slicing: not slicing, state.param.slicing)
+    return [choice(state.param.edge_colors, options, visible=seen), idle]
 
 
 def _inside(state: State) -> list[Any]:
