@@ -51,7 +51,11 @@ IN_SIGHT = """(code) => {
   const box = view.overlay.canvas.getBoundingClientRect()
   for (let vertex = 0; vertex < points; vertex++) {
     if (!wanted(vertex)) { continue }
-    const [x, y] = view.vertexPoint(vertex)
+    // Whole pixels: others reach the page a little rounded, and on an outline that is a miss.
+    const [x, y] = view.vertexPoint(vertex).map(Math.round)
+    let top = document.elementFromPoint(x, y)
+    while (top?.shadowRoot?.elementFromPoint(x, y)) { top = top.shadowRoot.elementFromPoint(x, y) }
+    if (!view.overlay.canvas.contains(top)) { continue }  // a card or a button is over it
     const hit = view.pointer.under(x - box.left, y - box.top)
     if (hit?.vertex !== undefined && wanted(hit.vertex)) { return [hit.vertex, x, y] }
   }
