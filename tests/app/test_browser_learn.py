@@ -2,27 +2,10 @@
 
 import re
 
-import pytest
-from playwright.sync_api import expect, sync_playwright
+from playwright.sync_api import expect
 
 from app.tour import TOUR
-from assets import demo_path
-from scripts.get_chromium import FLAGS
-from tests.app.browser import LOAD_MS, Visit, served
-
-
-@pytest.fixture(scope="module")
-def browser(chromium):
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=chromium, args=list(FLAGS))
-        yield browser
-        browser.close()
-
-
-@pytest.fixture(scope="module")
-def url():
-    with served(str(demo_path("robot"))) as url:
-        yield url
+from tests.app.browser import LOAD_MS, Visit
 
 
 def card(visit):
