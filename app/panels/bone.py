@@ -7,7 +7,7 @@ from typing import Any
 import panel_material_ui as pmui
 
 from ..session import Session
-from .parts import GAP, section
+from .parts import GAP, offer, section
 
 
 def bone(session: Session) -> pmui.Column:
@@ -27,7 +27,7 @@ def bone(session: Session) -> pmui.Column:
             select.param.update(options={}, value=None)
             return
         names = state.rig.skeleton.names
-        select.param.update(options=unique_options(names), value=state.joint)
+        offer(select, unique_options(names), state.joint)
 
     def chosen(event: Any) -> None:
         if event.new is not None:

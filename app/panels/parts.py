@@ -44,6 +44,16 @@ def when(function: Callable[..., Any], *parameters: Any) -> Any:
     return pn.bind(function, *parameters)
 
 
+def offer(select: pmui.Select, options: dict[str, int], value: int) -> None:
+    """Let a menu offer other names for indices, and show the name of one of them.
+
+    An index that stays would keep the name that it had, so it is let go of in between.
+    """
+    if options != select.options:
+        select.param.update(options=options, value=None)
+    select.value = value
+
+
 def choice(parameter: Any, options: dict[str, Any], **params: Any) -> pmui.RadioButtonGroup:
     """Return a row of buttons, one of which is pressed."""
     return pmui.RadioButtonGroup.from_param(

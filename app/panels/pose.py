@@ -11,7 +11,7 @@ from ..rows import Rows
 from ..scenes.pose import error_of, has_rival
 from ..session import Session
 from ..state import State
-from .parts import GAP, caption, choice, section, when
+from .parts import GAP, caption, choice, offer, section, when
 
 AXES = ("x", "y", "z")
 RING_COLORS = ("#e5484d", "#30a46c", "#3e83f8")
@@ -95,7 +95,7 @@ def _motion(session: Session) -> pmui.Column:
     def listed(*events: Any) -> None:
         clips = state.rig.clips if state.rig is not None else ()
         options = {clip.name or f"clip {i}": i for i, clip in enumerate(clips)}
-        motion.param.update(options={**options, "Swing the bone": -1}, value=state.clip)
+        offer(motion, {**options, "Swing the bone": -1}, state.clip)
 
     def chosen(event: Any) -> None:
         if event.new is not None:

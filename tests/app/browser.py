@@ -158,12 +158,12 @@ class Visit:
         """Undo all that was chosen; return whether the page is as it was."""
         try:
             self.page.keyboard.press("Escape")
-            if self.button("Close").is_visible():
-                self.dismiss()
             self.button("Reset all choices").click(timeout=ANSWER_MS)
             self.page.get_by_role("tab", name="Weights", exact=True).click(timeout=ANSWER_MS)
             self.page.mouse.move(2, 2)
             self.settle()
+            if self.button("Close").is_visible():
+                self.dismiss()
             return self.beginning == self.first
         except (Error, AssertionError):
             return False
