@@ -95,7 +95,7 @@ def material(resolution: int, vertices: int) -> Material:
     rest = body(rig, bound.weights, scalars=fields[0], colormap="distance")
     assert rest.skin is not None
     points = [moved(rest.points, rest.skin, pose).astype(np.float32) for pose in poses]
-    actors = {"body": rest, **graph_scene(rig, bound.graph).actors, "bones": bones(rig)}
+    actors = {"body": rest, **graph_scene(rig, bound.graph).actors, **bones(rig)}
     return Material(rig, Description(actors), clip, poses, points, fields)
 
 
