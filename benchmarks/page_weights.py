@@ -17,9 +17,10 @@ from .timing import Times
 from .visitors import served
 
 START = "?panel=weights&falloff=paper&alpha=0.2"
+MOST = "Bones a vertex, at most"
 SLIDERS = {
     "smoothness α": ("Smoothness α", "mix"),
-    "most influences": ("Most influences", "count"),
+    "most influences": (MOST, "count"),
     "threshold": ("Drop weights below", "count"),
 }
 """The slider that is moved by ten steps, or one, and what the colours show meanwhile."""
@@ -54,8 +55,8 @@ def _moved(browser: Browser, address: str, slider: str, shown: str, rounds: int)
     page.get_by_text("interior,").first.wait_for(timeout=90_000)
     page.wait_for_timeout(1500)  # the sidebar follows what was bound
     thumb = page.get_by_role("slider", name=slider)
-    key = "ArrowLeft" if slider == "Most influences" else "Shift+ArrowRight"
-    back = "ArrowRight" if slider == "Most influences" else "Shift+ArrowLeft"
+    key = "ArrowLeft" if slider == MOST else "Shift+ArrowRight"
+    back = "ArrowRight" if slider == MOST else "Shift+ArrowLeft"
 
     def seen(key: str) -> float:
         thumb.focus()
