@@ -323,7 +323,9 @@ export function render({model}) {
     view = new View(model, vtk, overlay)
     model.on("msg:custom", (message) => view.receive(message))
     window.__cutcell = view
-    const dark = localStorage.getItem("cutcell dark")
+    // What was chosen here before, else what the system prefers.
+    const system = matchMedia("(prefers-color-scheme: dark)").matches ? "1" : null
+    const dark = localStorage.getItem("cutcell dark") ?? system
     model.send_msg({type: "ready", width: window.innerWidth, dark})
   }).catch((error) => {
     console.error(error)

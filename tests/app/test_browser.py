@@ -234,11 +234,12 @@ def test_light_and_dark(visit):
     assert changed(light, again) < 0.001
 
 
-def test_a_narrow_window_shows_the_canvas_first(browser, url):
-    visit = Visit(browser, url + "/?rig=robot", viewport={"width": 420, "height": 800})
+def test_a_narrow_window_shows_the_canvas_first_and_the_systems_theme(browser, url):
+    size = {"width": 420, "height": 800}
+    visit = Visit(browser, url + "/?rig=robot", viewport=size, color_scheme="dark")
     visit.wait_until_bound()
     visit.button("Open drawer").wait_for()
-    visit.settle()
+    assert visit.look()[-2, 2].max() < 80
     box = visit.page.get_by_role("application").bounding_box()
     assert box["width"] > 400
     assert box["height"] > 400
