@@ -117,20 +117,6 @@ def torus(centre: ArrayLike, axis: ArrayLike, ring: float, tube: float) -> Shape
     return Shape(distance, c, ring + tube)
 
 
-def rounded_box(
-    centre: ArrayLike, half: ArrayLike, radius: float, axes: ArrayLike | None = None
-) -> Shape:
-    """Return a box of the half sizes `half`, edges rounded by `radius`."""
-    c, h = np.asarray(centre, float), np.asarray(half, float) - radius
-    frame = np.eye(3) if axes is None else np.asarray(axes, float)
-
-    def distance(p: Points) -> NDArray:
-        q = np.abs(_into(frame, p - c)) - h
-        return length(np.maximum(q, 0)) + np.minimum(q.max(axis=1), 0) - radius
-
-    return Shape(distance, c, float(np.sqrt(((h + radius) ** 2).sum())))
-
-
 def common(a: Shape, b: Shape, blend: float = 0.0) -> Shape:
     """Return what two shapes have in common, its edge softened over `blend`."""
     small = a if a.radius < b.radius else b

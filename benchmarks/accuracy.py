@@ -18,7 +18,7 @@ from cutcell import ParameterError, Skeleton
 from cutcell.geodesics import bone_distances
 from cutcell.graph import build_graph
 
-from .tables import Table, percent, seconds
+from .tables import Table, percent, publish, seconds
 from .truth import SHAPES, Shape
 
 CONNECTIVITIES = (6, 26, "any")
@@ -149,10 +149,7 @@ def arguments(given: Sequence[str] | None = None) -> argparse.Namespace:
 def main(given: Sequence[str] | None = None) -> None:
     """Print the tables, and write them too if a file is named."""
     options = arguments(given)
-    text = "\n\n".join(table.markdown() for table in tables(options))
-    print(text)
-    if options.markdown:
-        options.markdown.write_text(text + "\n")
+    publish(tables(options), options.markdown)
 
 
 if __name__ == "__main__":

@@ -18,7 +18,7 @@ from time import perf_counter
 
 import numpy as np
 
-from .tables import Table, seconds
+from .tables import Table, publish, seconds
 
 ROOT = Path(__file__).resolve().parent.parent
 RIG = ROOT / "assets" / "biped.glb"
@@ -172,10 +172,7 @@ def main(given: Sequence[str] | None = None) -> None:
     if options.one is not None:
         print(json.dumps(measure(options.one)))
         return
-    text = "\n\n".join(table.markdown() for table in tables(options))
-    print(text)
-    if options.markdown:
-        options.markdown.write_text(text + "\n")
+    publish(tables(options), options.markdown)
 
 
 if __name__ == "__main__":

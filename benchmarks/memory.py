@@ -17,7 +17,7 @@ from cutcell.graph.memory import needed_memory
 
 from .growth import run
 from .rigs import ROOT, rig_paths
-from .tables import Table, seconds
+from .tables import Table, publish, seconds
 
 LARGE = ROOT / "assets" / "biped.glb", 512
 
@@ -90,10 +90,7 @@ def arguments(given: Sequence[str] | None = None) -> argparse.Namespace:
 def main(given: Sequence[str] | None = None) -> None:
     """Print the table, and write it too if a file is named."""
     options = arguments(given)
-    text = "\n\n".join(table.markdown() for table in tables(options))
-    print(text)
-    if options.markdown:
-        options.markdown.write_text(text + "\n")
+    publish(tables(options), options.markdown)
 
 
 if __name__ == "__main__":

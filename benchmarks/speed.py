@@ -22,7 +22,7 @@ from cutcell.graph import build_graph
 from . import meshers, recipe, start_up
 from .rigs import Character, load_characters
 from .stages import cast, decide, midpoints, prepare
-from .tables import Table, ratio, seconds
+from .tables import Table, publish, ratio, seconds
 from .timing import Times, in_turn
 
 ALL = "**median**"
@@ -316,10 +316,7 @@ def tables(options: argparse.Namespace) -> list[Table]:
 def main(given: Sequence[str] | None = None) -> None:
     """Print the tables, and write them too if a file is named."""
     options = arguments(given)
-    text = "\n\n".join(table.markdown() for table in tables(options))
-    print(text)
-    if options.markdown:
-        options.markdown.write_text(text + "\n")
+    publish(tables(options), options.markdown)
 
 
 if __name__ == "__main__":

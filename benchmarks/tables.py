@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 
 
 @dataclass
@@ -46,6 +47,14 @@ class Table:
             for line in [lines[0], rule, *lines[1:]]
         ]
         return "\n".join([f"### {self.title}", "", *([self.note, ""] if self.note else []), *body])
+
+
+def publish(tables: Iterable[Table], out: Path | None) -> None:
+    """Print tables, and write them too if a file is named."""
+    text = "\n\n".join(table.markdown() for table in tables)
+    print(text)
+    if out:
+        out.write_text(text + "\n")
 
 
 def seconds(value: float) -> str:

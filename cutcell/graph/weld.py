@@ -6,6 +6,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from ..unions import join, numbered
+
 WELD_TOLERANCE = 1e-6
 """Of the bounding box's longest side: far above float32 rounding, far below any detail."""
 
@@ -73,7 +75,7 @@ def _precedes(a, b):
 def _merge(place, points, tolerance, slack):
     """Return the first point of each group, and the group of each point."""
     count = len(points)
-    parent = np.arange(count)
+    first = np.arange(count)
     for i in range(count):
         j = i + 1
         while j < count and place[j] - place[i] <= slack:
@@ -82,28 +84,9 @@ def _merge(place, points, tolerance, slack):
             z = points[j, 2] - points[i, 2]
             squared = x * x + y * y + z * z
             if squared <= tolerance * tolerance:
-                a, b = _root(parent, i), _root(parent, j)
-                parent[max(a, b)] = min(a, b)
+                join(first, i, j)
             if squared == 0:  # j, at the very same point, meets whatever follows
                 break
             j += 1
-    group = np.empty(count, np.int32)
-    welded = np.empty((count, 3))
-    groups = 0
-    for i in range(count):
-        first = _root(parent, i)
-        if first == i:
-            group[i] = groups
-            welded[groups] = points[i]
-            groups += 1
-        else:
-            group[i] = group[first]
-    return welded[:groups], group
-
-
-@njit(cache=True, inline="always")
-def _root(parent, i):
-    while parent[i] != i:
-        parent[i] = parent[parent[i]]
-        i = parent[i]
-    return i
+    group, lowest = numbered(first)
+    return points[lowest], group

@@ -7,6 +7,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from ..geodesics import Bones
+from ..unions import join, numbered
 
 POINTS = 9
 """Looked at along each bone."""
@@ -21,31 +22,11 @@ def find_pieces(faces: NDArray[np.int32], count: int) -> NDArray[np.int32]:
 
 @njit(cache=True, nogil=True)
 def _pieces(faces, count):
-    first = np.arange(count)  # some place of the same piece, no later one
+    first = np.arange(count)
     for f in range(len(faces)):
-        a = _root(first, faces[f, 0])
-        for k in range(1, 3):
-            b = _root(first, faces[f, k])
-            first[max(a, b)] = min(a, b)
-            a = min(a, b)
-    piece = np.empty(count, np.int32)
-    pieces = 0
-    for v in range(count):
-        root = _root(first, v)
-        if root == v:
-            piece[v] = pieces
-            pieces += 1
-        else:
-            piece[v] = piece[root]
-    return piece
-
-
-@njit(cache=True, inline="always")
-def _root(first, v):
-    while first[v] != v:
-        first[v] = first[first[v]]
-        v = first[v]
-    return v
+        low = join(first, faces[f, 0], faces[f, 1])
+        join(first, low, faces[f, 2])
+    return numbered(first)[0]
 
 
 def bones_held(
