@@ -12,8 +12,7 @@ from pathlib import Path
 import panel as pn
 import panel_material_ui  # noqa: F401  its components must be known before a page is served
 
-from cutcell.graph import kernels_are_compiled
-from cutcell.skinning import load_kernels
+from cutcell.skinning import kernels_are_compiled, load_kernels
 
 from .page import page
 

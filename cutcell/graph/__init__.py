@@ -3,7 +3,6 @@
 from .build import build_graph
 from .cutcell_graph import INTERIOR, MESH, SURFACE, CutCellGraph
 from .lattice import Lattice
-from .segments import kernels_are_compiled
 from .slice import RaySlice, slice_rays
 from .winding import winding_number
 
@@ -15,7 +14,6 @@ __all__ = [
     "Lattice",
     "RaySlice",
     "build_graph",
-    "kernels_are_compiled",
     "slice_rays",
     "winding_number",
 ]

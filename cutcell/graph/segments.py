@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 from numba import njit
@@ -53,11 +52,6 @@ class Runs:
     last: NDArray[np.int32]
     low: NDArray[np.int32]
     high: NDArray[np.int32]
-
-
-def kernels_are_compiled() -> bool:
-    """Tell whether this machine has compiled the kernels before, in any process."""
-    return any(Path(str(_walk_rays.stats.cache_path)).glob("segments._walk_rays*.nbc"))
 
 
 def find_runs(

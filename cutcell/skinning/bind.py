@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 
 from ..checks import check_choice, check_integer
 from ..geodesics import FALLBACK_REASONS, BoneDistances, bone_distances
-from ..graph import CutCellGraph, build_graph, kernels_are_compiled
+from ..graph import CutCellGraph, build_graph
 from ..progress import Progress, silent
 from ..rig import Rig
-from .kernels import load_kernels
+from .kernels import kernels_are_compiled, load_kernels
 from .refine import refine_weights
 from .weights import (
     DEFAULT_LEAF,
@@ -86,7 +86,7 @@ def bind(
         See `refine_weights`.
     progress : callable
         See `cutcell.progress`; stages are "graph", "distances", "weights", and
-        before them "compile" the very first time on a machine.
+        before them "compile" the very first time on a machine, and after a change of the code.
 
     Returns
     -------

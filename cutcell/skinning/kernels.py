@@ -1,14 +1,27 @@
 """All kernels of a binding at once, so that no character waits for one of them."""
 
+import os
+import sys
+from contextlib import suppress
+from pathlib import Path
+
+import numba
 import numpy as np
+from llvmlite import binding
 
 from ..geodesics import bone_distances
 from ..graph import build_graph
 from ..rig import Skeleton, TriangleMesh
+from .prune import _prune
 from .weights import DEFAULT_LEAF, joints_needed, skinning_weights
 
 AROUND = 16
 """Vertices around the tube: its open ends are holes too wide for a few triangles."""
+PACKAGE = Path(__file__).resolve().parents[1]
+SOURCES = ("unions.py", "graph/*.py", "geodesics/*.py", "skinning/*.py")
+"""Where the kernels of a binding stand."""
+
+_known = False
 
 
 def load_kernels() -> None:
@@ -32,6 +45,39 @@ def load_kernels() -> None:
         )
         for falloff in ("rig", "paper"):
             skinning_weights(distances, falloff=falloff, max_influences=4)
+
+    _write_stamp()
+
+
+def kernels_are_compiled() -> bool:
+    """Tell whether this machine has compiled the kernels as they now are, in any process."""
+    global _known
+    if not _known:
+        with suppress(OSError):
+            _known = _stamp_path().read_text(encoding="utf-8") == _stamp()
+    return _known
+
+
+def _write_stamp() -> None:
+    """Note beside numba's cache what it was made from."""
+    path = _stamp_path()
+    with suppress(OSError):  # without it the next process announces a compile that is quick
+        unready = path.with_suffix(f".{os.getpid()}")
+        unready.write_text(_stamp(), encoding="utf-8")
+        unready.replace(path)
+
+
+def _stamp_path() -> Path:
+    return Path(str(_prune.stats.cache_path)) / "kernels.stamp"
+
+
+def _stamp() -> str:
+    """Return what numba looks at before it takes a kernel from its cache."""
+    made_for = f"{sys.implementation.cache_tag} {numba.__version__} {binding.get_host_cpu_name()}"
+    files = sorted(path for pattern in SOURCES for path in PACKAGE.glob(pattern))
+    states = [(path.relative_to(PACKAGE).as_posix(), path.stat()) for path in files]
+    lines = [f"{name} {state.st_mtime_ns} {state.st_size}" for name, state in states]
+    return "\n".join([made_for, *lines])
 
 
 def _tube() -> TriangleMesh:

@@ -1,9 +1,15 @@
-"""What `load_kernels` has loaded, no binding has to compile."""
+"""What `load_kernels` has loaded, no binding has to compile; what is stale is announced."""
 
 import subprocess
 import sys
 import textwrap
+from itertools import pairwise
 
+import pytest
+
+import cutcell
+from cutcell.skinning import kernels, kernels_are_compiled, load_kernels
+from tests.bars import bar
 from tests.conftest import ROOT
 
 SCRIPT = textwrap.dedent(
@@ -12,7 +18,7 @@ SCRIPT = textwrap.dedent(
     from numba.core.dispatcher import Dispatcher
     import cutcell
     from assets import demo_path
-    from cutcell.skinning import load_kernels
+    from cutcell.skinning import kernels_are_compiled, load_kernels
 
     def versions():
         return {
@@ -24,6 +30,7 @@ SCRIPT = textwrap.dedent(
         }
 
     load_kernels()
+    assert kernels_are_compiled()
     loaded = versions()
     assert loaded
     for demo in ("robot", "biped_cape"):
@@ -40,3 +47,53 @@ def test_nothing_is_compiled_after_the_first_time():
     command = [sys.executable, "-c", SCRIPT]
     done = subprocess.run(command, capture_output=True, text=True, cwd=ROOT, timeout=240)
     assert done.stdout.strip() == "set()", done.stdout + done.stderr
+
+
+@pytest.fixture
+def another_machine(tmp_path, monkeypatch):
+    """Keep the note of what was compiled in a folder of its own, and the sources it is of."""
+    for folder in ("graph", "geodesics", "skinning"):
+        (tmp_path / folder).mkdir()
+        (tmp_path / folder / "kernel.py").write_text("one")
+    monkeypatch.setattr(kernels, "PACKAGE", tmp_path)
+    monkeypatch.setattr(kernels, "_known", False)
+    monkeypatch.setattr(kernels, "_stamp_path", lambda: tmp_path / "kernels.stamp")
+    return tmp_path
+
+
+def test_kernels_are_compiled_once_they_were_loaded(another_machine, monkeypatch):
+    assert not kernels_are_compiled()
+    load_kernels()
+    assert kernels_are_compiled()
+    monkeypatch.setattr(kernels, "_known", False)  # as a process started later
+    assert kernels_are_compiled()
+    assert [path.name for path in another_machine.glob("kernels.*")] == ["kernels.stamp"]
+
+
+@pytest.mark.parametrize("folder", ["graph", "geodesics", "skinning"])
+def test_after_a_change_of_the_code_kernels_are_not_compiled(folder, another_machine):
+    load_kernels()
+    (another_machine / folder / "kernel.py").write_text("another")
+    assert not kernels_are_compiled()
+
+
+@pytest.mark.parametrize("what", ["numba.__version__", "sys.implementation.cache_tag"])
+def test_for_another_compiler_kernels_are_not_compiled(what, another_machine, monkeypatch):
+    load_kernels()
+    monkeypatch.setattr(f"cutcell.skinning.kernels.{what}", "another")
+    assert not kernels_are_compiled()
+
+
+def test_a_compile_is_announced_once(another_machine):
+    told = []
+    for _ in range(2):
+        cutcell.bind(bar(4), 8, progress=lambda stage, done: told.append(stage))
+        told.append("|")
+    stages = "".join(f"{a} " for a, b in pairwise([*told, ""]) if a != b)
+    assert stages == "compile graph distances weights | graph distances weights | "
+
+
+def test_where_no_note_can_be_kept_binding_goes_on(another_machine, monkeypatch):
+    monkeypatch.setattr(kernels, "_stamp_path", lambda: another_machine / "away" / "kernels.stamp")
+    load_kernels()
+    assert not kernels_are_compiled()
