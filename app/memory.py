@@ -17,7 +17,11 @@ _WAITING: list[threading.Timer] = []
 
 
 def let_go(page: object) -> None:
-    """Take a page out of Panel's own state, which outlives it: it shows there whether busy."""
+    """Take a page out of Panel's own state, which outlives it.
+
+    The page would tell the browser twice with every choice whether Panel is busy, before anything
+    that the choice changes; this one shows by itself what goes on.
+    """
     state = pn.state
     for watchers in list(state.param.watchers.values()):
         for watcher in [one for kind in watchers.values() for one in kind]:

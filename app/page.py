@@ -46,7 +46,7 @@ def page(path: Path | None = None) -> pmui.Page:
     fail = weakref.WeakMethod(session.fail)
     pn.config.exception_handler = lambda error: _told(fail(), error)
     result = layout(session)
-    document.on_session_destroyed(functools.partial(_close, session, result))
+    document.on_session_destroyed(functools.partial(_close, session))
 
     def otherwise() -> None:
         if path is None:
@@ -65,9 +65,8 @@ def asked() -> str:
     return urlencode(pairs)
 
 
-def _close(session: Session, shown: pmui.Page, context: Any) -> None:
+def _close(session: Session, context: Any) -> None:
     session.close()
-    let_go(shown)
     tidy_soon()
 
 
@@ -125,6 +124,7 @@ def layout(session: Session) -> pmui.Page:
         wide = event.new >= NARROW
         session.later(lambda: result.param.update(sidebar_open=wide))
 
+    let_go(result)
     result.param.watch(themed, "dark_theme")
     session.view.param.watch(sized, "window_width")
     session.view.param.watch(remembered, "dark")

@@ -48,7 +48,7 @@ class Session(Opening):
         self.view = SceneView(self.pick, self.receiver(), sizing_mode="stretch_both")
         self._jobs: dict[str, Jobs] = {}
         self._closed = False
-        self.falloffs: dict[str, tuple[Any, float, Any]] = {}
+        self.falloffs: dict[str, tuple[Any, Any]] = {}
         self._bound_for: dict[str, Any] = {}
         self._timer: threading.Timer | None = None
         self.memo = Memo()

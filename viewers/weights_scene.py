@@ -70,19 +70,28 @@ def weight_colors(
         legend = Legend(f"Weight of {name}", "weight", "0", "1")
         scalars = np.ascontiguousarray(np.asarray(weights)[:, joint], np.float32)
         return {"scalars": scalars, "colormap": "weight", "reading": Reading(f"{name} ")}, legend
-    # Many small weights mix to grey; a power lets the strongest show its colour.
-    weights = np.asarray(weights, np.float32)
-    strong = np.square(np.square(weights))
-    total = strong.sum(axis=1, keepdims=True)
-    mixed = strong @ joint_colors(rig.skeleton.parents).astype(np.float32)
-    mixed = np.where(total > 0, mixed / np.where(total > 0, total, 1), UNREACHED)
-    colors = to_bytes(np.clip(mixed, 0, 1))
+    colors = to_bytes(np.clip(_mixed(rig, np.asarray(weights)), 0, 1))
     return {"colors": colors, "reading": _strongest(rig, weights)}, Legend(MIXED)
+
+
+def _mixed(rig: Rig, weights: NDArray) -> NDArray[np.float64]:
+    """Mix the joints' colours by vertex; most weights are zero, and cost nothing."""
+    count, joints = weights.shape
+    held = np.flatnonzero(weights > 0)
+    vertex = held // joints
+    joint = held - vertex * joints
+    # Many small weights mix to grey; a power lets the strongest show its colour.
+    strong = np.square(np.square(weights.ravel()[held]))
+    total = np.bincount(vertex, strong, count)[:, None]
+    channels = joint_colors(rig.skeleton.parents).T
+    mixed = [np.bincount(vertex, strong * channel[joint], count) for channel in channels]
+    shown = np.stack(mixed, axis=1) / np.where(total > 0, total, 1)
+    return np.where(total > 0, shown, UNREACHED)
 
 
 def dominant_colors(rig: Rig, weights: ArrayLike) -> tuple[dict[str, Any], Legend]:
     """Colour each vertex by the joint that holds most of it; see `weight_colors`."""
-    reading = _strongest(rig, np.asarray(weights, np.float32))
+    reading = _strongest(rig, weights)
     colors = to_bytes(joint_colors(rig.skeleton.parents))
     assert reading.values is not None
     look = {"colors": colors[reading.values.astype(int)], "reading": reading}
@@ -111,5 +120,5 @@ def difference_colors(
     return {**look, "reading": Reading("held otherwise: ")}, legend
 
 
-def _strongest(rig: Rig, weights: NDArray[np.float32]) -> Reading:
-    return Reading("", weights.argmax(axis=1).astype(np.float32), rig.skeleton.names)
+def _strongest(rig: Rig, weights: ArrayLike) -> Reading:
+    return Reading("", np.asarray(weights).argmax(axis=1).astype(np.float32), rig.skeleton.names)

@@ -1,17 +1,18 @@
 """Weights that follow the falloff at once: the distances stay.
 
-A falloff is worked out once for many influences; how many are kept is decided after.
+A falloff that takes a while is worked out once for many influences; how many are kept is decided
+after.
 """
 
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from numpy.typing import NDArray
 
 from cutcell.errors import CutcellError
-from cutcell.geodesics import BoneDistances
 from cutcell.progress import Progress
 from cutcell.skinning import Binding, keep_strongest, skinning_weights
 
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
     from ..session import Session
 
 QUICK = ("paper",)
-"""Falloffs that need no thread of their own."""
+"""Falloffs that are worked out again with every change, without a thread of their own."""
 
 
 def watch(session: Session) -> None:
@@ -38,9 +39,8 @@ def generous(session: Session) -> dict[str, Any]:
 
 def bound(session: Session, binding: Binding, method: dict[str, Any]) -> Binding:
     """Take in what was bound generously; return it with the weights that are chosen."""
-    session.falloffs = {}
-    _keep(session, binding.distances, method["falloff"], method["alpha"], binding.weights)
-    pruned = keep_strongest(binding.distances, binding.weights, *_kept(session).values())
+    session.falloffs = {method["falloff"]: (binding.distances, binding.weights)}
+    pruned = keep_strongest(binding.distances, binding.weights, **_kept(session))
     return replace(binding, weights=pruned)
 
 
@@ -49,37 +49,34 @@ def weigh(session: Session) -> None:
     state = session.state
     if state.binding is None:
         return
-    distances, allowed = state.binding.distances, state.rig.allowed
-    falloff, alpha = state.falloff, state.alpha
-
-    def work(progress: Progress) -> NDArray:
-        progress("weights", 0.0)
-        return skinning_weights(
-            distances, falloff=falloff, alpha=alpha, max_influences=MOST, allowed=allowed
-        )
-
-    def done(weights: NDArray) -> None:
-        _keep(session, distances, falloff, alpha, weights)
-        weigh(session)
-
+    distances, falloff, kept = state.binding.distances, state.falloff, _kept(session)
+    make = partial(
+        skinning_weights, distances, falloff=falloff, alpha=state.alpha, allowed=state.rig.allowed
+    )
     known = session.falloffs.get(falloff)
-    if known is not None and known[0] is distances and (known[1] == alpha or falloff != "paper"):
-        pruned = keep_strongest(distances, known[2], *_kept(session).values())
-        state.binding = replace(state.binding, weights=pruned)
-    elif falloff in QUICK:
+    if falloff in QUICK:
         try:
-            done(work(lambda stage, fraction: None))
+            _show(session, make(**kept))
         except CutcellError as error:
             session.fail(error)
+    elif known is not None and known[0] is distances:
+        _show(session, keep_strongest(distances, known[1], **kept))
     else:
+
+        def work(progress: Progress) -> NDArray:
+            progress("weights", 0.0)
+            return make(max_influences=MOST)
+
+        def done(weights: NDArray) -> None:
+            session.falloffs[falloff] = (distances, weights)
+            weigh(session)
+
         session.start(work, done)
+
+
+def _show(session: Session, weights: NDArray) -> None:
+    session.state.binding = replace(session.state.binding, weights=weights)
 
 
 def _kept(session: Session) -> dict[str, Any]:
     return method_of(session.state, ("max_influences", "threshold"))
-
-
-def _keep(
-    session: Session, distances: BoneDistances, falloff: str, alpha: float, weights: NDArray
-) -> None:
-    session.falloffs[falloff] = (distances, alpha, weights)

@@ -15,7 +15,7 @@ const STYLE = `
 .legend b { display: -webkit-box; -webkit-line-clamp: 2; -webkit-box-orient: vertical;
   font-weight: 500; overflow: hidden; overflow-wrap: anywhere; }
 .legend b + * { margin-top: 7px !important; }
-.legend canvas { width: 100%; height: 8px; border-radius: 4px; display: block;
+.legend .bar { height: 8px; border-radius: 4px;
   box-shadow: 0 0 0 1px color-mix(in srgb, var(--ink) 22%, transparent); }
 .legend span { display: flex; justify-content: space-between; margin-top: 4px; opacity: .75;
   font-variant-numeric: tabular-nums; }
@@ -199,14 +199,11 @@ class Overlay {
   }
 }
 
+// A gradient, not a canvas: that would wait for the graphics card, which has a picture to draw.
 function colorBar(table) {
-  const bar = document.createElement("canvas")
-  bar.width = table.length / 3
-  bar.height = 1
-  const image = new ImageData(bar.width, 1)
-  for (let i = 0; i < bar.width; i++) {
-    image.data.set([...table.subarray(3 * i, 3 * i + 3), 255], 4 * i)
-  }
-  bar.getContext("2d").putImageData(image, 0, 0)
+  const bar = document.createElement("div")
+  bar.className = "bar"
+  const stops = Array.from({length: table.length / 3}, (_, i) => `rgb(${table.subarray(3 * i, 3 * i + 3).join(" ")})`)
+  bar.style.background = `linear-gradient(to right, ${stops.join(", ")})`
   return bar
 }

@@ -107,7 +107,7 @@ class View {
     if (message.camera) { this.frame(message.camera) }
     if (message.home) { this.orbit.reset(); this.rested() }
     if (message.address) {
-      history.replaceState(history.state, "", location.pathname + message.address)
+      this.address = message.address
       this.keys.able(message.able)
     }
     this.messages = message.id
@@ -236,7 +236,14 @@ class View {
     }
     this.stage.draw(moving, resting)
     this.gizmo.draw()
+    if (this.address) { setTimeout(() => this.putAddress()) }
     if (this.stage.rough && !moving) { this.calming = setTimeout(() => this.draw(true), CALM) }
+  }
+
+  // The address waits for the picture: to change it takes some browsers longer than to draw.
+  putAddress() {
+    if (this.address) { history.replaceState(history.state, "", location.pathname + this.address) }
+    this.address = null
   }
 
   rested() {
@@ -275,7 +282,7 @@ class View {
     return {
       messages: this.messages, frames: this.stage.frames, posed: this.posed,
       cost: this.stage.smooth.cost, playing: Boolean(this.playing), time: this.time || 0,
-      idle: !this.waiting && !this.stage.rough,
+      idle: !this.waiting && !this.stage.rough && !this.address,
       actors: Object.fromEntries([...this.stage.figures].map(([name, figure]) => [
         name, {visible: figure.visible, cells: figure.count, points: figure.rest.length / 3},
       ])),

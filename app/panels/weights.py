@@ -43,7 +43,13 @@ def weights(session: Session) -> pmui.Column:
     state.param.watch(listed, ["rig", "weights_shown"])
     shown.param.watch(chosen, "value")
     listed()
-    facts = caption(when(lambda *_: told(state), state.param.binding, state.param.rig))
+    facts = caption(told(state))
+
+    def tell() -> None:
+        facts.object = told(state)
+
+    # The colours go first.
+    state.param.watch(lambda *events: session.later(tell), ["binding", "rig"])
     return pmui.Column(
         lead("How much each bone moves each point of the skin."),
         section("", shown, facts, margin=(8, 20, 4, 20)),
@@ -74,9 +80,12 @@ def told(state: State) -> str:
     if state.binding is None:
         return ""
     held = state.binding.weights
-    text = f"{np.count_nonzero(held) / max(len(held), 1):.1f} bones a vertex"
+    some = np.flatnonzero(held > 0)
+    text = f"{len(some) / max(len(held), 1):.1f} bones a vertex"
     own = state.rig.weights
     if own is not None and own.shape == held.shape:
-        apart = np.abs(held - own).sum(axis=1).mean() / 2
+        # Of |a - b| = a + b - 2 min(a, b) the last is zero wherever ours is, which is nearly always.
+        both = np.minimum(held.ravel()[some], own.ravel()[some]).sum()
+        apart = ((len(held) + own.sum()) / 2 - both) / max(len(held), 1)
         text += f"; {apart:.0%} of the weight is held by other bones than in the file"
     return text + "."

@@ -7,6 +7,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from ..threads import in_threads, parts
+from .prune import keep_largest
 
 
 def paper_kernel(
@@ -39,6 +40,40 @@ def paper_kernel(
     return weights
 
 
+def pruned_paper_kernel(
+    distance: NDArray[np.float64],
+    diagonal: float,
+    alpha: float,
+    max_influences: int | None,
+    threshold: float,
+    priority: NDArray[np.intp],
+) -> NDArray[np.float64]:
+    """Apply the paper's falloff, and prune: the same as one after the other, in one go.
+
+    A page that follows a slider has no time for a matrix in between.
+
+    Parameters
+    ----------
+    distance, diagonal, alpha
+        See `paper_kernel`.
+    max_influences, threshold, priority
+        See `prune`.
+
+    Returns
+    -------
+    array, shape (n, j)
+    """
+    most = len(distance) if max_influences is None else max_influences
+    weights = np.zeros(distance.shape[::-1])
+    in_threads(
+        lambda part: _pruned_paper_kernel(
+            distance, diagonal, alpha, most, threshold, priority, weights, part.start, part.stop
+        ),
+        parts(len(weights)),
+    )
+    return weights
+
+
 BLOCK = 64
 """Vertices whose weights fit into the nearest cache: distances are stored by joint."""
 
@@ -46,13 +81,30 @@ BLOCK = 64
 @njit(cache=True, nogil=True)
 def _paper_kernel(distance, diagonal, alpha, weights, begin, stop):
     for first in range(begin, stop, BLOCK):
-        end = min(first + BLOCK, stop)
-        for j in range(len(distance)):
-            for v in range(first, end):
-                x = distance[j, v] / diagonal
-                weights[v, j] = (1 - alpha) * x + alpha * x * x if x < np.inf else np.inf
-        for v in range(first, end):
-            _normalise(weights[v])
+        _fall(distance, diagonal, alpha, first, weights[first : min(first + BLOCK, stop)])
+
+
+@njit(cache=True, nogil=True)
+def _pruned_paper_kernel(
+    distance, diagonal, alpha, most, threshold, priority, weights, begin, stop
+):
+    rows = np.empty((BLOCK, len(distance)))
+    kept = np.empty(len(priority), np.intp)
+    for first in range(begin, stop, BLOCK):
+        count = min(BLOCK, stop - first)
+        _fall(distance, diagonal, alpha, first, rows[:count])
+        for v in range(count):
+            keep_largest(rows[v], most, threshold, priority, kept, weights[first + v])
+
+
+@njit(cache=True, nogil=True)
+def _fall(distance, diagonal, alpha, first, rows):
+    for j in range(len(distance)):
+        for v in range(len(rows)):
+            x = distance[j, first + v] / diagonal
+            rows[v, j] = (1 - alpha) * x + alpha * x * x if x < np.inf else np.inf
+    for v in range(len(rows)):
+        _normalise(rows[v])
 
 
 @njit(cache=True, nogil=True)
@@ -63,6 +115,9 @@ def _normalise(row):
     # Relative to the nearest joint nothing overflows, however small the distances.
     total = 0.0
     for j, steepness in enumerate(row):
+        if steepness == np.inf:
+            row[j] = 0.0
+            continue
         ratio = least / steepness if steepness > 0 else 1.0
         row[j] = ratio * ratio
         total += ratio * ratio

@@ -50,24 +50,30 @@ def prune(
 def _prune(weights, most, threshold, priority, pruned):
     kept = np.empty(len(priority), np.intp)
     for v in range(len(weights)):
-        count = 0
-        for joint in priority:
-            weight = weights[v, joint]
-            if weight == 0:
-                continue
-            if count < most:
-                count += 1
-            elif weight <= EQUAL * weights[v, kept[count - 1]]:
-                continue
-            place = count - 1
-            while place > 0 and EQUAL * weights[v, kept[place - 1]] < weight:
-                kept[place] = kept[place - 1]
-                place -= 1
-            kept[place] = joint
-        # Now the largest come first.
-        least = threshold * weights[v][kept[:count]].sum()
-        while count > 1 and weights[v, kept[count - 1]] < least:
-            count -= 1
-        total = weights[v][kept[:count]].sum()
-        for joint in kept[:count]:
-            pruned[v, joint] = weights[v, joint] / total
+        keep_largest(weights[v], most, threshold, priority, kept, pruned[v])
+
+
+@njit(cache=True, nogil=True)
+def keep_largest(row, most, threshold, priority, kept, pruned):
+    """Prune one vertex: see `prune`. `pruned` holds zeros, and `kept` has room for all joints."""
+    count = 0
+    for joint in priority:
+        weight = row[joint]
+        if weight == 0:
+            continue
+        if count < most:
+            count += 1
+        elif weight <= EQUAL * row[kept[count - 1]]:
+            continue
+        place = count - 1
+        while place > 0 and EQUAL * row[kept[place - 1]] < weight:
+            kept[place] = kept[place - 1]
+            place -= 1
+        kept[place] = joint
+    # Now the largest come first.
+    least = threshold * row[kept[:count]].sum()
+    while count > 1 and row[kept[count - 1]] < least:
+        count -= 1
+    total = row[kept[:count]].sum()
+    for joint in kept[:count]:
+        pruned[joint] = row[joint] / total

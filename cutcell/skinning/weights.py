@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from ..checks import check_choice, check_integer, check_number
 from ..errors import ParameterError
 from ..geodesics import BoneDistances
-from .kernel import paper_kernel
+from .kernel import paper_kernel, pruned_paper_kernel
 from .prune import prune
 from .rig_falloff import NEAREST_JOINTS, TOWARDS, permitted, rig_kernel
 
@@ -71,19 +71,19 @@ def skinning_weights(
             f"{known} nearest joints of each vertex alone: measure them again with more "
             f"nearest_joints, or with None for all"
         )
-    place: NDArray[np.integer] = distances.graph.vertex_node
-    first = first_vertices(place)
-    if falloff == "rig":
-        weights = rig_kernel(distances, first)
-    else:
-        if not distances.by_place:
-            place = first = np.arange(len(place))
-        distance = distances.joint.take(first, axis=1)
-        weights = paper_kernel(distance, distances.graph.lattice.diagonal, alpha)
     kept = max_influences, threshold, _by_position(distances)
-    if allowed is None:  # what is at one place gets the same
-        return prune(weights, *kept).take(place, axis=0)
-    return prune(permitted(weights[place], distances.joint, allowed), *kept)
+    if falloff == "paper":
+        diagonal = distances.graph.lattice.diagonal
+        if allowed is None:
+            return pruned_paper_kernel(distances.joint, diagonal, alpha, *kept)
+        weights = paper_kernel(distances.joint, diagonal, alpha)
+    else:
+        place = distances.graph.vertex_node
+        weights = rig_kernel(distances, first_vertices(place))
+        if allowed is None:  # what is at one place gets the same
+            return prune(weights, *kept).take(place, axis=0)
+        weights = weights[place]
+    return prune(permitted(weights, distances.joint, allowed), *kept)
 
 
 def keep_strongest(
