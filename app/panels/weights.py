@@ -84,7 +84,7 @@ def told(state: State) -> str:
     text = f"{len(some) / max(len(held), 1):.1f} bones a vertex"
     own = state.rig.weights
     if own is not None and own.shape == held.shape:
-        # Of |a - b| = a + b - 2 min(a, b) the last is zero wherever ours is, which is nearly always.
+        # Of |a - b| = a + b - 2 min(a, b) the last is zero where ours is: nearly everywhere.
         both = np.minimum(held.ravel()[some], own.ravel()[some]).sum()
         apart = ((len(held) + own.sum()) / 2 - both) / max(len(held), 1)
         text += f"; {apart:.0%} of the weight is held by other bones than in the file"
