@@ -20,11 +20,12 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from ..compiled import lean
 from ..graph import CutCellGraph
 from ..progress import Progress, silent
 from ..threads import in_threads, threads
 from .bones import TIE, Bones, Sources
-from .labels import NOBODY, find_room, least_distance, no_labels
+from .labels import NOBODY, find_room, follows_anchor, least_distance, no_labels
 from .queue import END, SETTLED, bucket_of, join, leave, move_on
 from .sight import bend_of, body_of, sees, straight
 
@@ -38,6 +39,8 @@ FINENESS = 4
 """Times R squared: buckets a unit of distance. One is a hundredth of a cell wide, or less."""
 SPAN = 1
 """Units of distance that the buckets cover at a time."""
+ROOMS = 3, 4, 6
+"""Labels a node for which the kernel is compiled with their number built in, a third faster."""
 PAUSES = 8
 """How often a unit of distance is interrupted, to report and to be cancelled."""
 
@@ -121,7 +124,7 @@ class _Front:
         Start, way to the end, and one over its squared length.
     each : int
         k, labels a node.
-    labels : array, shape (N * k,)
+    labels, anchors : arrays, shape (N * k,)
         See `labels`.
     """
 
@@ -129,6 +132,7 @@ class _Front:
     bones: NDArray[np.float64]
     each: int
     labels: NDArray[np.void]
+    anchors: NDArray[np.int32]
 
 
 def _start(
@@ -150,41 +154,44 @@ def _start(
     chosen = np.flatnonzero(bone >= 0)
     chosen = chosen[np.argsort(bone[chosen], kind="stable")]
 
-    labels = no_labels(len(graph.nodes), each)
+    labels, anchors = no_labels(len(graph.nodes), each)
     table = np.concatenate([start, way, inverse[:, None]], axis=1)
     first_distance = sources.distance[chosen]
-    _enter_sources(labels, each, sources.node[chosen], bone[chosen], rank, first_distance)
-    return _Front(joints[by_place], table, each, labels)
+    _enter_sources(labels, anchors, each, sources.node[chosen], bone[chosen], rank, first_distance)
+    return _Front(joints[by_place], table, each, labels, anchors)
 
 
 def _spread(
     graph: CutCellGraph, body: tuple, front: _Front, within: float, progress: Progress
 ) -> None:
     """Settle all labels."""
-    each, labels = front.each, front.labels
+    labels = front.labels
+    rooms = (0,) * front.each if front.each in ROOMS else np.empty(front.each)
     scale = float(FINENESS * graph.lattice.resolution**2)
     head = np.full(int(SPAN * scale), END, np.int32)
     _line_up(labels, head, scale)
     step = len(head) // (SPAN * PAUSES)
-    given = graph.adjacency, body, front.bones, labels, each, head, scale, within
-    waiting, origin = True, 0.0
-    while waiting:
+    ahead = np.empty(int(np.diff(graph.adjacency[0]).max()) + 1, np.int64)
+    known = graph.adjacency, body, front.bones, within
+    given = *known, rooms, labels, front.anchors, head, scale, ahead
+    origin = 0.0
+    while True:
         for bucket in range(0, len(head) - 1, step):
             progress("distances", min(origin + bucket / scale, 0.99))
-            waiting = _settle(*given, origin, bucket, min(bucket + step, len(head) - 1))
-            if not waiting:
-                break
-        else:
-            origin = move_on(head, scale, labels)
+            last = min(bucket + step, len(head) - 1)
+            _settle(*given, origin, bucket, last)
+            if (head[last:] == END).all():
+                return
+        origin = move_on(head, scale, labels)
 
 
 @njit(cache=True)
-def _enter_sources(labels, each, node, bone, rank, distance):
+def _enter_sources(labels, anchors, each, node, bone, rank, distance):
     for s in range(len(node)):
         joint, anchor = rank[bone[s]], ~bone[s]
-        label = find_room(labels, each, node[s], joint, anchor)
-        if label >= 0 and distance[s] < labels[label].distance:
-            labels[label].joint, labels[label].anchor = joint, anchor
+        label = find_room(labels, each, node[s], joint)
+        if distance[s] < labels[label].distance:
+            labels[label].joint, anchors[label] = joint, anchor
             labels[label].distance = distance[s]
 
 
@@ -195,9 +202,15 @@ def _line_up(labels, head, scale):
             join(head, labels, bucket_of(head, scale, labels[label].distance), label)
 
 
-@njit(cache=True, nogil=True)
-def _settle(adjacency, body, bones, labels, each, head, scale, within, origin, first, last):
-    """Settle labels by distance, bucket after bucket; tell whether any are left beyond."""
+@lean
+def _settle(
+    adjacency, body, bones, within, rooms, labels, anchors, head, scale, ahead, origin, first, last
+):
+    """Settle labels by distance, bucket after bucket.
+
+    `rooms` has as many entries as a node has labels; `ahead` is room for a node's edges.
+    """
+    each = len(rooms)
     indptr, indices, lengths = adjacency
     resolution, first_point, first_crossing, nodes, _, _ = body
     for bucket in range(first, last):
@@ -205,12 +218,19 @@ def _settle(adjacency, body, bones, labels, each, head, scale, within, origin, f
             label = head[bucket]
             leave(head, labels, label)
             labels[label].after = SETTLED
-            u, joint, anchor = label // each, labels[label].joint, labels[label].anchor
+            u, joint, anchor = label // each, labels[label].joint, anchors[label]
             to_anchor = labels[anchor].distance if anchor >= 0 else 0.0
+            # Most neighbours follow the anchor already. Which do not is put down without a branch
+            # that the processor would have to guess.
+            count = 0
             for e in range(indptr[u], indptr[u + 1]):
+                ahead[count] = e
+                count += not follows_anchor(anchors, each, indices[e], anchor)
+            for k in range(count):
+                e = ahead[k]
                 v = indices[e]
-                room = find_room(labels, each, v, joint, anchor)
-                if room < 0 or labels[room].after == SETTLED:
+                room = find_room(labels, each, v, joint)
+                if labels[room].after == SETTLED:
                     continue
                 # Of joints equally near, the first by position stays.
                 limit = labels[room].distance
@@ -230,13 +250,12 @@ def _settle(adjacency, body, bones, labels, each, head, scale, within, origin, f
                 elif v < first_point:
                     seen = u >= first_crossing and lengths[e] * resolution < NEAR
                 else:
-                    seen = sees(body, labels, each, u, here, anchor, bend)
+                    seen = sees(body, anchors, each, u, here, anchor, bend)
                 if not seen:
                     reached, bent = labels[label].distance + lengths[e], label
                     if reached >= limit:
                         continue
                 leave(head, labels, room)
-                labels[room].joint, labels[room].anchor = joint, bent
+                labels[room].joint, anchors[room] = joint, bent
                 labels[room].distance = reached
                 join(head, labels, max(bucket_of(head, scale, reached - origin), bucket), room)
-    return (head[last:] != END).any()

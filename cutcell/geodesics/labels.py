@@ -1,7 +1,7 @@
 """What a node knows of its nearest joints: a few labels, each a joint, a distance and a bend.
 
-One label is one record, and those of a node follow one another: looking at a node takes one
-or two lines of memory.
+Label s of node v is number v * k + s where a node has room for k. Anchors are looked at far more
+often than the rest, and stand by themselves: those of a node fit into one line of memory.
 """
 
 from __future__ import annotations
@@ -19,60 +19,50 @@ LABEL = np.dtype(
     [
         ("distance", np.float64),
         ("joint", np.int32),
-        ("anchor", np.int32),
         ("after", np.int32),
         ("before", np.int32),
     ],
     align=True,
 )
-"""Joint: its rank. Anchor: the label of the node where the path bends last, or ~bone. After
-and before: neighbours in a bucket, see `queue`."""
+"""Joint: its rank. After and before: neighbours in a bucket, see `queue`."""
 
 
-def no_labels(nodes: int, each: int) -> NDArray[np.void]:
-    """Make room for `each` labels a node; label s of node v is number v * each + s."""
+def no_labels(nodes: int, each: int) -> tuple[NDArray[np.void], NDArray[np.int32]]:
+    """Make room for `each` labels a node; return them, and their anchors.
+
+    An anchor is the label of the node where the path bends last, or ~bone.
+    """
     labels = np.empty(nodes * each, LABEL)
     _empty(labels)
-    return labels
+    return labels, np.full(nodes * each, NOTHING, np.int32)
 
 
 @njit(cache=True, nogil=True)
 def _empty(labels):
     for label in range(len(labels)):
         labels[label].distance, labels[label].joint = np.inf, NOBODY
-        labels[label].anchor, labels[label].after = NOTHING, LOOSE
+        labels[label].after = LOOSE
         labels[label].before = 0
 
 
 @njit(cache=True, inline="always")
-def find_room(labels, each, v, joint, anchor):
-    """Return the label of a joint at node v or, if it has none, its farthest.
-
-    -1 if v follows the anchor already: most often so, hence no exit from the loop that the
-    processor would have to guess.
-    """
-    follows, own = False, -1
+def find_room(labels, each, v, joint):
+    """Return the label of a joint at node v or, if it has none, its farthest."""
+    own, farthest, most = -1, v * each, 0.0
     for label in range(v * each, v * each + each):
-        follows |= labels[label].anchor == anchor
         own = label if labels[label].joint == joint else own
-    if follows:
-        return -1
-    if own >= 0:
-        return own
-    farthest, most = v * each, 0.0
-    for label in range(v * each, v * each + each):
         distance = labels[label].distance
         farthest = label if distance > most else farthest
         most = max(distance, most)
-    return farthest
+    return own if own >= 0 else farthest
 
 
 @njit(cache=True, inline="always")
-def follows_anchor(labels, each, v, anchor):
+def follows_anchor(anchors, each, v, anchor):
     """Tell whether any label of node v has an anchor."""
     found = False
     for label in range(v * each, v * each + each):
-        found |= labels[label].anchor == anchor
+        found |= anchors[label] == anchor
     return found
 
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
+from ..compiled import lean
 from ..graph import CutCellGraph
 from ..graph.interior import OUTSIDE, point_number
 from .labels import follows_anchor
@@ -50,7 +51,7 @@ def straight(p, q):
 
 
 @njit(cache=True, inline="always")
-def sees(body, labels, each, u, here, anchor, bend):
+def sees(body, anchors, each, u, here, anchor, bend):
     """Tell whether the straight way from the bend to a lattice point stays inside.
 
     It does from the node u beside that point.
@@ -69,7 +70,7 @@ def sees(body, labels, each, u, here, anchor, bend):
             if w == u:
                 return True
             follows = anchor >= 0 and w == anchor // each
-            follows |= follows_anchor(labels, each, w, anchor)
+            follows |= follows_anchor(anchors, each, w, anchor)
             # Across a gap thinner than a cell the next point is no neighbour.
             if follows and _walk(table, whole, resolution, (x, y, z), (x + sx, y + sy, z + sz)):
                 return True
@@ -84,7 +85,7 @@ def _point(table, resolution, x, y, z):
     return point_number(table[0], table[1], table[2], table[3], x * resolution + y, z)
 
 
-@njit(cache=True)
+@lean
 def _walk(table, whole, resolution, cell, goal):
     """Tell whether the cells along a line are joined by edges inside (Amanatides & Woo 1987)."""
     x, y, z = cell

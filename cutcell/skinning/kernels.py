@@ -30,19 +30,18 @@ def load_kernels() -> None:
     Kernels are compiled once on a machine (about half a minute) and kept on disk; from there a
     process loads them in about a second.
     """
-    skeleton = Skeleton(
-        # The last joint is so far away that its labels outlast the queue's buckets.
-        np.array([[0, 0, 0.1], [0, 0, 0.5], [0, 0, 0.8], [3, 3, 3]]),
-        np.array([-1, 0, 1, -1]),
-    )
+    # More joints than a vertex has distances of. The last is so far away that its labels outlast
+    # the queue's buckets.
+    joints = np.zeros((8, 3))
+    joints[:, 2] = np.linspace(0.1, 0.9, 8)
+    joints[-1] = 3
+    skeleton = Skeleton(joints, np.array([*range(-1, 6), -1]))
     for connectivity in ("any", 26):
         graph = build_graph(_tube(), 8, connectivity=connectivity)
-        distances = bone_distances(
-            graph,
-            skeleton,
-            leaf=DEFAULT_LEAF["rig"],
-            nearest_joints=joints_needed("rig", 4),
-        )
+        for nearest in {joints_needed("paper", 4), 5, joints_needed("rig", 4)}:
+            distances = bone_distances(
+                graph, skeleton, leaf=DEFAULT_LEAF["rig"], nearest_joints=nearest
+            )
         for falloff in ("rig", "paper"):
             skinning_weights(distances, falloff=falloff, max_influences=4)
         every = np.ones(distances.joint.shape[::-1], bool)

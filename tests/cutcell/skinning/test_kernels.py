@@ -29,13 +29,20 @@ SCRIPT = textwrap.dedent(
             if isinstance(kernel, Dispatcher)
         }
 
+    OPTIONS = (
+        {},
+        {"falloff": "paper"},
+        {"max_influences": 8},
+        {"connectivity": 6, "falloff": "paper"},
+        {"connectivity": 26},
+    )
     load_kernels()
     assert kernels_are_compiled()
     loaded = versions()
     assert loaded
     for demo in ("robot", "biped_cape"):
         rig = cutcell.load(demo_path(demo))
-        for options in ({}, {"connectivity": 6, "falloff": "paper"}, {"connectivity": 26}):
+        for options in OPTIONS:
             cutcell.bind(rig, 24, **options)
     now = versions()
     print({name for name in now if now[name] != loaded.get(name, 0)})
