@@ -7,7 +7,7 @@ threads that start such a loop at once, say two sessions of the page, end the pr
 import os
 import threading
 from collections.abc import Callable, Iterable
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor, wait
 from functools import cache
 from itertools import pairwise
 from typing import TypeVar
@@ -28,13 +28,32 @@ def threads() -> int:
 def in_threads(work: Callable[[Item], Result], items: Iterable[Item]) -> list[Result]:
     """Apply `work`, which should spend its time in nogil kernels, to each item.
 
-    The threads are kept for the next call: a graph is built in less time than it takes to
-    start them for each of its steps. Work that calls for threads itself runs in its own.
+    The calling thread works, too, and waits for no other that has not begun: small work is done
+    in less time than it takes to wake one. Work that calls for threads itself runs in its own.
     """
     items = list(items)
     if len(items) < 2 or threads() < 2 or getattr(_here, "is_worker", False):
         return [work(item) for item in items]
-    return list(_pool(threads()).map(work, items))
+    results: dict[int, Result] = {}
+    waiting = iter(enumerate(items))
+
+    def take() -> None:
+        for place, item in waiting:
+            results[place] = work(item)
+
+    helpers = [_pool(threads() - 1).submit(take) for _ in range(min(threads(), len(items)) - 1)]
+    _here.is_worker = True
+    try:
+        take()
+    finally:
+        _here.is_worker = False
+        for _ in waiting:  # after an error nobody takes another
+            pass
+        begun = [helper for helper in helpers if not helper.cancel()]
+        wait(begun)
+    for helper in begun:
+        helper.result()
+    return [results[place] for place in range(len(items))]
 
 
 def parts(count: int, at_once: int = 0) -> list[slice]:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial.distance import cdist
 
 from ..graph import CutCellGraph
 from ..rig import Skeleton
@@ -75,10 +76,9 @@ def _share_with_tips(bones: Bones, tip: NDArray[np.bool_], probe: BodyProbe) -> 
     """
     end = bones.end.copy()
     room = np.linalg.norm(bones.end - bones.start, axis=1)
-    for b in np.flatnonzero(~tip):
-        there = tip & (np.linalg.norm(bones.start - bones.end[b], axis=1) < SAME_PLACE)
-        if not there.any():
-            continue
+    goes_on = tip & (cdist(bones.end, bones.start) < SAME_PLACE)
+    for b in np.flatnonzero(~tip & goes_on.any(axis=1)):
+        there = goes_on[b]
         depth = float(probe.depth((bones.start[b] + bones.end[b])[None] / 2)[0])
         left = room[there].max()
         if left < min(room[b], NO_ROOM * depth):

@@ -84,6 +84,10 @@ def cast_all_rays(
 
 
 def _cast(vertices, faces, resolution, axes):
+    if len(faces) == 0:  # as of the caps of a closed mesh
+        start = np.zeros(resolution * resolution + 1, np.int64)
+        nothing = Crossings(start, np.empty(0), np.empty(0, np.int32), np.empty(0, np.int8))
+        return [nothing] * len(axes)
     bounds = strip_bounds(resolution)
     projected = {axis: np.ascontiguousarray(vertices[:, AXES[axis]]) for axis in axes}
 

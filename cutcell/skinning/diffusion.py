@@ -68,15 +68,24 @@ def diffuse(
     used = np.flatnonzero(weights.any(axis=0))
     spread = np.zeros_like(weights)
 
-    def some(first: int) -> None:
-        joints = used[first : first + LANES]
-        rows = np.empty((len(points), len(joints)))
-        rows[order] = hold[:, None] * weights[:, joints]
-        _substitute(*triangle, rows)
-        spread[:, joints] = np.maximum(rows[order], 0)
-
-    in_threads(some, range(0, len(used), LANES))
+    in_threads(
+        lambda joints: _solve(*triangle, order, hold, weights, joints, spread),
+        [used[first : first + LANES] for first in range(0, len(used), LANES)],
+    )
     return spread / spread.sum(axis=1, keepdims=True)
+
+
+@njit(cache=True, nogil=True)
+def _solve(indptr, indices, values, diagonal, order, hold, weights, joints, spread):
+    """Put the equilibrium of some joints' weights into `spread`."""
+    rows = np.empty((len(order), len(joints)))
+    for k in range(len(order)):
+        for lane in range(len(joints)):
+            rows[order[k], lane] = hold[k] * weights[k, joints[lane]]
+    _substitute(indptr, indices, values, diagonal, rows)
+    for k in range(len(order)):
+        for lane in range(len(joints)):
+            spread[k, joints[lane]] = max(rows[order[k], lane], 0.0)
 
 
 @njit(cache=True, nogil=True)

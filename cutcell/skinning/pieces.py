@@ -7,6 +7,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from ..geodesics import Bones
+from ..threads import in_threads
 from ..unions import join, numbered
 
 POINTS = 9
@@ -47,13 +48,15 @@ def bones_held(
     samples = samples.reshape(-1, 3)
     count = int(piece.max()) + 1
     of_face = piece[faces[:, 0]]
-    hits = []
-    for axis in range(3):
+
+    def along_axis(axis: int) -> tuple[NDArray, NDArray, NDArray]:
         u, v = (axis + 1) % 3, (axis + 2) % 3
         order = np.argsort(samples[:, u], kind="stable")
         turned = np.ascontiguousarray(samples[order][:, [u, v, axis]])
-        found = _crossed(np.ascontiguousarray(points[:, [u, v, axis]]), faces, turned)
-        hits.append((of_face[found[0]], order[found[1]], found[2]))
+        face, place, sign = _crossed(np.ascontiguousarray(points[:, [u, v, axis]]), faces, turned)
+        return of_face[face], order[place], sign
+
+    hits = in_threads(along_axis, range(3))
     which, sample, sign = (np.concatenate(parts) for parts in zip(*hits, strict=True))
     key, place = np.unique(which.astype(np.int64) * len(samples) + sample, return_inverse=True)
     # Each hit counts for the ray up that meets it, or for the ray down: +-1 of six.
