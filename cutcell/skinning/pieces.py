@@ -6,12 +6,15 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from ..compiled import lean
 from ..geodesics import Bones
 from ..threads import in_threads
 from ..unions import join, numbered
 
 POINTS = 9
 """Looked at along each bone."""
+STRETCHES = 256
+"""Of the unit side, to find the samples that a face may lie above."""
 INSIDE = 0.5
 """A point is inside a piece if this part of six rays from it leave the piece."""
 
@@ -75,32 +78,37 @@ def _crossed(
     Returns the face, the sample, and +1 where a ray from the sample leaves through the face,
     -1 where it enters.
     """
-    room = 4 * len(samples)
+    stretch = np.clip((samples[:, 0] * STRETCHES).astype(np.int64), 0, STRETCHES - 1)
+    start = np.searchsorted(stretch, np.arange(STRETCHES + 1))
+    room = 8 * len(samples)
     while True:
         face, sample, sign = (
             np.empty(room, np.int64),
             np.empty(room, np.int64),
             np.empty(room, np.int8),
         )
-        count = _list_crossings(points, faces, samples, face, sample, sign)
+        count = _list_crossings(points, faces, samples, start, face, sample, sign)
         if count <= room:
             return face[:count], sample[:count], sign[:count]
         room = count
 
 
-@njit(cache=True, nogil=True)
-def _list_crossings(points, faces, samples, face, sample, sign):
+@lean
+def _list_crossings(points, faces, samples, start, face, sample, sign):
+    """Return how many crossings there are, also beyond the room for them.
+
+    Samples in stretch s of the unit side are those from start[s] on.
+    """
     count = 0
-    u = samples[:, 0]
     for f in range(len(faces)):
-        a, b, c = faces[f]
+        a, b, c = faces[f, 0], faces[f, 1], faces[f, 2]
         low = min(points[a, 0], points[b, 0], points[c, 0])
         high = max(points[a, 0], points[b, 0], points[c, 0])
         nearest = min(points[a, 1], points[b, 1], points[c, 1])
         farthest = max(points[a, 1], points[b, 1], points[c, 1])
-        for s in range(np.searchsorted(u, low), np.searchsorted(u, high)):
+        for s in range(start[_stretch(low)], start[_stretch(high) + 1]):
             p, q = samples[s, 0], samples[s, 1]
-            if not nearest <= q <= farthest:
+            if not (low <= p < high and nearest <= q <= farthest):
                 continue
             # On the line u = const, how many edges of the face lie on the side of larger v.
             above, turn = 0, 0
@@ -129,7 +137,12 @@ def _list_crossings(points, faces, samples, face, sample, sign):
     return count
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, inline="always")
+def _stretch(u):
+    return min(max(int(u * STRETCHES), 0), STRETCHES - 1)
+
+
+@lean
 def _height(a, b, c, u, v):
     """Return where the plane through three points is over (u, v)."""
     x1, y1, z1 = b[0] - a[0], b[1] - a[1], b[2] - a[2]

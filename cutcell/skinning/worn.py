@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
+from scipy.sparse import csr_array
 
+from ..geodesics.bones import TIE
+from ..geodesics.nearest import nearest_nodes
 from ..graph import SURFACE, CutCellGraph
 
 FOREIGN = 2.0
@@ -16,8 +18,6 @@ SMALL = 0.25
 CONTACT = 1.0
 """Lattice cells: a worn piece touches its wearer wherever it is this much farther than at its
 nearest."""
-AROUND = 0.05
-"""Of the longest side: how far from worn pieces their wearer is looked for at first."""
 RIGID = 0.6
 """A worn piece follows one joint alone if its wearer does by this much where they touch."""
 
@@ -85,8 +85,10 @@ def dress(
     touching = away <= least[label] + CONTACT / graph.lattice.resolution
     share = np.where(touching, areas[mine] + 1e-12, 0)
     there = weights[corners].mean(axis=1) * share[:, None]
-    total = np.zeros((len(held), weights.shape[1]))
-    np.add.at(total, label, there)
+    total = (
+        csr_array((np.ones(len(label)), (label, np.arange(len(label)))), (len(held), len(label)))
+        @ there
+    )
     mean = total / np.maximum(total.sum(axis=1, keepdims=True), 1e-300)
     leading = mean.argmax(axis=1)
     alone = mean.max(axis=1) > RIGID
@@ -118,12 +120,8 @@ def _nearest_skin(
     kept = wearer[hit[:, 0]]
     node = np.concatenate([vertices, crossings[kept]])
     corners = np.concatenate([np.stack([vertices] * 3, axis=1), hit[kept]])
-    # Most of the skin is far from all that is worn: look at what is near first.
-    low, high = points.min(axis=0) - AROUND, points.max(axis=0) + AROUND
-    close = ((graph.nodes[node] >= low) & (graph.nodes[node] <= high)).all(axis=1)
-    if close.any():
-        away, place = cKDTree(graph.nodes[node[close]]).query(points)
-        if away.max() <= AROUND:
-            return away, corners[close][place]
-    away, place = cKDTree(graph.nodes[node]).query(points)
-    return away, corners[place]
+    places, resolution = graph.nodes[node], graph.lattice.resolution
+    of, nearest = nearest_nodes(places, np.ones(len(node), bool), points, resolution, TIE)
+    nearest = nearest[np.searchsorted(of, np.arange(len(points)))]  # the first of equals
+    away = np.linalg.norm(places[nearest] - points, axis=1)
+    return away, corners[nearest]
