@@ -5,6 +5,9 @@ VENV := .venv
 PYTHON := $(VENV)/bin/python
 SETUP := pyproject.toml requirements.lock scripts/setup.sh
 
+# As many as there are cores; tests/dealing.py says which tests go together to one of them.
+WORKERS := --numprocesses logical --maxprocesses 4
+
 .DEFAULT_GOAL := help
 .PHONY: help app test lint format assets lock clean
 
@@ -19,7 +22,7 @@ test: $(VENV)/.tools ## Check style and types, run all tests; ARGS='tests/cutcel
 	@$(PYTHON) -m ruff check .
 	@$(PYTHON) -m ruff format --check .
 	@$(PYTHON) -m mypy
-	@$(PYTHON) -m pytest $(ARGS)
+	@$(PYTHON) -m pytest $(WORKERS) $(ARGS)
 
 lint: $(VENV)/.test ## Check style and types only
 	@$(PYTHON) -m ruff check .

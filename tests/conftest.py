@@ -1,11 +1,27 @@
-"""What all tests share: characters to load, and a browser."""
+"""What all tests share: characters to load, a browser, and how several processes run them."""
 
 from pathlib import Path
 
 import pytest
 
+from cutcell.skinning import kernels_are_compiled, load_kernels
+
 ROOT = Path(__file__).resolve().parent.parent
 SHARED_RIGS = ROOT.parent / "shared" / "data" / "rigs"
+
+
+def pytest_sessionstart(session: pytest.Session) -> None:
+    """Compile the kernels before there are workers: each of them would compile its own."""
+    if session.config.getoption("numprocesses", None) and not kernels_are_compiled():
+        load_kernels()
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config, log):
+    """Deal the tests to workers, where there are several."""
+    from tests.dealing import Dealing
+
+    return Dealing(config, log)
 
 
 @pytest.fixture(scope="session")
