@@ -74,7 +74,7 @@ def segments(vertices, faces, resolution, tau):
 
     A crossing is named by its ray and its place along it, a lattice point by x, y, z.
     """
-    kept = []
+    found = []
     for axis in range(3):
         by_ray = {}
         for i, j, position, sign, _ in rays(vertices, faces, resolution, axis):
@@ -85,32 +85,30 @@ def segments(vertices, faces, resolution, tau):
                 stops = [(p, 0, n, s) for n, (p, s) in enumerate(crossings)]
                 stops += [((k + 0.5) / resolution, 1, k, 0) for k in range(resolution)]
                 stops.sort()  # a crossing comes before a lattice point at the same place
-                kept += _segments_of_ray(vertices, faces, axis, i, j, stops, resolution, tau)
-    return set(kept)
+                found += _segments_of_ray(axis, i, j, stops, resolution)
+    ends, middles, crossed = zip(*found, strict=True)
+    inside = winding_number(vertices, faces, np.array(middles)) - crossed
+    return {pair for pair, number in zip(ends, inside, strict=True) if number >= tau}
 
 
-def _segments_of_ray(vertices, faces, axis, i, j, stops, resolution, tau):
+def _segments_of_ray(axis, i, j, stops, resolution):
+    """List (ends, place to take the winding number at, what to count off it)."""
+    found = []
     u, v = PLANE[axis]
-    stops = [(-1.0, 2, 0, 0), *stops]  # a place surely outside, where no segment is kept
-    middles = np.empty((len(stops) - 1, 3))
-    middles[:, u] = (i + 0.5) / resolution
-    middles[:, v] = (j + 0.5) / resolution
-    crossed = np.zeros(len(middles))
     for n, (a, b) in enumerate(pairwise(stops)):
-        middles[n, axis] = (a[0] + b[0]) / 2
+        middle, crossed = np.empty(3), 0
+        middle[u], middle[v] = (i + 0.5) / resolution, (j + 0.5) / resolution
+        middle[axis] = (a[0] + b[0]) / 2
         if a[0] == b[0]:
             # No length: take the number just before this place, and count from there.
-            middles[n, axis] -= 1e-9
-            crossed[n] = sum(s for p, _, _, s in stops[: n + 1] if p == a[0])
-    inside = winding_number(vertices, faces, middles) - crossed
-    names = [_name(axis, i, j, stop) for stop in stops]
-    return [(names[n], names[n + 1]) for n in range(1, len(inside)) if inside[n] >= tau]
+            middle[axis] -= 1e-9
+            crossed = sum(s for p, _, _, s in stops[: n + 1] if p == a[0])
+        found.append(((_name(axis, i, j, a), _name(axis, i, j, b)), middle, crossed))
+    return found
 
 
 def _name(axis, i, j, stop):
     _, kind, place, _ = stop
-    if kind == 2:
-        return None
     if kind == 0:
         return ("crossing", axis, i, j, place)
     u, v = PLANE[axis]

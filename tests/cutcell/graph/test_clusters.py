@@ -36,14 +36,31 @@ def test_caps_close_the_mesh(name):
     )
 
 
-def assert_right_around(place, reach, field, is_torn, caps, rng):
-    """Check a field against the caps' true winding number, as far away as it holds."""
-    offset = rng.normal(size=(20, 3))
-    offset *= reach / np.linalg.norm(offset, axis=1, keepdims=True)
-    covered = naive.winding_number(caps.vertices, caps.faces, place + offset)
-    off = covered - field.value - offset @ np.array([field.x, field.y, field.z])
-    off -= np.round(off) if is_torn else 0
-    assert np.abs(off).max() <= field.error + 1e-9
+class Balls:
+    """Fields in balls, to be checked all at once: the slow numbers take their time."""
+
+    def __init__(self, caps, seed):
+        self.caps, self.rng = caps, np.random.default_rng(seed)
+        self.fields, self.offsets, self.places = [], [], []
+
+    def add(self, place, reach, field, is_torn):
+        """Remember a field, as far away as it holds."""
+        if np.isfinite(field.error):
+            offset = self.rng.normal(size=(20, 3))
+            offset *= reach / np.linalg.norm(offset, axis=1, keepdims=True)
+            self.fields.append((field.value, field.x, field.y, field.z, field.error, is_torn))
+            self.offsets.append(offset)
+            self.places.append(place + offset)
+
+    def assert_right(self):
+        """Check the fields against the caps' true winding numbers."""
+        value, *slope, error, is_torn = np.array(self.fields).T[:, :, None]
+        offset, places = np.array(self.offsets), np.array(self.places)
+        covered = naive.winding_number(self.caps.vertices, self.caps.faces, places.reshape(-1, 3))
+        found = value + sum(offset[:, :, k] * slope[k] for k in range(3))
+        off = covered.reshape(found.shape) - found
+        off -= np.where(is_torn, np.round(off), 0)
+        assert (np.abs(off) <= error + 1e-9).all()
 
 
 @pytest.mark.parametrize("name", SHAPES)
@@ -52,16 +69,13 @@ def test_view_is_right_within_its_error(name):
     caps = cap_holes(vertices, find_boundary(faces))
     clusters = cluster(caps)
     rng = np.random.default_rng(1)
-    compared = 0
+    balls = Balls(caps, 3)
     for reach in (0.0, 0.003, 0.02, 0.1):
         for tolerance in (1e-2, 1e-4):
             for place in rng.uniform(0, 1, (25, 3)):
-                field, is_torn = view_all(clusters, place, reach, tolerance)
-                if not np.isfinite(field.error):
-                    continue
-                assert_right_around(place, reach, field, is_torn, caps, rng)
-                compared += 1
-    assert compared > 150
+                balls.add(place, reach, *view_all(clusters, place, reach, tolerance))
+    assert len(balls.fields) > 150
+    balls.assert_right()
 
 
 @pytest.mark.parametrize("name", SHAPES)
@@ -71,7 +85,7 @@ def test_what_is_handed_down_is_right_within_its_error(name):
     caps = cap_holes(vertices, find_boundary(faces))
     clusters = cluster(caps)
     rng = np.random.default_rng(2)
-    compared = 0
+    balls = Balls(caps, 4)
     for place in rng.uniform(0, 1, (30, 3)):
         listed, end, field, reach = np.array([ROOT]), 1, NOTHING, 0.3
         begin = 0
@@ -83,14 +97,11 @@ def test_what_is_handed_down_is_right_within_its_error(name):
             nearer = place + rng.uniform(-1, 1, 3) * reach / 8
             field = moved(field, tuple(place), tuple(nearer))
             place, reach = nearer, reach / 4
-            found, is_torn = view(
-                clusters, listed[begin:end], field, tuple(place), reach, 1e-2, 10.0
-            )
-            if not np.isfinite(found.error):
-                continue
-            assert_right_around(place, reach, found, is_torn, caps, rng)
-            compared += 1
-    assert compared > 20
+            mine = listed[begin:end]
+            seen = view(clusters, mine, field, tuple(place), reach, 1e-2, 10.0)
+            balls.add(place, reach, *seen)
+    assert len(balls.fields) > 20
+    balls.assert_right()
 
 
 def test_far_clusters_are_not_halved_and_nearly_right():
