@@ -11,12 +11,15 @@ from cutcell.rig import Rig
 from scripts.get_chromium import FLAGS
 from tests.app.browser import Visit, served
 
+LIGHT = (*FLAGS, "--disable-gpu-rasterization", "--disable-gpu-compositing")
+"""Without a graphics card, OpenGL is a slow way to draw what is no 3D view: half of all work."""
+
 
 @pytest.fixture(scope="package")
 def browser(chromium: str) -> Iterator[Browser]:
     """Open a Chromium; each visit is a person of its own in it."""
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=chromium, args=list(FLAGS))
+        browser = playwright.chromium.launch(executable_path=chromium, args=list(LIGHT))
         yield browser
         browser.close()
 
