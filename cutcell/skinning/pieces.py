@@ -13,8 +13,8 @@ from ..unions import join, numbered
 
 POINTS = 9
 """Looked at along each bone."""
-STRETCHES = 256
-"""Of the unit side, to find the samples that a face may lie above."""
+CELLS = 64
+"""Along each side of the grid in which the samples are found that a face may lie above."""
 INSIDE = 0.5
 """A point is inside a piece if this part of six rays from it leave the piece."""
 
@@ -53,11 +53,10 @@ def bones_held(
     of_face = piece[faces[:, 0]]
 
     def along_axis(axis: int) -> tuple[NDArray, NDArray, NDArray]:
-        u, v = (axis + 1) % 3, (axis + 2) % 3
-        order = np.argsort(samples[:, u], kind="stable")
-        turned = np.ascontiguousarray(samples[order][:, [u, v, axis]])
-        face, place, sign = _crossed(np.ascontiguousarray(points[:, [u, v, axis]]), faces, turned)
-        return of_face[face], order[place], sign
+        turn = [(axis + 1) % 3, (axis + 2) % 3, axis]
+        seen = np.ascontiguousarray(points[:, turn]), samples[:, turn]
+        face, sample, sign = _crossed(seen[0], faces, seen[1])
+        return of_face[face], sample, sign
 
     hits = in_threads(along_axis, range(3))
     which, sample, sign = (np.concatenate(parts) for parts in zip(*hits, strict=True))
@@ -73,13 +72,15 @@ def bones_held(
 def _crossed(
     points: NDArray[np.float64], faces: NDArray[np.int32], samples: NDArray[np.float64]
 ) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int8]]:
-    """List the crossings of all lines through samples, ascending in u, along the third axis.
+    """List the crossings of all lines through samples along the third axis.
 
     Returns the face, the sample, and +1 where a ray from the sample leaves through the face,
     -1 where it enters.
     """
-    stretch = np.clip((samples[:, 0] * STRETCHES).astype(np.int64), 0, STRETCHES - 1)
-    start = np.searchsorted(stretch, np.arange(STRETCHES + 1))
+    column = np.clip((samples[:, :2] * CELLS).astype(np.int64), 0, CELLS - 1) @ [CELLS, 1]
+    order = np.argsort(column, kind="stable")
+    start = np.searchsorted(column[order], np.arange(CELLS * CELLS + 1))
+    samples = np.ascontiguousarray(samples[order])
     room = 8 * len(samples)
     while True:
         face, sample, sign = (
@@ -89,7 +90,7 @@ def _crossed(
         )
         count = _list_crossings(points, faces, samples, start, face, sample, sign)
         if count <= room:
-            return face[:count], sample[:count], sign[:count]
+            return face[:count], order[sample[:count]], sign[:count]
         room = count
 
 
@@ -97,49 +98,56 @@ def _crossed(
 def _list_crossings(points, faces, samples, start, face, sample, sign):
     """Return how many crossings there are, also beyond the room for them.
 
-    Samples in stretch s of the unit side are those from start[s] on.
+    Samples in column i * CELLS + j of the grid are those from start[i * CELLS + j] on.
     """
     count = 0
     for f in range(len(faces)):
         a, b, c = faces[f, 0], faces[f, 1], faces[f, 2]
-        low = min(points[a, 0], points[b, 0], points[c, 0])
-        high = max(points[a, 0], points[b, 0], points[c, 0])
-        nearest = min(points[a, 1], points[b, 1], points[c, 1])
-        farthest = max(points[a, 1], points[b, 1], points[c, 1])
-        for s in range(start[_stretch(low)], start[_stretch(high) + 1]):
-            p, q = samples[s, 0], samples[s, 1]
-            if not (low <= p < high and nearest <= q <= farthest):
-                continue
-            # On the line u = const, how many edges of the face lie on the side of larger v.
-            above, turn = 0, 0
-            for k in range(3):
-                i, j = faces[f, k], faces[f, (k + 1) % 3]
-                up = 1 if (points[j, 0] > p) and (points[i, 0] <= p) else 0
-                down = 1 if (points[i, 0] > p) and (points[j, 0] <= p) else 0
-                if up + down == 0:
+        low_u = min(points[a, 0], points[b, 0], points[c, 0])
+        high_u = max(points[a, 0], points[b, 0], points[c, 0])
+        low_v = min(points[a, 1], points[b, 1], points[c, 1])
+        high_v = max(points[a, 1], points[b, 1], points[c, 1])
+        for i in range(_cell(low_u), _cell(high_u) + 1):
+            first, last = i * CELLS + _cell(low_v), i * CELLS + _cell(high_v)
+            for s in range(start[first], start[last + 1]):
+                u, v = samples[s, 0], samples[s, 1]
+                if not (low_u <= u < high_u and low_v <= v <= high_v):
                     continue
-                if down:  # one order of the ends, so that both faces of an edge agree
-                    i, j = j, i
-                share = (p - points[i, 0]) / (points[j, 0] - points[i, 0])
-                if points[i, 1] + share * (points[j, 1] - points[i, 1]) > q:
-                    above += 1
-                    turn += up - down
-            if above != 1:
-                continue
-            if count < len(face):
-                height = _height(points[a], points[b], points[c], p, q)
-                # turn is +1 where the face is seen turning clockwise from above: facing down
-                facing = -turn
-                face[count] = f
-                sample[count] = s
-                sign[count] = facing if height > samples[s, 2] else -facing
-            count += 1
+                facing = _passed(points, faces[f], u, v)
+                if facing == 0:
+                    continue
+                if count < len(face):
+                    is_ahead = _height(points[a], points[b], points[c], u, v) > samples[s, 2]
+                    face[count], sample[count] = f, s
+                    sign[count] = facing if is_ahead else -facing
+                count += 1
     return count
 
 
+@lean
+def _passed(points, corners, u, v):
+    """Tell whether a line passes through a face: +1 where that faces up, -1 down, 0 if not."""
+    # On the line u = const, how many edges of the face lie on the side of larger v.
+    above, turn = 0, 0
+    for k in range(3):
+        i, j = corners[k], corners[(k + 1) % 3]
+        up = 1 if (points[j, 0] > u) and (points[i, 0] <= u) else 0
+        down = 1 if (points[i, 0] > u) and (points[j, 0] <= u) else 0
+        if up + down == 0:
+            continue
+        if down:  # one order of the ends, so that both faces of an edge agree
+            i, j = j, i
+        share = (u - points[i, 0]) / (points[j, 0] - points[i, 0])
+        if points[i, 1] + share * (points[j, 1] - points[i, 1]) > v:
+            above += 1
+            turn += up - down
+    # turn is +1 where the face is seen turning clockwise from above: facing down
+    return -turn if above == 1 else 0
+
+
 @njit(cache=True, inline="always")
-def _stretch(u):
-    return min(max(int(u * STRETCHES), 0), STRETCHES - 1)
+def _cell(u):
+    return min(max(int(u * CELLS), 0), CELLS - 1)
 
 
 @lean

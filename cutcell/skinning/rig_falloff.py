@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from ..compiled import lean
 from ..geodesics import BoneDistances
+from ..threads import in_threads, parts
 from .diffusion import diffuse
 from .laplacian import vertex_areas, vertex_normals
 from .pieces import bones_held, find_pieces
@@ -41,29 +42,28 @@ def rig_kernel(distances: BoneDistances, first: NDArray[np.intp]) -> NDArray[np.
     graph, bones = distances.graph, distances.bones
     points, faces = graph.nodes[: len(first)], _whole(graph.faces)
     near = LEAST_CELLS / graph.lattice.resolution
-    distance = np.ascontiguousarray(np.maximum(distances.joint.take(first, axis=1), near).T)
+    distance = np.maximum(distances.joint.take(first, axis=1).T, near, order="C")
 
     piece = find_pieces(faces, len(first))
     held = _by_joint(bones_held(points, faces, piece, bones), bones.joint, distance.shape[1])
-    weights = _shares(
-        points,
-        vertex_normals(points, faces),
-        distance,
-        foreign_bones(held),
-        piece,
-        np.searchsorted(bones.joint, np.arange(distance.shape[1] + 1)),
-        bones.start,
-        bones.end,
+    skin = points, vertex_normals(points, faces), distance, foreign_bones(held), piece
+    first_bone = np.searchsorted(bones.joint, np.arange(distance.shape[1] + 1))
+    weights = np.zeros(distance.shape)
+    in_threads(
+        lambda part: _put_shares(*skin, first_bone, bones.start, bones.end, part, weights),
+        [(part.start, part.stop) for part in parts(len(points))],
     )
     weights = diffuse(points, faces, weights, distance.min(axis=1), graph.lattice.resolution)
     return dress(graph, vertex_areas(points, faces), piece, held, weights)
 
 
-@njit(cache=True, nogil=True)
-def _shares(points, normals, distance, foreign, piece, bone, start, end):
-    """Divide each place among joints by distance; `bone` tells where each joint's bones begin."""
-    weights = np.zeros(distance.shape)
-    for v in range(len(distance)):
+@lean
+def _put_shares(points, normals, distance, foreign, piece, bone, start, end, part, weights):
+    """Divide places among joints by distance; `bone` tells where each joint's bones begin.
+
+    `weights` holds zeros; `part` is the first place and the one after the last.
+    """
+    for v in range(part[0], part[1]):
         least = np.inf
         for j in range(distance.shape[1]):
             if distance[v, j] == np.inf:
@@ -77,11 +77,11 @@ def _shares(points, normals, distance, foreign, piece, bone, start, end):
             if distance[v, j] < np.inf:
                 weights[v, j] = (least / weights[v, j]) ** POWER
                 total += weights[v, j]
-        weights[v] /= total
-    return weights
+        for j in range(distance.shape[1]):
+            weights[v, j] /= total
 
 
-@njit(cache=True, nogil=True)
+@lean
 def _facing(point, normal, start, end, first, last):
     """Return how much skin looks away from the nearest of some bones, `TOWARDS` to 1."""
     nearest, cosine = np.inf, 0.0

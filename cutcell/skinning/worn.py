@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
+from ..compiled import lean
 from ..geodesics.bones import TIE
 from ..geodesics.nearest import nearest_nodes
 from ..graph import SURFACE, CutCellGraph
@@ -101,9 +102,16 @@ def dress(
 def _longest_sides(points: NDArray[np.float64], piece: NDArray[np.int32]) -> NDArray[np.float64]:
     low = np.full((int(piece.max()) + 1, 3), np.inf)
     high = -low
-    np.minimum.at(low, piece, points)
-    np.maximum.at(high, piece, points)
+    _bound(points, piece, low, high)
     return (high - low).max(axis=1)
+
+
+@lean
+def _bound(points, piece, low, high):
+    for p in range(len(points)):
+        for axis in range(3):
+            low[piece[p], axis] = min(low[piece[p], axis], points[p, axis])
+            high[piece[p], axis] = max(high[piece[p], axis], points[p, axis])
 
 
 def _nearest_skin(
