@@ -61,6 +61,7 @@ def diffuse(
         system,
         permc_spec="MMD_AT_PLUS_A",
         diag_pivot_thresh=0.0,
+        panel_size=2,
         options={"SymmetricMode": True},
     )
     lower, order = factors.L, factors.perm_c
