@@ -2,20 +2,24 @@
 
 The solid angle over 4 pi of a surface seen from p is the integral of n . F(y - p) over it,
 with F(r) = r / (4 pi |r|^3). Around the centre c of a cluster of caps and a place q near p,
-r = R + h with R = c - q and h = (y - c) - (p - q), it is expanded to first order,
+r = R + h with R = c - q and h = (y - c) - (p - q), it is expanded to second order in h, with
+the derivatives of F at R. Summed over the cluster, only moments of y - c remain, see
+`moments.py`: its vector area and the sums of area times normal times y - c, once and twice,
 
-    n . F(R + h) = n . F(R) + n . DF(R) h + ...,    DF(R) = (1 - 3 R R^T / |R|^2) / (4 pi |R|^3).
-
-Summed over the cluster, only its vector area A = sum of areas times normals and the moments
-M = sum of area n (y - c)^T remain: it covers about A . F(R) + M : DF(R) - A . DF(R) (p - q).
+    A(n) = sum area (normal . n) (y - c . n)^0,   M(n) and Q(n) with its first and second power.
 
 What this leaves out. Along any line, 1/|R + h| is a power series whose k-th coefficient is a
 Legendre polynomial of the angle over |R|^(k+1), at most 1 / |R|^(k+1); the k-th derivative is
 k! times that, also between different directions (Banach 1938: a symmetric form is largest on
 its diagonal). F is -1/(4 pi) times the gradient of 1/|r|, so the term of order k in h is at
-most (k+1) x^k / (4 pi |R|^2) with x = |h| / |R|, and a cluster of total area S leaves out at most
+most (k+1) x^k / (4 pi |R|^2) with x = |h| / |R|. Within a ball of radius s around q, |h| is at most
+r + s for a cluster of radius r, and the mean of its cube over the cluster's area S is at most
+(m + s)^3 (Minkowski), with m the cubic mean of the distances to the centre. It leaves out at most
 
-    S / (4 pi |R|^2) sum_(k>1) (k+1) x^k = S / (4 pi |R|^2) (1 / (1 - x)^2 - 1 - 2 x).
+    S / (4 pi |R|^2) mean of sum_(k>2) (k+1) x^k
+        = S / (4 pi |R|^2) ((m + s) / |R|)^3 (4 - 3 X) / (1 - X)^2,   X = (r + s) / |R|.
+
+m is often but half of r, and the bound so much smaller.
 
 The same sum over clusters is how fast winding numbers work (Barill et al. 2018), there
 without a bound.
@@ -30,11 +34,14 @@ from numba import njit
 from numpy.typing import NDArray
 
 from ..threads import in_threads
+from . import moments
 from .caps import Caps
-from .solid_angle import between, cross, dot, length
+from .solid_angle import between, dot
 
 ROOT = 1
 """The cluster of all caps."""
+TOGETHER = 2
+"""Caps in a cluster that is not halved, at most."""
 
 
 class Clusters(NamedTuple):
@@ -43,143 +50,149 @@ class Clusters(NamedTuple):
     Parameters
     ----------
     rim : array, shape (e, 3)
-        The vertices of the loops, loop by loop. Loops are ordered along a curve that fills
-        space.
+        The vertices of the loops, loop by loop.
     first : array, shape (l + 1,), int64
         Loop i has the vertices from first[i] to first[i + 1].
     apex : array, shape (l, 3)
         The point that the triangles of each cap share.
     start : array, shape (m + 1,), int64
-        Loops of the cluster m + i, one that is not halved, are those from start[i] on: one
-        or none.
-    centre, radius, area : arrays, shapes (2 m, 3), (2 m,) and (2 m,)
-        A sphere around each cluster, and the sum of its triangles' areas.
-    vector, moment : arrays, shapes (2 m, 3) and (2 m, 3, 3)
-        A and M.
+        Loops of the cluster m + i, one that is not halved, are those from start[i] on.
+    sphere : array, shape (2 m, 6)
+        Around each cluster: centre and radius; the cubic mean of the distances from the
+        centre (no less than that); and the sum of its triangles' areas.
+    moments : array, shape (2 m, moments.SIZE)
     """
 
     rim: NDArray[np.float64]
     first: NDArray[np.int64]
     apex: NDArray[np.float64]
     start: NDArray[np.int64]
-    centre: NDArray[np.float64]
-    radius: NDArray[np.float64]
-    area: NDArray[np.float64]
-    vector: NDArray[np.float64]
-    moment: NDArray[np.float64]
+    sphere: NDArray[np.float64]
+    moments: NDArray[np.float64]
 
 
 def cluster(caps: Caps) -> Clusters:
     """Sort caps into clusters."""
-    loops = len(caps.apex)
-    order = np.argsort(_curve(caps.vertices[caps.apex]))
+    loops, leaves = len(caps.apex), 1
+    while leaves * TOGETHER < loops:
+        leaves *= 2
+    start = np.arange(leaves + 1) * loops // leaves
+    order = _halved(caps.vertices[caps.apex], start)
     size = np.diff(caps.start)[order]
     first = np.concatenate([[0], np.cumsum(size)])
     place = np.arange(first[-1]) + np.repeat(caps.start[:-1][order] - first[:-1], size)
     rim, apex = caps.vertices[caps.loop[place]], caps.vertices[caps.apex[order]]
-    leaves = 1
-    while leaves < loops:
-        leaves *= 2
-    start = np.arange(leaves + 1) * loops // leaves
-    centre, area, vector, moment = _sum_up(rim, first, apex, start)
-    radius = np.zeros(len(centre))
+    sphere, summed, weight = _sum_up(rim, first, apex, start)
     step = 16 if loops > 1000 else 1  # few are done before a thread has begun
     in_threads(
-        lambda part: _surround(rim, first, start, centre, part, step, radius), range(1, step + 1)
+        lambda part: _surround(rim, first, apex, start, weight, part, step, sphere),
+        range(1, step + 1),
     )
-    return Clusters(rim, first, apex, start, centre, radius, area, vector, moment)
+    return Clusters(rim, first, apex, start, sphere, summed)
 
 
 @njit(cache=True, nogil=True)
-def _curve(points):
-    """Return where points lie on a curve that fills the unit cube (Morton 1966)."""
-    place = np.zeros(len(points), np.int64)
-    for p in range(len(points)):
+def _halved(points, start):
+    """Order points so that each half of a cluster is on one side of a plane across it."""
+    leaves = len(start) - 1
+    order = np.arange(len(points))
+    for k in range(1, leaves):
+        low = high = k
+        while low < leaves:
+            low, high = 2 * low, 2 * high + 1
+        part = order[start[low - leaves] : start[high - leaves + 1]].copy()
+        extent = 0.0
         for axis in range(3):
-            cell = min(max(int(points[p, axis] * 1024), 0), 1023)
-            for bit in range(10):
-                place[p] |= (cell >> bit & 1) << (3 * bit + axis)
-    return place
+            along = points[part, axis]
+            if along.max() - along.min() >= extent:
+                extent, keys = along.max() - along.min(), along
+        middle = start[(low + high + 1) // 2 - leaves] - start[low - leaves]
+        order[start[low - leaves] : start[high - leaves + 1]] = part[np.argpartition(keys, middle)]
+    return order
 
 
 @njit(cache=True, nogil=True)
 def _sum_up(rim, first, apex, start):
-    """Return centre, area, vector area and moments of each cluster."""
+    """Return the spheres, but for their radii; the moments; and the areas next to rim, apex."""
     leaves = len(start) - 1
-    centre, area, count = np.zeros((2 * leaves, 3)), np.zeros(2 * leaves), np.zeros(2 * leaves)
-    vector, moment = np.zeros((2 * leaves, 3)), np.zeros((2 * leaves, 3, 3))
+    count, sphere = np.zeros(2 * leaves), np.zeros((2 * leaves, 6))
+    weight = np.zeros(len(rim)), np.zeros(len(apex))
+    summed = np.zeros((2 * leaves, moments.SIZE))
     for k in range(2 * leaves - 1, 0, -1):
+        centre = sphere[k, :3]
         if k >= leaves:
-            for loop in range(start[k - leaves], start[k - leaves + 1]):
-                ring = rim[first[loop] : first[loop + 1]]
-                count[k] = len(ring)
-                for e in range(len(ring)):
-                    centre[k] += ring[e] / len(ring)
-                area[k] = _add_fan(ring, apex[loop], centre[k], vector[k], moment[k])
+            begin, end = start[k - leaves], start[k - leaves + 1]
+            count[k] = first[end] - first[begin]
+            for e in range(first[begin], first[end]):
+                for i in range(3):
+                    centre[i] += rim[e, i] / count[k]
+            for loop in range(begin, end):
+                span = first[loop], first[loop + 1]
+                area = _add_fan(rim, span, apex[loop], centre, summed[k], weight[0])
+                weight[1][loop] = area
+                sphere[k, 5] += area
             continue
         count[k] = count[2 * k] + count[2 * k + 1]
-        area[k] = area[2 * k] + area[2 * k + 1]
+        sphere[k, 5] = sphere[2 * k, 5] + sphere[2 * k + 1, 5]
         for half in (2 * k, 2 * k + 1):
             for i in range(3):
-                centre[k, i] += centre[half, i] * (count[half] / count[k])
-                vector[k, i] += vector[half, i]
+                centre[i] += sphere[half, i] * (count[half] / count[k])
         for half in (2 * k, 2 * k + 1):
-            for i in range(3):
-                for j in range(3):
-                    moved = centre[half, j] - centre[k, j]
-                    moment[k, i, j] += moment[half, i, j] + vector[half, i] * moved
-    return centre, area, vector, moment
+            moments.add_moved(summed[k], summed[half], between(centre, sphere[half]))
+    for k in range(1, 2 * leaves):
+        moments.make_harmonic(summed[k])
+    return sphere, summed, weight
 
 
 @njit(cache=True)
-def _add_fan(ring, apex, centre, vector, moment):
-    """Add the vector area and moments of one cap; return its area."""
-    area = 0.0
-    for e in range(len(ring)):
-        a, b = ring[(e + 1) % len(ring)], ring[e]
-        normal = cross(between(a, b), between(a, apex))
-        area += length(normal) / 2
-        for i in range(3):
-            vector[i] += normal[i] / 2
-            for j in range(3):
-                moment[i, j] += normal[i] / 2 * ((a[j] + b[j] + apex[j]) / 3 - centre[j])
-    return area
+def _add_fan(rim, span, apex, centre, summed, weight):
+    """Add the moments of one cap, and its triangles' areas to those next to the rim."""
+    begin, end = span
+    total, before = 0.0, end - 1
+    c, b = between(centre, apex), between(centre, rim[before])
+    for e in range(begin, end):
+        a, b = b, between(centre, rim[e])
+        area = moments.add_triangle(summed, b, a, c)
+        weight[before] += area
+        weight[e] += area
+        total, before = total + area, e
+    return total
 
 
 @njit(cache=True, nogil=True)
-def _surround(rim, first, start, centre, part, step, radius):
-    """Find the radius of each so-manieth cluster, from `part` on."""
+def _surround(rim, first, apex, start, weight, part, step, sphere):
+    """Find the radius and the cubic mean of each so-manieth cluster, from `part` on.
+
+    The cube of a distance is convex: its mean over a triangle is at most that of the corners.
+    """
     leaves = len(start) - 1
     for k in range(part, 2 * leaves, step):
         low = high = k
         while low < leaves:
             low, high = 2 * low, 2 * high + 1
+        low, high = start[low - leaves], start[high - leaves + 1]
         # An apex is a mean of vertices, and lies in the sphere with them.
-        for e in range(first[start[low - leaves]], first[start[high - leaves + 1]]):
-            away = between(centre[k], rim[e])
-            radius[k] = max(radius[k], dot(away, away))
-        radius[k] = np.sqrt(radius[k])
+        squared = total = 0.0
+        for e in range(first[low], first[high]):
+            away = between(sphere[k], rim[e])
+            s = dot(away, away)
+            squared = max(squared, s)
+            total += weight[0][e] * s * np.sqrt(s)
+        for loop in range(low, high):
+            away = between(sphere[k], apex[loop])
+            s = dot(away, away)
+            total += weight[1][loop] * s * np.sqrt(s)
+        sphere[k, 3] = np.sqrt(squared)
+        mean = (total / (3 * sphere[k, 5])) ** (1 / 3) if total > 0 else 0.0
+        sphere[k, 4] = min(mean, sphere[k, 3])
 
 
 @njit(cache=True, inline="always")
-def left_out(clusters, k, far, reach):
+def left_out(sphere, far, reach):
     """Return what the expansion of a cluster leaves out in a ball as far off as that."""
-    x = (clusters.radius[k] + reach) / far if far > 0 else np.inf
-    if x >= 1:
+    room = far - sphere[3] - reach
+    if room <= 0:
         return np.inf
-    return clusters.area[k] / (4 * np.pi * far * far) * (1 / ((1 - x) * (1 - x)) - 1 - 2 * x)
-
-
-@njit(cache=True, inline="always")
-def expansion(clusters, k, r, far):
-    """Return what a cluster at r, as far off as that, covers, and the gradient of that."""
-    per_area = 1 / (4 * np.pi * far * far)
-    n = r[0] / far, r[1] / far, r[2] / far
-    a, m = clusters.vector[k], clusters.moment[k]
-    ahead = dot(a, n)
-    turned = m[0, 0] + m[1, 1] + m[2, 2]
-    turned -= 3 * (n[0] * dot(m[0], n) + n[1] * dot(m[1], n) + n[2] * dot(m[2], n))
-    value = per_area * (ahead + turned / far)
-    slope = -per_area / far
-    gx, gy, gz = a[0] - 3 * n[0] * ahead, a[1] - 3 * n[1] * ahead, a[2] - 3 * n[2] * ahead
-    return value, gx * slope, gy * slope, gz * slope
+    x = (sphere[4] + reach) / far
+    series = 4 - 3 * (sphere[3] + reach) / far
+    return sphere[5] / (4 * np.pi * room * room) * x * x * x * series

@@ -1,8 +1,7 @@
 """What all caps cover of the view, near and far, within a proven bound.
 
-Far clusters are expanded, see `clusters.py`. What they cover in a ball around a place is
-kept as a field: a value, its gradient, and how much the two leave out. A smaller ball
-within takes the field over, and only what was too near for it is looked at again.
+Far clusters are expanded, see `clusters.py`. What they cover in a ball around a place q is
+a field, see `field.py`.
 
 The caps of loops nearby are summed exactly at q. Their gradient is, by Biot and Savart, the
 integral of F x dr around the loop, whichever surface spans it, and its own derivatives at
@@ -16,104 +15,30 @@ but for the jump by one where it is passed: such a ball is called torn.
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 from numba import njit
 
-from .clusters import expansion, left_out
-from .rays import grown
+from .clusters import ROOT, left_out
+from .field import ERROR
+from .moments import add_expansion, covered_afar
 from .solid_angle import between, cross, distance_to_edge, dot, is_within, length, turning
 
 DEPTH = 64
-FAR = 1e-3
-"""What a cluster that counts as far may leave out in a block."""
 CLEAR = 1e-7
 """Nearer to a cap than this, relative to its size, rounding may put a point on either side."""
-
-
-class Field(NamedTuple):
-    """A linear function around a place: value + (x, y, z) . (p - place), right within error."""
-
-    value: float
-    x: float
-    y: float
-    z: float
-    error: float
-
-
-NOTHING = Field(0.0, 0.0, 0.0, 0.0, 0.0)
-
-
-@njit(cache=True, inline="always")
-def moved(field, a, b):
-    """Return the field of a place a as one of a place b."""
-    value = field.value + field.x * (b[0] - a[0]) + field.y * (b[1] - a[1])
-    value += field.z * (b[2] - a[2])
-    return Field(value, field.x, field.y, field.z, field.error)
+SMALL = 1e-60
+"""Numbers this small, or their inverse large, are scaled before products leave the floats."""
 
 
 @njit(cache=True, nogil=True)
-def gather(clusters, listed, begin, end, q, reach, closest, field):
-    """Add what is far from a ball to its field, and list what is not.
+def view(clusters, field, q, reach, tolerance, limit):
+    """Add what caps cover of the view in a ball to a field.
 
     Parameters
     ----------
     clusters : Clusters
-    listed : array, int64
-        Clusters to look at, from `begin` to `end`. What is too near is listed behind them.
-    q, reach : tuple of 3 floats, float
-        The ball.
-    closest : float
-        How large (radius of cluster + reach) / distance may be for it to count as far.
-    field : Field
-        At q, of all the other clusters.
-
-    Returns
-    -------
-    listed, last : the list, longer if need be, and where what is near ends
-    field : Field
-    """
-    value, gx, gy, gz, error = field
-    leaves, last, touching = len(clusters.start) - 1, end, end
-    stack = np.empty(DEPTH, np.int64)
-    for place in range(begin, end):
-        stack[0], size = listed[place], 1
-        while size:
-            size -= 1
-            k = stack[size]
-            r = between(q, clusters.centre[k])
-            far = length(r)
-            off = left_out(clusters, k, far, reach)
-            if off <= FAR and clusters.radius[k] + reach <= closest * far:
-                v, x, y, z = expansion(clusters, k, r, far)
-                value, gx, gy, gz = value + v, gx + x, gy + y, gz + z
-                error += off
-            elif k < leaves and clusters.radius[k] >= reach / 2:
-                stack[size], stack[size + 1] = 2 * k, 2 * k + 1
-                size += 2
-            else:
-                if last == len(listed):
-                    listed = grown(listed)
-                listed[last] = k
-                if off == np.inf:  # what may touch the ball comes first
-                    listed[last], listed[touching] = listed[touching], k
-                    touching += 1
-                last += 1
-    return listed, last, Field(value, gx, gy, gz, error)
-
-
-@njit(cache=True, nogil=True)
-def view(clusters, listed, field, q, reach, tolerance, limit):
-    """Return what caps cover of the view, to first order around a place.
-
-    Parameters
-    ----------
-    clusters : Clusters
-    listed : array, int64
-        Those to look at.
-    field : Field
-        At q, of all the others.
+    field : array
+        At q, of anything else; changed.
     q : tuple of 3 floats
     reach : float
         Radius of the ball around q for which the result holds.
@@ -124,70 +49,106 @@ def view(clusters, listed, field, q, reach, tolerance, limit):
 
     Returns
     -------
-    field : Field
-        Of all caps at q; its error is infinite where q itself is too near to a cap for
-        rounding.
     is_torn : bool
         Whether a cap enters the ball: then the field is right up to whole numbers.
     """
-    value, gx, gy, gz, error = field
     is_torn = False
     leaves = len(clusters.start) - 1
     stack = np.empty(DEPTH, np.int64)
-    for place in range(len(listed)):
-        stack[0], size = listed[place], 1
-        while size and error <= limit:
-            size -= 1
-            k = stack[size]
-            r = between(q, clusters.centre[k])
-            far = length(r)
-            off = left_out(clusters, k, far, reach)
-            # Halving clusters helps little once the ball is what makes h large.
-            if off <= tolerance or (off < np.inf and clusters.radius[k] < reach / 4):
-                v, x, y, z = expansion(clusters, k, r, far)
-                value, gx, gy, gz = value + v, gx + x, gy + y, gz + z
-                error += off
-                continue
-            if k < leaves:
-                near, other = 2 * k, 2 * k + 1
-                if _is_nearer(clusters.centre, other, near, q):
-                    near, other = other, near
-                stack[size], stack[size + 1] = other, near  # the near ones exceed the limit first
-                size += 2
-                continue
+    stack[0], size = ROOT, 1
+    while size and field[ERROR] <= limit:
+        size -= 1
+        k = stack[size]
+        r = between(q, clusters.sphere[k])
+        far = length(r)
+        off = left_out(clusters.sphere[k], far, reach)
+        # Halving clusters helps little once the ball is what makes h large.
+        if off <= tolerance or (off < np.inf and clusters.sphere[k, 3] < reach / 4):
+            add_expansion(field, clusters.moments[k], r, far)
+            field[ERROR] += off
+            continue
+        if k < leaves:
+            near, other = 2 * k, 2 * k + 1
+            if _is_nearer(clusters.sphere, other, near, q):
+                near, other = other, near
+            stack[size], stack[size + 1] = other, near  # the near ones exceed the limit first
+            size += 2
+            continue
+        for loop in range(clusters.start[k - leaves], clusters.start[k - leaves + 1]):
+            rim = clusters.rim[clusters.first[loop] : clusters.first[loop + 1]]
+            apex = clusters.apex[loop]
+            is_torn |= _add_change(field, rim, apex, q, reach, limit, off == np.inf)
+            if field[ERROR] > limit:
+                break
+            angle, _ = _turned((1.0, 0.0, 0.0), rim, apex, q)
+            field[0] += _turns(angle)
+    return is_torn
+
+
+@njit(cache=True, nogil=True)
+def covered(clusters, q, tolerance):
+    """Return what caps cover of the view from a point, and what that may leave out.
+
+    Parameters
+    ----------
+    clusters : Clusters
+    q : tuple of 3 floats
+    tolerance : float
+        Clusters that may leave out more than this are halved.
+
+    Returns
+    -------
+    value, error : float
+        The error is infinite where q is too near to a cap for rounding.
+    """
+    value = error = 0.0
+    angle, is_clear = (1.0, 0.0, 0.0), True
+    leaves = len(clusters.start) - 1
+    stack = np.empty(DEPTH, np.int64)
+    stack[0], size = ROOT, 1
+    while size:
+        size -= 1
+        k = stack[size]
+        r = between(q, clusters.sphere[k])
+        far = length(r)
+        off = left_out(clusters.sphere[k], far, 0.0)
+        if off <= tolerance:
+            value += covered_afar(clusters.moments[k], r, far)
+            error += off
+        elif k < leaves:
+            stack[size], stack[size + 1] = 2 * k, 2 * k + 1
+            size += 2
+        else:
             for loop in range(clusters.start[k - leaves], clusters.start[k - leaves + 1]):
                 rim = clusters.rim[clusters.first[loop] : clusters.first[loop + 1]]
-                if reach > 0:
-                    may_tear = off == np.inf
-                    g, change, cuts = _change(rim, clusters.apex[loop], q, reach, limit, may_tear)
-                    gx, gy, gz = gx + g[0], gy + g[1], gz + g[2]
-                    error += change
-                    is_torn |= cuts
-                    if error > limit:
-                        break
-                share, is_clear = _covered(rim, clusters.apex[loop], q)
-                value += share
-                if reach == 0 and not is_clear:
-                    error = np.inf
-    return Field(value, gx, gy, gz, error), is_torn
+                angle, clear = _turned(angle, rim, clusters.apex[loop], q)
+                is_clear &= clear
+    return value + _turns(angle), error if is_clear else np.inf
 
 
 @njit(cache=True, inline="always")
-def _is_nearer(centre, k, other, q):
-    a, b = between(q, centre[k]), between(q, centre[other])
+def _is_nearer(sphere, k, other, q):
+    a, b = between(q, sphere[k]), between(q, sphere[other])
     return dot(a, a) < dot(b, b)
 
 
+@njit(cache=True, inline="always")
+def _turns(angle):
+    """Return an angle in full turns, see `_turned`."""
+    x, y, turns = angle
+    return turns + np.arctan2(y, x) / (2 * np.pi)
+
+
 @njit(cache=True)
-def _covered(rim, apex, q):
-    """Return what one cap covers, and whether that is clear of rounding.
+def _turned(angle, rim, apex, q):
+    """Turn an angle by what one cap covers; tell whether that is clear of rounding.
 
     Half the solid angle of a triangle is the angle of a complex number (van Oosterom &
-    Strackee 1983). Their product has the sum of the angles, up to whole turns, which are
-    counted: two angles on one side of the real axis pass the far side if their sum does not
-    stay there.
+    Strackee 1983). Their product (x, y) has the sum of the angles, up to whole turns, which
+    are counted: two angles on one side of the real axis pass the far side if their sum does
+    not stay there.
     """
-    x, y, turns = 1.0, 0.0, 0
+    x, y, turns = angle
     is_clear = True
     # Where the apex is the rim's first vertex, the edges next to it span nothing.
     begin, end = (2, len(rim)) if len(rim) <= 4 else (1, len(rim) + 1)
@@ -207,17 +168,16 @@ def _covered(rim, apex, q):
             turns += 1
         elif was < 0 and triple < 0 and y >= 0:
             turns -= 1
-        if e % 8 == 0:  # else products of many small numbers vanish
-            size = abs(x) + abs(y)
+        size = abs(x) + abs(y)
+        if 0 < size < SMALL or size > 1 / SMALL:  # else products leave the floats
             x, y = x / size, y / size
         b, lb = a, la
-    return turns + np.arctan2(y, x) / (2 * np.pi), is_clear
+    return (x, y, turns), is_clear
 
 
 @njit(cache=True)
-def _change(rim, apex, q, reach, limit, may_tear):
-    """Return the gradient of what a cap covers, what that leaves out, and if it is torn."""
-    gx = gy = gz = error = 0.0
+def _add_change(field, rim, apex, q, reach, limit, may_tear):
+    """Add the gradient of what a cap covers, and what that leaves out; tell if it is torn."""
     is_torn = False
     c = between(q, apex)
     b = between(q, rim[len(rim) - 1])
@@ -232,12 +192,15 @@ def _change(rim, apex, q, reach, limit, may_tear):
         if gap < side:
             gap = distance_to_edge(a, b) - reach
             if gap <= 0:
-                return (gx, gy, gz), np.inf, True
-        error += reach * reach / 2 * side / (2 * np.pi * gap * gap * gap)
-        if error > limit:
+                field[ERROR] = np.inf
+                return True
+        field[ERROR] += reach * reach / 2 * side / (2 * np.pi * gap * gap * gap)
+        if field[ERROR] > limit:
             break
         g = turning(b, a, lb, la)
-        gx, gy, gz = gx + g[0], gy + g[1], gz + g[2]
+        field[1] += g[0]
+        field[2] += g[1]
+        field[3] += g[2]
         if may_tear and not is_torn:
             is_torn = is_within(b, a, c, reach)
-    return (gx, gy, gz), error, is_torn
+    return is_torn

@@ -21,12 +21,40 @@ def apart(share):
     return points, np.arange(len(points), dtype=np.int32).reshape(-1, 3)
 
 
+def jittered():
+    """Move each corner of each triangle by itself."""
+    points, faces = apart(1.0)
+    return points + np.random.default_rng(0).normal(0, 0.01, points.shape), faces
+
+
+def half_flipped():
+    """Turn every other triangle round, by chance."""
+    vertices, faces = meshes.ball(2)
+    turned = np.random.default_rng(1).random(len(faces)) < 0.5
+    faces[turned] = faces[turned, ::-1]
+    return vertices, faces
+
+
+def confetti():
+    """Triangles that have nothing in common, through each other."""
+    rng = np.random.default_rng(2)
+    points = rng.uniform(0.2, 0.8, (150, 1, 3)) + rng.normal(0, 0.08, (150, 3, 3))
+    return points.reshape(-1, 3), np.arange(450, dtype=np.int32).reshape(-1, 3)
+
+
 RESOLUTION = 15
 """No power of two: then no midpoint lies on a rim, where the number is anyone's."""
-SHAPES = {"narrow gaps": lambda: apart(0.99), "wide gaps": lambda: apart(0.7)} | meshes.OPEN
+TORN = {
+    "narrow gaps": lambda: apart(0.99),
+    "wide gaps": lambda: apart(0.7),
+    "jittered": jittered,
+    "half flipped": half_flipped,
+    "confetti": confetti,
+}
+SHAPES = TORN | meshes.OPEN
 
 
-@pytest.mark.parametrize("tau", [0.3, 0.5])
+@pytest.mark.parametrize("tau", [0.2, 0.3, 0.5])
 @pytest.mark.parametrize("name", [n for n in SHAPES if "soup" not in n])
 def test_runs_equal_those_of_exact_numbers(name, tau):
     vertices, index = weld(SHAPES[name]()[0])
