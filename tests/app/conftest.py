@@ -1,4 +1,4 @@
-"""What the browser tests share: one Chromium, one server, and a page that shows the robot."""
+"""What the page's tests share: sessions; one Chromium, one server, a page that shows the robot."""
 
 from collections.abc import Iterator
 
@@ -6,13 +6,39 @@ import pytest
 from playwright.sync_api import Browser, sync_playwright
 
 import cutcell
+from app.session import Session
 from assets import demo_path
 from cutcell.rig import Rig
 from scripts.get_chromium import FLAGS
 from tests.app.browser import Visit, served
+from tests.app.loop import Loop
+from tests.viewers.arm import arm_rig
 
 LIGHT = (*FLAGS, "--disable-gpu-rasterization", "--disable-gpu-compositing")
 """Without a graphics card, OpenGL is a slow way to draw what is no 3D view: half of all work."""
+
+
+@pytest.fixture
+def loop() -> Loop:
+    """Stand for the page's thread."""
+    return Loop()
+
+
+@pytest.fixture
+def session(loop: Loop) -> Iterator[Session]:
+    """Begin a session without a browser."""
+    session = Session(loop)
+    yield session
+    session.close()
+
+
+@pytest.fixture
+def bound(session: Session, loop: Loop) -> Session:
+    """Let the session show a bound character."""
+    session.state.resolution = 16
+    session.open_rig(arm_rig())
+    loop.run_until(lambda: session.state.binding is not None)
+    return session
 
 
 @pytest.fixture(scope="package")

@@ -10,13 +10,7 @@ from app.panels.compare import rows_of
 from app.session import Session
 from cutcell.baselines import METHODS, BaselineBinding
 from cutcell.baselines.apart import _WANTED
-from tests.app.loop import Loop
 from tests.viewers.arm import arm_rig
-
-
-@pytest.fixture
-def loop():
-    return Loop()
 
 
 @pytest.fixture

@@ -11,20 +11,7 @@ from app.session import Session
 from app.state import State
 from app.state.compare import standard
 from assets import demo_path
-from tests.app.loop import Loop
 from tests.viewers.arm import arm_rig
-
-
-@pytest.fixture
-def loop():
-    return Loop()
-
-
-@pytest.fixture
-def session(loop):
-    session = Session(loop)
-    yield session
-    session.close()
 
 
 def said(session):

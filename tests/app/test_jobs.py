@@ -6,12 +6,6 @@ from types import SimpleNamespace
 import pytest
 
 from app.jobs import Gate, Jobs, on_its_thread
-from tests.app.loop import Loop
-
-
-@pytest.fixture
-def loop():
-    return Loop()
 
 
 @pytest.fixture

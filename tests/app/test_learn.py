@@ -9,19 +9,6 @@ from app.session import Session
 from app.state import PANELS, State
 from app.tour import TOUR
 from assets import DEMOS
-from tests.app.loop import Loop
-
-
-@pytest.fixture
-def loop():
-    return Loop()
-
-
-@pytest.fixture
-def session(loop):
-    session = Session(loop)
-    yield session
-    session.close()
 
 
 def test_every_step_can_be_told():

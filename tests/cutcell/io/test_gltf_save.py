@@ -2,7 +2,6 @@
 
 import json
 import os
-from dataclasses import replace
 
 import numpy as np
 import pygltflib
@@ -12,8 +11,16 @@ from numpy.testing import assert_allclose, assert_array_equal
 import cutcell
 from cutcell.io.gltf_accessors import read_accessor
 from cutcell.io.gltf_container import read_document
-from tests.cutcell.io.gltf_builder import COLUMN, FACES, JOINTS, SHARES, Builder, column, moved
-from tests.cutcell.io.test_gltf_load import two_skins
+from tests.cutcell.io.gltf_builder import (
+    COLUMN,
+    FACES,
+    JOINTS,
+    SHARES,
+    Builder,
+    column,
+    moved,
+    two_skins,
+)
 from tests.gltf_validator.validator import errors, reports
 
 STORED_ELSEWHERE = ("accessors", "bufferViews", "buffers", "meshes")
@@ -207,13 +214,12 @@ BUILDERS = [
 @pytest.mark.parametrize("make", BUILDERS)
 @pytest.mark.parametrize("end", [".glb", ".gltf"])
 def test_only_the_weights_change(tmp_path, make, end):
-    path = make().save(tmp_path / f"in{end}")
-    expected = errors(reports(path)[0])
+    paths = [make().save(tmp_path / f"in{end}")]
     for most in (4, 8, 2):
-        out = tmp_path / f"out{most}{end}"
-        check_round_trip(path, out, most)
-        assert errors(reports(out)[0]) - expected == {}
-        path = out
+        paths.append(tmp_path / f"out{most}{end}")
+        check_round_trip(paths[-2], paths[-1], most)
+    expected, *found = map(errors, reports(*paths))
+    assert [new - expected for new in found] == [{}] * 3
 
 
 def test_unknown_fields_survive(tmp_path):
@@ -284,46 +290,6 @@ def test_over_the_file_it_came_from(tmp_path):
     cutcell.save(path, rig.with_weights(weights))
     assert_allclose(cutcell.load(path).weights, weights)
     assert sorted(os.listdir(tmp_path)) == ["other.glb", "rig.glb"]
-
-
-def test_a_failure_leaves_the_old_file(tmp_path, monkeypatch):
-    path = column().save(tmp_path / "rig.glb")
-    content = path.read_bytes()
-    rig = cutcell.load(path)
-
-    def full(*_):
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr(os, "replace", full)
-    with pytest.raises(cutcell.FileError, match=r"rig\.glb: cannot be written \(No space left"):
-        cutcell.save(path, rig)
-    assert path.read_bytes() == content
-    assert os.listdir(tmp_path) == ["rig.glb"]
-
-
-def test_weight_that_the_skin_cannot_hold_is_refused(tmp_path):
-    rig = cutcell.load(two_skins([3, 0, -2]).save(tmp_path / "in.glb"))
-    weights = np.full(rig.weights.shape, 1 / 3)
-    with pytest.raises(
-        cutcell.WeightsError,
-        match=r'out\.glb: mesh "column", primitive 0: vertex 0 has weight on the joint "extra"',
-    ):
-        cutcell.save(tmp_path / "out.glb", rig.with_weights(weights))
-    assert not (tmp_path / "out.glb").exists()
-
-
-def test_a_rig_that_is_no_longer_its_documents_is_refused(tmp_path):
-    rig = cutcell.load(column().save(tmp_path / "in.glb"))
-    short = cutcell.TriangleMesh(rig.mesh.vertices[:4], [[0, 1, 2]])
-    with pytest.raises(
-        cutcell.MeshError, match=r"out\.glb: the rig has 4 vertices, its document 12"
-    ):
-        cutcell.save(tmp_path / "out.glb", replace(rig, mesh=short, weights=rig.weights[:4]))
-    other = cutcell.Skeleton(rig.skeleton.joints, rig.skeleton.parents, ("a", "b"))
-    with pytest.raises(cutcell.SkeletonError, match="no longer those of its document"):
-        cutcell.save(tmp_path / "out.glb", replace(rig, skeleton=other))
-    with pytest.raises(cutcell.WeightsError, match="no weights to save; bind it first"):
-        cutcell.save(tmp_path / "out.glb", rig.with_weights(None))
 
 
 def test_other_programs_read_what_was_saved(tmp_path):

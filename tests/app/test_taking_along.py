@@ -1,0 +1,94 @@
+"""What a person takes along from a session: the bound character, pictures, films, numbers."""
+
+import io
+
+import numpy as np
+import pytest
+
+import cutcell
+from app.actions.take_along import bound_file, take_numbers, take_picture, take_turntable
+
+
+def test_the_bound_character_can_be_taken_along(bound, loop, tmp_path):
+    got = []
+    bound_file(bound, lambda name, content: got.append((name, content)))
+    loop.run_until(lambda: bool(got))
+    name, content = got[0]
+    assert name == "arm-bound.glb"
+    path = tmp_path / name
+    path.write_bytes(content)
+    loaded = cutcell.load(path)
+    np.testing.assert_allclose(loaded.weights, bound.state.binding.weights, atol=1e-6)
+
+
+def test_nothing_to_take_along_is_told(session):
+    bound_file(session, lambda name, content: None)
+    assert session.state.message[0] == "info"
+
+
+def taken(loop, act, *arguments):
+    got = []
+    act(*arguments, lambda name, content: got.append((name, content)))
+    loop.run_until(lambda: bool(got), 60)
+    return got[0]
+
+
+@pytest.fixture
+def small(monkeypatch):
+    monkeypatch.setattr("app.actions.take_along.PICTURE_PIXELS", 160 * 120)
+    monkeypatch.setattr("app.actions.take_along.FILM_PIXELS", 64 * 48)
+
+
+def test_pictures_show_what_is_seen_in_its_pose(bound, loop, small):
+    bound.state.panel = "pose"
+    name, rest = taken(loop, take_picture, bound)
+    assert name == "arm-pose.png"
+    bound.state.turns = {1: (0, 0, 60)}
+    _, turned = taken(loop, take_picture, bound)
+    bound.state.param.update(moving=True, clip=0)
+    bound.view.time = 0.5
+    _, halfway = taken(loop, take_picture, bound)
+    assert len({rest, turned, halfway}) == 3
+    assert all(content.startswith(b"\x89PNG") for content in (rest, turned, halfway))
+    assert list(bound.folder.iterdir()) == []
+
+
+def test_drawing_leaves_the_page_free_and_can_be_cancelled(bound, loop, small):
+    got = []
+    take_turntable(bound, "gif", lambda name, content: got.append(name))
+    stages = []
+    bound.state.param.watch(lambda event: stages.append(event.new), "stage")
+    loop.run_until(lambda: "drawing the film" in stages)
+    assert bound.state.busy
+    bound.cancel()
+    assert not bound.state.busy
+    loop.run_for(0.5)
+    assert got == []
+
+
+def test_numbers_are_those_that_were_computed(bound, loop):
+    name, content = taken(loop, take_numbers, bound, "all", "npz")
+    assert name == "arm-numbers.npz"
+    with np.load(io.BytesIO(content)) as numbers:
+        np.testing.assert_array_equal(numbers["weights"], bound.state.binding.weights)
+        np.testing.assert_array_equal(numbers["distances"].T, bound.state.binding.distances.joint)
+        assert numbers["joint_names"].tolist() == ["shoulder", "elbow", "wrist"]
+    name, content = taken(loop, take_numbers, bound, "weights", "csv")
+    assert name == "arm-weights.csv"
+    assert content.decode().splitlines()[0] == "vertex,shoulder,elbow,wrist"
+
+
+def test_numbers_that_are_not_there_yet_are_told(session):
+    take_numbers(session, "all", "npz", lambda name, content: None)
+    assert session.state.message[0] == "info"
+
+
+def test_a_machine_that_cannot_draw_is_told_so(bound, loop, small, monkeypatch):
+    got = []
+    monkeypatch.setattr("viewers.worker.sys.executable", "false")
+    monkeypatch.setattr("viewers.opengl._can_draw", lambda: False)
+    take_picture(bound, lambda name, content: got.append(name))
+    loop.run_until(lambda: bound.state.message is not None)
+    assert "no OpenGL" in bound.state.message[1]
+    assert got == []
+    assert bound.state.binding is not None
