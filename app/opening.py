@@ -71,7 +71,7 @@ class Opening(ABC):
         """Compute graph, distances and weights of the character that stands there."""
 
     @abstractmethod
-    def look(self, camera: Camera | None, aside: bool = False) -> None:
+    def look(self, camera: Camera | None) -> None:
         """Look from somewhere."""
 
     @abstractmethod
@@ -119,6 +119,7 @@ class Opening(ABC):
 
     def open_upload(self, paths: list[Path]) -> None:
         """Show the character in files that a person dropped; keep them for a while."""
+        self._arrival = {}  # what an address says is of another character
         key, here = KEEP.put(paths)
         self._held.add(key)
         self.open_files(here, key)

@@ -176,15 +176,12 @@ class Session(Opening):
             return
         state.vertex = vertex
 
-    def look(self, camera: Camera | None, aside: bool = False) -> None:
-        """Look from somewhere; None for the view that one begins with.
-
-        With `aside`, what is looked at stands left of the middle, beside a card.
-        """
+    def look(self, camera: Camera | None) -> None:
+        """Look from somewhere; None for the view that one begins with."""
         home = camera_part(framing(bounds_of(self.state), 1.2))
         if camera is not None:
             self.view.camera, self.view.at_home = camera, False
-            home["now"] = {**camera_part(camera), "aside": aside}
+            home["now"] = camera_part(camera)
         self.view.tell(camera=home)
 
     def _refresh(self, *events: Any) -> None:

@@ -15,6 +15,8 @@ _SHAPE = {
     },
     # A menu that fades away still takes the next click, wherever that goes: it is gone at once.
     "components": {
+        # Dark paper is as dark over the canvas as beside it.
+        "MuiDrawer": {"styleOverrides": {"paper": {"backgroundImage": "none"}}},
         "MuiMenu": {"defaultProps": {"transitionDuration": {"enter": 160, "exit": 0}}},
     },
 }

@@ -113,7 +113,7 @@ TOUR = (
             "compare",
             bone="hand.L",
             focus="hand.L",
-            near=0.75,
+            near=0.82,
             turns={"upper_arm.L": (0, 0, 45)},
             choices={"methods": ["euclidean", "now"], "skeleton": False},
         ),

@@ -43,7 +43,6 @@ def tour_card(session: Session) -> TourCard:
 
     def told(*events: Any) -> None:
         card.step = session.state.tour
-        session.view.tell(beside=card.step >= 0)
 
     session.state.param.watch(told, "tour")
     return card

@@ -76,7 +76,7 @@ def show(session: Session, look: Look, said: frozenset[str] = frozenset()) -> No
 
 def aim(session: Session, look: Look) -> None:
     """Look from where a step does."""
-    session.look(camera_of(session, look), aside=look.panel != "compare")
+    session.look(camera_of(session, look))
 
 
 def points_out(state: Any) -> bool:

@@ -116,11 +116,7 @@ export function render({model}) {
   root.style.maxHeight = "inherit"
   const style = document.createElement("style")
   style.textContent = CARD_STYLE
-  const show = () => {
-    root.replaceChildren(style, ...(model.facts ? [card(model, model.facts)] : []))
-    window.__cutcellCard = root  // for a canvas that comes later
-    window.dispatchEvent(new CustomEvent("cutcell card", {detail: root}))
-  }
+  const show = () => root.replaceChildren(style, ...(model.facts ? [card(model, model.facts)] : []))
   const escape = (e) => {
     if (e.key === "Escape" && model.facts) { model.send_msg({type: "close"}) }
   }

@@ -106,9 +106,12 @@ class Keys {
       [(touch ? fingers : mouse).replace(/ /g, "\u00a0"), touch ? what.replace(/ \(.*/, "") : what])
     const list = (keys) => `<dl>${keys.map(([key, what]) =>
       `<dt>${key.split(" ").map((k) => `<kbd>${k}</kbd>`).join("")}</dt><dd>${what}</dd>`).join("")}</dl>`
-    card.innerHTML = `<h2 id="keys-title">How to get about</h2><div><section><h3>In the canvas</h3>`
-      + `${list(pointer)}</section><section><h3>Keys</h3>${list(KEYS)}</section><section>`
-      + `<h3>Keys in the canvas</h3>${list(CANVAS_KEYS)}</section></div>`
+    // Where fingers are all there is, keys are none.
+    const keys = matchMedia("(any-hover: none)").matches ? []
+      : [["Keys", KEYS], ["Keys in the canvas", CANVAS_KEYS]]
+    const sections = [["In the canvas", pointer], ...keys].map(([title, all]) =>
+      `<section><h3>${title}</h3>${list(all)}</section>`)
+    card.innerHTML = `<h2 id="keys-title">How to get about</h2><div>${sections.join("")}</div>`
       + `<button type="button">Close</button>`
     card.querySelector("button").addEventListener("click", () => card.close())
     card.addEventListener("click", (e) => { if (e.target === card) { card.close() } })

@@ -159,14 +159,12 @@ class Overlay {
     captions.forEach((text, i) => {
       const [left, top, width, height] = tiles[i]
       const px = (value) => `${value}px`
-      // The tools stand in the corner at the upper right.
-      const below = width < 330 && top === 0 ? 62 : 14
       put("card caption", text, {
-        left: px(left + 14), top: px(top + below), maxWidth: px(width - 28),
+        left: px(left + 14), top: px(top + 10), maxWidth: px(width - 28),
         boxSizing: "border-box",
       })
-      if (left > 0) { put("seam", "", {left: px(left), top: px(top), width: "1px", height: px(height)}) }
-      if (top > 0) { put("seam", "", {left: px(left), top: px(top), width: px(width), height: "1px"}) }
+      if (left > tiles[0][0]) { put("seam", "", {left: px(left), top: px(top), width: "1px", height: px(height)}) }
+      if (top > tiles[0][1]) { put("seam", "", {left: px(left), top: px(top), width: px(width), height: "1px"}) }
     })
   }
 

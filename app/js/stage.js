@@ -12,7 +12,8 @@ function loadVtk(url) {
   return window.__cutcellVtk
 }
 
-const NO_CARDS = {right: 0, top: 0, bottom: 0}
+// Of a view that stands beside others: above there is its caption.
+const CAPTIONED = {left: 0, right: 0, top: 46, bottom: 16}
 
 class Stage {
   constructor(vtk, element) {
@@ -37,7 +38,7 @@ class Stage {
     this.gl.setContainer(element)
     this.window.addView(this.gl)
     this.pose = null
-    this.room = NO_CARDS
+    this.room = noCards(false)
     this.divide([])
     this.frames = 0
   }
@@ -64,19 +65,21 @@ class Stage {
     for (const figure of this.figures.values()) { figure.place() }
   }
 
-  // Where each view lies, in the canvas' own pixels; divided as pictures are (viewers/tiles.py).
+  // Where each view lies, in the canvas' own pixels.
   get tiles() {
-    const [w, h] = this.free
+    return this.tilesIn(this.room)
+  }
+
+  // One view has the whole canvas, with cards over it; several divide what cards leave free, as
+  // pictures are divided (viewers/tiles.py).
+  tilesIn({left, right, top, bottom}) {
+    const {clientWidth: w, clientHeight: h} = this.element
+    if (this.views.length < 2) { return [[0, 0, w, h]] }
     const b = this.bounds(isCharacter)
     const [wide, high, deep] = [0, 1, 2].map((i) => Math.max(b[2 * i + 1] - b[2 * i], 1e-9))
     const shape = Math.min(Math.max(Math.max(wide, deep) / high, 0.4), 2.5)
-    return tiles(this.views.length, w, h, shape)
-  }
-
-  // Width and height that views which stand side by side may take: a card leaves them the rest.
-  get free() {
-    const {clientWidth: w, clientHeight: h} = this.element
-    return this.views.length < 2 || !this.card ? [w, h] : beside(w, h)
+    const free = [Math.max(w - left - right, w / 4, 1), Math.max(h - top - bottom, h / 4, 1)]
+    return tiles(this.views.length, ...free, shape).map(([x, y, ...size]) => [left + x, top + y, ...size])
   }
 
   light(lights) {
@@ -133,8 +136,16 @@ class Stage {
     const outside = this.isOutside()
     for (const figure of this.figures.values()) { figure.show(moving, outside) }
     this.camera.setClippingRange(...this.depthRange())
-    smooth.draw(this.size, this.rough, () => this.gl.traverseAllPasses())
+    smooth.draw(this.size, this.rough, () => { this.clear(); this.gl.traverseAllPasses() })
     this.frames += 1
+  }
+
+  // Views clear what is theirs; around them there may be what was seen before.
+  clear() {
+    const gl = this.context
+    gl.disable(gl.SCISSOR_TEST)
+    gl.clearColor(0, 0, 0, 0)
+    gl.clear(gl.COLOR_BUFFER_BIT)
   }
 
   // Whether the eye is well outside all that is there, in any pose.
@@ -167,9 +178,9 @@ class Stage {
     return Number.isFinite(b[0]) ? b : [-1, 1, -1, 1, -1, 1]
   }
 
-  // How far the eye must be from the middle to see all, in this window, along a direction.
-  fitting(direction, target) {
-    const [, , w, h] = this.tiles.reduce((a, b) => a[2] / a[3] < b[2] / b[3] ? a : b)
+  // How far the eye must be from the middle to see all, in what cards leave free, along a direction.
+  fitting(direction, target, room) {
+    const [, , w, h] = this.tilesIn(room).reduce((a, b) => a[2] / a[3] < b[2] / b[3] ? a : b)
     const slope = Math.tan(VIEW_ANGLE * Math.PI / 360)
     const flat = Math.hypot(direction[0], direction[2]) || 1
     const right = [direction[2] / flat, 0, -direction[0] / flat]
@@ -177,11 +188,9 @@ class Stage {
       const [i, j] = [(k + 1) % 3, (k + 2) % 3]
       return direction[i] * right[j] - direction[j] * right[i]
     })
-    // Captions stand above, so as much stays free below.
-    const several = this.views.length > 1
-    const {right: aside, top, bottom} = several ? NO_CARDS : this.room
-    const high = Math.max(h - (several ? Math.min(84, h / 3) : top + bottom), h / 4, 1)
-    const wide = Math.max(w - aside, w / 4, 1)
+    const taken = this.views.length > 1 ? CAPTIONED : room
+    const high = Math.max(h - taken.top - taken.bottom, h / 4, 1)
+    const wide = Math.max(w - taken.left - taken.right, w / 4, 1)
     let distance = 0
     this.eachPoint((x, y, z) => {
       const p = [x - target[0], y - target[1], z - target[2]]
@@ -203,12 +212,11 @@ class Stage {
     }
   }
 
-  // Where the middle of what cards leave free lies, in halves of the canvas from its own middle.
+  // Where the middle of what is free in a view lies, in halves of the view from its own middle.
   get middle() {
-    if (this.views.length > 1) { return [0, 0] }
-    const {clientWidth: w, clientHeight: h} = this.element
-    const {right, top, bottom} = this.room
-    return [-right / Math.max(w, 1), (bottom - top) / Math.max(h, 1)]
+    const [, , w, h] = this.tiles[0]
+    const {left, right, top, bottom} = this.views.length > 1 ? CAPTIONED : this.room
+    return [(left - right) / Math.max(w, 1), (bottom - top) / Math.max(h, 1)]
   }
 
   // Which view a pixel of the canvas belongs to.
@@ -262,18 +270,6 @@ class Stage {
 }
 
 const FITTED = 20000  // points of a figure that are looked at to see all of it
-
-// The tour's card: at the right of wide windows, else at the bottom (app/tour_card.py).
-const CARD_WIDTH = 384
-const CARD_SHARE = 0.5
-
-function cardIsBelow() {
-  return window.matchMedia("(max-width: 1180px)").matches
-}
-
-function beside(w, h) {
-  return cardIsBelow() ? [w, h * (1 - CARD_SHARE) - 8] : [w - CARD_WIDTH, h]
-}
 
 // What is to be seen whole; bones may reach far out of it, those above all that move nothing.
 function isCharacter(figure) {

@@ -2,7 +2,6 @@
 // and playing motions happen here.
 
 const CALM = 150  // milliseconds without a change, after which a slow machine draws in full
-const SLIM = 700  // a canvas less wide than this has no room beside its cards
 
 class View {
   constructor(model, vtk, overlay) {
@@ -41,18 +40,10 @@ class View {
     this.names = new Names(overlay.root)
     this.messages = 0
     this.posed = 0
-    this.observer = new ResizeObserver(() => { this.makeRoom(); this.changed() })
-    this.observer.observe(overlay.canvas)
-    this.observer.observe(overlay.legend)
-    // A card that comes over the canvas tells so; what is shown makes room for it.
-    this.carded = (e) => {
-      this.card = e.detail
-      this.observer.observe(this.card)
-      this.makeRoom()
-      this.changed()
-    }
-    window.addEventListener("cutcell card", this.carded)
-    if (window.__cutcellCard) { this.carded({detail: window.__cutcellCard}) }
+    this.room = new Room({
+      overlay, stage: this.stage, orbit: this.orbit,
+      changed: () => this.changed(), rested: () => this.rested(),
+    })
   }
 
   receive(message) {
@@ -72,10 +63,9 @@ class View {
       this.cut = message.cut
       for (const figure of stage.figures.values()) { figure.cut(this.cut) }
     }
-    if ("beside" in message) { this.reframe(() => { stage.card = message.beside }) }
     if (message.views) {
       this.views = message.views
-      this.reframe(() => stage.divide(this.views))
+      stage.divide(this.views)
     }
     if (message.actors) { this.overlay.waiting.hidden = true }
     for (const [name, part] of entries(message.actors)) {
@@ -104,7 +94,8 @@ class View {
     if ("pose" in message || "clip" in message) { this.applyPose() }
     if ("front" in message && !this.film.playing) { this.film.set(message.front) }
     if ("film" in message) { this.film.play(message.film) }
-    if (message.camera) { this.frame(message.camera) }
+    this.room.make()
+    if (message.camera) { this.room.frame(message.camera); this.rested() }
     if (message.home) { this.orbit.reset(); this.rested() }
     if (message.address) {
       this.address = message.address
@@ -112,74 +103,6 @@ class View {
     }
     this.messages = message.id
     this.changed()
-  }
-
-  // Does something that changes how much room there is; as much as before is seen after it.
-  reframe(change) {
-    const {position, target, distance} = this.orbit
-    const way = position.map((x, i) => (x - target[i]) / distance)
-    const before = this.stage.fitting(way, target)
-    change()
-    if (this.overlay.canvas.clientHeight) { this.orbit.scale(this.stage.fitting(way, target) / before) }
-    this.fitted = this.fitNow()
-    this.rested()  // pictures are drawn from where this camera is
-  }
-
-  // Keeps the character clear of what is written over the canvas.
-  makeRoom() {
-    const {canvas, legend} = this.overlay
-    const box = canvas.getBoundingClientRect()
-    if (!box.height) { return }
-    const room = {right: 0, top: 20, bottom: 20}
-    if (box.width < SLIM) {
-      room.top = 62
-      if (!legend.hidden) { room.bottom = legend.offsetHeight + 20 }
-    }
-    const card = this.card?.isConnected && this.card.getBoundingClientRect()
-    if (card?.height && box.width - card.width < 60) {
-      room.bottom = Math.max(room.bottom, box.bottom - card.top)
-    } else if (card?.height && card.width > 0.28 * box.width) {
-      room.right = box.right - card.left
-    }
-    const size = [box.width, box.height]
-    if (JSON.stringify([room, size]) === this.roomFor) { return }
-    this.roomFor = JSON.stringify([room, size])
-    // What was fitted before there was another room must fit again; a few pixels change nothing.
-    this.stage.room = room
-    const fitted = this.fitNow()
-    if (this.framed && Math.abs(fitted / this.fitted - 1) < 0.03) { return }
-    if (this.framed) { this.orbit.scale(fitted / this.fitted) }
-    this.fitted = fitted
-  }
-
-  fitNow() {
-    const {yaw, pitch, target} = this.orbit.home
-    const way = [Math.cos(pitch) * Math.sin(yaw), Math.sin(pitch), Math.cos(pitch) * Math.cos(yaw)]
-    return this.stage.fitting(way, target)
-  }
-
-  // Looks from where the server says, from as far as this window needs.
-  frame({position, focal_point: target, now}) {
-    this.makeRoom()
-    const offset = position.map((x, i) => x - target[i])
-    const direction = offset.map((x) => x / Math.hypot(...offset))
-    const distance = this.stage.fitting(direction, target)
-    this.orbit.setHome(direction.map((x, i) => target[i] + distance * x), target)
-    this.fitted = distance
-    this.framed = true
-    if (now) { this.orbit.look(now.position, now.focal_point) }
-    if (now?.aside) { this.stepAside() }
-    this.orbit.moving = false
-    this.rested()
-  }
-
-  // Where a card covers a part of the canvas, the middle of what is left is elsewhere; and what
-  // filled a wide canvas has to be seen in it.
-  stepAside() {
-    const {clientWidth: w, clientHeight: h} = this.overlay.canvas
-    const [free, high] = beside(w, h)
-    this.orbit.distance *= Math.max(1, 0.85 * h / high, 0.75 * h / Math.max(free, 1))
-    this.orbit.pan((free - w) / 2, (high - h) / 2)
   }
 
   get currentPose() {
@@ -249,56 +172,18 @@ class View {
   rested() {
     this.changed()
     this.model.send_msg({
-      type: "camera", home: this.orbit.atHome, position: this.orbit.position, focal_point: this.orbit.target,
+      type: "camera", home: this.orbit.atHome, position: this.room.position, focal_point: this.orbit.target,
       aspect: this.overlay.canvas.clientWidth / Math.max(this.overlay.canvas.clientHeight, 1),
     })
-  }
-
-  // Where on the page a joint's first bone is: its middle. For tests.
-  bonePoint(joint) {
-    const i = this.bones.joint.indexOf(joint)
-    const box = this.overlay.canvas.getBoundingClientRect()
-    const [a, b] = boneEnds(this.stage, this.bones, this.currentPose, i)
-    return [box.left + (a[0] + b[0]) / 2, box.top + (a[1] + b[1]) / 2]
-  }
-
-  // Where on the page a vertex of the body is. For tests.
-  vertexPoint(vertex) {
-    const box = this.overlay.canvas.getBoundingClientRect()
-    const p = this.stage.figures.get("body").posed()
-    const [x, y] = this.stage.project([...p.slice(3 * vertex, 3 * vertex + 3)])
-    return [box.left + x, box.top + y]
-  }
-
-  // Whether the server has nothing under way, once it has done what it was asked before. For tests.
-  serverRests() {
-    return new Promise((done) => {
-      this.answered = done
-      this.model.send_msg({type: "rests?"})
-    })
-  }
-
-  report() {
-    return {
-      messages: this.messages, frames: this.stage.frames, posed: this.posed,
-      cost: this.stage.smooth.cost, playing: Boolean(this.playing), time: this.time || 0,
-      idle: !this.waiting && !this.stage.rough && !this.address,
-      actors: Object.fromEntries([...this.stage.figures].map(([name, figure]) => [
-        name, {visible: figure.visible, cells: figure.count, points: figure.rest.length / 3},
-      ])),
-      bones: this.bones ? this.bones.joint.length : 0,
-      camera: this.orbit.position, front: this.film.front ?? null, filming: Boolean(this.film.playing),
-    }
   }
 
   remove() {
     this.gone = true
     this.playing = false
     this.keys.remove()
-    window.removeEventListener("cutcell card", this.carded)
     this.connection.remove()
     this.names.remove()
-    this.observer.disconnect()
+    this.room.remove()
     clearTimeout(this.calming)
     cancelAnimationFrame(this.waiting)
     cancelAnimationFrame(this.ticking)
@@ -324,12 +209,12 @@ export function render({model}) {
   const overlay = new Overlay()
   let view = null
   loadVtk(model.vtk_url).then((vtk) => {
-    const probe = document.createElement("canvas").getContext("webgl2")
-    if (!probe) { throw new Error("this browser offers no WebGL 2") }
-    probe.getExtension("WEBGL_lose_context")?.loseContext()
+    const trial = document.createElement("canvas").getContext("webgl2")
+    if (!trial) { throw new Error("this browser offers no WebGL 2") }
+    trial.getExtension("WEBGL_lose_context")?.loseContext()
     view = new View(model, vtk, overlay)
     model.on("msg:custom", (message) => view.receive(message))
-    window.__cutcell = view
+    window.__cutcell = Object.assign(view, probe(view))
     // What was chosen here before, else what the system prefers.
     const system = matchMedia("(prefers-color-scheme: dark)").matches ? "1" : null
     const dark = localStorage.getItem("cutcell dark") ?? system
