@@ -66,7 +66,7 @@ const STYLE = `
   backdrop-filter: none; font-size: 14px; padding: 76px 0 0; opacity: .8; }
 .failed { inset: 0; margin: auto; width: min(420px, 80%); height: max-content; padding: 20px;
   font-size: 14px; text-align: center; }
-.drop { inset: 12px; border: 2px dashed #ff6c0c; border-radius: 14px; display: grid;
+.drop { inset: 12px; z-index: 5; border: 2px dashed #ff6c0c; border-radius: 14px; display: grid;
   place-content: center; justify-items: center; gap: 14px; font-size: 18px; }
 .drop button { pointer-events: auto; font: 500 14px Roboto, system-ui, sans-serif; cursor: pointer;
   padding: 6px 16px; border-radius: 8px; border: 1px solid currentColor; background: none;
