@@ -2,11 +2,14 @@
 
 import pytest
 
+import cutcell
 from app.actions.compare import choose
 from app.choices import first_clip, from_query, to_query
 from app.history import TOGETHER, History
+from app.jobs import Gate
 from app.keep import Keep
 from app.opening import GONE
+from app.scenes.common import first_joint
 from app.session import Session
 from app.state import State
 from app.state.compare import standard
@@ -129,6 +132,22 @@ def test_an_uploaded_character_is_there_again_while_it_is_kept(session, loop, tm
     loop.run_until(lambda: again.state.rig is not None)
     assert again.kept == session.kept or again.kept in query
     again.close()
+
+
+def test_a_file_that_is_dropped_while_the_page_loads_wins_over_its_address(loop, tmp_path):
+    gate = Gate(loop)
+    session = Session(gate)
+    session.arrive("?rig=robot&bone=hand.L&camera=1,2,3,0,1,0&resolution=16", lambda: None)
+    path = tmp_path / "mine.glb"
+    path.write_bytes(demo_path("octopus").read_bytes())
+    session.open_upload([path])
+    gate.open()
+    loop.run_until(lambda: session.state.binding is not None)
+    expected = cutcell.load(demo_path("octopus"))
+    assert len(session.state.rig.mesh.vertices) == len(expected.mesh.vertices)
+    assert session.state.joint == first_joint(session.state.rig)
+    assert (session.state.demo, session.view.at_home) == ("", True)
+    session.close()
 
 
 def test_an_address_of_a_file_that_is_gone_says_so(session, loop):
