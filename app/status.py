@@ -23,7 +23,8 @@ TITLES = {
 
 # The line keeps its height whatever it says: the canvas above must not jump.
 _CUT = {"whiteSpace": "nowrap", "overflow": "hidden", "textOverflow": "ellipsis"}
-_ONE_LINE = {"display": "block", **_CUT, "& p": {**_CUT, "margin": 0}}
+# The text stands in a paragraph of its own.
+_ONE_LINE = {"display": "block", **_CUT, "& > p": {**_CUT, "margin": 0}}
 
 
 def status_line(session: Session) -> pmui.Row:
