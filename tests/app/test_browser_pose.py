@@ -120,6 +120,7 @@ def test_the_worst_turns_are_a_click_away(visit):
     visit.expect_text("Error against the file's weights")
     bone, axis = re.fullmatch(r"(.*) about ([XYZ])", name).groups()
     expect(visit.bone).to_have_text(bone)
+    visit.settle()
     assert angle(visit, axis) == 30
     expect(rows.first).to_have_attribute("aria-current", "true")
     visit.expect_text(re.compile(r"Mean [\d.e-]+ cm² in this pose"))
