@@ -85,10 +85,11 @@ def graph_table(characters: list[Character], options: argparse.Namespace) -> Tab
         ["recipe"],
         f"Mesh to graph, connectivity 6. The recipe casts its rays by {_cast_name()} and asks "
         "libigl's fast winding number about each midpoint between the first and last hit of a "
-        "ray. Copying the arrays that make up the graph is the floor. The last rig is the first "
-        "one as a soup: every triangle shrunk by 1 %, so that no two of them touch.",
+        "ray. Copying the arrays that make up the graph is the floor. The last rigs are the first "
+        "one torn: every triangle shrunk, so that no two of them touch; a quarter of them gone; "
+        "half of them turned round, by chance.",
     )
-    for character, resolution in _each([*characters, _as_soup(characters[0])], options):
+    for character, resolution in _each([*characters, *_torn(characters[0])], options):
         mesh = character.rig.mesh
         graph = build_graph(mesh, resolution)
         arrays = [graph.nodes, graph.edges, graph.lengths, graph.node_kind, graph.edge_kind]
@@ -274,14 +275,30 @@ def _torus() -> tuple[np.ndarray, np.ndarray]:
     return np.array(mesh.vertices) + 0.5, np.array(mesh.faces, np.int32)
 
 
-def _as_soup(character: Character) -> Character:
-    """Pull all triangles apart: each shrinks towards its middle."""
-    rig = character.rig
-    corners = rig.mesh.vertices[rig.mesh.faces]
+def _torn(character: Character) -> list[Character]:
+    """Spoil a mesh in several ways."""
+    mesh = character.rig.mesh
+    chance = np.random.default_rng(0).random(len(mesh.faces))
+    turned = np.where((chance < 0.5)[:, None], mesh.faces[:, ::-1], mesh.faces)
+    meshes = {
+        "shrunk by 1 %": _pulled_apart(mesh, 0.99),
+        "shrunk by 20 %": _pulled_apart(mesh, 0.8),
+        "a quarter gone": cutcell.TriangleMesh(mesh.vertices, mesh.faces[chance > 0.25]),
+        "half turned": cutcell.TriangleMesh(mesh.vertices, turned),
+    }
+    skeleton = character.rig.skeleton
+    return [
+        Character(f"{character.name}, {name}", cutcell.Rig(mesh, skeleton), None)
+        for name, mesh in meshes.items()
+    ]
+
+
+def _pulled_apart(mesh: cutcell.TriangleMesh, share: float) -> cutcell.TriangleMesh:
+    """Shrink each triangle towards its middle."""
+    corners = mesh.vertices[mesh.faces]
     middle = corners.mean(axis=1, keepdims=True)
-    points = (middle + 0.99 * (corners - middle)).reshape(-1, 3)
-    mesh = cutcell.TriangleMesh(points, np.arange(len(points)).reshape(-1, 3))
-    return Character(f"{character.name}, soup", cutcell.Rig(mesh, rig.skeleton), None)
+    points = (middle + share * (corners - middle)).reshape(-1, 3)
+    return cutcell.TriangleMesh(points, np.arange(len(points)).reshape(-1, 3))
 
 
 def _each(characters, options):
