@@ -39,9 +39,6 @@ class BoneDistances:
         0 for vertices reached through the body, else why not: an index into
         `geodesics.FALLBACK_REASONS`. These hold straight distances to a few bones.
     graph : CutCellGraph
-    by_place : bool
-        Whether vertices at one place have equal distances: they have, unless some may not
-        follow what others may.
     """
 
     joint: NDArray[np.float64]
@@ -50,7 +47,6 @@ class BoneDistances:
     sources: Sources
     fallback: NDArray[np.uint8]
     graph: CutCellGraph
-    by_place: bool = False
 
     @property
     def source_node(self) -> NDArray[np.int32]:
@@ -211,8 +207,7 @@ def bone_distances(
         points = graph.nodes[graph.vertex_node[lost]]
         straight = straight_to_nearest(points, bones, nearest, may_follow)
         joint[np.ix_(measured, lost)] = _least(straight, bones)
-    by_place = allowed is None
-    return BoneDistances(joint, nearest_joints, bones, sources, fallback, graph, by_place)
+    return BoneDistances(joint, nearest_joints, bones, sources, fallback, graph)
 
 
 def _on_mesh(graph: CutCellGraph) -> NDArray[np.int32]:

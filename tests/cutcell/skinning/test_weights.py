@@ -47,7 +47,6 @@ def test_vertices_at_one_place_may_follow_different_joints():
     allowed = np.random.default_rng(0).random((len(corners), 6)) < 0.6
     allowed[:, 0] = True
     distances = bone_distances(graph, CHAIN, allowed=allowed)
-    assert not distances.by_place
     found = skinning_weights(distances, max_influences=None, allowed=allowed)
     free = skinning_weights(bone_distances(graph, CHAIN), max_influences=None)
     expected = np.where(allowed, free, 0)
