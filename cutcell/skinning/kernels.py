@@ -2,12 +2,14 @@
 
 import os
 import sys
+from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
 
 import numba
 import numpy as np
 from llvmlite import binding
+from numba.core.dispatcher import Dispatcher
 
 from ..geodesics import bone_distances
 from ..graph import build_graph
@@ -28,8 +30,11 @@ def load_kernels() -> None:
     """Bind a small open tube in every way that has kernels of its own.
 
     Kernels are compiled once on a machine (about half a minute) and kept on disk; from there a
-    process loads them in about a second.
+    process loads them in about a second. All are thrown away once any source has changed: numba
+    itself sees no change in another file than a kernel's own.
     """
+    if not kernels_are_compiled():
+        forget(_kernels())
     # More joints than a vertex has distances of. The last is so far away that its labels outlast
     # the queue's buckets.
     joints = np.zeros((8, 3))
@@ -57,6 +62,21 @@ def kernels_are_compiled() -> bool:
         with suppress(OSError):
             _known = _stamp_path().read_text(encoding="utf-8") == _stamp()
     return _known
+
+
+def forget(kernels: Sequence[Dispatcher]) -> None:
+    """Throw away what numba has kept of kernels on disk, unless this process uses it already."""
+    if not any(kernel.signatures for kernel in kernels):
+        for kernel in kernels:
+            with suppress(OSError):
+                kernel._cache.flush()  # type: ignore[attr-defined]
+
+
+def _kernels() -> list[Dispatcher]:
+    """List the kernels of the package's modules that have been imported."""
+    modules = [sys.modules[name] for name in sys.modules if name.startswith("cutcell.")]
+    found = (kernel for module in modules for kernel in vars(module).values())
+    return [kernel for kernel in found if isinstance(kernel, Dispatcher)]
 
 
 def _write_stamp() -> None:

@@ -1,5 +1,6 @@
 """What `load_kernels` has loaded, no binding has to compile; what is stale is announced."""
 
+import os
 import subprocess
 import sys
 import textwrap
@@ -56,6 +57,34 @@ def test_nothing_is_compiled_after_the_first_time():
     assert done.stdout.strip() == "set()", done.stdout + done.stderr
 
 
+HELPED = """
+from numba import njit
+from helper import number
+
+@njit(cache=True)
+def kernel():
+    return number()
+"""
+
+
+def test_kernels_are_compiled_anew_where_another_file_of_theirs_has_changed(tmp_path):
+    (tmp_path / "kernel.py").write_text(HELPED)
+    helper = tmp_path / "helper.py"
+    forgets = "from cutcell.skinning.kernels import forget; from kernel import kernel; "
+
+    def answer(number, first=""):
+        helper.write_text(f"from numba import njit\n\n@njit\ndef number(): return {number}\n")
+        command = [sys.executable, "-c", f"{forgets}{first}print(kernel())"]
+        environment = {**os.environ, "PYTHONPATH": f"{ROOT}{os.pathsep}{tmp_path}"}
+        done = subprocess.run(command, capture_output=True, text=True, env=environment, timeout=240)
+        return done.stdout.strip() or done.stderr
+
+    assert answer(1) == "1"
+    assert answer(2) == "1"  # what numba does by itself
+    assert answer(2, "forget([kernel]); ") == "2"
+    assert answer(3, "kernel(); forget([kernel]); ") == "2"  # in use
+
+
 @pytest.fixture
 def another_machine(tmp_path, monkeypatch):
     """Keep the note of what was compiled in a folder of its own, and the sources it is of."""
@@ -65,6 +94,7 @@ def another_machine(tmp_path, monkeypatch):
     monkeypatch.setattr(kernels, "PACKAGE", tmp_path)
     monkeypatch.setattr(kernels, "_known", False)
     monkeypatch.setattr(kernels, "_stamp_path", lambda: tmp_path / "kernels.stamp")
+    monkeypatch.setattr(kernels, "forget", lambda kernels: None)
     return tmp_path
 
 
