@@ -20,7 +20,7 @@ from viewers.pose_scene import pose_at
 
 from .actions.compare import measured
 from .actions.pose import motion_error
-from .scenes import resolve
+from .scenes import following, resolve
 from .scenes.common import first_joint
 from .scenes.geodesics import wants_field
 from .state import State
@@ -142,7 +142,7 @@ def describe(
         gap = Gap(rig, state.binding.weights, rig.weights)  # type: ignore[arg-type]
         state.motion_error = (state.binding, state.motion, motion_error(rig, clip, gap, progress))
     time = choices.time or 0.0
-    return replace(resolve(state), pose=pose_at(rig, clip, time))
+    return replace(following(state), pose=pose_at(rig, clip, time))
 
 
 def check(rig: Rig, choices: Choices, view: str = "three-quarter") -> None:

@@ -18,7 +18,7 @@ from viewers.pose_scene import pose_at, swing
 from viewers.worker import draw_apart
 
 from ..jobs import DRAWING
-from ..scenes import resolve
+from ..scenes import following, resolve
 from ..scenes.pose import SWING_DEGREES, clip_of
 from ..state import State
 
@@ -46,14 +46,12 @@ def take_turntable(session: Session, ending: str, done: Done) -> None:
 def take_motion(session: Session, ending: str, done: Done) -> None:
     """Film the motion that is chosen, as what is seen now goes through it."""
     state = session.state
-    if state.rig is None:
+    if state.weights is None:
+        session.state.message = ("info", "There are no weights to move the skin by yet.")
         return
     clip = chosen_clip(state)
     motion = Motion(clip.times, pose_in_scene(state.rig, clip.transforms))
-    whole = resolve(state, session.memo)
-    # What cannot follow the joints would be left behind.
-    actors = {name: actor for name, actor in whole.actors.items() if actor.skin is not None}
-    order = _order(session, FILM_PIXELS, replace(whole, actors=actors, cut=None))
+    order = _order(session, FILM_PIXELS, following(state, session.memo))
     _draw(session, replace(order, motion=motion), ending, done)
 
 

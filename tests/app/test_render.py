@@ -157,6 +157,13 @@ def test_the_error_of_a_clip_has_the_scale_of_the_whole_clip(rig, binding):
     assert not np.allclose(still.description.pose, scene.pose)
 
 
+@pytest.mark.parametrize("panel", ["graph", "distance", "weights"])
+def test_the_body_follows_a_clip_on_panels_where_it_rests_otherwise(rig, binding, panel):
+    scene = describe(rig, Choices(panel, clip="wave"), binding=binding)
+    assert {"body"} <= scene.actors.keys()
+    assert all(actor.skin is not None for actor in scene.actors.values())
+
+
 def test_a_notebook_gets_a_picture_or_a_plotter(rig, binding):
     scene = describe(rig, Choices("weights", bone="elbow"), binding=binding)
     picture = viewers.show(scene, size=(160, 120))

@@ -6,7 +6,13 @@ import numpy as np
 import pytest
 
 import cutcell
-from app.actions.take_along import bound_file, take_numbers, take_picture, take_turntable
+from app.actions.take_along import (
+    bound_file,
+    take_motion,
+    take_numbers,
+    take_picture,
+    take_turntable,
+)
 
 
 def test_the_bound_character_can_be_taken_along(bound, loop, tmp_path):
@@ -51,6 +57,29 @@ def test_pictures_show_what_is_seen_in_its_pose(bound, loop, small):
     assert len({rest, turned, halfway}) == 3
     assert all(content.startswith(b"\x89PNG") for content in (rest, turned, halfway))
     assert list(bound.folder.iterdir()) == []
+
+
+@pytest.mark.parametrize("panel", ["graph", "geodesics", "weights", "pose", "compare", "learn"])
+def test_the_body_goes_through_a_filmed_motion_on_every_panel(bound, loop, panel, monkeypatch):
+    orders = []
+
+    def remember(order, path, progress):
+        orders.append(order)
+        path.write_bytes(b"drawn")
+
+    monkeypatch.setattr("app.actions.take_along.draw_apart", remember)
+    bound.state.param.update(panel=panel, cut_axis="z")
+    taken(loop, take_motion, bound, "gif")
+    shown = orders[0].description
+    assert any("body" in name for name in shown.actors)
+    assert all(actor.skin is not None for actor in shown.actors.values())
+    assert shown.cut is None
+    assert orders[0].motion is not None
+
+
+def test_no_motion_is_filmed_before_there_are_weights(session):
+    take_motion(session, "gif", lambda name, content: None)
+    assert session.state.message[0] == "info"
 
 
 def test_drawing_leaves_the_page_free_and_can_be_cancelled(bound, loop, small):
