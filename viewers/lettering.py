@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
+from math import ceil
 from pathlib import Path
 
 import numpy as np
@@ -38,7 +39,7 @@ def write_legend(picture: NDArray[np.uint8], legend: Legend, theme: Theme) -> ND
     least = ends.getlength(f"{legend.low}     {legend.high}")
     indent = 2 * bar + round(0.6 * unit)
     least = max([least, *(indent + ends.getlength(text) for _, text in legend.swatches)])
-    width = round(min(max(18 * unit, title.getlength(legend.title), least), widest))
+    width = ceil(min(max(18 * unit, title.getlength(legend.title), least), widest))
     name = _shortened(legend.title, title, width)
     scale = bar + round(0.6 * unit) + _height(ends) if legend.colormap else 0
     row = _height(ends) + round(0.4 * unit)
