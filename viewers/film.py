@@ -18,6 +18,7 @@ from cutcell.progress import Progress, silent
 from .description import Description
 from .palette import THEMES
 from .scene import Camera
+from .skin import moved
 from .studio import Studio
 
 PICTURES = (".png", ".jpg", ".jpeg")
@@ -25,6 +26,8 @@ FILMS = (".mp4", ".gif")
 TURN_SECONDS = 6.0
 LONGEST = 20.0
 """Seconds of a motion that are filmed at most."""
+PROBED = 24
+"""Poses of a motion that are looked at to find the room it takes, at most."""
 FRAMES = {".mp4": 30, ".gif": 20}
 """Frames a second of each kind of film."""
 
@@ -97,7 +100,7 @@ def draw(order: Order, path: str | Path, progress: Progress = silent) -> None:
     # A film's frames have even sides: MP4 stores colours for two by two pixels at once.
     width, height = (side - side % 2 for side in order.size) if kind in FILMS else order.size
     with Studio(order.description, THEMES[order.theme], (width, height), order.legend) as studio:
-        camera = order.camera or studio.camera(order.direction)
+        camera = order.camera or studio.camera(order.direction, _swept(order))
         if kind in PICTURES:
             Image.fromarray(studio.draw(camera)).save(path, quality=92)
         else:
@@ -149,6 +152,23 @@ def _frames(
             studio.show(replace(order.description, pose=pose))
         angle = 2 * np.pi * k / count if order.turntable else 0.0
         yield studio.draw(around(camera, angle))
+
+
+def _swept(order: Order) -> NDArray[np.float64]:
+    """Return the lowest and highest corner that a motion comes to, shape (2, 3)."""
+    if order.motion is None:
+        return order.description.bounds
+    poses = order.motion.poses
+    some = poses[np.linspace(0, len(poses) - 1, min(len(poses), PROBED)).astype(int)]
+    reached: list[NDArray[np.float64]] = []
+    for actor in order.description.actors.values():
+        if len(actor.points) and not actor.overlay:
+            skin, rest = actor.skin, np.asarray(actor.points, float)
+            reached += [rest] if skin is None else [moved(rest, skin, pose) for pose in some]
+    if not reached:
+        return order.description.bounds
+    low = np.min([points.min(axis=0) for points in reached], axis=0)
+    return np.stack([low, np.max([points.max(axis=0) for points in reached], axis=0)])
 
 
 def _length(order: Order) -> float:

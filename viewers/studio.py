@@ -53,10 +53,14 @@ class Studio:
             actors = {k: a for k, a in description.actors.items() if _stands_in(a, view)}
             scene.show(replace(description, actors=actors))
 
-    def camera(self, direction: tuple[float, float, float] | None = None) -> Camera:
-        """Return a camera that sees all of each view; see `framing`."""
+    def camera(
+        self,
+        direction: tuple[float, float, float] | None = None,
+        bounds: NDArray[np.float64] | None = None,
+    ) -> Camera:
+        """Return a camera that sees all of each view, or of given bounds; see `framing`."""
         shape = min(width / height for _, _, width, height in self._tiles)
-        return framing(self._shown.bounds, shape, direction)
+        return framing(self._shown.bounds if bounds is None else bounds, shape, direction)
 
     def draw(self, camera: Camera) -> NDArray[np.uint8]:
         """Draw all.

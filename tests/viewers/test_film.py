@@ -168,3 +168,20 @@ def test_a_process_that_dies_without_reason_is_told(scene, tmp_path, monkeypatch
     monkeypatch.setattr("viewers.opengl._can_draw", lambda: True)
     with pytest.raises(RuntimeError, match="exit code 1"):
         draw_apart(Order(scene, size=SIZE), tmp_path / "a.png")
+
+
+def test_a_film_has_room_for_all_of_its_motion(scene, motion, tmp_path):
+    """A body that leaps by twice its height is seen at the top of its leap, and none is cut."""
+    leap = np.tile(np.eye(4), (2, motion.poses.shape[1], 1, 1))
+    leap[1, :, 1, 3] = 2 * np.ptp(scene.bounds[:, 1])
+    seen = []
+    path = tmp_path / "leap.gif"
+    draw(Order(scene, size=SIZE, motion=Motion(np.array([0.0, 0.5]), leap), legend=False), path)
+    with Image.open(path) as film:
+        for at in range(film.n_frames):
+            film.seek(at)
+            pixels = np.asarray(film.convert("RGB")).astype(int)
+            inked = (np.ptp(pixels, axis=2) > 40).any(axis=1)
+            assert not inked[[0, -1]].any()
+            seen.append(np.flatnonzero(inked).mean())
+    assert min(seen) < SIZE[1] / 2 < max(seen)
