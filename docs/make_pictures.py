@@ -24,6 +24,7 @@ from tests.app.browser import Visit, served  # noqa: E402
 from viewers.character import body  # noqa: E402
 from viewers.description import Description  # noqa: E402
 from viewers.distance_scene import distance_scene  # noqa: E402
+from viewers.film import palette_of  # noqa: E402
 from viewers.graph_scene import cut_at, graph_scene  # noqa: E402
 from viewers.palette import DARK, LIGHT  # noqa: E402
 from viewers.pose_scene import pose_scene  # noqa: E402
@@ -33,7 +34,6 @@ from viewers.weights_scene import weights_scene  # noqa: E402
 PICTURES = ROOT / "docs" / "pictures"
 SIZE = (1080, 810)
 SHELL = (0.13, 0.16, 0.21)
-COLORS = 256
 MAX_BYTES = 400_000
 OCTOPUS_ARM = "armA4"
 TOE, CHEST = 10876, 4911
@@ -188,7 +188,9 @@ def shrink(path: Path) -> None:
         whole = image.convert("RGB")
     whole.save(path, optimize=True)
     if path.stat().st_size > MAX_BYTES:
-        whole.quantize(COLORS, dither=Image.Dither.FLOYDSTEINBERG).save(path, optimize=True)
+        palette = palette_of(np.asarray(whole))
+        few = whole.quantize(palette=palette, dither=Image.Dither.FLOYDSTEINBERG)
+        few.save(path, optimize=True)
 
 
 if __name__ == "__main__":

@@ -140,6 +140,29 @@ def around(camera: Camera, angle: float) -> Camera:
     return replace(camera, position=tuple(position.tolist()))
 
 
+def palette_of(pixels: NDArray[np.uint8]) -> Image.Image:
+    """Return 256 colours for pictures: half for what is frequent, half for all that is there.
+
+    A legend's colours are few pixels among a large background, and are what must be told apart.
+
+    Parameters
+    ----------
+    pixels : array, shape (height, width, 3), uint8
+        Of all the pictures that share the colours.
+
+    Returns
+    -------
+    PIL.Image.Image
+        For the `palette` of `Image.quantize`.
+    """
+    flat = pixels.reshape(-1, 3)
+    every = np.unique(flat >> 2, axis=0) << 2
+    repeats = max(len(flat) // max(len(every), 1), 1)
+    mixed = np.concatenate([flat, np.repeat(every, repeats, axis=0)])
+    rows = mixed[: len(mixed) // 256 * 256].reshape(-1, 256, 3)
+    return Image.fromarray(np.ascontiguousarray(rows)).quantize(256, Image.Quantize.MEDIANCUT)
+
+
 def _frames(
     order: Order, studio: Studio, camera: Camera, fps: int, progress: Progress
 ) -> Iterator[NDArray[np.uint8]]:
@@ -227,7 +250,7 @@ def _write_gif(path: Path, frames: Iterator[NDArray[np.uint8]]) -> None:
         return np.frombuffer(zlib.decompress(packed[at]), np.uint8).reshape(shape)
 
     sampled = range(0, len(packed), max(len(packed) // 8, 1))
-    palette = _palette(np.concatenate([unpacked(at)[::2, ::2] for at in sampled]))
+    palette = palette_of(np.concatenate([unpacked(at)[::2, ::2] for at in sampled]))
 
     def images() -> Iterator[Image.Image]:
         for at in range(len(packed)):
@@ -238,19 +261,6 @@ def _write_gif(path: Path, frames: Iterator[NDArray[np.uint8]]) -> None:
     next(every).save(
         path, save_all=True, append_images=every, duration=1000 // FRAMES[".gif"], loop=0
     )
-
-
-def _palette(pixels: NDArray[np.uint8]) -> Image.Image:
-    """Return 256 colours for a film: half for what is frequent, half for all that is there.
-
-    A legend's colours are few pixels among a large background, and are what must be told apart.
-    """
-    flat = pixels.reshape(-1, 3)
-    every = np.unique(flat >> 2, axis=0) << 2
-    repeats = max(len(flat) // max(len(every), 1), 1)
-    mixed = np.concatenate([flat, np.repeat(every, repeats, axis=0)])
-    rows = mixed[: len(mixed) // 256 * 256].reshape(-1, 256, 3)
-    return Image.fromarray(np.ascontiguousarray(rows)).quantize(256, Image.Quantize.MEDIANCUT)
 
 
 _WRITERS: dict[str, Callable[[Path, Iterator[NDArray[np.uint8]]], None]] = {
