@@ -6,6 +6,8 @@ from typing import Any
 
 import panel_material_ui as pmui
 
+from cutcell.rig import Rig
+
 from ..actions import compare as actions
 from ..actions import pose as moving
 from ..methods import Methods
@@ -50,13 +52,21 @@ def compare(session: Session) -> pmui.Column:
     )
     return section(
         "Compare",
-        caption("Two to four methods, one camera. Errors are against the file's own weights."),
+        caption(when(about, state.param.rig)),
         choice(state.param.compare_field, FIELDS),
         _minus(state),
         table,
         stop,
         _motion(session),
     )
+
+
+def about(rig: Rig | None) -> str:
+    """Return what the panel is for, and what errors are told against."""
+    against = "Errors are against the file's own weights."
+    if rig is not None and rig.weights is None:
+        against = "The file has no weights of its own to tell errors against."
+    return f"Two to four methods, one camera. {against}"
 
 
 def _minus(state: State) -> pmui.Select:

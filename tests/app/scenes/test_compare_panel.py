@@ -5,7 +5,7 @@ import pytest
 
 import cutcell
 from app.actions.compare import Compared, choose, measured, options_of, wanted
-from app.panels.compare import rows_of
+from app.panels.compare import about, rows_of
 from app.scenes import Memo, resolve
 from app.scenes.compare import WAITING, caption_of, title_of
 from app.state import State
@@ -199,3 +199,9 @@ def test_a_memo_keeps_what_did_not_change(state):
     for name, actor in before.actors.items():
         assert after.actors[name].skin is actor.skin, name
         assert after.actors[name].scalars is actor.scalars, name
+
+
+def test_without_the_files_own_weights_no_error_is_promised(rig):
+    assert about(None) == about(rig)
+    assert about(rig).endswith("against the file's own weights.")
+    assert "no weights of its own" in about(rig.with_weights(None))
