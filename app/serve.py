@@ -49,15 +49,13 @@ def serve(
     chosen = free_port(port, address)
     if port and chosen != port:
         print(f"Port {port} is taken.", flush=True)
-    host = "localhost" if address in ("0.0.0.0", "::", *LOCAL) else address
-    print(f"The page is at http://{host}:{chosen} (stop with Ctrl+C)", flush=True)
     if kernels_are_compiled():
         # While the browser starts. The first compile ever is left to the page, which tells of it.
         threading.Thread(target=load_kernels, daemon=True).start()
     if threading.current_thread() is threading.main_thread():
         # An orderly end, so that what was uploaded is removed.
         signal.signal(signal.SIGTERM, lambda number, frame: sys.exit(0))
-    pn.serve(
+    server = pn.serve(
         {"/": lambda: page(path)},
         port=chosen,
         address=None if address == "localhost" else address,
@@ -65,12 +63,18 @@ def serve(
         websocket_max_message_size=MAX_MESSAGE,
         title="cutcell",
         show=show,
+        start=False,
         verbose=False,
         threaded=False,
         # Sessions whose browser is gone give their memory and files back soon.
         check_unused_sessions_milliseconds=5000,
         unused_session_lifetime_milliseconds=15000,
     )
+    # It listens from here on; told sooner, the address could be asked for too soon.
+    host = "localhost" if address in ("0.0.0.0", "::", *LOCAL) else address
+    print(f"The page is at http://{host}:{chosen} (stop with Ctrl+C)", flush=True)
+    server.start()
+    server.io_loop.start()
 
 
 def free_port(port: int, address: str = "localhost") -> int:
