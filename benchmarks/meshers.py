@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import subprocess
 import sys
 import tempfile
@@ -55,7 +56,13 @@ def attempt(
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "mesh.npz"
         np.savez(path, vertices=mesh.vertices, faces=mesh.faces)
-        command = [python, str(SCRIPT), library, str(path), *([str(edge)] if edge else [])]
+        command = [
+            os.path.abspath(python),
+            str(SCRIPT),
+            library,
+            str(path),
+            *([str(edge)] if edge else []),
+        ]
         try:
             done = subprocess.run(
                 command, cwd=folder, capture_output=True, text=True, timeout=limit
