@@ -15,7 +15,7 @@ from assets import DEMOS, demo_path
 from cutcell.errors import CutcellError, FileError
 from cutcell.progress import Progress
 from cutcell.rig import Rig
-from viewers.scene import Camera, framing
+from viewers.camera import Camera, framing
 
 from .actions import compare, learn
 from .choices import first_clip, from_query

@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 from panel.custom import JSComponent
 from panel.models.vtk import VTK_VERSION
 
+from viewers.camera import Camera
 from viewers.description import Actor, Apart, Description, Legend, Reading
 from viewers.palette import Theme, colormap, to_hex
-from viewers.scene import AMBIENT, LIGHTS, Camera
+from viewers.scene import AMBIENT, LIGHTS
 from viewers.skin import Skin
 
 from .scripts import script

@@ -85,9 +85,10 @@ def picture(rig: Rig, found: dict[str, NDArray[np.float64]], path: Path) -> None
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
+    from viewers.camera import Camera, framing
     from viewers.distance_scene import distance_scene
     from viewers.palette import LIGHT
-    from viewers.scene import Camera, framing, render_png
+    from viewers.scene import render_png
     from viewers.weights_scene import weights_scene
 
     joint = rig.skeleton.names.index(ARM[1])

@@ -17,11 +17,11 @@ from app.state import State
 from app.view import SceneView, camera_part
 from cutcell import Rig, TriangleMesh
 from cutcell.rig import Clip
+from viewers.camera import framing
 from viewers.character import body, bones, pose_in_scene
 from viewers.description import Actor, Description
 from viewers.graph_scene import graph_scene
 from viewers.pose_scene import swing
-from viewers.scene import framing
 from viewers.skin import moved
 
 from .shapes import chain

@@ -21,6 +21,7 @@ from assets import demo_path  # noqa: E402
 from cutcell.rig import Rig  # noqa: E402
 from scripts.get_chromium import FLAGS, find  # noqa: E402
 from tests.app.browser import Visit, served  # noqa: E402
+from viewers.camera import Camera, framing  # noqa: E402
 from viewers.character import body  # noqa: E402
 from viewers.description import Description  # noqa: E402
 from viewers.distance_scene import distance_scene  # noqa: E402
@@ -28,7 +29,7 @@ from viewers.film import palette_of  # noqa: E402
 from viewers.graph_scene import cut_at, graph_scene  # noqa: E402
 from viewers.palette import DARK, LIGHT  # noqa: E402
 from viewers.pose_scene import pose_scene  # noqa: E402
-from viewers.scene import Camera, framing, render_png  # noqa: E402
+from viewers.scene import render_png  # noqa: E402
 from viewers.weights_scene import weights_scene  # noqa: E402
 
 PICTURES = ROOT / "docs" / "pictures"

@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from PIL.Image import Image
 
+    from .camera import Camera
     from .description import Description
-    from .scene import Camera
 
 __all__ = ["plotter", "show"]
 
@@ -86,9 +86,10 @@ def plotter(
     -------
     pyvista.Plotter
     """
+    from .camera import framing
     from .opengl import require_opengl
     from .palette import DARK, LIGHT
-    from .scene import Scene, framing
+    from .scene import Scene
 
     require_opengl()
     scene = Scene(DARK if dark else LIGHT, size)

@@ -15,9 +15,9 @@ from PIL import Image
 from cutcell.errors import FileError, MissingLibraryError
 from cutcell.progress import Progress, silent
 
+from .camera import Camera, around, sees
 from .description import Description
 from .palette import THEMES
-from .scene import Camera
 from .skin import moved
 from .studio import Studio
 
@@ -58,6 +58,7 @@ class Order:
     size : (int, int)
         Width and height in pixels.
     camera : Camera, optional
+        One that sees the whole character shall see its whole motion, too, and steps back for that.
     direction : tuple of float, optional
         Where to look from, where no camera is given.
     turntable : bool
@@ -100,7 +101,7 @@ def draw(order: Order, path: str | Path, progress: Progress = silent) -> None:
     # A film's frames have even sides: MP4 stores colours for two by two pixels at once.
     width, height = (side - side % 2 for side in order.size) if kind in FILMS else order.size
     with Studio(order.description, THEMES[order.theme], (width, height), order.legend) as studio:
-        camera = order.camera or studio.camera(order.direction, _swept(order))
+        camera = _camera(order, studio)
         if kind in PICTURES:
             Image.fromarray(studio.draw(camera)).save(path, quality=92)
         else:
@@ -129,15 +130,6 @@ def check_picture_file(path: Path, moves: bool = False) -> str:
     if not path.absolute().parent.is_dir():
         raise FileError(f"{path.name}: there is no folder {path.parent} to save it in")
     return kind
-
-
-def around(camera: Camera, angle: float) -> Camera:
-    """Return a camera that went around what it looks at, by an angle in radians."""
-    target = np.array(camera.focal_point)
-    x, y, z = np.array(camera.position) - target
-    c, s = np.cos(angle), np.sin(angle)
-    position = target + np.array([c * x + s * z, y, c * z - s * x])
-    return replace(camera, position=tuple(position.tolist()))
 
 
 def palette_of(pixels: NDArray[np.uint8]) -> Image.Image:
@@ -177,21 +169,48 @@ def _frames(
         yield studio.draw(around(camera, angle))
 
 
-def _swept(order: Order) -> NDArray[np.float64]:
-    """Return the lowest and highest corner that a motion comes to, shape (2, 3)."""
+def _camera(order: Order, studio: Studio) -> Camera:
+    """Return where the order is looked at from, at first."""
+    camera, pose = order.camera, order.description.pose
+    if camera is None:
+        return studio.camera(order.direction, _box(order, _poses(order)))
     if order.motion is None:
-        return order.description.bounds
+        return camera
+    # Who looks closely at a part of the character means that part.
+    if not sees(camera, _points(order, [pose]), studio.shape):
+        return camera
+    if sees(camera, _points(order, _poses(order)), studio.shape):
+        return camera
+    way = np.array(camera.position) - np.array(camera.focal_point)
+    return studio.camera(tuple(way.tolist()), _box(order, _poses(order)))
+
+
+def _poses(order: Order) -> list[Any]:
+    """Return the poses that are seen, or some of them; None for rest."""
+    if order.motion is None:
+        return [order.description.pose]
     poses = order.motion.poses
-    some = poses[np.linspace(0, len(poses) - 1, min(len(poses), PROBED)).astype(int)]
-    reached: list[NDArray[np.float64]] = []
+    return list(poses[np.linspace(0, len(poses) - 1, min(len(poses), PROBED)).astype(int)])
+
+
+def _points(order: Order, poses: list[Any]) -> NDArray[np.float64]:
+    """Return where the points of all that is to be seen whole are in some poses, shape (n, 3)."""
+    reached: list[NDArray[np.float64]] = [np.empty((0, 3))]
     for actor in order.description.actors.values():
         if len(actor.points) and not actor.overlay:
             skin, rest = actor.skin, np.asarray(actor.points, float)
-            reached += [rest] if skin is None else [moved(rest, skin, pose) for pose in some]
-    if not reached:
+            reached += [
+                rest if skin is None or pose is None else moved(rest, skin, pose) for pose in poses
+            ]
+    return np.concatenate(reached)
+
+
+def _box(order: Order, poses: list[Any]) -> NDArray[np.float64]:
+    """Return the lowest and highest corner that some poses come to, shape (2, 3)."""
+    points = _points(order, poses)
+    if not len(points):
         return order.description.bounds
-    low = np.min([points.min(axis=0) for points in reached], axis=0)
-    return np.stack([low, np.max([points.max(axis=0) for points in reached], axis=0)])
+    return np.stack([points.min(axis=0), points.max(axis=0)])
 
 
 def _length(order: Order) -> float:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import sys
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -17,54 +16,10 @@ if sys.platform == "linux" and not os.environ.get("DISPLAY"):
 
 import pyvista as pv
 
+from .camera import VIEW_ANGLE, Camera, framing
 from .description import Actor, Cut, Description
 from .palette import BODY, LIGHT, Theme, colormap, to_bytes
 from .skin import moved, squared_apart, turned
-
-VIEW_ANGLE = 30.0
-
-
-@dataclass(frozen=True)
-class Camera:
-    """Where the eye is, what it looks at, and which way is up."""
-
-    position: tuple[float, float, float]
-    focal_point: tuple[float, float, float]
-    up: tuple[float, float, float] = (0.0, 1.0, 0.0)
-
-
-FRONT = (0.42, 0.16, 1.0)
-"""Where one looks from at first: the front, a little aside and above."""
-
-
-def framing(
-    bounds: NDArray[np.float64],
-    aspect: float = 1.0,
-    direction: tuple[float, float, float] | None = None,
-) -> Camera:
-    """Return a camera that sees all of a box.
-
-    Parameters
-    ----------
-    bounds : array, shape (2, 3)
-    aspect : float
-        Width over height of the picture.
-    direction : tuple of float, optional
-        Where to look from, not straight from above or below; `FRONT` when left out.
-    """
-    low, high = np.asarray(bounds, float)
-    centre = (low + high) / 2
-    toward = np.array(direction or FRONT, float)
-    toward /= np.linalg.norm(toward)
-    right = np.cross([0, 1, 0], toward)
-    right /= np.linalg.norm(right)
-    up = np.cross(toward, right)
-    corners = np.array(np.meshgrid(*zip(low - centre, high - centre, strict=True))).reshape(3, -1).T
-    slope = np.tan(np.radians(VIEW_ANGLE / 2))
-    needed = np.maximum(np.abs(corners @ up), np.abs(corners @ right) / aspect) / slope
-    distance = 1.08 * (needed + corners @ toward).max()
-    position = centre + distance * toward
-    return Camera(tuple(position.tolist()), tuple(centre.tolist()))
 
 
 class Scene:

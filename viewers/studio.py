@@ -8,10 +8,11 @@ from types import TracebackType
 import numpy as np
 from numpy.typing import NDArray
 
+from .camera import Camera, framing
 from .description import Actor, Description
 from .lettering import write_captions, write_legend
 from .palette import LIGHT, Theme
-from .scene import Camera, Scene, framing
+from .scene import Scene
 from .tiles import Tile, tiles
 
 
@@ -59,8 +60,8 @@ class Studio:
         bounds: NDArray[np.float64] | None = None,
     ) -> Camera:
         """Return a camera that sees all of each view, or of given bounds; see `framing`."""
-        shape = min(width / height for _, _, width, height in self._tiles)
-        return framing(self._shown.bounds if bounds is None else bounds, shape, direction)
+        bounds = self._shown.bounds if bounds is None else bounds
+        return framing(bounds, self.shape, direction)
 
     def draw(self, camera: Camera) -> NDArray[np.uint8]:
         """Draw all.
@@ -82,6 +83,11 @@ class Studio:
         if self.legend and self._shown.legend is not None:
             picture = write_legend(picture, self._shown.legend, self.theme)
         return picture
+
+    @property
+    def shape(self) -> float:
+        """Width over height of each view; of the narrowest where they differ."""
+        return min(width / height for _, _, width, height in self._tiles)
 
     @property
     def places(self) -> list[Tile]:

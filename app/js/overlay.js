@@ -17,7 +17,7 @@ const STYLE = `
 .legend b + * { margin-top: 7px !important; }
 .legend .bar { height: 8px; border-radius: 4px;
   box-shadow: 0 0 0 1px color-mix(in srgb, var(--ink) 22%, transparent); }
-.legend span { display: flex; justify-content: space-between; margin-top: 4px; opacity: .75;
+.legend span { display: flex; justify-content: space-between; gap: 8px; margin-top: 4px; opacity: .75;
   font-variant-numeric: tabular-nums; }
 .legend i { font-style: normal; }
 .legend p { margin: 5px 0 0; display: flex; align-items: center; gap: 8px; opacity: .9; }
@@ -60,7 +60,7 @@ const STYLE = `
   .moving .legend { bottom: 70px; }
   .transport { width: calc(100% - 32px); max-width: 460px; } }
 @container (max-width: 760px) { .hint { display: none; } }
-.moving .hint { display: none; }
+.moving .hint, .several .hint { display: none; }
 .hint { right: 16px; bottom: 16px; padding: 0; background: none; opacity: .72; backdrop-filter: none; }
 .waiting { inset: 0; margin: auto; width: max-content; height: max-content; background: none;
   backdrop-filter: none; font-size: 14px; padding: 76px 0 0; opacity: .8; }
@@ -156,6 +156,7 @@ class Overlay {
       this.views.append(element)
     }
     this.views.replaceChildren()
+    this.root.classList.toggle("several", captions.length > 1)  // feet stand where the hint is
     captions.forEach((text, i) => {
       const [left, top, width, height] = tiles[i]
       const px = (value) => `${value}px`

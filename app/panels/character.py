@@ -22,7 +22,7 @@ def character(session: Session) -> pmui.Column:
     state = session.state
     demos = {demo.title: demo.id for demo in DEMOS if demo.path.exists()}
     select = pmui.Select(
-        label="Demo character",
+        label="Character",
         options=demos,
         value=None,
         size="small",

@@ -11,13 +11,14 @@ from cutcell.rig import Rig
 from ..actions import compare as actions
 from ..actions import pose as moving
 from ..methods import Methods
-from ..scenes.compare import found_of, title_of
+from ..scenes.compare import field_shown, found_of, title_of
 from ..session import Session
 from ..state import State
 from ..state.compare import FEWEST_VIEWS, MOST_VIEWS, offered
-from .parts import GAP, caption, choice, section, when
+from .parts import BUTTONS, GAP, caption, lead, section, when
 
-FIELDS = {"Chosen bone": "bone", "All bones": "all", "Error": "error"}
+FIELDS = {"Chosen bone": "bone", "All bones": "all"}
+ERROR = {"Error": "error"}
 COLUMNS = [
     ("L1", "Weight error against the file's own: 0 the same, 2 nothing in common"),
     ("cm²", "Deformation error against the file's own, the longest side scaled to 1 m"),
@@ -50,30 +51,50 @@ def compare(session: Session) -> pmui.Column:
         visible=when(bool, state.param.comparing),
         on_click=lambda event: actions.cancel(session),
     )
-    return section(
-        "Compare",
-        caption(when(about, state.param.rig)),
-        choice(state.param.compare_field, FIELDS),
-        _minus(state),
-        table,
-        stop,
-        _motion(session),
+    controls = (_field(state), _minus(state), table, stop, _motion(session))
+    about_errors = caption(when(about, state.param.rig))
+    return pmui.Column(
+        lead("Two to four methods side by side, under one camera."),
+        section("", about_errors, *controls, margin=(4, 20, 4, 20)),
+        margin=0,
+        sizing_mode="stretch_width",
     )
 
 
 def about(rig: Rig | None) -> str:
-    """Return what the panel is for, and what errors are told against."""
-    against = "Errors are against the file's own weights."
+    """Return what the columns of errors tell, and against what."""
     if rig is not None and rig.weights is None:
-        against = "The file has no weights of its own to tell errors against."
-    return f"Two to four methods, one camera. {against}"
+        return "The file has no weights of its own to tell errors against."
+    return "L1 (weights) and cm² (motion) are errors against the file's own weights."
+
+
+def _field(state: State) -> pmui.RadioButtonGroup:
+    row = pmui.RadioButtonGroup(options=FIELDS, value="bone", **BUTTONS)
+
+    def listed(*events: Any) -> None:
+        known = state.rig is None or state.rig.weights is not None
+        value = state.compare_field if state.rig is None else field_shown(state)
+        row.param.update(options={**FIELDS, **(ERROR if known else {})}, value=value)
+
+    def chosen(event: Any) -> None:
+        if event.new is not None:
+            state.compare_field = event.new
+
+    state.param.watch(listed, ["rig", "compare_field"])
+    row.param.watch(chosen, "value")
+    listed()
+    return row
 
 
 def _minus(state: State) -> pmui.Select:
     select = pmui.Select(
         label="Difference to", options={}, size="small", margin=(10, 0, 4, 0),
         sizing_mode="stretch_width",
-        visible=when(lambda field: field != "error", state.param.compare_field),
+        visible=when(
+            lambda *_: state.rig is None or field_shown(state) != "error",
+            state.param.compare_field,
+            state.param.rig,
+        ),
     )  # fmt: skip
 
     def listed(*events: Any) -> None:

@@ -9,7 +9,7 @@ import panel_material_ui as pmui
 from ..actions.learn import go
 from ..session import Session
 from ..tour import TOUR
-from .parts import GAP, caption, section, when
+from .parts import GAP, caption, lead, section, when
 
 
 def learn(session: Session) -> pmui.Column:
@@ -27,14 +27,13 @@ def learn(session: Session) -> pmui.Column:
         sizing_mode="stretch_width",
         on_click=begin,
     )
-    return section(
-        "Learn",
-        caption(
-            f"How skin comes to follow bones, in {len(TOUR)} short steps. Each sets the page so "
-            "that its point is seen; look around, and change what you like."
-        ),
-        start,
-        *[_entry(session, index) for index in range(len(TOUR))],
+    hint = "Each sets the page so that its point is seen; look around, and change what you like."
+    steps = [_entry(session, index) for index in range(len(TOUR))]
+    return pmui.Column(
+        lead(f"How skin comes to follow bones, in {len(TOUR)} short steps."),
+        section("", caption(hint), start, *steps, margin=(4, 20, 4, 20)),
+        margin=0,
+        sizing_mode="stretch_width",
     )
 
 

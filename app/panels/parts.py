@@ -54,18 +54,19 @@ def offer(select: pmui.Select, options: dict[str, int], value: int) -> None:
     select.value = value
 
 
+BUTTONS: dict[str, Any] = {
+    "label": "",
+    "size": "small",
+    "margin": GAP,
+    "sizing_mode": "stretch_width",
+    "sx": {"width": "100%", "& .MuiToggleButton-root": {"flex": 1, "py": "5px"}},
+}
+"""How a row of buttons looks, one of which is pressed."""
+
+
 def choice(parameter: Any, options: dict[str, Any], **params: Any) -> pmui.RadioButtonGroup:
     """Return a row of buttons, one of which is pressed."""
-    return pmui.RadioButtonGroup.from_param(
-        parameter,
-        options=options,
-        label="",
-        size="small",
-        margin=GAP,
-        sizing_mode="stretch_width",
-        sx={"width": "100%", "& .MuiToggleButton-root": {"flex": 1, "py": "5px"}},
-        **params,
-    )
+    return pmui.RadioButtonGroup.from_param(parameter, options=options, **BUTTONS, **params)
 
 
 def slider(parameter: Any, label: str, whole: bool = False, **params: Any) -> Any:

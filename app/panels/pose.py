@@ -5,13 +5,14 @@ from __future__ import annotations
 from typing import Any
 
 import panel_material_ui as pmui
+from bokeh.models import PrintfTickFormatter
 
 from ..actions import pose as actions
 from ..rows import Rows
 from ..scenes.pose import error_of, has_rival
 from ..session import Session
 from ..state import State
-from .parts import GAP, caption, choice, offer, section, when
+from .parts import GAP, caption, choice, lead, offer, section, when
 
 AXES = ("x", "y", "z")
 RING_COLORS = ("#e5484d", "#30a46c", "#3e83f8")
@@ -22,6 +23,7 @@ WORST = 8
 def pose(session: Session) -> pmui.Column:
     """Return the controls of the panel Pose."""
     return pmui.Column(
+        lead("How the skin follows when bones turn, by hand or in a motion."),
         _turning(session), _motion(session), _comparison(session),
         margin=0, sizing_mode="stretch_width",
     )  # fmt: skip
@@ -34,7 +36,7 @@ def _turning(session: Session) -> pmui.Column:
             lambda rig, joint: (
                 ""
                 if rig is None
-                else f"Turn {rig.skeleton.names[joint]}: drag its rings, or these."
+                else f"Turn {rig.skeleton.names[joint]}: drag its rings, or the sliders."
             ),
             state.param.rig,
             state.param.joint,
@@ -50,7 +52,8 @@ def _turning(session: Session) -> pmui.Column:
         sizing_mode="stretch_width",
         disabled=when(lambda *_: not state.posed, state.param.turns, state.param.moving),
     )
-    return section("Pose", about, *[_angle(session, axis) for axis in range(3)], rest)
+    angles = [_angle(session, axis) for axis in range(3)]
+    return section("", about, *angles, rest, margin=(8, 20, 4, 20))
 
 
 def _angle(session: Session, axis: int) -> pmui.FloatSlider:
@@ -62,7 +65,7 @@ def _angle(session: Session, axis: int) -> pmui.FloatSlider:
         start=-180,
         end=180,
         step=1,
-        format="0°",
+        format=PrintfTickFormatter(format="%d°"),
         size="small",
         margin=(0, 0),
         track=False,

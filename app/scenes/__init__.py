@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
-from viewers.description import Description
+from viewers.description import Actor, Description, Legend
+from viewers.palette import ATTACHMENT, MARK, SOURCE
 from viewers.skin import skin_of_weights
 
 from ..state import State
@@ -29,6 +30,9 @@ SCENES: dict[str, Callable[[State, Memo], Description]] = {
 }
 """The scene of each panel, for a state with a rig."""
 
+RIGID = "parts fixed to one bone"
+"""What is said of the grey parts of a body whose colours tell something."""
+
 
 def resolve(state: State, memo: Memo | None = None) -> Description:
     """Return the scene that a state stands for.
@@ -41,7 +45,11 @@ def resolve(state: State, memo: Memo | None = None) -> Description:
     """
     if state.rig is None:
         return Description()
-    return SCENES.get(state.panel, plain)(state, memo or Memo())
+    whole = SCENES.get(state.panel, plain)(state, memo or Memo())
+    if whole.legend is None or not (_coloured(whole.actors) and state.rig.attachments):
+        return whole
+    swatches = (*whole.legend.swatches, (ATTACHMENT, RIGID))
+    return replace(whole, legend=replace(whole.legend, swatches=swatches))
 
 
 def following(state: State, memo: Memo | None = None) -> Description:
@@ -62,4 +70,18 @@ def following(state: State, memo: Memo | None = None) -> Description:
     if "body" in actors and actors["body"].skin is None:
         actors["body"] = replace(actors["body"], skin=skin_of_weights(state.weights))
     actors = {name: actor for name, actor in actors.items() if actor.skin is not None}
-    return replace(whole, actors=actors, cut=None)
+    return replace(whole, actors=actors, cut=None, legend=_left_of(whole.legend, actors))
+
+
+def _left_of(legend: Legend | None, actors: dict[str, Actor]) -> Legend | None:
+    """Return what a legend says of that which moves: nothing of edges, sources and ways."""
+    if legend is None or not _coloured(actors):
+        return None
+    still = (MARK, SOURCE)
+    return replace(legend, swatches=tuple(one for one in legend.swatches if one[0] not in still))
+
+
+def _coloured(actors: dict[str, Actor]) -> bool:
+    """Whether the body's colours tell something."""
+    bodies = [actor for name, actor in actors.items() if name.startswith("body")]
+    return any(body.colors is not None or body.scalars is not None for body in bodies)

@@ -105,10 +105,11 @@ def looks_of(
     """Return how each method's body is coloured, and the legend that holds for all."""
     known = {name: table for name, table in tables.items() if table is not None}
     joint = state.joint
-    if state.compare_field == "error":
+    shown = field_shown(state)
+    if shown == "error":
         return error_looks(state, known)
     base = subtracted(state)
-    if base is not None and state.compare_field == "bone":
+    if base is not None and shown == "bone":
         looks = {
             name: _difference(table[:, joint] - base[:, joint]) for name, table in known.items()
         }
@@ -120,13 +121,20 @@ def looks_of(
             for name, table in known.items()
         }
         return looks, Legend("Weight that lies elsewhere", "error", "0", "all")
-    which = joint if state.compare_field == "bone" else None
+    which = joint if shown == "bone" else None
     looks, legend = {}, None
     for name, table in known.items():
         looks[name], legend = memo(
             f"colors {name}", (table, which), partial(weight_colors, state.rig, table, which)
         )
     return looks, legend
+
+
+def field_shown(state: State) -> str:
+    """Return what is seen of the methods: there may be no weights to tell an error against."""
+    if state.compare_field == "error" and state.rig.weights is None:
+        return "bone"
+    return state.compare_field
 
 
 def error_looks(

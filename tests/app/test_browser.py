@@ -19,7 +19,7 @@ def test_the_first_demo_stands_there_without_a_click(browser, url):
     visit = Visit(browser, url)
     visit.wait_until_bound()
     seen = visit.look()
-    assert visit.page.get_by_role("combobox", name="Demo character").inner_text() == "Walker"
+    assert visit.page.get_by_role("combobox", name="Character").inner_text() == "Walker"
     assert visit.report()["actors"]["body"]["visible"]
     assert len(np.unique(seen.reshape(-1, 3), axis=0)) > 2000
     visit.panel("Graph")
@@ -216,7 +216,7 @@ def test_a_text_file_named_glb_is_told_and_the_old_character_stays(visit, tmp_pa
     visit.dismiss()
     np.testing.assert_array_equal(visit.points(), points)
     assert changed(before, visit.look()) < 0.001
-    visit.choose("Demo character", "Rabbit")
+    visit.choose("Character", "Rabbit")
     visit.page.wait_for_function(
         "n => __cutcell.report().actors.body.points !== n", arg=len(points)
     )
@@ -255,7 +255,7 @@ def test_two_browsers_share_nothing(browser, url, visit):
     before = other.look()
     visit.panel("Graph")
     visit.switch("Mesh edges")
-    visit.choose("Demo character", "Rabbit")
+    visit.choose("Character", "Rabbit")
     visit.page.wait_for_function(
         "n => __cutcell.report().actors.body.points !== n",
         arg=other.report()["actors"]["body"]["points"],

@@ -8,10 +8,10 @@ import pytest
 import cutcell
 from app.view import SceneView, camera_part, changes, theme_part
 from tests.viewers.arm import arm_rig
+from viewers.camera import framing
 from viewers.description import Cut, Description
 from viewers.graph_scene import graph_scene
 from viewers.palette import DARK
-from viewers.scene import framing
 from viewers.weights_scene import weights_scene
 
 

@@ -11,10 +11,10 @@ from PIL import Image
 import viewers.worker
 from cutcell.errors import Cancelled, FileError, MissingLibraryError
 from tests.viewers.arm import arm_rig
+from viewers.camera import Camera, around, framing, sees
 from viewers.character import pose_in_scene
-from viewers.film import FRAMES, Motion, Order, around, draw
+from viewers.film import FRAMES, Motion, Order, _camera, draw
 from viewers.palette import DARK, LIGHT
-from viewers.scene import Camera
 from viewers.studio import Studio
 from viewers.weights_scene import weights_scene
 from viewers.worker import draw_apart
@@ -185,3 +185,31 @@ def test_a_film_has_room_for_all_of_its_motion(scene, motion, tmp_path):
             assert not inked[[0, -1]].any()
             seen.append(np.flatnonzero(inked).mean())
     assert min(seen) < SIZE[1] / 2 < max(seen)
+
+
+def test_a_camera_steps_back_for_a_motion_if_it_saw_the_whole_character(scene, motion):
+    leap = np.tile(np.eye(4), (2, motion.poses.shape[1], 1, 1))
+    leap[1, :, 1, 3] = 2 * np.ptp(scene.bounds[:, 1])
+    whole = framing(scene.bounds, direction=(1.0, 0.2, 0.4))
+    position, target = np.array(whole.position), np.array(whole.focal_point)
+    close = Camera(tuple((target + 0.2 * (position - target)).tolist()), whole.focal_point)
+    with Studio(scene, size=(120, 120)) as studio:
+        far = _camera(Order(scene, camera=whole, motion=Motion(np.array([0.0, 1]), leap)), studio)
+        assert sees(far, np.concatenate([scene.bounds, scene.bounds + leap[1, 0, :3, 3]]))
+        way = np.array(far.position) - np.array(far.focal_point)
+        assert np.dot(way, position - target) == pytest.approx(
+            np.linalg.norm(way) * np.linalg.norm(position - target)
+        )
+        assert np.linalg.norm(way) > np.linalg.norm(position - target)
+        for camera, poses in ((close, leap), (whole, leap[:1])):
+            moving = Order(scene, camera=camera, motion=Motion(np.arange(len(poses)), poses))
+            assert _camera(moving, studio) is camera
+
+
+def test_a_picture_of_a_pose_sees_the_pose(scene, motion):
+    away = np.tile(np.eye(4), (motion.poses.shape[1], 1, 1))
+    away[:, 0, 3] = 5 * np.ptp(scene.bounds[:, 0])
+    posed = replace(scene, pose=away)
+    with Studio(posed, size=(120, 120)) as studio:
+        assert sees(_camera(Order(posed), studio), scene.bounds + away[0, :3, 3])
+        assert not sees(_camera(Order(scene), studio), scene.bounds + away[0, :3, 3])

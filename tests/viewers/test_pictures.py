@@ -9,11 +9,12 @@ from PIL import Image
 import cutcell
 from tests.viewers.arm import arm_rig
 from viewers import palette
+from viewers.camera import framing
 from viewers.description import Description
 from viewers.distance_scene import distance_scene
 from viewers.graph_scene import cut_at, graph_scene
 from viewers.pose_scene import joint_turns, pose_scene, turn
-from viewers.scene import Scene, framing, render_png
+from viewers.scene import Scene, render_png
 from viewers.weights_scene import weights_scene
 
 SIZE = (240, 180)

@@ -1,13 +1,15 @@
 """The panel Compare, from state to scene and to its table."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import cutcell
 from app.actions.compare import Compared, choose, measured, options_of, wanted
-from app.panels.compare import about, rows_of
+from app.panels.compare import _field, about, rows_of
 from app.scenes import Memo, resolve
-from app.scenes.compare import WAITING, caption_of, title_of
+from app.scenes.compare import WAITING, caption_of, field_shown, title_of
 from app.state import State
 from app.state.compare import NOW, offered
 from cutcell.baselines import METHODS, BaselineBinding
@@ -205,3 +207,17 @@ def test_without_the_files_own_weights_no_error_is_promised(rig):
     assert about(None) == about(rig)
     assert about(rig).endswith("against the file's own weights.")
     assert "no weights of its own" in about(rig.with_weights(None))
+
+
+def test_without_weights_of_its_own_no_error_is_offered_or_shown(state, rig, binding):
+    bare = replace(rig, weights=None)
+    state.compare_field = "error"
+    row = _field(state)
+    assert "Error" in row.options
+    state.param.update(rig=bare, binding=binding, methods=[NOW, "euclidean"], compared={})
+    assert "Error" not in row.options
+    assert row.value == field_shown(state) == "bone"
+    assert resolve(state).legend.title == "Weight of " + rig.skeleton.names[1]
+    state.rig = rig
+    row.value = "error"
+    assert field_shown(state) == "error"

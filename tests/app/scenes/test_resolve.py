@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import cutcell
-from app.scenes import Memo, resolve
+from app.scenes import RIGID, Memo, following, resolve
 from app.scenes.common import SEE_THROUGH, bones_part, cells_of, first_joint
 from app.scenes.geodesics import field_of, wants_field
 from app.scenes.pose import clip_of, clip_part, pose_of
@@ -215,3 +215,25 @@ def test_a_joint_without_weight_has_no_field(state, rig):
     state.param.update(rig=replace(rig, skeleton=skeleton), panel="geodesics", cut_axis="x")
     assert not wants_field(state)
     assert resolve(state).actors["body"].scalars is None
+
+
+@pytest.mark.parametrize("panel", ["geodesics", "weights", "compare"])
+def test_grey_parts_are_named_where_colours_tell_something(state, rig, panel):
+    state.panel = panel
+    named = [text for _, text in resolve(state).legend.swatches]
+    assert named.count(RIGID) == 1
+    state.rig = replace(rig, attachments=())
+    assert RIGID not in [text for _, text in resolve(state).legend.swatches]
+
+
+def test_the_legend_of_a_motion_names_only_what_moves(state, binding):
+    state.param.update(panel="graph", mesh_edges=True)
+    assert resolve(state).legend is not None
+    assert following(state).legend is None
+    field = binding.distances.field(1)
+    state.param.update(panel="geodesics", starts=True, vertex=0)
+    state.field = (binding.distances, 1, field)
+    whole, moving = resolve(state).legend, following(state).legend
+    assert {text for _, text in whole.swatches} > {RIGID}
+    assert [text for _, text in moving.swatches] == [RIGID]
+    assert moving.title == whole.title

@@ -1,0 +1,83 @@
+"""Where the eye stands: what it sees, and from where it sees all of something."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+VIEW_ANGLE = 30.0
+
+
+@dataclass(frozen=True)
+class Camera:
+    """Where the eye is, what it looks at, and which way is up."""
+
+    position: tuple[float, float, float]
+    focal_point: tuple[float, float, float]
+    up: tuple[float, float, float] = (0.0, 1.0, 0.0)
+
+
+FRONT = (0.42, 0.16, 1.0)
+"""Where one looks from at first: the front, a little aside and above."""
+
+
+def framing(
+    bounds: NDArray[np.float64],
+    aspect: float = 1.0,
+    direction: tuple[float, float, float] | None = None,
+) -> Camera:
+    """Return a camera that sees all of a box.
+
+    Parameters
+    ----------
+    bounds : array, shape (2, 3)
+    aspect : float
+        Width over height of the picture.
+    direction : tuple of float, optional
+        Where to look from, not straight from above or below; `FRONT` when left out.
+    """
+    low, high = np.asarray(bounds, float)
+    centre = (low + high) / 2
+    toward = np.array(direction or FRONT, float)
+    toward /= np.linalg.norm(toward)
+    right = np.cross([0, 1, 0], toward)
+    right /= np.linalg.norm(right)
+    up = np.cross(toward, right)
+    corners = np.array(np.meshgrid(*zip(low - centre, high - centre, strict=True))).reshape(3, -1).T
+    slope = np.tan(np.radians(VIEW_ANGLE / 2))
+    needed = np.maximum(np.abs(corners @ up), np.abs(corners @ right) / aspect) / slope
+    distance = 1.08 * (needed + corners @ toward).max()
+    position = centre + distance * toward
+    return Camera(tuple(position.tolist()), tuple(centre.tolist()))
+
+
+def sees(camera: Camera, points: NDArray[np.float64], aspect: float = 1.0) -> bool:
+    """Whether all points lie within a camera's picture.
+
+    Parameters
+    ----------
+    camera : Camera
+    points : array, shape (n, 3)
+    aspect : float
+        Width over height of the picture.
+    """
+    eye = np.array(camera.position)
+    toward = eye - np.array(camera.focal_point)
+    toward /= np.linalg.norm(toward)
+    right = np.cross(camera.up, toward)
+    right /= np.linalg.norm(right)
+    ahead = points - eye
+    reach = -(ahead @ toward) * np.tan(np.radians(VIEW_ANGLE / 2))
+    high = np.abs(ahead @ np.cross(toward, right))
+    return bool(np.all((high <= reach) & (np.abs(ahead @ right) <= aspect * reach)))
+
+
+def around(camera: Camera, angle: float) -> Camera:
+    """Return a camera that went around what it looks at, by an angle in radians."""
+    target = np.array(camera.focal_point)
+    x, y, z = np.array(camera.position) - target
+    c, s = np.cos(angle), np.sin(angle)
+    position = target + np.array([c * x + s * z, y, c * z - s * x])
+    return replace(camera, position=tuple(position.tolist()))
