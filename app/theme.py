@@ -15,8 +15,14 @@ _SHAPE = {
     },
     # A menu that fades away still takes the next click, wherever that goes: it is gone at once.
     "components": {
-        # Dark paper is as dark over the canvas as beside it.
-        "MuiDrawer": {"styleOverrides": {"paper": {"backgroundImage": "none"}}},
+        "MuiDrawer": {
+            "styleOverrides": {
+                # Dark paper is as dark over the canvas as beside it.
+                "paper": {"backgroundImage": "none"},
+                # What lies over the bar on top needs no room below it.
+                "modal": {"& .MuiDrawer-paper > .MuiToolbar-root": {"display": "none"}},
+            }
+        },
         "MuiMenu": {"defaultProps": {"transitionDuration": {"enter": 160, "exit": 0}}},
     },
 }

@@ -12,7 +12,8 @@ class Connection {
     const style = document.createElement("style")
     style.textContent = `.lost { inset: 12px 12px auto; margin: auto; width: max-content;
       max-width: calc(100% - 48px); padding: 10px 16px; font-size: 14px; z-index: 6;
-      background: var(--paper); border: 1px solid #e05a00; }`
+      background: var(--paper); border: 1px solid #e05a00; }
+    .without-server .tools { visibility: hidden; }`
     overlay.root.append(style, this.note)
     const documents = window.Bokeh?.documents || []
     this.document = documents[documents.length - 1]
@@ -24,7 +25,8 @@ class Connection {
     if (this.trying || this.gone) { return }
     this.trying = true
     this.note.hidden = false
-    this.note.textContent = "The connection to the server is lost. Trying again …"
+    this.overlay.root.classList.add("without-server")  // its tools could do nothing
+    this.note.textContent = "The connection to the server is lost. Trying again\u00a0…"
     while (!this.gone) {
       await new Promise((done) => setTimeout(done, RETRY_MS))
       try {
@@ -33,7 +35,7 @@ class Connection {
       } catch { /* not there yet: try again */ }
     }
     if (this.gone) { return }
-    this.note.textContent = "The server is there again. Coming back …"
+    this.note.textContent = "The server is there again. Coming back\u00a0…"
     location.reload()
   }
 

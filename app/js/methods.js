@@ -16,10 +16,10 @@ input { margin: 1px 0 0; width: 15px; height: 15px; flex: none;
 tr.idle td { color: var(--mui-palette-text-secondary, #667); }
 tr:has(input:disabled) label { cursor: default; }
 tr:has(:focus-visible) { outline: 2px solid var(--mui-palette-primary-main, #147); }
-tbody tr + tr td { border-top: 1px solid var(--mui-palette-divider, #8883); }
-small { display: block; font-size: 11px; color: var(--mui-palette-text-secondary, #667);
-  margin-top: 2px; overflow-wrap: anywhere; }
-small.failed { color: var(--mui-palette-error-main, #b3261e); }
+tbody tr + tr:not(.note) td { border-top: 1px solid var(--mui-palette-divider, #8883); }
+.note td:first-child { padding: 0 0 7px 23px; font-size: 11px; overflow-wrap: anywhere;
+  color: var(--mui-palette-text-secondary, #667); }
+.note.failed td:first-child { color: var(--mui-palette-error-main, #b3261e); }
 td.best { font-weight: 600; }
 .ring { display: inline-block; width: 9px; height: 9px; margin-right: 5px; border-radius: 50%;
   border: 2px solid var(--mui-palette-primary-main, #147); border-top-color: transparent;
@@ -53,20 +53,23 @@ export function render({model}) {
       const label = first.appendChild(document.createElement("label"))
       const box = label.appendChild(document.createElement("input"))
       Object.assign(box, {type: "checkbox", name: id, checked: chosen, disabled: fixed})
-      const words = label.appendChild(document.createElement("span"))
-      words.append(title)
-      if (note) {
-        const small = words.appendChild(document.createElement("small"))
-        small.className = state
-        if (state === "running") {
-          small.appendChild(document.createElement("i")).className = "ring"
-        }
-        small.append(note)
-      }
+      label.append(title)
+      if (fixed) { label.title = chosen ? "Two stay at least" : "Four at most: take one away first" }
       box.addEventListener("change", () => model.send_msg({id, on: box.checked}))
       values.forEach((value, i) => {
         cell(row, "td", value).className = best[i] ? "best" : ""
       })
+      if (note) {
+        const below = body.appendChild(document.createElement("tr"))
+        below.className = `note ${state}`
+        const words = cell(below, "td", note)
+        words.colSpan = 1 + values.length
+        words.id = `note-${id}`
+        box.setAttribute("aria-describedby", words.id)
+        if (state === "running") {
+          words.prepend(Object.assign(document.createElement("i"), {className: "ring"}))
+        }
+      }
     }
     table.replaceChildren(head, body)
     if (held) { table.querySelector(`input[name="${CSS.escape(held)}"]`)?.focus() }

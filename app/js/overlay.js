@@ -24,8 +24,9 @@ const STYLE = `
 .legend p::before { content: ""; width: 14px; height: 8px; border-radius: 3px; flex: none;
   background: var(--swatch); }
 .bone { padding: 4px 8px; transform: translate(14px, -110%); white-space: nowrap; }
-.caption { padding: 5px 12px; white-space: nowrap; overflow: hidden;
-  text-overflow: ellipsis; font-weight: 500; }
+.caption { padding: 5px 10px; overflow: hidden; font-weight: 500; }
+.caption span { display: -webkit-box; -webkit-line-clamp: 2; -webkit-box-orient: vertical;
+  overflow: hidden; overflow-wrap: anywhere; }
 .seam { position: absolute; background: var(--ink); opacity: .14; pointer-events: none; }
 .gizmo { position: absolute; inset: 0; width: 100%; height: 100%; pointer-events: none; }
 .gizmo path { fill: none; }
@@ -151,7 +152,7 @@ class Overlay {
     const put = (className, text, style) => {
       const element = document.createElement("div")
       element.className = className
-      element.textContent = text
+      if (text) { element.appendChild(document.createElement("span")).textContent = text }
       Object.assign(element.style, style)
       this.views.append(element)
     }
@@ -161,7 +162,7 @@ class Overlay {
       const [left, top, width, height] = tiles[i]
       const px = (value) => `${value}px`
       put("card caption", text, {
-        left: px(left + 14), top: px(top + 10), maxWidth: px(width - 28),
+        left: px(left + 10), top: px(top + 10), maxWidth: px(width - 20),
         boxSizing: "border-box",
       })
       if (left > tiles[0][0]) { put("seam", "", {left: px(left), top: px(top), width: "1px", height: px(height)}) }

@@ -4,6 +4,7 @@
 const SLIM = 700  // a canvas less wide than this has no room beside its cards
 const NARROW_VIEW = 330  // a view less wide than this has none beside the tools
 const UNDER_TOOLS = 56
+const NARROW_FEET = 460  // in a view less wide than this the legend would cover feet
 const LARGE = 300  // a card this wide has a part of the canvas for itself, whatever its width
 const GAP = 6
 
@@ -51,7 +52,9 @@ class Room {
     if (slim || (several && this.stage.tilesIn(room)[0][2] < NARROW_VIEW)) { room.top = UNDER_TOOLS }
     const {legend, transport} = this.overlay
     const take = (edge, pixels) => { room[edge] = Math.max(room[edge], pixels + GAP) }
-    for (const part of slim ? [legend, transport] : []) {
+    // In a wide canvas they stand beside one character, but before those of several narrow views.
+    const narrow = several && this.stage.tilesIn(room)[0][2] < NARROW_FEET
+    for (const part of slim || narrow ? [legend, transport] : []) {
       if (!part.hidden) { take("bottom", box.bottom - part.getBoundingClientRect().top) }
     }
     for (const card of cards) {

@@ -12,8 +12,10 @@ function loadVtk(url) {
   return window.__cutcellVtk
 }
 
-// Of a view that stands beside others: above there is its caption.
+// Of a view that stands beside others: above there is its caption, in two lines if it is narrow.
 const CAPTIONED = {left: 0, right: 0, top: 46, bottom: 16}
+const NARROW_CAPTIONED = {...CAPTIONED, top: 60}
+const NARROW_CAPTION = 260
 
 class Stage {
   constructor(vtk, element) {
@@ -188,7 +190,7 @@ class Stage {
       const [i, j] = [(k + 1) % 3, (k + 2) % 3]
       return direction[i] * right[j] - direction[j] * right[i]
     })
-    const taken = this.views.length > 1 ? CAPTIONED : room
+    const taken = this.taken(room, w)
     const high = Math.max(h - taken.top - taken.bottom, h / 4, 1)
     const wide = Math.max(w - taken.left - taken.right, w / 4, 1)
     let distance = 0
@@ -212,10 +214,16 @@ class Stage {
     }
   }
 
+  // What is not for the character, of a view of some width.
+  taken(room, width) {
+    if (this.views.length < 2) { return room }
+    return width < NARROW_CAPTION ? NARROW_CAPTIONED : CAPTIONED
+  }
+
   // Where the middle of what is free in a view lies, in halves of the view from its own middle.
   get middle() {
     const [, , w, h] = this.tiles[0]
-    const {left, right, top, bottom} = this.views.length > 1 ? CAPTIONED : this.room
+    const {left, right, top, bottom} = this.taken(this.room, w)
     return [(left - right) / Math.max(w, 1), (bottom - top) / Math.max(h, 1)]
   }
 

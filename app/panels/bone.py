@@ -7,7 +7,7 @@ from typing import Any
 import panel_material_ui as pmui
 
 from ..session import Session
-from .parts import GAP, offer, section
+from .parts import GAP, offer, section, unique_names
 
 
 def bone(session: Session) -> pmui.Column:
@@ -15,7 +15,7 @@ def bone(session: Session) -> pmui.Column:
     state = session.state
     select = pmui.Select(
         label="Bone",
-        options={},
+        options=[],
         size="small",
         margin=GAP,
         sizing_mode="stretch_width",
@@ -23,15 +23,12 @@ def bone(session: Session) -> pmui.Column:
     )
 
     def listed(*events: Any) -> None:
-        if state.rig is None:
-            select.param.update(options={}, value=None)
-            return
-        names = state.rig.skeleton.names
-        offer(select, unique_options(names), state.joint)
+        names = () if state.rig is None else state.rig.skeleton.names
+        offer(select, unique_names(names), state.joint)
 
     def chosen(event: Any) -> None:
         if event.new is not None:
-            state.joint = event.new
+            state.joint = select.options.index(event.new)
 
     state.param.watch(listed, ["rig", "joint"])
     select.param.watch(chosen, "value")
@@ -47,11 +44,3 @@ def bone(session: Session) -> pmui.Column:
     )
     row = pmui.Row(select, seen, margin=0, sizing_mode="stretch_width")
     return section("", row, margin=(2, 20, 4, 20))
-
-
-def unique_options(names: tuple[str, ...]) -> dict[str, int]:
-    """Return the index of each name; a name that comes again gets its index added."""
-    options: dict[str, int] = {}
-    for index, name in enumerate(names):
-        options[f"{name} ({index})" if name in options else name] = index
-    return options

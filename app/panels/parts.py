@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import panel as pn
@@ -44,14 +44,23 @@ def when(function: Callable[..., Any], *parameters: Any) -> Any:
     return pn.bind(function, *parameters)
 
 
-def offer(select: pmui.Select, options: dict[str, int], value: int) -> None:
-    """Let a menu offer other names for indices, and show the name of one of them.
+def unique_names(names: Sequence[str]) -> list[str]:
+    """Return names of which none comes twice: one that comes again gets its index added."""
+    unique: list[str] = []
+    for index, name in enumerate(names):
+        while name in unique:
+            name = f"{name} ({index})"
+        unique.append(name)
+    return unique
 
-    An index that stays would keep the name that it had, so it is let go of in between.
+
+def offer(select: pmui.Select, names: Sequence[str], index: int) -> None:
+    """Let a menu offer names, which `unique_names` made, and show one of them.
+
+    Names, not indices, are its values: an index that stays would keep the name that it had. And
+    at once: a menu whose value changes twice in a moment may tell the first one back.
     """
-    if options != select.options:
-        select.param.update(options=options, value=None)
-    select.value = value
+    select.param.update(options=list(names), value=names[index] if names else None)
 
 
 BUTTONS: dict[str, Any] = {

@@ -12,10 +12,11 @@ from ..rows import Rows
 from ..scenes.pose import error_of, has_rival
 from ..session import Session
 from ..state import State
-from .parts import GAP, caption, choice, lead, offer, section, when
+from .parts import GAP, caption, choice, lead, offer, section, unique_names, when
 
 AXES = ("x", "y", "z")
 RING_COLORS = ("#e5484d", "#30a46c", "#3e83f8")
+SWING = "Swing the bone"
 WORST = 8
 """How many of the worst turns are listed."""
 
@@ -92,17 +93,18 @@ def _angle(session: Session, axis: int) -> pmui.FloatSlider:
 def _motion(session: Session) -> pmui.Column:
     state = session.state
     motion = pmui.Select(
-        label="Motion", options={}, size="small", margin=GAP, sizing_mode="stretch_width"
+        label="Motion", options=[], size="small", margin=GAP, sizing_mode="stretch_width"
     )
 
     def listed(*events: Any) -> None:
         clips = state.rig.clips if state.rig is not None else ()
-        options = {clip.name or f"clip {i}": i for i, clip in enumerate(clips)}
-        offer(motion, {**options, "Swing the bone": -1}, state.clip)
+        names = [clip.name or f"clip {i}" for i, clip in enumerate(clips)]
+        offer(motion, unique_names([*names, SWING]), state.clip)  # the last one is number -1
 
     def chosen(event: Any) -> None:
         if event.new is not None:
-            state.clip = event.new
+            index = motion.options.index(event.new)
+            state.clip = index if index < len(motion.options) - 1 else -1
 
     state.param.watch(listed, ["rig", "clip"])
     motion.param.watch(chosen, "value")

@@ -4,7 +4,6 @@ import socket
 
 import pytest
 
-from app.panels.bone import unique_options
 from app.serve import allowed_origins, free_port
 
 
@@ -39,7 +38,3 @@ def test_who_may_connect():
     assert allowed_origins("localhost", 1) == ["localhost:1", "127.0.0.1:1"]
     assert f"{socket.gethostname()}:1" in allowed_origins("0.0.0.0", 1)
     assert "10.1.2.3:1" in allowed_origins("10.1.2.3", 1)
-
-
-def test_joints_of_one_name_can_be_told_apart():
-    assert unique_options(("a", "b", "a")) == {"a": 0, "b": 1, "a (2)": 2}
