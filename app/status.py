@@ -14,7 +14,7 @@ from .session import Session, sentence
 from .state import State
 
 TITLES = {
-    "compile": "Compiling, once on this machine (about half a minute)",
+    "compile": "Compiling, once on this machine (about a minute)",
     "graph": "Building the graph",
     "distances": "Measuring distances",
     "weights": "Computing weights",

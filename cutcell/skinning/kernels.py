@@ -20,8 +20,8 @@ from .weights import DEFAULT_LEAF, joints_needed, skinning_weights
 AROUND = 16
 """Vertices around the tube: its open ends are holes too wide for a few triangles."""
 PACKAGE = Path(__file__).resolve().parents[1]
-SOURCES = ("unions.py", "graph/*.py", "geodesics/*.py", "skinning/*.py")
-"""Where the kernels of a binding stand."""
+SOURCES = ("compiled.py", "unions.py", "graph/*.py", "geodesics/*.py", "skinning/*.py")
+"""Where the kernels of a binding stand, and what they are compiled by."""
 
 _known = False
 
@@ -29,7 +29,7 @@ _known = False
 def load_kernels() -> None:
     """Bind a small open tube in every way that has kernels of its own.
 
-    Kernels are compiled once on a machine (about half a minute) and kept on disk; from there a
+    Kernels are compiled once on a machine (about a minute) and kept on disk; from there a
     process loads them in about a second. All are thrown away once any source has changed: numba
     itself sees no change in another file than a kernel's own.
     """

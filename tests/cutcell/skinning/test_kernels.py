@@ -4,7 +4,10 @@ import os
 import subprocess
 import sys
 import textwrap
+from ast import literal_eval
+from importlib.util import find_spec
 from itertools import pairwise
+from pathlib import Path
 
 import pytest
 
@@ -105,6 +108,17 @@ def test_kernels_are_compiled_once_they_were_loaded(another_machine, monkeypatch
     monkeypatch.setattr(kernels, "_known", False)  # as a process started later
     assert kernels_are_compiled()
     assert [path.name for path in another_machine.glob("kernels.*")] == ["kernels.stamp"]
+
+
+def test_the_files_of_all_kernels_are_watched():
+    watched = {path for pattern in kernels.SOURCES for path in kernels.PACKAGE.glob(pattern)}
+    command = (
+        "from cutcell.skinning import kernels; print([k.__module__ for k in kernels._kernels()])"
+    )
+    done = subprocess.run([sys.executable, "-c", command], capture_output=True, text=True, cwd=ROOT)
+    modules = {"cutcell.compiled", *literal_eval(done.stdout)}
+    assert len(modules) > 10
+    assert {Path(find_spec(module).origin) for module in modules} <= watched
 
 
 @pytest.mark.parametrize("folder", ["graph", "geodesics", "skinning"])
