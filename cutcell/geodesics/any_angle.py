@@ -25,7 +25,7 @@ from ..graph import CutCellGraph
 from ..progress import Progress, silent
 from ..threads import in_threads, threads
 from .bones import TIE, Bones, Sources
-from .labels import NOBODY, find_room, follows_anchor, least_distance, no_labels
+from .labels import NOBODY, find_room, follows_anchor, no_labels
 from .queue import END, SETTLED, bucket_of, join, leave, move_on
 from .sight import bend_of, body_of, sees, straight
 
@@ -39,7 +39,7 @@ FINENESS = 4
 """Times R squared: buckets a unit of distance. One is a hundredth of a cell wide, or less."""
 SPAN = 1
 """Units of distance that the buckets cover at a time."""
-ROOMS = 3, 4, 6
+ROOMS = 1, 4, 6
 """Labels a node for which the kernel is compiled with their number built in, a third faster."""
 PAUSES = 8
 """How often a unit of distance is interrupted, to report and to be cancelled."""
@@ -52,6 +52,7 @@ def any_angle_paths(
     targets: NDArray[np.int32],
     nearest: int | None = None,
     within: float = np.inf,
+    least: NDArray[np.float64] | None = None,
     progress: Progress = silent,
 ) -> NDArray[np.float64]:
     """Compute how long the shortest path of straight pieces from each joint to each node is.
@@ -72,6 +73,8 @@ def any_angle_paths(
     within : float
         Where only some joints are measured, paths do not pass where another joint is so many
         times nearer; half a lattice cell counts as the nearest that one can be.
+    least : array, shape (N,), optional
+        How far the nearest joint is from each node, where that may be none of these bones'.
     progress : callable
         Called with the stage "distances".
 
@@ -82,7 +85,7 @@ def any_angle_paths(
         are not among the nearest.
     """
     joints = np.unique(bones.joint)
-    if nearest is not None and nearest < len(joints):
+    if nearest is not None and (nearest < len(joints) or least is not None):
         groups = [joints]
     else:
         nearest, within = min(AT_ONCE, len(joints)), np.inf  # a group knows not who is nearest
@@ -92,7 +95,7 @@ def any_angle_paths(
 
     def spread(group: NDArray[np.int32]) -> None:
         report = progress if len(groups) == 1 else silent
-        front = _start(graph, sources, bones, group, nearest)
+        front = _start(graph, sources, bones, group, nearest, least)
         _spread(graph, body, front, within, report)
         found = front.labels.reshape(-1, nearest)[targets]
         at, which = np.nonzero(found["joint"] != NOBODY)
@@ -108,6 +111,15 @@ def any_angle_paths(
             in_threads(spread, groups[first : first + step])
     progress("distances", 1.0)
     return result
+
+
+def least_distances(
+    graph: CutCellGraph, sources: Sources, bones: Bones, progress: Progress = silent
+) -> NDArray[np.float64]:
+    """Compute how far the nearest joint is from each node, shape (N,); see `any_angle_paths`."""
+    front = _start(graph, sources, bones, np.unique(bones.joint), 1)
+    _spread(graph, body_of(graph), front, np.inf, progress)
+    return front.least
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,6 +138,8 @@ class _Front:
         k, labels a node.
     labels, anchors : arrays, shape (N * k,)
         See `labels`.
+    least : array, shape (N,)
+        How far the nearest joint is from each node, as far as is known.
     """
 
     joints: NDArray[np.int32]
@@ -133,10 +147,16 @@ class _Front:
     each: int
     labels: NDArray[np.void]
     anchors: NDArray[np.int32]
+    least: NDArray[np.float64]
 
 
 def _start(
-    graph: CutCellGraph, sources: Sources, bones: Bones, group: NDArray, each: int
+    graph: CutCellGraph,
+    sources: Sources,
+    bones: Bones,
+    group: NDArray[np.int32],
+    each: int,
+    least: NDArray[np.float64] | None = None,
 ) -> _Front:
     mine = np.flatnonzero(np.isin(bones.joint, group))
     start, end = bones.start[mine], bones.end[mine]
@@ -156,9 +176,10 @@ def _start(
 
     labels, anchors = no_labels(len(graph.nodes), each)
     table = np.concatenate([start, way, inverse[:, None]], axis=1)
-    first_distance = sources.distance[chosen]
-    _enter_sources(labels, anchors, each, sources.node[chosen], bone[chosen], rank, first_distance)
-    return _Front(joints[by_place], table, each, labels, anchors)
+    least = np.full(len(graph.nodes), np.inf) if least is None else least.copy()
+    begin = sources.node[chosen], bone[chosen], sources.distance[chosen]
+    _enter_sources(labels, anchors, least, each, rank, *begin)
+    return _Front(joints[by_place], table, each, labels, anchors, least)
 
 
 def _spread(
@@ -173,7 +194,7 @@ def _spread(
     step = len(head) // (SPAN * PAUSES)
     ahead = np.empty(int(np.diff(graph.adjacency[0]).max()) + 1, np.int64)
     known = graph.adjacency, body, front.bones, within
-    given = *known, rooms, labels, front.anchors, head, scale, ahead
+    given = *known, rooms, labels, front.anchors, front.least, head, scale, ahead
     origin = 0.0
     while True:
         for bucket in range(0, len(head) - 1, step):
@@ -186,13 +207,14 @@ def _spread(
 
 
 @njit(cache=True)
-def _enter_sources(labels, anchors, each, node, bone, rank, distance):
+def _enter_sources(labels, anchors, least, each, rank, node, bone, distance):
     for s in range(len(node)):
         joint, anchor = rank[bone[s]], ~bone[s]
         label = find_room(labels, each, node[s], joint)
         if distance[s] < labels[label].distance:
             labels[label].joint, anchors[label] = joint, anchor
             labels[label].distance = distance[s]
+            least[node[s]] = min(least[node[s]], distance[s])
 
 
 @njit(cache=True)
@@ -204,7 +226,20 @@ def _line_up(labels, head, scale):
 
 @lean
 def _settle(
-    adjacency, body, bones, within, rooms, labels, anchors, head, scale, ahead, origin, first, last
+    adjacency,
+    body,
+    bones,
+    within,
+    rooms,
+    labels,
+    anchors,
+    least,
+    head,
+    scale,
+    ahead,
+    origin,
+    first,
+    last,
 ):
     """Settle labels by distance, bucket after bucket.
 
@@ -241,7 +276,7 @@ def _settle(
                 reached, bent = to_anchor + straight(here, bend), anchor
                 if reached >= limit:
                     continue  # a bend at u would be no shorter
-                if reached > within * max(least_distance(labels, each, v), ON_BONE / resolution):
+                if reached > within * max(least[v], ON_BONE / resolution):
                     continue
                 # Off the lattice, what is one step from a lattice point that sees the bend does,
                 # too: a crossing, and from there a corner of its triangle if it is near.
@@ -258,4 +293,5 @@ def _settle(
                 leave(head, labels, room)
                 labels[room].joint, anchors[room] = joint, bent
                 labels[room].distance = reached
+                least[v] = min(least[v], reached)
                 join(head, labels, max(bucket_of(head, scale, reached - origin), bucket), room)

@@ -22,11 +22,12 @@ NO_ROOM = 2.0
 the bone that leads to it."""
 GIVEN = 2.0
 """Depths of the body that it is given at most."""
-REGION_JOINTS = 3
-"""Nearest joints among which skin is divided to see what a tip moves. Two would be one too few
-in the middle between left and right."""
-REGION_WITHIN = 1.5
-"""Skin from which another joint is so many times nearer belongs to that one altogether."""
+REGION_TIPS = 4
+"""Tips that skin is looked at for, the nearest to it. In the middle between left and right there
+are two."""
+REGION_WITHIN = 1.25
+"""Skin from which another joint is so many times nearer belongs to that one altogether: the tip's
+part of it would be a hundredth."""
 REGION_POWER = 20
 """Skin belongs to joints by this power of how much nearer the nearest one is."""
 
@@ -88,7 +89,11 @@ def _share_with_tips(bones: Bones, tip: NDArray[np.bool_], probe: BodyProbe) -> 
 
 
 def aim_tips(
-    graph: CutCellGraph, bones: Bones, tip: NDArray[np.bool_], distance: NDArray[np.float64]
+    graph: CutCellGraph,
+    bones: Bones,
+    tip: NDArray[np.bool_],
+    distance: NDArray[np.float64],
+    nearest: NDArray[np.float64],
 ) -> Bones:
     """End tips in the middle of the skin that they move.
 
@@ -99,23 +104,22 @@ def aim_tips(
         In the unit cube.
     tip : array, shape (b,), bool
         Which to aim.
-    distance : array, shape (i, k)
-        Of the joints with bones, ascending, from the places of the mesh: the first nodes of
-        the graph. Infinite for joints that are not among the nearest.
+    distance : array, shape (t, k)
+        From each tip to the places of the mesh: the first nodes of the graph. Infinite where
+        it is not wanted.
+    nearest : array, shape (k,)
+        From the nearest of all joints.
 
     Returns
     -------
     Bones
     """
     end = bones.end.copy()
-    count = distance.shape[1]
+    count = len(nearest)
     points, share = graph.nodes[:count], _areas(graph, count)
-    nearest = distance.min(axis=0)
-    row = np.searchsorted(np.unique(bones.joint), bones.joint)
-    for b in np.flatnonzero(tip):
-        mine = np.flatnonzero(np.isfinite(distance[row[b]]))
-        own = distance[row[b], mine]
-        ratio = np.divide(nearest[mine], own, out=np.ones_like(own), where=own > 0)
+    for b, own in zip(np.flatnonzero(tip), distance, strict=True):
+        mine = np.flatnonzero(np.isfinite(own))
+        ratio = np.divide(nearest[mine], own[mine], out=np.ones(len(mine)), where=own[mine] > 0)
         weight = share[mine] * ratio**REGION_POWER
         if weight.sum() > 0:
             end[b] = weight @ points[mine] / weight.sum()

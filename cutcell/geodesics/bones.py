@@ -109,6 +109,12 @@ class Sources:
     bone: NDArray[np.int32]
     distance: NDArray[np.float64]
 
+    def some(self, which: NDArray[np.bool_]) -> Sources:
+        """Return those of the bones for which `which`, shape (b,), is true, numbered anew."""
+        mine = which[self.bone]
+        number = np.cumsum(which, dtype=np.int32) - 1
+        return Sources(self.node[mine], number[self.bone[mine]], self.distance[mine])
+
 
 def bone_samples(
     graph: CutCellGraph, bones: Bones, samples: int = 5

@@ -12,8 +12,8 @@ from ..errors import ParameterError, WeightsError
 from ..graph import CutCellGraph
 from ..progress import Progress, silent
 from ..rig import Skeleton
-from .any_angle import any_angle_paths
-from .bone_extents import REGION_JOINTS, REGION_WITHIN, aim_tips, fit_bones
+from .any_angle import any_angle_paths, least_distances
+from .bone_extents import REGION_TIPS, REGION_WITHIN, aim_tips, fit_bones
 from .bones import LEAVES, Bones, Sources, bone_segments, find_sources
 from .fallback import NOT_ALLOWED, REACHED, UNREACHED, UNUSED, straight_to_nearest
 from .shortest_paths import shortest_paths
@@ -73,14 +73,8 @@ class BoneDistances:
         """
         if joint not in self.bones.joint:
             raise ParameterError(f"joint {joint} has no bone: it may not carry weight")
-        # Its bones follow one another, and so do their sources.
-        low, high = np.searchsorted(self.bones.joint, [joint, joint + 1])
-        own = slice(low, high)
-        bones = Bones(self.bones.start[own], self.bones.end[own], self.bones.joint[own])
-        mine = slice(*np.searchsorted(self.sources.bone, [low, high]))
-        sources = Sources(
-            self.sources.node[mine], self.sources.bone[mine] - low, self.sources.distance[mine]
-        )
+        mine = self.bones.joint == joint
+        bones, sources = self.bones.some(mine), self.sources.some(mine)
         everywhere = np.arange(len(self.graph.nodes), dtype=np.int32)
         return _paths(self.graph, sources, bones, everywhere)[0]
 
@@ -181,9 +175,9 @@ def bone_distances(
         bones, tip = fit_bones(graph, skeleton)
         if tip.any():
             sources = find_sources(graph, bones, samples)
-            region = REGION_JOINTS, REGION_WITHIN
-            own = _paths(graph, sources, bones, targets, *region, progress)
-            bones = aim_tips(graph, bones, tip, own)
+            bones = aim_tips(
+                graph, bones, tip, *_reach_of_tips(graph, sources, bones, tip, progress)
+            )
     else:
         bones = bone_segments(skeleton, leaf)
         ends = graph.lattice.to_unit(bones.start), graph.lattice.to_unit(bones.end)
@@ -226,7 +220,8 @@ def _paths(
 ) -> NDArray[np.float64]:
     """Measure from each joint that has bones, in ascending order, to the target nodes."""
     if graph.connectivity == "any":
-        return any_angle_paths(graph, sources, bones, targets, nearest_joints, within, progress)
+        kept = nearest_joints, within
+        return any_angle_paths(graph, sources, bones, targets, *kept, progress=progress)
     joints, place = np.unique(bones.joint, return_inverse=True)
     owner = place[sources.bone].astype(np.int32)
     # A joint's paths begin on all of its bones; where they share a node, on the nearest.
@@ -235,6 +230,24 @@ def _paths(
     first = order[np.diff(pairs, prepend=-1).any(axis=0)]
     begin = Sources(sources.node[first], owner[first], sources.distance[first])
     return shortest_paths(graph, begin, len(joints), targets, progress)
+
+
+def _reach_of_tips(
+    graph: CutCellGraph,
+    sources: Sources,
+    bones: Bones,
+    tip: NDArray[np.bool_],
+    progress: Progress,
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Measure what `aim_tips` asks for: from each tip, and from the nearest joint of all."""
+    targets = _on_mesh(graph)
+    if graph.connectivity != "any":
+        every = _paths(graph, sources, bones, targets, progress=progress)
+        return every[np.isin(np.unique(bones.joint), bones.joint[tip])], every.min(axis=0)
+    # Most of the body is nobody's tip: there the nearest joint is all that has to be known.
+    least = least_distances(graph, sources, bones, progress)
+    tips = sources.some(tip), bones.some(tip), targets, REGION_TIPS, REGION_WITHIN
+    return any_angle_paths(graph, *tips, least, progress), least[targets]
 
 
 def _least(distance: NDArray[np.float64], bones: Bones) -> NDArray[np.float64]:

@@ -64,12 +64,3 @@ def follows_anchor(anchors, each, v, anchor):
     for label in range(v * each, v * each + each):
         found |= anchors[label] == anchor
     return found
-
-
-@njit(cache=True, inline="always")
-def least_distance(labels, each, v):
-    """Return the distance of a node's nearest joint."""
-    least = np.inf
-    for label in range(v * each, v * each + each):
-        least = min(least, labels[label].distance)
-    return least

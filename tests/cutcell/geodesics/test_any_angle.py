@@ -8,7 +8,8 @@ import trimesh
 
 from cutcell import ParameterError, Skeleton, TriangleMesh, bone_distances, build_graph
 from cutcell.geodesics import distance_to_segment
-from cutcell.geodesics.any_angle import SPAN
+from cutcell.geodesics.any_angle import SPAN, any_angle_paths, least_distances
+from cutcell.geodesics.bones import find_sources
 from tests import meshes
 from tests.bars import fork
 
@@ -137,6 +138,28 @@ def test_the_nearest_joints_are_those_of_all(nearest):
     assert (error < 1e-9).mean() > 0.95
     assert error.mean() < 1e-3
     assert error.max() < 0.15
+
+
+def test_some_joints_are_measured_where_no_other_is_much_nearer():
+    graph, skeleton = chain_in_the_l()
+    bones = bone_distances(graph, skeleton).bones
+    sources = find_sources(graph, bones, 5)
+    nodes = np.arange(len(graph.nodes), dtype=np.int32)
+    every = any_angle_paths(graph, sources, bones, nodes)
+    least = least_distances(graph, sources, bones)
+    error = np.abs(least / every.min(axis=0) - 1)
+    assert (error < 1e-9).mean() > 0.95
+    assert error.mean() < 1e-3
+    assert error.max() < 0.15
+
+    some = np.isin(bones.joint, (2, 7))
+    mine = sources.some(some), bones.some(some), nodes
+    found = any_angle_paths(graph, *mine, nearest=2, within=1.5, least=least)
+    near = every[[2, 7]] <= 1.5 * np.maximum(least, 0.5 / 24)
+    assert 0.1 < near.mean() < 0.5
+    assert (np.isfinite(found) == near).mean() > 0.99
+    both = near & np.isfinite(found)
+    assert (np.abs(found / every[[2, 7]] - 1)[both] < 1e-9).mean() > 0.95
 
 
 def test_what_is_many_times_farther_than_the_nearest_is_left_out():
