@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import functools
-from abc import ABC, abstractmethod
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
 from param.parameterized import batch_call_watchers
 
@@ -19,12 +18,10 @@ from viewers.camera import Camera, framing
 
 from .actions import compare, learn
 from .choices import first_clip, from_query
-from .jobs import Jobs
 from .keep import KEEP
 from .scenes.common import bones_part, bounds_of, first_joint
-from .state import State
 from .upload import Receiver
-from .view import SceneView, camera_part
+from .view import camera_part
 
 if TYPE_CHECKING:
     from .session import Session
@@ -38,8 +35,12 @@ COMPANIONS = {".txt", ".json", ".mtl", ".bin", ".png", ".jpg", ".jpeg"}
 """Files that come along with the one that is opened."""
 
 
-class Opening(ABC):
-    """The part of a `Session` that opens characters.
+class Opening:
+    """Opens the characters of a session.
+
+    Parameters
+    ----------
+    session : Session
 
     Attributes
     ----------
@@ -47,38 +48,14 @@ class Opening(ABC):
         The key of the uploaded character that stands there; empty for any other.
     """
 
-    state: State
-    view: SceneView
-    folder: Path
-    habits: Any
-
-    def __init__(self) -> None:
+    def __init__(self, session: Session) -> None:
+        self._session = session
         self.kept = ""
         self._held: set[str] = set()
-        self._note = ""
+        self._told = ""
         self._arrival: dict[str, Any] = {}
 
-    @abstractmethod
-    def start(self, work: Callable[[Progress], Any], done: Callable[[Any], None]) -> None:
-        """Do some work that the page shows progress of."""
-
-    @abstractmethod
-    def jobs(self, name: str) -> Jobs:
-        """Return the work of one name."""
-
-    @abstractmethod
-    def bind(self) -> None:
-        """Compute graph, distances and weights of the character that stands there."""
-
-    @abstractmethod
-    def look(self, camera: Camera | None) -> None:
-        """Look from somewhere."""
-
-    @abstractmethod
-    def fail(self, error: Exception) -> None:
-        """Tell what went wrong."""
-
-    def open_demo(
+    def demo(
         self,
         id: str,
         chosen: Callable[[], None] = lambda: None,
@@ -94,11 +71,11 @@ class Opening(ABC):
         then : callable
             Called when it stands there.
         """
-        self.state.demo = id
+        self._session.state.demo = id
         title = next(demo.title for demo in DEMOS if demo.id == id)
         self._open(lambda: demo_rig(id), f"opening {title}", lambda: self._keep(""), chosen, then)
 
-    def open_files(self, paths: list[Path], key: str = "") -> None:
+    def files(self, paths: list[Path], key: str = "") -> None:
         """Show the character in some files, and bind it.
 
         Parameters
@@ -111,18 +88,18 @@ class Opening(ABC):
         try:
             path = main_file(paths)
         except CutcellError as error:
-            self.fail(error)
+            self._session.fail(error)
             self._keep(self.kept)
             return
         opened = functools.partial(self._keep, key)
         self._open(lambda: cutcell.load(path), f"opening {path.name}", opened, demo="")
 
-    def open_upload(self, paths: list[Path]) -> None:
+    def upload(self, paths: list[Path]) -> None:
         """Show the character in files that a person dropped; keep them for a while."""
         self._arrival = {}  # what an address says is of another character
         key, here = KEEP.put(paths)
         self._held.add(key)
-        self.open_files(here, key)
+        self.files(here, key)
 
     def arrive(self, query: str, otherwise: Callable[[], None]) -> None:
         """Show what an address says.
@@ -133,8 +110,8 @@ class Opening(ABC):
         otherwise : callable
             Opens a character where the address names none that is there.
         """
-        choices, arrival, problems = from_query(query, self.state)
-        self.state.param.update(**choices)
+        choices, arrival, problems = from_query(query, self._session.state)
+        self._session.state.param.update(**choices)
         self._arrival = arrival
         rig = arrival.get("rig", "")
         kept = KEEP.take(rig[1:]) if rig.startswith("~") else None
@@ -149,14 +126,23 @@ class Opening(ABC):
                 "the rest of it was taken."
             )
         if learn.opens(arrival):
-            learn.go(cast("Session", self), arrival["tour"], frozenset({**choices, **arrival}))
+            learn.go(self._session, arrival["tour"], frozenset({**choices, **arrival}))
         elif kept is not None:
             self._held.add(rig[1:])
-            self.open_files(kept, rig[1:])
+            self.files(kept, rig[1:])
         elif demo:
-            self.open_demo(rig)
+            self.demo(rig)
         else:
             otherwise()
+
+    def take_note(self) -> str:
+        """Return what is to be told of the character's arrival, once; empty for nothing."""
+        told, self._told = self._told, ""
+        return told
+
+    def close(self) -> None:
+        """Let go of what was uploaded."""
+        self._keep("")
 
     def _keep(self, key: str) -> None:
         self.kept = key
@@ -166,11 +152,11 @@ class Opening(ABC):
 
     def receiver(self) -> Receiver:
         """Return what takes files from the browser and opens them."""
-        return Receiver(self.folder, self.open_upload, self.fail)
+        return Receiver(self._session.folder, self.upload, self._session.fail)
 
-    def open_rig(self, rig: Rig) -> None:
+    def rig(self, rig: Rig) -> None:
         """Show a character that is loaded already, and bind it."""
-        self.state.demo = ""
+        self._session.state.demo = ""
         self._stand(rig)
 
     def _open(
@@ -188,15 +174,16 @@ class Opening(ABC):
 
         def done(rig: Rig) -> None:
             opened()
-            self.state.param.update(**more)
+            self._session.state.param.update(**more)
             self._stand(rig, chosen)
             then()
 
-        self.start(work, done)
+        self._session.start(work, done)
 
     def _stand(self, rig: Rig, chosen: Callable[[], None] = lambda: None) -> None:
-        state = self.state
-        self.jobs("field").cancel()
+        session = self._session
+        state, view = session.state, session.view
+        session.jobs("field").cancel()
         before, arrival, self._arrival = state.rig, self._arrival, {}
         # All at once: a menu whose value changes twice in a moment may tell the first one back.
         with batch_call_watchers(state):
@@ -207,18 +194,18 @@ class Opening(ABC):
             self._land(rig, arrival)
             compare.carry(state, before, arrival)
             chosen()
-        self.view.camera = framing(bounds_of(state), 1.2)
-        self.view.at_home = True
-        camera = camera_part(self.view.camera)
-        self.view.tell(bones=bones_part(state), camera=camera)
+        view.camera = framing(bounds_of(state), 1.2)
+        view.at_home = True
+        camera = camera_part(view.camera)
+        view.tell(bones=bones_part(state), camera=camera)
         if "camera" in arrival:
             eye, target = arrival["camera"][:3], arrival["camera"][3:]
-            self.look(Camera(tuple(eye), tuple(target)))
-        self.habits.begin()
-        self.bind()
+            session.look(Camera(tuple(eye), tuple(target)))
+        session.habits.begin()
+        session.bind()
 
     def _land(self, rig: Rig, arrival: dict[str, Any]) -> None:
-        names, state = rig.skeleton.names, self.state
+        names, state = rig.skeleton.names, self._session.state
         if arrival.get("bone") in names:
             state.joint = names.index(arrival["bone"])
         state.turns = {j: t for j, t in arrival.get("turns", {}).items() if j < len(names)}
@@ -227,7 +214,7 @@ class Opening(ABC):
         state.tour = arrival.get("tour", state.tour)
         if 0 <= arrival.get("vertex", -1) < len(rig.mesh.vertices):
             state.vertex = arrival["vertex"]
-        self._note = arrival.get("told", "")
+        self._told = arrival.get("told", "")
 
 
 @functools.cache

@@ -50,11 +50,11 @@ def page(path: Path | None = None) -> pmui.Page:
 
     def otherwise() -> None:
         if path is None:
-            session.open_demo(next(demo.id for demo in DEMOS if demo.path.exists()))
+            session.opening.demo(next(demo.id for demo in DEMOS if demo.path.exists()))
         else:
-            session.open_files([path])
+            session.opening.files([path])
 
-    session.arrive(asked(), otherwise)
+    session.opening.arrive(asked(), otherwise)
     return result
 
 

@@ -29,7 +29,7 @@ PAUSE = 0.2
 """Seconds without a change of the graph's parameters before it is built again."""
 
 
-class Session(Opening):
+class Session:
     """The state of one page, its view, and the work that goes on for it.
 
     Parameters
@@ -39,13 +39,13 @@ class Session(Opening):
     """
 
     def __init__(self, schedule: Schedule) -> None:
-        super().__init__()
         self.state = State()
+        self.opening = Opening(self)
         self.habits: Any = None
         self._schedule = schedule
         self._files = tempfile.TemporaryDirectory(prefix="cutcell-", ignore_cleanup_errors=True)
         self.folder = Path(self._files.name)
-        self.view = SceneView(self.pick, self.receiver(), sizing_mode="stretch_both")
+        self.view = SceneView(self.pick, self.opening.receiver(), sizing_mode="stretch_both")
         self._jobs: dict[str, Jobs] = {}
         self._closed = False
         self.falloffs: dict[str, tuple[Any, Any]] = {}
@@ -106,7 +106,7 @@ class Session(Opening):
 
         def done(binding: Any) -> None:
             binding = weights.bound(self, binding, method)
-            note, self._note = self._note, ""
+            note = self.opening.take_note()
             message = ("info", note) if note else None
             state.param.update(binding=binding, field=None, message=message)
             if (state.falloff, state.alpha) != (method["falloff"], method["alpha"]):
@@ -197,7 +197,7 @@ class Session(Opening):
             self._timer.cancel()
         for jobs in self._jobs.values():
             jobs.close()
-        self._keep("")
+        self.opening.close()
         self._files.cleanup()
 
 

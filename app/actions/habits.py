@@ -58,7 +58,7 @@ class Habits:
         camera = None
         if view.camera is not None and not view.at_home:
             camera = [*view.camera.position, *view.camera.focal_point]
-        return to_query(session.state, session.kept, camera)
+        return to_query(session.state, session.opening.kept, camera)
 
     def _tell(self) -> None:
         state = self._session.state

@@ -38,7 +38,7 @@ def go(session: Session, index: int, said: frozenset[str] = frozenset()) -> None
         show(session, look, said)
         aim(session, look)
     else:
-        session.open_demo(
+        session.opening.demo(
             look.demo,
             lambda: show(session, look, said),
             lambda: None if "camera" in said else aim(session, look),

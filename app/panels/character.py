@@ -33,7 +33,7 @@ def character(session: Session) -> pmui.Column:
 
     def chosen(event: Any) -> None:
         if event.new and event.new != state.demo:
-            session.open_demo(event.new)
+            session.opening.demo(event.new)
 
     def shown(*events: Any) -> None:
         own = {} if state.demo else {OWN: ""}
@@ -44,5 +44,5 @@ def character(session: Session) -> pmui.Column:
     select.param.watch(chosen, "value")
     state.param.watch(shown, ["demo", "rig"])
     shown()
-    drop = FileDrop(session.receiver(), hint=HINT, sizing_mode="stretch_width", margin=GAP)
+    drop = FileDrop(session.opening.receiver(), hint=HINT, sizing_mode="stretch_width", margin=GAP)
     return section("", select, lesson, drop, margin=(16, 20, 4, 20))

@@ -36,7 +36,7 @@ def session(loop: Loop) -> Iterator[Session]:
 def bound(session: Session, loop: Loop) -> Session:
     """Let the session show a bound character."""
     session.state.resolution = 16
-    session.open_rig(arm_rig())
+    session.opening.rig(arm_rig())
     loop.run_until(lambda: session.state.binding is not None)
     return session
 

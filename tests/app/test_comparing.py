@@ -18,7 +18,7 @@ def sessions(loop):
     there = [Session(loop) for _ in range(2)]
     for session in there:
         session.state.resolution = 16
-        session.open_rig(arm_rig())
+        session.opening.rig(arm_rig())
     loop.run_until(lambda: all(session.state.binding is not None for session in there), 60)
     yield there
     for session in there:

@@ -61,7 +61,9 @@ def test_what_an_address_says_wrongly_is_named(query):
 
 
 def test_a_link_opens_as_it_was_shared(session, loop):
-    session.arrive("?rig=robot&panel=graph&bone=hand.L&resolution=16&kitchen=1", lambda: None)
+    session.opening.arrive(
+        "?rig=robot&panel=graph&bone=hand.L&resolution=16&kitchen=1", lambda: None
+    )
     loop.run_until(lambda: session.state.binding is not None)
     assert session.state.demo == "robot"
     assert session.state.rig.skeleton.names[session.state.joint] == "hand.L"
@@ -72,7 +74,7 @@ def test_a_link_opens_as_it_was_shared(session, loop):
 
 def test_a_comparison_opens_as_it_was_shared(session, loop):
     query = "?rig=robot&panel=compare&compare_field=all&methods=voxel,euclidean&minus=euclidean"
-    session.arrive(query + "&resolution=16&clip=-1", lambda: None)
+    session.opening.arrive(query + "&resolution=16&clip=-1", lambda: None)
     loop.run_until(lambda: len(session.state.compared) == 2, 60)
     state = session.state
     assert (state.methods, state.minus) == (["voxel", "euclidean"], "euclidean")
@@ -80,7 +82,7 @@ def test_a_comparison_opens_as_it_was_shared(session, loop):
     assert state.clip == -1
     for part in ("methods=voxel,euclidean", "minus=euclidean", "compare_field=all", "clip=-1"):
         assert part in said(session)
-    session.open_rig(arm_rig())  # what was chosen holds for the next character, too
+    session.opening.rig(arm_rig())  # what was chosen holds for the next character, too
     assert (state.methods, state.minus) == (["voxel", "euclidean"], "euclidean")
     session.habits.reset()
     assert (state.methods, state.minus) == (["now", "artist", "euclidean"], "")
@@ -89,8 +91,8 @@ def test_a_comparison_opens_as_it_was_shared(session, loop):
 
 def test_a_difference_to_the_files_own_weights_is_shared_without_naming_the_methods(session):
     session.state.resolution = 16
-    session._arrival = {"minus": "artist"}
-    session.open_rig(arm_rig())
+    session.opening._arrival = {"minus": "artist"}
+    session.opening.rig(arm_rig())
     assert session.state.methods == ["now", "artist", "euclidean"]
     assert session.state.minus == "artist"
     assert not session.habits._history.can_undo
@@ -98,13 +100,13 @@ def test_a_difference_to_the_files_own_weights_is_shared_without_naming_the_meth
 
 def test_methods_that_a_character_does_not_offer_are_left_out(session):
     session.state.resolution = 16
-    session._arrival = {"methods": ["now", "artist"], "minus": "artist"}
-    session.open_rig(arm_rig().with_weights(None))
+    session.opening._arrival = {"methods": ["now", "artist"], "minus": "artist"}
+    session.opening.rig(arm_rig().with_weights(None))
     assert (session.state.methods, session.state.minus) == (["now", "euclidean"], "")
 
 
 def test_the_choice_of_methods_can_be_undone(session):
-    session.open_rig(arm_rig())
+    session.opening.rig(arm_rig())
     state, act = session.state, lambda name: session.habits.act({"act": name})
     choose(session, "voxel", True)
     state.minus = "euclidean"
@@ -122,25 +124,25 @@ def test_an_uploaded_character_is_there_again_while_it_is_kept(session, loop, tm
     path = tmp_path / "mine.glb"
     path.write_bytes(demo_path("robot").read_bytes())
     session.state.resolution = 16
-    session.open_upload([path])
+    session.opening.upload([path])
     loop.run_until(lambda: session.state.binding is not None)
     query = said(session)
-    assert f"rig=~{session.kept}" in query
+    assert f"rig=~{session.opening.kept}" in query
     session.close()
     again = Session(loop)
-    again.arrive(query, lambda: pytest.fail("it is kept"))
+    again.opening.arrive(query, lambda: pytest.fail("it is kept"))
     loop.run_until(lambda: again.state.rig is not None)
-    assert again.kept == session.kept or again.kept in query
+    assert again.opening.kept == session.opening.kept or again.opening.kept in query
     again.close()
 
 
 def test_a_file_that_is_dropped_while_the_page_loads_wins_over_its_address(loop, tmp_path):
     gate = Gate(loop)
     session = Session(gate)
-    session.arrive("?rig=robot&bone=hand.L&camera=1,2,3,0,1,0&resolution=16", lambda: None)
+    session.opening.arrive("?rig=robot&bone=hand.L&camera=1,2,3,0,1,0&resolution=16", lambda: None)
     path = tmp_path / "mine.glb"
     path.write_bytes(demo_path("octopus").read_bytes())
-    session.open_upload([path])
+    session.opening.upload([path])
     gate.open()
     loop.run_until(lambda: session.state.binding is not None)
     expected = cutcell.load(demo_path("octopus"))
@@ -152,7 +154,7 @@ def test_a_file_that_is_dropped_while_the_page_loads_wins_over_its_address(loop,
 
 def test_an_address_of_a_file_that_is_gone_says_so(session, loop):
     session.state.resolution = 16
-    session.arrive("?rig=~gone", lambda: session.open_rig(arm_rig()))
+    session.opening.arrive("?rig=~gone", lambda: session.opening.rig(arm_rig()))
     loop.run_until(lambda: session.state.message is not None)
     assert session.state.message == ("info", GONE)
 
@@ -187,7 +189,7 @@ def test_undo_and_redo():
 
 def test_keys(session, loop):
     session.state.resolution = 16
-    session.open_rig(arm_rig())
+    session.opening.rig(arm_rig())
     loop.run_until(lambda: session.state.binding is not None)
     state, act = session.state, lambda name: session.habits.act({"act": name})
     first = state.joint

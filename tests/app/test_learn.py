@@ -50,7 +50,7 @@ def test_a_step_on_another_character_opens_it(session, loop):
 
 
 def test_a_link_to_a_step_alone_sets_its_scene(session, loop):
-    session.arrive("?panel=learn&step=7", lambda: pytest.fail("the step has a character"))
+    session.opening.arrive("?panel=learn&step=7", lambda: pytest.fail("the step has a character"))
     state, look = session.state, TOUR[6].look
     loop.run_until(lambda: state.binding is not None)
     assert (state.tour, state.demo, state.panel) == (6, "biped", "geodesics")
@@ -61,7 +61,9 @@ def test_a_link_to_a_step_alone_sets_its_scene(session, loop):
 
 
 def test_what_a_link_says_beside_a_step_is_set_on_its_scene(session, loop):
-    session.arrive("?panel=weights&step=5&resolution=20&camera=1,2,3,0,1,0&kitchen=1", lambda: None)
+    session.opening.arrive(
+        "?panel=weights&step=5&resolution=20&camera=1,2,3,0,1,0&kitchen=1", lambda: None
+    )
     state = session.state
     loop.run_until(lambda: computed_at(state, 20))
     assert (state.tour, state.panel, state.cut_axis) == (4, "weights", "z")
@@ -75,7 +77,7 @@ def test_a_link_of_a_person_on_the_tour_brings_back_what_they_made_of_it(session
     session.state.param.update(connectivity="any", panel="learn")
     query = session.view.told("address")
     again = Session(loop)
-    again.arrive(query, lambda: None)
+    again.opening.arrive(query, lambda: None)
     loop.run_until(lambda: again.state.binding is not None)
     assert (again.state.tour, again.state.panel) == (6, "learn")
     assert again.state.connectivity == "any"
@@ -84,7 +86,7 @@ def test_a_link_of_a_person_on_the_tour_brings_back_what_they_made_of_it(session
 
 @pytest.mark.parametrize("step", ["0", "99", "-3", "two"])
 def test_a_link_to_a_step_that_there_is_not_says_so(session, loop, step):
-    session.arrive(f"?step={step}&rig=robot&resolution=16", lambda: None)
+    session.opening.arrive(f"?step={step}&rig=robot&resolution=16", lambda: None)
     loop.run_until(lambda: session.state.binding is not None)
     assert session.state.tour == -1
     assert f"step={step}" in session.state.message[1]

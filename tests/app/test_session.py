@@ -15,7 +15,7 @@ from tests.viewers.arm import arm_rig
 def test_a_demo_stands_there_first_and_is_bound_then(session, loop):
     seen = []
     session.state.param.watch(lambda e: seen.append(e.name), ["rig", "binding"])
-    session.open_demo("robot")
+    session.opening.demo("robot")
     assert session.state.busy
     loop.run_until(lambda: session.state.binding is not None)
     assert [name for name in seen if name == "rig"] == ["rig"]
@@ -51,7 +51,7 @@ def test_a_bad_file_is_told_and_the_old_character_stays(bound, loop, tmp_path):
     before = bound.state.rig
     bad = tmp_path / "bad.glb"
     bad.write_text("this is a text file")
-    bound.open_files([bad])
+    bound.opening.files([bad])
     loop.run_until(lambda: bound.state.message is not None)
     assert "bad.glb" in bound.state.message[1]
     assert bound.state.rig is before
@@ -59,7 +59,7 @@ def test_a_bad_file_is_told_and_the_old_character_stays(bound, loop, tmp_path):
 
 
 def test_files_without_a_character_are_told(bound, tmp_path):
-    bound.open_files([tmp_path / "notes.txt"])
+    bound.opening.files([tmp_path / "notes.txt"])
     assert "notes.txt" in bound.state.message[1]
 
 
@@ -110,7 +110,7 @@ def test_another_character_supersedes_a_running_computation(bound, loop, monkeyp
     other = arm_rig()
     bound.bind()
     loop.run_until(lambda: bound.state.stage == "graph")
-    bound.open_rig(other)
+    bound.opening.rig(other)
     loop.run_until(lambda: bound.state.binding is not None)
     assert bound.state.rig is other
     assert len(bound.state.binding.weights) == len(other.mesh.vertices)
@@ -132,7 +132,7 @@ def test_the_field_is_fetched_when_it_is_wanted(bound, loop):
 
 def test_a_new_character_starts_at_rest(bound, loop):
     bound.state.param.update(turns={1: (0, 0, 60)}, moving=True, playing=True)
-    bound.open_rig(arm_rig())
+    bound.opening.rig(arm_rig())
     assert not bound.state.posed
     assert bound.state.clip == 0
     loop.run_until(lambda: bound.state.binding is not None)
@@ -156,7 +156,7 @@ def test_two_sessions_share_nothing_that_changes(loop):
         one.state.param.update(resolution=16, turns={0: (1, 2, 3)})
         assert other.state.resolution == 64
         assert other.state.turns == {}
-        one.open_rig(arm_rig())
+        one.opening.rig(arm_rig())
         assert other.state.rig is None
     finally:
         one.close()
@@ -167,7 +167,7 @@ def test_real_characters_open(session, loop, rigs):
     path = next(path for path in rigs if path.stem == "khronos_CesiumMan")
     copy = session.folder / path.name
     shutil.copy(path, copy)
-    session.open_files([Path(copy)])
+    session.opening.files([Path(copy)])
     loop.run_until(lambda: session.state.binding is not None)
     np.testing.assert_allclose(session.state.binding.weights.sum(axis=1), 1, atol=1e-6)
 
@@ -211,7 +211,7 @@ def test_methods_are_compared_one_after_the_other_and_one_that_fails_stops_none(
     cancel(bound)
     assert state.comparing != "voxel"
     assert "voxel" not in state.methods
-    bound.open_rig(arm_rig())
+    bound.opening.rig(arm_rig())
     assert state.compared == {}
     loop.run_until(lambda: state.binding is not None)
 
@@ -239,7 +239,7 @@ def test_what_is_bound_is_what_the_command_binds(bound):
 
 def test_a_falloff_chosen_while_distances_are_measured_counts(session, loop):
     session.state.resolution = 16
-    session.open_rig(arm_rig())
+    session.opening.rig(arm_rig())
     session.state.param.update(max_influences=1, falloff="paper")
     loop.run_until(lambda: session.state.binding is not None and not session.state.busy)
     distances = session.state.binding.distances
@@ -252,7 +252,7 @@ def test_a_vertex_is_chosen_and_forgotten_with_its_character(bound, loop):
     assert bound.state.vertex == 3
     bound.pick_vertex(10**6)
     assert bound.state.vertex == 3
-    bound.open_rig(arm_rig())
+    bound.opening.rig(arm_rig())
     assert bound.state.vertex is None
     bound.pick_vertex(1)
     bound.pick_vertex(None)
