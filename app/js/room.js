@@ -52,11 +52,6 @@ class Room {
     if (slim || (several && this.stage.tilesIn(room)[0][2] < NARROW_VIEW)) { room.top = UNDER_TOOLS }
     const {legend, transport} = this.overlay
     const take = (edge, pixels) => { room[edge] = Math.max(room[edge], pixels + GAP) }
-    // In a wide canvas they stand beside one character, but before those of several narrow views.
-    const narrow = several && this.stage.tilesIn(room)[0][2] < NARROW_FEET
-    for (const part of slim || narrow ? [legend, transport] : []) {
-      if (!part.hidden) { take("bottom", box.bottom - part.getBoundingClientRect().top) }
-    }
     for (const card of cards) {
       const {left, right, top, bottom, width, height} = card.getBoundingClientRect()
       if (!width || !height) { continue }
@@ -69,6 +64,11 @@ class Room {
         const after = left + right > box.left + box.right
         if (after) { take("right", box.right - left) } else { take("left", right - box.left) }
       }
+    }
+    // In a wide canvas they stand beside one character, but before those of several narrow views.
+    const narrow = several && this.stage.tilesIn(room)[0][2] < NARROW_FEET
+    for (const part of slim || narrow ? [legend, transport] : []) {
+      if (!part.hidden) { take("bottom", box.bottom - part.getBoundingClientRect().top) }
     }
     return room
   }

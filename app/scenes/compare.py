@@ -72,7 +72,8 @@ def caption_of(state: State, name: str) -> str:
             return f"{title} · failed"
         return f"{title} · {'computing' if state.comparing == name else 'waiting'}"
     if state.minus and subtracted(state) is not None:
-        return f"{title} itself" if name == state.minus else f"{title} − {title_of(state.minus)}"
+        other = "itself" if name == state.minus else title_of(state.minus)
+        return f"{title} − {other}"
     return title
 
 

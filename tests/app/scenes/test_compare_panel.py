@@ -72,7 +72,7 @@ def test_they_are_posed_by_their_own_weights(state):
 def test_a_difference_is_taken_from_the_method_that_is_named(state, rig, euclidean):
     state.minus = "artist"
     scene = resolve(state)
-    assert scene.views[1] == "The file's own itself"
+    assert scene.views[1] == "The file's own − itself"
     assert scene.views[2] == "Euclidean − The file's own"
     expected = euclidean.weights[:, 1] - rig.weights[:, 1]
     np.testing.assert_allclose(scene.actors["body 2"].scalars, expected, atol=1e-6)
