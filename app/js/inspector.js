@@ -54,7 +54,9 @@ function row(model, {joint, name, color}, bars, value, spoken) {
   made.setAttribute("aria-label", spoken)
   const track = element("span", "bars")
   track.append(...bars)
-  made.append(element("span", "name", name), track, element("span", "value", value))
+  // What many names begin with ("mixamorig:") tells none of them apart, and there is little room.
+  const short = name.replace(/^.*[:|](?=.)/, "")
+  made.append(element("span", "name", short), track, element("span", "value", value))
   made.addEventListener("click", () => model.send_msg({type: "bone", joint}))
   return made
 }
