@@ -50,7 +50,7 @@ def test_another_person_sees_the_same_comparison(browser, url):
     one.page.wait_for_function("location.search.includes('minus=euclidean')", timeout=LOAD_MS)
     one.settle()
     captions = one.page.locator(".caption").all_inner_texts()
-    assert captions == ["cutcell, as set here − Euclidean", "Euclidean itself"]
+    assert captions == ["cutcell, as set here − Euclidean", "Euclidean − itself"]
     other = Visit(browser, one.page.url)
     other.wait_until_bound()
     expect(other.page.locator(".caption")).to_have_text(captions, timeout=LOAD_MS)
