@@ -112,8 +112,7 @@ TOUR = (
         Look(
             "compare",
             bone="hand.L",
-            focus="hand.L",
-            near=0.82,
+            focus="forearm.L",
             turns={"upper_arm.L": (0, 0, 45)},
             choices={"methods": ["euclidean", "now"], "skeleton": False},
         ),

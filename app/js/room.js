@@ -4,7 +4,7 @@
 const SLIM = 700  // a canvas less wide than this has no room beside its cards
 const NARROW_VIEW = 330  // a view less wide than this has none beside the tools
 const UNDER_TOOLS = 56
-const NARROW_FEET = 460  // in a view less wide than this the legend would cover feet
+const NARROW_FEET = 600  // in a view less wide than this the legend would cover feet
 const LARGE = 300  // a card this wide has a part of the canvas for itself, whatever its width
 const GAP = 6
 
