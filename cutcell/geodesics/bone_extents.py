@@ -131,6 +131,5 @@ def _areas(graph: CutCellGraph, count: int) -> NDArray[np.float64]:
     corners = graph.nodes[graph.faces]
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     area = np.linalg.norm(across, axis=1)
-    areas: NDArray[np.float64] = np.zeros(count)
-    np.add.at(areas, graph.faces, area[:, None])
-    return areas
+    areas = np.bincount(graph.faces.ravel(), np.repeat(area, 3), count)
+    return np.asarray(areas, np.float64)

@@ -115,6 +115,17 @@ class Sources:
         number = np.cumsum(which, dtype=np.int32) - 1
         return Sources(self.node[mine], number[self.bone[mine]], self.distance[mine])
 
+    def replaced(self, which: NDArray[np.bool_], other: Sources) -> Sources:
+        """Return these sources, but for some of the bones `other`, which numbers those alone."""
+        kept = ~which[self.bone]
+        bone = np.concatenate([self.bone[kept], np.flatnonzero(which)[other.bone]])
+        order = np.argsort(bone, kind="stable")
+        node, distance = (
+            np.concatenate([mine[kept], others])[order]
+            for mine, others in ((self.node, other.node), (self.distance, other.distance))
+        )
+        return Sources(node, bone[order].astype(np.int32), distance)
+
 
 def bone_samples(
     graph: CutCellGraph, bones: Bones, samples: int = 5

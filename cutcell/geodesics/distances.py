@@ -172,17 +172,12 @@ def bone_distances(
         _check_allowed(graph, skeleton, allowed)
     targets = _on_mesh(graph)
     if leaf == "fit":
-        bones, tip = fit_bones(graph, skeleton)
-        if tip.any():
-            sources = find_sources(graph, bones, samples)
-            bones = aim_tips(
-                graph, bones, tip, *_reach_of_tips(graph, sources, bones, tip, progress)
-            )
+        bones, sources = _fitted(graph, skeleton, samples, progress)
     else:
         bones = bone_segments(skeleton, leaf)
         ends = graph.lattice.to_unit(bones.start), graph.lattice.to_unit(bones.end)
         bones = Bones(*ends, bones.joint)
-    sources = find_sources(graph, bones, samples)
+        sources = find_sources(graph, bones, samples)
     by_node = _paths(graph, sources, bones, targets, nearest_joints, within, progress)
     measured = np.unique(bones.joint)
     of_joint = np.full((len(skeleton.joints), len(targets)), np.inf)
@@ -230,6 +225,18 @@ def _paths(
     first = order[np.diff(pairs, prepend=-1).any(axis=0)]
     begin = Sources(sources.node[first], owner[first], sources.distance[first])
     return shortest_paths(graph, begin, len(joints), targets, progress)
+
+
+def _fitted(
+    graph: CutCellGraph, skeleton: Skeleton, samples: int, progress: Progress
+) -> tuple[Bones, Sources]:
+    """Fit bones to the body, and find where their distances begin."""
+    bones, tip = fit_bones(graph, skeleton)
+    sources = find_sources(graph, bones, samples)
+    if tip.any():
+        bones = aim_tips(graph, bones, tip, *_reach_of_tips(graph, sources, bones, tip, progress))
+        sources = sources.replaced(tip, find_sources(graph, bones.some(tip), samples))
+    return bones, sources
 
 
 def _reach_of_tips(

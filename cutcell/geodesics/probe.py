@@ -88,12 +88,15 @@ def _near(cells, side, filled):
     """Tell for each cell whether it or one of the 26 around it is among the filled."""
     found = np.zeros(len(cells), np.bool_)
     for p in range(len(cells)):
-        for i in range(cells[p, 0] - 1, cells[p, 0] + 2):
-            for j in range(cells[p, 1] - 1, cells[p, 1] + 2):
+        x, y, z = cells[p]
+        for i in (x, x - 1, x + 1):  # mostly the first is filled
+            for j in (y, y - 1, y + 1):
                 # Of the three that lie above each other, the first that is filled or beyond.
-                low = (i * side + j) * side + cells[p, 2] - 1
+                low = (i * side + j) * side + z - 1
                 k = np.searchsorted(filled, low)
                 found[p] |= k < len(filled) and filled[k] <= low + 2
+                if found[p]:
+                    break
             if found[p]:
                 break
     return found

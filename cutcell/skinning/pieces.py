@@ -54,8 +54,8 @@ def bones_held(
 
     def along_axis(axis: int) -> tuple[NDArray, NDArray, NDArray]:
         turn = [(axis + 1) % 3, (axis + 2) % 3, axis]
-        seen = np.ascontiguousarray(points[:, turn]), samples[:, turn]
-        face, sample, sign = _crossed(seen[0], faces, seen[1])
+        seen = np.ascontiguousarray(points[:, turn]), np.ascontiguousarray(samples[:, turn])
+        face, sample, sign = _crossed(*seen, faces)
         return of_face[face], sample, sign
 
     hits = in_threads(along_axis, range(3))
@@ -70,17 +70,15 @@ def bones_held(
 
 
 def _crossed(
-    points: NDArray[np.float64], faces: NDArray[np.int32], samples: NDArray[np.float64]
+    points: NDArray[np.float64], samples: NDArray[np.float64], faces: NDArray[np.int32]
 ) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int8]]:
     """List the crossings of all lines through samples along the third axis.
 
     Returns the face, the sample, and +1 where a ray from the sample leaves through the face,
     -1 where it enters.
     """
-    column = np.clip((samples[:, :2] * CELLS).astype(np.int64), 0, CELLS - 1) @ [CELLS, 1]
-    order = np.argsort(column, kind="stable")
-    start = np.searchsorted(column[order], np.arange(CELLS * CELLS + 1))
-    samples = np.ascontiguousarray(samples[order])
+    start, order = _sort_into_columns(samples)
+    samples = samples[order]
     room = 8 * len(samples)
     while True:
         face, sample, sign = (
@@ -92,6 +90,22 @@ def _crossed(
         if count <= room:
             return face[:count], order[sample[:count]], sign[:count]
         room = count
+
+
+@njit(cache=True, nogil=True)
+def _sort_into_columns(samples):
+    """Return where the samples of each column of the grid begin, and their order."""
+    column = np.empty(len(samples), np.int64)
+    start = np.zeros(CELLS * CELLS + 1, np.int64)
+    for s in range(len(samples)):
+        column[s] = _cell(samples[s, 0]) * CELLS + _cell(samples[s, 1])
+        start[column[s] + 1] += 1
+    start = np.cumsum(start)
+    cursor, order = start.copy(), np.empty(len(samples), np.int64)
+    for s in range(len(samples)):
+        order[cursor[column[s]]] = s
+        cursor[column[s]] += 1
+    return start, order
 
 
 @lean
