@@ -10,7 +10,7 @@ from viewers.palette import ATTACHMENT, MARK, SOURCE
 from viewers.skin import skin_of_weights
 
 from ..state import State
-from .common import plain
+from .common import POSED, plain
 from .compare import compare
 from .geodesics import geodesics
 from .graph import graph
@@ -56,7 +56,8 @@ def following(state: State, memo: Memo | None = None) -> Description:
     """Return the scene that a state stands for as it goes through a motion.
 
     The body follows the joints on every panel, by the weights that are held; what cannot follow
-    would be left behind, and is left out.
+    would be left behind, and is left out. Nothing is then inside for which the body would have to
+    be hidden or see-through.
 
     Parameters
     ----------
@@ -70,6 +71,10 @@ def following(state: State, memo: Memo | None = None) -> Description:
     if "body" in actors and actors["body"].skin is None:
         actors["body"] = replace(actors["body"], skin=skin_of_weights(state.weights))
     actors = {name: actor for name, actor in actors.items() if actor.skin is not None}
+    if state.panel not in POSED:
+        for name in actors:
+            if name == "body" or name.startswith("attachment"):
+                actors[name] = replace(actors[name], visible=True, opacity=1.0)
     return replace(whole, actors=actors, cut=None, legend=_left_of(whole.legend, actors))
 
 

@@ -230,6 +230,10 @@ def test_the_legend_of_a_motion_names_only_what_moves(state, binding):
     state.param.update(panel="graph", mesh_edges=True)
     assert resolve(state).legend is not None
     assert following(state).legend is None
+    state.body = False
+    for name in ("body", "attachment 0"):
+        moving = following(state).actors[name]
+        assert (moving.visible, moving.opacity) == (True, 1.0)
     field = binding.distances.field(1)
     state.param.update(panel="geodesics", starts=True, vertex=0)
     state.field = (binding.distances, 1, field)
