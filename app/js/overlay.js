@@ -73,7 +73,7 @@ const STYLE = `
   padding: 6px 16px; border-radius: 8px; border: 1px solid currentColor; background: none;
   color: inherit; }
 [hidden] { display: none !important; }
-@media (max-width: 700px) { .hint { display: none } .legend { left: 8px; bottom: 8px; width: 160px } }
+@media (max-width: 700px) { .hint { display: none } .legend { left: 8px; bottom: 8px; width: 184px } }
 `
 
 class Overlay {
