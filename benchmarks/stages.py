@@ -39,7 +39,9 @@ def cast(prepared: Prepared) -> list[Crossings]:
 def decide(prepared: Prepared, crossings: list[Crossings], threshold: float = 0.5) -> list[Runs]:
     """Decide which segments are inside, along all three axes."""
     boundary = find_boundary(prepared.faces)
-    return find_runs(prepared.vertices, crossings, boundary, prepared.resolution, threshold)
+    return find_runs(
+        prepared.vertices, prepared.faces, crossings, boundary, prepared.resolution, threshold
+    )
 
 
 def midpoints(prepared: Prepared, crossings: list[Crossings]) -> np.ndarray:

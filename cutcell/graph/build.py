@@ -85,7 +85,7 @@ def build_graph(
         crossings = [CASTERS[rays](vertices, faces, resolution, axis) for axis in range(3)]
     progress("graph", 0.4)
     if winding == "exact":
-        runs = find_runs(vertices, crossings, boundary, resolution, winding_threshold)
+        runs = find_runs(vertices, faces, crossings, boundary, resolution, winding_threshold)
     else:
         runs = [
             find_runs_fast(vertices, faces, found, resolution, axis, winding_threshold)

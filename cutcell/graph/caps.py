@@ -8,11 +8,13 @@ A loop of edges is capped by a fan of triangles around its middle. That is far f
 where many loops have narrow gaps between them, as in a soup of triangles that nearly touch:
 there all rims are first drawn together. Each edge a -> b is tied by a strip a, b, b', a' to
 the edge between the places where its ends are drawn to; what then fits together cancels, and
-only what is left needs fans.
+only what is left needs fans. Where faces run against their neighbours, the rim between them counts
+twice; these faces themselves, turned round and twice, are often smaller than fans along it.
 """
 
 from __future__ import annotations
 
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -20,7 +22,8 @@ from numba import njit
 from numpy.typing import NDArray
 
 from ..threads import in_threads
-from .boundary import Boundary, boundary_of
+from .boundary import Boundary, boundary_of, find_boundary
+from .turned import find_turned
 from .weld import weld
 
 PULLS = 3e-4, 3e-3
@@ -55,17 +58,40 @@ class Caps(NamedTuple):
         return float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2)
 
 
-def cap_holes(vertices: NDArray[np.float64], boundary: Boundary) -> Caps:
-    """Close the boundary of a mesh whose vertices, shape (n, 3), are in the unit cube."""
+def cap_holes(vertices: NDArray[np.float64], faces: NDArray[np.int32], boundary: Boundary) -> Caps:
+    """Close a mesh.
+
+    Parameters
+    ----------
+    vertices : array, shape (n, 3)
+        In the unit cube.
+    faces : array, shape (m, 3), int32
+    boundary : Boundary
+        Of these.
+
+    Returns
+    -------
+    Caps
+        The smallest that were found.
+    """
     if len(boundary.loop) == 0:
         return _capped(vertices, boundary)
+    ways = [lambda: boundary, *(partial(_drawn_together, vertices, boundary, p) for p in PULLS)]
+    edges = boundary.loop * len(vertices) + boundary.following
+    if len(np.unique(edges)) < len(edges):  # two faces use an edge in one direction
+        ways.append(partial(_turned_back, vertices, faces))
+    caps = in_threads(lambda way: _capped(vertices, way()), ways)
+    return min(caps, key=lambda found: found.area)
 
-    def cap(pull: float) -> tuple[float, Caps]:
-        loops = _drawn_together(vertices, boundary, pull) if pull else boundary
-        caps = _capped(vertices, loops)
-        return caps.area, caps
 
-    return min(in_threads(cap, (0.0, *PULLS)), key=lambda way: way[0])[1]
+def _turned_back(vertices: NDArray[np.float64], faces: NDArray[np.int32]) -> Boundary:
+    """Return loops around each face to be turned round, twice, and those that are left then."""
+    turned = find_turned(vertices, faces)
+    left = find_boundary(np.where(turned[:, None], faces[:, ::-1], faces))
+    faces = faces[turned]
+    faces = np.repeat(faces[(faces != np.roll(faces, 1, axis=1)).all(axis=1)], 2, axis=0)
+    start = np.concatenate([3 * np.arange(len(faces)), 3 * len(faces) + left.start])
+    return Boundary(np.concatenate([faces.ravel(), left.loop]), start)
 
 
 def _capped(vertices: NDArray[np.float64], loops: Boundary) -> Caps:

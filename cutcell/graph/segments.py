@@ -48,6 +48,7 @@ class Runs:
 
 def find_runs(
     vertices: NDArray[np.float64],
+    faces: NDArray[np.int32],
     crossings: Sequence[Crossings],
     boundary: Boundary,
     resolution: int,
@@ -59,6 +60,7 @@ def find_runs(
     ----------
     vertices : array, shape (n, 3), float64
         Unit-cube coordinates.
+    faces : array, shape (m, 3), int32
     crossings : sequence of Crossings
         Of the rays along x, y and z.
     boundary : Boundary
@@ -67,7 +69,7 @@ def find_runs(
     winding_threshold : float
         tau: segments with at least this winding number are kept.
     """
-    caps = cap_holes(vertices, boundary)
+    caps = cap_holes(vertices, faces, boundary)
     closing = cast_all_rays(caps.vertices, caps.faces, resolution)
     doubt = find_doubt(caps, resolution, winding_threshold)
     shared = resolution, winding_threshold, doubt, boundary

@@ -31,7 +31,7 @@ SHAPES = meshes.OPEN | {"confetti": confetti}
 @pytest.mark.parametrize("name", SHAPES)
 def test_caps_close_the_mesh(name):
     vertices, faces = SHAPES[name]()
-    caps = cap_holes(vertices, find_boundary(faces))
+    caps = cap_holes(vertices, faces, find_boundary(faces))
     assert len(find_boundary(np.concatenate([faces, caps.faces])).loop) == 0
     assert all(
         len(set(caps.loop[a:b])) == b - a >= 3
@@ -42,7 +42,7 @@ def test_caps_close_the_mesh(name):
 @pytest.mark.parametrize("name", SHAPES)
 def test_view_is_right_within_its_error(name):
     vertices, faces = SHAPES[name]()
-    caps = cap_holes(vertices, find_boundary(faces))
+    caps = cap_holes(vertices, faces, find_boundary(faces))
     clusters = cluster(caps)
     rng = np.random.default_rng(1)
     fields, ways, places = [], [], []  # asked about at once: the slow numbers take their time
@@ -67,7 +67,7 @@ def test_view_is_right_within_its_error(name):
 @pytest.mark.parametrize("name", SHAPES)
 def test_what_points_see_is_right_within_its_error(name):
     vertices, faces = SHAPES[name]()
-    caps = cap_holes(vertices, find_boundary(faces))
+    caps = cap_holes(vertices, faces, find_boundary(faces))
     clusters = cluster(caps)
     places = np.random.default_rng(2).uniform(0, 1, (60, 3))
     expected = naive.winding_number(caps.vertices, caps.faces, places)
@@ -81,7 +81,7 @@ def test_what_points_see_is_right_within_its_error(name):
 def test_the_bound_is_no_more_than_it_must_be():
     """Far from many small triangles, it is loose by what they could do at worst, not by more."""
     vertices, faces = confetti()
-    caps = cap_holes(vertices, find_boundary(faces))
+    caps = cap_holes(vertices, faces, find_boundary(faces))
     place = np.array([0.9, 0.9, 0.95])
     value, error = covered(cluster(caps), tuple(place), 1e-3)
     expected = naive.winding_number(caps.vertices, caps.faces, place[None])[0]
@@ -102,7 +102,7 @@ def test_a_field_is_the_same_seen_from_another_place():
 
 def test_a_ball_that_a_cap_enters_is_torn():
     vertices, faces = meshes.open_box()
-    caps = cap_holes(vertices, find_boundary(faces))
+    caps = cap_holes(vertices, faces, find_boundary(faces))
     clusters = cluster(caps)
     middle = caps.vertices[caps.faces[0]].mean(axis=0)
     assert view_all(clusters, middle + 1e-3, 0.01, 1e-2)[1]
@@ -111,6 +111,6 @@ def test_a_ball_that_a_cap_enters_is_torn():
 
 def test_a_point_on_a_cap_is_not_decided_by_rounding():
     vertices, faces = meshes.open_box()
-    caps = cap_holes(vertices, find_boundary(faces))
+    caps = cap_holes(vertices, faces, find_boundary(faces))
     spot = np.array([0.4, 0.35, 0.25]) @ caps.vertices[caps.faces[0]]
     assert covered(cluster(caps), tuple(spot), 1e-6)[1] == np.inf

@@ -62,7 +62,7 @@ def test_runs_equal_those_of_exact_numbers(name, tau):
     tau -= 1e-9  # symmetric meshes have the number 1/2 at many places, up to rounding
     boundary = find_boundary(faces)
     crossings = cast_all_rays(vertices, faces, RESOLUTION)
-    runs = find_runs(vertices, crossings, boundary, RESOLUTION, tau)
+    runs = find_runs(vertices, faces, crossings, boundary, RESOLUTION, tau)
     for axis in range(3):
         segments = list_segments(crossings[axis], RESOLUTION, closed=False)
         number = winding_number(TriangleMesh(vertices, faces), segments.points(RESOLUTION, axis))
