@@ -193,6 +193,7 @@ def left_out(sphere, far, reach):
     room = far - sphere[3] - reach
     if room <= 0:
         return np.inf
-    x = (sphere[4] + reach) / far
-    series = 4 - 3 * (sphere[3] + reach) / far
-    return sphere[5] / (4 * np.pi * room * room) * x * x * x * series
+    near = sphere[4] + reach
+    series = 4 * far - 3 * (sphere[3] + reach)
+    squared = far * far
+    return sphere[5] * near * near * near * series / (4 * np.pi * squared * squared * room * room)

@@ -1,7 +1,7 @@
 """What is known of the cells whose inside and outside holes leave in doubt, and how to ask it.
 
 `holes.py` finds it. Here a midpoint is asked about: first the field of the block that it lies
-in, then all clusters of caps, as closely as it takes.
+in, then the clusters of caps nearby, then all, as closely as it takes.
 """
 
 from __future__ import annotations
@@ -12,7 +12,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from .clusters import Clusters
+from ..compiled import lean
+from .clusters import ROOT, Clusters
 from .field import ERROR, value_at
 from .view import covered
 
@@ -21,10 +22,12 @@ BLOCK = 8
 UNSURE = 1 << 30
 """No need: the number must be asked."""
 NEED = -(1 << 20)
-"""Codes of cells are NEED + need, which is negative, or the row of a leaf, or UNSURE."""
+"""Codes of cells are NEED + need, which is negative, or the row of a leaf."""
 ROUNDING = 1e-9
-TOLERANCES = 3e-2, 3e-3, 1e-4, 1e-6, 1e-8
-"""What a cluster may leave out at a midpoint: less and less until the bound is enough."""
+NEAR = 3e-2, 3e-3
+"""What a cluster nearby may leave out at a midpoint: less if the bound is not enough."""
+ALL = 3e-3, 1e-4, 1e-6, 1e-8
+"""The same for any cluster, where what is far leaves out too much."""
 
 
 class Leaves(NamedTuple):
@@ -35,14 +38,19 @@ class Leaves(NamedTuple):
     place : array, shape (n, 3)
         The middle of each block.
     field : array, shape (n, field.SIZE)
-        What all caps cover around it.
+        What caps cover around it: all of them, or all but those nearby.
     is_torn : array, shape (n,), bool
         Whether that is only right up to whole numbers.
+    start : array, shape (n + 1,), int64
+        The clusters of caps nearby are near[start[i]] to near[start[i + 1] - 1].
+    near : array, int32
     """
 
     place: NDArray[np.float64]
     field: NDArray[np.float64]
     is_torn: NDArray[np.bool_]
+    start: NDArray[np.int64]
+    near: NDArray[np.int32]
 
 
 class Doubt(NamedTuple):
@@ -83,13 +91,20 @@ def in_field(leaves, leaf, p):
     return value, leaves.field[leaf, ERROR] + ROUNDING
 
 
-@njit(cache=True)
-def need_at(clusters, p, tau):
-    """Return the need at a point, or UNSURE if only an exact sum can tell."""
-    for tolerance in TOLERANCES:
-        value, error = covered(clusters, p, tolerance)
-        if error == np.inf:
-            return UNSURE
+@lean
+def need_in(doubt, leaf, p, tau):
+    """Return the need at a point of a leaf, or UNSURE if only an exact sum can tell."""
+    leaves, clusters = doubt.leaves, doubt.clusters
+    near = leaves.near[leaves.start[leaf] : leaves.start[leaf + 1]]
+    if not leaves.is_torn[leaf]:
+        known, off = in_field(leaves, leaf, p)
+        for tolerance in NEAR:
+            value, error = covered(clusters, near, p, tolerance)
+            need = need_between(tau + known + value, off + error)
+            if need < UNSURE:
+                return need
+    for tolerance in ALL:
+        value, error = covered(clusters, (ROOT,), p, tolerance)
         need = need_between(tau + value, error + ROUNDING)
         if need < UNSURE:
             return need
@@ -99,5 +114,7 @@ def need_at(clusters, p, tau):
 @njit(cache=True, inline="always")
 def need_between(value, error):
     """Return the next whole number above a value that may be off, or UNSURE."""
+    if error >= 0.5:
+        return UNSURE
     low = np.ceil(value - error)
     return np.int64(low) if low == np.ceil(value + error) else UNSURE

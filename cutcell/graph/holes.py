@@ -11,7 +11,8 @@ cells, see `view.py` for the proof: in most blocks `need` is one number. Around 
 surfaces where it changes, w_caps is all but a polynomial over blocks of a few cells, and what
 is on which side is quickly told. Only next to the rims of holes, and nearly on these surfaces,
 each midpoint must be asked about by itself, see `doubt.py`. Blocks are halved from the whole
-cube down to single cells.
+cube down to pairs of cells. What is far from a block is far from its halves, too, and kept as a
+field; they, and the midpoints in them, look at the clusters nearby alone.
 
 A block that a cap runs through is torn: w_caps jumps there, as chi' does. Its smooth part is
 still a field, and a single number asked on a ray tells which whole number to add.
@@ -27,14 +28,19 @@ from numba import njit
 
 from ..threads import in_threads
 from .caps import Caps
-from .clusters import cluster
+from .clusters import ROOT, cluster
 from .doubt import BLOCK, NEED, ROUNDING, UNSURE, Doubt, Leaves
-from .field import ERROR, SIZE, change
+from .field import ERROR, SIZE, change, move
 from .rays import grown
-from .view import view
+from .solid_angle import between
+from .view import set_apart, view
 
 WORTH = 20
 """Midpoints in doubt for which it is worth the time to halve a block."""
+LEAST = 2
+"""Cells along the side of blocks that are not halved: it is no dearer to ask each midpoint."""
+DEPTH = 12
+"""More than blocks are ever halved."""
 SPLIT = 1e-2, 1e-3
 """What a cluster may leave out in a block: less if the first bound is not enough."""
 
@@ -65,10 +71,11 @@ def find_doubt(caps: Caps, resolution: int, winding_threshold: float) -> Doubt:
     rows = leaves = 0
     for blocks, fine, part in found:
         coarse[tuple(blocks.T)] += rows
-        fine[(fine >= 0) & (fine < UNSURE)] += leaves
+        fine[fine >= 0] += leaves
         rows, leaves = rows + len(fine), leaves + len(part.place)
-    columns = zip(*(part for *_, part in found), strict=True)
-    joined = Leaves(*(np.concatenate(column) for column in columns))
+    place, field, is_torn, count, near = zip(*(part for *_, part in found), strict=True)
+    start = np.concatenate([[0], np.cumsum(np.concatenate(count))])
+    joined = Leaves(*map(np.concatenate, (place, field, is_torn)), start, np.concatenate(near))
     return Doubt(coarse, np.concatenate([fine for _, fine, _ in found]), joined, clusters)
 
 
@@ -77,24 +84,35 @@ def _decide(clusters, resolution, tau, corner, top, coarse):
     """Put the codes of the blocks in a cube of `top` cells into `coarse`.
 
     Returns which blocks are not decided as a whole, shape (u, 3); the codes of their cells;
-    and the leaves that these name.
+    and the leaves that these name, each with how many clusters are near in place of the first.
     """
     blocks, fine = np.empty((16, 3), np.int64), np.empty((16, BLOCK, BLOCK, BLOCK), np.int32)
     place, fields, is_torn = np.empty((64, 3)), np.empty((64, SIZE)), np.empty(64, np.bool_)
+    counts, nearby, listed = np.empty(64, np.int64), np.empty(1024, np.int32), 0
     rows = leaves = 0
-    waiting, count = np.empty((64, 4), np.int64), 1  # blocks: corner and size
-    waiting[0, :3], waiting[0, 3] = corner, top
-    field = np.empty(SIZE)
+    waiting, count = np.empty((64, 5), np.int64), 1  # blocks: corner, size and depth
+    waiting[0, :3], waiting[0, 3], waiting[0, 4] = corner, top, 1
+    # Of the blocks that the present one lies in: what is far from each, and what is not.
+    middle, far, field = np.zeros((DEPTH, 3)), np.zeros((DEPTH, SIZE)), np.empty(SIZE)
+    near, nears = np.empty((DEPTH, len(clusters.start) - 1), np.int32), np.ones(DEPTH, np.int64)
+    near[0, 0] = ROOT
     while count:
         count -= 1
-        x, y, z, size = waiting[count]
+        x, y, z, size, depth = waiting[count]
         if max(x, y, z) >= resolution:
             continue
         half = size / (2 * resolution)
         q = x / resolution + half, y / resolution + half, z / resolution + half
+        way = between(middle[depth - 1], q)
+        middle[depth, 0], middle[depth, 1], middle[depth, 2] = q
+        reach = half * np.sqrt(3)
+        far[depth] = far[depth - 1]
+        move(far[depth], way[0], way[1], way[2])
+        among = near[depth - 1, : nears[depth - 1]]
+        nears[depth] = set_apart(clusters, among, far[depth], near[depth], q, reach)
         for tolerance in SPLIT:
-            field[:] = 0.0
-            tears = view(clusters, field, q, half * np.sqrt(3), tolerance, 0.5)
+            field[:] = far[depth]
+            tears = view(clusters, near[depth, : nears[depth]], field, q, reach, tolerance)
             code = _code(field, tears, half, size, tau)
             if code != UNSURE or field[ERROR] == np.inf:
                 break
@@ -109,25 +127,33 @@ def _decide(clusters, resolution, tau, corner, top, coarse):
                 blocks[rows, 0], blocks[rows, 1], blocks[rows, 2] = a, b, c
                 coarse[a, b, c] = rows
                 rows += 1
-        if size > BLOCK or (code == UNSURE and size > 1):
+        if size > BLOCK or (code == UNSURE and size > LEAST):
             for corner8 in range(8):
                 child = waiting[count]
                 child[0] = x + size // 2 * (corner8 >> 2)
                 child[1] = y + size // 2 * (corner8 >> 1 & 1)
                 child[2] = z + size // 2 * (corner8 & 1)
-                child[3] = size // 2
+                child[3], child[4] = size // 2, depth + 1
                 count += 1
             continue
-        if code >= 0 and code != UNSURE:
+        if code >= 0:
             if leaves == len(place):
                 place, fields, is_torn = grown(place), grown(fields), grown(is_torn)
+                counts = grown(counts)
             place[leaves, 0], place[leaves, 1], place[leaves, 2] = q
-            fields[leaves], is_torn[leaves] = field, tears
+            fields[leaves], is_torn[leaves], counts[leaves] = field, tears, 0
+            if code == UNSURE:
+                fields[leaves], is_torn[leaves], counts[leaves] = far[depth], False, nears[depth]
+                while listed + nears[depth] > len(nearby):
+                    nearby = grown(nearby)
+                nearby[listed : listed + nears[depth]] = near[depth, : nears[depth]]
+                listed += nears[depth]
             code = leaves
             leaves += 1
         i, j, k = x % BLOCK, y % BLOCK, z % BLOCK
         fine[rows - 1, i : i + size, j : j + size, k : k + size] = code
-    found = Leaves(place[:leaves].copy(), fields[:leaves].copy(), is_torn[:leaves].copy())
+    found = place[:leaves].copy(), fields[:leaves].copy(), is_torn[:leaves].copy()
+    found = Leaves(found[0], found[1], found[2], counts[:leaves].copy(), nearby[:listed].copy())
     return blocks[:rows].copy(), fine[:rows].copy(), found
 
 
@@ -142,6 +168,6 @@ def _code(field, is_torn, half, size, tau):
     if low == np.ceil(tau + field[0] + slope + error):
         if not is_torn:
             return NEED + np.int64(low)
-    elif 3 * size**3 * min(error, slope) > WORTH * slope and size > 1:
+    elif 3 * size**3 * min(error, slope) > WORTH * slope and size > LEAST:
         return UNSURE  # the surface that parts the block is thick: many midpoints lie in it
     return 0

@@ -109,28 +109,30 @@ def make_harmonic(p):
 @njit(cache=True, inline="always")
 def covered_afar(p, r, far):
     """Return what a cluster at r, as far off as that, covers."""
-    x, y, z = r[0] / far, r[1] / far, r[2] / far
-    rest = 7.5 * _cube(p, x, y, z) / far - 3 * _square(p, x, y, z)
-    return (_linear(p, x, y, z) + rest / far) / (4 * np.pi * far * far)
+    near = 1 / far
+    x, y, z = r[0] * near, r[1] * near, r[2] * near
+    rest = 7.5 * near * _cube(p, x, y, z) - 3 * _square(p, x, y, z)
+    return (_linear(p, x, y, z) + near * rest) * near * near / (4 * np.pi)
 
 
 @njit(cache=True, inline="always")
 def add_expansion(field, p, r, far):
     """Add the field of a cluster at r, as far off as that."""
-    x, y, z = r[0] / far, r[1] / far, r[2] / far
-    scale = 1 / (4 * np.pi * far * far)
+    near = 1 / far
+    x, y, z = r[0] * near, r[1] * near, r[2] * near
+    scale = near * near / (4 * np.pi)
     ahead, square = _linear(p, x, y, z), _square(p, x, y, z)
-    field[0] += scale * (ahead + (7.5 * _cube(p, x, y, z) / far - 3 * square) / far)
-    scale /= far
-    along = 3 * ahead - 15 * square / far
+    field[0] += scale * (ahead + near * (7.5 * near * _cube(p, x, y, z) - 3 * square))
+    scale *= near
+    along = 3 * ahead - 15 * near * square
     # The gradient of the quadratic form is twice M n.
-    mx = 2 * p[3] * x + p[6] * y + p[7] * z
-    my = p[6] * x + 2 * p[4] * y + p[8] * z
-    mz = p[7] * x + p[8] * y + 2 * p[5] * z
-    field[1] += scale * (along * x - p[0] + 3 * mx / far)
-    field[2] += scale * (along * y - p[1] + 3 * my / far)
-    field[3] += scale * (along * z - p[2] + 3 * mz / far)
-    scale *= 3 / far
+    mx = near * (2 * p[3] * x + p[6] * y + p[7] * z)
+    my = near * (p[6] * x + 2 * p[4] * y + p[8] * z)
+    mz = near * (p[7] * x + p[8] * y + 2 * p[5] * z)
+    field[1] += scale * (along * x - p[0] + 3 * mx)
+    field[2] += scale * (along * y - p[1] + 3 * my)
+    field[3] += scale * (along * z - p[2] + 3 * mz)
+    scale *= 3 * near
     field[4] += scale * (ahead * (5 * x * x - 1) - 2 * p[0] * x)
     field[5] += scale * (ahead * (5 * y * y - 1) - 2 * p[1] * y)
     field[6] += scale * (ahead * 5 * x * y - p[0] * y - p[1] * x)

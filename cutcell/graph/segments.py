@@ -17,7 +17,8 @@ from numpy.typing import NDArray
 from ..threads import in_threads
 from .boundary import Boundary
 from .caps import cap_holes
-from .doubt import BLOCK, NEED, UNSURE, code_at, in_field, need_at, need_between
+from .clusters import ROOT
+from .doubt import BLOCK, NEED, UNSURE, code_at, in_field, need_between, need_in
 from .holes import find_doubt
 from .rays import AXES, Crossings, cast_all_rays, first_at_least, grown, in_space, strip_bounds
 from .view import covered
@@ -180,22 +181,18 @@ def _is_inside(shared, seen, p, leaf, chi, lid, torn):
     axis, vertices = seen[:2]
     point = in_space(axis, p[0], p[1], p[2])
     turn = -1.0 if axis == 1 else 1.0  # (x, z, y) is left-handed
-    leaves = doubt.leaves
-    value = error = 0.5
-    if leaf < UNSURE:
-        value, error = in_field(leaves, leaf, point)
-    need = need_between(tau + value, error) if error < 0.5 else UNSURE
-    if need < UNSURE:
-        if not leaves.is_torn[leaf]:
-            return chi + lid >= need
-        if torn[0] != leaf:
-            share, off = covered(doubt.clusters, point, 1e-2)
-            turns = lid - share
-            if off + error >= 0.5:
-                turns = turn * boundary_turns(vertices, boundary, p[0], p[1], p[2])
-            torn[0], torn[1] = leaf, np.int64(np.round(turns + value))
-        return chi + torn[1] >= need
-    need = need_at(doubt.clusters, point, tau)
+    if doubt.leaves.is_torn[leaf]:
+        value, error = in_field(doubt.leaves, leaf, point)
+        need = need_between(tau + value, error)
+        if need < UNSURE:
+            if torn[0] != leaf:
+                share, off = covered(doubt.clusters, (ROOT,), point, 1e-2)
+                turns = lid - share
+                if off + error >= 0.5:
+                    turns = turn * boundary_turns(vertices, boundary, p[0], p[1], p[2])
+                torn[0], torn[1] = leaf, np.int64(np.round(turns + value))
+            return chi + torn[1] >= need
+    need = need_in(doubt, leaf, point, tau)
     if need < UNSURE:
         return chi + lid >= need
     return chi + turn * boundary_turns(vertices, boundary, p[0], p[1], p[2]) >= tau

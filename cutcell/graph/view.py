@@ -18,25 +18,76 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from .clusters import ROOT, left_out
+from ..compiled import lean
+from .clusters import left_out
 from .field import ERROR
 from .moments import add_expansion, covered_afar
 from .solid_angle import between, cross, distance_to_edge, dot, is_within, length, turning
 
-DEPTH = 64
+NEGLIGIBLE = 1e-3
+"""What a cluster may leave out in a ball and still be far from all points in it."""
+COARSE = 0.1
+"""Clusters that leave out more are halved, to see if parts of them are far."""
+ENOUGH = 0.5
+"""Once more than this may be left out in a ball, its field is of no use."""
 CLEAR = 1e-7
 """Nearer to a cap than this, relative to its size, rounding may put a point on either side."""
 SMALL = 1e-60
 """Numbers this small, or their inverse large, are scaled before products leave the floats."""
 
 
-@njit(cache=True, nogil=True)
-def view(clusters, field, q, reach, tolerance, limit):
+@lean
+def set_apart(clusters, among, far, near, q, reach):
+    """Set apart the clusters that are far from a ball.
+
+    Parameters
+    ----------
+    clusters : Clusters
+    among : array, int32
+        Clusters that have no cap in common.
+    far : array
+        A field at q, to which those are added that leave out next to nothing in the ball.
+    near : array, int32
+        Gets clusters that hold all other caps; as long as there are caps.
+    q : tuple of 3 floats
+    reach : float
+        Radius of the ball around q.
+
+    Returns
+    -------
+    count : int
+        Of near clusters. They are not much smaller than the ball.
+    """
+    count = 0
+    leaves = len(clusters.start) - 1
+    for top in among:
+        k, end = top, after(top)
+        while k != end:
+            r = between(q, clusters.sphere[k])
+            distance = length(r)
+            off = left_out(clusters.sphere[k], distance, reach)
+            if off <= NEGLIGIBLE:
+                add_expansion(far, clusters.moments[k], r, distance)
+                far[ERROR] += off
+            elif off > COARSE and clusters.sphere[k, 3] > reach and k < leaves:
+                k *= 2
+                continue
+            else:
+                near[count] = k
+                count += 1
+            k = after(k)
+    return count
+
+
+@lean
+def view(clusters, among, field, q, reach, tolerance):
     """Add what caps cover of the view in a ball to a field.
 
     Parameters
     ----------
     clusters : Clusters
+    among : array, int32
+        The clusters of these caps.
     field : array
         At q, of anything else; changed.
     q : tuple of 3 floats
@@ -44,8 +95,6 @@ def view(clusters, field, q, reach, tolerance, limit):
         Radius of the ball around q for which the result holds.
     tolerance : float
         Clusters that may leave out more than this are halved.
-    limit : float
-        Give up once more than this may be left out in all.
 
     Returns
     -------
@@ -54,44 +103,36 @@ def view(clusters, field, q, reach, tolerance, limit):
     """
     is_torn = False
     leaves = len(clusters.start) - 1
-    stack = np.empty(DEPTH, np.int64)
-    stack[0], size = ROOT, 1
-    while size and field[ERROR] <= limit:
-        size -= 1
-        k = stack[size]
-        r = between(q, clusters.sphere[k])
-        far = length(r)
-        off = left_out(clusters.sphere[k], far, reach)
-        # Halving clusters helps little once the ball is what makes h large.
-        if off <= tolerance or (off < np.inf and clusters.sphere[k, 3] < reach / 4):
-            add_expansion(field, clusters.moments[k], r, far)
-            field[ERROR] += off
-            continue
-        if k < leaves:
-            near, other = 2 * k, 2 * k + 1
-            if _is_nearer(clusters.sphere, other, near, q):
-                near, other = other, near
-            stack[size], stack[size + 1] = other, near  # the near ones exceed the limit first
-            size += 2
-            continue
-        for loop in range(clusters.start[k - leaves], clusters.start[k - leaves + 1]):
-            rim = clusters.rim[clusters.first[loop] : clusters.first[loop + 1]]
-            apex = clusters.apex[loop]
-            is_torn |= _add_change(field, rim, apex, q, reach, limit, off == np.inf)
-            if field[ERROR] > limit:
-                break
-            angle, _ = _turned((1.0, 0.0, 0.0), rim, apex, q)
-            field[0] += _turns(angle)
+    for top in among:
+        k, end = top, after(top)
+        while k != end:
+            r = between(q, clusters.sphere[k])
+            distance = length(r)
+            off = left_out(clusters.sphere[k], distance, reach)
+            # Halving clusters helps little once the ball is what makes h large.
+            if off <= tolerance or (off < np.inf and clusters.sphere[k, 3] < reach / 4):
+                add_expansion(field, clusters.moments[k], r, distance)
+                field[ERROR] += off
+            elif k < leaves:
+                k *= 2
+                continue
+            else:
+                is_torn |= _add_caps(clusters, k - leaves, field, q, reach, off == np.inf)
+            if field[ERROR] > ENOUGH:
+                return is_torn
+            k = after(k)
     return is_torn
 
 
-@njit(cache=True, nogil=True)
-def covered(clusters, q, tolerance):
+@lean
+def covered(clusters, among, q, tolerance):
     """Return what caps cover of the view from a point, and what that may leave out.
 
     Parameters
     ----------
     clusters : Clusters
+    among : array, int32
+        The clusters of these caps.
     q : tuple of 3 floats
     tolerance : float
         Clusters that may leave out more than this are halved.
@@ -104,32 +145,47 @@ def covered(clusters, q, tolerance):
     value = error = 0.0
     angle, is_clear = (1.0, 0.0, 0.0), True
     leaves = len(clusters.start) - 1
-    stack = np.empty(DEPTH, np.int64)
-    stack[0], size = ROOT, 1
-    while size:
-        size -= 1
-        k = stack[size]
-        r = between(q, clusters.sphere[k])
-        far = length(r)
-        off = left_out(clusters.sphere[k], far, 0.0)
-        if off <= tolerance:
-            value += covered_afar(clusters.moments[k], r, far)
-            error += off
-        elif k < leaves:
-            stack[size], stack[size + 1] = 2 * k, 2 * k + 1
-            size += 2
-        else:
-            for loop in range(clusters.start[k - leaves], clusters.start[k - leaves + 1]):
-                rim = clusters.rim[clusters.first[loop] : clusters.first[loop + 1]]
-                angle, clear = _turned(angle, rim, clusters.apex[loop], q)
-                is_clear &= clear
+    for top in among:
+        k, end = top, after(top)
+        while k != end:
+            r = between(q, clusters.sphere[k])
+            far = length(r)
+            off = left_out(clusters.sphere[k], far, 0.0)
+            if off <= tolerance:
+                value += covered_afar(clusters.moments[k], r, far)
+                error += off
+            elif k < leaves:
+                k *= 2
+                continue
+            else:
+                for loop in range(clusters.start[k - leaves], clusters.start[k - leaves + 1]):
+                    rim = clusters.rim[clusters.first[loop] : clusters.first[loop + 1]]
+                    angle, clear = _turned(angle, rim, clusters.apex[loop], q)
+                    is_clear &= clear
+            k = after(k)
     return value + _turns(angle), error if is_clear else np.inf
 
 
+@lean
+def _add_caps(clusters, leaf, field, q, reach, may_tear):
+    """Add the field of the caps of a cluster that is not halved; tell if one enters the ball."""
+    is_torn = False
+    for loop in range(clusters.start[leaf], clusters.start[leaf + 1]):
+        rim = clusters.rim[clusters.first[loop] : clusters.first[loop + 1]]
+        is_torn |= _add_change(field, rim, clusters.apex[loop], q, reach, may_tear)
+        if field[ERROR] > ENOUGH:
+            break
+        angle, _ = _turned((1.0, 0.0, 0.0), rim, clusters.apex[loop], q)
+        field[0] += _turns(angle)
+    return is_torn
+
+
 @njit(cache=True, inline="always")
-def _is_nearer(sphere, k, other, q):
-    a, b = between(q, sphere[k]), between(q, sphere[other])
-    return dot(a, a) < dot(b, b)
+def after(k):
+    """Return the cluster that follows on k and all that it is made of, 0 after the last."""
+    while k & 1:
+        k >>= 1
+    return k + 1 if k else 0
 
 
 @njit(cache=True, inline="always")
@@ -139,7 +195,7 @@ def _turns(angle):
     return turns + np.arctan2(y, x) / (2 * np.pi)
 
 
-@njit(cache=True)
+@lean
 def _turned(angle, rim, apex, q):
     """Turn an angle by what one cap covers; tell whether that is clear of rounding.
 
@@ -175,8 +231,8 @@ def _turned(angle, rim, apex, q):
     return (x, y, turns), is_clear
 
 
-@njit(cache=True)
-def _add_change(field, rim, apex, q, reach, limit, may_tear):
+@lean
+def _add_change(field, rim, apex, q, reach, may_tear):
     """Add the gradient of what a cap covers, and what that leaves out; tell if it is torn."""
     is_torn = False
     c = between(q, apex)
@@ -195,7 +251,7 @@ def _add_change(field, rim, apex, q, reach, limit, may_tear):
                 field[ERROR] = np.inf
                 return True
         field[ERROR] += reach * reach / 2 * side / (2 * np.pi * gap * gap * gap)
-        if field[ERROR] > limit:
+        if field[ERROR] > ENOUGH:
             break
         g = turning(b, a, lb, la)
         field[1] += g[0]
