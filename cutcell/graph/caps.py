@@ -14,6 +14,7 @@ twice; these faces themselves, turned round and twice, are often smaller than fa
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
 from typing import NamedTuple
 
@@ -23,11 +24,14 @@ from numpy.typing import NDArray
 
 from ..threads import in_threads
 from .boundary import Boundary, boundary_of, find_boundary
+from .solid_angle import between, cross, length
 from .turned import find_turned
 from .weld import weld
 
 PULLS = 3e-4, 3e-3
 """Rims are drawn together from up to this far in chains, where that makes the caps smaller."""
+ENOUGH = 0.25
+"""Caps that are smaller by this than fans alone will do."""
 
 
 class Caps(NamedTuple):
@@ -43,6 +47,8 @@ class Caps(NamedTuple):
         As of a `Boundary`.
     apex : array, shape (l,), int64
         The vertex that the triangles of a fan share: of a short loop its first.
+    area : float
+        Of all triangles.
     """
 
     vertices: NDArray[np.float64]
@@ -50,12 +56,7 @@ class Caps(NamedTuple):
     loop: NDArray[np.int64]
     start: NDArray[np.int64]
     apex: NDArray[np.int64]
-
-    @property
-    def area(self) -> float:
-        """Of all triangles."""
-        a, b, c = (self.vertices[self.faces[:, k]] for k in range(3))
-        return float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2)
+    area: float
 
 
 def cap_holes(vertices: NDArray[np.float64], faces: NDArray[np.int32], boundary: Boundary) -> Caps:
@@ -72,16 +73,23 @@ def cap_holes(vertices: NDArray[np.float64], faces: NDArray[np.int32], boundary:
     Returns
     -------
     Caps
-        The smallest that were found.
+        The smallest that were found, among several ways to close it.
     """
+
+    def caps_of(way: Callable[[], Boundary]) -> Caps:
+        return _capped(vertices, way())
+
+    plain = caps_of(lambda: boundary)
     if len(boundary.loop) == 0:
-        return _capped(vertices, boundary)
-    ways = [lambda: boundary, *(partial(_drawn_together, vertices, boundary, p) for p in PULLS)]
+        return plain
+    pulled, *others = (partial(_drawn_together, vertices, boundary, pull) for pull in PULLS)
+    best = min(plain, caps_of(pulled), key=lambda caps: caps.area)
+    if best.area < ENOUGH * plain.area:
+        return best
     edges = boundary.loop * len(vertices) + boundary.following
     if len(np.unique(edges)) < len(edges):  # two faces use an edge in one direction
-        ways.append(partial(_turned_back, vertices, faces))
-    caps = in_threads(lambda way: _capped(vertices, way()), ways)
-    return min(caps, key=lambda found: found.area)
+        others.append(partial(_turned_back, vertices, faces))
+    return min(best, *in_threads(caps_of, others), key=lambda caps: caps.area)
 
 
 def _turned_back(vertices: NDArray[np.float64], faces: NDArray[np.int32]) -> Boundary:
@@ -96,7 +104,8 @@ def _turned_back(vertices: NDArray[np.float64], faces: NDArray[np.int32]) -> Bou
 
 def _capped(vertices: NDArray[np.float64], loops: Boundary) -> Caps:
     apex, middles, faces = _fans(vertices, *loops)
-    return Caps(np.concatenate([vertices, middles]), faces, *loops, apex)
+    vertices = np.concatenate([vertices, middles])
+    return Caps(vertices, faces, *loops, apex, _area(vertices, faces))
 
 
 def _drawn_together(vertices: NDArray[np.float64], boundary: Boundary, pull: float) -> Boundary:
@@ -163,3 +172,12 @@ def _fans(vertices, loop, start):
                 faces[count, 0], faces[count, 1], faces[count, 2] = after, loop[i], apex[k]
                 count += 1
     return apex, middles[:fans].copy(), faces[:count].copy()
+
+
+@njit(cache=True, nogil=True)
+def _area(vertices, faces):
+    total = 0.0
+    for f in range(len(faces)):
+        a, b, c = vertices[faces[f, 0]], vertices[faces[f, 1]], vertices[faces[f, 2]]
+        total += length(cross(between(a, b), between(a, c))) / 2
+    return total

@@ -33,7 +33,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from ..threads import in_threads
+from ..threads import in_threads, parts
 from . import moments
 from .caps import Caps
 from .solid_angle import between, dot
@@ -77,7 +77,12 @@ def cluster(caps: Caps) -> Clusters:
     while leaves * TOGETHER < loops:
         leaves *= 2
     start = np.arange(leaves + 1) * loops // leaves
-    order = _halved(caps.vertices[caps.apex], start)
+    order, points = np.arange(loops), caps.vertices[caps.apex]
+    level = 1
+    while level < leaves:
+        rows = [(level + part.start, level + part.stop) for part in parts(level)]
+        in_threads(lambda row: _halve(points, start, order, *row), rows)
+        level *= 2
     size = np.diff(caps.start)[order]
     first = np.concatenate([[0], np.cumsum(size)])
     place = np.arange(first[-1]) + np.repeat(caps.start[:-1][order] - first[:-1], size)
@@ -92,11 +97,10 @@ def cluster(caps: Caps) -> Clusters:
 
 
 @njit(cache=True, nogil=True)
-def _halved(points, start):
-    """Order points so that each half of a cluster is on one side of a plane across it."""
+def _halve(points, start, order, first, last):
+    """Order the points of clusters so that each half is on one side of a plane across it."""
     leaves = len(start) - 1
-    order = np.arange(len(points))
-    for k in range(1, leaves):
+    for k in range(first, last):
         low = high = k
         while low < leaves:
             low, high = 2 * low, 2 * high + 1
@@ -108,7 +112,6 @@ def _halved(points, start):
                 extent, keys = along.max() - along.min(), along
         middle = start[(low + high + 1) // 2 - leaves] - start[low - leaves]
         order[start[low - leaves] : start[high - leaves + 1]] = part[np.argpartition(keys, middle)]
-    return order
 
 
 @njit(cache=True, nogil=True)
