@@ -72,10 +72,11 @@ def find_doubt(caps: Caps, resolution: int, winding_threshold: float) -> Doubt:
     for blocks, fine, part in found:
         coarse[tuple(blocks.T)] += rows
         fine[fine >= 0] += leaves
-        rows, leaves = rows + len(fine), leaves + len(part.place)
-    place, field, is_torn, count, near = zip(*(part for *_, part in found), strict=True)
-    start = np.concatenate([[0], np.cumsum(np.concatenate(count))])
-    joined = Leaves(*map(np.concatenate, (place, field, is_torn)), start, np.concatenate(near))
+        rows, leaves = rows + len(fine), leaves + len(part[0])
+    columns = zip(*(part for *_, part in found), strict=True)
+    place, field, is_torn, counts, near = (np.concatenate(column) for column in columns)
+    start = np.concatenate([[0], np.cumsum(counts)])
+    joined = Leaves(place, field, is_torn, start, near)
     return Doubt(coarse, np.concatenate([fine for _, fine, _ in found]), joined, clusters)
 
 
@@ -84,7 +85,8 @@ def _decide(clusters, resolution, tau, corner, top, coarse):
     """Put the codes of the blocks in a cube of `top` cells into `coarse`.
 
     Returns which blocks are not decided as a whole, shape (u, 3); the codes of their cells;
-    and the leaves that these name, each with how many clusters are near in place of the first.
+    and of the leaves that these name the columns, with how many clusters are near in place of
+    where those start.
     """
     blocks, fine = np.empty((16, 3), np.int64), np.empty((16, BLOCK, BLOCK, BLOCK), np.int32)
     place, fields, is_torn = np.empty((64, 3)), np.empty((64, SIZE)), np.empty(64, np.bool_)
@@ -152,8 +154,8 @@ def _decide(clusters, resolution, tau, corner, top, coarse):
             leaves += 1
         i, j, k = x % BLOCK, y % BLOCK, z % BLOCK
         fine[rows - 1, i : i + size, j : j + size, k : k + size] = code
-    found = place[:leaves].copy(), fields[:leaves].copy(), is_torn[:leaves].copy()
-    found = Leaves(found[0], found[1], found[2], counts[:leaves].copy(), nearby[:listed].copy())
+    of_leaves = place[:leaves].copy(), fields[:leaves].copy(), is_torn[:leaves].copy()
+    found = (*of_leaves, counts[:leaves].copy(), nearby[:listed].copy())
     return blocks[:rows].copy(), fine[:rows].copy(), found
 
 
