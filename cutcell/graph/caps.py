@@ -32,6 +32,8 @@ PULLS = 3e-4, 3e-3
 """Rims are drawn together from up to this far in chains, where that makes the caps smaller."""
 ENOUGH = 0.25
 """Caps that are smaller by this than fans alone will do."""
+MANY = 1000
+"""Edges between faces that run against each other; for fewer, fans are quick enough."""
 
 
 class Caps(NamedTuple):
@@ -87,7 +89,8 @@ def cap_holes(vertices: NDArray[np.float64], faces: NDArray[np.int32], boundary:
     if best.area < ENOUGH * plain.area:
         return best
     edges = boundary.loop * len(vertices) + boundary.following
-    if len(np.unique(edges)) < len(edges):  # two faces use an edge in one direction
+    doubled = len(edges) - len(np.unique(edges))  # two faces use them in one direction
+    if doubled > MANY:
         others.append(partial(_turned_back, vertices, faces))
     return min(best, *in_threads(caps_of, others), key=lambda caps: caps.area)
 

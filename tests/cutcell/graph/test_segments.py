@@ -27,10 +27,10 @@ def jittered():
     return points + np.random.default_rng(0).normal(0, 0.01, points.shape), faces
 
 
-def half_flipped():
-    """Turn every other triangle round, by chance."""
-    vertices, faces = meshes.ball(2)
-    turned = np.random.default_rng(1).random(len(faces)) < 0.5
+def many_flipped():
+    """Turn every fifth triangle round, by chance."""
+    vertices, faces = meshes.ball(4)
+    turned = np.random.default_rng(1).random(len(faces)) < 0.2
     faces[turned] = faces[turned, ::-1]
     return vertices, faces
 
@@ -48,7 +48,7 @@ TORN = {
     "narrow gaps": lambda: apart(0.99),
     "wide gaps": lambda: apart(0.7),
     "jittered": jittered,
-    "half flipped": half_flipped,
+    "many flipped": many_flipped,
     "confetti": confetti,
 }
 SHAPES = TORN | meshes.OPEN
