@@ -41,8 +41,8 @@ LEAST = 2
 """Cells along the side of blocks that are not halved: it is no dearer to ask each midpoint."""
 DEPTH = 12
 """More than blocks are ever halved."""
-SPLIT = 1e-2, 1e-3
-"""What a cluster may leave out in a block: less if the first bound is not enough."""
+SPLIT = 5e-3
+"""What a cluster may leave out in a block, or else it is halved."""
 
 
 def find_doubt(caps: Caps, resolution: int, winding_threshold: float) -> Doubt:
@@ -112,12 +112,9 @@ def _decide(clusters, resolution, tau, corner, top, coarse):
         move(far[depth], way[0], way[1], way[2])
         among = near[depth - 1, : nears[depth - 1]]
         nears[depth] = set_apart(clusters, among, far[depth], near[depth], q, reach)
-        for tolerance in SPLIT:
-            field[:] = far[depth]
-            tears = view(clusters, near[depth, : nears[depth]], field, q, reach, tolerance)
-            code = _code(field, tears, half, size, tau)
-            if code != UNSURE or field[ERROR] == np.inf:
-                break
+        field[:] = far[depth]
+        tears = view(clusters, near[depth, : nears[depth]], field, q, reach, SPLIT)
+        code = _code(field, tears, half, size, tau)
         if size >= BLOCK:
             a, b, c, wide = x // BLOCK, y // BLOCK, z // BLOCK, size // BLOCK
             if code < 0:

@@ -24,7 +24,7 @@ from .field import ERROR
 from .moments import add_expansion, covered_afar
 from .solid_angle import between, cross, distance_to_edge, dot, is_within, length, turning
 
-NEGLIGIBLE = 2e-3
+NEGLIGIBLE = 5e-3
 """What a cluster may leave out in a ball and still be far from all points in it."""
 COARSE = 0.3
 """Clusters that leave out more are halved, to see if parts of them are far."""

@@ -19,6 +19,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
+from ..compiled import lean
 from ..errors import ParameterError
 from ..rig import TriangleMesh
 from ..threads import in_threads, parts
@@ -119,7 +120,7 @@ def _number_at(points, vertices, faces, cells, start, listed, boundary):
     return number
 
 
-@njit(cache=True)
+@lean
 def boundary_turns(vertices, boundary, pu, pv, height):
     """Return what the boundary adds to the signed count of crossings ahead, in full turns.
 
