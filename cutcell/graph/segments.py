@@ -94,89 +94,81 @@ def find_runs(
 @njit(cache=True, nogil=True)
 def _walk_rays(shared, seen, first_ray, last_ray):
     """List the runs of a strip of rays, as rows (ray, first, last, low, high)."""
-    resolution, start = shared[0], seen[3][0]
-    rows, count = np.empty((256, 5), np.int32), 0
-    torn = np.empty(2, np.int64)
-    for r in range(first_ray, last_ray):
-        # No two runs of a ray begin between the same crossings or lattice points.
-        while count + resolution + start[r + 1] - start[r] + 1 > len(rows):
-            rows = grown(rows)
-        count = _walk_ray(shared, seen, r, rows, count, torn)
-    return rows[:count]
-
-
-@lean
-def _walk_ray(shared, seen, r, rows, count, torn):
-    """Append the runs of a ray; return how many there are now."""
     resolution = shared[0]
     doubt = shared[2]
     axis = seen[0]
     calm, (start, position, sign), (cap_start, cap_position, cap_sign) = seen[2:]
-    begin, end = start[r], start[r + 1]
-    passed, last_cap = cap_start[r], cap_start[r + 1]
-    chi = 0
-    for c in range(begin, end):
-        chi += sign[c]
-    # Far from holes, no winding number changes between two crossings.
-    i, j = r // resolution, r % resolution
-    need = calm[i // BLOCK, j // BLOCK]
-    is_calm = need < UNSURE and passed == last_cap
-    if is_calm and begin == end and chi < need:
-        return count
-    lid = 0  # crossings ahead with the caps, counted like chi
-    for c in range(passed, last_cap):
-        lid += cap_sign[c]
-    torn[0] = NONE
-    k = 0
-    # Gap by gap: from the crossing c - 1 (or the cube's wall) to the crossing c.
-    for c in range(begin, end + 1):
-        if c > begin:
-            chi -= sign[c - 1]
-        before = position[c - 1] if c > begin else 0.0
-        after = position[c] if c < end else 1.0
-        beyond = first_at_least(after, resolution) if c < end else resolution
-        # Segment s of the gap ends at lattice point s; the last one at crossing c.
-        s, is_open = k, False
-        while s <= beyond:
-            if is_calm:
-                kept, until = chi >= need, beyond + 1
-            elif (s == k and c == begin) or (s == beyond and c == end):  # to a wall
-                kept, until = False, s + 1
-            else:
-                left = before if s == k else (s - 0.5) / resolution
-                right = after if s == beyond else (s + 0.5) / resolution
-                middle = 0.5 * (left + right)
-                while passed < last_cap and cap_position[passed] <= middle:
-                    lid -= cap_sign[passed]
-                    passed += 1
-                cell = min(int(middle * resolution), resolution - 1)
-                code, is_block = code_at(doubt, in_space(axis, i, j, cell))
-                if code < 0:
-                    # So it stays to the end of the block, or the next crossing.
-                    kept, until = chi + lid >= code - NEED, cell + 1
-                    if is_block:
-                        ahead = cap_position[passed] if passed < last_cap else 1.0
-                        until = min((cell // BLOCK + 1) * BLOCK, int(ahead * resolution))
+    rows = np.empty((256, 5), np.int32)
+    count = 0
+    torn = np.empty(2, np.int64)
+    for r in range(first_ray, last_ray):
+        begin, end = start[r], start[r + 1]
+        passed, last_cap = cap_start[r], cap_start[r + 1]
+        chi = 0
+        for c in range(begin, end):
+            chi += sign[c]
+        # Far from holes, no winding number changes between two crossings.
+        i, j = r // resolution, r % resolution
+        need = calm[i // BLOCK, j // BLOCK]
+        is_calm = need < UNSURE and passed == last_cap
+        if is_calm and begin == end and chi < need:
+            continue
+        lid = 0  # crossings ahead with the caps, counted like chi
+        for c in range(passed, last_cap):
+            lid += cap_sign[c]
+        torn[0] = NONE
+        k = 0
+        # Gap by gap: from the crossing c - 1 (or the cube's wall) to the crossing c.
+        for c in range(begin, end + 1):
+            if c > begin:
+                chi -= sign[c - 1]
+            before = position[c - 1] if c > begin else 0.0
+            after = position[c] if c < end else 1.0
+            beyond = first_at_least(after, resolution) if c < end else resolution
+            # Segment s of the gap ends at lattice point s; the last one at crossing c.
+            s, is_open = k, False
+            while s <= beyond:
+                if is_calm:
+                    kept, until = chi >= need, beyond + 1
+                elif (s == k and c == begin) or (s == beyond and c == end):  # to a wall
+                    kept, until = False, s + 1
                 else:
-                    p = (i + 0.5) / resolution, (j + 0.5) / resolution, middle
-                    kept, until = _is_inside(shared, seen, p, code, chi, lid, torn), cell + 1
-                until = max(s + 1, min(until, beyond + (c < end)))
-            if kept and not is_open:
-                rows[count, 0] = r
-                rows[count, 1] = k if s == k else s - 1
-                rows[count, 3] = c - 1 if s == k and c > begin else NONE
-            elif is_open and not kept:
-                rows[count, 2], rows[count, 4] = s - 1, NONE
+                    left = before if s == k else (s - 0.5) / resolution
+                    right = after if s == beyond else (s + 0.5) / resolution
+                    middle = 0.5 * (left + right)
+                    while passed < last_cap and cap_position[passed] <= middle:
+                        lid -= cap_sign[passed]
+                        passed += 1
+                    cell = min(int(middle * resolution), resolution - 1)
+                    code, is_block = code_at(doubt, in_space(axis, i, j, cell))
+                    if code < 0:
+                        # So it stays to the end of the block, or the next crossing.
+                        kept, until = chi + lid >= code - NEED, cell + 1
+                        if is_block:
+                            ahead = cap_position[passed] if passed < last_cap else 1.0
+                            until = min((cell // BLOCK + 1) * BLOCK, int(ahead * resolution))
+                    else:
+                        p = (i + 0.5) / resolution, (j + 0.5) / resolution, middle
+                        kept, until = _is_inside(shared, seen, p, code, chi, lid, torn), cell + 1
+                    until = max(s + 1, min(until, beyond + (c < end)))
+                if kept and not is_open:
+                    if count == len(rows):
+                        rows = grown(rows)
+                    rows[count, 0] = r
+                    rows[count, 1] = k if s == k else s - 1
+                    rows[count, 3] = c - 1 if s == k and c > begin else NONE
+                elif is_open and not kept:
+                    rows[count, 2], rows[count, 4] = s - 1, NONE
+                    count += 1
+                s, is_open = until, kept
+            # A run ends at every crossing: what follows starts there as a run of its own.
+            # From the wall straight to a crossing there is no segment.
+            if is_open and (beyond > k or begin < c < end):
+                rows[count, 2] = beyond - 1
+                rows[count, 4] = c if c < end else NONE
                 count += 1
-            s, is_open = until, kept
-        # A run ends at every crossing: what follows starts there as a run of its own.
-        # From the wall straight to a crossing there is no segment.
-        if is_open and (beyond > k or begin < c < end):
-            rows[count, 2] = beyond - 1
-            rows[count, 4] = c if c < end else NONE
-            count += 1
-        k = beyond
-    return count
+            k = beyond
+    return rows[:count]
 
 
 @lean
