@@ -15,7 +15,7 @@ from ..scenes.compare import field_shown, found_of, title_of
 from ..session import Session
 from ..state import State
 from ..state.compare import FEWEST_VIEWS, MOST_VIEWS, offered
-from .parts import BUTTONS, GAP, caption, lead, section, when
+from .parts import BUTTONS, GAP, caption, follow, lead, section, when
 
 FIELDS = {"Chosen bone": "bone", "All bones": "all"}
 ERROR = {"Error": "error"}
@@ -69,21 +69,13 @@ def about(rig: Rig | None) -> str:
 
 
 def _field(state: State) -> pmui.RadioButtonGroup:
-    row = pmui.RadioButtonGroup(options=FIELDS, value="bone", **BUTTONS)
-
-    def listed(*events: Any) -> None:
+    def offered() -> tuple[dict[str, str], str]:
         known = state.rig is None or state.rig.weights is not None
         value = state.compare_field if state.rig is None else field_shown(state)
-        row.param.update(options={**FIELDS, **(ERROR if known else {})}, value=value)
+        return {**FIELDS, **(ERROR if known else {})}, value
 
-    def chosen(event: Any) -> None:
-        if event.new is not None:
-            state.compare_field = event.new
-
-    state.param.watch(listed, ["rig", "compare_field"])
-    row.param.watch(chosen, "value")
-    listed()
-    return row
+    row = pmui.RadioButtonGroup(options=FIELDS, value="bone", **BUTTONS)
+    return follow(row, state, "compare_field", offered, ["rig"])
 
 
 def _minus(state: State) -> pmui.Select:
@@ -97,18 +89,11 @@ def _minus(state: State) -> pmui.Select:
         ),
     )  # fmt: skip
 
-    def listed(*events: Any) -> None:
+    def offered() -> tuple[dict[str, str], str]:
         named = {title_of(name): name for name in state.methods}
-        select.param.update(options={"None: each by itself": "", **named}, value=state.minus)
+        return {"None: each by itself": "", **named}, state.minus
 
-    def chosen(event: Any) -> None:
-        if event.new is not None:
-            state.minus = event.new
-
-    state.param.watch(listed, ["methods", "minus"])
-    select.param.watch(chosen, "value")
-    listed()
-    return select
+    return follow(select, state, "minus", offered, ["methods"])
 
 
 def _motion(session: Session) -> pmui.Row:

@@ -7,6 +7,7 @@ from typing import Any
 
 import panel as pn
 import panel_material_ui as pmui
+import param
 
 GAP = (4, 0)
 """Space above and below a widget, and beside it."""
@@ -71,6 +72,33 @@ BUTTONS: dict[str, Any] = {
     "sx": {"width": "100%", "& .MuiToggleButton-root": {"flex": 1, "py": "5px"}},
 }
 """How a row of buttons looks, one of which is pressed."""
+
+
+def follow(
+    menu: Any,
+    state: param.Parameterized,
+    name: str,
+    offered: Callable[[], tuple[dict[str, Any], Any]],
+    watched: Sequence[str],
+) -> Any:
+    """Let a menu show a parameter of the state, and set it.
+
+    `offered` tells the menu's choices and which of them is taken; they are told again whenever the
+    parameter or one of those watched changes.
+    """
+
+    def listed(*events: Any) -> None:
+        options, value = offered()
+        menu.param.update(options=options, value=value)
+
+    def chosen(event: Any) -> None:
+        if event.new is not None:
+            setattr(state, name, event.new)
+
+    state.param.watch(listed, [*watched, name])
+    menu.param.watch(chosen, "value")
+    listed()
+    return menu
 
 
 def choice(parameter: Any, options: dict[str, Any], **params: Any) -> pmui.RadioButtonGroup:

@@ -11,7 +11,7 @@ from cutcell.skinning import FALLOFFS
 
 from ..session import Session
 from ..state import State
-from .parts import GAP, caption, choice, lead, section, slider, when
+from .parts import GAP, caption, choice, follow, lead, section, slider, when
 
 SHOWN = {
     "All bones": "mix",
@@ -30,19 +30,12 @@ def weights(session: Session) -> pmui.Column:
         label="Colours show", options=SHOWN, size="small", margin=GAP, sizing_mode="stretch_width"
     )
 
-    def listed(*events: Any) -> None:
+    def offered() -> tuple[dict[str, str], str]:
         own = state.rig is not None and state.rig.weights is not None
         options = {**SHOWN, **(DIFFERENCE if own else {})}
-        value = state.weights_shown if state.weights_shown in options.values() else "mix"
-        shown.param.update(options=options, value=value)
+        return options, state.weights_shown if state.weights_shown in options.values() else "mix"
 
-    def chosen(event: Any) -> None:
-        if event.new is not None:
-            state.weights_shown = event.new
-
-    state.param.watch(listed, ["rig", "weights_shown"])
-    shown.param.watch(chosen, "value")
-    listed()
+    follow(shown, state, "weights_shown", offered, ["rig"])
     facts = caption(told(state))
 
     def tell() -> None:
