@@ -63,9 +63,7 @@ def set_apart(clusters, among, far, near, q, reach):
     for top in among:
         k, end = top, after(top)
         while k != end:
-            r = between(q, clusters.sphere[k])
-            distance = length(r)
-            off = left_out(clusters.sphere[k], distance, reach)
+            r, distance, off = _seen(clusters, k, q, reach)
             if off <= NEGLIGIBLE:
                 add_expansion(far, clusters.moments[k], r, distance)
                 far[ERROR] += off
@@ -106,9 +104,7 @@ def view(clusters, among, field, q, reach, tolerance):
     for top in among:
         k, end = top, after(top)
         while k != end:
-            r = between(q, clusters.sphere[k])
-            distance = length(r)
-            off = left_out(clusters.sphere[k], distance, reach)
+            r, distance, off = _seen(clusters, k, q, reach)
             # Halving clusters helps little once the ball is what makes h large.
             if off <= tolerance or (off < np.inf and clusters.sphere[k, 3] < reach / 4):
                 add_expansion(field, clusters.moments[k], r, distance)
@@ -148,9 +144,7 @@ def covered(clusters, among, q, tolerance):
     for top in among:
         k, end = top, after(top)
         while k != end:
-            r = between(q, clusters.sphere[k])
-            far = length(r)
-            off = left_out(clusters.sphere[k], far, 0.0)
+            r, far, off = _seen(clusters, k, q, 0.0)
             if off <= tolerance:
                 value += covered_afar(clusters.moments[k], r, far)
                 error += off
@@ -178,6 +172,14 @@ def _add_caps(clusters, leaf, field, q, reach, may_tear):
         angle, _ = _turned((1.0, 0.0, 0.0), rim, clusters.apex[loop], q)
         field[0] += _turns(angle)
     return is_torn
+
+
+@njit(cache=True, inline="always")
+def _seen(clusters, k, q, reach):
+    """Return the way to a cluster, how far that is, and what its expansion leaves out."""
+    r = between(q, clusters.sphere[k])
+    distance = length(r)
+    return r, distance, left_out(clusters.sphere[k], distance, reach)
 
 
 @njit(cache=True, inline="always")
