@@ -33,6 +33,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from ..compiled import lean
 from ..threads import in_threads, parts
 from . import moments
 from .caps import Caps
@@ -96,7 +97,7 @@ def cluster(caps: Caps) -> Clusters:
     return Clusters(rim, first, apex, start, sphere, summed)
 
 
-@njit(cache=True, nogil=True)
+@lean
 def _halve(points, start, order, first, last):
     """Order the points of clusters so that each half is on one side of a plane across it."""
     leaves = len(start) - 1
@@ -104,14 +105,42 @@ def _halve(points, start, order, first, last):
         low = high = k
         while low < leaves:
             low, high = 2 * low, 2 * high + 1
-        part = order[start[low - leaves] : start[high - leaves + 1]].copy()
-        extent = 0.0
+        begin, middle, end = (
+            start[low - leaves],
+            start[(low + high + 1) // 2 - leaves],
+            start[high - leaves + 1],
+        )
+        longest, across = -1.0, 0
         for axis in range(3):
-            along = points[part, axis]
-            if along.max() - along.min() >= extent:
-                extent, keys = along.max() - along.min(), along
-        middle = start[(low + high + 1) // 2 - leaves] - start[low - leaves]
-        order[start[low - leaves] : start[high - leaves + 1]] = part[np.argpartition(keys, middle)]
+            least = most = points[order[begin], axis]
+            for i in range(begin, end):
+                least = min(least, points[order[i], axis])
+                most = max(most, points[order[i], axis])
+            if most - least >= longest:
+                longest, across = most - least, axis
+        _divide(points, order, across, begin, middle, end)
+
+
+@lean
+def _divide(points, order, axis, begin, middle, end):
+    """Put those that come first along an axis before the middle of a range (Hoare's FIND, 1961)."""
+    while end - begin > 1:
+        pivot = points[order[(begin + end) // 2], axis]
+        i, j = begin, end - 1
+        while i <= j:
+            while points[order[i], axis] < pivot:
+                i += 1
+            while points[order[j], axis] > pivot:
+                j -= 1
+            if i <= j:
+                order[i], order[j] = order[j], order[i]
+                i, j = i + 1, j - 1
+        if middle <= j:
+            end = j + 1
+        elif middle >= i:
+            begin = i
+        else:
+            return
 
 
 @njit(cache=True, nogil=True)

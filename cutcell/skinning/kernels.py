@@ -19,6 +19,8 @@ from .weights import DEFAULT_LEAF, joints_needed, skinning_weights
 
 AROUND = 16
 """Vertices around the tube: its open ends are holes too wide for a few triangles."""
+MISSING = 5, 45, 85
+"""Faces of the tube that leave small holes: enough holes for a tree of them."""
 PACKAGE = Path(__file__).resolve().parents[1]
 SOURCES = ("compiled.py", "unions.py", "graph/*.py", "geodesics/*.py", "skinning/*.py")
 """Where the kernels of a binding stand, and what they are compiled by."""
@@ -27,7 +29,7 @@ _known = False
 
 
 def load_kernels() -> None:
-    """Bind a small open tube in every way that has kernels of its own.
+    """Bind a small tube with holes in every way that has kernels of its own.
 
     Kernels are compiled once on a machine (about a minute) and kept on disk; from there a
     process loads them in about a second. All are thrown away once any source has changed: numba
@@ -108,6 +110,5 @@ def _tube() -> TriangleMesh:
     here = np.arange((len(heights) - 1) * AROUND)
     beside = here // AROUND * AROUND + (here + 1) % AROUND
     faces = [[here, beside, beside + AROUND], [here, beside + AROUND, here + AROUND]]
-    return TriangleMesh(
-        np.concatenate(rings), np.concatenate([np.stack(face, axis=1) for face in faces])
-    )
+    whole = np.concatenate([np.stack(face, axis=1) for face in faces])
+    return TriangleMesh(np.concatenate(rings), np.delete(whole, MISSING, axis=0))

@@ -44,7 +44,7 @@ SCRIPT = textwrap.dedent(
     assert kernels_are_compiled()
     loaded = versions()
     assert loaded
-    for demo in ("robot", "biped_cape"):
+    for demo in ("robot", "biped_cape", "biped_soup"):
         rig = cutcell.load(demo_path(demo))
         for options in OPTIONS:
             cutcell.bind(rig, 24, **options)
