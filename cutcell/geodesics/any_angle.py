@@ -6,26 +6,27 @@ of its path, and its distance is that of the anchor plus the straight way from t
 is any-angle path planning (Theta*: Daniel, Nash, Koenig & Felner 2010) on the cut-cell graph, with
 the whole bone as first anchor: what sees the bone has its exact distance to the segment.
 
-All joints spread at once, and a node has room for the labels (joint, distance, anchor) of
+Joints spread together, and a node has room for the labels (joint, distance, anchor) of
 its nearest few alone. Nothing is lost by that: where k joints are nearer to a node than a
 further one, they are also nearer to whatever that one would reach by way of the node. So the
-work grows with the labels that a vertex keeps, not with the joints.
+work grows with the labels that a vertex keeps, not with the joints. It is done in two halves,
+side by side: of the joints around a node about as many are in the one as in the other.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from ..compiled import lean
 from ..graph import CutCellGraph
-from ..progress import Progress, silent
-from ..threads import in_threads, threads
+from ..progress import Progress, Shares, silent
+from ..threads import in_threads
 from .bones import TIE, Bones, Sources
-from .labels import NOBODY, find_room, follows_anchor, no_labels
+from .front import Front, Ranking, begin, in_halves, line_up, rank_bones
+from .labels import NOBODY, find_room, follows_anchor
 from .queue import END, SETTLED, bucket_of, join, leave, move_on
 from .sight import bend_of, body_of, sees, straight
 
@@ -39,7 +40,7 @@ FINENESS = 4
 """Times R squared: buckets a unit of distance. One is a hundredth of a cell wide, or less."""
 SPAN = 1
 """Units of distance that the buckets cover at a time."""
-ROOMS = 1, 4, 6
+ROOMS = 1, 4
 """Labels a node for which the kernel is compiled with their number built in, a third faster."""
 PAUSES = 8
 """How often a unit of distance is interrupted, to report and to be cancelled."""
@@ -69,10 +70,11 @@ def any_angle_paths(
     targets : array, shape (t,), int32
         Nodes whose distances are wanted.
     nearest : int, optional
-        k: a node gets the distances of its k nearest joints alone; of all when left out.
+        k: a node gets the distances of its k nearest joints and, unless `least` is given, of at
+        most as many others; of all when left out.
     within : float
-        Where only some joints are measured, paths do not pass where another joint is so many
-        times nearer; half a lattice cell counts as the nearest that one can be.
+        Where only some joints are measured, leave out what is so many times as far as the
+        nearest; half a lattice cell counts as the nearest that one can be.
     least : array, shape (N,), optional
         How far the nearest joint is from each node, where that may be none of these bones'.
     progress : callable
@@ -84,32 +86,33 @@ def any_angle_paths(
         For the joints with bones, ascending. Infinite where no path leads and for joints that
         are not among the nearest.
     """
-    joints = np.unique(bones.joint)
-    if nearest is not None and (nearest < len(joints) or least is not None):
-        groups = [joints]
+    ranking = rank_bones(bones, sources)
+    count = len(ranking.joints)
+    if nearest is not None and least is not None:
+        groups = [np.ones(count, np.bool_)]
+    elif nearest is not None and nearest < count:
+        groups = in_halves(ranking.places)
     else:
-        nearest, within = min(AT_ONCE, len(joints)), np.inf  # a group knows not who is nearest
-        groups = [joints[k : k + nearest] for k in range(0, len(joints), nearest)]
-    body = body_of(graph)
-    result = np.full((len(joints), len(targets)), np.inf)
+        nearest, within = min(AT_ONCE, count), np.inf  # a group knows not who is nearest
+        number = np.arange(count) // nearest
+        groups = [number == k for k in range(number[-1] + 1)]
+    row = np.argsort(np.argsort(ranking.joints))
+    result = np.full((count, len(targets)), np.inf)
+    shares = Shares(progress, "distances", len(groups))
 
-    def spread(group: NDArray[np.int32]) -> None:
-        report = progress if len(groups) == 1 else silent
-        front = _start(graph, sources, bones, group, nearest, least)
-        _spread(graph, body, front, within, report)
+    def spread(share: int) -> None:
+        front = begin(ranking, len(graph.nodes), groups[share], nearest, least)
+        _spread(graph, ranking, front, within, lambda done: shares.tell(share, done))
+        shares.tell(share, 1.0)
         found = front.labels.reshape(-1, nearest)[targets]
         at, which = np.nonzero(found["joint"] != NOBODY)
         found = found[at, which]
-        result[np.searchsorted(joints, front.joints[found["joint"]]), at] = found["distance"]
+        result[row[found["joint"]], at] = found["distance"]
 
-    if len(groups) == 1:
-        spread(groups[0])
-    else:
-        step = 4 * threads()
-        for first in range(0, len(groups), step):
-            progress("distances", first / len(groups))
-            in_threads(spread, groups[first : first + step])
-    progress("distances", 1.0)
+    in_threads(spread, range(len(groups)))
+    if within < np.inf and least is None:  # either half knew of its own joints alone
+        limit = within * np.maximum(result.min(axis=0), ON_BONE / graph.lattice.resolution)
+        result[result > limit] = np.inf
     return result
 
 
@@ -117,111 +120,39 @@ def least_distances(
     graph: CutCellGraph, sources: Sources, bones: Bones, progress: Progress = silent
 ) -> NDArray[np.float64]:
     """Compute how far the nearest joint is from each node, shape (N,); see `any_angle_paths`."""
-    front = _start(graph, sources, bones, np.unique(bones.joint), 1)
-    _spread(graph, body_of(graph), front, np.inf, progress)
+    ranking = rank_bones(bones, sources)
+    every = np.ones(len(ranking.joints), np.bool_)
+    front = begin(ranking, len(graph.nodes), every, 1)
+    _spread(graph, ranking, front, np.inf, lambda done: progress("distances", done))
     return front.least
 
 
-@dataclass(frozen=True, eq=False)
-class _Front:
-    """Labels and bones of a group of joints, ranked by position.
-
-    So ties do not hang on how joints are numbered.
-
-    Parameters
-    ----------
-    joints : array
-        Of each rank.
-    bones : array, shape (b, 7)
-        Start, way to the end, and one over its squared length.
-    each : int
-        k, labels a node.
-    labels, anchors : arrays, shape (N * k,)
-        See `labels`.
-    least : array, shape (N,)
-        How far the nearest joint is from each node, as far as is known.
-    """
-
-    joints: NDArray[np.int32]
-    bones: NDArray[np.float64]
-    each: int
-    labels: NDArray[np.void]
-    anchors: NDArray[np.int32]
-    least: NDArray[np.float64]
-
-
-def _start(
-    graph: CutCellGraph,
-    sources: Sources,
-    bones: Bones,
-    group: NDArray[np.int32],
-    each: int,
-    least: NDArray[np.float64] | None = None,
-) -> _Front:
-    mine = np.flatnonzero(np.isin(bones.joint, group))
-    start, end = bones.start[mine], bones.end[mine]
-    order = np.lexsort(np.concatenate([start, end], axis=1).T[::-1])
-    mine, start, way = mine[order], start[order], (end - start)[order]
-    squared = (way * way).sum(axis=1)
-    inverse = np.divide(1, squared, out=np.zeros_like(squared), where=squared > 0)
-    joints, first, rank = np.unique(bones.joint[mine], return_index=True, return_inverse=True)
-    by_place = np.argsort(first)
-    rank = np.argsort(by_place)[rank].astype(np.int32)
-
-    place = np.full(len(bones.joint), -1)
-    place[mine] = np.arange(len(mine))
-    bone = place[sources.bone]
-    chosen = np.flatnonzero(bone >= 0)
-    chosen = chosen[np.argsort(bone[chosen], kind="stable")]
-
-    labels, anchors = no_labels(len(graph.nodes), each)
-    table = np.concatenate([start, way, inverse[:, None]], axis=1)
-    least = np.full(len(graph.nodes), np.inf) if least is None else least.copy()
-    begin = sources.node[chosen], bone[chosen], sources.distance[chosen]
-    _enter_sources(labels, anchors, least, each, rank, *begin)
-    return _Front(joints[by_place], table, each, labels, anchors, least)
-
-
 def _spread(
-    graph: CutCellGraph, body: tuple, front: _Front, within: float, progress: Progress
+    graph: CutCellGraph,
+    ranking: Ranking,
+    front: Front,
+    within: float,
+    tell: Callable[[float], None],
 ) -> None:
     """Settle all labels."""
     labels = front.labels
     rooms = (0,) * front.each if front.each in ROOMS else np.empty(front.each)
     scale = float(FINENESS * graph.lattice.resolution**2)
     head = np.full(int(SPAN * scale), END, np.int32)
-    _line_up(labels, head, scale)
+    line_up(labels, head, scale)
     step = len(head) // (SPAN * PAUSES)
     ahead = np.empty(int(np.diff(graph.adjacency[0]).max()) + 1, np.int64)
-    known = graph.adjacency, body, front.bones, within
+    known = graph.adjacency, body_of(graph), ranking.table, within
     given = *known, rooms, labels, front.anchors, front.least, head, scale, ahead
     origin = 0.0
     while True:
         for bucket in range(0, len(head) - 1, step):
-            progress("distances", min(origin + bucket / scale, 0.99))
+            tell(min(origin + bucket / scale, 0.99))
             last = min(bucket + step, len(head) - 1)
             _settle(*given, origin, bucket, last)
             if (head[last:] == END).all():
                 return
         origin = move_on(head, scale, labels)
-
-
-@njit(cache=True)
-def _enter_sources(labels, anchors, least, each, rank, node, bone, distance):
-    for s in range(len(node)):
-        joint, anchor = rank[bone[s]], ~bone[s]
-        label = find_room(labels, each, node[s], joint)
-        if distance[s] < labels[label].distance:
-            labels[label].joint, anchors[label] = joint, anchor
-            labels[label].distance = distance[s]
-            least[node[s]] = min(least[node[s]], distance[s])
-
-
-@njit(cache=True)
-def _line_up(labels, head, scale):
-    for label in range(len(labels)):
-        if labels[label].joint != NOBODY:
-            join(head, labels, bucket_of(head, scale, labels[label].distance), label)
 
 
 @lean

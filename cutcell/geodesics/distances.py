@@ -30,7 +30,7 @@ class BoneDistances:
         that may not carry weight, and for joints that are not among a vertex' nearest.
         n counts the vertices of the mesh as it was given.
     nearest_joints : int or None
-        How many joints each vertex has distances of; None for all.
+        How many of its nearest joints each vertex has distances of, at least; None for all.
     bones : Bones
         In the unit cube.
     sources : Sources
@@ -131,9 +131,9 @@ def bone_distances(
     nearest : int
         k, how many bones a vertex follows that none reaches, 1 or more.
     nearest_joints : int, optional
-        Measure from each vertex' nearest joints alone, 1 or more, and from all when left
-        out. Fewer take less time with connectivity "any"; with others they do not, and
-        neither where `allowed` is given: then all are measured.
+        Measure from so many of each vertex' nearest joints, 1 or more, and from at most as
+        many others; from all when left out. Fewer take less time with connectivity "any";
+        with others they do not, and neither where `allowed` is given: then all are measured.
     within : float
         Leave out joints that are so many times as far as the nearest, 1 or more. Only where
         `nearest_joints` are measured, and to about half a lattice cell.
