@@ -34,8 +34,6 @@ NEAR = 2
 """Lattice cells. A far corner of a triangle may lie behind a bend of the surface."""
 ON_BONE = 0.5
 """Lattice cells: of what is as near as this, no joint is told to be so many times nearer."""
-AT_ONCE = 4
-"""Joints that spread together where all are wanted everywhere."""
 FINENESS = 4
 """Times R squared: buckets a unit of distance. One is a hundredth of a cell wide, or less."""
 SPAN = 1
@@ -92,10 +90,9 @@ def any_angle_paths(
         groups = [np.ones(count, np.bool_)]
     elif nearest is not None and nearest < count:
         groups = in_halves(ranking.places)
-    else:
-        nearest, within = min(AT_ONCE, count), np.inf  # a group knows not who is nearest
-        number = np.arange(count) // nearest
-        groups = [number == k for k in range(number[-1] + 1)]
+    else:  # each by itself, which does not tell who is nearest
+        nearest, within = 1, np.inf
+        groups = list(np.eye(count, dtype=np.bool_))
     row = np.argsort(np.argsort(ranking.joints))
     result = np.full((count, len(targets)), np.inf)
     shares = Shares(progress, "distances", len(groups))
