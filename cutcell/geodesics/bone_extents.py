@@ -14,7 +14,7 @@ from scipy.spatial.distance import cdist
 from ..graph import CutCellGraph
 from ..rig import Skeleton
 from .bones import Bones
-from .chains import SAME_PLACE, Chains, find_chains
+from .chains import SAME_PLACE, find_chains
 from .probe import BodyProbe
 
 NO_ROOM = 2.0
@@ -50,23 +50,18 @@ def fit_bones(graph: CutCellGraph, skeleton: Skeleton) -> tuple[Bones, NDArray[n
     """
     probe = BodyProbe(graph)
     chains = find_chains(skeleton, graph.lattice.to_unit(skeleton.joints), probe)
-    start, end, joint, is_tip = [], [], [], []
+    end, joint = [], []
     for j in np.flatnonzero(skeleton.deform).tolist():
         told = [*chains.ends[j], *chains.links[j]]
-        for place in told or [_way_on(j, chains, probe)]:
-            start.append(chains.joints[j])
-            end.append(place)
-            joint.append(j)
-            is_tip.append(not told)
-    bones = Bones(np.array(start), np.array(end), np.array(joint, np.int32))
-    tip = np.array(is_tip)
+        end += told or [chains.joints[j]]
+        joint += [j] * max(len(told), 1)
+    bones = Bones(chains.joints[joint], np.array(end), np.array(joint, np.int32))
+    tip = np.array([not (chains.ends[j] or chains.links[j]) for j in joint])
+    # A tip goes on the way its bone came until it leaves the body.
+    tips = bones.joint[tip]
+    way = probe.way_out(chains.joints[tips], chains.direction[tips])
+    bones.end[tip] += chains.direction[tips] * way[:, None]
     return _share_with_tips(bones, tip, probe), tip & chains.near[bones.joint]
-
-
-def _way_on(j: int, chains: Chains, probe: BodyProbe) -> NDArray[np.float64]:
-    """Extend a joint the way its bone came until it leaves the body."""
-    head, direction = chains.joints[j], chains.direction[j]
-    return head + direction * probe.way_out(head, direction) if direction.any() else head
 
 
 def _share_with_tips(bones: Bones, tip: NDArray[np.bool_], probe: BodyProbe) -> Bones:
@@ -78,13 +73,13 @@ def _share_with_tips(bones: Bones, tip: NDArray[np.bool_], probe: BodyProbe) -> 
     end = bones.end.copy()
     room = np.linalg.norm(bones.end - bones.start, axis=1)
     goes_on = tip & (cdist(bones.end, bones.start) < SAME_PLACE)
-    for b in np.flatnonzero(~tip & goes_on.any(axis=1)):
-        there = goes_on[b]
-        depth = float(probe.depth((bones.start[b] + bones.end[b])[None] / 2)[0])
-        left = room[there].max()
-        if left < min(room[b], NO_ROOM * depth):
-            cut = min((room[b] - left) / 2, GIVEN * depth)
-            end[b] += (bones.start[b] - bones.end[b]) * (cut / room[b])
+    before = np.flatnonzero(~tip & goes_on.any(axis=1))
+    depth = probe.depth((bones.start[before] + bones.end[before]) / 2)
+    own, left = room[before], np.where(goes_on[before], room, 0.0).max(axis=1, initial=0.0)
+    short = left < np.minimum(own, NO_ROOM * depth)
+    cut = np.minimum((own - left) / 2, GIVEN * depth)
+    share = np.divide(cut, own, out=np.zeros_like(own), where=short)
+    end[before] += (bones.start - bones.end)[before] * share[:, None]
     return Bones(bones.start, end, bones.joint)
 
 

@@ -153,20 +153,21 @@ def _links(
     """
     links: tuple[list[NDArray[np.float64]], ...] = tuple([] for _ in joints)
     loose = np.flatnonzero(skeleton.deform & (length == 0))
-    tips = [
-        j for j in np.flatnonzero(skeleton.deform) if not ends[j] and length[j] > 0 and len(loose)
-    ]
+    has_end = np.array([len(those) > 0 for those in ends])
+    tips = np.flatnonzero(skeleton.deform & ~has_end & (length > 0))
+    away = joints[loose] - joints[tips, None]
+    far = np.linalg.norm(away, axis=2)
+    onward = np.einsum("tlc,tc->tl", away, direction[tips])
+    fits = (far >= SAME_PLACE) & ~skeleton.subtree[loose][:, tips].T
+    fits &= (far <= REACH * length[tips, None]) & (onward >= BACKWARD * far)
+    tip, goal = fits.nonzero()
+    fits[tip, goal] = probe.inner_part(joints[tips[tip]], joints[loose[goal]]) >= IN_BODY
     wanted: dict[int, list[tuple[float, int]]] = {}
-    for j in tips:
-        away = joints[loose] - joints[j]
-        far = np.linalg.norm(away, axis=1)
-        fits = (loose != j) & ~skeleton.subtree[loose, j] & (far >= SAME_PLACE)
-        fits &= (far <= REACH * length[j]) & (away @ direction[j] >= BACKWARD * far)
-        fits[fits] = probe.inner_part(joints[j], joints[loose[fits]]) >= IN_BODY
-        choice = _clear_choice(far[fits], joints[loose[fits]])
+    for j, distance, possible in zip(tips.tolist(), far, fits, strict=True):
+        choice = _clear_choice(distance[possible], joints[loose[possible]])
         if choice is not None:
-            k = loose[fits][choice]
-            wanted.setdefault(int(k), []).append((float(far[fits][choice]), int(j)))
+            k = int(loose[possible][choice])
+            wanted.setdefault(k, []).append((float(distance[possible][choice]), j))
     for k, suitors in wanted.items():
         choice = _clear_choice(
             np.array([far for far, _ in suitors]), joints[[j for _, j in suitors]]

@@ -65,15 +65,15 @@ class BodyProbe:
         points = np.asarray(points, np.float64)
         return np.where(self.inside(points), _to_nearest(points, self._skin), 0.0)
 
-    def way_out(self, start: NDArray[np.float64], direction: NDArray[np.float64]) -> float:
-        """Measure how far one can go from a point until outside; zero if not inside at all."""
+    def way_out(
+        self, start: NDArray[np.float64], direction: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """Measure how far one can go from points (p, 3) until outside; zero if never inside."""
         steps = np.arange(int(2 * self._resolution / STEP)) * STEP / self._resolution
-        inside = self.inside(start + steps[:, None] * direction)
-        if not inside[:ENTRY].any():
-            return 0.0
-        entry = int(inside.argmax())
-        outside = np.flatnonzero(~inside[entry:])
-        return float(steps[entry + outside[0]])
+        inside = self.inside(start[:, None] + steps[:, None] * direction[:, None])
+        entered = np.logical_or.accumulate(inside, axis=1)
+        left = (entered & ~inside).argmax(axis=1)
+        return np.where(inside[:, :ENTRY].any(axis=1), steps[left], 0.0)
 
     def _cells(self, points: NDArray[np.float64]) -> NDArray[np.int64]:
         return np.floor(points * self._resolution).astype(np.int64)
