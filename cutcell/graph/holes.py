@@ -39,6 +39,8 @@ WORTH = 20
 """Midpoints in doubt for which it is worth the time to halve a block."""
 LEAST = 2
 """Cells along the side of blocks that are not halved: it is no dearer to ask each midpoint."""
+TORN, COUNT = SIZE + 3, SIZE + 4
+"""Columns of a leaf after field and place: see `Leaves`, and how many clusters are near."""
 DEPTH = 12
 """More than blocks are ever halved."""
 SPLIT = 5e-3
@@ -68,30 +70,28 @@ def find_doubt(caps: Caps, resolution: int, winding_threshold: float) -> Doubt:
         lambda corner: _decide(clusters, resolution, winding_threshold, corner, top, coarse),
         [*corners, np.full(3, resolution)],  # the last one lies outside: never an empty list
     )
-    rows = leaves = 0
-    for blocks, fine, part in found:
+    rows = count = 0
+    for blocks, fine, leaves, _ in found:
         coarse[tuple(blocks.T)] += rows
-        fine[fine >= 0] += leaves
-        rows, leaves = rows + len(fine), leaves + len(part[0])
-    columns = zip(*(part for *_, part in found), strict=True)
-    place, field, is_torn, counts, near = (np.concatenate(column) for column in columns)
-    start = np.concatenate([[0], np.cumsum(counts)])
-    joined = Leaves(place, field, is_torn, start, near)
-    return Doubt(coarse, np.concatenate([fine for _, fine, _ in found]), joined, clusters)
+        fine[fine >= 0] += count
+        rows, count = rows + len(fine), count + len(leaves)
+    _, fine, leaves, near = (np.concatenate(parts) for parts in zip(*found, strict=True))
+    start = np.concatenate([[0], np.cumsum(leaves[:, COUNT], dtype=np.int64)])
+    field = np.ascontiguousarray(leaves[:, :SIZE])
+    place, is_torn = np.ascontiguousarray(leaves[:, SIZE:TORN]), leaves[:, TORN] > 0
+    return Doubt(coarse, fine, Leaves(place, field, is_torn, start, near), clusters)
 
 
 @njit(cache=True, nogil=True)
 def _decide(clusters, resolution, tau, corner, top, coarse):
     """Put the codes of the blocks in a cube of `top` cells into `coarse`.
 
-    Returns which blocks are not decided as a whole, shape (u, 3); the codes of their cells;
-    and of the leaves that these name the columns, with how many clusters are near in place of
-    where those start.
+    Returns which blocks are not decided as a whole, shape (u, 3); the codes of their cells; a
+    row for each leaf that these name: field, place, TORN, COUNT; and the clusters near them.
     """
     blocks, fine = np.empty((16, 3), np.int64), np.empty((16, BLOCK, BLOCK, BLOCK), np.int32)
-    place, fields, is_torn = np.empty((64, 3)), np.empty((64, SIZE)), np.empty(64, np.bool_)
-    counts, nearby, listed = np.empty(64, np.int64), np.empty(1024, np.int32), 0
-    rows = leaves = 0
+    leaves, nearby = np.empty((64, COUNT + 1)), np.empty(1024, np.int32)
+    rows = kept = listed = 0
     waiting, count = np.empty((64, 5), np.int64), 1  # blocks: corner, size and depth
     waiting[0, :3], waiting[0, 3], waiting[0, 4] = corner, top, 1
     # Of the blocks that the present one lies in: what is far from each, and what is not.
@@ -105,55 +105,73 @@ def _decide(clusters, resolution, tau, corner, top, coarse):
             continue
         half = size / (2 * resolution)
         q = x / resolution + half, y / resolution + half, z / resolution + half
-        way = between(middle[depth - 1], q)
-        middle[depth, 0], middle[depth, 1], middle[depth, 2] = q
         reach = half * np.sqrt(3)
-        far[depth] = far[depth - 1]
-        move(far[depth], way[0], way[1], way[2])
+        middle[depth, 0], middle[depth, 1], middle[depth, 2] = q
+        _take_over(far[depth - 1], middle[depth - 1], far[depth], q)
         among = near[depth - 1, : nears[depth - 1]]
         nears[depth] = set_apart(clusters, among, far[depth], near[depth], q, reach)
+        close = near[depth, : nears[depth]]
         field[:] = far[depth]
-        tears = view(clusters, near[depth, : nears[depth]], field, q, reach, SPLIT)
+        tears = view(clusters, close, field, q, reach, SPLIT)
         code = _code(field, tears, half, size, tau)
-        if size >= BLOCK:
-            a, b, c, wide = x // BLOCK, y // BLOCK, z // BLOCK, size // BLOCK
-            if code < 0:
-                coarse[a : a + wide, b : b + wide, c : c + wide] = code
-                continue
-            if size == BLOCK:
-                if rows == len(fine):
-                    blocks, fine = grown(blocks), grown(fine)
-                blocks[rows, 0], blocks[rows, 1], blocks[rows, 2] = a, b, c
-                coarse[a, b, c] = rows
-                rows += 1
+        a, b, c, wide = x // BLOCK, y // BLOCK, z // BLOCK, size // BLOCK
+        if size >= BLOCK and code < 0:
+            coarse[a : a + wide, b : b + wide, c : c + wide] = code
+            continue
+        if size == BLOCK:
+            if rows == len(fine):
+                blocks, fine = grown(blocks), grown(fine)
+            blocks[rows, 0], blocks[rows, 1], blocks[rows, 2] = a, b, c
+            coarse[a, b, c] = rows
+            rows += 1
         if size > BLOCK or (code == UNSURE and size > LEAST):
-            for corner8 in range(8):
-                child = waiting[count]
-                child[0] = x + size // 2 * (corner8 >> 2)
-                child[1] = y + size // 2 * (corner8 >> 1 & 1)
-                child[2] = z + size // 2 * (corner8 & 1)
-                child[3], child[4] = size // 2, depth + 1
-                count += 1
+            count = _halve(waiting, count)
             continue
         if code >= 0:
-            if leaves == len(place):
-                place, fields, is_torn = grown(place), grown(fields), grown(is_torn)
-                counts = grown(counts)
-            place[leaves, 0], place[leaves, 1], place[leaves, 2] = q
-            fields[leaves], is_torn[leaves], counts[leaves] = field, tears, 0
-            if code == UNSURE:
-                fields[leaves], is_torn[leaves], counts[leaves] = far[depth], False, nears[depth]
-                while listed + nears[depth] > len(nearby):
+            if kept == len(leaves):
+                leaves = grown(leaves)
+            asked = code == UNSURE
+            _keep(leaves[kept], far[depth] if asked else field, q, tears and not asked)
+            if asked:
+                leaves[kept, COUNT] = len(close)
+                while listed + len(close) > len(nearby):
                     nearby = grown(nearby)
-                nearby[listed : listed + nears[depth]] = near[depth, : nears[depth]]
-                listed += nears[depth]
-            code = leaves
-            leaves += 1
+                nearby[listed : listed + len(close)] = close
+                listed += len(close)
+            code = kept
+            kept += 1
         i, j, k = x % BLOCK, y % BLOCK, z % BLOCK
         fine[rows - 1, i : i + size, j : j + size, k : k + size] = code
-    of_leaves = place[:leaves].copy(), fields[:leaves].copy(), is_torn[:leaves].copy()
-    found = (*of_leaves, counts[:leaves].copy(), nearby[:listed].copy())
-    return blocks[:rows].copy(), fine[:rows].copy(), found
+    return blocks[:rows].copy(), fine[:rows].copy(), leaves[:kept].copy(), nearby[:listed].copy()
+
+
+@njit(cache=True, inline="always")
+def _take_over(field, place, mine, q):
+    """Move the field of a block around `place` to the middle of one of its halves."""
+    way = between(place, q)
+    mine[:] = field
+    move(mine, way[0], way[1], way[2])
+
+
+@njit(cache=True)
+def _halve(waiting, count):
+    """Put a block's eight halves in its place; return how many blocks wait."""
+    x, y, z, size, depth = waiting[count]
+    size //= 2
+    for corner in range(8):
+        half = waiting[count + corner]
+        half[0] = x + size * (corner >> 2)
+        half[1] = y + size * (corner >> 1 & 1)
+        half[2] = z + size * (corner & 1)
+        half[3], half[4] = size, depth + 1
+    return count + 8
+
+
+@njit(cache=True, inline="always")
+def _keep(leaf, field, q, is_torn):
+    leaf[:SIZE] = field
+    leaf[SIZE], leaf[SIZE + 1], leaf[SIZE + 2] = q
+    leaf[TORN], leaf[COUNT] = is_torn, 0
 
 
 @njit(cache=True)
