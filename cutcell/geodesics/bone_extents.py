@@ -15,6 +15,7 @@ from ..graph import CutCellGraph
 from ..rig import Skeleton
 from .bones import Bones
 from .chains import SAME_PLACE, find_chains
+from .nearest import NodeGrid
 from .probe import BodyProbe
 
 NO_ROOM = 2.0
@@ -32,7 +33,9 @@ REGION_POWER = 20
 """Skin belongs to joints by this power of how much nearer the nearest one is."""
 
 
-def fit_bones(graph: CutCellGraph, skeleton: Skeleton) -> tuple[Bones, NDArray[np.bool_]]:
+def fit_bones(
+    graph: CutCellGraph, skeleton: Skeleton, grid: NodeGrid
+) -> tuple[Bones, NDArray[np.bool_]]:
     """Find the bones of every joint that may carry weight.
 
     Parameters
@@ -40,6 +43,8 @@ def fit_bones(graph: CutCellGraph, skeleton: Skeleton) -> tuple[Bones, NDArray[n
     graph : CutCellGraph
     skeleton : Skeleton
         In the units of the graph's mesh.
+    grid : NodeGrid
+        Of the graph's nodes.
 
     Returns
     -------
@@ -48,7 +53,7 @@ def fit_bones(graph: CutCellGraph, skeleton: Skeleton) -> tuple[Bones, NDArray[n
     tip : array, shape (b,), bool
         Bones whose end no other joint tells; see `aim_tips`.
     """
-    probe = BodyProbe(graph)
+    probe = BodyProbe(graph, grid)
     chains = find_chains(skeleton, graph.lattice.to_unit(skeleton.joints), probe)
     end, joint = [], []
     for j in np.flatnonzero(skeleton.deform).tolist():

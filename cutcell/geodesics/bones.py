@@ -11,7 +11,7 @@ from ..checks import check_choice
 from ..errors import MeshError
 from ..graph import CutCellGraph
 from ..rig import Skeleton
-from .nearest import nearest_nodes
+from .nearest import NodeGrid
 
 LEAVES = ("point", "extend", "fit")
 TIE = 1e-9
@@ -159,7 +159,21 @@ def bone_samples(
     return bones.start[bone] + place_on_bone[:, None] * (bones.end - bones.start)[bone], bone
 
 
-def find_sources(graph: CutCellGraph, bones: Bones, samples: int) -> Sources:
+def node_grid(graph: CutCellGraph) -> NodeGrid:
+    """Sort the nodes that paths can reach into a grid.
+
+    Raises
+    ------
+    MeshError
+        The graph has no edges, so that nothing can be reached.
+    """
+    connected = graph.degree > 0
+    if not connected.any():
+        raise MeshError("every triangle of the mesh has collapsed into a point")
+    return NodeGrid(graph.nodes, connected, graph.lattice.resolution)
+
+
+def find_sources(graph: CutCellGraph, bones: Bones, samples: int, grid: NodeGrid) -> Sources:
     """Find the graph nodes nearest to evenly spaced points on each bone.
 
     Parameters
@@ -170,17 +184,11 @@ def find_sources(graph: CutCellGraph, bones: Bones, samples: int) -> Sources:
     samples : int
         N, points a bone, both ends included; a single one lies in the middle. With
         connectivity "any" at least one a lattice cell.
-
-    Raises
-    ------
-    MeshError
-        The graph has no edges, so that nothing can be reached.
+    grid : NodeGrid
+        Of the graph's nodes.
     """
-    connected = graph.degree > 0
-    if not connected.any():
-        raise MeshError("every triangle of the mesh has collapsed into a point")
     points, bone = bone_samples(graph, bones, samples)
-    point, node = nearest_nodes(graph.nodes, connected, points, graph.lattice.resolution, TIE)
+    point, node = grid.nearest(points, TIE)
     pairs = np.unique(bone[point] * len(graph.nodes) + node)
     own, where = (x.astype(np.int32) for x in np.divmod(pairs, len(graph.nodes)))
     straight = distance_to_segment(graph.nodes[where], bones.start[own], bones.end[own])

@@ -14,7 +14,7 @@ from ..progress import Progress, silent
 from ..rig import Skeleton
 from .any_angle import any_angle_paths, least_distances
 from .bone_extents import REGION_TIPS, REGION_WITHIN, aim_tips, fit_bones
-from .bones import LEAVES, Bones, Sources, bone_segments, find_sources
+from .bones import LEAVES, Bones, Sources, bone_segments, find_sources, node_grid
 from .fallback import NOT_ALLOWED, REACHED, UNREACHED, UNUSED, straight_to_nearest
 from .shortest_paths import shortest_paths
 
@@ -177,7 +177,7 @@ def bone_distances(
         bones = bone_segments(skeleton, leaf)
         ends = graph.lattice.to_unit(bones.start), graph.lattice.to_unit(bones.end)
         bones = Bones(*ends, bones.joint)
-        sources = find_sources(graph, bones, samples)
+        sources = find_sources(graph, bones, samples, node_grid(graph))
     by_node = _paths(graph, sources, bones, targets, nearest_joints, within, progress)
     measured = np.unique(bones.joint)
     of_joint = np.full((len(skeleton.joints), len(targets)), np.inf)
@@ -231,11 +231,12 @@ def _fitted(
     graph: CutCellGraph, skeleton: Skeleton, samples: int, progress: Progress
 ) -> tuple[Bones, Sources]:
     """Fit bones to the body, and find where their distances begin."""
-    bones, tip = fit_bones(graph, skeleton)
-    sources = find_sources(graph, bones, samples)
+    grid = node_grid(graph)
+    bones, tip = fit_bones(graph, skeleton, grid)
+    sources = find_sources(graph, bones, samples, grid)
     if tip.any():
         bones = aim_tips(graph, bones, tip, *_reach_of_tips(graph, sources, bones, tip, progress))
-        sources = sources.replaced(tip, find_sources(graph, bones.some(tip), samples))
+        sources = sources.replaced(tip, find_sources(graph, bones.some(tip), samples, grid))
     return bones, sources
 
 

@@ -1,4 +1,4 @@
-"""The nodes nearest to points in space, by a grid over the unit cube.
+"""The nodes near points in space, by a grid over the unit cube.
 
 There are a few hundred points and many nodes: sorting the nodes into a coarse grid, which
 takes one pass, is far quicker than growing a tree over them.
@@ -16,42 +16,57 @@ MOST_CELLS = 64
 """Along each side of the grid, so that it never takes more memory than the nodes."""
 
 
-def nearest_nodes(
-    nodes: NDArray[np.float64],
-    chosen: NDArray[np.bool_],
-    points: NDArray[np.float64],
-    resolution: int,
-    tie: float,
-) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Find the nodes nearest to each point, and all that are as near but for rounding.
+class NodeGrid:
+    """Nodes sorted into a grid.
 
     Parameters
     ----------
     nodes : array, shape (N, 3)
         In the unit cube.
     chosen : array, shape (N,), bool
-        Which of them may be found; one at least.
-    points : array, shape (p, 3)
-        Anywhere.
+        Which of them may be found.
     resolution : int
         R, of the lattice that the nodes are of.
-    tie : float
-        Relative: how much farther a node may be than the nearest.
-
-    Returns
-    -------
-    point, node : arrays, shape (f,), int64
-        What was found, ascending by point.
     """
-    side = max(1, min(resolution // IN_A_CELL, MOST_CELLS))
-    start, order = _sort_into_cells(nodes, chosen, side)
-    room = 8 * len(points)  # the middle of a lattice cell is as near to all its corners
-    while True:
-        found = np.empty((2, room), np.int64)
-        count = _find_nearest(nodes, start, order, side, points, 1 + tie, found)
-        if count <= room:
-            return found[0, :count], found[1, :count]
-        room = count
+
+    def __init__(
+        self, nodes: NDArray[np.float64], chosen: NDArray[np.bool_], resolution: int
+    ) -> None:
+        self._nodes, self._resolution = nodes, resolution
+        self._side = max(1, min(resolution // IN_A_CELL, MOST_CELLS))
+        self._start, self._order = _sort_into_cells(nodes, chosen, self._side)
+
+    def nearest(
+        self, points: NDArray[np.float64], tie: float
+    ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """Find the nodes nearest to each point, and all that are as near but for rounding.
+
+        Parameters
+        ----------
+        points : array, shape (p, 3)
+            Anywhere.
+        tie : float
+            Relative: how much farther a node may be than the nearest.
+
+        Returns
+        -------
+        point, node : arrays, shape (f,), int64
+            What was found, ascending by point.
+        """
+        room = 8 * len(points)  # the middle of a lattice cell is as near to all its corners
+        while True:
+            found = np.empty((2, room), np.int64)
+            grid = self._nodes, self._start, self._order, self._side
+            count = _find_nearest(grid, points, 1 + tie, found)
+            if count <= room:
+                return found[0, :count], found[1, :count]
+            room = count
+
+    def beside(self, points: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """Tell for each point (p, 3) whether a node is in its lattice cell or next to it."""
+        # What is far outside goes where no neighbour is in the cube.
+        grid = self._nodes, self._start, self._order, self._side
+        return _beside(grid, self._resolution, np.clip(points, -1, 2))
 
 
 @njit(cache=True, inline="always")
@@ -71,7 +86,7 @@ def _sort_into_cells(nodes, chosen, side):
             cell[n] = (x * side + y) * side + z
             start[cell[n] + 1] += 1
     start = np.cumsum(start)
-    cursor, order = start.copy(), np.empty(start[-1], np.int64)
+    cursor, order = start.copy(), np.empty(start[-1], np.int32)
     for n in range(count):
         if cell[n] >= 0:
             order[cursor[cell[n]]] = n
@@ -80,8 +95,9 @@ def _sort_into_cells(nodes, chosen, side):
 
 
 @njit(cache=True, nogil=True)
-def _find_nearest(nodes, start, order, side, points, slack, found):
+def _find_nearest(grid, points, slack, found):
     """List nodes for each point; return how many there are, also beyond the room for them."""
+    nodes, start, order, side = grid
     count = 0
     for p in range(len(points)):
         x, y, z = points[p]
@@ -113,6 +129,35 @@ def _find_nearest(nodes, start, order, side, points, slack, found):
                             found[0, count], found[1, count] = p, order[o]
                         count += 1
     return count
+
+
+@njit(cache=True, nogil=True)
+def _beside(grid, resolution, points):
+    nodes, start, order, side = grid
+    found = np.zeros(len(points), np.bool_)
+    for p in range(len(points)):
+        x, y, z = points[p, 0] * resolution, points[p, 1] * resolution, points[p, 2] * resolution
+        x, y, z = np.floor(x), np.floor(y), np.floor(z)
+        x0, x1 = _cell((x - 1) / resolution, side), _cell((x + 2) / resolution, side)
+        y0, y1 = _cell((y - 1) / resolution, side), _cell((y + 2) / resolution, side)
+        z0, z1 = _cell((z - 1) / resolution, side), _cell((z + 2) / resolution, side)
+        for i in range(x0, x1 + 1):
+            for j in range(y0, y1 + 1):
+                row = (i * side + j) * side
+                for o in range(start[row + z0], start[row + z1 + 1]):
+                    n = order[o]
+                    found[p] |= (
+                        abs(np.floor(nodes[n, 0] * resolution) - x) <= 1
+                        and abs(np.floor(nodes[n, 1] * resolution) - y) <= 1
+                        and abs(np.floor(nodes[n, 2] * resolution) - z) <= 1
+                    )
+                    if found[p]:
+                        break
+                if found[p]:
+                    break
+            if found[p]:
+                break
+    return found
 
 
 @njit(cache=True, inline="always")

@@ -8,14 +8,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..graph import INTERIOR, CutCellGraph
 from ..graph.interior import OUTSIDE, point_number
+from .nearest import NodeGrid
 
 STEP = 0.25
 """Lattice cells between the points at which a ray is looked at."""
 ENTRY = 5
 """Steps within which a ray must have come inside; a joint may lie right under the skin."""
-MARGIN = 2
-"""Cells around the cube that get keys. Skin may lie right on its side, in the first of them;
-the second stays empty, so that counting on from the end of a column finds nothing."""
 ALONG = np.linspace(0, 1, 17)
 """Where a segment is looked at."""
 
@@ -29,28 +27,26 @@ class BodyProbe:
     ----------
     graph : CutCellGraph
         Points are in its unit cube.
+    grid : NodeGrid
+        Of its nodes.
     """
 
-    def __init__(self, graph: CutCellGraph) -> None:
+    def __init__(self, graph: CutCellGraph, grid: NodeGrid) -> None:
         self._graph = graph
+        self._grid = grid
         self._resolution = graph.lattice.resolution
-        self._side = self._resolution + 2 * MARGIN
-        self._skin = graph.nodes[graph.node_kind != INTERIOR]
-        self._filled = np.sort(self._keys(self._cells(graph.nodes)))
 
     def inside(self, points: ArrayLike) -> NDArray[np.bool_]:
         """Tell for each point (..., 3) whether its lattice cell's centre is inside."""
         points = np.asarray(points, np.float64)
-        cells = self._cells(points.reshape(-1, 3))
+        cells = np.floor(points.reshape(-1, 3) * self._resolution).astype(np.int64)
         found = _inside(cells, self._resolution, *self._graph.interior.table)
         return found.reshape(points.shape[:-1])
 
     def near(self, points: ArrayLike) -> NDArray[np.bool_]:
         """Tell for each point (..., 3) whether the body is in its lattice cell or next to it."""
         points = np.asarray(points, np.float64)
-        # What is far outside goes where neither it nor its neighbours have skin.
-        cells = np.clip(self._cells(points.reshape(-1, 3)) + MARGIN, 0, self._side)
-        return _near(cells, self._side, self._filled).reshape(points.shape[:-1])
+        return self._grid.beside(points.reshape(-1, 3)).reshape(points.shape[:-1])
 
     def inner_part(
         self, start: ArrayLike, end: ArrayLike, *, strictly: bool = False
@@ -63,7 +59,8 @@ class BodyProbe:
     def depth(self, points: ArrayLike) -> NDArray[np.float64]:
         """Measure from each point (p, 3) to the nearest skin; zero outside."""
         points = np.asarray(points, np.float64)
-        return np.where(self.inside(points), _to_nearest(points, self._skin), 0.0)
+        skin = self._graph.nodes[self._graph.node_kind != INTERIOR]
+        return np.where(self.inside(points), _to_nearest(points, skin), 0.0)
 
     def way_out(
         self, start: NDArray[np.float64], direction: NDArray[np.float64]
@@ -74,32 +71,6 @@ class BodyProbe:
         entered = np.logical_or.accumulate(inside, axis=1)
         left = (entered & ~inside).argmax(axis=1)
         return np.where(inside[:, :ENTRY].any(axis=1), steps[left], 0.0)
-
-    def _cells(self, points: NDArray[np.float64]) -> NDArray[np.int64]:
-        return np.floor(points * self._resolution).astype(np.int64)
-
-    def _keys(self, cells: NDArray[np.int64]) -> NDArray[np.int64]:
-        x, y, z = (cells + MARGIN).T
-        return (x * self._side + y) * self._side + z
-
-
-@njit(cache=True, nogil=True)
-def _near(cells, side, filled):
-    """Tell for each cell whether it or one of the 26 around it is among the filled."""
-    found = np.zeros(len(cells), np.bool_)
-    for p in range(len(cells)):
-        x, y, z = cells[p]
-        for i in (x, x - 1, x + 1):  # mostly the first is filled
-            for j in (y, y - 1, y + 1):
-                # Of the three that lie above each other, the first that is filled or beyond.
-                low = (i * side + j) * side + z - 1
-                k = np.searchsorted(filled, low)
-                found[p] |= k < len(filled) and filled[k] <= low + 2
-                if found[p]:
-                    break
-            if found[p]:
-                break
-    return found
 
 
 @njit(cache=True, nogil=True)

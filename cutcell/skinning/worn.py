@@ -8,7 +8,7 @@ from scipy.sparse import csr_array
 
 from ..compiled import lean
 from ..geodesics.bones import TIE
-from ..geodesics.nearest import nearest_nodes
+from ..geodesics.nearest import NodeGrid
 from ..graph import SURFACE, CutCellGraph
 
 FOREIGN = 2.0
@@ -129,7 +129,7 @@ def _nearest_skin(
     node = np.concatenate([vertices, crossings[kept]])
     corners = np.concatenate([np.stack([vertices] * 3, axis=1), hit[kept]])
     places, resolution = graph.nodes[node], graph.lattice.resolution
-    of, nearest = nearest_nodes(places, np.ones(len(node), bool), points, resolution, TIE)
+    of, nearest = NodeGrid(places, np.ones(len(node), bool), resolution).nearest(points, TIE)
     nearest = nearest[np.searchsorted(of, np.arange(len(points)))]  # the first of equals
     away = np.linalg.norm(places[nearest] - points, axis=1)
     return away, corners[nearest]

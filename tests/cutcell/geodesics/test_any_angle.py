@@ -9,7 +9,7 @@ import trimesh
 from cutcell import ParameterError, Skeleton, TriangleMesh, bone_distances, build_graph
 from cutcell.geodesics import distance_to_segment
 from cutcell.geodesics.any_angle import SPAN, any_angle_paths, least_distances
-from cutcell.geodesics.bones import find_sources
+from cutcell.geodesics.bones import find_sources, node_grid
 from cutcell.geodesics.front import in_halves
 from tests import meshes
 from tests.bars import fork
@@ -146,7 +146,7 @@ def test_the_nearest_joints_are_those_of_all(nearest):
 def test_some_joints_are_measured_where_no_other_is_much_nearer():
     graph, skeleton = chain_in_the_l()
     bones = bone_distances(graph, skeleton).bones
-    sources = find_sources(graph, bones, 5)
+    sources = find_sources(graph, bones, 5, node_grid(graph))
     nodes = np.arange(len(graph.nodes), dtype=np.int32)
     every = any_angle_paths(graph, sources, bones, nodes)
     least = least_distances(graph, sources, bones)

@@ -5,6 +5,7 @@ import pytest
 
 from cutcell import Skeleton, TriangleMesh, bone_distances, build_graph
 from cutcell.geodesics.bone_extents import fit_bones
+from cutcell.geodesics.bones import node_grid
 from cutcell.geodesics.probe import BodyProbe
 from tests import meshes
 from tests.bars import grid_box
@@ -21,13 +22,13 @@ def on_axis(*x):
 
 def ends(graph, skeleton, joint):
     """List where a joint's bones end, in the file's units."""
-    bones, _ = fit_bones(graph, skeleton)
+    bones, _ = fit_bones(graph, skeleton, node_grid(graph))
     return graph.lattice.to_file(bones.end[bones.joint == joint])
 
 
 def test_probe_knows_a_box():
     graph = build_graph(TriangleMesh(*meshes.box(0.0, 1.0)), 32)
-    probe = BodyProbe(graph)
+    probe = BodyProbe(graph, node_grid(graph))
     points = np.array([[0.5, 0.5, 0.5], [0.9, 0.5, 0.5], [1.02, 0.5, 0.5], [1.3, 0.5, 0.5]])
     np.testing.assert_array_equal(probe.inside(points), [True, True, False, False])
     np.testing.assert_array_equal(probe.near(points), [True, True, True, False])
@@ -88,7 +89,7 @@ def test_joints_without_a_tree_get_one(order):
     graph = limb()
     joints = np.array(on_axis(0.1, 0.25, 0.4, 0.55, 0.7))
     skeleton = Skeleton(joints[order], [-1] * 5)
-    bones, tip = fit_bones(graph, skeleton)
+    bones, tip = fit_bones(graph, skeleton, node_grid(graph))
     length = np.linalg.norm(graph.lattice.to_file(bones.end) - joints[order][bones.joint], axis=1)
     assert tip.sum() == 1
     np.testing.assert_allclose(length[~tip], 0.15, atol=1e-9)
@@ -96,7 +97,7 @@ def test_joints_without_a_tree_get_one(order):
 
 def test_two_lone_joints_stay_points():
     graph = limb()
-    bones, tip = fit_bones(graph, Skeleton(on_axis(0.2, 0.8), [-1, -1]))
+    bones, tip = fit_bones(graph, Skeleton(on_axis(0.2, 0.8), [-1, -1]), node_grid(graph))
     np.testing.assert_array_equal(bones.start, bones.end)
     assert tip.all()
 
