@@ -11,6 +11,7 @@ const GAP = 6
 class Room {
   constructor({overlay, stage, orbit, changed, rested}) {
     Object.assign(this, {overlay, stage, orbit, changed, rested})
+    this.fitting = new Fit(stage)
     this.factor = 1  // how many times as far away as without cards
     this.observer = new ResizeObserver(() => this.make())
     for (const part of [overlay.canvas, overlay.legend, overlay.transport]) { this.observer.observe(part) }
@@ -34,6 +35,7 @@ class Room {
     if (seen === this.seen) { return }
     this.seen = seen
     this.stage.room = room
+    this.overlay.showBone(null)  // something else is now where the pointer rests
     const fitted = this.fit(room)
     // A few pixels change nothing.
     if (this.fitted && Math.abs(fitted / this.fitted - 1) > 0.03) {
@@ -51,7 +53,8 @@ class Room {
     const slim = box.width < SLIM
     if (slim || (several && this.stage.tilesIn(room)[0][2] < NARROW_VIEW)) { room.top = UNDER_TOOLS }
     const {legend, transport} = this.overlay
-    const take = (edge, pixels) => { room[edge] = Math.max(room[edge], pixels + GAP) }
+    const take = (edge, pixels, of = room) => { of[edge] = Math.max(of[edge], pixels + GAP) }
+    const beside = {left: 0, right: 0}
     for (const card of cards) {
       const {left, right, top, bottom, width, height} = card.getBoundingClientRect()
       if (!width || !height) { continue }
@@ -60,24 +63,70 @@ class Room {
         if (below) { take("bottom", box.bottom - top) }
         // A notice does not push aside what has the whole of a wide canvas.
         else if (slim || several) { take("top", bottom - box.top) }
-      } else if (width > Math.min(LARGE, 0.28 * box.width)) {
+      } else {
+        const of = slim || several || width > LARGE ? room : beside
         const after = left + right > box.left + box.right
-        if (after) { take("right", box.right - left) } else { take("left", right - box.left) }
+        if (after) { take("right", box.right - left, of) } else { take("left", right - box.left, of) }
       }
     }
-    // In a wide canvas they stand beside one character, but before those of several narrow views.
     const narrow = several && this.stage.tilesIn(room)[0][2] < NARROW_FEET
+    // There they take room whatever stands behind them, and whichever way it is turned.
     for (const part of slim || narrow ? [legend, transport] : []) {
       if (!part.hidden) { take("bottom", box.bottom - part.getBoundingClientRect().top) }
     }
-    return room
+    return slim || several ? room : this.stepAside(this.rise(this.stepAside(room, beside), box), beside)
+  }
+
+  // A wide canvas has room beside one character: that goes aside no farther than it must.
+  stepAside(room, beside) {
+    const {clientWidth: width} = this.stage.element
+    const [left, right] = ["left", "right"].map((edge) => Math.max(room[edge], beside[edge]))
+    let half = GAP
+    this.eachPixel(room, (aside) => { half = Math.max(half, Math.abs(aside) + GAP) })
+    if (left + 2 * half + right > width) { return {...room, left, right} }
+    const middle = (room.left + width - room.right) / 2
+    const shift = 2 * (Math.min(Math.max(middle, left + half), width - right - half) - middle)
+    return {...room, left: room.left + Math.max(shift, 0), right: room.right + Math.max(-shift, 0)}
+  }
+
+  // What is at the edges of a wide canvas takes room only where the character would be behind it.
+  rise(room, box) {
+    const {legend, transport, hint, root} = this.overlay
+    const x = (box.width + room.left - room.right) / 2
+    const y = (box.height + room.top - room.bottom) / 2
+    const parts = [legend, transport, hint, root.querySelector(".tools")]
+      .map((part) => part.getBoundingClientRect()).filter(({width}) => width)
+      .map(({left, right, top, bottom}) => ({
+        left: left - box.left - GAP - x, right: right - box.left + GAP - x,
+        ...top + bottom < box.top + box.bottom
+          ? {edge: "top", way: -1, above: y, pixels: bottom - box.top + GAP}
+          : {edge: "bottom", way: 1, above: box.height - y, pixels: box.bottom - top + GAP},
+      }))
+    const risen = {...room}
+    this.eachPixel(room, (aside, up) => {
+      for (const {left, right, edge, way, above, pixels} of parts) {
+        if (above + way * up < pixels && aside > left && aside < right && pixels > risen[edge]) {
+          risen[edge] = pixels
+        }
+      }
+    })
+    return risen
+  }
+
+  // Where the points of the character are seen by whoever begins to look.
+  eachPixel(room, see) {
+    this.fitting.eachPixel(this.way, this.orbit.home.target, this.fit(room), see)
+  }
+
+  // Where one looks from at the beginning.
+  get way() {
+    const {yaw, pitch} = this.orbit.home
+    return [Math.cos(pitch) * Math.sin(yaw), Math.sin(pitch), Math.cos(pitch) * Math.cos(yaw)]
   }
 
   // How far away the view that one begins with must be.
   fit(room) {
-    const {yaw, pitch, target} = this.orbit.home
-    const way = [Math.cos(pitch) * Math.sin(yaw), Math.sin(pitch), Math.cos(pitch) * Math.cos(yaw)]
-    return this.stage.fitting(way, target, room)
+    return this.fitting.distance(this.way, this.orbit.home.target, room)
   }
 
   fits(fitted) {
@@ -88,11 +137,11 @@ class Room {
   // Begins to look from where the server says, from as far as this window needs; or, for now, from
   // somewhere else. What is told of cameras knows no cards.
   frame({position, focal_point: target, now}) {
+    this.orbit.setHome(position, target)
+    this.fitted = null
     this.make()
-    const offset = position.map((x, i) => x - target[i])
-    const direction = offset.map((x) => x / Math.hypot(...offset))
-    const distance = this.stage.fitting(direction, target, this.stage.room)
-    this.orbit.setHome(direction.map((x, i) => target[i] + distance * x), target)
+    const distance = this.fit(this.stage.room)
+    this.orbit.setHome(this.way.map((x, i) => target[i] + distance * x), target)
     this.fits(distance)
     if (now) {
       this.orbit.look(now.position, now.focal_point)

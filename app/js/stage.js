@@ -180,40 +180,6 @@ class Stage {
     return Number.isFinite(b[0]) ? b : [-1, 1, -1, 1, -1, 1]
   }
 
-  // How far the eye must be from the middle to see all, in what cards leave free, along a direction.
-  fitting(direction, target, room) {
-    const [, , w, h] = this.tilesIn(room).reduce((a, b) => a[2] / a[3] < b[2] / b[3] ? a : b)
-    const slope = Math.tan(VIEW_ANGLE * Math.PI / 360)
-    const flat = Math.hypot(direction[0], direction[2]) || 1
-    const right = [direction[2] / flat, 0, -direction[0] / flat]
-    const up = [0, 1, 2].map((k) => {
-      const [i, j] = [(k + 1) % 3, (k + 2) % 3]
-      return direction[i] * right[j] - direction[j] * right[i]
-    })
-    const taken = this.taken(room, w)
-    const high = Math.max(h - taken.top - taken.bottom, h / 4, 1)
-    const wide = Math.max(w - taken.left - taken.right, w / 4, 1)
-    let distance = 0
-    this.eachPoint((x, y, z) => {
-      const p = [x - target[0], y - target[1], z - target[2]]
-      const u = Math.abs(p[0] * up[0] + p[1] * up[1] + p[2] * up[2])
-      const r = Math.abs(p[0] * right[0] + p[1] * right[1] + p[2] * right[2])
-      const d = p[0] * direction[0] + p[1] * direction[1] + p[2] * direction[2]
-      distance = Math.max(distance, Math.max(u / high, r / wide) * h / slope + d)
-    })
-    return 1.05 * (distance || Math.hypot(...target) || 4)
-  }
-
-  // What a first look must see: the character, all points of it or a good part.
-  eachPoint(see) {
-    for (const figure of this.figures.values()) {
-      const {rest, kind} = figure
-      if (kind !== "surface" || !rest?.length || !isCharacter(figure)) { continue }
-      const step = 3 * Math.max(1, Math.floor(rest.length / 3 / FITTED))
-      for (let i = 0; i < rest.length; i += step) { see(rest[i], rest[i + 1], rest[i + 2]) }
-    }
-  }
-
   // What is not for the character, of a view of some width.
   taken(room, width) {
     if (this.views.length < 2) { return room }
@@ -276,8 +242,6 @@ class Stage {
     this.window.delete()
   }
 }
-
-const FITTED = 20000  // points of a figure that are looked at to see all of it
 
 // What is to be seen whole; bones may reach far out of it, those above all that move nothing.
 function isCharacter(figure) {

@@ -1,0 +1,62 @@
+"""What lies over the canvas of a wide window leaves the character free."""
+
+import pytest
+from playwright.sync_api import expect
+
+from tests.app.browser import LOAD_MS, Visit
+
+WIDE = {"width": 1440, "height": 900}
+
+# How many points of the body at rest are seen behind an element of the page.
+BEHIND = """(element) => {
+  const {stage, overlay} = window.__cutcell
+  const canvas = overlay.canvas.getBoundingClientRect()
+  const {left, right, top, bottom} = element.getBoundingClientRect()
+  const {rest} = stage.figures.get("body")
+  let behind = 0
+  for (let i = 0; i < rest.length; i += 3) {
+    const [x, y] = stage.project([rest[i], rest[i + 1], rest[i + 2]])
+    const across = canvas.left + x >= left && canvas.left + x <= right
+    behind += across && canvas.top + y >= top && canvas.top + y <= bottom
+  }
+  return behind
+}"""
+MIDDLE = "__cutcell.stage.room.left - __cutcell.stage.room.right"
+
+
+@pytest.fixture(params=["rabbit", "biped"])
+def visit(request, browser, url):
+    visit = Visit(browser, f"{url}/?rig={request.param}", viewport=WIDE)
+    visit.wait_until_bound()
+    yield visit
+    visit.close()
+
+
+def behind(visit, place):
+    place.wait_for()
+    visit.settle()
+    return place.evaluate(BEHIND)
+
+
+def test_nothing_over_a_wide_canvas_hides_a_part_of_the_character(visit):
+    for place in (".legend", ".hint", ".tools"):
+        assert behind(visit, visit.page.locator(place)) == 0, place
+    home = visit.page.evaluate(MIDDLE)
+    visit.click_vertex()
+    visit.settle()
+    moved = visit.page.evaluate(MIDDLE) != home
+    assert moved == visit.url.endswith("rabbit"), "no farther aside than it must"
+    if moved:  # and with it what the pointer rested on
+        expect(visit.page.locator(".bone")).to_be_hidden()
+    assert behind(visit, visit.card) == 0
+    assert behind(visit, visit.page.locator(".legend")) == 0
+    visit.close_card()
+    visit.settle()
+    assert visit.page.evaluate(MIDDLE) == home
+    visit.panel("Pose")
+    visit.button("Play").click()
+    visit.page.wait_for_function("__cutcell.report().playing", timeout=LOAD_MS)
+    bar = visit.page.locator(".transport")
+    expect(bar).to_be_visible()
+    visit.button("Halt the motion").click()
+    assert behind(visit, bar) == 0
