@@ -22,7 +22,8 @@ INTERIOR = _rgb(255, 108, 12)
 SURFACE = _rgb(153, 203, 67)
 
 BODY = _rgb(201, 206, 214)
-ATTACHMENT = _rgb(163, 170, 182)
+# Told from BODY and UNREACHED in a legend, too.
+ATTACHMENT = _rgb(108, 116, 132)
 BONE = _rgb(236, 239, 244)
 BONE_IDLE = _rgb(150, 158, 172)
 BONE_EDGE = _rgb(38, 45, 58)

@@ -39,3 +39,9 @@ def test_neighbouring_joints_have_different_colours():
     colors = palette.joint_colors(np.arange(60) - 1)
     assert ((colors >= 0) & (colors <= 1)).all()
     assert np.abs(np.diff(colors, axis=0)).max(axis=1).min() > 0.1
+
+
+def test_greys_that_stand_for_different_things_are_told_apart():
+    greys = [palette.BODY, palette.UNREACHED, palette.ATTACHMENT]
+    light = np.array(greys) @ [0.2126, 0.7152, 0.0722]
+    assert (np.diff(light) < -0.12).all()
