@@ -50,6 +50,12 @@ class History:
         self._future.clear()
         self._now, self._last = now, (changed, time)
 
+    def withdraw(self, now: Choices) -> None:
+        """Take a choice back that could not be: what is chosen now was so before it."""
+        self._now = now
+        if self._past and self._past[-1] == now:
+            self._past.pop()
+
     def undo(self) -> Choices | None:
         """Return what was chosen before, and make it what is chosen now."""
         return self._go(self._past, self._future)

@@ -124,9 +124,15 @@ def layout(session: Session) -> pmui.Page:
         wide = event.new >= NARROW
         session.later(lambda: result.param.update(sidebar_open=wide))
 
+    def told(event: Any) -> None:
+        # Over the canvas nobody reads what lies behind the sidebar.
+        if event.new and event.new[0] == "error" and 0 < session.view.window_width < NARROW:
+            session.later(lambda: result.param.update(sidebar_open=False))
+
     let_go(result)
     result.param.watch(themed, "dark_theme")
     session.view.param.watch(sized, "window_width")
+    session.state.param.watch(told, "message")
     session.view.param.watch(remembered, "dark")
     session.state.dark = result.dark_theme
     return result

@@ -50,6 +50,7 @@ class Session:
         self._closed = False
         self.falloffs: dict[str, tuple[Any, Any]] = {}
         self._bound_for: dict[str, Any] = {}
+        self._held: dict[str, Any] = {}
         self._timer: threading.Timer | None = None
         self.memo = Memo()
         seen = [name for name in self.state.param if name not in UNSEEN]
@@ -96,23 +97,45 @@ class Session:
 
     # Computing
 
-    def bind(self) -> None:
-        """Compute graph, distances and weights of the character that stands there."""
+    def bind(self, told: tuple[str, str] | None = None) -> None:
+        """Compute graph, distances and weights of the character that stands there.
+
+        Parameters
+        ----------
+        told : (severity, sentence), optional
+            What is still to be read when it is done.
+        """
         state = self.state
         rig, method = state.rig, weights.generous(self)
         if rig is None:
             return
-        self._bound_for = method_of(state, GRAPH)
+        graph = self._bound_for = method_of(state, GRAPH)
 
         def done(binding: Any) -> None:
+            self._held = graph
             binding = weights.bound(self, binding, method)
             note = self.opening.take_note()
-            message = ("info", note) if note else None
+            message = ("info", note) if note and told is None else told
             state.param.update(binding=binding, field=None, message=message)
             if (state.falloff, state.alpha) != (method["falloff"], method["alpha"]):
                 weights.weigh(self)  # another falloff was chosen in the meantime
 
-        self.start(lambda progress: cutcell.bind(rig, progress=progress, **method), done)
+        self.start(
+            lambda progress: cutcell.bind(rig, progress=progress, **method),
+            done,
+            failed=lambda: self._go_back(graph),
+        )
+
+    def _go_back(self, graph: dict[str, Any]) -> None:
+        """Choose what the page holds instead of what no graph came of; at first, the defaults."""
+        state = self.state
+        held = self._held if state.binding is not None else method_of(State(), GRAPH)
+        if method_of(state, GRAPH) != graph or graph == held:
+            return
+        self._bound_for = held
+        self.habits.withdraw(held)
+        if state.binding is None:
+            self.bind(state.message)
 
     def _rebind(self) -> None:
         """Compute again if the graph's parameters are others than those last computed for."""
@@ -125,25 +148,32 @@ class Session:
             self.state.param.update(
                 busy=False, message=("info", "Cancelled. The page keeps what it had.")
             )
+            if self.state.binding is not None:
+                self._go_back(self._bound_for)
 
     def start(
         self,
         work: Callable[[Progress], Any],
         done: Callable[[Any], None],
         turn: Turn = COMPUTING,
+        failed: Callable[[], None] = lambda: None,
     ) -> None:
-        """Do some work that the page shows progress of; it stops what went on before."""
+        """Do some work that the page shows progress of; it stops what went on before.
+
+        What goes wrong is told, and then `failed` is called.
+        """
 
         def finish(result: Any) -> None:
             self.state.busy = self.jobs("main").running
             done(result)
 
-        def failed(error: Exception) -> None:
+        def went_wrong(error: Exception) -> None:
             self.state.busy = False
             self.fail(error)
+            failed()
 
         self.state.param.update(busy=True, stage="", fraction=0.0)
-        self.jobs("main").start(work, finish, failed, self._report, turn)
+        self.jobs("main").start(work, finish, went_wrong, self._report, turn)
 
     def _report(self, stage: str, fraction: float) -> None:
         self.state.param.update(stage=stage, fraction=fraction)

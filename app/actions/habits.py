@@ -47,6 +47,12 @@ class Habits:
         self._history.note(taken(session.state), time.monotonic())
         self._tell()
 
+    def withdraw(self, choices: dict[str, Any]) -> None:
+        """Choose something again in place of what cannot be; nobody goes back to that."""
+        self._choose(choices)
+        self._history.withdraw(taken(self._session.state))
+        self._tell()
+
     def looked(self, *events: Any) -> None:
         """Note that the camera moved, or the tour went on, or a vertex was clicked."""
         self._tell()
@@ -132,11 +138,13 @@ class Habits:
             state.joint = int(below[0])
 
     def _go(self, choices: dict[str, Any] | None) -> None:
-        if not choices:
-            return
+        if choices:
+            self._choose(choices)
+            self._tell()
+
+    def _choose(self, choices: dict[str, Any]) -> None:
         self._going = True
         try:
             self._session.state.param.update(**choices)
         finally:
             self._going = False
-        self._tell()

@@ -63,6 +63,7 @@ const TOOLS = [
 // Elements that have a use of their own for keys.
 const TYPED = "input, textarea, select, [contenteditable], [role=combobox], [role=listbox], "
   + "[role=option], [role=menu], [role=menuitem], [role=slider], [role=spinbutton], [role=tab], dialog"
+const BOX = "input[type=text]:not([role])"
 const PRESSED = "button, a, summary, [role=button], [role=switch], [role=checkbox]"
 
 class Keys {
@@ -134,6 +135,8 @@ class Keys {
   pressed(e) {
     if (e.defaultPrevented || e.altKey) { return }
     const over = e.composedPath().filter((part) => part instanceof Element)
+    // A number that was entered is done with: its box would not take another one otherwise.
+    if (e.key === "Enter") { setTimeout(() => over.find((part) => part.matches(BOX))?.blur()) }
     if (over.some((part) => part.matches(TYPED))) { return }
     const control = e.ctrlKey || e.metaKey
     const name = e.key.toLowerCase()

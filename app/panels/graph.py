@@ -129,13 +129,17 @@ def _cut(state: State) -> tuple[Any, Any]:
     return state.param.cut_axis, state.param.slicing
 
 
+def _ends(value: int) -> dict[str, int]:
+    """Return between which resolutions the slider moves: the useful ones, and the chosen one."""
+    return {"start": min(16, value), "end": max(160, value)}
+
+
 def _build(session: Session) -> list[Any]:
     state = session.state
     resolution = pmui.EditableIntSlider(
         label="Resolution",
         value=state.resolution,
-        start=16,
-        end=160,
+        **_ends(state.resolution),
         step=8,
         size="small",
         margin=GAP,
@@ -146,7 +150,8 @@ def _build(session: Session) -> list[Any]:
         state.resolution = event.new
 
     def shown(event: Any) -> None:
-        resolution.value = event.new
+        # The box may take the slider's ends along, and they must come back.
+        resolution.param.update(value=event.new, **_ends(event.new))
 
     resolution.param.watch(chosen, "value_throttled")
     state.param.watch(shown, "resolution")

@@ -4,6 +4,7 @@ import re
 import shutil
 
 import numpy as np
+from playwright.sync_api import expect
 
 import cutcell
 from assets import demo_path
@@ -116,13 +117,16 @@ def test_another_resolution_makes_another_graph(visit):
 def test_an_impossible_resolution_is_told_and_the_page_lives_on(visit):
     visit.panel("Graph")
     before = visit.look()
+    box = visit.page.get_by_role("textbox")
+    slider = visit.page.get_by_role("slider", name="Resolution")
     for value in ("1", "10000"):
-        box = visit.page.get_by_role("textbox")
         box.fill(value)
         box.press("Enter")
-        visit.expect_text(re.compile(r"resolution must be", re.IGNORECASE))
+        visit.expect_text(re.compile(rf"resolution must be .* not {value};", re.IGNORECASE))
         visit.dismiss()
         visit.settle()
+        expect(box).to_have_value("64")
+        expect(slider).to_have_attribute("max", "160")
     assert changed(before, visit.look()) < 0.001
     visit.panel("Weights")
     assert changed(before, visit.look()) > 0.01
@@ -234,7 +238,7 @@ def test_light_and_dark(visit):
     assert changed(light, again) < 0.001
 
 
-def test_a_narrow_window_shows_the_canvas_first_and_the_systems_theme(browser, url):
+def test_a_narrow_window_shows_the_canvas_first_and_the_systems_theme(browser, url, tmp_path):
     size = {"width": 420, "height": 800}
     visit = Visit(browser, url + "/?rig=robot", viewport=size, color_scheme="dark")
     visit.wait_until_bound()
@@ -246,6 +250,13 @@ def test_a_narrow_window_shows_the_canvas_first_and_the_systems_theme(browser, u
     visit.button("Open drawer").click()
     visit.panel("Graph")
     visit.page.get_by_role("switch", name="Mesh edges").wait_for()
+    # What went wrong is not told behind the sidebar.
+    bad = tmp_path / "bad.glb"
+    bad.write_text("this is not a character")
+    visit.drop(bad)
+    visit.expect_text(re.compile(r"bad\.glb"))
+    expect(visit.page.locator(".MuiBackdrop-root")).to_have_count(0)
+    visit.dismiss()
     visit.close()
 
 

@@ -9,6 +9,7 @@ import pytest
 import cutcell
 from app.session import Session, sentence
 from app.status import stage_text, summary, warning
+from cutcell.errors import MeshError
 from tests.viewers.arm import arm_rig
 
 
@@ -45,6 +46,39 @@ def test_an_impossible_resolution_is_told_and_changes_nothing(bound, loop, resol
     assert "resolution" in text.lower()
     assert bound.state.binding is before
     assert not bound.state.busy
+    assert bound.state.resolution == 16, "what is shown is what is there"
+    assert not bound.habits._history.can_undo
+
+
+def test_an_impossible_resolution_of_an_address_gives_way_to_what_is_possible(session, loop):
+    session.state.resolution = 10_000
+    session.opening.rig(arm_rig())
+    loop.run_until(lambda: session.state.binding is not None)
+    assert session.state.binding.graph.lattice.resolution == session.state.resolution == 64
+    assert "resolution" in session.state.message[1].lower()
+
+
+def test_what_fails_with_the_defaults_is_not_tried_again(session, loop, monkeypatch):
+    tried = []
+
+    def broken(*args, **kwargs):
+        tried.append(1)
+        raise MeshError("no room")
+
+    monkeypatch.setattr(cutcell, "bind", broken)
+    session.opening.rig(arm_rig())
+    loop.run_until(lambda: session.state.message is not None)
+    loop.run_until(lambda: not session.working)
+    assert len(tried) == 1
+
+
+def test_a_cancelled_resolution_gives_way_to_the_one_that_is_there(bound, loop):
+    bound.state.resolution = 24
+    loop.run_until(lambda: bound.state.busy)
+    bound.cancel()
+    assert bound.state.resolution == 16
+    loop.run_until(lambda: not bound.working)
+    assert bound.state.binding.graph.lattice.resolution == 16
 
 
 def test_a_bad_file_is_told_and_the_old_character_stays(bound, loop, tmp_path):
