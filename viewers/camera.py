@@ -40,17 +40,22 @@ def framing(
     """
     low, high = np.asarray(bounds, float)
     centre = (low + high) / 2
-    toward = np.array(direction or FRONT, float)
-    toward /= np.linalg.norm(toward)
-    right = np.cross([0, 1, 0], toward)
-    right /= np.linalg.norm(right)
-    up = np.cross(toward, right)
+    right, up, toward = across(direction or FRONT)
     corners = np.array(np.meshgrid(*zip(low - centre, high - centre, strict=True))).reshape(3, -1).T
     slope = np.tan(np.radians(VIEW_ANGLE / 2))
     needed = np.maximum(np.abs(corners @ up), np.abs(corners @ right) / aspect) / slope
     distance = 1.08 * (needed + corners @ toward).max()
     position = centre + distance * toward
     return Camera(tuple(position.tolist()), tuple(centre.tolist()))
+
+
+def across(direction: tuple[float, float, float]) -> NDArray[np.float64]:
+    """Return what is to the right, above and nearer where one looks from a direction, as rows."""
+    toward = np.array(direction, float)
+    toward /= np.linalg.norm(toward)
+    right = np.cross([0, 1, 0], toward)
+    right /= np.linalg.norm(right)
+    return np.array([right, np.cross(toward, right), toward])
 
 
 def sees(camera: Camera, points: NDArray[np.float64], aspect: float = 1.0) -> bool:

@@ -13,7 +13,7 @@ from .description import Actor, Description
 from .lettering import write_captions, write_legend
 from .palette import LIGHT, Theme
 from .scene import Scene
-from .tiles import Tile, tiles
+from .tiles import Tile, shape_of, tiles
 
 
 class Studio:
@@ -43,7 +43,7 @@ class Studio:
         legend: bool = True,
     ) -> None:
         self.theme, self.size, self.legend = theme, size, legend
-        self._tiles = tiles(max(len(description.views), 1), size, _shape(description.bounds))
+        self._tiles = tiles(max(len(description.views), 1), size, shape_of(description.bounds))
         self._scenes = [Scene(theme, (width, height)) for _, _, width, height in self._tiles]
         self.show(description)
 
@@ -113,8 +113,3 @@ class Studio:
 
 def _stands_in(actor: Actor, view: int) -> bool:
     return actor.view is None or actor.view == view
-
-
-def _shape(bounds: NDArray[np.float64]) -> float:
-    wide, high, deep = np.maximum(np.ptp(bounds, axis=0), 1e-9)
-    return float(np.clip(max(wide, deep) / high, 0.4, 2.5))

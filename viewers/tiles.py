@@ -4,6 +4,11 @@ from __future__ import annotations
 
 from math import ceil
 
+import numpy as np
+from numpy.typing import NDArray
+
+from .camera import FRONT, across
+
 Tile = tuple[int, int, int, int]
 """Left, top, width and height of a view, in pixels."""
 
@@ -22,7 +27,8 @@ def tiles(count: int, size: tuple[int, int], shape: float = 0.75) -> list[Tile]:
     Returns
     -------
     list of (left, top, width, height)
-        Row by row from the upper left. The page's view divides its canvas in the same way.
+        Row by row from the upper left. The page's view divides its canvas in the same way, but
+        keeps what stands there clear of the captions.
     """
     width, height = size
 
@@ -39,3 +45,15 @@ def tiles(count: int, size: tuple[int, int], shape: float = 0.75) -> list[Tile]:
         top, bottom = (round(height * r / rows) for r in (row, row + 1))
         places.append((left, top, right - left, bottom - top))
     return places
+
+
+def shape_of(bounds: NDArray[np.float64]) -> float:
+    """Return width over height of a box as it is seen at first, from 0.4 to 2.5.
+
+    Parameters
+    ----------
+    bounds : array, shape (2, 3)
+    """
+    right, up, _ = across(FRONT)
+    size = np.maximum(np.ptp(bounds, axis=0), 1e-9)
+    return float(np.clip(np.abs(right) @ size / (np.abs(up) @ size), 0.4, 2.5))

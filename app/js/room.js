@@ -55,29 +55,39 @@ class Room {
     const {legend, transport} = this.overlay
     const take = (edge, pixels, of = room) => { of[edge] = Math.max(of[edge], pixels + GAP) }
     const beside = {left: 0, right: 0}
+    const edges = [legend, transport, this.overlay.hint, this.overlay.root.querySelector(".tools")]
     for (const card of cards) {
       const {left, right, top, bottom, width, height} = card.getBoundingClientRect()
       if (!width || !height) { continue }
       if (width > 0.6 * box.width || width > 2.5 * height) {
         const below = top + bottom > box.top + box.bottom
         if (below) { take("bottom", box.bottom - top) }
-        // A notice does not push aside what has the whole of a wide canvas.
         else if (slim || several) { take("top", bottom - box.top) }
+        else { edges.push(card) }
       } else {
         const of = slim || several || width > LARGE ? room : beside
         const after = left + right > box.left + box.right
         if (after) { take("right", box.right - left, of) } else { take("left", right - box.left, of) }
       }
     }
+    if (!slim && !several) { return this.clear(room, box, beside, edges) }
     const narrow = several && this.stage.tilesIn(room)[0][2] < NARROW_FEET
     // There they take room whatever stands behind them, and whichever way it is turned.
     for (const part of slim || narrow ? [legend, transport] : []) {
       if (!part.hidden) { take("bottom", box.bottom - part.getBoundingClientRect().top) }
     }
-    return slim || several ? room : this.stepAside(this.rise(this.stepAside(room, beside), box), beside)
+    return room
   }
 
-  // A wide canvas has room beside one character: that goes aside no farther than it must.
+  // A wide canvas has room around one character, which then makes no more room than it must.
+  clear(room, box, beside, edges) {
+    let cleared = this.stepAside(room, beside)
+    for (let times = 0; times < 2; times++) {  // where it goes something else may be
+      cleared = this.stepAside(this.rise(cleared, box, edges), beside)
+    }
+    return cleared
+  }
+
   stepAside(room, beside) {
     const {clientWidth: width} = this.stage.element
     const [left, right] = ["left", "right"].map((edge) => Math.max(room[edge], beside[edge]))
@@ -89,13 +99,11 @@ class Room {
     return {...room, left: room.left + Math.max(shift, 0), right: room.right + Math.max(-shift, 0)}
   }
 
-  // What is at the edges of a wide canvas takes room only where the character would be behind it.
-  rise(room, box) {
-    const {legend, transport, hint, root} = this.overlay
+  // What is at an edge takes room only where the character would be behind it.
+  rise(room, box, edges) {
     const x = (box.width + room.left - room.right) / 2
     const y = (box.height + room.top - room.bottom) / 2
-    const parts = [legend, transport, hint, root.querySelector(".tools")]
-      .map((part) => part.getBoundingClientRect()).filter(({width}) => width)
+    const parts = edges.map((part) => part.getBoundingClientRect()).filter(({width}) => width)
       .map(({left, right, top, bottom}) => ({
         left: left - box.left - GAP - x, right: right - box.left + GAP - x,
         ...top + bottom < box.top + box.bottom

@@ -17,6 +17,8 @@ const CAPTIONED = {left: 0, right: 0, top: 46, bottom: 16}
 const NARROW_CAPTIONED = {...CAPTIONED, top: 60}
 const NARROW_CAPTION = 260
 
+const FRONT = [0.42, 0.16, 1]  // where one looks from at first, as in viewers/camera.py
+
 class Stage {
   constructor(vtk, element) {
     this.vtk = vtk
@@ -77,11 +79,10 @@ class Stage {
   tilesIn({left, right, top, bottom}) {
     const {clientWidth: w, clientHeight: h} = this.element
     if (this.views.length < 2) { return [[0, 0, w, h]] }
-    const b = this.bounds(isCharacter)
-    const [wide, high, deep] = [0, 1, 2].map((i) => Math.max(b[2 * i + 1] - b[2 * i], 1e-9))
-    const shape = Math.min(Math.max(Math.max(wide, deep) / high, 0.4), 2.5)
+    const shape = shapeOf(this.bounds(isCharacter))
     const free = [Math.max(w - left - right, w / 4, 1), Math.max(h - top - bottom, h / 4, 1)]
-    return tiles(this.views.length, ...free, shape).map(([x, y, ...size]) => [left + x, top + y, ...size])
+    const captions = CAPTIONED.top + CAPTIONED.bottom
+    return tiles(this.views.length, ...free, shape, captions).map(([x, y, ...size]) => [left + x, top + y, ...size])
   }
 
   light(lights) {
@@ -248,11 +249,23 @@ function isCharacter(figure) {
   return !figure.overlay
 }
 
-// Divides a canvas among views so that what stands in each is seen as large as can be.
-function tiles(count, width, height, shape) {
+// Width over height of a box as it is seen at first.
+function shapeOf(bounds) {
+  const [aside, above, ahead] = FRONT
+  const size = [0, 1, 2].map((i) => Math.max(bounds[2 * i + 1] - bounds[2 * i], 1e-9))
+  const flat = Math.hypot(aside, ahead)
+  const right = [ahead / flat, 0, aside / flat]
+  const up = [aside * above / flat, flat, above * ahead / flat].map((x) => x / Math.hypot(...FRONT))
+  const seen = (axis) => axis[0] * size[0] + axis[1] * size[1] + axis[2] * size[2]
+  return Math.min(Math.max(seen(right) / seen(up), 0.4), 2.5)
+}
+
+// Divides a canvas among views so that what stands in each, below its caption, is seen as large as
+// can be.
+function tiles(count, width, height, shape, captions = 0) {
   let [best, columns] = [0, 1]
   for (let c = 1; c <= count; c++) {
-    const seen = Math.min(width / c / shape, height / Math.ceil(count / c))
+    const seen = Math.min(width / c / shape, height / Math.ceil(count / c) - captions)
     if (seen > best) { [best, columns] = [seen, c] }
   }
   const rows = Math.ceil(count / columns)

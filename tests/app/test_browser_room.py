@@ -60,3 +60,13 @@ def test_nothing_over_a_wide_canvas_hides_a_part_of_the_character(visit):
     expect(bar).to_be_visible()
     visit.button("Halt the motion").click()
     assert behind(visit, bar) == 0
+
+
+def test_a_notice_hides_no_head(browser, url):
+    visit = Visit(browser, f"{url}/?rig=biped_cape", viewport=WIDE)
+    visit.wait_until_bound()
+    assert behind(visit, visit.page.get_by_role("alert")) == 0
+    visit.dismiss()
+    visit.settle()
+    assert visit.page.evaluate("__cutcell.stage.room.top") == 20
+    visit.close()
