@@ -88,8 +88,8 @@ def cap_holes(vertices: NDArray[np.float64], faces: NDArray[np.int32], boundary:
     best = min(plain, caps_of(pulled), key=lambda caps: caps.area)
     if best.area < ENOUGH * plain.area:
         return best
-    edges = boundary.loop * len(vertices) + boundary.following
-    doubled = len(edges) - len(np.unique(edges))  # two faces use them in one direction
+    edges = np.sort(boundary.loop * len(vertices) + boundary.following)
+    doubled = np.count_nonzero(edges[1:] == edges[:-1])  # two faces use them in one direction
     if doubled > MANY:
         others.append(partial(_turned_back, vertices, faces))
     return min(best, *in_threads(caps_of, others), key=lambda caps: caps.area)
@@ -114,7 +114,7 @@ def _capped(vertices: NDArray[np.float64], loops: Boundary) -> Caps:
 def _drawn_together(vertices: NDArray[np.float64], boundary: Boundary, pull: float) -> Boundary:
     """Return the loops of the strips, and those that are left when they are laid."""
     a, b = boundary.loop, boundary.following
-    rim = np.unique(a)
+    rim = np.flatnonzero(np.bincount(a))
     _, group = weld(vertices[rim], pull)
     one = np.empty(group.max() + 1, np.int64)
     one[group[::-1]] = rim[::-1]  # any vertex of the group

@@ -1,7 +1,6 @@
 """What is known of the cells whose inside and outside holes leave in doubt, and how to ask it.
 
-`holes.py` finds it. Here a midpoint is asked about: first the field of the block that it lies
-in, then the clusters of caps nearby, then all, as closely as it takes.
+`holes.py` finds it; `asked.py` asks about the midpoints that are left.
 """
 
 from __future__ import annotations
@@ -12,10 +11,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from ..compiled import lean
-from .clusters import ROOT, Clusters
+from .clusters import Clusters
 from .field import ERROR, value_at
-from .view import covered
 
 BLOCK = 8
 """Cells along the side of the blocks that are decided as a whole, or else cell by cell."""
@@ -24,10 +21,6 @@ UNSURE = 1 << 30
 NEED = -(1 << 20)
 """Codes of cells are NEED + need, which is negative, or the row of a leaf."""
 ROUNDING = 1e-9
-NEAR = 3e-2, 3e-3
-"""What a cluster nearby may leave out at a midpoint: less if the bound is not enough."""
-ALL = 3e-3, 1e-4, 1e-6, 1e-8
-"""The same for any cluster, where what is far leaves out too much."""
 
 
 class Leaves(NamedTuple):
@@ -89,26 +82,6 @@ def in_field(leaves, leaf, p):
     x, y, z = leaves.place[leaf]
     value = value_at(leaves.field[leaf], p[0] - x, p[1] - y, p[2] - z)
     return value, leaves.field[leaf, ERROR] + ROUNDING
-
-
-@lean
-def need_in(doubt, leaf, p, tau):
-    """Return the need at a point of a leaf, or UNSURE if only an exact sum can tell."""
-    leaves, clusters = doubt.leaves, doubt.clusters
-    near = leaves.near[leaves.start[leaf] : leaves.start[leaf + 1]]
-    if not leaves.is_torn[leaf]:
-        known, off = in_field(leaves, leaf, p)
-        for tolerance in NEAR:
-            value, error = covered(clusters, near, p, tolerance)
-            need = need_between(tau + known + value, off + error)
-            if need < UNSURE:
-                return need
-    for tolerance in ALL:
-        value, error = covered(clusters, (ROOT,), p, tolerance)
-        need = need_between(tau + value, error + ROUNDING)
-        if need < UNSURE:
-            return need
-    return UNSURE
 
 
 @njit(cache=True, inline="always")

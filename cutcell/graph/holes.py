@@ -10,7 +10,7 @@ w_caps is small and smooth away from the holes. This file bounds it over whole b
 cells, see `view.py` for the proof: in most blocks `need` is one number. Around the
 surfaces where it changes, w_caps is all but a polynomial over blocks of a few cells, and what
 is on which side is quickly told. Only next to the rims of holes, and nearly on these surfaces,
-each midpoint must be asked about by itself, see `doubt.py`. Blocks are halved from the whole
+midpoints must be asked about, see `asked.py`. Blocks are halved from the whole
 cube down to pairs of cells. What is far from a block is far from its halves, too, and kept as a
 field; they, and the midpoints in them, look at the clusters nearby alone.
 

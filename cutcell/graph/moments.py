@@ -17,17 +17,17 @@ SIZE = 19
 
 
 @njit(cache=True, inline="always")
-def _linear(p, x, y, z):
+def linear(p, x, y, z):
     return p[0] * x + p[1] * y + p[2] * z
 
 
 @njit(cache=True, inline="always")
-def _square(p, x, y, z):
+def square(p, x, y, z):
     return x * (p[3] * x + p[6] * y + p[7] * z) + y * (p[4] * y + p[8] * z) + p[5] * z * z
 
 
 @njit(cache=True, inline="always")
-def _cube(p, x, y, z):
+def cube(p, x, y, z):
     of_x = p[9] * x * x + p[12] * x * y + p[13] * x * z + p[14] * y * y + p[16] * z * z
     of_y = p[10] * y * y + p[15] * y * z + p[17] * z * z + p[18] * x * z
     return x * of_x + y * of_y + p[11] * z * z * z
@@ -111,8 +111,8 @@ def covered_afar(p, r, far):
     """Return what a cluster at r, as far off as that, covers."""
     near = 1 / far
     x, y, z = r[0] * near, r[1] * near, r[2] * near
-    rest = 7.5 * near * _cube(p, x, y, z) - 3 * _square(p, x, y, z)
-    return (_linear(p, x, y, z) + near * rest) * near * near / (4 * np.pi)
+    rest = 7.5 * near * cube(p, x, y, z) - 3 * square(p, x, y, z)
+    return (linear(p, x, y, z) + near * rest) * near * near / (4 * np.pi)
 
 
 @njit(cache=True, inline="always")
@@ -121,10 +121,10 @@ def add_expansion(field, p, r, far):
     near = 1 / far
     x, y, z = r[0] * near, r[1] * near, r[2] * near
     scale = near * near / (4 * np.pi)
-    ahead, square = _linear(p, x, y, z), _square(p, x, y, z)
-    field[0] += scale * (ahead + near * (7.5 * near * _cube(p, x, y, z) - 3 * square))
+    ahead, twice = linear(p, x, y, z), square(p, x, y, z)
+    field[0] += scale * (ahead + near * (7.5 * near * cube(p, x, y, z) - 3 * twice))
     scale *= near
-    along = 3 * ahead - 15 * near * square
+    along = 3 * ahead - 15 * near * twice
     # The gradient of the quadratic form is twice M n.
     mx = near * (2 * p[3] * x + p[6] * y + p[7] * z)
     my = near * (p[6] * x + 2 * p[4] * y + p[8] * z)

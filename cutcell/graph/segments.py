@@ -16,16 +16,18 @@ from numpy.typing import NDArray
 
 from ..compiled import lean
 from ..threads import in_threads
+from .asked import answer
 from .boundary import Boundary
 from .caps import cap_holes
 from .clusters import ROOT
-from .doubt import BLOCK, NEED, UNSURE, code_at, in_field, need_between, need_in
+from .doubt import BLOCK, NEED, UNSURE, code_at, in_field, need_between
 from .holes import find_doubt
 from .rays import AXES, Crossings, cast_all_rays, first_at_least, grown, in_space, strip_bounds
 from .view import covered
 from .winding import boundary_turns
 
 NONE = -1
+NO_ANSWERS = np.zeros(0, np.int32)
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,21 +87,38 @@ def find_runs(
 
     strips = strip_bounds(resolution)
     work = [(seen, i * resolution, j * resolution) for seen in views for i, j in strips]
-    rows = in_threads(lambda part: _walk_rays(shared, *part), work)
+    listed = in_threads(lambda part: _walk_rays(shared, *part, NO_ANSWERS, True), work)
+    rows = [found for found, *_ in listed]
+    unsure = [k for k, (*_, is_done) in enumerate(listed) if not is_done]
+    if unsure:
+        leaf, points = (np.concatenate([listed[k][column] for k in unsure]) for column in (1, 2))
+        ends = np.cumsum([len(listed[k][1]) for k in unsure])
+        answers = np.split(answer(doubt, winding_threshold, leaf, points), ends[:-1])
+        again = in_threads(
+            lambda asked: _walk_rays(shared, *work[asked[0]], asked[1], False)[0],
+            zip(unsure, answers, strict=True),
+        )
+        for k, found in zip(unsure, again, strict=True):
+            rows[k] = found
     count = len(strips)
     of_axes = [np.concatenate(rows[count * k : count * (k + 1)]) for k in range(3)]
     return [Runs(*np.ascontiguousarray(of_axis.T)) for of_axis in of_axes]
 
 
 @njit(cache=True, nogil=True)
-def _walk_rays(shared, seen, first_ray, last_ray):
-    """List the runs of a strip of rays, as rows (ray, first, last, low, high)."""
-    resolution = shared[0]
-    doubt = shared[2]
+def _walk_rays(shared, seen, first_ray, last_ray, answers, is_listing):
+    """List the runs of a strip of rays, as rows (ray, first, last, low, high).
+
+    First it is listed which midpoints to ask about: the leaf and the place of each. With the
+    answers, in the same order, the rays are walked once more, unless there was nothing to ask.
+    """
+    resolution, tau, doubt = shared[:3]
     axis = seen[0]
     calm, (start, position, sign), (cap_start, cap_position, cap_sign) = seen[2:]
     rows = np.empty((256, 5), np.int32)
-    count = 0
+    leaf, points = np.empty(256, np.int32), np.empty((256, 3))
+    count = asked = 0
+    is_done = True
     torn = np.empty(2, np.int64)
     for r in range(first_ray, last_ray):
         begin, end = start[r], start[r + 1]
@@ -149,7 +168,20 @@ def _walk_rays(shared, seen, first_ray, last_ray):
                             until = min((cell // BLOCK + 1) * BLOCK, int(ahead * resolution))
                     else:
                         p = (i + 0.5) / resolution, (j + 0.5) / resolution, middle
-                        kept, until = _is_inside(shared, seen, p, code, chi, lid, torn), cell + 1
+                        point = in_space(axis, p[0], p[1], p[2])
+                        kept, until = False, cell + 1
+                        is_asked = _is_asked(doubt.leaves, code, point, tau)
+                        if not is_listing and is_asked:
+                            kept = _as_answered(shared, seen, p, answers[asked], chi, lid)
+                        elif not is_listing:
+                            kept = _in_torn(shared, seen, p, point, code, chi, lid, torn)
+                        elif is_asked:
+                            if asked == len(leaf):
+                                leaf, points = grown(leaf), grown(points)
+                            leaf[asked] = code
+                            points[asked, 0], points[asked, 1], points[asked, 2] = point
+                        asked += is_asked
+                        is_done = False
                     until = max(s + 1, min(until, beyond + (c < end)))
                 if kept and not is_open:
                     if count == len(rows):
@@ -168,32 +200,48 @@ def _walk_rays(shared, seen, first_ray, last_ray):
                 rows[count, 4] = c if c < end else NONE
                 count += 1
             k = beyond
-    return rows[:count]
+    return rows[:count], leaf[:asked], points[:asked], is_done
 
 
 @lean
-def _is_inside(shared, seen, p, leaf, chi, lid, torn):
-    """Tell whether a midpoint is inside, in a cell that is not so altogether.
+def _is_asked(leaves, leaf, point, tau):
+    """Tell whether a midpoint has to be asked about: its leaf is not torn, or does not tell."""
+    if not leaves.is_torn[leaf]:
+        return True
+    value, error = in_field(leaves, leaf, point)
+    return need_between(tau + value, error) == UNSURE
+
+
+@lean
+def _as_answered(shared, seen, p, need, chi, lid):
+    """Tell whether a midpoint is inside, given the answer."""
+    if need < UNSURE:
+        return chi + lid >= need
+    _, tau, _, boundary = shared
+    return chi + _turns(seen, boundary, p) >= tau
+
+
+@lean
+def _in_torn(shared, seen, p, point, leaf, chi, lid, torn):
+    """Tell whether a midpoint is inside, in a torn block whose field says the need.
 
     `torn` keeps the last torn block that the ray came through, and the number of caps
     ahead that its field goes with.
     """
     _, tau, doubt, boundary = shared
+    value, error = in_field(doubt.leaves, leaf, point)
+    if torn[0] != leaf:
+        share, off = covered(doubt.clusters, (ROOT,), point, 1e-2)
+        turns = lid - share
+        if off + error >= 0.5:
+            turns = _turns(seen, boundary, p)
+        torn[0], torn[1] = leaf, np.int64(np.round(turns + value))
+    return chi + torn[1] >= need_between(tau + value, error)
+
+
+@njit(cache=True, inline="always")
+def _turns(seen, boundary, p):
+    """Return what is missing from the crossings ahead to the winding number."""
     axis, vertices = seen[:2]
-    point = in_space(axis, p[0], p[1], p[2])
     turn = -1.0 if axis == 1 else 1.0  # (x, z, y) is left-handed
-    if doubt.leaves.is_torn[leaf]:
-        value, error = in_field(doubt.leaves, leaf, point)
-        need = need_between(tau + value, error)
-        if need < UNSURE:
-            if torn[0] != leaf:
-                share, off = covered(doubt.clusters, (ROOT,), point, 1e-2)
-                turns = lid - share
-                if off + error >= 0.5:
-                    turns = turn * boundary_turns(vertices, boundary, p[0], p[1], p[2])
-                torn[0], torn[1] = leaf, np.int64(np.round(turns + value))
-            return chi + torn[1] >= need
-    need = need_in(doubt, leaf, point, tau)
-    if need < UNSURE:
-        return chi + lid >= need
-    return chi + turn * boundary_turns(vertices, boundary, p[0], p[1], p[2]) >= tau
+    return turn * boundary_turns(vertices, boundary, p[0], p[1], p[2])
