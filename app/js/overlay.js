@@ -1,5 +1,7 @@
 // What is written over the canvas: the legend, the name of a bone, and hints.
 
+// The rings have a layer of their own (will-change): Chromium left a copy of them behind where
+// nothing else was drawn again, when the character stepped aside.
 const STYLE = `
 :host { display: block; }
 .stage { position: relative; width: 100%; height: 100%; min-height: 240px; overflow: hidden;
@@ -28,7 +30,8 @@ const STYLE = `
 .caption span { display: -webkit-box; -webkit-line-clamp: 2; -webkit-box-orient: vertical;
   overflow: hidden; overflow-wrap: anywhere; }
 .seam { position: absolute; background: var(--ink); opacity: .14; pointer-events: none; }
-.gizmo { position: absolute; inset: 0; width: 100%; height: 100%; pointer-events: none; }
+.gizmo { position: absolute; inset: 0; width: 100%; height: 100%; pointer-events: none;
+  will-change: transform; }
 .gizmo path { fill: none; }
 .gizmo .reach { stroke: transparent; stroke-width: 20; pointer-events: stroke; cursor: grab;
   touch-action: none; }
