@@ -107,12 +107,14 @@ def make_harmonic(p):
 
 
 @njit(cache=True, inline="always")
-def covered_afar(p, r, far):
-    """Return what a cluster at r, as far off as that, covers."""
-    near = 1 / far
-    x, y, z = r[0] * near, r[1] * near, r[2] * near
-    rest = 7.5 * near * cube(p, x, y, z) - 3 * square(p, x, y, z)
-    return (linear(p, x, y, z) + near * rest) * near * near / (4 * np.pi)
+def held(p):
+    """Return a row of moments as numbers: a loop that writes to arrays need not read them anew."""
+    # fmt: off
+    return (
+        p[0], p[1], p[2], p[3], p[4], p[5], p[6], p[7], p[8], p[9],
+        p[10], p[11], p[12], p[13], p[14], p[15], p[16], p[17], p[18],
+    )
+    # fmt: on
 
 
 @njit(cache=True, inline="always")

@@ -20,10 +20,10 @@ from .asked import answer
 from .boundary import Boundary
 from .caps import cap_holes
 from .clusters import ROOT
+from .cover import LANES, ROWS, cover
 from .doubt import BLOCK, NEED, UNSURE, code_at, in_field, need_between
 from .holes import find_doubt
 from .rays import AXES, Crossings, cast_all_rays, first_at_least, grown, in_space, strip_bounds
-from .view import covered
 from .winding import boundary_turns
 
 NONE = -1
@@ -119,7 +119,7 @@ def _walk_rays(shared, seen, first_ray, last_ray, answers, is_listing):
     leaf, points = np.empty(256, np.int32), np.empty((256, 3))
     count = asked = 0
     is_done = True
-    torn = np.empty(2, np.int64)
+    torn, room = np.empty(2, np.int64), np.empty((ROWS, LANES))
     for r in range(first_ray, last_ray):
         begin, end = start[r], start[r + 1]
         passed, last_cap = cap_start[r], cap_start[r + 1]
@@ -174,7 +174,7 @@ def _walk_rays(shared, seen, first_ray, last_ray, answers, is_listing):
                         if not is_listing and is_asked:
                             kept = _as_answered(shared, seen, p, answers[asked], chi, lid)
                         elif not is_listing:
-                            kept = _in_torn(shared, seen, p, point, code, chi, lid, torn)
+                            kept = _in_torn(shared, seen, p, point, code, chi, lid, torn, room)
                         elif is_asked:
                             if asked == len(leaf):
                                 leaf, points = grown(leaf), grown(points)
@@ -222,7 +222,7 @@ def _as_answered(shared, seen, p, need, chi, lid):
 
 
 @lean
-def _in_torn(shared, seen, p, point, leaf, chi, lid, torn):
+def _in_torn(shared, seen, p, point, leaf, chi, lid, torn, room):
     """Tell whether a midpoint is inside, in a torn block whose field says the need.
 
     `torn` keeps the last torn block that the ray came through, and the number of caps
@@ -231,9 +231,11 @@ def _in_torn(shared, seen, p, point, leaf, chi, lid, torn):
     _, tau, doubt, boundary = shared
     value, error = in_field(doubt.leaves, leaf, point)
     if torn[0] != leaf:
-        share, off = covered(doubt.clusters, (ROOT,), point, 1e-2)
-        turns = lid - share
-        if off + error >= 0.5:
+        for i in range(LANES):
+            room[0, i], room[1, i], room[2, i] = point
+        off = cover(doubt.clusters, (ROOT,), point, 0.0, 1e-2, room, LANES)
+        turns = lid - room[4, 0]
+        if off + error >= 0.5 or room[7, 0] <= 0:
             turns = _turns(seen, boundary, p)
         torn[0], torn[1] = leaf, np.int64(np.round(turns + value))
     return chi + torn[1] >= need_between(tau + value, error)

@@ -21,7 +21,7 @@ from numba import njit
 from ..compiled import lean
 from .clusters import left_out
 from .field import ERROR
-from .moments import add_expansion, covered_afar
+from .moments import add_expansion
 from .solid_angle import between, cross, distance_to_edge, dot, is_within, length, turning
 
 NEGLIGIBLE = 5e-3
@@ -30,8 +30,6 @@ COARSE = 0.3
 """Clusters that leave out more are halved, to see if parts of them are far."""
 ENOUGH = 0.5
 """Once more than this may be left out in a ball, its field is of no use."""
-CLEAR = 1e-7
-"""Nearer to a cap than this, relative to its size, rounding may put a point on either side."""
 SMALL = 1e-60
 """Numbers this small, or their inverse large, are scaled before products leave the floats."""
 
@@ -121,46 +119,6 @@ def view(clusters, among, field, q, reach, tolerance):
 
 
 @lean
-def covered(clusters, among, q, tolerance):
-    """Return what caps cover of the view from a point, and what that may leave out.
-
-    Parameters
-    ----------
-    clusters : Clusters
-    among : array, int32
-        The clusters of these caps.
-    q : tuple of 3 floats
-    tolerance : float
-        Clusters that may leave out more than this are halved.
-
-    Returns
-    -------
-    value, error : float
-        The error is infinite where q is too near to a cap for rounding.
-    """
-    value = error = 0.0
-    angle, is_clear = (1.0, 0.0, 0.0), True
-    leaves = len(clusters.start) - 1
-    for top in among:
-        k, end = top, after(top)
-        while k != end:
-            r, far, off = _seen(clusters, k, q, 0.0)
-            if off <= tolerance:
-                value += covered_afar(clusters.moments[k], r, far)
-                error += off
-            elif k < leaves:
-                k *= 2
-                continue
-            else:
-                for loop in range(clusters.start[k - leaves], clusters.start[k - leaves + 1]):
-                    rim = clusters.rim[clusters.first[loop] : clusters.first[loop + 1]]
-                    angle, clear = _turned(angle, rim, clusters.apex[loop], q)
-                    is_clear &= clear
-            k = after(k)
-    return value + _turns(angle), error if is_clear else np.inf
-
-
-@lean
 def _add_caps(clusters, leaf, field, q, reach, may_tear):
     """Add the field of the caps of a cluster that is not halved; tell if one enters the ball."""
     is_torn = False
@@ -169,8 +127,7 @@ def _add_caps(clusters, leaf, field, q, reach, may_tear):
         is_torn |= _add_change(field, rim, clusters.apex[loop], q, reach, may_tear)
         if field[ERROR] > ENOUGH:
             break
-        angle, _ = _turned((1.0, 0.0, 0.0), rim, clusters.apex[loop], q)
-        field[0] += _turns(angle)
+        field[0] += _turned(rim, clusters.apex[loop], q)
     return is_torn
 
 
@@ -190,24 +147,16 @@ def after(k):
     return k + 1 if k else 0
 
 
-@njit(cache=True, inline="always")
-def _turns(angle):
-    """Return an angle in full turns, see `_turned`."""
-    x, y, turns = angle
-    return turns + np.arctan2(y, x) / (2 * np.pi)
-
-
 @lean
-def _turned(angle, rim, apex, q):
-    """Turn an angle by what one cap covers; tell whether that is clear of rounding.
+def _turned(rim, apex, q):
+    """Return what one cap covers of the view.
 
     Half the solid angle of a triangle is the angle of a complex number (van Oosterom &
     Strackee 1983). Their product (x, y) has the sum of the angles, up to whole turns, which
     are counted: two angles on one side of the real axis pass the far side if their sum does
     not stay there.
     """
-    x, y, turns = angle
-    is_clear = True
+    x, y, turns = 1.0, 0.0, 0.0
     # Where the apex is the rim's first vertex, the edges next to it span nothing.
     begin, end = (2, len(rim)) if len(rim) <= 4 else (1, len(rim) + 1)
     c = between(q, apex)
@@ -218,7 +167,6 @@ def _turned(angle, rim, apex, q):
         la = length(a)
         triple = dot(a, cross(b, c))
         rest = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb
-        is_clear &= abs(triple) + max(rest, 0.0) > CLEAR * la * lb * lc
         after = x * triple + y * rest
         x, was = x * rest - y * triple, y
         y = after
@@ -230,7 +178,7 @@ def _turned(angle, rim, apex, q):
         if 0 < size < SMALL or size > 1 / SMALL:  # else products leave the floats
             x, y = x / size, y / size
         b, lb = a, la
-    return (x, y, turns), is_clear
+    return turns + np.arctan2(y, x) / (2 * np.pi)
 
 
 @lean

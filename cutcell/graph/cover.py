@@ -1,0 +1,124 @@
+"""What caps cover of the view from several points, within a proven bound.
+
+All points go through the tree of clusters together. What a cluster covers is worked out for all of
+them side by side, in the lanes of vector instructions; so the loops have no branches.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..compiled import lean, side_by_side
+from .clusters import left_out
+from .moments import cube, held, linear, square
+from .solid_angle import between, length
+from .view import after
+
+ROWS = 8
+"""Numbers that are kept of each point."""
+LANES = 8
+"""Points filled up to a multiple of this leave none over for a loop of its own."""
+CLEAR = 1e-7
+"""Nearer to a cap than this, relative to its size, rounding may put a point on either side."""
+TINY = 1e-300
+
+
+@lean
+def cover(clusters, among, centre, reach, tolerance, seen, lanes):
+    """Put what caps cover of the view from some points beside them.
+
+    Parameters
+    ----------
+    clusters : Clusters
+    among : array, int32
+        The clusters of these caps.
+    centre, reach
+        Of a ball that holds all points.
+    tolerance : float
+        Clusters that may leave out more than this are halved.
+    seen : array, shape (ROWS, at least lanes)
+        In the rows 0 to 2 the points; gets what is covered (4), and a number above zero where
+        that is clear of rounding (7).
+    lanes : int
+        How many there are.
+
+    Returns
+    -------
+    error : float
+        What that may leave out.
+    """
+    error, leaves = 0.0, len(clusters.start) - 1
+    for i in range(lanes):
+        seen[4, i] = seen[6, i] = 0.0
+        seen[5, i] = seen[7, i] = 1.0
+    for top in among:
+        k, end = top, after(top)
+        while k != end:
+            far = length(between(centre, clusters.sphere[k])) - reach
+            off = left_out(clusters.sphere[k], far, 0.0)
+            if off <= tolerance:
+                _add_afar(clusters.moments[k], clusters.sphere[k], seen, lanes)
+                error += off
+            elif k < leaves:
+                k *= 2
+                continue
+            else:
+                for loop in range(clusters.start[k - leaves], clusters.start[k - leaves + 1]):
+                    rim = clusters.rim[clusters.first[loop] : clusters.first[loop + 1]]
+                    _turn(rim, clusters.apex[loop], seen, lanes)
+            k = after(k)
+    for i in range(lanes):
+        seen[4, i] += np.arctan2(seen[6, i], seen[5, i]) / (2 * np.pi)
+    return error
+
+
+@side_by_side
+def _add_afar(moments, sphere, seen, lanes):
+    """Add what a cluster covers from afar: the value of `moments.add_expansion`."""
+    p = held(moments)
+    cx, cy, cz = sphere[0], sphere[1], sphere[2]
+    for i in range(lanes):
+        x, y, z = cx - seen[0, i], cy - seen[1, i], cz - seen[2, i]
+        near = 1 / np.sqrt(x * x + y * y + z * z)
+        x, y, z = x * near, y * near, z * near
+        rest = 7.5 * near * cube(p, x, y, z) - 3 * square(p, x, y, z)
+        seen[4, i] += (linear(p, x, y, z) + near * rest) * near * near / (4 * np.pi)
+
+
+@lean
+def _turn(rim, apex, seen, lanes):
+    """Turn angles by what one cap covers, as `view._turned` does for one point."""
+    # Where the apex is the rim's first vertex, the edges next to it span nothing.
+    begin, end = (2, len(rim)) if len(rim) <= 4 else (1, len(rim) + 1)
+    for e in range(begin, end):
+        _turn_by(apex, rim[e - 1], rim[e if e < len(rim) else 0], seen, lanes)
+
+
+@side_by_side
+def _turn_by(p, q, r, seen, lanes):
+    """Turn angles by a triangle p q r."""
+    px, py, pz = p[0], p[1], p[2]
+    qx, qy, qz = q[0], q[1], q[2]
+    rx, ry, rz = r[0], r[1], r[2]
+    for i in range(lanes):
+        x, y, z = seen[0, i], seen[1, i], seen[2, i]
+        cx, cy, cz = px - x, py - y, pz - z
+        bx, by, bz = qx - x, qy - y, qz - z
+        ax, ay, az = rx - x, ry - y, rz - z
+        lc = np.sqrt(cx * cx + cy * cy + cz * cz)
+        lb = np.sqrt(bx * bx + by * by + bz * bz)
+        la = np.sqrt(ax * ax + ay * ay + az * az)
+        triple = ax * (by * cz - bz * cy) + ay * (bz * cx - bx * cz) + az * (bx * cy - by * cx)
+        rest = la * lb * lc + (ax * bx + ay * by + az * bz) * lc
+        rest += (bx * cx + by * cy + bz * cz) * la + (cx * ax + cy * ay + cz * az) * lb
+        was, re = seen[6, i], seen[5, i]
+        im = re * triple + was * rest
+        re = re * rest - was * triple
+        # Without a branch, which lanes cannot take each by itself.
+        up = (was >= 0) & (triple >= 0) & (im < 0)
+        down = (was < 0) & (triple < 0) & (im >= 0)
+        seen[4, i] += np.float64(up) - np.float64(down)
+        scale = 1 / (abs(re) + abs(im) + TINY)
+        seen[5, i], seen[6, i] = re * scale, im * scale
+        clear = abs(triple) + max(rest, 0.0) - CLEAR * la * lb * lc
+        seen[7, i] = min(seen[7, i], clear)
