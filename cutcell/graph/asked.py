@@ -52,10 +52,11 @@ def answer(
     start, order = _by_leaf(leaf, len(doubt.leaves.place))
     most = int(np.diff(start).max(initial=0)) + LANES
     needs = np.empty(len(leaf), np.int32)
+    asked = points, start, order, np.array([ROOT], np.int32)
 
     def some(part: slice) -> None:
-        room = np.empty((ROWS, most))
-        _answer(doubt, winding_threshold, points, start, order, part.start, part.stop, room, needs)
+        seen = np.empty((ROWS, most))
+        _answer(doubt, winding_threshold, *asked, part.start, part.stop, seen, needs)
 
     in_threads(some, parts(len(start) - 1))
     return needs
@@ -76,8 +77,11 @@ def _by_leaf(leaf, count):
 
 
 @lean
-def _answer(doubt, tau, points, start, order, first, last, seen, needs):
-    """Answer the midpoints of the leaves from `first` to before `last`; `order` is changed."""
+def _answer(doubt, tau, points, start, order, every, first, last, seen, needs):
+    """Answer the midpoints of the leaves from `first` to before `last`; `order` is changed.
+
+    `every` holds the cluster of all caps; `seen` is room for what `cover` fills in.
+    """
     leaves, clusters = doubt.leaves, doubt.clusters
     for leaf in range(first, last):
         middle, field = leaves.place[leaf], leaves.field[leaf]
@@ -86,12 +90,9 @@ def _answer(doubt, tau, points, start, order, first, last, seen, needs):
         is_near, tolerance = not leaves.is_torn[leaf], FIRST
         while len(unsure) and tolerance > LAST:
             lanes, centre, reach = _line_up(unsure, points, seen)
-            if is_near:
-                known = field[ERROR] + ROUNDING
-                off = cover(clusters, near, centre, reach, tolerance, seen, lanes)
-            else:
-                known = ROUNDING
-                off = cover(clusters, (ROOT,), centre, reach, tolerance, seen, lanes)
+            known = (field[ERROR] if is_near else 0.0) + ROUNDING
+            among = near if is_near else every
+            off = cover(clusters, among, centre, reach, tolerance, seen, lanes)
             left, margin = 0, 0.5
             for i in range(len(unsure)):
                 q, is_clear = unsure[i], seen[7, i] > 0

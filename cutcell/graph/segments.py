@@ -120,6 +120,7 @@ def _walk_rays(shared, seen, first_ray, last_ray, answers, is_listing):
     count = asked = 0
     is_done = True
     torn, room = np.empty(2, np.int64), np.empty((ROWS, LANES))
+    every = np.full(1, ROOT, np.int32)
     for r in range(first_ray, last_ray):
         begin, end = start[r], start[r + 1]
         passed, last_cap = cap_start[r], cap_start[r + 1]
@@ -174,7 +175,9 @@ def _walk_rays(shared, seen, first_ray, last_ray, answers, is_listing):
                         if not is_listing and is_asked:
                             kept = _as_answered(shared, seen, p, answers[asked], chi, lid)
                         elif not is_listing:
-                            kept = _in_torn(shared, seen, p, point, code, chi, lid, torn, room)
+                            kept = _in_torn(
+                                shared, seen, p, point, code, chi, lid, torn, every, room
+                            )
                         elif is_asked:
                             if asked == len(leaf):
                                 leaf, points = grown(leaf), grown(points)
@@ -222,18 +225,19 @@ def _as_answered(shared, seen, p, need, chi, lid):
 
 
 @lean
-def _in_torn(shared, seen, p, point, leaf, chi, lid, torn, room):
+def _in_torn(shared, seen, p, point, leaf, chi, lid, torn, every, room):
     """Tell whether a midpoint is inside, in a torn block whose field says the need.
 
     `torn` keeps the last torn block that the ray came through, and the number of caps
-    ahead that its field goes with.
+    ahead that its field goes with; `every` holds the cluster of all caps, and `room` is for
+    `cover`.
     """
     _, tau, doubt, boundary = shared
     value, error = in_field(doubt.leaves, leaf, point)
     if torn[0] != leaf:
         for i in range(LANES):
             room[0, i], room[1, i], room[2, i] = point
-        off = cover(doubt.clusters, (ROOT,), point, 0.0, 1e-2, room, LANES)
+        off = cover(doubt.clusters, every, point, 0.0, 1e-2, room, LANES)
         turns = lid - room[4, 0]
         if off + error >= 0.5 or room[7, 0] <= 0:
             turns = _turns(seen, boundary, p)

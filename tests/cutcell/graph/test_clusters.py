@@ -35,7 +35,9 @@ def covered(clusters, places, tolerance):
     seen[:3] = places[np.minimum(np.arange(lanes), len(places) - 1)].T
     centre = places.mean(axis=0)
     reach = np.linalg.norm(places - centre, axis=1).max()
-    error = cover(clusters, (ROOT,), tuple(centre), reach, tolerance, seen, lanes)
+    error = cover(
+        clusters, np.array([ROOT], np.int32), tuple(centre), reach, tolerance, seen, lanes
+    )
     return seen[4, : len(places)], np.where(seen[7, : len(places)] > 0, error, np.inf)
 
 
