@@ -119,8 +119,7 @@ def _walk_rays(shared, seen, first_ray, last_ray, answers, is_listing):
     leaf, points = np.empty(256, np.int32), np.empty((256, 3))
     count = asked = 0
     is_done = True
-    torn, room = np.empty(2, np.int64), np.empty((ROWS, LANES))
-    every = np.full(1, ROOT, np.int32)
+    torn, tools = np.empty(2, np.int64), (np.full(1, ROOT, np.int32), np.empty((ROWS, LANES)))
     for r in range(first_ray, last_ray):
         begin, end = start[r], start[r + 1]
         passed, last_cap = cap_start[r], cap_start[r + 1]
@@ -175,9 +174,7 @@ def _walk_rays(shared, seen, first_ray, last_ray, answers, is_listing):
                         if not is_listing and is_asked:
                             kept = _as_answered(shared, seen, p, answers[asked], chi, lid)
                         elif not is_listing:
-                            kept = _in_torn(
-                                shared, seen, p, point, code, chi, lid, torn, every, room
-                            )
+                            kept = _in_torn(shared, seen, p, point, code, chi, lid, torn, tools)
                         elif is_asked:
                             if asked == len(leaf):
                                 leaf, points = grown(leaf), grown(points)
@@ -225,14 +222,13 @@ def _as_answered(shared, seen, p, need, chi, lid):
 
 
 @lean
-def _in_torn(shared, seen, p, point, leaf, chi, lid, torn, every, room):
+def _in_torn(shared, seen, p, point, leaf, chi, lid, torn, tools):
     """Tell whether a midpoint is inside, in a torn block whose field says the need.
 
     `torn` keeps the last torn block that the ray came through, and the number of caps
-    ahead that its field goes with; `every` holds the cluster of all caps, and `room` is for
-    `cover`.
+    ahead that its field goes with; `tools` are the cluster of all caps and room for `cover`.
     """
-    _, tau, doubt, boundary = shared
+    (_, tau, doubt, boundary), (every, room) = shared, tools
     value, error = in_field(doubt.leaves, leaf, point)
     if torn[0] != leaf:
         for i in range(LANES):

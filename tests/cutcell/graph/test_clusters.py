@@ -35,9 +35,8 @@ def covered(clusters, places, tolerance):
     seen[:3] = places[np.minimum(np.arange(lanes), len(places) - 1)].T
     centre = places.mean(axis=0)
     reach = np.linalg.norm(places - centre, axis=1).max()
-    error = cover(
-        clusters, np.array([ROOT], np.int32), tuple(centre), reach, tolerance, seen, lanes
-    )
+    ball = tuple(centre), reach
+    error = cover(clusters, np.array([ROOT], np.int32), *ball, tolerance, seen, lanes)
     return seen[4, : len(places)], np.where(seen[7, : len(places)] > 0, error, np.inf)
 
 
