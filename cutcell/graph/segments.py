@@ -20,7 +20,7 @@ from .asked import answer
 from .boundary import Boundary
 from .caps import cap_holes
 from .clusters import ROOT
-from .cover import LANES, ROWS, cover
+from .cover import ROWS, cover
 from .doubt import BLOCK, NEED, UNSURE, code_at, in_field, need_between
 from .holes import find_doubt
 from .rays import AXES, Crossings, cast_all_rays, first_at_least, grown, in_space, strip_bounds
@@ -119,7 +119,7 @@ def _walk_rays(shared, seen, first_ray, last_ray, answers, is_listing):
     leaf, points = np.empty(256, np.int32), np.empty((256, 3))
     count = asked = 0
     is_done = True
-    torn, tools = np.empty(2, np.int64), (np.full(1, ROOT, np.int32), np.empty((ROWS, LANES)))
+    torn, tools = np.empty(2, np.int64), (np.full(1, ROOT, np.int32), np.empty((ROWS, 1)))
     for r in range(first_ray, last_ray):
         begin, end = start[r], start[r + 1]
         passed, last_cap = cap_start[r], cap_start[r + 1]
@@ -231,9 +231,8 @@ def _in_torn(shared, seen, p, point, leaf, chi, lid, torn, tools):
     (_, tau, doubt, boundary), (every, room) = shared, tools
     value, error = in_field(doubt.leaves, leaf, point)
     if torn[0] != leaf:
-        for i in range(LANES):
-            room[0, i], room[1, i], room[2, i] = point
-        off = cover(doubt.clusters, every, point, 0.0, 1e-2, room, LANES)
+        room[0, 0], room[1, 0], room[2, 0] = point
+        off = cover(doubt.clusters, every, point, 0.0, 1e-2, room, 1)
         turns = lid - room[4, 0]
         if off + error >= 0.5 or room[7, 0] <= 0:
             turns = _turns(seen, boundary, p)
