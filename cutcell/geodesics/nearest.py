@@ -10,6 +10,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from ..sorting import sort_into
+
 IN_A_CELL = 4
 """Lattice cells along each side of a cell of the grid."""
 MOST_CELLS = 64
@@ -79,19 +81,11 @@ def _sort_into_cells(nodes, chosen, side):
     """Sort the chosen nodes by cell; return where each cell begins, and their order."""
     count = len(nodes)
     cell = np.full(count, -1, np.int32)
-    start = np.zeros(side * side * side + 1, np.int64)
     for n in range(count):
         if chosen[n]:
             x, y, z = _cell(nodes[n, 0], side), _cell(nodes[n, 1], side), _cell(nodes[n, 2], side)
             cell[n] = (x * side + y) * side + z
-            start[cell[n] + 1] += 1
-    start = np.cumsum(start)
-    cursor, order = start.copy(), np.empty(start[-1], np.int32)
-    for n in range(count):
-        if cell[n] >= 0:
-            order[cursor[cell[n]]] = n
-            cursor[cell[n]] += 1
-    return start, order
+    return sort_into(cell, side * side * side)
 
 
 @njit(cache=True, nogil=True)

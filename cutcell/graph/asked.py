@@ -9,10 +9,10 @@ at all clusters, not only at those nearby, where what is far from the block leav
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from ..compiled import lean
+from ..sorting import sort_into
 from ..threads import in_threads, parts
 from .clusters import ROOT
 from .cover import LANES, ROWS, cover
@@ -49,7 +49,7 @@ def answer(
     array, shape (q,), int32
         UNSURE where only an exact sum can tell.
     """
-    start, order = _by_leaf(leaf, len(doubt.leaves.place))
+    start, order = sort_into(leaf, len(doubt.leaves.place))
     most = int(np.diff(start).max(initial=0)) + LANES
     needs = np.empty(len(leaf), np.int32)
     asked = points, start, order, np.array([ROOT], np.int32)
@@ -60,20 +60,6 @@ def answer(
 
     in_threads(some, parts(len(start) - 1))
     return needs
-
-
-@njit(cache=True, nogil=True)
-def _by_leaf(leaf, count):
-    """Return where the midpoints of each leaf begin, and their order."""
-    start = np.zeros(count + 1, np.int64)
-    for q in range(len(leaf)):
-        start[leaf[q] + 1] += 1
-    start = np.cumsum(start)
-    cursor, order = start.copy(), np.empty(len(leaf), np.int64)
-    for q in range(len(leaf)):
-        order[cursor[leaf[q]]] = q
-        cursor[leaf[q]] += 1
-    return start, order
 
 
 @lean

@@ -22,7 +22,14 @@ AROUND = 16
 MISSING = 5, 45, 85
 """Faces of the tube that leave small holes: enough holes for a tree of them."""
 PACKAGE = Path(__file__).resolve().parents[1]
-SOURCES = ("compiled.py", "unions.py", "graph/*.py", "geodesics/*.py", "skinning/*.py")
+SOURCES = (
+    "compiled.py",
+    "sorting.py",
+    "unions.py",
+    "graph/*.py",
+    "geodesics/*.py",
+    "skinning/*.py",
+)
 """Where the kernels of a binding stand, and what they are compiled by."""
 
 _known = False

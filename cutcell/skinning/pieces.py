@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from ..compiled import lean
 from ..geodesics import Bones
+from ..sorting import sort_into
 from ..threads import in_threads
 from ..unions import join, numbered
 
@@ -96,16 +97,9 @@ def _crossed(
 def _sort_into_columns(samples):
     """Return where the samples of each column of the grid begin, and their order."""
     column = np.empty(len(samples), np.int64)
-    start = np.zeros(CELLS * CELLS + 1, np.int64)
     for s in range(len(samples)):
         column[s] = _cell(samples[s, 0]) * CELLS + _cell(samples[s, 1])
-        start[column[s] + 1] += 1
-    start = np.cumsum(start)
-    cursor, order = start.copy(), np.empty(len(samples), np.int64)
-    for s in range(len(samples)):
-        order[cursor[column[s]]] = s
-        cursor[column[s]] += 1
-    return start, order
+    return sort_into(column, CELLS * CELLS)
 
 
 @lean
