@@ -77,7 +77,7 @@ def components(graph: CutCellGraph) -> tuple[NDArray[np.intp], NDArray[np.intp]]
     sizes : array, shape (c,)
         In vertices of the file.
     """
-    welded = int(graph.vertex_node.max()) + 1
+    welded = graph.first_point
     a, b = graph.edges[graph.edge_kind == MESH].T
     links = coo_array((np.ones(len(a), bool), (a, b)), shape=(welded, welded))
     label = connected_components(links, directed=False)[1][graph.vertex_node]

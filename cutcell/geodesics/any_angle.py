@@ -11,6 +11,8 @@ its nearest few alone. Nothing is lost by that: where k joints are nearer to a n
 further one, they are also nearer to whatever that one would reach by way of the node. So the
 work grows with the labels that a vertex keeps, not with the joints. It is done in two halves,
 side by side: of the joints around a node about as many are in the one as in the other.
+
+Crossings next to a lattice point are passed over (`graph.contracted`): they see what it sees.
 """
 
 from __future__ import annotations
@@ -38,7 +40,7 @@ FINENESS = 4
 """Times R squared: buckets a unit of distance. One is a hundredth of a cell wide, or less."""
 SPAN = 1
 """Units of distance that the buckets cover at a time."""
-ROOMS = 1, 4
+ROOMS = 1, 3
 """Labels a node for which the kernel is compiled with their number built in, a third faster."""
 PAUSES = 8
 """How often a unit of distance is interrupted, to report and to be cancelled."""
@@ -101,6 +103,8 @@ def any_angle_paths(
         front = begin(ranking, len(graph.nodes), groups[share], nearest, least)
         _spread(graph, ranking, front, within, lambda done: shares.tell(share, done))
         shares.tell(share, 1.0)
+        if targets.max(initial=0) >= graph.first_crossing:
+            _pass_on(graph, ranking, front)
         found = front.labels.reshape(-1, nearest)[targets]
         at, which = np.nonzero(found["joint"] != NOBODY)
         found = found[at, which]
@@ -121,6 +125,7 @@ def least_distances(
     every = np.ones(len(ranking.joints), np.bool_)
     front = begin(ranking, len(graph.nodes), every, 1)
     _spread(graph, ranking, front, np.inf, lambda done: progress("distances", done))
+    _pass_on(graph, ranking, front)
     return front.least
 
 
@@ -138,8 +143,9 @@ def _spread(
     head = np.full(int(SPAN * scale), END, np.int32)
     line_up(labels, head, scale)
     step = len(head) // (SPAN * PAUSES)
-    ahead = np.empty(int(np.diff(graph.adjacency[0]).max()) + 1, np.int64)
-    known = graph.adjacency, body_of(graph), ranking.table, within
+    adjacency = graph.contracted.adjacency[:2]
+    ahead = np.empty(int(np.diff(adjacency[0]).max()) + 1, np.int64)
+    known = adjacency, body_of(graph), ranking.table, within
     given = *known, rooms, labels, front.anchors, front.least, head, scale, ahead
     origin = 0.0
     while True:
@@ -150,6 +156,28 @@ def _spread(
             if (head[last:] == END).all():
                 return
         origin = move_on(head, scale, labels)
+
+
+def _pass_on(graph: CutCellGraph, ranking: Ranking, front: Front) -> None:
+    """Give nodes that were passed over the labels of the lattice points beside them."""
+    own = front.each, front.labels, front.anchors, front.least
+    _put_passed(graph.nodes, ranking.table, graph.contracted.beside, *own)
+
+
+@lean
+def _put_passed(nodes, bones, beside, each, labels, anchors, least):
+    for v in range(len(nodes)):
+        here, u = (nodes[v, 0], nodes[v, 1], nodes[v, 2]), beside[v]
+        for room in range(each if u >= 0 else 0):
+            label, anchor = u * each + room, anchors[u * each + room]
+            if labels[label].joint == NOBODY:
+                continue
+            reached = straight(here, bend_of(nodes, bones, each, anchor, here))
+            reached += labels[anchor].distance if anchor >= 0 else 0.0
+            labels[v * each + room].joint = labels[label].joint
+            labels[v * each + room].distance = reached
+            anchors[v * each + room] = anchor
+            least[v] = min(least[v], reached)
 
 
 @lean
@@ -174,7 +202,7 @@ def _settle(
     `rooms` has as many entries as a node has labels; `ahead` is room for a node's edges.
     """
     each = len(rooms)
-    indptr, indices, lengths = adjacency
+    indptr, indices = adjacency
     resolution, first_point, first_crossing, nodes, _, _ = body
     for bucket in range(first, last):
         while head[bucket] != END:
@@ -206,16 +234,17 @@ def _settle(
                     continue  # a bend at u would be no shorter
                 if reached > within * max(least[v], ON_BONE / resolution):
                     continue
-                # Off the lattice, what is one step from a lattice point that sees the bend does,
-                # too: a crossing, and from there a corner of its triangle if it is near.
-                if v >= first_crossing:
-                    seen = first_point <= u < first_crossing
+                beside = straight(here, (nodes[u, 0], nodes[u, 1], nodes[u, 2]))
+                if u < first_point:
+                    seen = False
                 elif v < first_point:
-                    seen = u >= first_crossing and lengths[e] * resolution < NEAR
+                    seen = beside * resolution < NEAR
+                elif v >= first_crossing:
+                    seen = u < first_crossing
                 else:
                     seen = sees(body, anchors, each, u, here, anchor, bend)
                 if not seen:
-                    reached, bent = labels[label].distance + lengths[e], label
+                    reached, bent = labels[label].distance + beside, label
                     if reached >= limit:
                         continue
                 leave(head, labels, room)

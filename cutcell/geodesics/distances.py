@@ -201,7 +201,7 @@ def bone_distances(
 
 def _on_mesh(graph: CutCellGraph) -> NDArray[np.int32]:
     """List the nodes of the mesh: the graph's first ones, shared by the file's vertices."""
-    return np.arange(int(graph.vertex_node.max()) + 1, dtype=np.int32)
+    return np.arange(graph.first_point, dtype=np.int32)
 
 
 def _paths(
@@ -220,10 +220,7 @@ def _paths(
     joints, place = np.unique(bones.joint, return_inverse=True)
     owner = place[sources.bone].astype(np.int32)
     # A joint's paths begin on all of its bones; where they share a node, on the nearest.
-    order = np.lexsort((sources.distance, sources.node, owner))
-    pairs = np.stack([owner, sources.node])[:, order]
-    first = order[np.diff(pairs, prepend=-1).any(axis=0)]
-    begin = Sources(sources.node[first], owner[first], sources.distance[first])
+    begin = Sources(sources.node, owner, sources.distance).nearest()
     return shortest_paths(graph, begin, len(joints), targets, progress)
 
 

@@ -17,7 +17,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from ..graph import CutCellGraph
-from ..graph.cutcell_graph import Adjacency, list_neighbours
+from ..graph.neighbours import Adjacency, list_neighbours
 from ..progress import Progress, silent
 from ..threads import in_threads, threads
 from .bones import Sources

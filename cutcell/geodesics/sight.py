@@ -22,11 +22,8 @@ def body_of(graph: CutCellGraph) -> tuple:
     That is its resolution, its first lattice point and first crossing, where its nodes are,
     and the lattice points inside with the edges between them.
     """
-    first_point = int(graph.vertex_node.max()) + 1
-    first_crossing = first_point + len(graph.interior)
-    resolution = graph.lattice.resolution
-    inside = graph.interior.table, graph.whole
-    return (resolution, first_point, first_crossing, graph.nodes, *inside)
+    firsts = graph.first_point, graph.first_crossing
+    return (graph.lattice.resolution, *firsts, graph.nodes, graph.interior.table, graph.whole)
 
 
 @njit(cache=True, inline="always")

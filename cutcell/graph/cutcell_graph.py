@@ -4,21 +4,19 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TypeAlias
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
+from .contracted import Contracted, contract
 from .interior import InteriorPoints
 from .lattice import Lattice
+from .neighbours import Adjacency, list_neighbours
 
 MESH, INTERIOR, SURFACE = 0, 1, 2
 """Kinds of nodes (mesh vertices, lattice points inside, crossings of rays and surface) and
 of edges (of the mesh, along rays inside, from a crossing to the corners of its triangle)."""
-
-Adjacency: TypeAlias = tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.float64]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,6 +68,16 @@ class CutCellGraph:
     interior: InteriorPoints
     whole: NDArray[np.bool_]
 
+    @property
+    def first_point(self) -> int:
+        """The node of the first lattice point."""
+        return int(self.vertex_node.max()) + 1
+
+    @property
+    def first_crossing(self) -> int:
+        """The node of the first crossing."""
+        return self.first_point + len(self.interior)
+
     def csr(self) -> csr_array:
         """Return the lengths as a symmetric matrix, shape (N, N); zero lengths are stored."""
         indptr, indices, lengths = self.adjacency
@@ -81,28 +89,12 @@ class CutCellGraph:
         return list_neighbours(self.edges, self.lengths, len(self.nodes))
 
     @cached_property
+    def contracted(self) -> Contracted:
+        """The same ways between fewer nodes, see `contract`."""
+        kinds = np.bincount(self.node_kind, minlength=3).tolist()
+        return contract(self.edges, self.lengths, *kinds)
+
+    @cached_property
     def degree(self) -> NDArray[np.int64]:
         """Number of edges at each node, shape (N,)."""
         return np.bincount(self.edges.ravel(), minlength=len(self.nodes))
-
-
-def list_neighbours(
-    edges: NDArray[np.int32], lengths: NDArray[np.float64], count: int
-) -> Adjacency:
-    """List the neighbours of each of `count` nodes: indptr (N + 1,), indices and lengths (2E,)."""
-    degree = np.bincount(edges.ravel(), minlength=count)
-    indptr = np.concatenate([[0], np.cumsum(degree)]).astype(np.int32)
-    indices = np.empty(2 * len(edges), np.int32)
-    both_ways = np.empty(2 * len(edges))
-    _fill_adjacency(edges, lengths, indptr[:-1].copy(), indices, both_ways)
-    return indptr, indices, both_ways
-
-
-@njit(cache=True)
-def _fill_adjacency(edges, edge_lengths, cursor, indices, lengths):
-    for e in range(len(edges)):
-        for side in range(2):
-            node = edges[e, side]
-            indices[cursor[node]] = edges[e, 1 - side]
-            lengths[cursor[node]] = edge_lengths[e]
-            cursor[node] += 1
