@@ -52,7 +52,7 @@ def load_kernels() -> None:
     skeleton = Skeleton(joints, np.array([*range(-1, 6), -1]))
     for connectivity in ("any", 26):
         graph = build_graph(_tube(), 8, connectivity=connectivity)
-        for nearest in {joints_needed("paper", 4), 5, joints_needed("rig", 4)}:
+        for nearest in {joints_needed("paper", 4), joints_needed("rig", 4)}:
             distances = bone_distances(
                 graph, skeleton, leaf=DEFAULT_LEAF["rig"], nearest_joints=nearest
             )

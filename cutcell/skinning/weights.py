@@ -38,8 +38,8 @@ def skinning_weights(
     alpha : float
         Smoothness of the paper's falloff, 0 to 1.
     max_influences : int or None
-        Joints a vertex may follow, 1 or more; None for no limit. No more than
-        `distances` were measured from.
+        Joints a vertex may follow, 1 or more; None for no limit. `distances` must be those
+        of enough joints, see `joints_needed`.
     threshold : float
         Of the weights that are left, those below it are dropped, 0 to 1.
     allowed : array, shape (n, j), bool, optional
@@ -64,12 +64,12 @@ def skinning_weights(
     threshold = check_number("threshold", threshold, 0, 1)
     if max_influences is not None:
         max_influences = check_integer("max_influences", max_influences, 1, MOST_INFLUENCES)
-    known = distances.nearest_joints
-    if known is not None and (max_influences is None or max_influences > known):
+    known, needed = distances.nearest_joints, joints_needed(falloff, max_influences)
+    if known is not None and (needed is None or needed > known):
         raise ParameterError(
             f"max_influences is {max_influences}, but the distances were measured from the "
-            f"{known} nearest joints of each vertex alone: measure them again with more "
-            f"nearest_joints, or with None for all"
+            f"{known} nearest joints of each vertex alone: measure them again with "
+            f"nearest_joints={needed}{', for all' * (needed is None)}"
         )
     kept = max_influences, threshold, _by_position(distances)
     if falloff == "paper":
@@ -125,7 +125,7 @@ def joints_needed(falloff: str, max_influences: int | None) -> int | None:
     """Return from how many nearest joints of each vertex a falloff needs distances."""
     if falloff == "paper" or max_influences is None:
         return max_influences
-    return max(max_influences, NEAREST_JOINTS)
+    return NEAREST_JOINTS * max(1, -(-max_influences // 4))
 
 
 def reach_needed(falloff: str) -> float:
