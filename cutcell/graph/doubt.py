@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from .clusters import Clusters
 from .field import ERROR, value_at
+from .rays import in_space
 
 BLOCK = 8
 """Cells along the side of the blocks that are decided as a whole, or else cell by cell."""
@@ -67,13 +68,26 @@ class Doubt(NamedTuple):
 
 
 @njit(cache=True, inline="always")
-def code_at(doubt, cell):
-    """Return the code of a cell, and whether its whole block has the same."""
-    x, y, z = cell
+def code_at(doubt, axis, ray, cell, stop):
+    """Return the code of a cell on a ray, and where it ends that cells have it.
+
+    Only cells of the same block are looked at, and none from `stop` on.
+    """
+    x, y, z = in_space(axis, ray[0], ray[1], cell)
+    stop = min(stop, (cell // BLOCK + 1) * BLOCK)
     code = doubt.coarse[x // BLOCK, y // BLOCK, z // BLOCK]
     if code < 0:
-        return code, True
-    return doubt.fine[code, x % BLOCK, y % BLOCK, z % BLOCK], False
+        return code, max(stop, cell + 1)
+    block = doubt.fine[code]
+    x, y, z = x % BLOCK, y % BLOCK, z % BLOCK
+    code = block[x, y, z]
+    until = cell + 1
+    while until < stop:
+        x, y, z = x + (axis == 0), y + (axis == 1), z + (axis == 2)
+        if block[x, y, z] != code:
+            break
+        until += 1
+    return code, until
 
 
 @njit(cache=True, inline="always")

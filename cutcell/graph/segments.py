@@ -112,95 +112,126 @@ def _walk_rays(shared, seen, first_ray, last_ray, answers, is_listing):
     First it is listed which midpoints to ask about: the leaf and the place of each. With the
     answers, in the same order, the rays are walked once more, unless there was nothing to ask.
     """
-    resolution, tau, doubt = shared[:3]
-    axis = seen[0]
-    calm, (start, position, sign), (cap_start, cap_position, cap_sign) = seen[2:]
     rows = np.empty((256, 5), np.int32)
     leaf, points = np.empty(256, np.int32), np.empty((256, 3))
-    count = asked = 0
-    is_done = True
     torn, tools = np.empty(2, np.int64), (np.full(1, ROOT, np.int32), np.empty((ROWS, 1)))
+    filled, is_done = (0, 0), True
+    while first_ray < last_ray:
+        room = rows, leaf, points, answers, torn, tools
+        ray, filled, is_sure = _walk(shared, seen, first_ray, last_ray, is_listing, filled, *room)
+        if ray < last_ray:
+            rows, leaf, points = grown(rows), grown(leaf), grown(points)
+        first_ray, is_done = ray, is_done and is_sure
+    return rows[: filled[0]], leaf[: filled[1]], points[: filled[1]], is_done
+
+
+@lean
+def _walk(
+    shared, seen, first_ray, last_ray, is_listing, filled, rows, leaf, points, answers, torn, tools
+):
+    """Walk rays while there is room; return who is next, what is filled, and if all was sure."""
+    resolution, calm, start, cap_start = shared[0], seen[2], seen[3][0], seen[4][0]
+    count, asked = filled
+    is_sure = True
     for r in range(first_ray, last_ray):
-        begin, end = start[r], start[r + 1]
-        passed, last_cap = cap_start[r], cap_start[r + 1]
-        chi = 0
-        for c in range(begin, end):
-            chi += sign[c]
-        # Far from holes, no winding number changes between two crossings.
-        i, j = r // resolution, r % resolution
-        need = calm[i // BLOCK, j // BLOCK]
-        is_calm = need < UNSURE and passed == last_cap
-        if is_calm and begin == end and chi < need:
-            continue
-        lid = 0  # crossings ahead with the caps, counted like chi
-        for c in range(passed, last_cap):
-            lid += cap_sign[c]
-        torn[0] = NONE
-        k = 0
-        # Gap by gap: from the crossing c - 1 (or the cube's wall) to the crossing c.
-        for c in range(begin, end + 1):
-            if c > begin:
-                chi -= sign[c - 1]
-            before = position[c - 1] if c > begin else 0.0
-            after = position[c] if c < end else 1.0
-            beyond = first_at_least(after, resolution) if c < end else resolution
-            # Segment s of the gap ends at lattice point s; the last one at crossing c.
-            s, is_open = k, False
-            while s <= beyond:
-                if is_calm:
-                    kept, until = chi >= need, beyond + 1
-                elif (s == k and c == begin) or (s == beyond and c == end):  # to a wall
-                    kept, until = False, s + 1
+        crossings, caps = start[r + 1] - start[r], cap_start[r + 1] - cap_start[r]
+        if (
+            crossings
+            == caps
+            == 0
+            < calm[r // resolution // BLOCK, r % resolution // BLOCK]
+            < UNSURE
+        ):
+            continue  # it passes the body by
+        segments = resolution + crossings + 1
+        if count + 2 * segments > len(rows) or asked + segments > len(leaf):
+            return r, (count, asked), is_sure
+        room = rows, leaf, points, answers, torn, tools
+        count, asked, sure = _walk_ray(shared, seen, r, is_listing, count, asked, *room)
+        is_sure &= sure
+    return last_ray, (count, asked), is_sure
+
+
+@lean
+def _walk_ray(shared, seen, r, is_listing, count, asked, rows, leaf, points, answers, torn, tools):
+    """Put the runs of one ray; return how many, how many questions, and if all was sure."""
+    resolution, tau, doubt = shared[:3]
+    axis, _, calm, (start, position, sign), (cap_start, cap_position, cap_sign) = seen
+    begin, end = start[r], start[r + 1]
+    passed, last_cap = cap_start[r], cap_start[r + 1]
+    chi = 0
+    for c in range(begin, end):
+        chi += sign[c]
+    # Far from holes, no winding number changes between two crossings.
+    i, j = r // resolution, r % resolution
+    need = calm[i // BLOCK, j // BLOCK]
+    is_calm = need < UNSURE and passed == last_cap
+    is_sure = True
+    lid = 0  # crossings ahead with the caps, counted like chi
+    for c in range(passed, last_cap):
+        lid += cap_sign[c]
+    torn[0] = NONE
+    k = 0
+    # Gap by gap: from the crossing c - 1 (or the cube's wall) to the crossing c.
+    for c in range(begin, end + 1):
+        if c > begin:
+            chi -= sign[c - 1]
+        before = position[c - 1] if c > begin else 0.0
+        after = position[c] if c < end else 1.0
+        beyond = first_at_least(after, resolution) if c < end else resolution
+        # Segment s of the gap ends at lattice point s; the last one at crossing c.
+        s, is_open = k, False
+        while s <= beyond:
+            if is_calm:
+                kept, until = chi >= need, beyond + 1
+            elif (s == k and c == begin) or (s == beyond and c == end):  # to a wall
+                kept, until = False, s + 1
+            else:
+                left = before if s == k else (s - 0.5) / resolution
+                right = after if s == beyond else (s + 0.5) / resolution
+                middle = 0.5 * (left + right)
+                while passed < last_cap and cap_position[passed] <= middle:
+                    lid -= cap_sign[passed]
+                    passed += 1
+                cell = min(int(middle * resolution), resolution - 1)
+                stop = beyond + (c < end)
+                if passed < last_cap:
+                    stop = min(stop, int(cap_position[passed] * resolution))
+                code, same = code_at(doubt, axis, (i, j), cell, stop)
+                if code < 0:
+                    # So it stays while cells have this code, or to the next crossing.
+                    kept, until = chi + lid >= code - NEED, same
                 else:
-                    left = before if s == k else (s - 0.5) / resolution
-                    right = after if s == beyond else (s + 0.5) / resolution
-                    middle = 0.5 * (left + right)
-                    while passed < last_cap and cap_position[passed] <= middle:
-                        lid -= cap_sign[passed]
-                        passed += 1
-                    cell = min(int(middle * resolution), resolution - 1)
-                    code, is_block = code_at(doubt, in_space(axis, i, j, cell))
-                    if code < 0:
-                        # So it stays to the end of the block, or the next crossing.
-                        kept, until = chi + lid >= code - NEED, cell + 1
-                        if is_block:
-                            ahead = cap_position[passed] if passed < last_cap else 1.0
-                            until = min((cell // BLOCK + 1) * BLOCK, int(ahead * resolution))
-                    else:
-                        p = (i + 0.5) / resolution, (j + 0.5) / resolution, middle
-                        point = in_space(axis, p[0], p[1], p[2])
-                        kept, until = False, cell + 1
-                        is_asked = _is_asked(doubt.leaves, code, point, tau)
-                        if not is_listing and is_asked:
-                            kept = _as_answered(shared, seen, p, answers[asked], chi, lid)
-                        elif not is_listing:
-                            kept = _in_torn(shared, seen, p, point, code, chi, lid, torn, tools)
-                        elif is_asked:
-                            if asked == len(leaf):
-                                leaf, points = grown(leaf), grown(points)
-                            leaf[asked] = code
-                            points[asked, 0], points[asked, 1], points[asked, 2] = point
-                        asked += is_asked
-                        is_done = False
-                    until = max(s + 1, min(until, beyond + (c < end)))
-                if kept and not is_open:
-                    if count == len(rows):
-                        rows = grown(rows)
-                    rows[count, 0] = r
-                    rows[count, 1] = k if s == k else s - 1
-                    rows[count, 3] = c - 1 if s == k and c > begin else NONE
-                elif is_open and not kept:
-                    rows[count, 2], rows[count, 4] = s - 1, NONE
-                    count += 1
-                s, is_open = until, kept
-            # A run ends at every crossing: what follows starts there as a run of its own.
-            # From the wall straight to a crossing there is no segment.
-            if is_open and (beyond > k or begin < c < end):
-                rows[count, 2] = beyond - 1
-                rows[count, 4] = c if c < end else NONE
+                    p = (i + 0.5) / resolution, (j + 0.5) / resolution, middle
+                    point = in_space(axis, p[0], p[1], p[2])
+                    kept, until = False, cell + 1
+                    is_asked = _is_asked(doubt.leaves, code, point, tau)
+                    if not is_listing and is_asked:
+                        kept = _as_answered(shared, seen, p, answers[asked], chi, lid)
+                    elif not is_listing:
+                        kept = _in_torn(shared, seen, p, point, code, chi, lid, torn, tools)
+                    elif is_asked:
+                        leaf[asked] = code
+                        points[asked, 0], points[asked, 1], points[asked, 2] = point
+                    asked += is_asked
+                    is_sure = False
+                until = max(s + 1, min(until, beyond + (c < end)))
+            if kept and not is_open:
+                rows[count, 0] = r
+                rows[count, 1] = k if s == k else s - 1
+                rows[count, 3] = c - 1 if s == k and c > begin else NONE
+            elif is_open and not kept:
+                rows[count, 2], rows[count, 4] = s - 1, NONE
                 count += 1
-            k = beyond
-    return rows[:count], leaf[:asked], points[:asked], is_done
+            s, is_open = until, kept
+        # A run ends at every crossing: what follows starts there as a run of its own.
+        # From the wall straight to a crossing there is no segment.
+        if is_open and (beyond > k or begin < c < end):
+            rows[count, 2] = beyond - 1
+            rows[count, 4] = c if c < end else NONE
+            count += 1
+        k = beyond
+    return count, asked, is_sure
 
 
 @lean
