@@ -135,13 +135,8 @@ def _walk(
     is_sure = True
     for r in range(first_ray, last_ray):
         crossings, caps = start[r + 1] - start[r], cap_start[r + 1] - cap_start[r]
-        if (
-            crossings
-            == caps
-            == 0
-            < calm[r // resolution // BLOCK, r % resolution // BLOCK]
-            < UNSURE
-        ):
+        need = calm[r // resolution // BLOCK, r % resolution // BLOCK]
+        if crossings == caps == 0 < need < UNSURE:
             continue  # it passes the body by
         segments = resolution + crossings + 1
         if count + 2 * segments > len(rows) or asked + segments > len(leaf):
