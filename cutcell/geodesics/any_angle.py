@@ -203,7 +203,7 @@ def _settle(
     """
     each = len(rooms)
     indptr, indices = adjacency
-    resolution, first_point, first_crossing, nodes, _, _ = body
+    resolution, first_point, first_crossing, nodes, _ = body
     for bucket in range(first, last):
         while head[bucket] != END:
             label = head[bucket]
@@ -242,7 +242,7 @@ def _settle(
                 elif v >= first_crossing:
                     seen = u < first_crossing
                 else:
-                    seen = sees(body, anchors, each, u, here, anchor, bend)
+                    seen = sees(body, anchors, each, u, v, here, anchor, bend)
                 if not seen:
                     reached, bent = labels[label].distance + beside, label
                     if reached >= limit:

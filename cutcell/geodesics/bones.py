@@ -115,13 +115,6 @@ class Sources:
         number = np.cumsum(which, dtype=np.int32) - 1
         return Sources(self.node[mine], number[self.bone[mine]], self.distance[mine])
 
-    def nearest(self) -> Sources:
-        """Return each node of a bone once, at its least distance."""
-        order = np.lexsort((self.distance, self.node, self.bone))
-        pairs = np.stack([self.bone, self.node])[:, order]
-        first = order[np.diff(pairs, prepend=-1).any(axis=0)]
-        return Sources(self.node[first], self.bone[first], self.distance[first])
-
     def replaced(self, which: NDArray[np.bool_], other: Sources) -> Sources:
         """Return these sources, but for some of the bones `other`, which numbers those alone."""
         kept = ~which[self.bone]
@@ -196,25 +189,10 @@ def find_sources(graph: CutCellGraph, bones: Bones, samples: int, grid: NodeGrid
     """
     points, bone = bone_samples(graph, bones, samples)
     point, node = grid.nearest(points, TIE)
+    if graph.connectivity == "any":  # no path leads to what is passed over
+        beside = graph.contracted.beside[node]
+        node = np.where(beside >= 0, beside, node)
     pairs = np.unique(bone[point] * len(graph.nodes) + node)
     own, where = (x.astype(np.int32) for x in np.divmod(pairs, len(graph.nodes)))
     straight = distance_to_segment(graph.nodes[where], bones.start[own], bones.end[own])
-    found = Sources(where, own, straight)
-    return _where_paths_lead(graph, bones, found) if graph.connectivity == "any" else found
-
-
-def _where_paths_lead(graph: CutCellGraph, bones: Bones, found: Sources) -> Sources:
-    """Begin beside nodes that are passed over: at the lattice point, and the triangle's corners."""
-    point = graph.contracted.beside[found.node]
-    over = point >= 0
-    point, node, bone = point[over], found.node[over], found.bone[over]
-    straight = distance_to_segment(graph.nodes[point], bones.start[bone], bones.end[bone])
-    corners = graph.faces[graph.triangle[node]]
-    way = np.linalg.norm(graph.nodes[corners] - graph.nodes[node][:, None], axis=2)
-    return Sources(
-        np.concatenate([found.node[~over], point, corners.ravel()]),
-        np.concatenate([found.bone[~over], bone, np.repeat(bone, 3)]),
-        np.concatenate(
-            [found.distance[~over], straight, (found.distance[over][:, None] + way).ravel()]
-        ),
-    ).nearest()
+    return Sources(where, own, straight)

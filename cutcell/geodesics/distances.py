@@ -220,7 +220,10 @@ def _paths(
     joints, place = np.unique(bones.joint, return_inverse=True)
     owner = place[sources.bone].astype(np.int32)
     # A joint's paths begin on all of its bones; where they share a node, on the nearest.
-    begin = Sources(sources.node, owner, sources.distance).nearest()
+    order = np.lexsort((sources.distance, sources.node, owner))
+    pairs = np.stack([owner, sources.node])[:, order]
+    first = order[np.diff(pairs, prepend=-1).any(axis=0)]
+    begin = Sources(sources.node[first], owner[first], sources.distance[first])
     return shortest_paths(graph, begin, len(joints), targets, progress)
 
 

@@ -12,7 +12,7 @@ from numba import njit
 
 from ..compiled import lean
 from ..graph import CutCellGraph
-from ..graph.interior import OUTSIDE, point_number
+from ..graph.interior import OUTSIDE
 from .labels import follows_anchor
 
 
@@ -20,10 +20,10 @@ def body_of(graph: CutCellGraph) -> tuple:
     """Return what kernels ask of a graph.
 
     That is its resolution, its first lattice point and first crossing, where its nodes are,
-    and the lattice points inside with the edges between them.
+    and which lattice points are joined.
     """
     firsts = graph.first_point, graph.first_crossing
-    return (graph.lattice.resolution, *firsts, graph.nodes, graph.interior.table, graph.whole)
+    return (graph.lattice.resolution, *firsts, graph.nodes, graph.steps)
 
 
 @njit(cache=True, inline="always")
@@ -48,66 +48,61 @@ def straight(p, q):
 
 
 @njit(cache=True, inline="always")
-def sees(body, anchors, each, u, here, anchor, bend):
-    """Tell whether the straight way from the bend to a lattice point stays inside.
+def sees(body, anchors, each, u, v, here, anchor, bend):
+    """Tell whether the straight way from the bend to the lattice point v stays inside.
 
-    It does from the node u beside that point.
+    It does from the node u beside that point; `here` is its place.
     """
-    resolution, first_point, _, _, table, whole = body
+    resolution, first_point, _, _, steps = body
     x, y, z = int(here[0] * resolution), int(here[1] * resolution), int(here[2] * resolution)
     dx = bend[0] * resolution - 0.5 - x
     dy = bend[1] * resolution - 0.5 - y
     dz = bend[2] * resolution - 0.5 - z
     far = max(abs(dx), abs(dy), abs(dz))
+    point = v - first_point
     if far > 1:
-        sx, sy, sz = int(np.rint(dx / far)), int(np.rint(dy / far)), int(np.rint(dz / far))
-        w = _point(table, resolution, x + sx, y + sy, z + sz)
+        w = _step(steps, point, 0, np.rint(dx / far))
+        w = _step(steps, w, 1, np.rint(dy / far))
+        w = _step(steps, w, 2, np.rint(dz / far))
         if w != OUTSIDE:
             w += first_point
-            if w == u:
+            follows = w == u or (anchor >= 0 and w == anchor // each)
+            if follows or follows_anchor(anchors, each, w, anchor):
                 return True
-            follows = anchor >= 0 and w == anchor // each
-            follows |= follows_anchor(anchors, each, w, anchor)
-            # Across a gap thinner than a cell the next point is no neighbour.
-            if follows and _walk(table, whole, resolution, (x, y, z), (x + sx, y + sy, z + sz)):
-                return True
-    cell = int(bend[0] * resolution), int(bend[1] * resolution), int(bend[2] * resolution)
-    return _walk(table, whole, resolution, (x, y, z), cell)
+    x, y, z = (
+        int(bend[0] * resolution) - x,
+        int(bend[1] * resolution) - y,
+        int(bend[2] * resolution) - z,
+    )
+    return _walk(steps, point, x, y, z)
 
 
 @njit(cache=True, inline="always")
-def _point(table, resolution, x, y, z):
-    if not (0 <= x < resolution and 0 <= y < resolution and 0 <= z < resolution):
-        return np.int64(OUTSIDE)
-    return point_number(table[0], table[1], table[2], table[3], x * resolution + y, z)
+def _step(steps, point, axis, way):
+    """Return the point next along an axis, itself if the way is 0; OUTSIDE if none is joined."""
+    if point == OUTSIDE or way == 0:
+        return point
+    return steps[point, axis + 3 * (way < 0)]
 
 
 @lean
-def _walk(table, whole, resolution, cell, goal):
-    """Tell whether the cells along a line are joined by edges inside (Amanatides & Woo 1987)."""
-    x, y, z = cell
-    dx, dy, dz = abs(goal[0] - x), abs(goal[1] - y), abs(goal[2] - z)
-    sx, sy, sz = np.sign(goal[0] - x), np.sign(goal[1] - y), np.sign(goal[2] - z)
+def _walk(steps, point, x, y, z):
+    """Tell if cells along a line of (x, y, z) are joined by edges (Amanatides & Woo 1987)."""
+    dx, dy, dz = abs(x), abs(y), abs(z)
     # When the line leaves the cell on either side, as a fraction of the way.
     tx = 0.5 / dx if dx else np.inf
     ty = 0.5 / dy if dy else np.inf
     tz = 0.5 / dz if dz else np.inf
-    p = _point(table, resolution, x, y, z)
     for _ in range(dx + dy + dz):
         if tx <= ty and tx <= tz:
-            axis, step = 0, sx
-            x += sx
+            point = _step(steps, point, 0, x)
             tx += 1 / dx
         elif ty <= tz:
-            axis, step = 1, sy
-            y += sy
+            point = _step(steps, point, 1, y)
             ty += 1 / dy
         else:
-            axis, step = 2, sz
-            z += sz
+            point = _step(steps, point, 2, z)
             tz += 1 / dz
-        q = _point(table, resolution, x, y, z)
-        if q == OUTSIDE or not whole[axis, p if step > 0 else q]:
+        if point == OUTSIDE:
             return False
-        p = q
     return True

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ..threads import in_threads
 from .cutcell_graph import INTERIOR, MESH, SURFACE, CutCellGraph
 from .inside_edges import diagonal_edges, edge_starts, fill_edges
-from .interior import interior_points
+from .interior import OUTSIDE, interior_points
 from .lattice import Lattice
 from .memory import check_memory
 from .rays import AXES, Crossings
@@ -64,12 +64,12 @@ def assemble(
 
     nodes, triangle = np.empty((node, 3)), np.full(node, -1, np.int32)
     edges, lengths = np.empty((sum(edge_kinds), 2), np.int32), np.empty(sum(edge_kinds))
-    whole = np.zeros((3, len(points)), np.bool_)
+    steps = np.full((len(points) if connectivity != 6 else 0, 6), OUTSIDE, np.int32)
 
     def fill_inside(axis: int) -> None:
         ends = crossings[axis].position, numbers[axis]
         fill_edges(
-            runs[axis], starts[axis], axis, points, len(vertices), ends, edges, lengths, whole[axis]
+            runs[axis], starts[axis], axis, points, len(vertices), ends, edges, lengths, steps
         )
 
     def fill_surface(axis: int) -> None:
@@ -86,7 +86,7 @@ def assemble(
     jobs = [(job, axis) for job in (fill_inside, fill_surface) for axis in range(3)]
     in_threads(lambda job: job[0](job[1]), [*jobs, (fill_rest, 0)])
     if connectivity == 26:
-        diagonals = diagonal_edges(points, len(vertices), whole)
+        diagonals = diagonal_edges(steps, len(vertices))
         edges = np.concatenate([edges[:edge], diagonals, edges[edge:]])
         ends = nodes[diagonals]
         apart = np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1)
@@ -105,7 +105,7 @@ def assemble(
         is_closed=is_closed,
         connectivity=connectivity,
         interior=points,
-        whole=whole,
+        steps=steps,
     )
 
 

@@ -49,9 +49,10 @@ class CutCellGraph:
         How paths may run inside, see `build_graph`.
     interior : InteriorPoints
         The lattice points inside, in the order of their nodes.
-    whole : array, shape (3, p), bool
-        For x, y, z: whether the edge from an interior lattice point to the next along that
-        axis lies inside, not crossed by the surface.
+    steps : array, shape (p, 6) or (0, 6), int32
+        For each interior lattice point those next to it up x, y, z and down x, y, z, if the edge
+        between lies inside and is not crossed by the surface; else -1. No rows with connectivity
+        6, where nobody asks.
     """
 
     nodes: NDArray[np.float64]
@@ -66,7 +67,7 @@ class CutCellGraph:
     is_closed: bool
     connectivity: int | str
     interior: InteriorPoints
-    whole: NDArray[np.bool_]
+    steps: NDArray[np.int32]
 
     @property
     def first_point(self) -> int:

@@ -24,7 +24,7 @@ def fill_edges(
     ends: tuple[NDArray[np.float64], NDArray[np.int32]],
     edges: NDArray[np.int32],
     lengths: NDArray[np.float64],
-    whole: NDArray[np.bool_],
+    steps: NDArray[np.int32],
 ) -> None:
     """List the kept segments along one axis as edges.
 
@@ -41,13 +41,13 @@ def fill_edges(
         Positions of the axis' crossings, and their nodes.
     edges, lengths : arrays, shapes (e, 2) and (e,)
         Written to.
-    whole : array, shape (p,), bool
-        Set true for each interior point whose segment to the next point along the axis
-        is kept and not crossed.
+    steps : array, shape (p, 6) or (0, 6), int32
+        Gets the interior points next to each where the segment between is kept and not
+        crossed: upward along the axis, and 3 columns further downward.
     """
     run = runs.ray, runs.first, runs.last, runs.low, runs.high, run_start
     place = points.resolution, axis, first_point
-    _fill_edges(place, run, points.table, ends, edges, lengths, whole)
+    _fill_edges(place, run, points.table, ends, edges, lengths, steps)
 
 
 @njit(cache=True, nogil=True)
@@ -61,7 +61,7 @@ def _edge_starts(first, last, low, high, start):
 
 
 @njit(cache=True, nogil=True)
-def _fill_edges(place, runs, table, ends, edges, lengths, whole):
+def _fill_edges(place, runs, table, ends, edges, lengths, steps):
     resolution, axis, first_point = place
     ray, first, last, low, high, start = runs
     position, crossing_node = ends
@@ -73,8 +73,8 @@ def _fill_edges(place, runs, table, ends, edges, lengths, whole):
         for k in range(first[r], last[r] + 1):
             column, z = place_on_ray(axis, ray[r], k, resolution)
             point = point_number(table[0], table[1], table[2], table[3], column, z)
-            if before != OUTSIDE:
-                whole[before] = True
+            if before != OUTSIDE and len(steps):
+                steps[before, axis], steps[point, 3 + axis] = point, before
             if here != NONE:
                 edges[e, 0], edges[e, 1] = here, first_point + point
                 lengths[e] = (k + 0.5) / resolution - at
@@ -85,112 +85,72 @@ def _fill_edges(place, runs, table, ends, edges, lengths, whole):
             lengths[e] = position[high[r]] - at
 
 
-def diagonal_edges(
-    points: InteriorPoints, first_point: int, whole: NDArray[np.bool_]
-) -> NDArray[np.int32]:
-    """List the face and body diagonals of cells whose twelve edges are whole.
+def diagonal_edges(steps: NDArray[np.int32], first_point: int) -> NDArray[np.int32]:
+    """List the face and body diagonals of cells all of whose twelve edges lie inside.
 
     Parameters
     ----------
-    points : InteriorPoints
+    steps : array, shape (p, 6), int32
+        See `fill_edges`, for x, y and z.
     first_point : int
         The node of the first interior point.
-    whole : array, shape (3, p), bool
-        See `segment_edges`, for x, y and z.
 
     Returns
     -------
     array, shape (d, 2), int32
         Each diagonal once, also where two cells share it.
     """
-    cell = np.zeros(len(points), np.bool_)
-    _mark_cells(points.resolution, *points.table, whole, cell)
-    counts = np.zeros(points.resolution**2 + 1, np.int64)
-    nothing = np.empty((0, 2), np.int32)
-    _list_diagonals(points.resolution, *points.table, cell, first_point, counts[1:], nothing)
-    start = np.cumsum(counts)
-    edges = np.empty((start[-1], 2), np.int32)
-    _list_diagonals(points.resolution, *points.table, cell, first_point, start[:-1].copy(), edges)
+    cell = _mark_cells(steps)
+    edges = np.empty((0, 2), np.int32)
+    edges = np.empty((_list_diagonals(steps, cell, first_point, edges), 2), np.int32)
+    _list_diagonals(steps, cell, first_point, edges)
     return edges
 
 
 @njit(cache=True, inline="always")
-def _at(resolution, start, first, last, number, x, y, z):
-    if not (0 <= x < resolution and 0 <= y < resolution and 0 <= z < resolution):
-        return np.int64(OUTSIDE)
-    return point_number(start, first, last, number, x * resolution + y, z)
+def _step(steps, point, column):
+    """Return the next point, OUTSIDE if there is none or the point is none."""
+    return steps[point, column] if point != OUTSIDE else OUTSIDE
 
 
 @njit(cache=True)
-def _mark_cells(resolution, start, first, last, number, whole, cell):
+def _mark_cells(steps):
     """Mark the points that are the lowest corner of a cell inside."""
-    for column in range(resolution * resolution):
-        x, y = column // resolution, column % resolution
-        for s in range(start[column], start[column + 1]):
-            for z in range(first[s], last[s] + 1):
-                inside = True
-                for corner in range(7):  # the eighth starts no edge of the cell
-                    dx, dy, dz = corner >> 2, corner >> 1 & 1, corner & 1
-                    p = _at(resolution, start, first, last, number, x + dx, y + dy, z + dz)
-                    if p == OUTSIDE or not (
-                        (dx or whole[0, p]) and (dy or whole[1, p]) and (dz or whole[2, p])
-                    ):
-                        inside = False
-                        break
-                cell[number[s] + z - first[s]] = inside
+    cell = np.empty(len(steps), np.bool_)
+    for p in range(len(steps)):
+        x, y, z = steps[p, 0], steps[p, 1], steps[p, 2]
+        xy, yz, zx = _step(steps, x, 1), _step(steps, y, 2), _step(steps, z, 0)
+        inside = xy != OUTSIDE and yz != OUTSIDE and zx != OUTSIDE
+        inside = inside and xy == _step(steps, y, 0) and yz == _step(steps, z, 1)
+        inside = inside and zx == _step(steps, x, 2) and steps[xy, 2] != OUTSIDE
+        cell[p] = inside and steps[xy, 2] == steps[yz, 0] == steps[zx, 1]
+    return cell
 
 
 @njit(cache=True)
-def _list_diagonals(resolution, start, first, last, number, cell, first_point, cursor, edges):
-    """Count the diagonals that start in each column in `cursor`; or list them."""
-    for column in range(resolution * resolution):
-        x, y = column // resolution, column % resolution
-        for s in range(start[column], start[column + 1]):
-            for z in range(first[s], last[s] + 1):
-                p = number[s] + z - first[s]
-                for axis in range(3):
-                    # The square from p across this axis borders the cells at p and below.
-                    below = _at(
-                        resolution,
-                        start,
-                        first,
-                        last,
-                        number,
-                        x - (axis == 0),
-                        y - (axis == 1),
-                        z - (axis == 2),
-                    )
-                    if not (cell[p] or (below != OUTSIDE and cell[below])):
-                        continue
-                    ux, uy, uz = np.int64(axis != 0), np.int64(axis == 0), 0
-                    vx, vy, vz = 0, np.int64(axis == 2), np.int64(axis != 2)
-                    u = _at(resolution, start, first, last, number, x + ux, y + uy, z + uz)
-                    v = _at(resolution, start, first, last, number, x + vx, y + vy, z + vz)
-                    w = _at(
-                        resolution,
-                        start,
-                        first,
-                        last,
-                        number,
-                        x + ux + vx,
-                        y + uy + vy,
-                        z + uz + vz,
-                    )
-                    _add(edges, cursor, column, first_point, p, w)
-                    _add(edges, cursor, column, first_point, u, v)
-                if cell[p]:
-                    for corner in range(4):
-                        dx, dy = corner >> 1, corner & 1
-                        a = _at(resolution, start, first, last, number, x + dx, y + dy, z)
-                        b = _at(
-                            resolution, start, first, last, number, x + 1 - dx, y + 1 - dy, z + 1
-                        )
-                        _add(edges, cursor, column, first_point, a, b)
+def _list_diagonals(steps, cell, first_point, edges):
+    """Count the diagonals; and list them where there is room."""
+    count = 0
+    for p in range(len(steps)):
+        for axis in range(3):
+            # The square from p across this axis borders the cells at p and below.
+            below = steps[p, 3 + axis]
+            if cell[p] or (below != OUTSIDE and cell[below]):
+                u, v = steps[p, 0 if axis else 1], steps[p, 1 if axis == 2 else 2]
+                count = _add(edges, count, first_point, p, steps[u, 1 if axis == 2 else 2])
+                count = _add(edges, count, first_point, u, v)
+        if cell[p]:
+            x, y, z = steps[p, 0], steps[p, 1], steps[p, 2]
+            top = steps[steps[x, 1], 2]
+            count = _add(edges, count, first_point, p, top)
+            count = _add(edges, count, first_point, y, steps[x, 2])
+            count = _add(edges, count, first_point, x, steps[y, 2])
+            count = _add(edges, count, first_point, steps[x, 1], z)
+    return count
 
 
 @njit(cache=True, inline="always")
-def _add(edges, cursor, column, first_point, a, b):
+def _add(edges, count, first_point, a, b):
     if len(edges):
-        edges[cursor[column], 0] = first_point + a
-        edges[cursor[column], 1] = first_point + b
-    cursor[column] += 1
+        edges[count, 0], edges[count, 1] = first_point + a, first_point + b
+    return count + 1

@@ -79,12 +79,11 @@ def test_between_straight_and_along_the_edges(name):
     reached = np.isfinite(found)
     straight = distance_to_segment(vertices, start, end)
     assert (found[reached] >= straight[reached] * (1 - 1e-12)).all()
-    # Paths start from more points of the bone, and need no more than the edges' length. Only
-    # where the bone is outside and a corner far away, they go behind the surface: up to a cell.
+    # Paths start from more points of the bone, and need no more than the edges' length; but if
+    # a bone is outside, they start behind the surface that faces it, a cell away at most.
+    longer = found[reached] > edges[reached] * (1 + 1e-12)
+    assert longer.mean() < (0.01 if name in ("box", "ball", "tube", "holes") else 0.2)
     assert (found[reached] <= edges[reached] + 1 / 24).all()
-    assert (found[reached] <= edges[reached] * (1 + 1e-12)).mean() > (
-        0.85 if "soup" in name else 0.99
-    )
 
 
 def test_walls_are_not_seen_through():
