@@ -21,6 +21,7 @@ def side_by_side(kernel: Callable) -> Callable:
     """Compile a lean kernel whose loop is to run in the lanes of vector instructions.
 
     To divide by zero gives infinity there: to look out for it and raise an error takes a branch.
+    A product may be added without being rounded first.
     """
     options: Any = {"cache": True, "nogil": True, "_nrt": False, "error_model": "numpy"}
-    return njit(**options)(kernel)
+    return njit(fastmath={"contract"}, **options)(kernel)

@@ -15,7 +15,7 @@ from ..compiled import lean
 from ..sorting import sort_into
 from ..threads import in_threads, parts
 from .clusters import ROOT
-from .cover import LANES, ROWS, cover
+from .cover import CLEAR, LANES, ROOM, VALUE, WIDTH, Y, Z, cover
 from .doubt import ROUNDING, UNSURE, Doubt, need_between
 from .field import ERROR, value_at
 from .solid_angle import between, length
@@ -50,12 +50,11 @@ def answer(
         UNSURE where only an exact sum can tell.
     """
     start, order = sort_into(leaf, len(doubt.leaves.place))
-    most = int(np.diff(start).max(initial=0)) + LANES
     needs = np.empty(len(leaf), np.int32)
     asked = points, start, order, np.array([ROOT], np.int32)
 
     def some(part: slice) -> None:
-        seen = np.empty((ROWS, most))
+        seen = np.empty(ROOM)
         _answer(doubt, winding_threshold, *asked, part.start, part.stop, seen, needs)
 
     in_threads(some, parts(len(start) - 1))
@@ -68,36 +67,43 @@ def _answer(doubt, tau, points, start, order, every, first, last, seen, needs):
 
     `every` holds the cluster of all caps; `seen` is room for what `cover` fills in.
     """
-    leaves, clusters = doubt.leaves, doubt.clusters
     for leaf in range(first, last):
-        middle, field = leaves.place[leaf], leaves.field[leaf]
-        near = leaves.near[leaves.start[leaf] : leaves.start[leaf + 1]]
-        unsure = order[start[leaf] : start[leaf + 1]]
-        is_near, tolerance = not leaves.is_torn[leaf], FIRST
-        while len(unsure) and tolerance > LAST:
-            lanes, centre, reach = _line_up(unsure, points, seen)
-            known = (field[ERROR] if is_near else 0.0) + ROUNDING
-            among = near if is_near else every
-            off = cover(clusters, among, centre, reach, tolerance, seen, lanes)
-            left, margin = 0, 0.5
-            for i in range(len(unsure)):
-                q, is_clear = unsure[i], seen[7, i] > 0
-                value = tau + seen[4, i]
-                if is_near:
-                    way = between(middle, points[q])
-                    value += value_at(field, way[0], way[1], way[2])
-                needs[q] = need_between(value, known + off if is_clear else np.inf)
-                short = abs(value - np.round(value))
-                if needs[q] == UNSURE and is_clear and (is_near or short > known):
-                    unsure[left] = q
-                    left += 1
-                    margin = min(margin, short)
-            unsure = unsure[:left]
-            if is_near and known > HOPELESS * margin:
-                is_near, tolerance = False, min(max((SAFE * margin / 2) ** 2, 1e-4), FIRST)
-            elif left:  # what is left out falls with about the root of the tolerance
-                share = SAFE * (margin - known) / off
-                tolerance *= min(max(share * share, STEP), 0.5)
+        for begin in range(start[leaf], start[leaf + 1], WIDTH):
+            unsure = order[begin : min(begin + WIDTH, start[leaf + 1])]
+            _answer_some(doubt, tau, points, leaf, unsure, every, seen, needs)
+
+
+@lean
+def _answer_some(doubt, tau, points, leaf, unsure, every, seen, needs):
+    """Answer at most WIDTH midpoints of a leaf."""
+    leaves, clusters = doubt.leaves, doubt.clusters
+    middle, field = leaves.place[leaf], leaves.field[leaf]
+    near = leaves.near[leaves.start[leaf] : leaves.start[leaf + 1]]
+    is_near, tolerance = not leaves.is_torn[leaf], FIRST
+    while len(unsure) and tolerance > LAST:
+        lanes, centre, reach = _line_up(unsure, points, seen)
+        known = (field[ERROR] if is_near else 0.0) + ROUNDING
+        among = near if is_near else every
+        off = cover(clusters, among, centre, reach, tolerance, seen, lanes)
+        left, margin = 0, 0.5
+        for i in range(len(unsure)):
+            q, is_clear = unsure[i], seen[CLEAR + i] > 0
+            value = tau + seen[VALUE + i]
+            if is_near:
+                way = between(middle, points[q])
+                value += value_at(field, way[0], way[1], way[2])
+            needs[q] = need_between(value, known + off if is_clear else np.inf)
+            short = abs(value - np.round(value))
+            if needs[q] == UNSURE and is_clear and (is_near or short > known):
+                unsure[left] = q
+                left += 1
+                margin = min(margin, short)
+        unsure = unsure[:left]
+        if is_near and known > HOPELESS * margin:
+            is_near, tolerance = False, min(max((SAFE * margin / 2) ** 2, 1e-4), FIRST)
+        elif left:  # what is left out falls with about the root of the tolerance
+            share = SAFE * (margin - known) / off
+            tolerance *= min(max(share * share, STEP), 0.5)
 
 
 @lean
@@ -113,5 +119,5 @@ def _line_up(which, points, seen):
     lanes = -(-count // LANES) * LANES
     for i in range(lanes):
         q = which[min(i, count - 1)]
-        seen[0, i], seen[1, i], seen[2, i] = points[q, 0], points[q, 1], points[q, 2]
+        seen[i], seen[Y + i], seen[Z + i] = points[q, 0], points[q, 1], points[q, 2]
     return lanes, (x, y, z), reach

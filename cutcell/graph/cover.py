@@ -14,11 +14,15 @@ from .moments import cube, held, linear, square
 from .solid_angle import between, length
 from .view import after
 
-ROWS = 8
-"""Numbers that are kept of each point."""
+WIDTH = 264
+"""Points at most. Fixed, so that no loop has to look whether its rows overlap; and no power of
+two, so that rows do not share one place of the cache."""
+Y, Z, VALUE, RE, IM, CLEAR, ROOM = (WIDTH * row for row in range(1, 8))
+"""Where rows begin of an array of so much room: after the points' x, their y and z; what is
+covered; the real and the imaginary part of angles; above zero what is clear of rounding."""
 LANES = 8
 """Points filled up to a multiple of this leave none over for a loop of its own."""
-CLEAR = 1e-7
+NEAR = 1e-7
 """Nearer to a cap than this, relative to its size, rounding may put a point on either side."""
 TINY = 1e-300
 
@@ -36,11 +40,10 @@ def cover(clusters, among, centre, reach, tolerance, seen, lanes):
         Of a ball that holds all points.
     tolerance : float
         Clusters that may leave out more than this are halved.
-    seen : array, shape (ROWS, at least lanes)
-        In the rows 0 to 2 the points; gets what is covered (4), and a number above zero where
-        that is clear of rounding (7).
+    seen : array, shape (ROOM,)
+        The points; gets what is covered from each, see `VALUE` and `CLEAR`.
     lanes : int
-        How many there are.
+        How many there are, at most WIDTH.
 
     Returns
     -------
@@ -49,8 +52,8 @@ def cover(clusters, among, centre, reach, tolerance, seen, lanes):
     """
     error, leaves = 0.0, len(clusters.start) - 1
     for i in range(lanes):
-        seen[4, i] = seen[6, i] = 0.0
-        seen[5, i] = seen[7, i] = 1.0
+        seen[VALUE + i] = seen[IM + i] = 0.0
+        seen[RE + i] = seen[CLEAR + i] = 1.0
     for top in among:
         k, end = top, after(top)
         while k != end:
@@ -68,7 +71,7 @@ def cover(clusters, among, centre, reach, tolerance, seen, lanes):
                     _turn(rim, clusters.apex[loop], seen, lanes)
             k = after(k)
     for i in range(lanes):
-        seen[4, i] += np.arctan2(seen[6, i], seen[5, i]) / (2 * np.pi)
+        seen[VALUE + i] += np.arctan2(seen[IM + i], seen[RE + i]) / (2 * np.pi)
     return error
 
 
@@ -78,11 +81,11 @@ def _add_afar(moments, sphere, seen, lanes):
     p = held(moments)
     cx, cy, cz = sphere[0], sphere[1], sphere[2]
     for i in range(lanes):
-        x, y, z = cx - seen[0, i], cy - seen[1, i], cz - seen[2, i]
+        x, y, z = cx - seen[i], cy - seen[Y + i], cz - seen[Z + i]
         near = 1 / np.sqrt(x * x + y * y + z * z)
         x, y, z = x * near, y * near, z * near
         rest = 7.5 * near * cube(p, x, y, z) - 3 * square(p, x, y, z)
-        seen[4, i] += (linear(p, x, y, z) + near * rest) * near * near / (4 * np.pi)
+        seen[VALUE + i] += (linear(p, x, y, z) + near * rest) * near * near / (4 * np.pi)
 
 
 @lean
@@ -101,7 +104,7 @@ def _turn_by(p, q, r, seen, lanes):
     qx, qy, qz = q[0], q[1], q[2]
     rx, ry, rz = r[0], r[1], r[2]
     for i in range(lanes):
-        x, y, z = seen[0, i], seen[1, i], seen[2, i]
+        x, y, z = seen[i], seen[Y + i], seen[Z + i]
         cx, cy, cz = px - x, py - y, pz - z
         bx, by, bz = qx - x, qy - y, qz - z
         ax, ay, az = rx - x, ry - y, rz - z
@@ -111,14 +114,14 @@ def _turn_by(p, q, r, seen, lanes):
         triple = ax * (by * cz - bz * cy) + ay * (bz * cx - bx * cz) + az * (bx * cy - by * cx)
         rest = la * lb * lc + (ax * bx + ay * by + az * bz) * lc
         rest += (bx * cx + by * cy + bz * cz) * la + (cx * ax + cy * ay + cz * az) * lb
-        was, re = seen[6, i], seen[5, i]
+        was, re = seen[IM + i], seen[RE + i]
         im = re * triple + was * rest
         re = re * rest - was * triple
         # Without a branch, which lanes cannot take each by itself.
         up = (was >= 0) & (triple >= 0) & (im < 0)
         down = (was < 0) & (triple < 0) & (im >= 0)
-        seen[4, i] += np.float64(up) - np.float64(down)
+        seen[VALUE + i] += np.float64(up) - np.float64(down)
         scale = 1 / (abs(re) + abs(im) + TINY)
-        seen[5, i], seen[6, i] = re * scale, im * scale
-        clear = abs(triple) + max(rest, 0.0) - CLEAR * la * lb * lc
-        seen[7, i] = min(seen[7, i], clear)
+        seen[RE + i], seen[IM + i] = re * scale, im * scale
+        clear = abs(triple) + max(rest, 0.0) - NEAR * la * lb * lc
+        seen[CLEAR + i] = min(seen[CLEAR + i], clear)

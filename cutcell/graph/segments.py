@@ -20,7 +20,7 @@ from .asked import answer
 from .boundary import Boundary
 from .caps import cap_holes
 from .clusters import ROOT
-from .cover import ROWS, cover
+from .cover import CLEAR, ROOM, VALUE, Y, Z, cover
 from .doubt import BLOCK, NEED, UNSURE, code_at, in_field, need_between
 from .holes import find_doubt
 from .rays import AXES, Crossings, cast_all_rays, first_at_least, grown, in_space, strip_bounds
@@ -114,7 +114,7 @@ def _walk_rays(shared, seen, first_ray, last_ray, answers, is_listing):
     """
     rows = np.empty((256, 5), np.int32)
     leaf, points = np.empty(256, np.int32), np.empty((256, 3))
-    torn, tools = np.empty(2, np.int64), (np.full(1, ROOT, np.int32), np.empty((ROWS, 1)))
+    torn, tools = np.empty(2, np.int64), (np.full(1, ROOT, np.int32), np.empty(ROOM))
     filled, is_done = (0, 0), True
     while first_ray < last_ray:
         room = rows, leaf, points, answers, torn, tools
@@ -257,10 +257,10 @@ def _in_torn(shared, seen, p, point, leaf, chi, lid, torn, tools):
     (_, tau, doubt, boundary), (every, room) = shared, tools
     value, error = in_field(doubt.leaves, leaf, point)
     if torn[0] != leaf:
-        room[0, 0], room[1, 0], room[2, 0] = point
+        room[0], room[Y], room[Z] = point
         off = cover(doubt.clusters, every, point, 0.0, 1e-2, room, 1)
-        turns = lid - room[4, 0]
-        if off + error >= 0.5 or room[7, 0] <= 0:
+        turns = lid - room[VALUE]
+        if off + error >= 0.5 or room[CLEAR] <= 0:
             turns = _turns(seen, boundary, p)
         torn[0], torn[1] = leaf, np.int64(np.round(turns + value))
     return chi + torn[1] >= need_between(tau + value, error)

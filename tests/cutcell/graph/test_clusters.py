@@ -6,7 +6,7 @@ import pytest
 from cutcell.graph.boundary import find_boundary
 from cutcell.graph.caps import cap_holes
 from cutcell.graph.clusters import ROOT, cluster
-from cutcell.graph.cover import LANES, ROWS, cover
+from cutcell.graph.cover import CLEAR, LANES, ROOM, VALUE, WIDTH, cover
 from cutcell.graph.field import ERROR, SIZE, change, move, value_at
 from cutcell.graph.view import set_apart, view
 from tests import meshes, naive
@@ -31,13 +31,14 @@ def view_all(clusters, place, reach, tolerance):
 def covered(clusters, places, tolerance):
     """Return what caps cover of the view from places in a ball, and what that may leave out."""
     lanes = -(-len(places) // LANES) * LANES
-    seen = np.empty((ROWS, lanes))
-    seen[:3] = places[np.minimum(np.arange(lanes), len(places) - 1)].T
+    seen = np.empty(ROOM)
+    seen.reshape(-1, WIDTH)[:3, :lanes] = places[np.minimum(np.arange(lanes), len(places) - 1)].T
     centre = places.mean(axis=0)
     reach = np.linalg.norm(places - centre, axis=1).max()
     ball = tuple(centre), reach
     error = cover(clusters, np.array([ROOT], np.int32), *ball, tolerance, seen, lanes)
-    return seen[4, : len(places)], np.where(seen[7, : len(places)] > 0, error, np.inf)
+    value, clear = (seen[row : row + len(places)] for row in (VALUE, CLEAR))
+    return value, np.where(clear > 0, error, np.inf)
 
 
 SHAPES = meshes.OPEN | {"confetti": confetti}
