@@ -85,7 +85,7 @@ def _shorten(edges, lengths, ends, mesh, point, leg, start, order):
     for e in range(len(edges)):
         c = max(edges[e, 0], edges[e, 1]) - first_crossing
         if c < 0 or point[c] == STAYS:
-            kept[count], of_kept[count] = edges[e], lengths[e]
+            kept[count, 0], kept[count, 1], of_kept[count] = edges[e, 0], edges[e, 1], lengths[e]
             count += 1
     for p in range(len(start) - 1):
         own = count  # its shortcuts so far begin there

@@ -15,19 +15,22 @@ def list_neighbours(
     edges: NDArray[np.int32], lengths: NDArray[np.float64], count: int
 ) -> Adjacency:
     """List the neighbours of each of `count` nodes: indptr (N + 1,), indices and lengths (2E,)."""
-    degree = np.bincount(edges.ravel(), minlength=count)
-    indptr = np.concatenate([[0], np.cumsum(degree)]).astype(np.int32)
-    indices = np.empty(2 * len(edges), np.int32)
-    both_ways = np.empty(2 * len(edges))
-    _fill_adjacency(edges, lengths, indptr[:-1].copy(), indices, both_ways)
-    return indptr, indices, both_ways
+    return _list_neighbours(edges, lengths, count)
 
 
-@njit(cache=True)
-def _fill_adjacency(edges, edge_lengths, cursor, indices, lengths):
+@njit(cache=True, nogil=True)
+def _list_neighbours(edges, lengths, count):
+    # Where the neighbours of a node begin stands one place further until they are all there.
+    start = np.zeros(count + 2, np.int32)
     for e in range(len(edges)):
         for side in range(2):
-            node = edges[e, side]
-            indices[cursor[node]] = edges[e, 1 - side]
-            lengths[cursor[node]] = edge_lengths[e]
-            cursor[node] += 1
+            start[edges[e, side] + 2] += 1
+    for node in range(count):
+        start[node + 2] += start[node + 1]
+    indices, both_ways = np.empty(2 * len(edges), np.int32), np.empty(2 * len(edges))
+    for e in range(len(edges)):
+        for side in range(2):
+            at = start[edges[e, side] + 1]
+            indices[at], both_ways[at] = edges[e, 1 - side], lengths[e]
+            start[edges[e, side] + 1] += 1
+    return start[:-1], indices, both_ways
