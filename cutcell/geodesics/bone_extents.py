@@ -23,7 +23,7 @@ NO_ROOM = 2.0
 the bone that leads to it."""
 GIVEN = 2.0
 """Depths of the body that it is given at most."""
-REGION_TIPS = 4
+REGION_TIPS = 3
 """Tips that skin is looked at for, the nearest to it. In the middle between left and right there
 are two."""
 REGION_WITHIN = 1.25

@@ -89,7 +89,7 @@ def _decide(clusters, resolution, tau, corner, top, coarse):
     Returns which blocks are not decided as a whole, shape (u, 3); the codes of their cells; a
     row for each leaf that these name: field, place, TORN, COUNT; and the clusters near them.
     """
-    blocks, fine = np.empty((16, 3), np.int64), np.empty((16, BLOCK, BLOCK, BLOCK), np.int32)
+    blocks, fine = np.empty((16, 3), np.int32), np.empty((16, BLOCK, BLOCK, BLOCK), np.int32)
     leaves, nearby = np.empty((64, COUNT + 1)), np.empty(1024, np.int32)
     rows = kept = listed = 0
     waiting, count = np.empty((64, 5), np.int64), 1  # blocks: corner, size and depth

@@ -258,7 +258,8 @@ def _in_torn(shared, seen, p, point, leaf, chi, lid, torn, tools):
     value, error = in_field(doubt.leaves, leaf, point)
     if torn[0] != leaf:
         room[0], room[Y], room[Z] = point
-        off = cover(doubt.clusters, every, point, 0.0, 1e-2, room, 1)
+        alone = np.int64(1)  # for a plain 1 all would be compiled once more
+        off = cover(doubt.clusters, every, point, 0.0, 1e-2, room, alone)
         turns = lid - room[VALUE]
         if off + error >= 0.5 or room[CLEAR] <= 0:
             turns = _turns(seen, boundary, p)
