@@ -8,7 +8,7 @@ from pathlib import Path
 
 from ..errors import ParameterError
 
-BYTES_PER_NODE = {6: 345, 26: 950, "any": 420}
+BYTES_PER_NODE = {6: 345, 26: 950, "any": 375}
 """Peak of a graph and its distances, by connectivity; measured by benchmarks/memory.py."""
 BYTES_BESIDES = 64 << 20
 """What does not grow with the nodes: the mesh, its holes and its weights, at most."""
