@@ -22,6 +22,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from ..compiled import lean
 from ..threads import in_threads
 from .boundary import Boundary, boundary_of, find_boundary
 from .solid_angle import between, cross, length
@@ -33,7 +34,12 @@ PULLS = 3e-4, 3e-3
 ENOUGH = 0.25
 """Caps that are smaller by this than fans alone will do."""
 MANY = 1000
-"""Edges between faces that run against each other; for fewer, fans are quick enough."""
+"""Edges between faces that run against each other, for fewer of which fans are quick enough; and
+edges of rims, for more of which it is estimated if drawing them together is worth the time."""
+WORTH = 0.75
+"""Of the area of fans alone, what strips may have."""
+LOOKED_AT = 50
+"""Vertices whose nearest neighbour tells how wide gaps are."""
 
 
 class Caps(NamedTuple):
@@ -84,15 +90,18 @@ def cap_holes(vertices: NDArray[np.float64], faces: NDArray[np.int32], boundary:
     plain = caps_of(lambda: boundary)
     if len(boundary.loop) == 0:
         return plain
-    pulled, *others = (partial(_drawn_together, vertices, boundary, pull) for pull in PULLS)
-    best = min(plain, caps_of(pulled), key=lambda caps: caps.area)
+    near, far = (partial(_drawn_together, vertices, boundary, pull) for pull in PULLS)
+    best = min(plain, caps_of(near), key=lambda caps: caps.area)
     if best.area < ENOUGH * plain.area:
         return best
+    others = []
+    if len(boundary.loop) < MANY or _strip_area(vertices, boundary) < WORTH * plain.area:
+        others.append(far)
     edges = np.sort(boundary.loop * len(vertices) + boundary.following)
     doubled = np.count_nonzero(edges[1:] == edges[:-1])  # two faces use them in one direction
     if doubled > MANY:
         others.append(partial(_turned_back, vertices, faces))
-    return min(best, *in_threads(caps_of, others), key=lambda caps: caps.area)
+    return min([best, *in_threads(caps_of, others)], key=lambda caps: caps.area)
 
 
 def _turned_back(vertices: NDArray[np.float64], faces: NDArray[np.int32]) -> Boundary:
@@ -130,6 +139,30 @@ def _drawn_together(vertices: NDArray[np.float64], boundary: Boundary, pull: flo
     return Boundary(
         np.concatenate([loop, left.loop]), np.concatenate([start, left.start[1:] + start[-1]])
     )
+
+
+def _strip_area(vertices: NDArray[np.float64], boundary: Boundary) -> float:
+    """Estimate the area of strips that close the gaps between rims."""
+    a, b = vertices[boundary.loop], vertices[boundary.following]
+    gap = _gap(a, len(a) // LOOKED_AT)
+    return gap * float(np.linalg.norm(b - a, axis=1).sum())
+
+
+@lean
+def _gap(points, step):
+    """Return how far each so-manieth point is from its nearest neighbour, on average."""
+    total, count = 0.0, 0
+    for i in range(0, len(points), step):
+        least = np.inf
+        for j in range(len(points)):
+            x = points[j, 0] - points[i, 0]
+            y = points[j, 1] - points[i, 1]
+            z = points[j, 2] - points[i, 2]
+            squared = x * x + y * y + z * z
+            least = squared if 0 < squared < least else least
+        total += np.sqrt(least)
+        count += 1
+    return total / count
 
 
 @njit(cache=True, nogil=True)

@@ -41,7 +41,7 @@ from .solid_angle import between, dot
 
 ROOT = 1
 """The cluster of all caps."""
-TOGETHER = 2
+TOGETHER = 4
 """Caps in a cluster that is not halved, at most."""
 
 
