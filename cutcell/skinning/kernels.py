@@ -19,7 +19,7 @@ from .weights import DEFAULT_LEAF, joints_needed, skinning_weights
 
 AROUND = 16
 """Vertices around the tube: its open ends are holes too wide for a few triangles."""
-MISSING = 5, 45, 85
+MISSING = 5, 25, 45, 65, 85
 """Faces of the tube that leave small holes: enough holes for a tree of them."""
 PACKAGE = Path(__file__).resolve().parents[1]
 SOURCES = (
