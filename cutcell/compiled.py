@@ -17,6 +17,16 @@ def lean(kernel: Callable) -> Callable:
     return njit(**options)(kernel)
 
 
+@njit(cache=True, inline="always")
+def put(values, place):
+    """Copy the entries of an array (n,) into one at least as long.
+
+    To assign to a slice, numba first compiles the words of an error for seconds.
+    """
+    for i in range(len(values)):
+        place[i] = values[i]
+
+
 def side_by_side(kernel: Callable) -> Callable:
     """Compile a lean kernel whose loop is to run in the lanes of vector instructions.
 

@@ -8,6 +8,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from ..compiled import put
 from ..threads import in_threads
 from .cutcell_graph import INTERIOR, MESH, SURFACE, CutCellGraph
 from .inside_edges import diagonal_edges, edge_starts, fill_edges
@@ -131,7 +132,7 @@ def _number_used(low, high, crossings, first):
 
 @njit(cache=True, nogil=True)
 def _fill_mesh(vertices, mesh_edges, nodes, edges, lengths):
-    nodes[: len(vertices)] = vertices
+    put(vertices.reshape(-1), nodes.reshape(-1))
     for e in range(len(mesh_edges)):
         a, b = mesh_edges[e, 0], mesh_edges[e, 1]
         edges[e, 0], edges[e, 1] = a, b

@@ -199,7 +199,8 @@ def _fans(vertices, loop, start):
         else:
             apex[k] = len(vertices) + fans
             for i in range(begin, end):
-                middles[fans] += vertices[loop[i]] / (end - begin)
+                for axis in range(3):
+                    middles[fans, axis] += vertices[loop[i], axis] / (end - begin)
             fans += 1
         for i in range(begin, end):
             after = loop[i + 1] if i + 1 < end else loop[begin]

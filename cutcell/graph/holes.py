@@ -26,6 +26,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
+from ..compiled import put
 from ..threads import in_threads
 from .caps import Caps
 from .clusters import ROOT, cluster
@@ -93,7 +94,8 @@ def _decide(clusters, resolution, tau, corner, top, coarse):
     leaves, nearby = np.empty((64, COUNT + 1)), np.empty(1024, np.int32)
     rows = kept = listed = 0
     waiting, count = np.empty((64, 5), np.int64), 1  # blocks: corner, size and depth
-    waiting[0, :3], waiting[0, 3], waiting[0, 4] = corner, top, 1
+    put(corner, waiting[0])
+    waiting[0, 3], waiting[0, 4] = top, 1
     # Of the blocks that the present one lies in: what is far from each, and what is not.
     middle, far, field = np.zeros((DEPTH, 3)), np.zeros((DEPTH, SIZE)), np.empty(SIZE)
     near, nears = np.empty((DEPTH, len(clusters.start) - 1), np.int32), np.ones(DEPTH, np.int64)
@@ -111,7 +113,7 @@ def _decide(clusters, resolution, tau, corner, top, coarse):
         among = near[depth - 1, : nears[depth - 1]]
         nears[depth] = set_apart(clusters, among, far[depth], near[depth], q, reach)
         close = near[depth, : nears[depth]]
-        field[:] = far[depth]
+        put(far[depth], field)
         tears = view(clusters, close, field, q, reach, SPLIT)
         code = _code(field, tears, half, size, tau)
         a, b, c, wide = x // BLOCK, y // BLOCK, z // BLOCK, size // BLOCK
@@ -136,7 +138,7 @@ def _decide(clusters, resolution, tau, corner, top, coarse):
                 leaves[kept, COUNT] = len(close)
                 while listed + len(close) > len(nearby):
                     nearby = grown(nearby)
-                nearby[listed : listed + len(close)] = close
+                put(close, nearby[listed:])
                 listed += len(close)
             code = kept
             kept += 1
@@ -149,7 +151,7 @@ def _decide(clusters, resolution, tau, corner, top, coarse):
 def _take_over(field, place, mine, q):
     """Move the field of a block around `place` to the middle of one of its halves."""
     way = between(place, q)
-    mine[:] = field
+    put(field, mine)
     move(mine, way[0], way[1], way[2])
 
 
@@ -169,7 +171,7 @@ def _halve(waiting, count):
 
 @njit(cache=True, inline="always")
 def _keep(leaf, field, q, is_torn):
-    leaf[:SIZE] = field
+    put(field, leaf)
     leaf[SIZE], leaf[SIZE + 1], leaf[SIZE + 2] = q
     leaf[TORN], leaf[COUNT] = is_torn, 0
 

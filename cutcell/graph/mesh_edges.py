@@ -6,6 +6,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from ..compiled import put
+
 
 def find_edges(faces: NDArray[np.int32]) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
     """List the edges of welded faces.
@@ -52,8 +54,9 @@ def _find_edges(faces, vertices):
                 by_high[max(a, b)] += 1
     twice = np.empty((sides, 3), np.int32)
     for s in range(sides):
-        twice[by_low[once[s, 0]]] = once[s]
-        by_low[once[s, 0]] += 1
+        low = once[s, 0]
+        put(once[s], twice[by_low[low]])
+        by_low[low] += 1
 
     edges, balance = np.empty((sides, 2), np.int32), np.empty(sides, np.int32)
     count = 0

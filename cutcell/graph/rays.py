@@ -22,6 +22,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from ..compiled import put
 from ..threads import in_threads
 
 AXES = ((1, 2, 0), (0, 2, 1), (0, 1, 2))
@@ -171,7 +172,7 @@ def _by_ray(place, hits, rays):
 def grown(array):
     """Return a copy of an array with room for twice as many rows."""
     larger = np.empty((2 * array.shape[0], *array.shape[1:]), array.dtype)
-    larger[: array.shape[0]] = array
+    put(array.reshape(-1), larger.reshape(-1))
     return larger
 
 
@@ -236,9 +237,9 @@ def _sort_rays(counts, position, triangle, sign):
         begin, end = end, end + counts[ray]
         if end - begin > 64:  # a soup of many layers: leave little to the insertions below
             order = begin + np.argsort(position[begin:end])
-            position[begin:end] = position[order]
-            triangle[begin:end] = triangle[order]
-            sign[begin:end] = sign[order]
+            put(position[order], position[begin:end])
+            put(triangle[order], triangle[begin:end])
+            put(sign[order], sign[begin:end])
         for k in range(begin + 1, end):
             p, t, s = position[k], triangle[k], sign[k]
             while k > begin and _after(position[k - 1], sign[k - 1], triangle[k - 1], p, s, t):

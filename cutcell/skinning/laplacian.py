@@ -71,9 +71,9 @@ def _assemble(points, faces, diagonal):
     start = np.cumsum(start).astype(np.int32)
     column, value = np.empty(start[-1], np.int32), np.empty(start[-1])
     # The diagonal comes first in each row, then both other corners of each face.
-    column[start[:-1]] = np.arange(count)
-    value[start[:-1]] = diagonal
     cursor = start[:-1] + 1
+    for k in range(count):
+        column[start[k]], value[start[k]] = k, diagonal[k]
     for f in range(len(faces)):
         for corner in range(3):
             p, q, r = faces[f, corner], faces[f, (corner + 1) % 3], faces[f, (corner + 2) % 3]
