@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 import trimesh
 
-from cutcell import ParameterError, Skeleton, TriangleMesh, bone_distances, build_graph
+from assets import demo_path
+from cutcell import ParameterError, Skeleton, TriangleMesh, bone_distances, build_graph, load
 from cutcell.geodesics import distance_to_segment
 from cutcell.geodesics.any_angle import SPAN, any_angle_paths, least_distances
 from cutcell.geodesics.bones import find_sources, node_grid
@@ -144,6 +145,28 @@ def test_the_nearest_joints_are_those_of_all(nearest):
     assert (error < 1e-9).mean() > 0.95
     assert error.mean() < 1e-3
     assert error.max() < 0.15
+
+
+def test_a_field_tells_of_crossings_that_paths_pass_over():
+    graph = build_graph(TriangleMesh(*meshes.ball(3)), 24, connectivity="any")
+    start, end = np.array([[0.4, 0.5, 0.45], [0.6, 0.5, 0.5]])
+    field = bone_distances(graph, Skeleton([start, end], [-1, 0])).field(0)
+    start, end = graph.lattice.to_unit(np.array([start, end]))
+    straight = distance_to_segment(graph.nodes, start, end)
+    passed = graph.contracted.beside >= 0
+    assert passed.sum() > 1000
+    np.testing.assert_allclose(field[passed], straight[passed], rtol=1e-9)
+    assert (field >= straight * (1 - 1e-9)).all()
+
+
+def test_with_three_joints_for_certain_the_fourth_is_hardly_ever_missed():
+    rig = load(demo_path("biped"))
+    graph = build_graph(rig.mesh, 32, connectivity="any")
+    every, few = (
+        bone_distances(graph, rig.skeleton, leaf="fit", nearest_joints=n).joint for n in (None, 3)
+    )
+    fourth, found = (np.sort(distance, axis=0)[3] for distance in (every, few))
+    assert (found <= fourth * 1.01).mean() > 0.98
 
 
 def test_some_joints_are_measured_where_no_other_is_much_nearer():
