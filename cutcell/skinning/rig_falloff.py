@@ -16,8 +16,8 @@ from .worn import dress, foreign_bones
 POWER = 20
 """Skin belongs to its nearest joint; another that is 10 % farther counts a seventh."""
 NEAREST_JOINTS = 3
-"""Of each vertex, at least, and for every four influences. As many others are measured, and of
-a hundred vertices hardly one has a fourth that is not among them."""
+"""Of each vertex, at least. As many others are measured, and hardly a vertex has a fourth that is
+not among them. It follows more joints only as the skin around it does, however many are kept."""
 TOWARDS = 1 / 6
 """Nearness of a bone to skin that looks right at it, as part of what it is to skin that looks
 away: skin covers the bones that it looks away from."""

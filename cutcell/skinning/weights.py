@@ -125,7 +125,7 @@ def joints_needed(falloff: str, max_influences: int | None) -> int | None:
     """Return from how many nearest joints of each vertex a falloff needs distances."""
     if falloff == "paper" or max_influences is None:
         return max_influences
-    return NEAREST_JOINTS * max(1, -(-max_influences // 4))
+    return NEAREST_JOINTS
 
 
 def reach_needed(falloff: str) -> float:
