@@ -168,7 +168,9 @@ def _pass_on(graph: CutCellGraph, ranking: Ranking, front: Front) -> None:
 def _put_passed(nodes, bones, beside, each, labels, anchors, least):
     for v in range(len(nodes)):
         here, u = (nodes[v, 0], nodes[v, 1], nodes[v, 2]), beside[v]
-        for room in range(each if u >= 0 else 0):
+        if u < 0:
+            continue
+        for room in range(each):
             label, anchor = u * each + room, anchors[u * each + room]
             if labels[label].joint == NOBODY:
                 continue

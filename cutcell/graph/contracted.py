@@ -53,7 +53,7 @@ def contract(
     ends = len(edges) - CORNERS * crossings
     legs = _find_legs(edges[:ends], lengths, mesh, points, crossings)
     point = legs[0]
-    by_point = sort_into(np.where(point == STAYS, STAYS, point - mesh), points)
+    by_point = sort_into(point - mesh, points)  # what stays has a number below 0
     kept, of_kept = _shorten(edges, lengths, ends, mesh, *legs, *by_point)
     before = np.full(mesh + points, STAYS, np.int32)
     adjacency = list_neighbours(kept, of_kept, mesh + points + crossings)

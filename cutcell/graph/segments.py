@@ -139,7 +139,8 @@ def _walk(
         if crossings == caps == 0 < need < UNSURE:
             continue  # it passes the body by
         segments = resolution + crossings + 1
-        if count + 2 * segments > len(rows) or asked + segments > len(leaf):
+        is_full = count + 2 * segments > len(rows)
+        if is_full or (is_listing and asked + segments > len(leaf)):
             return r, (count, asked), is_sure
         room = rows, leaf, points, answers, torn, tools
         count, asked, sure = _walk_ray(shared, seen, r, is_listing, count, asked, *room)
@@ -149,7 +150,7 @@ def _walk(
 
 @lean
 def _walk_ray(shared, seen, r, is_listing, count, asked, rows, leaf, points, answers, torn, tools):
-    """Put the runs of one ray; return how many, how many questions, and if all was sure."""
+    """Add the runs and questions of one ray; return how many there are, and if all was sure."""
     resolution, tau, doubt = shared[:3]
     axis, _, calm, (start, position, sign), (cap_start, cap_position, cap_sign) = seen
     begin, end = start[r], start[r + 1]
