@@ -12,7 +12,8 @@ further one, they are also nearer to whatever that one would reach by way of the
 work grows with the labels that a vertex keeps, not with the joints. It is done in two halves,
 side by side: of the joints around a node about as many are in the one as in the other.
 
-Crossings next to a lattice point are passed over (`graph.contracted`): they see what it sees.
+Crossings next to a lattice point are passed over (`graph.contracted`): they see what it sees. So
+are seven of eight points deep inside, which would say the same as the eighth.
 """
 
 from __future__ import annotations
@@ -103,7 +104,7 @@ def any_angle_paths(
         front = begin(ranking, len(graph.nodes), groups[share], nearest, least)
         _spread(graph, ranking, front, within, lambda done: shares.tell(share, done))
         shares.tell(share, 1.0)
-        if targets.max(initial=0) >= graph.first_crossing:
+        if targets.max(initial=0) >= graph.first_point:
             _pass_on(graph, ranking, front)
         found = front.labels.reshape(-1, nearest)[targets]
         at, which = np.nonzero(found["joint"] != NOBODY)
@@ -120,12 +121,14 @@ def any_angle_paths(
 def least_distances(
     graph: CutCellGraph, sources: Sources, bones: Bones, progress: Progress = silent
 ) -> NDArray[np.float64]:
-    """Compute how far the nearest joint is from each node, shape (N,); see `any_angle_paths`."""
+    """Compute how far the nearest joint is from each node, shape (N,); see `any_angle_paths`.
+
+    It is infinite for nodes that are passed over.
+    """
     ranking = rank_bones(bones, sources)
     every = np.ones(len(ranking.joints), np.bool_)
     front = begin(ranking, len(graph.nodes), every, 1)
     _spread(graph, ranking, front, np.inf, lambda done: progress("distances", done))
-    _pass_on(graph, ranking, front)
     return front.least
 
 
@@ -159,15 +162,15 @@ def _spread(
 
 
 def _pass_on(graph: CutCellGraph, ranking: Ranking, front: Front) -> None:
-    """Give nodes that were passed over the labels of the lattice points beside them."""
+    """Give nodes that were passed over the labels of the lattice points that stand for them."""
     own = front.each, front.labels, front.anchors, front.least
-    _put_passed(graph.nodes, ranking.table, graph.contracted.beside, *own)
+    _put_passed(graph.nodes, ranking.table, graph.contracted.stand_in, *own)
 
 
 @lean
-def _put_passed(nodes, bones, beside, each, labels, anchors, least):
+def _put_passed(nodes, bones, stand_in, each, labels, anchors, least):
     for v in range(len(nodes)):
-        here, u = (nodes[v, 0], nodes[v, 1], nodes[v, 2]), beside[v]
+        here, u = (nodes[v, 0], nodes[v, 1], nodes[v, 2]), stand_in[v]
         if u < 0:
             continue
         for room in range(each):
@@ -205,7 +208,7 @@ def _settle(
     """
     each = len(rooms)
     indptr, indices = adjacency
-    resolution, first_point, first_crossing, nodes, _ = body
+    resolution, first_point, first_crossing, nodes, _, _ = body
     for bucket in range(first, last):
         while head[bucket] != END:
             label = head[bucket]

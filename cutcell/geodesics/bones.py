@@ -190,8 +190,8 @@ def find_sources(graph: CutCellGraph, bones: Bones, samples: int, grid: NodeGrid
     points, bone = bone_samples(graph, bones, samples)
     point, node = grid.nearest(points, TIE)
     if graph.connectivity == "any":  # no path leads to what is passed over
-        beside = graph.contracted.beside[node]
-        node = np.where(beside >= 0, beside, node)
+        stand_in = graph.contracted.stand_in[node]
+        node = np.where(stand_in >= 0, stand_in, node)
     pairs = np.unique(bone[point] * len(graph.nodes) + node)
     own, where = (x.astype(np.int32) for x in np.divmod(pairs, len(graph.nodes)))
     straight = distance_to_segment(graph.nodes[where], bones.start[own], bones.end[own])

@@ -1,8 +1,8 @@
 """Straight lines through the body: where a path bends last, and what sees that place.
 
-Dijkstra's order makes seeing cheap. Nodes nearer to the anchor are settled first, so a
-lattice point sees the anchor when the neighbour that the line of sight passes next to does.
-Where that neighbour follows another anchor, the line itself is walked.
+Dijkstra's order makes seeing cheap. Nodes nearer to the anchor are settled first, so a lattice
+point sees the anchor when the neighbour that the line of sight passes next to does, or what stands
+for that neighbour (`graph.contracted`). Where it follows another anchor, the line itself is walked.
 """
 
 from __future__ import annotations
@@ -20,10 +20,11 @@ def body_of(graph: CutCellGraph) -> tuple:
     """Return what kernels ask of a graph.
 
     That is its resolution, its first lattice point and first crossing, where its nodes are,
-    and which lattice points are joined.
+    which lattice points are joined, and what stands for those that are passed over.
     """
     firsts = graph.first_point, graph.first_crossing
-    return (graph.lattice.resolution, *firsts, graph.nodes, graph.steps)
+    joined = graph.steps, graph.contracted.stand_in
+    return (graph.lattice.resolution, *firsts, graph.nodes, *joined)
 
 
 @njit(cache=True, inline="always")
@@ -53,7 +54,7 @@ def sees(body, anchors, each, u, v, here, anchor, bend):
 
     It does from the node u beside that point; `here` is its place.
     """
-    resolution, first_point, _, _, steps = body
+    resolution, first_point, _, _, steps, stand_in = body
     x, y, z = int(here[0] * resolution), int(here[1] * resolution), int(here[2] * resolution)
     dx = bend[0] * resolution - 0.5 - x
     dy = bend[1] * resolution - 0.5 - y
@@ -61,11 +62,13 @@ def sees(body, anchors, each, u, v, here, anchor, bend):
     far = max(abs(dx), abs(dy), abs(dz))
     point = v - first_point
     if far > 1:
-        w = _step(steps, point, 0, np.rint(dx / far))
-        w = _step(steps, w, 1, np.rint(dy / far))
-        w = _step(steps, w, 2, np.rint(dz / far))
+        way = np.rint(dx / far), np.rint(dy / far), np.rint(dz / far)
+        w = _beside(steps, point, way)
+        if far > 2 and w != OUTSIDE and stand_in[first_point + w] == v:  # in the block of v
+            w = _beside(steps, w, way)
         if w != OUTSIDE:
             w += first_point
+            w = stand_in[w] if stand_in[w] >= 0 else w
             follows = w == u or (anchor >= 0 and w == anchor // each)
             if follows or follows_anchor(anchors, each, w, anchor):
                 return True
@@ -75,6 +78,14 @@ def sees(body, anchors, each, u, v, here, anchor, bend):
         int(bend[2] * resolution) - z,
     )
     return _walk(steps, point, x, y, z)
+
+
+@njit(cache=True, inline="always")
+def _beside(steps, point, way):
+    """Return the point that a line in some way, -1 to 1 along each axis, passes next to."""
+    for axis in range(3):
+        point = _step(steps, point, axis, way[axis])
+    return point
 
 
 @njit(cache=True, inline="always")

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
+from .blocks import find_blocks
 from .contracted import Contracted, contract
 from .interior import InteriorPoints
 from .lattice import Lattice
@@ -91,9 +92,11 @@ class CutCellGraph:
 
     @cached_property
     def contracted(self) -> Contracted:
-        """The same ways between fewer nodes, see `contract`."""
-        kinds = np.bincount(self.node_kind, minlength=3).tolist()
-        return contract(self.edges, self.lengths, *kinds)
+        """Neighbours between fewer nodes, see `contract`."""
+        places = self.nodes[self.first_point : self.first_crossing]
+        block = find_blocks(places, self.lattice.resolution, self.steps)
+        kinds = self.first_point, len(self.nodes) - self.first_crossing
+        return contract(self.nodes, self.edges, self.lengths, block, *kinds)
 
     @cached_property
     def degree(self) -> NDArray[np.int64]:
