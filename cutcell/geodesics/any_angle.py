@@ -106,10 +106,7 @@ def any_angle_paths(
         shares.tell(share, 1.0)
         if targets.max(initial=0) >= graph.first_point:
             _pass_on(graph, ranking, front)
-        found = front.labels.reshape(-1, nearest)[targets]
-        at, which = np.nonzero(found["joint"] != NOBODY)
-        found = found[at, which]
-        result[row[found["joint"]], at] = found["distance"]
+        _read(front.labels, nearest, targets, row, result)
 
     in_threads(spread, range(len(groups)))
     if within < np.inf and least is None:  # either half knew of its own joints alone
@@ -165,6 +162,15 @@ def _pass_on(graph: CutCellGraph, ranking: Ranking, front: Front) -> None:
     """Give nodes that were passed over the labels of the lattice points that stand for them."""
     own = front.each, front.labels, front.anchors, front.least
     _put_passed(graph.nodes, ranking.table, graph.contracted.stand_in, *own)
+
+
+@lean
+def _read(labels, each, targets, row, distance):
+    """Write the distances at some nodes; `row` tells which row is a joint's."""
+    for t in range(len(targets)):
+        for label in range(targets[t] * each, targets[t] * each + each):
+            if labels[label].joint != NOBODY:
+                distance[row[labels[label].joint], t] = labels[label].distance
 
 
 @lean

@@ -8,9 +8,11 @@ which skin is nearest to it, it is aimed at the middle of that.
 from __future__ import annotations
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 from scipy.spatial.distance import cdist
 
+from ..compiled import lean
 from ..graph import CutCellGraph
 from ..rig import Skeleton
 from .bones import Bones
@@ -115,21 +117,38 @@ def aim_tips(
     Bones
     """
     end = bones.end.copy()
-    count = len(nearest)
-    points, share = graph.nodes[:count], _areas(graph, count)
-    for b, own in zip(np.flatnonzero(tip), distance, strict=True):
-        mine = np.flatnonzero(np.isfinite(own))
-        ratio = np.divide(nearest[mine], own[mine], out=np.ones(len(mine)), where=own[mine] > 0)
-        weight = share[mine] * ratio**REGION_POWER
-        if weight.sum() > 0:
-            end[b] = weight @ points[mine] / weight.sum()
+    points = graph.nodes[: len(nearest)]
+    share = np.zeros(len(points))
+    _add_areas(points, graph.faces, share)
+    end[tip] = _middles(points, share, distance, nearest, end[tip])
     return Bones(bones.start, end, bones.joint)
 
 
-def _areas(graph: CutCellGraph, count: int) -> NDArray[np.float64]:
-    """Return the area of the triangles around each place of the mesh."""
-    corners = graph.nodes[graph.faces]
-    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    area = np.linalg.norm(across, axis=1)
-    areas = np.bincount(graph.faces.ravel(), np.repeat(area, 3), count)
-    return np.asarray(areas, np.float64)
+@njit(cache=True, nogil=True)
+def _middles(points, share, distance, nearest, middles):
+    """Return the middle of each tip's skin; the one given where it has none."""
+    middles = middles.copy()
+    for tip in range(len(distance)):
+        total, middle = 0.0, np.zeros(3)
+        for k in range(len(points)):
+            own = distance[tip, k]
+            if own < np.inf:
+                part = share[k] * (nearest[k] / own if own > 0 else 1.0) ** REGION_POWER
+                total += part
+                for axis in range(3):
+                    middle[axis] += part * points[k, axis]
+        if total > 0:
+            middles[tip] = middle / total
+    return middles
+
+
+@lean
+def _add_areas(points, faces, areas):
+    """Add the area of each triangle to all its corners."""
+    for f in range(len(faces)):
+        p, q, r = points[faces[f, 0]], points[faces[f, 1]], points[faces[f, 2]]
+        ax, ay, az = q[0] - p[0], q[1] - p[1], q[2] - p[2]
+        bx, by, bz = r[0] - p[0], r[1] - p[1], r[2] - p[2]
+        x, y, z = ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
+        for corner in range(3):
+            areas[faces[f, corner]] += np.sqrt(x * x + y * y + z * z)

@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse.csgraph import dijkstra
+from scipy.spatial.distance import cdist
 
 from ..rig import Skeleton
 from .probe import BodyProbe
@@ -74,11 +75,12 @@ def find_chains(skeleton: Skeleton, joints: NDArray[np.float64], probe: BodyProb
     probe : BodyProbe
     """
     near = probe.near(joints)
+    same = cdist(joints, joints) < SAME_PLACE
     if not _has_bones(skeleton):
         parents = _grown_tree(skeleton, joints, near, probe)
         skeleton = replace(skeleton, parents=parents)
-    direction, length = _directions(skeleton, joints, near, probe)
-    ends = _ends(skeleton, joints, near, direction)
+    direction, length = _directions(skeleton, joints, near, same, probe)
+    ends = _ends(skeleton, joints, near, same, direction)
     links = _links(skeleton, joints, direction, length, ends, probe)
     return Chains(joints, near, direction, length, ends, links)
 
@@ -89,17 +91,21 @@ def _has_bones(skeleton: Skeleton) -> bool:
 
 
 def _directions(
-    skeleton: Skeleton, joints: NDArray[np.float64], near: NDArray[np.bool_], probe: BodyProbe
+    skeleton: Skeleton,
+    joints: NDArray[np.float64],
+    near: NDArray[np.bool_],
+    same: NDArray[np.bool_],
+    probe: BodyProbe,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return direction and length of the bone that ends at each joint, zero where none does.
 
     The link to a parent is a bone if it begins in the body and runs through it: a root on the
-    ground is no place to come from.
+    ground is no place to come from. `same`, shape (j, j), tells which joints are at one place.
     """
     parent = skeleton.parents.copy()
     for j in range(len(parent)):
         above = parent[j]
-        while above >= 0 and _at_one_place(joints, above, j):
+        while above >= 0 and same[above, j]:
             above = skeleton.parents[above]
         parent[j] = above
     away = joints - joints[parent]
@@ -115,6 +121,7 @@ def _ends(
     skeleton: Skeleton,
     joints: NDArray[np.float64],
     near: NDArray[np.bool_],
+    same: NDArray[np.bool_],
     direction: NDArray[np.float64],
 ) -> tuple[list[NDArray[np.float64]], ...]:
     """List where the bones of each joint end.
@@ -128,7 +135,7 @@ def _ends(
         children = [
             k
             for k in skeleton.children[j]
-            if (skeleton.deform[k] or near[k]) and not _at_one_place(joints, j, k)
+            if (skeleton.deform[k] or near[k]) and not same[j, k]
         ]
         if len(children) > 1 and direction[j].any():
             away = joints[children] - joints[j]
@@ -219,7 +226,3 @@ def _grown_tree(
     reached = before[best] >= 0
     parents[members[reached]] = members[before[best][reached]]
     return parents
-
-
-def _at_one_place(joints: NDArray[np.float64], a: int, b: int) -> bool:
-    return bool(np.linalg.norm(joints[a] - joints[b]) < SAME_PLACE)

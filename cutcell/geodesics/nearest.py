@@ -95,34 +95,42 @@ def _find_nearest(grid, points, slack, found):
     count = 0
     for p in range(len(points)):
         x, y, z = points[p]
-        cx, cy, cz = _cell(x, side), _cell(y, side), _cell(z, side)
-        least, reach = np.inf, 0
-        # All that is within `reach` cells around has been seen.
-        while True:
-            for i in range(max(cx - reach, 0), min(cx + reach + 1, side)):
-                for j in range(max(cy - reach, 0), min(cy + reach + 1, side)):
-                    # Only the shell is new: of an inner row of cells, both ends.
-                    inner = abs(i - cx) < reach and abs(j - cy) < reach
-                    for k in range(cz - reach, cz + reach + 1, 2 * reach if inner else 1):
-                        if 0 <= k < side:
-                            c = (i * side + j) * side + k
-                            for o in range(start[c], start[c + 1]):
-                                least = min(least, _squared(nodes, order[o], x, y, z))
-            if least <= (reach / side) ** 2 or reach >= side:
-                break
-            reach += 1
-        limit = least * slack * slack
-        around = np.sqrt(limit)
-        for i in range(_cell(x - around, side), _cell(x + around, side) + 1):
-            for j in range(_cell(y - around, side), _cell(y + around, side) + 1):
-                first = (i * side + j) * side
-                low, high = first + _cell(z - around, side), first + _cell(z + around, side)
-                for o in range(start[low], start[high + 1]):
-                    if _squared(nodes, order[o], x, y, z) <= limit:
-                        if count < found.shape[1]:
-                            found[0, count], found[1, count] = p, order[o]
-                        count += 1
+        least = _near_enough(grid, x, y, z)
+        for listing in range(2):
+            limit = least * slack * slack
+            around = np.sqrt(limit)
+            low, high = _cell(z - around, side), _cell(z + around, side)
+            for i in range(_cell(x - around, side), _cell(x + around, side) + 1):
+                for j in range(_cell(y - around, side), _cell(y + around, side) + 1):
+                    row = (i * side + j) * side
+                    for o in range(start[row + low], start[row + high + 1]):
+                        apart = _squared(nodes, order[o], x, y, z)
+                        least = min(least, apart)
+                        if listing and apart <= limit:
+                            if count < found.shape[1]:
+                                found[0, count], found[1, count] = p, order[o]
+                            count += 1
     return count
+
+
+@njit(cache=True, nogil=True)
+def _near_enough(grid, x, y, z):
+    """Return the squared distance to the nearest node in the innermost shell of cells with any."""
+    nodes, start, order, side = grid
+    cx, cy, cz = _cell(x, side), _cell(y, side), _cell(z, side)
+    least, reach = np.inf, 0
+    while least == np.inf and reach <= side:
+        for i in range(max(cx - reach, 0), min(cx + reach + 1, side)):
+            for j in range(max(cy - reach, 0), min(cy + reach + 1, side)):
+                # Only the shell is new: of an inner row of cells, both ends.
+                inner = abs(i - cx) < reach and abs(j - cy) < reach
+                for k in range(cz - reach, cz + reach + 1, 2 * reach if inner else 1):
+                    if 0 <= k < side:
+                        c = (i * side + j) * side + k
+                        for o in range(start[c], start[c + 1]):
+                            least = min(least, _squared(nodes, order[o], x, y, z))
+        reach += 1
+    return least
 
 
 @njit(cache=True, nogil=True)
