@@ -10,12 +10,13 @@ from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor, wait
 from functools import cache
 from itertools import pairwise
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numba
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
+Second = TypeVar("Second")
 
 _here = threading.local()
 
@@ -54,6 +55,12 @@ def in_threads(work: Callable[[Item], Result], items: Iterable[Item]) -> list[Re
     for helper in begun:
         helper.result()
     return [results[place] for place in range(len(items))]
+
+
+def side_by_side(one: Callable[[], Result], other: Callable[[], Second]) -> tuple[Result, Second]:
+    """Do two things at the same time, each in a thread of its own; see `in_threads`."""
+    results: list[Any] = in_threads(lambda task: task(), (one, other))
+    return results[0], results[1]
 
 
 def parts(count: int, at_once: int = 0) -> list[slice]:

@@ -133,9 +133,7 @@ def _ends(
     ends: tuple[list[NDArray[np.float64]], ...] = tuple([] for _ in joints)
     for j in np.flatnonzero(skeleton.deform & near).tolist():
         children = [
-            k
-            for k in skeleton.children[j]
-            if (skeleton.deform[k] or near[k]) and not same[j, k]
+            k for k in skeleton.children[j] if (skeleton.deform[k] or near[k]) and not same[j, k]
         ]
         if len(children) > 1 and direction[j].any():
             away = joints[children] - joints[j]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
@@ -18,14 +20,9 @@ LEAST_CELLS = 0.25
 """Lattice cells; skin on a bone itself would not let go of its weights at all."""
 
 
-def diffuse(
-    points: NDArray[np.float64],
-    faces: NDArray[np.int32],
-    weights: NDArray[np.float64],
-    depth: NDArray[np.float64],
-    resolution: int,
-) -> NDArray[np.float64]:
-    """Find the equilibrium of weights that the skin conducts and its bones hold on to.
+@dataclass(frozen=True, eq=False)
+class Diffusion:
+    """The equilibrium of weights that the skin conducts and its bones hold on to.
 
         (L + M H) w = M H p,    H = c / depth²
 
@@ -34,46 +31,68 @@ def diffuse(
 
     Parameters
     ----------
-    points : array, shape (k, 3)
-        In the unit cube.
-    faces : array, shape (m, 3)
-    weights : array, shape (k, j)
-        p; rows sum to one.
-    depth : array, shape (k,)
-        Distance to the nearest bone through the body.
-    resolution : int
-        R, of the lattice that distances were measured on.
-
-    Returns
-    -------
-    array, shape (k, j)
-        Rows sum to one.
+    hold : array, shape (k,)
+        The diagonal of M H.
+    triangle : tuple of arrays
+        L and D of L D Lᵀ, the factors of the matrix: column starts, rows, values, diagonal.
+    order : array, shape (k,), int32
+        Where each place stands in them.
 
     References
     ----------
     Baran & Popović 2007, "Automatic rigging and animation of 3D characters", section 4.
     """
-    depth = np.maximum(depth, LEAST_CELLS / resolution)
-    # A place without area conducts nothing; any positive number lets it keep its own weights.
-    hold = np.maximum(vertex_areas(points, faces), 1e-12) * SHARPNESS / depth**2
-    system = cotangent_laplacian(points, faces, hold).T  # itself, column by column
-    factors = splu(
-        system,
-        permc_spec="MMD_AT_PLUS_A",
-        diag_pivot_thresh=0.0,
-        panel_size=2,
-        options={"SymmetricMode": True},
-    )
-    lower, order = factors.L, factors.perm_c
-    triangle = lower.indptr, lower.indices, lower.data, factors.U.diagonal()
-    used = np.flatnonzero(weights.any(axis=0))
-    spread = np.zeros_like(weights)
 
-    in_threads(
-        lambda joints: _solve(*triangle, order, hold, weights, joints, spread),
-        [used[first : first + LANES] for first in range(0, len(used), LANES)],
-    )
-    return spread / spread.sum(axis=1, keepdims=True)
+    hold: NDArray[np.float64]
+    triangle: tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.float64], NDArray[np.float64]]
+    order: NDArray[np.int32]
+
+    @classmethod
+    def over(
+        cls,
+        points: NDArray[np.float64],
+        faces: NDArray[np.int32],
+        depth: NDArray[np.float64],
+        resolution: int,
+    ) -> Diffusion:
+        """Prepare the equation of a mesh; most of the time goes here.
+
+        Parameters
+        ----------
+        points : array, shape (k, 3)
+            In the unit cube.
+        faces : array, shape (m, 3)
+        depth : array, shape (k,)
+            Distance to the nearest bone through the body.
+        resolution : int
+            R, of the lattice that distances were measured on.
+        """
+        depth = np.maximum(depth, LEAST_CELLS / resolution)
+        # A place without area conducts nothing; any positive number lets it keep its own weights.
+        hold = np.maximum(vertex_areas(points, faces), 1e-12) * SHARPNESS / depth**2
+        system = cotangent_laplacian(points, faces, hold).T  # itself, column by column
+        factors = splu(
+            system,
+            permc_spec="MMD_AT_PLUS_A",
+            diag_pivot_thresh=0.0,
+            panel_size=2,
+            options={"SymmetricMode": True},
+        )
+        lower = factors.L
+        triangle = lower.indptr, lower.indices, lower.data, factors.U.diagonal()
+        return cls(hold, triangle, factors.perm_c)
+
+    def spread(self, weights: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the equilibrium of weights p, shape (k, j); rows sum to one before and after."""
+        used = np.flatnonzero(weights.any(axis=0))
+        spread = np.zeros_like(weights)
+        known = self.order, self.hold, weights
+        in_threads(
+            lambda joints: _solve(*self.triangle, *known, joints, spread),
+            [used[first : first + LANES] for first in range(0, len(used), LANES)],
+        )
+        spread /= spread.sum(axis=1, keepdims=True)
+        return spread
 
 
 @njit(cache=True, nogil=True)

@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 
 from ..compiled import lean
 from ..geodesics import BoneDistances
-from ..threads import in_threads, parts
-from .diffusion import diffuse
+from ..threads import side_by_side
+from .diffusion import Diffusion
 from .laplacian import vertex_areas, vertex_normals
 from .pieces import bones_held, find_pieces
 from .worn import dress, foreign_bones
@@ -45,26 +45,31 @@ def rig_kernel(distances: BoneDistances, first: NDArray[np.intp]) -> NDArray[np.
     near = LEAST_CELLS / graph.lattice.resolution
     distance = np.maximum(distances.joint.take(first, axis=1).T, near, order="C")
 
-    piece = find_pieces(faces, len(first))
-    held = _by_joint(bones_held(points, faces, piece, bones), bones.joint, distance.shape[1])
-    skin = points, vertex_normals(points, faces), distance, foreign_bones(held), piece
-    first_bone = np.searchsorted(bones.joint, np.arange(distance.shape[1] + 1))
     weights = np.zeros(distance.shape)
-    in_threads(
-        lambda part: _put_shares(*skin, first_bone, bones.start, bones.end, part, weights),
-        [(part.start, part.stop) for part in parts(len(points))],
-    )
-    weights = diffuse(points, faces, weights, distance.min(axis=1), graph.lattice.resolution)
+
+    def divide() -> tuple[NDArray[np.int32], NDArray[np.float64]]:
+        piece = find_pieces(faces, len(first))
+        held = _by_joint(bones_held(points, faces, piece, bones), bones.joint, len(distance.T))
+        skin = points, vertex_normals(points, faces), distance, foreign_bones(held), piece
+        first_bone = np.searchsorted(bones.joint, np.arange(len(distance.T) + 1))
+        _put_shares(*skin, first_bone, bones.start, bones.end, weights)
+        return piece, held
+
+    def prepare() -> Diffusion:
+        return Diffusion.over(points, faces, distance.min(axis=1), graph.lattice.resolution)
+
+    (piece, held), diffusion = side_by_side(divide, prepare)
+    weights = diffusion.spread(weights)
     return dress(graph, vertex_areas(points, faces), piece, held, weights)
 
 
 @lean
-def _put_shares(points, normals, distance, foreign, piece, bone, start, end, part, weights):
+def _put_shares(points, normals, distance, foreign, piece, bone, start, end, weights):
     """Divide places among joints by distance; `bone` tells where each joint's bones begin.
 
-    `weights` holds zeros; `part` is the first place and the one after the last.
+    `weights` holds zeros.
     """
-    for v in range(part[0], part[1]):
+    for v in range(len(points)):
         least = np.inf
         for j in range(distance.shape[1]):
             if distance[v, j] == np.inf:

@@ -7,7 +7,7 @@ import cutcell
 from cutcell import Rig, Skeleton, TriangleMesh, bind
 from cutcell.compare import compare
 from cutcell.metrics import deformation_error, vertex_shares, weight_l1
-from cutcell.skinning.diffusion import SHARPNESS, diffuse
+from cutcell.skinning.diffusion import SHARPNESS, Diffusion
 from cutcell.skinning.laplacian import cotangent_laplacian, vertex_areas
 from cutcell.skinning.rig_falloff import TOWARDS, _facing
 from tests import meshes
@@ -66,7 +66,8 @@ def test_diffusion_is_the_solution_of_its_equation():
     hold = SHARPNESS * vertex_areas(points, faces) / depth**2
     system = cotangent_laplacian(points, faces).toarray() + np.diag(hold)
     expected = np.linalg.solve(system, hold[:, None] * weights)
-    np.testing.assert_allclose(diffuse(points, faces, weights, depth, 64), expected, atol=1e-12)
+    found = Diffusion.over(points, faces, depth, 64).spread(weights)
+    np.testing.assert_allclose(found, expected, atol=1e-12)
 
 
 @pytest.mark.parametrize("name", meshes.ALL)
