@@ -76,8 +76,8 @@ def any_angle_paths(
     within : float
         Where only some joints are measured, leave out what is so many times as far as the
         nearest; half a lattice cell counts as the nearest that one can be.
-    least : array, shape (N,), optional
-        How far the nearest joint is from each node, where that may be none of these bones'.
+    least : array, shape (K,), optional
+        What `least_distances` returns, where the nearest joint may be none of these bones'.
     progress : callable
         Called with the stage "distances".
 
@@ -87,7 +87,7 @@ def any_angle_paths(
         For the joints with bones, ascending. Infinite where no path leads and for joints that
         are not among the nearest.
     """
-    ranking = rank_bones(bones, sources)
+    ranking = _ranked(graph, bones, sources)
     count = len(ranking.joints)
     if nearest is not None and least is not None:
         groups = [np.ones(count, np.bool_)]
@@ -101,12 +101,11 @@ def any_angle_paths(
     shares = Shares(progress, "distances", len(groups))
 
     def spread(share: int) -> None:
-        front = begin(ranking, len(graph.nodes), groups[share], nearest, least)
+        front = begin(ranking, len(graph.contracted.node), groups[share], nearest, least)
         _spread(graph, ranking, front, within, lambda done: shares.tell(share, done))
         shares.tell(share, 1.0)
-        if targets.max(initial=0) >= graph.first_point:
-            _pass_on(graph, ranking, front)
-        _read(front.labels, nearest, targets, row, result)
+        labels = front.labels, front.anchors, nearest
+        _read(graph.nodes, body_of(graph), ranking.table, *labels, targets, row, result)
 
     in_threads(spread, range(len(groups)))
     if within < np.inf and least is None:  # either half knew of its own joints alone
@@ -118,15 +117,17 @@ def any_angle_paths(
 def least_distances(
     graph: CutCellGraph, sources: Sources, bones: Bones, progress: Progress = silent
 ) -> NDArray[np.float64]:
-    """Compute how far the nearest joint is from each node, shape (N,); see `any_angle_paths`.
-
-    It is infinite for nodes that are passed over.
-    """
-    ranking = rank_bones(bones, sources)
+    """Compute how far the nearest joint is from each node that is not passed over, shape (K,)."""
+    ranking = _ranked(graph, bones, sources)
     every = np.ones(len(ranking.joints), np.bool_)
-    front = begin(ranking, len(graph.nodes), every, 1)
+    front = begin(ranking, len(graph.contracted.node), every, 1)
     _spread(graph, ranking, front, np.inf, lambda done: progress("distances", done))
     return front.least
+
+
+def _ranked(graph: CutCellGraph, bones: Bones, sources: Sources) -> Ranking:
+    number = graph.contracted.number[sources.node]
+    return rank_bones(bones, Sources(number, sources.bone, sources.distance))
 
 
 def _spread(
@@ -143,7 +144,7 @@ def _spread(
     head = np.full(int(SPAN * scale), END, np.int32)
     line_up(labels, head, scale)
     step = len(head) // (SPAN * PAUSES)
-    adjacency = graph.contracted.adjacency[:2]
+    adjacency = graph.contracted.indptr, graph.contracted.indices
     ahead = np.empty(int(np.diff(adjacency[0]).max()) + 1, np.int64)
     known = adjacency, body_of(graph), ranking.table, within
     given = *known, rooms, labels, front.anchors, front.least, head, scale, ahead
@@ -158,37 +159,24 @@ def _spread(
         origin = move_on(head, scale, labels)
 
 
-def _pass_on(graph: CutCellGraph, ranking: Ranking, front: Front) -> None:
-    """Give nodes that were passed over the labels of the lattice points that stand for them."""
-    own = front.each, front.labels, front.anchors, front.least
-    _put_passed(graph.nodes, ranking.table, graph.contracted.stand_in, *own)
-
-
 @lean
-def _read(labels, each, targets, row, distance):
-    """Write the distances at some nodes; `row` tells which row is a joint's."""
+def _read(nodes, body, bones, labels, anchors, each, targets, row, distance):
+    """Write the distances at some nodes of the graph; `row` tells which row is a joint's.
+
+    What was passed over sees the bends that are seen by what stands for it.
+    """
+    _, _, _, places, (_, node, number) = body
     for t in range(len(targets)):
-        for label in range(targets[t] * each, targets[t] * each + each):
-            if labels[label].joint != NOBODY:
-                distance[row[labels[label].joint], t] = labels[label].distance
-
-
-@lean
-def _put_passed(nodes, bones, stand_in, each, labels, anchors, least):
-    for v in range(len(nodes)):
-        here, u = (nodes[v, 0], nodes[v, 1], nodes[v, 2]), stand_in[v]
-        if u < 0:
-            continue
-        for room in range(each):
-            label, anchor = u * each + room, anchors[u * each + room]
+        target, v = targets[t], number[targets[t]]
+        here = nodes[target, 0], nodes[target, 1], nodes[target, 2]
+        for label in range(v * each, v * each + each):
             if labels[label].joint == NOBODY:
                 continue
-            reached = straight(here, bend_of(nodes, bones, each, anchor, here))
-            reached += labels[anchor].distance if anchor >= 0 else 0.0
-            labels[v * each + room].joint = labels[label].joint
-            labels[v * each + room].distance = reached
-            anchors[v * each + room] = anchor
-            least[v] = min(least[v], reached)
+            reached, anchor = labels[label].distance, anchors[label]
+            if node[v] != target:
+                reached = straight(here, bend_of(places, bones, each, anchor, here))
+                reached += labels[anchor].distance if anchor >= 0 else 0.0
+            distance[row[labels[label].joint], t] = reached
 
 
 @lean
@@ -214,7 +202,7 @@ def _settle(
     """
     each = len(rooms)
     indptr, indices = adjacency
-    resolution, first_point, first_crossing, nodes, _, _ = body
+    resolution, first_point, first_crossing, nodes, _ = body
     for bucket in range(first, last):
         while head[bucket] != END:
             label = head[bucket]

@@ -188,11 +188,14 @@ def find_sources(graph: CutCellGraph, bones: Bones, samples: int, grid: NodeGrid
         Of the graph's nodes.
     """
     points, bone = bone_samples(graph, bones, samples)
-    point, node = grid.nearest(points, TIE)
-    if graph.connectivity == "any":  # no path leads to what is passed over
-        stand_in = graph.contracted.stand_in[node]
-        node = np.where(stand_in >= 0, stand_in, node)
+    point, nearest = grid.nearest(points, TIE)
+    node = _left_of(graph, nearest) if graph.connectivity == "any" else nearest
     pairs = np.unique(bone[point] * len(graph.nodes) + node)
     own, where = (x.astype(np.int32) for x in np.divmod(pairs, len(graph.nodes)))
     straight = distance_to_segment(graph.nodes[where], bones.start[own], bones.end[own])
     return Sources(where, own, straight)
+
+
+def _left_of(graph: CutCellGraph, nodes: NDArray[np.int64]) -> NDArray[np.int32]:
+    """Return what stands for nodes that paths pass over; the others themselves."""
+    return graph.contracted.node[graph.contracted.number[nodes]]

@@ -19,12 +19,13 @@ from .labels import follows_anchor
 def body_of(graph: CutCellGraph) -> tuple:
     """Return what kernels ask of a graph.
 
-    That is its resolution, its first lattice point and first crossing, where its nodes are,
-    which lattice points are joined, and what stands for those that are passed over.
+    That is its resolution, its first lattice point and first crossing that stays, where nodes that
+    stay are; then how to take steps: which lattice points are joined, which node of the graph each
+    node that stays is, and the number of each node of the graph (`graph.contracted`).
     """
-    firsts = graph.first_point, graph.first_crossing
-    joined = graph.steps, graph.contracted.stand_in
-    return (graph.lattice.resolution, *firsts, graph.nodes, *joined)
+    left = graph.contracted
+    steps = graph.steps, left.node, left.number
+    return graph.lattice.resolution, graph.first_point, left.first_crossing, left.places, steps
 
 
 @njit(cache=True, inline="always")
@@ -54,21 +55,20 @@ def sees(body, anchors, each, u, v, here, anchor, bend):
 
     It does from the node u beside that point; `here` is its place.
     """
-    resolution, first_point, _, _, steps, stand_in = body
+    resolution, first_point, _, _, (steps, node, number) = body
     x, y, z = int(here[0] * resolution), int(here[1] * resolution), int(here[2] * resolution)
     dx = bend[0] * resolution - 0.5 - x
     dy = bend[1] * resolution - 0.5 - y
     dz = bend[2] * resolution - 0.5 - z
     far = max(abs(dx), abs(dy), abs(dz))
-    point = v - first_point
+    point = node[v] - first_point
     if far > 1:
         way = np.rint(dx / far), np.rint(dy / far), np.rint(dz / far)
         w = _beside(steps, point, way)
-        if far > 2 and w != OUTSIDE and stand_in[first_point + w] == v:  # in the block of v
+        if far > 2 and w != OUTSIDE and number[first_point + w] == v:  # in the block of v
             w = _beside(steps, w, way)
         if w != OUTSIDE:
-            w += first_point
-            w = stand_in[w] if stand_in[w] >= 0 else w
+            w = number[first_point + w]
             follows = w == u or (anchor >= 0 and w == anchor // each)
             if follows or follows_anchor(anchors, each, w, anchor):
                 return True

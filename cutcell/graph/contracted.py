@@ -2,13 +2,12 @@
 
 Where a ray leaves the body, its last segment runs from a lattice point to a crossing, and from
 there edges lead to the corners of a triangle and nowhere else. Shortcuts from the lattice point to
-those corners are as long, and a third of the nodes is left out (in contraction hierarchies,
-Geisberger, Sanders, Schultes & Delling 2008, the same is done to road maps). Crossings stay where
-the body is thinner than a lattice cell.
+those corners leave out a third of the nodes (in contraction hierarchies, Geisberger, Sanders,
+Schultes & Delling 2008, the same is done to road maps). Crossings stay where the body is thinner
+than a lattice cell.
 
-Deep inside one lattice point stands for a block of eight. Between blocks runs one edge in place of
-four. Ways along the edges change by that, but straight ways through the body, which is what
-blocks are for, run no other way than before.
+Deep inside one lattice point stands for a block of eight, and between two blocks runs one edge in
+place of four. Ways along the edges change by that, but those at any angle are straight there.
 """
 
 from __future__ import annotations
@@ -21,36 +20,41 @@ from numpy.typing import NDArray
 
 from ..sorting import sort_into
 from .blocks import NO_BLOCK
-from .neighbours import Adjacency, list_neighbours
+from .neighbours import sort_edges
 
-STAYS = -1
+STAYS, NOT_FOUND = -1, -2
 CORNERS = 3
 
 
 @dataclass(frozen=True, eq=False)
 class Contracted:
-    """Neighbours where some nodes are passed over; all keep their numbers.
+    """The nodes that stay, numbered anew in their order, and which of them stand for the others.
 
     Parameters
     ----------
-    adjacency : Adjacency
-        See `list_neighbours`; nodes that are passed over have no neighbours.
-    stand_in : array, shape (N,), int32
-        The lattice point that stands for each node that is passed over: next to a crossing, or of
-        the same block; -1 for nodes that stay.
+    indptr, indices : arrays, shapes (K + 1,) and (2E,), int32
+        Neighbours of each.
+    places : array, shape (K, 3), float64
+        In the unit cube.
+    node : array, shape (K,), int32
+        Which node of the graph each is. Vertices of the mesh all stay.
+    number : array, shape (N,), int32
+        Of each node of the graph or, where it is passed over, of what stands for it: a lattice
+        point next to a crossing, or of the same block.
+    first_crossing : int
+        The number of the first crossing.
     """
 
-    adjacency: Adjacency
-    stand_in: NDArray[np.int32]
+    indptr: NDArray[np.int32]
+    indices: NDArray[np.int32]
+    places: NDArray[np.float64]
+    node: NDArray[np.int32]
+    number: NDArray[np.int32]
+    first_crossing: int
 
 
 def contract(
-    nodes: NDArray[np.float64],
-    edges: NDArray[np.int32],
-    lengths: NDArray[np.float64],
-    block: NDArray[np.int32],
-    mesh: int,
-    crossings: int,
+    nodes: NDArray[np.float64], edges: NDArray[np.int32], block: NDArray[np.int32], mesh: int
 ) -> Contracted:
     """Pass over all of a block but one, and crossings between a lattice point and corners alone.
 
@@ -58,64 +62,82 @@ def contract(
     ----------
     nodes : array, shape (N, 3)
         Vertices of the mesh, lattice points, crossings.
-    edges, lengths : arrays, shapes (E, 2) and (E,)
+    edges : array, shape (E, 2)
         Of a graph; those from crossings to corners come last, in the order of the crossings.
     block : array, shape (p,), int32
         Of each lattice point, see `find_blocks`.
-    mesh, crossings : int
-        How many nodes of each kind there are.
+    mesh : int
+        How many vertices the mesh has.
     """
-    points, ends = len(block), len(edges) - CORNERS * crossings
-    point, leg = _find_legs(edges[:ends], lengths, mesh, points, crossings)
-    left, of_left = _leave_out(nodes, edges, lengths, block, mesh, point)
-    by_point = sort_into(point - mesh, points)  # what stays has a number below 0
-    new, of_new = _shortcuts(edges[ends:], lengths[ends:], mesh, leg, *by_point)
-    adjacency = list_neighbours(
-        np.concatenate([left, new]), np.concatenate([of_left, of_new]), len(nodes)
-    )
-    passed = (block != NO_BLOCK) & (block != np.arange(points))
-    inner = np.where(passed, block + mesh, STAYS).astype(np.int32)
-    return Contracted(adjacency, np.concatenate([np.full(mesh, STAYS, np.int32), inner, point]))
+    return Contracted(*_contract(nodes, edges, block, mesh))
 
 
 @njit(cache=True, nogil=True)
-def _find_legs(edges, lengths, mesh, points, crossings):
-    """Find the lattice point beside each crossing that can be passed over, and how far it is."""
-    point, leg = np.full(crossings, STAYS, np.int32), np.empty(crossings)
-    found = np.zeros(crossings, np.int32)
-    first_crossing = mesh + points
+def _contract(nodes, edges, block, mesh):
+    first_crossing = mesh + len(block)
+    ends = len(edges) - CORNERS * (len(nodes) - first_crossing)
+    stand_in = _find_stand_ins(edges[:ends], block, mesh, len(nodes))
+    node, number = _number(stand_in)
+    left = np.empty_like(edges)
+    count = _leave_out(nodes, edges, block, mesh, stand_in, number, left)
+    point = stand_in[first_crossing:] - mesh  # of what stays it is below 0
+    by_point = sort_into(point, len(block))
+    count = _add_shortcuts(edges[ends:, 1], by_point, number[mesh:], left, count)
+    indptr, indices, _ = sort_edges(left[:count], np.empty(0), len(node))
+    crossings = (stand_in[first_crossing:] < 0).sum()
+    return indptr, indices, nodes[node], node, number, len(node) - crossings
+
+
+@njit(cache=True)
+def _find_stand_ins(edges, block, mesh, count):
+    """Return which node stands for each; less than 0 for those that stay."""
+    stand_in = np.full(count, NOT_FOUND, np.int32)
+    for p in range(len(block)):
+        if block[p] != NO_BLOCK and block[p] != p:
+            stand_in[mesh + p] = mesh + block[p]
+    first_crossing = mesh + len(block)
     for e in range(len(edges)):
         for side in range(2):
-            c, other = edges[e, side] - first_crossing, edges[e, 1 - side]
-            if c >= 0:
-                found[c] += 1
-                alone = found[c] == 1 and mesh <= other < first_crossing
-                point[c], leg[c] = other if alone else STAYS, lengths[e]
-    return point, leg
+            c, other = edges[e, side], edges[e, 1 - side]
+            if c >= first_crossing:
+                alone = stand_in[c] == NOT_FOUND and mesh <= other < first_crossing
+                stand_in[c] = other if alone else STAYS
+    return stand_in
 
 
-@njit(cache=True, nogil=True)
-def _leave_out(nodes, edges, lengths, block, mesh, point):
+@njit(cache=True)
+def _number(stand_in):
+    """Return which nodes stay, and the number of each node."""
+    node, number = np.empty(len(stand_in), np.int32), np.empty(len(stand_in), np.int32)
+    count = 0
+    for n in range(len(stand_in)):
+        if stand_in[n] < 0:
+            node[count], number[n] = n, count
+            count += 1
+    for n in range(len(stand_in)):
+        if stand_in[n] >= 0:
+            number[n] = number[stand_in[n]]
+    return node[:count].copy(), number
+
+
+@njit(cache=True)
+def _leave_out(nodes, edges, block, mesh, stand_in, number, left):
     """List the edges between nodes that stay, and one between neighbouring blocks."""
     first_crossing = mesh + len(block)
-    left, of_left = np.empty_like(edges), np.empty_like(lengths)
     count = 0
     for e in range(len(edges)):
-        u, v, length = edges[e, 0], edges[e, 1], lengths[e]
+        u, v = edges[e, 0], edges[e, 1]
         if max(u, v) >= first_crossing:
-            if point[max(u, v) - first_crossing] != STAYS:
+            if stand_in[max(u, v)] >= 0:
                 continue
         elif min(u, v) >= mesh:
             a, b = block[u - mesh], block[v - mesh]
             between = a != NO_BLOCK and b != NO_BLOCK
             if between and (a == b or not _in_line(nodes, mesh + a, u, v)):
                 continue
-            if a != NO_BLOCK or b != NO_BLOCK:
-                u, v = mesh + a if a != NO_BLOCK else u, mesh + b if b != NO_BLOCK else v
-                length = _straight(nodes, u, v)
-        left[count, 0], left[count, 1], of_left[count] = u, v, length
+        left[count, 0], left[count, 1] = number[u], number[v]
         count += 1
-    return left[:count], of_left[:count]
+    return count
 
 
 @njit(cache=True, inline="always")
@@ -127,27 +149,22 @@ def _in_line(nodes, a, u, v):
     return True
 
 
-@njit(cache=True, inline="always")
-def _straight(nodes, u, v):
-    x, y, z = nodes[u, 0] - nodes[v, 0], nodes[u, 1] - nodes[v, 1], nodes[u, 2] - nodes[v, 2]
-    return np.sqrt(x * x + y * y + z * z)
+@njit(cache=True)
+def _add_shortcuts(corner, by_point, number, left, count):
+    """List shortcuts from lattice points to corners, each once, from `count` on.
 
-
-@njit(cache=True, nogil=True)
-def _shortcuts(edges, lengths, mesh, leg, start, order):
-    """List shortcuts from lattice points to corners, each once; `edges` are those to corners."""
-    new, of_new = np.empty((CORNERS * len(order), 2), np.int32), np.empty(CORNERS * len(order))
-    count = 0
+    `corner` has CORNERS entries a crossing; `by_point` tells of each lattice point which crossings
+    it stands for, and `number` its number.
+    """
+    start, order = by_point
     for p in range(len(start) - 1):
         own = count  # its shortcuts so far begin there
         for c in order[start[p] : start[p + 1]]:
             for e in range(CORNERS * c, CORNERS * c + CORNERS):
-                corner, length = edges[e, 1], leg[c] + lengths[e]
                 k = own
-                while k < count and new[k, 1] != corner:
+                while k < count and left[k, 1] != corner[e]:
                     k += 1
                 if k == count:
-                    new[k, 0], new[k, 1], of_new[k] = mesh + p, corner, length
+                    left[k, 0], left[k, 1] = number[p], corner[e]
                     count += 1
-                of_new[k] = min(of_new[k], length)
-    return new[:count], of_new[:count]
+    return count

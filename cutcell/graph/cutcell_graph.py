@@ -92,11 +92,10 @@ class CutCellGraph:
 
     @cached_property
     def contracted(self) -> Contracted:
-        """Neighbours between fewer nodes, see `contract`."""
+        """What is left of it for paths at any angle, see `contract`."""
         places = self.nodes[self.first_point : self.first_crossing]
         block = find_blocks(places, self.lattice.resolution, self.steps)
-        kinds = self.first_point, len(self.nodes) - self.first_crossing
-        return contract(self.nodes, self.edges, self.lengths, block, *kinds)
+        return contract(self.nodes, self.edges, block, self.first_point)
 
     @cached_property
     def degree(self) -> NDArray[np.int64]:

@@ -15,11 +15,12 @@ def list_neighbours(
     edges: NDArray[np.int32], lengths: NDArray[np.float64], count: int
 ) -> Adjacency:
     """List the neighbours of each of `count` nodes: indptr (N + 1,), indices and lengths (2E,)."""
-    return _list_neighbours(edges, lengths, count)
+    return sort_edges(edges, lengths, count)
 
 
 @njit(cache=True, nogil=True)
-def _list_neighbours(edges, lengths, count):
+def sort_edges(edges, lengths, count):
+    """List neighbours; see `list_neighbours`. Without lengths there are none in the list."""
     # Where the neighbours of a node begin stands one place further until they are all there.
     start = np.zeros(count + 2, np.int32)
     for e in range(len(edges)):
@@ -27,10 +28,12 @@ def _list_neighbours(edges, lengths, count):
             start[edges[e, side] + 2] += 1
     for node in range(count):
         start[node + 2] += start[node + 1]
-    indices, both_ways = np.empty(2 * len(edges), np.int32), np.empty(2 * len(edges))
+    indices, both_ways = np.empty(2 * len(edges), np.int32), np.empty(2 * len(lengths))
     for e in range(len(edges)):
         for side in range(2):
             at = start[edges[e, side] + 1]
-            indices[at], both_ways[at] = edges[e, 1 - side], lengths[e]
+            indices[at] = edges[e, 1 - side]
+            if len(lengths):
+                both_ways[at] = lengths[e]
             start[edges[e, side] + 1] += 1
     return start[:-1], indices, both_ways
