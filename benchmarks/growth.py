@@ -40,6 +40,7 @@ def measure(case: dict) -> dict:
         "seconds": perf_counter() - begin,
         **binding.seconds,
         "nodes": len(binding.graph.nodes),
+        "kinds": np.bincount(binding.graph.node_kind, minlength=3).tolist(),
         "faces": len(rig.mesh.faces),
         "bones": len(binding.distances.bones.joint),
         "peak": peak_memory(),

@@ -42,7 +42,7 @@ def memory_table(cases: Sequence[dict], options: argparse.Namespace) -> Table:
             continue
         above = found["peak"] - found["before"]
         peaks.append(found["peak"])
-        reckoned = needed_memory(found["nodes"], case["connectivity"]) / 2**20
+        reckoned = needed_memory(*found["kinds"], case["connectivity"]) / 2**20
         shares.append(above / reckoned)
         table.add(
             *asked,

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from .interior import OUTSIDE
 
 NO_BLOCK = -1
-SIZE = 8
+BLOCK_POINTS = 8
 
 
 def find_blocks(
@@ -43,11 +43,11 @@ def _find_blocks(places, resolution, steps):
     for p in range(len(steps)):
         deep[p] = steps[p].min() != OUTSIDE
     innermost = np.full(len(places), NO_BLOCK, np.int32)
-    outward, block = np.empty(3, np.int64), np.empty(SIZE, np.int32)
+    outward, block = np.empty(3, np.int64), np.empty(BLOCK_POINTS, np.int32)
     for p in range(len(steps)):
         begins = deep[p] and _begins_block(places[p], resolution, outward)
         if begins and _fill_block(p, steps, deep, outward, block):
-            for k in range(SIZE):
+            for k in range(BLOCK_POINTS):
                 innermost[block[k]] = p
     return innermost
 
@@ -69,7 +69,7 @@ def _begins_block(place, resolution, outward):
 def _fill_block(p, steps, deep, outward, block):
     """List the points of a block, until one is not deep inside; tell if all are."""
     block[0] = p
-    for k in range(1, SIZE):
+    for k in range(1, BLOCK_POINTS):
         axis = 2 if k >= 4 else 1 if k >= 2 else 0
         block[k] = steps[block[k - (1 << axis)], outward[axis]]
         if not deep[block[k]]:

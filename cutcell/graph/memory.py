@@ -7,9 +7,14 @@ import re
 from pathlib import Path
 
 from ..errors import ParameterError
+from .blocks import BLOCK_POINTS
 
-BYTES_PER_NODE = {6: 345, 26: 950, "any": 375}
+BYTES_PER_NODE = {6: 345, 26: 950, "any": 150}
 """Peak of a graph and its distances, by connectivity; measured by benchmarks/memory.py."""
+BYTES_PER_LABELLED = 210
+"""More, with "any", for each node that is not passed over (`contracted.py`)."""
+SHALLOW = 1.5
+"""Lattice points in no block, a crossing, at most; measured were 1.2."""
 BYTES_BESIDES = 64 << 20
 """What does not grow with the nodes: the mesh, its holes and its weights, at most."""
 SHARE = 0.8
@@ -36,8 +41,7 @@ def check_memory(
 
     def needed(scale: float) -> float:
         # Points fill the volume, crossings the surface, and vertices stay as they are.
-        nodes = vertices + crossings * scale**2 + points * scale**3
-        return needed_memory(nodes, connectivity)
+        return needed_memory(vertices, points * scale**3, crossings * scale**2, connectivity)
 
     free = available_memory() * SHARE
     if needed(1) <= free:
@@ -50,9 +54,16 @@ def check_memory(
     )
 
 
-def needed_memory(nodes: float, connectivity: int | str) -> float:
+def needed_memory(
+    vertices: float, points: float, crossings: float, connectivity: int | str
+) -> float:
     """Return how many bytes a graph of so many nodes and its distances take at their peak."""
-    return nodes * BYTES_PER_NODE[connectivity] + BYTES_BESIDES
+    bytes_ = (vertices + points + crossings) * BYTES_PER_NODE[connectivity] + BYTES_BESIDES
+    if connectivity != "any":
+        return bytes_
+    shallow = min(points, SHALLOW * crossings)
+    labelled = vertices + crossings + shallow + (points - shallow) / BLOCK_POINTS
+    return bytes_ + labelled * BYTES_PER_LABELLED
 
 
 def available_memory() -> int:

@@ -172,7 +172,7 @@ def test_what_is_reckoned_for_a_graph_is_what_binding_takes(connectivity):
     case = {"rig": str(RABBIT), "resolution": 160, "connectivity": connectivity}
     found = run(case, SimpleNamespace(limit=300))
     taken = (found["peak"] - found["before"]) * 2**20
-    assert taken <= needed_memory(found["nodes"], connectivity) <= 2.5 * taken
+    assert taken <= needed_memory(*found["kinds"], connectivity) <= 2.5 * taken
 
 
 def test_other_parameters_are_checked():
