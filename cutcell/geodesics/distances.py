@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,10 +26,11 @@ class BoneDistances:
 
     Parameters
     ----------
-    joint : array, shape (j, n), float64
-        The least over the bones of each joint; infinite where no path leads, for joints
-        that may not carry weight, and for joints that are not among a vertex' nearest.
-        n counts the vertices of the mesh as it was given.
+    at_places : array, shape (j, k), float64
+        What `joint` holds of the first vertex at each of the k places of the mesh, which are the
+        first nodes of the graph.
+    of_vertices : array, shape (j, n), or None
+        What `joint` holds, if vertices at one place may follow different joints.
     nearest_joints : int or None
         How many of its nearest joints each vertex has distances of, at least; None for all.
     bones : Bones
@@ -41,12 +43,25 @@ class BoneDistances:
     graph : CutCellGraph
     """
 
-    joint: NDArray[np.float64]
+    at_places: NDArray[np.float64]
+    of_vertices: NDArray[np.float64] | None
     nearest_joints: int | None
     bones: Bones
     sources: Sources
     fallback: NDArray[np.uint8]
     graph: CutCellGraph
+
+    @cached_property
+    def joint(self) -> NDArray[np.float64]:
+        """Distances from joints to vertices, shape (j, n), float64.
+
+        The least over the bones of each joint; infinite where no path leads, for joints
+        that may not carry weight, and for joints that are not among a vertex' nearest.
+        n counts the vertices of the mesh as it was given.
+        """
+        if self.of_vertices is not None:
+            return self.of_vertices
+        return self.at_places.take(self.graph.vertex_node, axis=1)
 
     @property
     def source_node(self) -> NDArray[np.int32]:
@@ -180,23 +195,28 @@ def bone_distances(
         sources = find_sources(graph, bones, samples, node_grid(graph))
     by_node = _paths(graph, sources, bones, targets, nearest_joints, within, progress)
     measured = np.unique(bones.joint)
-    of_joint = np.full((len(skeleton.joints), len(targets)), np.inf)
-    of_joint[measured] = by_node
-    joint = of_joint.take(graph.vertex_node, axis=1)
-
+    at_places = np.full((len(skeleton.joints), len(targets)), np.inf)
+    at_places[measured] = by_node
     reached = np.isfinite(by_node.min(axis=0))
-    fallback = np.where(reached, REACHED, UNREACHED).astype(np.uint8)[graph.vertex_node]
-    fallback[graph.degree[graph.vertex_node] == 0] = UNUSED
-    if allowed is not None:
+    fallback = np.where(reached, REACHED, UNREACHED).astype(np.uint8)
+    fallback[graph.degree[targets] == 0] = UNUSED
+
+    joint, node = at_places, targets
+    if allowed is not None:  # what sets vertices at one place apart
+        node = graph.vertex_node
+        joint, fallback = at_places.take(node, axis=1), fallback[node]
         joint[~allowed.T] = np.inf
         fallback[(fallback == REACHED) & ~np.isfinite(joint).any(axis=0)] = NOT_ALLOWED
     lost = np.flatnonzero(fallback != REACHED)
     if len(lost):
         may_follow = None if allowed is None else allowed[np.ix_(lost, bones.joint)]
-        points = graph.nodes[graph.vertex_node[lost]]
-        straight = straight_to_nearest(points, bones, nearest, may_follow)
+        straight = straight_to_nearest(graph.nodes[node[lost]], bones, nearest, may_follow)
         joint[np.ix_(measured, lost)] = _least(straight, bones)
-    return BoneDistances(joint, nearest_joints, bones, sources, fallback, graph)
+    known = nearest_joints, bones, sources
+    if allowed is None:
+        return BoneDistances(joint, None, *known, fallback[graph.vertex_node], graph)
+    first = np.unique(node, return_index=True)[1]
+    return BoneDistances(joint[:, first], joint, *known, fallback, graph)
 
 
 def _on_mesh(graph: CutCellGraph) -> NDArray[np.int32]:

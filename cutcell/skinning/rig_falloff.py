@@ -25,30 +25,28 @@ LEAST_CELLS = 0.01
 """Lattice cells: distances that are all shorter are equal."""
 
 
-def rig_kernel(distances: BoneDistances, first: NDArray[np.intp]) -> NDArray[np.float64]:
+def rig_kernel(distances: BoneDistances) -> NDArray[np.float64]:
     """Turn distances into weights for animation.
 
     Parameters
     ----------
     distances : BoneDistances
         Best with bones fitted to the body, `leaf="fit"`.
-    first : array, shape (k,)
-        The first vertex at each place of the mesh.
 
     Returns
     -------
     array, shape (k, j)
-        For the places. Rows sum to one.
+        For the places of the mesh. Rows sum to one.
     """
     graph, bones = distances.graph, distances.bones
-    points, faces = graph.nodes[: len(first)], _whole(graph.faces)
     near = LEAST_CELLS / graph.lattice.resolution
-    distance = np.maximum(distances.joint.take(first, axis=1).T, near, order="C")
+    distance = np.maximum(distances.at_places.T, near, order="C")
+    points, faces = graph.nodes[: len(distance)], _whole(graph.faces)
 
     weights = np.zeros(distance.shape)
 
     def divide() -> tuple[NDArray[np.int32], NDArray[np.float64]]:
-        piece = find_pieces(faces, len(first))
+        piece = find_pieces(faces, len(points))
         held = _by_joint(bones_held(points, faces, piece, bones), bones.joint, len(distance.T))
         skin = points, vertex_normals(points, faces), distance, foreign_bones(held), piece
         first_bone = np.searchsorted(bones.joint, np.arange(len(distance.T) + 1))

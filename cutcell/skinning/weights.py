@@ -72,17 +72,17 @@ def skinning_weights(
             f"nearest_joints={needed}{', for all' * (needed is None)}"
         )
     kept = max_influences, threshold, _by_position(distances)
+    place, diagonal = distances.graph.vertex_node, distances.graph.lattice.diagonal
+    if allowed is None:  # what is at one place gets the same
+        if falloff == "paper":
+            pruned = pruned_paper_kernel(distances.at_places, diagonal, alpha, *kept)
+        else:
+            pruned = prune(rig_kernel(distances), *kept)
+        return pruned.take(place, axis=0)
     if falloff == "paper":
-        diagonal = distances.graph.lattice.diagonal
-        if allowed is None:
-            return pruned_paper_kernel(distances.joint, diagonal, alpha, *kept)
         weights = paper_kernel(distances.joint, diagonal, alpha)
     else:
-        place = distances.graph.vertex_node
-        weights = rig_kernel(distances, first_vertices(place))
-        if allowed is None:  # what is at one place gets the same
-            return prune(weights, *kept).take(place, axis=0)
-        weights = weights[place]
+        weights = rig_kernel(distances)[place]
     return prune(permitted(weights, distances.joint, allowed), *kept)
 
 
@@ -133,15 +133,8 @@ def reach_needed(falloff: str) -> float:
     return 1 / TOWARDS if falloff == "rig" else np.inf
 
 
-def first_vertices(place: NDArray[np.integer]) -> NDArray[np.intp]:
-    """Return the first vertex at each place, given the place of each vertex."""
-    first = np.empty(int(place.max()) + 1, np.intp)
-    first[place[::-1]] = np.arange(len(place))[::-1]  # the last to be written stays
-    return first
-
-
 def _by_position(distances: BoneDistances) -> NDArray[np.intp]:
     """Order the joints by where they are, so that ties do not hang on how they are numbered."""
-    positions = np.full((len(distances.joint), 3), np.inf)
+    positions = np.full((len(distances.at_places), 3), np.inf)
     positions[distances.bones.joint] = distances.bones.start
     return np.lexsort(positions.T[::-1])
