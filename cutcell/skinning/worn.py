@@ -83,13 +83,11 @@ def dress(
     label = piece[mine]
     least = np.full(len(held), np.inf)
     np.minimum.at(least, label, away)
-    touching = away <= least[label] + CONTACT / graph.lattice.resolution
-    share = np.where(touching, areas[mine] + 1e-12, 0)
-    there = weights[corners].mean(axis=1) * share[:, None]
-    total = (
-        csr_array((np.ones(len(label)), (label, np.arange(len(label)))), (len(held), len(label)))
-        @ there
-    )
+    touching = np.flatnonzero(away <= least[label] + CONTACT / graph.lattice.resolution)
+    share = areas[mine[touching]] + 1e-12
+    there = weights[corners[touching]].mean(axis=1) * share[:, None]
+    which = label[touching], np.arange(len(touching))
+    total = csr_array((np.ones(len(touching)), which), (len(held), len(touching))) @ there
     mean = total / np.maximum(total.sum(axis=1, keepdims=True), 1e-300)
     leading = mean.argmax(axis=1)
     alone = mean.max(axis=1) > RIGID
