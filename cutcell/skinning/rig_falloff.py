@@ -6,10 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..compiled import lean
-from ..geodesics import BoneDistances
+from ..geodesics import BoneDistances, Bones
 from ..threads import side_by_side
 from .diffusion import Diffusion
-from .laplacian import vertex_areas, vertex_normals
+from .laplacian import vertex_normals
 from .pieces import bones_held, find_pieces
 from .worn import dress, foreign_bones
 
@@ -47,7 +47,7 @@ def rig_kernel(distances: BoneDistances) -> NDArray[np.float64]:
 
     def divide() -> tuple[NDArray[np.int32], NDArray[np.float64]]:
         piece = find_pieces(faces, len(points))
-        held = _by_joint(bones_held(points, faces, piece, bones), bones.joint, len(distance.T))
+        held = _held_by_joint(points, faces, piece, bones, len(distance.T))
         skin = points, vertex_normals(points, faces), distance, foreign_bones(held), piece
         first_bone = np.searchsorted(bones.joint, np.arange(len(distance.T) + 1))
         _put_shares(*skin, first_bone, bones.start, bones.end, weights)
@@ -58,7 +58,7 @@ def rig_kernel(distances: BoneDistances) -> NDArray[np.float64]:
 
     (piece, held), diffusion = side_by_side(divide, prepare)
     weights = diffusion.spread(weights)
-    return dress(graph, vertex_areas(points, faces), piece, held, weights)
+    return dress(graph, faces, piece, held, weights)
 
 
 @lean
@@ -111,12 +111,19 @@ def _whole(faces: NDArray[np.int32]) -> NDArray[np.int32]:
     return faces[(faces != np.roll(faces, 1, axis=1)).all(axis=1)]
 
 
-def _by_joint(
-    held: NDArray[np.float64], joint: NDArray[np.int32], count: int
+def _held_by_joint(
+    points: NDArray[np.float64],
+    faces: NDArray[np.int32],
+    piece: NDArray[np.int32],
+    bones: Bones,
+    joints: int,
 ) -> NDArray[np.float64]:
-    """Take each joint's best held bone: (pieces, b) to (pieces, j)."""
-    result = np.zeros((len(held), count))
-    for bone, owner in enumerate(joint):
+    """Measure which part of each joint's best held bone is in each piece, shape (pieces, j)."""
+    if not piece.any():  # a lone piece: no bone belongs more to another
+        return np.ones((1, joints))
+    held = bones_held(points, faces, piece, bones)
+    result = np.zeros((len(held), joints))
+    for bone, owner in enumerate(bones.joint):
         result[:, owner] = np.maximum(result[:, owner], held[:, bone])
     return result
 

@@ -10,6 +10,7 @@ from ..compiled import lean
 from ..geodesics.bones import TIE
 from ..geodesics.nearest import NodeGrid
 from ..graph import SURFACE, CutCellGraph
+from .laplacian import vertex_areas
 
 FOREIGN = 2.0
 """How many times farther a bone counts to be, beyond once, from a piece that it is not in while
@@ -48,7 +49,7 @@ def foreign_bones(held: NDArray[np.float64]) -> NDArray[np.float64]:
 
 def dress(
     graph: CutCellGraph,
-    areas: NDArray[np.float64],
+    faces: NDArray[np.int32],
     piece: NDArray[np.int32],
     held: NDArray[np.float64],
     weights: NDArray[np.float64],
@@ -60,8 +61,7 @@ def dress(
     Parameters
     ----------
     graph : CutCellGraph
-    areas : array, shape (k,)
-        Of the skin around each place.
+    faces : array, shape (m, 3)
     piece : array, shape (k,)
         Of each place; see `find_pieces`.
     held : array, shape (pieces, j)
@@ -74,9 +74,11 @@ def dress(
     """
     points = graph.nodes[: len(piece)]
     worn = (held.max(axis=1) == 0) & (_longest_sides(points, piece) <= SMALL)
-    wearer = ~worn[piece]
+    if not worn.any():
+        return weights
+    wearer, areas = ~worn[piece], vertex_areas(points, faces)
     # What is in patches all over is no body with things on it.
-    if not worn.any() or areas[wearer].sum() < areas.sum() / 2:
+    if areas[wearer].sum() < areas.sum() / 2:
         return weights
     mine = np.flatnonzero(~wearer)
     away, corners = _nearest_skin(graph, wearer, points[mine])

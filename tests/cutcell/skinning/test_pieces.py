@@ -84,4 +84,8 @@ def test_a_body_in_patches_wears_nothing():
     held = np.zeros((int(piece.max()) + 1, 2))
     held[0, 0] = 1
     weights = np.random.default_rng(0).random((count, 2))
-    assert dress(graph, np.ones(count), piece, held, weights) is weights
+    assert dress(graph, graph.faces, piece, held, weights) is weights
+
+
+def test_to_a_lone_piece_no_bone_is_foreign():
+    np.testing.assert_array_equal(foreign_bones(np.array([[0.2, 0.0, 1.0]])), 1.0)
