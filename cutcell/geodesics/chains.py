@@ -168,11 +168,12 @@ def _links(
     tip, goal = fits.nonzero()
     fits[tip, goal] = probe.inner_part(joints[tips[tip]], joints[loose[goal]]) >= IN_BODY
     wanted: dict[int, list[tuple[float, int]]] = {}
-    for j, distance, possible in zip(tips.tolist(), far, fits, strict=True):
-        choice = _clear_choice(distance[possible], joints[loose[possible]])
+    for t in np.flatnonzero(fits.any(axis=1)):
+        distance, possible = far[t, fits[t]], loose[fits[t]]
+        choice = _clear_choice(distance, joints[possible])
         if choice is not None:
-            k = int(loose[possible][choice])
-            wanted.setdefault(k, []).append((float(distance[possible][choice]), j))
+            suitor = float(distance[choice]), int(tips[t])
+            wanted.setdefault(int(possible[choice]), []).append(suitor)
     for k, suitors in wanted.items():
         choice = _clear_choice(
             np.array([far for far, _ in suitors]), joints[[j for _, j in suitors]]
