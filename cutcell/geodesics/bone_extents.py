@@ -8,7 +8,6 @@ which skin is nearest to it, it is aimed at the middle of that.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 from scipy.spatial.distance import cdist
 
@@ -120,35 +119,36 @@ def aim_tips(
     points = graph.nodes[: len(nearest)]
     share = np.zeros(len(points))
     _add_areas(points, graph.faces, share)
-    end[tip] = _middles(points, share, distance, nearest, end[tip])
+    total, middle = np.zeros(len(distance)), np.zeros((len(distance), 3))
+    _weigh(points, share, distance, nearest, total, middle)
+    some = total > 0
+    end[np.flatnonzero(tip)[some]] = middle[some] / total[some, None]
     return Bones(bones.start, end, bones.joint)
 
 
-@njit(cache=True, nogil=True)
-def _middles(points, share, distance, nearest, middles):
-    """Return the middle of each tip's skin; the one given where it has none."""
-    middles = middles.copy()
+@lean
+def _weigh(points, share, distance, nearest, total, middle):
+    """Add up each tip's skin, and its skin times where it is."""
     for tip in range(len(distance)):
-        total, middle = 0.0, np.zeros(3)
         for k in range(len(points)):
             own = distance[tip, k]
             if own < np.inf:
                 part = share[k] * (nearest[k] / own if own > 0 else 1.0) ** REGION_POWER
-                total += part
+                total[tip] += part
                 for axis in range(3):
-                    middle[axis] += part * points[k, axis]
-        if total > 0:
-            middles[tip] = middle / total
-    return middles
+                    middle[tip, axis] += part * points[k, axis]
 
 
 @lean
 def _add_areas(points, faces, areas):
-    """Add the area of each triangle to all its corners."""
+    """Add twice the area of each triangle to all its corners."""
     for f in range(len(faces)):
-        p, q, r = points[faces[f, 0]], points[faces[f, 1]], points[faces[f, 2]]
-        ax, ay, az = q[0] - p[0], q[1] - p[1], q[2] - p[2]
-        bx, by, bz = r[0] - p[0], r[1] - p[1], r[2] - p[2]
-        x, y, z = ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
+        a, b, c = faces[f, 0], faces[f, 1], faces[f, 2]
+        squared = 0.0
+        for axis in range(3):
+            i, j = (axis + 1) % 3, (axis + 2) % 3
+            normal = (points[b, i] - points[a, i]) * (points[c, j] - points[a, j])
+            normal -= (points[b, j] - points[a, j]) * (points[c, i] - points[a, i])
+            squared += normal * normal
         for corner in range(3):
-            areas[faces[f, corner]] += np.sqrt(x * x + y * y + z * z)
+            areas[faces[f, corner]] += np.sqrt(squared)

@@ -69,26 +69,21 @@ def contract(
     mesh : int
         How many vertices the mesh has.
     """
-    return Contracted(*_contract(nodes, edges, block, mesh))
-
-
-@njit(cache=True, nogil=True)
-def _contract(nodes, edges, block, mesh):
-    first_crossing = mesh + len(block)
+    points = len(block)
+    first_crossing = mesh + points
     ends = len(edges) - CORNERS * (len(nodes) - first_crossing)
     stand_in = _find_stand_ins(edges[:ends], block, mesh, len(nodes))
     node, number = _number(stand_in)
     left = np.empty_like(edges)
     count = _leave_out(nodes, edges, block, mesh, stand_in, number, left)
-    point = stand_in[first_crossing:] - mesh  # of what stays it is below 0
-    by_point = sort_into(point, len(block))
-    count = _add_shortcuts(edges[ends:, 1], by_point, number[mesh:], left, count)
+    start, order = sort_into(stand_in[first_crossing:] - mesh, points)  # what stays is below 0
+    count = _add_shortcuts(edges, ends, start, order, mesh, number, left, count)
     indptr, indices, _ = sort_edges(left[:count], np.empty(0), len(node))
-    crossings = (stand_in[first_crossing:] < 0).sum()
-    return indptr, indices, nodes[node], node, number, len(node) - crossings
+    crossing = int(np.searchsorted(node, first_crossing))
+    return Contracted(indptr, indices, nodes[node], node, number, crossing)
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _find_stand_ins(edges, block, mesh, count):
     """Return which node stands for each; less than 0 for those that stay."""
     stand_in = np.full(count, NOT_FOUND, np.int32)
@@ -105,7 +100,7 @@ def _find_stand_ins(edges, block, mesh, count):
     return stand_in
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _number(stand_in):
     """Return which nodes stay, and the number of each node."""
     node, number = np.empty(len(stand_in), np.int32), np.empty(len(stand_in), np.int32)
@@ -120,7 +115,7 @@ def _number(stand_in):
     return node[:count].copy(), number
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _leave_out(nodes, edges, block, mesh, stand_in, number, left):
     """List the edges between nodes that stay, and one between neighbouring blocks."""
     first_crossing = mesh + len(block)
@@ -149,22 +144,21 @@ def _in_line(nodes, a, u, v):
     return True
 
 
-@njit(cache=True)
-def _add_shortcuts(corner, by_point, number, left, count):
+@njit(cache=True, nogil=True)
+def _add_shortcuts(edges, ends, start, order, mesh, number, left, count):
     """List shortcuts from lattice points to corners, each once, from `count` on.
 
-    `corner` has CORNERS entries a crossing; `by_point` tells of each lattice point which crossings
-    it stands for, and `number` its number.
+    `order` from start[p] on are the crossings that the lattice point p stands for. The edges of the
+    first crossing begin at `ends`.
     """
-    start, order = by_point
     for p in range(len(start) - 1):
         own = count  # its shortcuts so far begin there
         for c in order[start[p] : start[p + 1]]:
-            for e in range(CORNERS * c, CORNERS * c + CORNERS):
+            for e in range(ends + CORNERS * c, ends + CORNERS * c + CORNERS):
                 k = own
-                while k < count and left[k, 1] != corner[e]:
+                while k < count and left[k, 1] != edges[e, 1]:
                     k += 1
                 if k == count:
-                    left[k, 0], left[k, 1] = number[p], corner[e]
+                    left[k, 0], left[k, 1] = number[mesh + p], edges[e, 1]
                     count += 1
     return count
