@@ -21,6 +21,8 @@ AROUND = 16
 """Vertices around the tube: its open ends are holes too wide for a few triangles."""
 MISSING = 5, 25, 45, 65, 85
 """Faces of the tube that leave small holes: enough holes for a tree of them."""
+STUD = np.array([[0.3, 0, 0.5], [0.35, 0, 0.5], [0.3, 0.05, 0.5], [0.3, 0, 0.55]])
+"""Beside the tube: pieces of a mesh are looked at where there are several."""
 PACKAGE = Path(__file__).resolve().parents[1]
 SOURCES = (
     "compiled.py",
@@ -36,7 +38,7 @@ _known = False
 
 
 def load_kernels() -> None:
-    """Bind a small tube with holes in every way that has kernels of its own.
+    """Bind a small tube with holes, and a stud, in every way that has kernels of its own.
 
     Kernels are compiled once on a machine (about a minute) and kept on disk; from there a
     process loads them in about a second. All are thrown away once any source has changed: numba
@@ -118,4 +120,7 @@ def _tube() -> TriangleMesh:
     beside = here // AROUND * AROUND + (here + 1) % AROUND
     faces = [[here, beside, beside + AROUND], [here, beside + AROUND, here + AROUND]]
     whole = np.concatenate([np.stack(face, axis=1) for face in faces])
-    return TriangleMesh(np.concatenate(rings), np.delete(whole, MISSING, axis=0))
+    tube = np.delete(whole, MISSING, axis=0)
+    stud = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]) + len(rings) * AROUND
+    vertices = np.concatenate([*rings, STUD])
+    return TriangleMesh(vertices, np.concatenate([tube, stud]))
