@@ -57,7 +57,7 @@ def in_threads(work: Callable[[Item], Result], items: Iterable[Item]) -> list[Re
     return [results[place] for place in range(len(items))]
 
 
-def side_by_side(one: Callable[[], Result], other: Callable[[], Second]) -> tuple[Result, Second]:
+def together(one: Callable[[], Result], other: Callable[[], Second]) -> tuple[Result, Second]:
     """Do two things at the same time, each in a thread of its own; see `in_threads`."""
     results: list[Any] = in_threads(lambda task: task(), (one, other))
     return results[0], results[1]

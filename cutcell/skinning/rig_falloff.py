@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from ..compiled import lean
 from ..geodesics import BoneDistances, Bones
-from ..threads import side_by_side
+from ..threads import together
 from .diffusion import Diffusion
 from .laplacian import vertex_normals
 from .pieces import bones_held, find_pieces
@@ -56,7 +56,7 @@ def rig_kernel(distances: BoneDistances) -> NDArray[np.float64]:
     def prepare() -> Diffusion:
         return Diffusion.over(points, faces, distance.min(axis=1), graph.lattice.resolution)
 
-    (piece, held), diffusion = side_by_side(divide, prepare)
+    (piece, held), diffusion = together(divide, prepare)
     weights = diffusion.spread(weights)
     return dress(graph, faces, piece, held, weights)
 
