@@ -7,7 +7,7 @@ threads that start such a loop at once, say two sessions of the page, end the pr
 import os
 import threading
 from collections.abc import Callable, Iterable
-from concurrent.futures import ThreadPoolExecutor, wait
+from concurrent.futures import ThreadPoolExecutor
 from functools import cache
 from itertools import pairwise
 from typing import Any, TypeVar
@@ -51,7 +51,8 @@ def in_threads(work: Callable[[Item], Result], items: Iterable[Item]) -> list[Re
         for _ in waiting:  # after an error nobody takes another
             pass
         begun = [helper for helper in helpers if not helper.cancel()]
-        wait(begun)
+        for helper in begun:
+            helper.exception()  # wait for all, whatever one of them raises
     for helper in begun:
         helper.result()
     return [results[place] for place in range(len(items))]
@@ -61,6 +62,17 @@ def together(one: Callable[[], Result], other: Callable[[], Second]) -> tuple[Re
     """Do two things at the same time, each in a thread of its own; see `in_threads`."""
     results: list[Any] = in_threads(lambda task: task(), (one, other))
     return results[0], results[1]
+
+
+def meanwhile(work: Callable[[], Result]) -> Callable[[], Result]:
+    """Begin something on another core; return a function that waits for it and gives its result.
+
+    What no core has begun by then is done by whoever asks.
+    """
+    if threads() < 2 or getattr(_here, "is_worker", False):
+        return work
+    task = _pool(threads() - 1).submit(work)
+    return lambda: work() if task.cancel() else task.result()
 
 
 def parts(count: int, at_once: int = 0) -> list[slice]:
