@@ -74,7 +74,7 @@ def values_at(
 ) -> NDArray[np.float64]:
     """Mix a field's values at the nodes nearest to points (p, 3) of the unit cube."""
     field = np.asarray(field, float)
-    known = np.flatnonzero(np.isfinite(field) & (graph.degree > 0))
+    known = np.flatnonzero(np.isfinite(field) & graph.connected)
     if not len(known):
         return np.full(len(points), np.inf)
     count = min(NEAREST, len(known))

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..checks import check_choice
+from ..compiled import lean
 from ..errors import MeshError
 from ..graph import CutCellGraph
 from ..rig import Skeleton
@@ -152,11 +153,22 @@ def bone_samples(
         # Every lattice point along the bone is to see it.
         length = np.linalg.norm(bones.end - bones.start, axis=1)
         counts = np.maximum(counts, np.ceil(length * graph.lattice.resolution).astype(int) + 1)
-    bone = np.repeat(np.arange(len(counts)), counts)
-    before = np.repeat(np.cumsum(counts) - counts, counts)
-    steps = counts[bone] - 1
-    place_on_bone = np.where(steps > 0, (np.arange(len(bone)) - before) / np.maximum(steps, 1), 0.5)
-    return bones.start[bone] + place_on_bone[:, None] * (bones.end - bones.start)[bone], bone
+    points, bone = np.empty((counts.sum(), 3)), np.empty(counts.sum(), np.intp)
+    _put_samples(bones.start, bones.end, counts, points, bone)
+    return points, bone
+
+
+@lean
+def _put_samples(start, end, counts, points, bone):
+    """Put so many points on each bone, both ends included; a single one in the middle."""
+    p = 0
+    for b in range(len(start)):
+        for k in range(counts[b]):
+            share = k / (counts[b] - 1) if counts[b] > 1 else 0.5
+            for axis in range(3):
+                points[p, axis] = start[b, axis] + share * (end[b, axis] - start[b, axis])
+            bone[p] = b
+            p += 1
 
 
 def node_grid(graph: CutCellGraph) -> NodeGrid:
@@ -167,10 +179,9 @@ def node_grid(graph: CutCellGraph) -> NodeGrid:
     MeshError
         The graph has no edges, so that nothing can be reached.
     """
-    connected = graph.degree > 0
-    if not connected.any():
+    if not graph.connected.any():
         raise MeshError("every triangle of the mesh has collapsed into a point")
-    return NodeGrid(graph.nodes, connected, graph.lattice.resolution)
+    return NodeGrid(graph.nodes, graph.connected, graph.lattice.resolution)
 
 
 def find_sources(graph: CutCellGraph, bones: Bones, samples: int, grid: NodeGrid) -> Sources:

@@ -194,12 +194,13 @@ def bone_distances(
         bones = Bones(*ends, bones.joint)
         sources = find_sources(graph, bones, samples, node_grid(graph))
     by_node = _paths(graph, sources, bones, targets, nearest_joints, within, progress)
-    measured = np.unique(bones.joint)
-    at_places = np.full((len(skeleton.joints), len(targets)), np.inf)
-    at_places[measured] = by_node
+    measured, at_places = np.unique(bones.joint), by_node
+    if len(measured) < len(skeleton.joints):
+        at_places = np.full((len(skeleton.joints), len(targets)), np.inf)
+        at_places[measured] = by_node
     reached = np.isfinite(by_node.min(axis=0))
     fallback = np.where(reached, REACHED, UNREACHED).astype(np.uint8)
-    fallback[graph.degree[targets] == 0] = UNUSED
+    fallback[~graph.connected[targets]] = UNUSED
 
     joint, node = at_places, targets
     if allowed is not None:  # what sets vertices at one place apart

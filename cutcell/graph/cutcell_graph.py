@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
+from ..threads import meanwhile
 from .blocks import find_blocks
 from .contracted import Contracted, contract
 from .interior import InteriorPoints
@@ -93,11 +95,34 @@ class CutCellGraph:
     @cached_property
     def contracted(self) -> Contracted:
         """What is left of it for paths at any angle, see `contract`."""
-        places = self.nodes[self.first_point : self.first_crossing]
-        block = find_blocks(places, self.lattice.resolution, self.steps)
-        return contract(self.nodes, self.edges, block, self.first_point)
+        return self._contraction()
+
+    def begin_contracting(self) -> None:
+        """Let another core find `contracted` while this one does something else."""
+        _ = self._contraction
 
     @cached_property
-    def degree(self) -> NDArray[np.int64]:
-        """Number of edges at each node, shape (N,)."""
-        return np.bincount(self.edges.ravel(), minlength=len(self.nodes))
+    def _contraction(self) -> Callable[[], Contracted]:
+        # Of its arrays alone: were the graph itself kept, it would keep itself in memory.
+        found = self.nodes, self.edges, self.steps, self.lattice.resolution
+        return meanwhile(partial(_contract, *found, self.first_point, self.first_crossing))
+
+    @cached_property
+    def connected(self) -> NDArray[np.bool_]:
+        """Whether any edge ends at each node, shape (N,)."""
+        found = np.ones(len(self.nodes), np.bool_)
+        found[: self.first_point] = False  # of all nodes those of the mesh alone may have none
+        found[self.edges[: np.searchsorted(self.edge_kind, MESH, side="right")]] = True
+        return found
+
+
+def _contract(
+    nodes: NDArray[np.float64],
+    edges: NDArray[np.int32],
+    steps: NDArray[np.int32],
+    resolution: int,
+    first_point: int,
+    first_crossing: int,
+) -> Contracted:
+    block = find_blocks(nodes[first_point:first_crossing], resolution, steps)
+    return contract(nodes, edges, block, first_point)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import re
 from pathlib import Path
@@ -43,7 +44,7 @@ def check_memory(
         # Points fill the volume, crossings the surface, and vertices stay as they are.
         return needed_memory(vertices, points * scale**3, crossings * scale**2, connectivity)
 
-    free = available_memory() * SHARE
+    free = available_memory(needed(1) / SHARE) * SHARE
     if needed(1) <= free:
         return
     fits = next((r for r in range(resolution, 1, -1) if needed(r / resolution) <= free), None)
@@ -66,12 +67,22 @@ def needed_memory(
     return bytes_ + labelled * BYTES_PER_LABELLED
 
 
-def available_memory() -> int:
-    """Return how many bytes new data may take without swapping."""
+def available_memory(enough: float = math.inf) -> int:
+    """Return how many bytes new data may take without swapping, or no less than is enough."""
+    free = _pages("SC_AVPHYS_PAGES")
+    if free >= enough:
+        return free  # how much the system could clear takes far longer to find out
     try:
         found = re.search(r"MemAvailable:\s+(\d+) kB", Path("/proc/meminfo").read_text())
     except OSError:
         found = None
     if found:
         return int(found[1]) * 1024
-    return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") // 2
+    return _pages("SC_PHYS_PAGES") // 2
+
+
+def _pages(name: str) -> int:
+    """Return the size of some pages of memory, 0 where the system does not tell."""
+    if name not in os.sysconf_names:
+        return 0
+    return os.sysconf("SC_PAGE_SIZE") * os.sysconf(name)

@@ -13,7 +13,7 @@ from scipy.sparse.csgraph import connected_components
 from benchmarks.growth import run
 from cutcell import Cancelled, ParameterError, TriangleMesh, build_graph
 from cutcell.graph import INTERIOR, MESH, SURFACE
-from cutcell.graph.memory import needed_memory
+from cutcell.graph.memory import available_memory, needed_memory
 from tests import meshes, naive
 
 RABBIT = Path(__file__).resolve().parents[3] / "assets" / "rabbit.glb"
@@ -141,6 +141,17 @@ def test_touching_boxes_are_one_body():
     assert count == 1
 
 
+@pytest.mark.parametrize("connectivity", [6, 26, "any"])
+@pytest.mark.parametrize("name", meshes.ALL)
+def test_nodes_that_no_edge_ends_at_are_known(name, connectivity):
+    vertices, faces = meshes.ALL[name]()
+    mesh = TriangleMesh(np.concatenate([vertices, [[0.3, 0.2, 0.9]]]), faces)
+    graph = build_graph(mesh, 12, connectivity=connectivity)
+    has_edges = np.bincount(graph.edges.ravel(), minlength=len(graph.nodes)) > 0
+    np.testing.assert_array_equal(graph.connected, has_edges)
+    assert not graph.connected[graph.vertex_node[-1]]
+
+
 def test_vertex_nodes_lead_back_to_the_file():
     vertices, faces = meshes.torus()
     split = vertices[faces].reshape(-1, 3) * 7 - 3
@@ -158,12 +169,20 @@ def test_resolutions_out_of_range_are_refused(resolution):
 
 
 def test_a_graph_that_does_not_fit_is_refused(monkeypatch):
-    monkeypatch.setattr("cutcell.graph.memory.available_memory", lambda: 10**8)
+    monkeypatch.setattr("cutcell.graph.memory.available_memory", lambda _: 10**8)
     sentence = r"resolution 64 needs about [\d.]+ GB, .* a resolution of (\d+) would fit"
     with pytest.raises(ParameterError, match=sentence) as refusal:
         build_graph(TriangleMesh(*meshes.ball()), 64)
     fits = int(re.search(sentence, str(refusal.value))[1])
     assert build_graph(TriangleMesh(*meshes.ball()), fits).lattice.resolution == fits
+
+
+def test_memory_is_looked_for_no_further_than_needed(monkeypatch):
+    whole = available_memory()
+    assert available_memory(1) > 0
+    monkeypatch.setattr("cutcell.graph.memory._pages", lambda name: 1000)
+    assert available_memory(1000) == 1000
+    assert available_memory(1001) == pytest.approx(whole, rel=0.2)
 
 
 @pytest.mark.parametrize("connectivity", ["any", 6])
