@@ -109,8 +109,7 @@ def any_angle_paths(
 
     in_threads(spread, range(len(groups)))
     if within < np.inf and least is None:  # either half knew of its own joints alone
-        limit = within * np.maximum(result.min(axis=0), ON_BONE / graph.lattice.resolution)
-        result[result > limit] = np.inf
+        _leave_out(within, ON_BONE / graph.lattice.resolution, result.min(axis=0), result)
     return result
 
 
@@ -177,6 +176,15 @@ def _read(nodes, body, bones, labels, anchors, each, targets, row, distance):
                 reached = straight(here, bend_of(places, bones, each, anchor, here))
                 reached += labels[anchor].distance if anchor >= 0 else 0.0
             distance[row[labels[label].joint], t] = reached
+
+
+@lean
+def _leave_out(within, near, least, distance):
+    """Forget what is more than so many times as far as the nearest, which is at least `near`."""
+    for j in range(len(distance)):
+        for t in range(len(least)):
+            if distance[j, t] > within * max(least[t], near):
+                distance[j, t] = np.inf
 
 
 @lean

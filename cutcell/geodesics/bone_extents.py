@@ -56,13 +56,14 @@ def fit_bones(
     """
     probe = BodyProbe(graph, grid)
     chains = find_chains(skeleton, graph.lattice.to_unit(skeleton.joints), probe)
-    end, joint = [], []
+    start, end = [], []
     for j in np.flatnonzero(skeleton.deform).tolist():
-        told = [*chains.ends[j], *chains.links[j]]
-        end += told or [chains.joints[j]]
-        joint += [j] * max(len(told), 1)
-    bones = Bones(chains.joints[joint], np.array(end), np.array(joint, np.int32))
-    tip = np.array([not (chains.ends[j] or chains.links[j]) for j in joint])
+        told = chains.ends[j] + chains.links[j] or [j]
+        end += told
+        start += [j] * len(told)
+    joint = np.array(start, np.int32)
+    tip = joint == end
+    bones = Bones(chains.joints[joint], chains.joints[end], joint)
     # A tip goes on the way its bone came until it leaves the body.
     tips = bones.joint[tip]
     way = probe.way_out(chains.joints[tips], chains.direction[tips])

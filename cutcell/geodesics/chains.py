@@ -51,17 +51,17 @@ class Chains:
     length : array, shape (j,)
         Of that bone; zero where there is none.
     ends : tuple of lists
-        Where the bones of each joint end: points in space.
+        The joints that the bones of each joint end at.
     links : tuple of lists
-        Further ends, of bones that the tree does not have.
+        Further ones, of bones that the tree does not have.
     """
 
     joints: NDArray[np.float64]
     near: NDArray[np.bool_]
     direction: NDArray[np.float64]
     length: NDArray[np.float64]
-    ends: tuple[list[NDArray[np.float64]], ...]
-    links: tuple[list[NDArray[np.float64]], ...]
+    ends: tuple[list[int], ...]
+    links: tuple[list[int], ...]
 
 
 def find_chains(skeleton: Skeleton, joints: NDArray[np.float64], probe: BodyProbe) -> Chains:
@@ -103,11 +103,9 @@ def _directions(
     ground is no place to come from. `same`, shape (j, j), tells which joints are at one place.
     """
     parent = skeleton.parents.copy()
-    for j in range(len(parent)):
-        above = parent[j]
-        while above >= 0 and same[above, j]:
-            above = skeleton.parents[above]
-        parent[j] = above
+    for j in np.flatnonzero((parent >= 0) & same[parent, np.arange(len(parent))]):
+        while parent[j] >= 0 and same[parent[j], j]:
+            parent[j] = skeleton.parents[parent[j]]
     away = joints - joints[parent]
     length = np.linalg.norm(away, axis=1)
     bone = (parent >= 0) & near[parent] & (length >= SAME_PLACE)
@@ -123,24 +121,25 @@ def _ends(
     near: NDArray[np.bool_],
     same: NDArray[np.bool_],
     direction: NDArray[np.float64],
-) -> tuple[list[NDArray[np.float64]], ...]:
+) -> tuple[list[int], ...]:
     """List where the bones of each joint end.
 
     They run to its children, but where the body forks and no child goes on the way the bone
     came: then, as with a head and its ears, the children are side branches and the joint's own
     bone is not in the file. A joint outside the body has no bone at all.
     """
-    ends: tuple[list[NDArray[np.float64]], ...] = tuple([] for _ in joints)
-    for j in np.flatnonzero(skeleton.deform & near).tolist():
-        children = [
-            k for k in skeleton.children[j] if (skeleton.deform[k] or near[k]) and not same[j, k]
-        ]
+    ends: tuple[list[int], ...] = tuple([] for _ in joints)
+    child, parent = np.arange(len(joints)), skeleton.parents
+    leads = (parent >= 0) & (skeleton.deform | near) & ~same[parent, child]
+    leads &= (skeleton.deform & near)[parent]
+    for k in np.flatnonzero(leads).tolist():
+        ends[parent[k]].append(k)
+    for j, children in enumerate(ends):
         if len(children) > 1 and direction[j].any():
             away = joints[children] - joints[j]
             away /= np.linalg.norm(away, axis=1, keepdims=True)
             if (away @ direction[j]).max() < ONWARD:
-                continue
-        ends[j].extend(joints[k] for k in children)
+                children.clear()
     return ends
 
 
@@ -149,14 +148,14 @@ def _links(
     joints: NDArray[np.float64],
     direction: NDArray[np.float64],
     length: NDArray[np.float64],
-    ends: tuple[list[NDArray[np.float64]], ...],
+    ends: tuple[list[int], ...],
     probe: BodyProbe,
-) -> tuple[list[NDArray[np.float64]], ...]:
+) -> tuple[list[int], ...]:
     """Join chains that end with joints that no bone leads to, as a shin with the foot below it.
 
     Both must be each other's clear choice: nearest, through the body, and not backward.
     """
-    links: tuple[list[NDArray[np.float64]], ...] = tuple([] for _ in joints)
+    links: tuple[list[int], ...] = tuple([] for _ in joints)
     loose = np.flatnonzero(skeleton.deform & (length == 0))
     has_end = np.array([len(those) > 0 for those in ends])
     tips = np.flatnonzero(skeleton.deform & ~has_end & (length > 0))
@@ -167,29 +166,31 @@ def _links(
     fits &= (far <= REACH * length[tips, None]) & (onward >= BACKWARD * far)
     tip, goal = fits.nonzero()
     fits[tip, goal] = probe.inner_part(joints[tips[tip]], joints[loose[goal]]) >= IN_BODY
-    wanted: dict[int, list[tuple[float, int]]] = {}
-    for t in np.flatnonzero(fits.any(axis=1)):
-        distance, possible = far[t, fits[t]], loose[fits[t]]
-        choice = _clear_choice(distance, joints[possible])
-        if choice is not None:
-            suitor = float(distance[choice]), int(tips[t])
-            wanted.setdefault(int(possible[choice]), []).append(suitor)
-    for k, suitors in wanted.items():
-        choice = _clear_choice(
-            np.array([far for far, _ in suitors]), joints[[j for _, j in suitors]]
-        )
-        if choice is not None:
-            links[suitors[choice][1]].append(joints[k])
+    distance = np.where(fits, far, np.inf)
+    choice = _clear_choice(distance, joints[loose])
+    suits = np.arange(len(loose)) == choice[:, None]
+    suitor = _clear_choice(np.where(suits, distance, np.inf).T, joints[tips])
+    for k in np.flatnonzero(suitor >= 0):
+        links[tips[suitor[k]]].append(int(loose[k]))
     return links
 
 
-def _clear_choice(far: NDArray[np.float64], places: NDArray[np.float64]) -> int | None:
-    """Return the nearest, unless another, at another place, is about as near."""
-    if len(far) == 0:
-        return None
-    first = int(far.argmin())
-    elsewhere = np.linalg.norm(places - places[first], axis=1) >= SAME_PLACE
-    return None if (far[elsewhere] <= CLEARLY * far[first]).any() else first
+def _clear_choice(far: NDArray[np.float64], places: NDArray[np.float64]) -> NDArray[np.intp]:
+    """Find who is nearest to each, shape (n,); -1 where another, elsewhere, is about as near.
+
+    Parameters
+    ----------
+    far : array, shape (n, m)
+        Infinite for those that are no choice.
+    places : array, shape (m, 3)
+    """
+    if far.size == 0:
+        return np.full(len(far), -1)
+    first = far.argmin(axis=1)
+    least = far.min(axis=1)
+    elsewhere = (cdist(places, places) >= SAME_PLACE)[first]
+    next_best = np.where(elsewhere, far, np.inf).min(axis=1)
+    return np.where((least < np.inf) & (next_best > CLEARLY * least), first, -1)
 
 
 def _grown_tree(

@@ -6,7 +6,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
-from ..graph import INTERIOR, CutCellGraph
+from ..graph import CutCellGraph
 from ..graph.interior import OUTSIDE, point_number
 from .nearest import NodeGrid
 
@@ -39,8 +39,7 @@ class BodyProbe:
     def inside(self, points: ArrayLike) -> NDArray[np.bool_]:
         """Tell for each point (..., 3) whether its lattice cell's centre is inside."""
         points = np.asarray(points, np.float64)
-        cells = np.floor(points.reshape(-1, 3) * self._resolution).astype(np.int64)
-        found = _inside(cells, self._resolution, *self._graph.interior.table)
+        found = _inside(points.reshape(-1, 3), self._resolution, self._graph.interior.table)
         return found.reshape(points.shape[:-1])
 
     def near(self, points: ArrayLike) -> NDArray[np.bool_]:
@@ -58,30 +57,56 @@ class BodyProbe:
 
     def depth(self, points: ArrayLike) -> NDArray[np.float64]:
         """Measure from each point (p, 3) to the nearest skin; zero outside."""
-        points = np.asarray(points, np.float64)
-        skin = self._graph.nodes[self._graph.node_kind != INTERIOR]
-        return np.where(self.inside(points), _to_nearest(points, skin), 0.0)
+        points, graph = np.asarray(points, np.float64), self._graph
+        skin = graph.nodes[: graph.first_point], graph.nodes[graph.first_crossing :]
+        away = np.minimum(*(_to_nearest(points, nodes) for nodes in skin))
+        return np.where(self.inside(points), away, 0.0)
 
     def way_out(
         self, start: NDArray[np.float64], direction: NDArray[np.float64]
     ) -> NDArray[np.float64]:
         """Measure how far one can go from points (p, 3) until outside; zero if never inside."""
-        steps = np.arange(int(2 * self._resolution / STEP)) * STEP / self._resolution
-        inside = self.inside(start[:, None] + steps[:, None] * direction[:, None])
-        entered = np.logical_or.accumulate(inside, axis=1)
-        left = (entered & ~inside).argmax(axis=1)
-        return np.where(inside[:, :ENTRY].any(axis=1), steps[left], 0.0)
+        table, step = self._graph.interior.table, STEP / self._resolution
+        return _ways_out(start, direction, step, self._resolution, table)
 
 
 @njit(cache=True, nogil=True)
-def _inside(cells, resolution, start, first, last, number):
-    found = np.zeros(len(cells), np.bool_)
-    for p in range(len(cells)):
-        x, y, z = cells[p]
-        if 0 <= x < resolution and 0 <= y < resolution and 0 <= z < resolution:
-            column = x * resolution + y
-            found[p] = point_number(start, first, last, number, column, z) != OUTSIDE
+def _inside(points, resolution, table):
+    found = np.empty(len(points), np.bool_)
+    for p in range(len(points)):
+        found[p] = _is_inside(resolution, table, points[p, 0], points[p, 1], points[p, 2])
     return found
+
+
+@njit(cache=True, inline="always")
+def _is_inside(resolution, table, x, y, z):
+    start, first, last, number = table
+    x, y, z = np.floor(x * resolution), np.floor(y * resolution), np.floor(z * resolution)
+    if not (0 <= x < resolution and 0 <= y < resolution and 0 <= z < resolution):
+        return False
+    column = int(x) * resolution + int(y)
+    return point_number(start, first, last, number, column, int(z)) != OUTSIDE
+
+
+@njit(cache=True, nogil=True)
+def _ways_out(start, direction, step, resolution, table):
+    away = np.zeros(len(start))
+    for p in range(len(start)):
+        was_inside = False
+        for k in range(int(2 / step)):  # across the cube, whichever way
+            x, y, z = (
+                start[p, 0] + k * step * direction[p, 0],
+                start[p, 1] + k * step * direction[p, 1],
+                start[p, 2] + k * step * direction[p, 2],
+            )
+            is_inside = _is_inside(resolution, table, x, y, z)
+            if was_inside and not is_inside:
+                away[p] = k * step
+                break
+            if not is_inside and k + 1 == ENTRY:
+                break
+            was_inside = is_inside
+    return away
 
 
 @njit(cache=True, nogil=True)
