@@ -14,8 +14,10 @@ from ..geodesics import FALLBACK_REASONS, BoneDistances, bone_distances
 from ..graph import CutCellGraph, build_graph
 from ..progress import Progress, silent
 from ..rig import Rig
+from ..threads import meanwhile
 from .kernels import kernels_are_compiled, load_kernels
 from .refine import refine_weights
+from .skin import Skin
 from .weights import (
     DEFAULT_LEAF,
     FALLOFFS,
@@ -122,6 +124,9 @@ def bind(
         progress=progress,
     )
     ticks.append(perf_counter())
+    if connectivity == "any":
+        graph.begin_contracting()
+    skin = meanwhile(lambda: Skin.of(graph)) if falloff == "rig" else None
     distances = bone_distances(
         graph,
         rig.skeleton,
@@ -141,6 +146,7 @@ def bind(
         max_influences=max_influences,
         threshold=threshold,
         allowed=rig.allowed,
+        skin=skin and skin(),
     )
     weights = refine_weights(
         rig,

@@ -15,7 +15,7 @@ from ..geodesics import bone_distances
 from ..graph import build_graph
 from ..rig import Skeleton, TriangleMesh
 from .prune import _prune
-from .weights import DEFAULT_LEAF, joints_needed, skinning_weights
+from .weights import DEFAULT_LEAF, joints_needed, reach_needed, skinning_weights
 
 AROUND = 16
 """Vertices around the tube: its open ends are holes too wide for a few triangles."""
@@ -56,7 +56,11 @@ def load_kernels() -> None:
         graph = build_graph(_tube(), 8, connectivity=connectivity)
         for nearest in {joints_needed("paper", 4), joints_needed("rig", 4)}:
             distances = bone_distances(
-                graph, skeleton, leaf=DEFAULT_LEAF["rig"], nearest_joints=nearest
+                graph,
+                skeleton,
+                leaf=DEFAULT_LEAF["rig"],
+                nearest_joints=nearest,
+                within=reach_needed("rig"),
             )
         for falloff in ("rig", "paper"):
             skinning_weights(distances, falloff=falloff, max_influences=4)

@@ -12,11 +12,7 @@ THINNEST = 1e-4
 would outweigh all."""
 
 
-def cotangent_laplacian(
-    points: NDArray[np.float64],
-    faces: NDArray[np.int32],
-    diagonal: NDArray[np.float64] | None = None,
-) -> csr_array:
+def cotangent_laplacian(points: NDArray[np.float64], faces: NDArray[np.int32]) -> csr_array:
     """Return the stiffness matrix of linear elements; positive, rows sum to zero.
 
     Parameters
@@ -24,17 +20,13 @@ def cotangent_laplacian(
     points : array, shape (k, 3)
     faces : array, shape (m, 3)
         Any triangles; at an edge of more than two all count.
-    diagonal : array, shape (k,), optional
-        Added to the diagonal.
 
     Returns
     -------
     csr_array, shape (k, k)
         Minus half the cotangents of the angles that face each edge.
     """
-    if diagonal is None:
-        diagonal = np.zeros(len(points))
-    start, column, value = _assemble(points, faces, diagonal)
+    start, column, value = stiffness(points, faces)
     matrix = csr_array((value, column, start), shape=(len(points),) * 2)
     matrix.sort_indices()
     return matrix
@@ -60,8 +52,8 @@ def vertex_normals(points: NDArray[np.float64], faces: NDArray[np.int32]) -> NDA
 
 
 @njit(cache=True, nogil=True)
-def _assemble(points, faces, diagonal):
-    """Return where each row of the matrix begins, and its columns and values."""
+def stiffness(points, faces):
+    """Return where each row of `cotangent_laplacian` begins, and its columns and values."""
     count = len(points)
     start = np.ones(count + 1, np.int32)
     start[0] = 0
@@ -73,7 +65,7 @@ def _assemble(points, faces, diagonal):
     # The diagonal comes first in each row, then both other corners of each face.
     cursor = start[:-1] + 1
     for k in range(count):
-        column[start[k]], value[start[k]] = k, diagonal[k]
+        column[start[k]], value[start[k]] = k, 0.0
     for f in range(len(faces)):
         for corner in range(3):
             p, q, r = faces[f, corner], faces[f, (corner + 1) % 3], faces[f, (corner + 2) % 3]

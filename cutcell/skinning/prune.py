@@ -6,7 +6,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from ..threads import in_threads, parts
+from ..threads import in_threads, parts, threads
 
 EQUAL = 1 + 1e-9
 """Times a weight: what is less counts as equal to it. Two bones that meet in a joint weigh the
@@ -41,7 +41,7 @@ def prune(
     pruned = np.zeros_like(weights, order="C")
     in_threads(
         lambda part: _prune(weights[part], most, threshold, priority, pruned[part]),
-        parts(len(weights)),
+        parts(len(weights), threads()),
     )
     return pruned
 
@@ -71,9 +71,12 @@ def keep_largest(row, most, threshold, priority, kept, pruned):
             place -= 1
         kept[place] = joint
     # Now the largest come first.
-    least = threshold * row[kept[:count]].sum()
+    total = 0.0
+    for k in range(count):
+        total += row[kept[k]]
+    least = threshold * total
     while count > 1 and row[kept[count - 1]] < least:
         count -= 1
-    total = row[kept[:count]].sum()
-    for joint in kept[:count]:
-        pruned[joint] = row[joint] / total
+        total -= row[kept[count]]
+    for k in range(count):
+        pruned[kept[k]] = row[kept[k]] / total

@@ -9,8 +9,8 @@ from ..compiled import lean
 from ..geodesics import BoneDistances, Bones
 from ..threads import together
 from .diffusion import Diffusion
-from .laplacian import vertex_normals
-from .pieces import bones_held, find_pieces
+from .pieces import bones_held
+from .skin import Skin
 from .worn import dress, foreign_bones
 
 POWER = 20
@@ -25,13 +25,15 @@ LEAST_CELLS = 0.01
 """Lattice cells: distances that are all shorter are equal."""
 
 
-def rig_kernel(distances: BoneDistances) -> NDArray[np.float64]:
+def rig_kernel(distances: BoneDistances, skin: Skin) -> NDArray[np.float64]:
     """Turn distances into weights for animation.
 
     Parameters
     ----------
     distances : BoneDistances
         Best with bones fitted to the body, `leaf="fit"`.
+    skin : Skin
+        Of their graph.
 
     Returns
     -------
@@ -39,49 +41,45 @@ def rig_kernel(distances: BoneDistances) -> NDArray[np.float64]:
         For the places of the mesh. Rows sum to one.
     """
     graph, bones = distances.graph, distances.bones
-    near = LEAST_CELLS / graph.lattice.resolution
-    distance = np.maximum(distances.at_places.T, near, order="C")
-    points, faces = graph.nodes[: len(distance)], _whole(graph.faces)
+    distance, resolution = distances.at_places, graph.lattice.resolution
+    weights = np.zeros(distance.shape[::-1])
 
-    weights = np.zeros(distance.shape)
-
-    def divide() -> tuple[NDArray[np.int32], NDArray[np.float64]]:
-        piece = find_pieces(faces, len(points))
-        held = _held_by_joint(points, faces, piece, bones, len(distance.T))
-        skin = points, vertex_normals(points, faces), distance, foreign_bones(held), piece
-        first_bone = np.searchsorted(bones.joint, np.arange(len(distance.T) + 1))
-        _put_shares(*skin, first_bone, bones.start, bones.end, weights)
-        return piece, held
+    def divide() -> NDArray[np.float64]:
+        held = _held_by_joint(skin, bones, len(distance))
+        known = skin.points, skin.normals, distance, foreign_bones(held), skin.piece
+        first_bone = np.searchsorted(bones.joint, np.arange(len(distance) + 1))
+        near = LEAST_CELLS / resolution
+        _put_shares(*known, first_bone, bones.start, bones.end, near, weights)
+        return held
 
     def prepare() -> Diffusion:
-        return Diffusion.over(points, faces, distance.min(axis=1), graph.lattice.resolution)
+        return Diffusion.over(skin, distance.min(axis=0), resolution)
 
-    (piece, held), diffusion = together(divide, prepare)
-    weights = diffusion.spread(weights)
-    return dress(graph, faces, piece, held, weights)
+    held, diffusion = together(divide, prepare)
+    return dress(graph, skin, held, diffusion.spread(weights))
 
 
 @lean
-def _put_shares(points, normals, distance, foreign, piece, bone, start, end, weights):
+def _put_shares(points, normals, distance, foreign, piece, bone, start, end, near, weights):
     """Divide places among joints by distance; `bone` tells where each joint's bones begin.
 
-    `weights` holds zeros.
+    Distances up to `near` are equal; `weights` holds zeros.
     """
     for v in range(len(points)):
         least = np.inf
-        for j in range(distance.shape[1]):
-            if distance[v, j] == np.inf:
+        for j in range(len(distance)):
+            if distance[j, v] == np.inf:
                 continue
-            away = foreign[piece[v], j] * distance[v, j]
+            away = foreign[piece[v], j] * max(distance[j, v], near)
             away /= _facing(points[v], normals[v], start, end, bone[j], bone[j + 1])
             weights[v, j] = away
             least = min(least, away)
         total = 0.0
-        for j in range(distance.shape[1]):
-            if distance[v, j] < np.inf:
+        for j in range(len(distance)):
+            if distance[j, v] < np.inf:
                 weights[v, j] = (least / weights[v, j]) ** POWER
                 total += weights[v, j]
-        for j in range(distance.shape[1]):
+        for j in range(len(distance)):
             weights[v, j] /= total
 
 
@@ -106,22 +104,11 @@ def _facing(point, normal, start, end, first, last):
     return TOWARDS + (1 - TOWARDS) * (1 + cosine) / 2
 
 
-def _whole(faces: NDArray[np.int32]) -> NDArray[np.int32]:
-    """Drop triangles that welding has closed up."""
-    return faces[(faces != np.roll(faces, 1, axis=1)).all(axis=1)]
-
-
-def _held_by_joint(
-    points: NDArray[np.float64],
-    faces: NDArray[np.int32],
-    piece: NDArray[np.int32],
-    bones: Bones,
-    joints: int,
-) -> NDArray[np.float64]:
+def _held_by_joint(skin: Skin, bones: Bones, joints: int) -> NDArray[np.float64]:
     """Measure which part of each joint's best held bone is in each piece, shape (pieces, j)."""
-    if not piece.any():  # a lone piece: no bone belongs more to another
+    if not skin.piece.any():  # a lone piece: no bone belongs more to another
         return np.ones((1, joints))
-    held = bones_held(points, faces, piece, bones)
+    held = bones_held(skin.points, skin.faces, skin.piece, bones)
     result = np.zeros((len(held), joints))
     for bone, owner in enumerate(bones.joint):
         result[:, owner] = np.maximum(result[:, owner], held[:, bone])

@@ -8,9 +8,11 @@ from numpy.typing import NDArray
 from ..checks import check_choice, check_integer, check_number
 from ..errors import ParameterError
 from ..geodesics import BoneDistances
+from ..threads import in_threads, parts, threads
 from .kernel import paper_kernel, pruned_paper_kernel
 from .prune import prune
 from .rig_falloff import NEAREST_JOINTS, TOWARDS, permitted, rig_kernel
+from .skin import Skin
 
 FALLOFFS = ("rig", "paper")
 DEFAULT_LEAF = {"rig": "fit", "paper": "point"}
@@ -26,6 +28,7 @@ def skinning_weights(
     max_influences: int | None = 4,
     threshold: float = 0.0,
     allowed: NDArray[np.bool_] | None = None,
+    skin: Skin | None = None,
 ) -> NDArray[np.float64]:
     """Turn distances into weights.
 
@@ -44,6 +47,8 @@ def skinning_weights(
         Of the weights that are left, those below it are dropped, 0 to 1.
     allowed : array, shape (n, j), bool, optional
         Which joints each vertex may follow; see `Rig.allowed`.
+    skin : Skin, optional
+        Of the distances' graph, if it is known already; "paper" does not ask for it.
 
     Returns
     -------
@@ -77,12 +82,17 @@ def skinning_weights(
         if falloff == "paper":
             pruned = pruned_paper_kernel(distances.at_places, diagonal, alpha, *kept)
         else:
-            pruned = prune(rig_kernel(distances), *kept)
-        return pruned.take(place, axis=0)
+            pruned = prune(rig_kernel(distances, skin or Skin.of(distances.graph)), *kept)
+        weights = np.empty((len(place), pruned.shape[1]))
+        in_threads(
+            lambda part: pruned.take(place[part], axis=0, out=weights[part], mode="clip"),
+            parts(len(place), threads()),
+        )
+        return weights
     if falloff == "paper":
         weights = paper_kernel(distances.joint, diagonal, alpha)
     else:
-        weights = rig_kernel(distances)[place]
+        weights = rig_kernel(distances, skin or Skin.of(distances.graph))[place]
     return prune(permitted(weights, distances.joint, allowed), *kept)
 
 

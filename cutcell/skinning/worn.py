@@ -9,8 +9,8 @@ from scipy.sparse import csr_array
 from ..compiled import lean
 from ..geodesics.bones import TIE
 from ..geodesics.nearest import NodeGrid
-from ..graph import SURFACE, CutCellGraph
-from .laplacian import vertex_areas
+from ..graph import CutCellGraph
+from .skin import Skin
 
 FOREIGN = 2.0
 """How many times farther a bone counts to be, beyond once, from a piece that it is not in while
@@ -49,8 +49,7 @@ def foreign_bones(held: NDArray[np.float64]) -> NDArray[np.float64]:
 
 def dress(
     graph: CutCellGraph,
-    faces: NDArray[np.int32],
-    piece: NDArray[np.int32],
+    skin: Skin,
     held: NDArray[np.float64],
     weights: NDArray[np.float64],
 ) -> NDArray[np.float64]:
@@ -61,9 +60,7 @@ def dress(
     Parameters
     ----------
     graph : CutCellGraph
-    faces : array, shape (m, 3)
-    piece : array, shape (k,)
-        Of each place; see `find_pieces`.
+    skin : Skin
     held : array, shape (pieces, j)
         Which part of each joint's bones each piece holds.
     weights : array, shape (k, j)
@@ -72,11 +69,11 @@ def dress(
     -------
     array, shape (k, j)
     """
-    points = graph.nodes[: len(piece)]
+    points, piece, areas = skin.points, skin.piece, skin.areas
     worn = (held.max(axis=1) == 0) & (_longest_sides(points, piece) <= SMALL)
     if not worn.any():
         return weights
-    wearer, areas = ~worn[piece], vertex_areas(points, faces)
+    wearer = ~worn[piece]
     # What is in patches all over is no body with things on it.
     if areas[wearer].sum() < areas.sum() / 2:
         return weights
@@ -122,14 +119,12 @@ def _nearest_skin(
     Returns the distances, and for each point of the skin found the three places that its
     weights are the mean of.
     """
-    vertices = np.flatnonzero(wearer).astype(np.int32)
-    crossings = np.flatnonzero(graph.node_kind == SURFACE)
-    hit = graph.faces[graph.triangle[crossings]]
-    kept = wearer[hit[:, 0]]
-    node = np.concatenate([vertices, crossings[kept]])
-    corners = np.concatenate([np.stack([vertices] * 3, axis=1), hit[kept]])
-    places, resolution = graph.nodes[node], graph.lattice.resolution
-    of, nearest = NodeGrid(places, np.ones(len(node), bool), resolution).nearest(points, TIE)
-    nearest = nearest[np.searchsorted(of, np.arange(len(points)))]  # the first of equals
-    away = np.linalg.norm(places[nearest] - points, axis=1)
-    return away, corners[nearest]
+    first = graph.first_crossing
+    chosen = np.zeros(len(graph.nodes), np.bool_)
+    chosen[: len(wearer)] = wearer
+    chosen[first:] = wearer[graph.faces[graph.triangle[first:], 0]]
+    of, node = NodeGrid(graph.nodes, chosen, graph.lattice.resolution).nearest(points, TIE)
+    node = node[np.searchsorted(of, np.arange(len(points)))]  # the first of equals
+    away = np.linalg.norm(graph.nodes[node] - points, axis=1)
+    on_face = graph.faces[graph.triangle[node]]
+    return away, np.where(node[:, None] < first, node[:, None], on_face).astype(np.int32)

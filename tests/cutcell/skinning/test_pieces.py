@@ -6,6 +6,7 @@ import pytest
 from cutcell import Rig, Skeleton, TriangleMesh, bind, build_graph, winding_number
 from cutcell.geodesics import Bones
 from cutcell.skinning.pieces import POINTS, bones_held, find_pieces
+from cutcell.skinning.skin import Skin
 from cutcell.skinning.worn import dress, foreign_bones
 from tests import meshes
 from tests.bars import grid_box
@@ -79,12 +80,11 @@ def test_a_body_in_patches_wears_nothing():
     soup = vertices[faces].reshape(-1, 3) + np.repeat(np.arange(len(faces)) * 1e-3, 3)[:, None]
     triangles = np.arange(len(soup)).reshape(-1, 3)
     graph = build_graph(TriangleMesh(soup, triangles), 16, connectivity="any")
-    count = int(graph.vertex_node.max()) + 1
-    piece = find_pieces(graph.faces, count)
-    held = np.zeros((int(piece.max()) + 1, 2))
+    skin = Skin.of(graph)
+    held = np.zeros((int(skin.piece.max()) + 1, 2))
     held[0, 0] = 1
-    weights = np.random.default_rng(0).random((count, 2))
-    assert dress(graph, graph.faces, piece, held, weights) is weights
+    weights = np.random.default_rng(0).random((len(skin.points), 2))
+    assert dress(graph, skin, held, weights) is weights
 
 
 def test_to_a_lone_piece_no_bone_is_foreign():

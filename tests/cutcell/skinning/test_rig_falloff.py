@@ -10,6 +10,7 @@ from cutcell.metrics import deformation_error, vertex_shares, weight_l1
 from cutcell.skinning.diffusion import SHARPNESS, Diffusion
 from cutcell.skinning.laplacian import cotangent_laplacian, vertex_areas
 from cutcell.skinning.rig_falloff import TOWARDS, _facing
+from cutcell.skinning.skin import Skin
 from tests import meshes
 from tests.bars import grid_box
 
@@ -66,7 +67,7 @@ def test_diffusion_is_the_solution_of_its_equation():
     hold = SHARPNESS * vertex_areas(points, faces) / depth**2
     system = cotangent_laplacian(points, faces).toarray() + np.diag(hold)
     expected = np.linalg.solve(system, hold[:, None] * weights)
-    found = Diffusion.over(points, faces, depth, 64).spread(weights)
+    found = Diffusion.over(Skin.over(points, faces), depth, 64).spread(weights)
     np.testing.assert_allclose(found, expected, atol=1e-12)
 
 
