@@ -23,13 +23,14 @@ from numba import njit
 from numpy.typing import NDArray
 
 from ..compiled import put
-from ..threads import in_threads
+from ..threads import in_threads, threads
 
 AXES = ((1, 2, 0), (0, 2, 1), (0, 1, 2))
 """For rays along x, y, z: the two axes (u, v) of the plane they cross, and their own."""
 
 STRIPS = 4
-"""Strips of columns drawn in parallel for each axis: enough that no core idles for long."""
+"""Strips of columns drawn in parallel for each axis, at most: enough that no core idles for long.
+With few cores each has several anyhow, and of a small mesh a strip is drawn in no time."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,7 +110,8 @@ def _cast(vertices, faces, resolution, axes):
 
 def strip_bounds(resolution: int) -> list[tuple[int, int]]:
     """Cut the columns 0 to R - 1 into strips, which can be worked on in parallel."""
-    return list(pairwise(np.arange(STRIPS + 1) * resolution // STRIPS))
+    count = min(STRIPS, threads())
+    return list(pairwise(np.arange(count + 1) * resolution // count))
 
 
 @njit(cache=True, inline="always")
