@@ -18,6 +18,7 @@ import cutcell
 from cutcell.geodesics import bone_distances, bone_segments
 from cutcell.geodesics.shortest_paths import shortest_paths
 from cutcell.graph import build_graph
+from cutcell.skinning.kernels import load_kernels
 
 from . import meshers, recipe, start_up
 from .rigs import Character, load_characters
@@ -327,6 +328,7 @@ def arguments(given: Sequence[str] | None = None) -> argparse.Namespace:
 def tables(options: argparse.Namespace) -> list[Table]:
     """Measure what was asked for."""
     characters = load_characters(options.rigs)
+    load_kernels()  # a first run that compiles would be too long to be repeated
     return [TABLES[name](characters, options) for name in options.tables]
 
 
