@@ -69,18 +69,28 @@ def contract(
     mesh : int
         How many vertices the mesh has.
     """
-    points = len(block)
-    first_crossing = mesh + points
+    return Contracted(*_contract(nodes, edges, block, mesh))
+
+
+# A single kernel, so that another thread is asked for Python's lock but once.
+@njit(cache=True, nogil=True)
+def _contract(nodes, edges, block, mesh):
+    first_crossing = mesh + len(block)
     ends = len(edges) - CORNERS * (len(nodes) - first_crossing)
     stand_in = _find_stand_ins(edges[:ends], block, mesh, len(nodes))
     node, number = _number(stand_in)
     left = np.empty_like(edges)
     count = _leave_out(nodes, edges, block, mesh, stand_in, number, left)
-    start, order = sort_into(stand_in[first_crossing:] - mesh, points)  # what stays is below 0
+    # What stays is below 0.
+    start, order = sort_into(stand_in[first_crossing:] - mesh, len(block))
     count = _add_shortcuts(edges, ends, start, order, mesh, number, left, count)
     indptr, indices, _ = sort_edges(left[:count], np.empty(0), len(node))
-    crossing = int(np.searchsorted(node, first_crossing))
-    return Contracted(indptr, indices, nodes[node], node, number, crossing)
+    places, crossing = np.empty((len(node), 3)), 0
+    for n in range(len(node)):
+        for axis in range(3):
+            places[n, axis] = nodes[node[n], axis]
+        crossing += node[n] < first_crossing
+    return indptr, indices, places, node, number, crossing
 
 
 @njit(cache=True, nogil=True)

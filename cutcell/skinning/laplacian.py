@@ -32,7 +32,8 @@ def cotangent_laplacian(points: NDArray[np.float64], faces: NDArray[np.int32]) -
     return matrix
 
 
-def vertex_areas(points: NDArray[np.float64], faces: NDArray[np.int32]) -> NDArray[np.float64]:
+@njit(cache=True, nogil=True)
+def vertex_areas(points, faces):
     """Return each vertex's part of the surface, shape (k,) (mixed areas, Meyer et al. 2003).
 
     In an acute triangle each corner gets the part that is nearest to it; else the wide
@@ -43,12 +44,17 @@ def vertex_areas(points: NDArray[np.float64], faces: NDArray[np.int32]) -> NDArr
     return total
 
 
-def vertex_normals(points: NDArray[np.float64], faces: NDArray[np.int32]) -> NDArray[np.float64]:
+@njit(cache=True, nogil=True)
+def vertex_normals(points, faces):
     """Return unit normals, shape (k, 3): the faces' average by area; zero where there is none."""
     normals = np.zeros((len(points), 3))
     _add_normals(points, faces, normals)
-    length = np.linalg.norm(normals, axis=1, keepdims=True)
-    return np.divide(normals, length, out=np.zeros_like(normals), where=length > 0)
+    for k in range(len(points)):
+        x, y, z = normals[k, 0], normals[k, 1], normals[k, 2]
+        length = np.sqrt(x * x + y * y + z * z)
+        if length > 0:
+            normals[k, 0], normals[k, 1], normals[k, 2] = x / length, y / length, z / length
+    return normals
 
 
 @njit(cache=True, nogil=True)

@@ -20,13 +20,9 @@ INSIDE = 0.5
 """A point is inside a piece if this part of six rays from it leave the piece."""
 
 
-def find_pieces(faces: NDArray[np.int32], count: int) -> NDArray[np.int32]:
-    """Return for each of `count` places the number of its piece: what edges join is one."""
-    return _pieces(faces, count)
-
-
 @njit(cache=True, nogil=True)
-def _pieces(faces, count):
+def find_pieces(faces, count):
+    """Return for each of `count` places the number of its piece: what edges join is one."""
     first = np.arange(count)
     for f in range(len(faces)):
         low = join(first, faces[f, 0], faces[f, 1])

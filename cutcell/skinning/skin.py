@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from ..graph import CutCellGraph
@@ -50,11 +51,16 @@ class Skin:
     def over(cls, points: NDArray[np.float64], faces: NDArray[np.int32]) -> Skin:
         """Find it on a mesh: points (k, 3) in the unit cube, faces (m, 3)."""
         faces = _whole(faces)
-        normals, areas = vertex_normals(points, faces), vertex_areas(points, faces)
-        conducts = stiffness(points, faces)
-        order = order_of_elimination(*conducts[:2])
-        piece = find_pieces(faces, len(points))
-        return cls(points, faces, normals, areas, piece, conducts, order)
+        return cls(points, faces, *_look_at(points, faces))
+
+
+# A single kernel, so that another thread is asked for Python's lock but once.
+@njit(cache=True, nogil=True)
+def _look_at(points, faces):
+    normals, areas = vertex_normals(points, faces), vertex_areas(points, faces)
+    conducts = stiffness(points, faces)
+    order = order_of_elimination(conducts[0], conducts[1])
+    return normals, areas, find_pieces(faces, len(points)), conducts, order
 
 
 def _whole(faces: NDArray[np.int32]) -> NDArray[np.int32]:
