@@ -44,7 +44,9 @@ SPAN = 1
 ROOMS = 1, 3
 """Labels a node for which the kernel is compiled with their number built in, a third faster."""
 PAUSES = 8
-"""How often a unit of distance is interrupted, to report and to be cancelled."""
+"""How often a unit of distance is interrupted, to report and to be cancelled, at most."""
+A_PAUSE = 20_000
+"""Labels that are settled in a few milliseconds: fewer are not interrupted."""
 
 
 def any_angle_paths(
@@ -142,7 +144,7 @@ def _spread(
     scale = float(FINENESS * graph.lattice.resolution**2)
     head = np.full(int(SPAN * scale), END, np.int32)
     line_up(labels, head, scale)
-    step = len(head) // (SPAN * PAUSES)
+    step = len(head) // (SPAN * min(PAUSES, 1 + len(labels) // A_PAUSE))
     adjacency = graph.contracted.indptr, graph.contracted.indices
     ahead = np.empty(int(np.diff(adjacency[0]).max()) + 1, np.int64)
     known = adjacency, body_of(graph), ranking.table, within

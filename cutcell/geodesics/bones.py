@@ -29,7 +29,7 @@ class Bones:
     start, end : arrays, shape (b, 3)
         Ends of each bone; equal for a bone that is a point.
     joint : array, shape (b,), int32
-        The joint that moves the bone: its parent end.
+        The joint that moves the bone: its parent end. Ascending.
     """
 
     start: NDArray[np.float64]

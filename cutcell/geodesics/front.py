@@ -69,14 +69,18 @@ def rank_bones(bones: Bones, sources: Sources) -> Ranking:
     inverse = np.divide(1, squared, out=np.zeros_like(squared), where=squared > 0)
     table = np.concatenate([start, way, inverse[:, None]], axis=1)
 
-    joints, first, which = np.unique(bones.joint[order], return_index=True, return_inverse=True)
-    by_place = np.argsort(first)
-    rank = np.argsort(by_place)[which].astype(np.int32)
+    place = np.argsort(order)  # of each bone in the table
+    first = np.flatnonzero(np.diff(bones.joint, prepend=-1))
+    foremost = np.minimum.reduceat(place, first)
+    by_place = np.argsort(foremost)
+    count = np.diff(first, append=len(order))
+    rank = np.repeat(np.argsort(by_place).astype(np.int32), count)[order]
 
-    bone = np.argsort(order)[sources.bone].astype(np.int32)
+    bone = place[sources.bone].astype(np.int32)
     by_bone = np.argsort(bone, kind="stable")
     begin = Sources(sources.node[by_bone], bone[by_bone], sources.distance[by_bone])
-    return Ranking(joints[by_place], start[first[by_place]], table, rank, begin)
+    joints = bones.joint[first]
+    return Ranking(joints[by_place], start[foremost[by_place]], table, rank, begin)
 
 
 def in_halves(places: NDArray[np.float64]) -> list[NDArray[np.bool_]]:
