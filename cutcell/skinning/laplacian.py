@@ -59,7 +59,7 @@ def vertex_normals(points, faces):
 
 @njit(cache=True, nogil=True)
 def stiffness(points, faces):
-    """Return where each row of `cotangent_laplacian` begins, and its columns and values."""
+    """Return rows of `cotangent_laplacian`: where they begin, columns (their own first), values."""
     count = len(points)
     start = np.ones(count + 1, np.int32)
     start[0] = 0
