@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from ..sorting import sort_into
 from .blocks import NO_BLOCK
-from .neighbours import sort_edges
+from .neighbours import count_ends, list_ends
 
 STAYS, NOT_FOUND = -1, -2
 CORNERS = 3
@@ -84,7 +84,7 @@ def _contract(nodes, edges, block, mesh):
     # What stays is below 0.
     start, order = sort_into(stand_in[first_crossing:] - mesh, len(block))
     count = _add_shortcuts(edges, ends, start, order, mesh, number, left, count)
-    indptr, indices, _ = sort_edges(left[:count], np.empty(0), len(node))
+    indptr, indices = _list_neighbours(left[:count], len(node))
     places, crossing = np.empty((len(node), 3)), 0
     for n in range(len(node)):
         for axis in range(3):
@@ -143,6 +143,17 @@ def _leave_out(nodes, edges, block, mesh, stand_in, number, left):
         left[count, 0], left[count, 1] = number[u], number[v]
         count += 1
     return count
+
+
+@njit(cache=True, nogil=True)
+def _list_neighbours(edges, count):
+    indptr = np.zeros(count + 1, np.int32)
+    count_ends(edges, 0, count, indptr[1:])
+    for node in range(count):
+        indptr[node + 1] += indptr[node]
+    indices, no_lengths = np.empty(2 * len(edges), np.int32), np.empty(0)
+    list_ends(edges, no_lengths, 0, count, indptr[:-1].copy(), indices, no_lengths)
+    return indptr, indices
 
 
 @njit(cache=True, inline="always")

@@ -8,6 +8,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from ..threads import in_threads, parts, threads
+
 Adjacency: TypeAlias = tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.float64]]
 
 
@@ -15,25 +17,37 @@ def list_neighbours(
     edges: NDArray[np.int32], lengths: NDArray[np.float64], count: int
 ) -> Adjacency:
     """List the neighbours of each of `count` nodes: indptr (N + 1,), indices and lengths (2E,)."""
-    return sort_edges(edges, lengths, count)
+    # Each thread reads all edges, and writes what is said of its own nodes.
+    shares = parts(count, threads())
+    indptr = np.zeros(count + 1, np.int32)
+    in_threads(lambda own: count_ends(edges, own.start, own.stop, indptr[1:]), shares)
+    np.cumsum(indptr, out=indptr)
+    indices, both_ways = np.empty(2 * len(edges), np.int32), np.empty(2 * len(edges))
+    lists = indptr[:-1].copy(), indices, both_ways
+    in_threads(lambda own: list_ends(edges, lengths, own.start, own.stop, *lists), shares)
+    return indptr, indices, both_ways
 
 
 @njit(cache=True, nogil=True)
-def sort_edges(edges, lengths, count):
-    """List neighbours; see `list_neighbours`. Without lengths there are none in the list."""
-    # Where the neighbours of a node begin stands one place further until they are all there.
-    start = np.zeros(count + 2, np.int32)
+def count_ends(edges, first, last, ends):
+    """Count the edges that end at each of some nodes."""
     for e in range(len(edges)):
         for side in range(2):
-            start[edges[e, side] + 2] += 1
-    for node in range(count):
-        start[node + 2] += start[node + 1]
-    indices, both_ways = np.empty(2 * len(edges), np.int32), np.empty(2 * len(lengths))
+            if first <= edges[e, side] < last:
+                ends[edges[e, side]] += 1
+
+
+@njit(cache=True, nogil=True)
+def list_ends(edges, lengths, first, last, place, indices, both_ways):
+    """List the neighbours of some nodes, and how far they are where lengths are given.
+
+    `place` tells where the next one of each node goes.
+    """
     for e in range(len(edges)):
         for side in range(2):
-            at = start[edges[e, side] + 1]
-            indices[at] = edges[e, 1 - side]
-            if len(lengths):
-                both_ways[at] = lengths[e]
-            start[edges[e, side] + 1] += 1
-    return start[:-1], indices, both_ways
+            node = edges[e, side]
+            if first <= node < last:
+                indices[place[node]] = edges[e, 1 - side]
+                if len(lengths):
+                    both_ways[place[node]] = lengths[e]
+                place[node] += 1
