@@ -42,6 +42,5 @@ def _generate(context, builder, signature, arguments):
     fell = builder.icmp_unsigned(
         "!=", builder.bitcast(less, ir.IntType(LANES)), ir.Constant(ir.IntType(LANES), 0)
     )
-    with builder.if_then(fell):
-        builder.store(builder.select(less, there, here), place(u), align=8)
+    builder.store(builder.select(less, there, here), place(u), align=8)
     return fell
