@@ -1,9 +1,10 @@
 """All kernels of a binding at once, so that no character waits for one of them."""
 
 import os
+import subprocess
 import sys
-from collections.abc import Sequence
-from contextlib import suppress
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, nullcontext, suppress
 from pathlib import Path
 
 import numba
@@ -12,17 +13,12 @@ from llvmlite import binding
 from numba.core.dispatcher import Dispatcher
 
 from ..geodesics import bone_distances
-from ..graph import build_graph
-from ..rig import Skeleton, TriangleMesh
+from ..graph import CutCellGraph, build_graph
+from ..threads import threads
 from .prune import _prune
+from .specimens import block_graph, chain, tube
 from .weights import DEFAULT_LEAF, joints_needed, reach_needed, skinning_weights
 
-AROUND = 16
-"""Vertices around the tube: its open ends are holes too wide for a few triangles."""
-MISSING = 5, 25, 45, 65, 85
-"""Faces of the tube that leave small holes: enough holes for a tree of them."""
-STUD = np.array([[0.3, 0, 0.5], [0.35, 0, 0.5], [0.3, 0.05, 0.5], [0.3, 0, 0.55]])
-"""Beside the tube: pieces of a mesh are looked at where there are several."""
 PACKAGE = Path(__file__).resolve().parents[1]
 SOURCES = (
     "compiled.py",
@@ -40,34 +36,65 @@ _known = False
 def load_kernels() -> None:
     """Bind a small tube with holes, and a stud, in every way that has kernels of its own.
 
-    Kernels are compiled once on a machine (about a minute) and kept on disk; from there a
-    process loads them in about a second. All are thrown away once any source has changed: numba
-    itself sees no change in another file than a kernel's own.
+    Kernels are compiled once on a machine (about a minute, in two processes) and kept on disk;
+    from there a process loads them in about a second. All are thrown away once any source has
+    changed: numba itself sees no change in another file than a kernel's own.
     """
-    if not kernels_are_compiled():
+    compiled = kernels_are_compiled()
+    if not compiled:
         forget(_kernels())
-    # More joints than a vertex has distances of. The last is so far away that its labels outlast
-    # the queue's buckets.
-    joints = np.zeros((8, 3))
-    joints[:, 2] = np.linspace(0.1, 0.9, 8)
-    joints[-1] = 3
-    skeleton = Skeleton(joints, np.array([*range(-1, 6), -1]))
-    for connectivity in ("any", 26):
-        graph = build_graph(_tube(), 8, connectivity=connectivity)
-        for nearest in {joints_needed("paper", 4), joints_needed("rig", 4)}:
-            distances = bone_distances(
-                graph,
-                skeleton,
-                leaf=DEFAULT_LEAF["rig"],
-                nearest_joints=nearest,
-                within=reach_needed("rig"),
-            )
-        for falloff in ("rig", "paper"):
-            skinning_weights(distances, falloff=falloff, max_influences=4)
-        every = np.ones(distances.joint.shape[::-1], bool)
-        skinning_weights(distances, falloff="paper", max_influences=4, allowed=every)
-
+    with nullcontext() if compiled else _beside("compile_after_graph"):
+        graphs = [build_graph(tube(), 8, connectivity=kind) for kind in ("any", 26)]
+    for graph in graphs:
+        _compile_after(graph)
     _write_stamp()
+
+
+def compile_after_graph() -> None:
+    """Compile what a binding needs once it has its graph, which takes about as long as that."""
+    _compile_after(block_graph())
+
+
+def _compile_after(graph: CutCellGraph) -> None:
+    for nearest in {joints_needed("paper", 4), joints_needed("rig", 4)}:
+        distances = bone_distances(
+            graph,
+            chain(),
+            leaf=DEFAULT_LEAF["rig"],
+            nearest_joints=nearest,
+            within=reach_needed("rig"),
+        )
+    for falloff in ("rig", "paper"):
+        skinning_weights(distances, falloff=falloff, max_influences=4)
+    every = np.ones(distances.joint.shape[::-1], bool)
+    skinning_weights(distances, falloff="paper", max_influences=4, allowed=every)
+
+
+@contextmanager
+def _beside(function: str) -> Iterator[None]:
+    """Let another process call a function of this module meanwhile; wait for it at the end.
+
+    Only one thread of a process can compile. What that process fails to do is left to this one.
+    """
+    if threads() < 2 or not Path(sys.executable or "").stem.lower().startswith("python"):
+        yield  # a program that Python is built into could start itself once more
+        return
+    command = [sys.executable, "-c", f"from {__name__} import {function}; {function}()"]
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
+    nothing = subprocess.DEVNULL
+    try:
+        process = subprocess.Popen(
+            command, env=environment, stdin=nothing, stdout=nothing, stderr=nothing
+        )
+    except OSError:
+        yield
+        return
+    with process:
+        try:
+            yield
+            process.wait()
+        finally:
+            process.kill()
 
 
 def kernels_are_compiled() -> bool:
@@ -114,17 +141,3 @@ def _stamp() -> str:
     states = [(path.relative_to(PACKAGE).as_posix(), path.stat()) for path in files]
     lines = [f"{name} {state.st_mtime_ns} {state.st_size}" for name, state in states]
     return "\n".join([made_for, *lines])
-
-
-def _tube() -> TriangleMesh:
-    turn = np.linspace(0, 2 * np.pi, AROUND, endpoint=False)
-    heights = np.linspace(0, 1, 5)
-    rings = [np.stack([np.cos(turn) / 5, np.sin(turn) / 5, np.full(AROUND, z)], 1) for z in heights]
-    here = np.arange((len(heights) - 1) * AROUND)
-    beside = here // AROUND * AROUND + (here + 1) % AROUND
-    faces = [[here, beside, beside + AROUND], [here, beside + AROUND, here + AROUND]]
-    whole = np.concatenate([np.stack(face, axis=1) for face in faces])
-    tube = np.delete(whole, MISSING, axis=0)
-    stud = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]) + len(rings) * AROUND
-    vertices = np.concatenate([*rings, STUD])
-    return TriangleMesh(vertices, np.concatenate([tube, stud]))

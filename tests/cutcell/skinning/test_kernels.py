@@ -5,14 +5,19 @@ import subprocess
 import sys
 import textwrap
 from ast import literal_eval
+from contextlib import nullcontext
+from dataclasses import fields
 from importlib.util import find_spec
 from itertools import pairwise
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import cutcell
+from cutcell.graph import build_graph
 from cutcell.skinning import kernels, kernels_are_compiled, load_kernels
+from cutcell.skinning.specimens import block_graph, chain, tube
 from tests.bars import bar
 from tests.conftest import ROOT
 
@@ -98,6 +103,7 @@ def another_machine(tmp_path, monkeypatch):
     monkeypatch.setattr(kernels, "_known", False)
     monkeypatch.setattr(kernels, "_stamp_path", lambda: tmp_path / "kernels.stamp")
     monkeypatch.setattr(kernels, "forget", lambda kernels: None)
+    monkeypatch.setattr(kernels, "_beside", lambda function: nullcontext())
     return tmp_path
 
 
@@ -148,3 +154,57 @@ def test_where_no_note_can_be_kept_binding_goes_on(another_machine, monkeypatch)
     monkeypatch.setattr(kernels, "_stamp_path", lambda: another_machine / "away" / "kernels.stamp")
     load_kernels()
     assert not kernels_are_compiled()
+
+
+def kinds(thing):
+    """List the types of an object's arrays, for which kernels are compiled."""
+    arrays = {field.name: getattr(thing, field.name) for field in fields(thing)}
+    found = {k: (v.dtype, v.ndim) for k, v in arrays.items() if isinstance(v, np.ndarray)}
+    assert all(arrays[name].flags.c_contiguous for name in found)
+    return found
+
+
+def test_the_graph_made_by_hand_is_of_the_types_that_are_built():
+    built, by_hand = build_graph(tube(), 8, connectivity="any"), block_graph()
+    assert kinds(by_hand) == kinds(built)
+    assert kinds(by_hand.interior) == kinds(built.interior)
+    assert by_hand.connectivity == built.connectivity
+    weights = cutcell.skinning_weights(cutcell.bone_distances(by_hand, chain()))
+    np.testing.assert_allclose(weights.sum(axis=1), 1)
+
+
+def test_another_process_compiles_meanwhile(tmp_path, monkeypatch):
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
+    with kernels._beside("_write_stamp"):
+        assert not list(tmp_path.rglob("kernels.stamp"))  # it takes a second to start
+    assert len(list(tmp_path.rglob("kernels.stamp"))) == 1
+
+
+def test_it_ends_with_what_is_done_meanwhile(tmp_path, monkeypatch):
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))  # all is to be compiled
+    started, popen = [], subprocess.Popen
+    monkeypatch.setattr(
+        subprocess, "Popen", lambda *a, **k: started.append(popen(*a, **k)) or started[0]
+    )
+    with pytest.raises(KeyboardInterrupt), kernels._beside("compile_after_graph"):
+        raise KeyboardInterrupt
+    assert started[0].returncode not in (0, None)
+
+
+@pytest.mark.parametrize("executable", ["", None, "/nowhere/python3", "/usr/bin/false"])
+def test_without_another_process_this_one_goes_on(executable, monkeypatch):
+    monkeypatch.setattr(sys, "executable", executable)
+    done = []
+    with kernels._beside("compile_after_graph"):
+        done.append(True)
+    assert done
+
+
+def test_a_program_that_python_is_built_into_is_not_started(monkeypatch):
+    def refuse(*arguments, **options):
+        raise AssertionError(arguments)
+
+    monkeypatch.setattr(subprocess, "Popen", refuse)
+    monkeypatch.setattr(sys, "executable", "/opt/maya/bin/maya.bin")
+    with kernels._beside("compile_after_graph"):
+        pass
