@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
-from scipy.spatial.distance import cdist
 
+from ..sorting import sort_into
 from .bones import Bones, Sources
 from .labels import NOBODY, find_room, no_labels
 from .queue import bucket_of, join
@@ -64,23 +64,37 @@ class Front:
 def rank_bones(bones: Bones, sources: Sources) -> Ranking:
     """Order bones, joints and sources by position."""
     order = np.lexsort(np.concatenate([bones.start, bones.end], axis=1).T[::-1])
-    start, way = bones.start[order], (bones.end - bones.start)[order]
-    squared = (way * way).sum(axis=1)
-    inverse = np.divide(1, squared, out=np.zeros_like(squared), where=squared > 0)
-    table = np.concatenate([start, way, inverse[:, None]], axis=1)
+    ranked = _rank(order, bones.start, bones.end, bones.joint, sources.bone)
+    joints, places, table, rank, bone, by_bone = ranked
+    begin = Sources(sources.node[by_bone], bone, sources.distance[by_bone])
+    return Ranking(joints, places, table, rank, begin)
 
-    place = np.argsort(order)  # of each bone in the table
-    first = np.flatnonzero(np.diff(bones.joint, prepend=-1))
-    foremost = np.minimum.reduceat(place, first)
-    by_place = np.argsort(foremost)
-    count = np.diff(first, append=len(order))
-    rank = np.repeat(np.argsort(by_place).astype(np.int32), count)[order]
 
-    bone = place[sources.bone].astype(np.int32)
-    by_bone = np.argsort(bone, kind="stable")
-    begin = Sources(sources.node[by_bone], bone[by_bone], sources.distance[by_bone])
-    joints = bones.joint[first]
-    return Ranking(joints[by_place], start[foremost[by_place]], table, rank, begin)
+@njit(cache=True, nogil=True)
+def _rank(order, start, end, joint, bone):
+    """Rank joints by the first of their bones; return a `Ranking`, and the order of the sources."""
+    table, rank = np.empty((len(order), 7)), np.empty(len(order), np.int32)
+    joints, places = np.empty(len(order), np.int32), np.empty((len(order), 3))
+    row_of, rank_of = np.empty(len(order), np.int32), np.full(joint.max() + 1, NOBODY, np.int32)
+    count = 0
+    for row in range(len(order)):
+        b = order[row]
+        row_of[b] = row
+        squared = 0.0
+        for axis in range(3):
+            way = end[b, axis] - start[b, axis]
+            table[row, axis], table[row, 3 + axis] = start[b, axis], way
+            squared += way * way
+        table[row, 6] = 1 / squared if squared > 0 else 0.0
+        if rank_of[joint[b]] == NOBODY:
+            rank_of[joint[b]], joints[count] = count, joint[b]
+            for axis in range(3):
+                places[count, axis] = start[b, axis]
+            count += 1
+        rank[row] = rank_of[joint[b]]
+    own = row_of[bone]
+    _, by_bone = sort_into(own, len(order))
+    return joints[:count], places[:count], table, rank, own[by_bone], by_bone
 
 
 def in_halves(places: NDArray[np.float64]) -> list[NDArray[np.bool_]]:
@@ -89,11 +103,26 @@ def in_halves(places: NDArray[np.float64]) -> list[NDArray[np.bool_]]:
     One after the other joins the half that its nearest before it is not in. A lone one is all
     there is.
     """
-    apart = cdist(places, places)
+    odd = _in_other_half(places)
+    return [half for half in (~odd, odd) if half.any()]
+
+
+@njit(cache=True, nogil=True)
+def _in_other_half(places):
     odd = np.zeros(len(places), np.bool_)
     for k in range(1, len(places)):
-        odd[k] = not odd[apart[k, :k].argmin()]
-    return [half for half in (~odd, odd) if half.any()]
+        nearest, least = 0, np.inf
+        for i in range(k):
+            x, y, z = (
+                places[k, 0] - places[i, 0],
+                places[k, 1] - places[i, 1],
+                places[k, 2] - places[i, 2],
+            )
+            squared = x * x + y * y + z * z
+            if squared < least:
+                nearest, least = i, squared
+        odd[k] = not odd[nearest]
+    return odd
 
 
 def begin(
