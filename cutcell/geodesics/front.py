@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
+from scipy.spatial.distance import cdist
 
 from ..sorting import sort_into
 from .bones import Bones, Sources
@@ -72,7 +73,7 @@ def rank_bones(bones: Bones, sources: Sources) -> Ranking:
 
 @njit(cache=True, nogil=True)
 def _rank(order, start, end, joint, bone):
-    """Rank joints by the first of their bones; return a `Ranking`, and the order of the sources."""
+    """Rank joints by the first of their bones; list sources by bone."""
     table, rank = np.empty((len(order), 7)), np.empty(len(order), np.int32)
     joints, places = np.empty(len(order), np.int32), np.empty((len(order), 3))
     row_of, rank_of = np.empty(len(order), np.int32), np.full(joint.max() + 1, NOBODY, np.int32)
@@ -103,26 +104,11 @@ def in_halves(places: NDArray[np.float64]) -> list[NDArray[np.bool_]]:
     One after the other joins the half that its nearest before it is not in. A lone one is all
     there is.
     """
-    odd = _in_other_half(places)
-    return [half for half in (~odd, odd) if half.any()]
-
-
-@njit(cache=True, nogil=True)
-def _in_other_half(places):
+    apart = cdist(places, places)
     odd = np.zeros(len(places), np.bool_)
     for k in range(1, len(places)):
-        nearest, least = 0, np.inf
-        for i in range(k):
-            x, y, z = (
-                places[k, 0] - places[i, 0],
-                places[k, 1] - places[i, 1],
-                places[k, 2] - places[i, 2],
-            )
-            squared = x * x + y * y + z * z
-            if squared < least:
-                nearest, least = i, squared
-        odd[k] = not odd[nearest]
-    return odd
+        odd[k] = not odd[apart[k, :k].argmin()]
+    return [half for half in (~odd, odd) if half.any()]
 
 
 def begin(

@@ -7,7 +7,7 @@ visit, every distance is at most its neighbours' plus the edge, which is what Di
 algorithm arrives at, too.
 
 A sweep does not leave a slice of the body before nothing waits in it, and so within that slice:
-what it passes on is rarely mended later, which halves the visits.
+what it passes on is rarely mended later.
 
 LANES bones share each visit and each edge read from memory, and one vector instruction
 lowers the distances of all.
@@ -118,6 +118,7 @@ def _find_distances(
             result[k, t] = distance[targets[t], k]
 
 
+# Two kernels for two sizes of slices: numba cannot load one that calls itself from its cache.
 @lean
 def _sweep_body(adjacency, waiting, distance):
     """Sweep thick slices, forth and back, until no node waits."""
