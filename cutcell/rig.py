@@ -78,18 +78,22 @@ class Skeleton:
         One name a joint; "joint 0", "joint 1", ... when left out.
     deform : array_like, shape (j,), bool, optional
         Which joints may carry weight; all when left out.
+    orientations : array_like, shape (j, 3, 3), float64, optional
+        Rest orientations: column k is the joint's k-th local axis, a unit vector in the mesh's
+        space. None where the file does not tell.
 
     Raises
     ------
     SkeletonError
-        No joints, a position that is not finite, a parent out of range, a cycle, a wrong
-        number of names, or no joint that may carry weight.
+        No joints, a position or an orientation that is not finite, a parent out of range, a
+        cycle, a wrong number of names, or no joint that may carry weight.
     """
 
     joints: NDArray[np.float64]
     parents: NDArray[np.int32]
     names: tuple[str, ...] = ()
     deform: NDArray[np.bool_] = None  # type: ignore[assignment]
+    orientations: NDArray[np.float64] | None = None
 
     def __post_init__(self) -> None:
         joints = _array(self.joints, np.float64, (None, 3), "joints", SkeletonError)
@@ -112,6 +116,12 @@ class Skeleton:
         if not deform.any():
             raise SkeletonError("no joint of the skeleton may carry weight (deform is all False)")
         _check_acyclic(parents, names)
+        if self.orientations is not None:
+            shape = (count, 3, 3)
+            axes = _array(self.orientations, np.float64, shape, "orientations", SkeletonError)
+            if not np.isfinite(axes).all():
+                raise SkeletonError("an orientation holds a number that is not finite")
+            object.__setattr__(self, "orientations", _frozen(axes))
         object.__setattr__(self, "joints", _frozen(joints))
         object.__setattr__(self, "parents", _frozen(parents.astype(np.int32)))
         object.__setattr__(self, "names", names)

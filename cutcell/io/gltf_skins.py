@@ -136,15 +136,23 @@ def read_skeleton(document: Document, nodes: Nodes, bind: Bind, used: NDArray | 
     parents = [
         next((place[a] for a in nodes.ancestors(node) if a in place), -1) for node in bind.nodes
     ]
-    positions = np.linalg.inv(np.array(bind.inverse))[:, :3, 3]
+    at_rest = np.linalg.inv(np.array(bind.inverse))
     if bind.unbound:
-        at_rest = np.linalg.inv(bind.world) @ nodes.world[bind.nodes]
-        alike = sorted(bind.unbound)
-        positions[alike] = at_rest[alike, :3, 3]
+        by_nodes = np.linalg.inv(bind.world) @ nodes.world[bind.nodes]
+        unbound = sorted(bind.unbound)
+        at_rest[unbound] = by_nodes[unbound]
+    positions = at_rest[:, :3, 3]
     if not np.isfinite(positions).all():
         raise FileError("a joint has no finite rest position")
     names = unique_names([nodes.raw[node].get("name") for node in bind.nodes])
-    return Skeleton(positions, np.array(parents), names, used)  # type: ignore[arg-type]
+    orientations = _nearest_orthogonal(at_rest[:, :3, :3])
+    return Skeleton(positions, np.array(parents), names, used, orientations)  # type: ignore[arg-type]
+
+
+def _nearest_orthogonal(linear: NDArray) -> NDArray:
+    """Take scale and shear out of matrices (j, 3, 3): the orthogonal factor of each."""
+    left, _, right = np.linalg.svd(np.nan_to_num(linear))
+    return left @ right
 
 
 def unique_names(names: list) -> tuple[str, ...]:

@@ -90,6 +90,8 @@ class TestSkeleton:
             (np.zeros((2, 3)), [-1, 0.5], {}, "parents must be whole numbers"),
             (np.zeros((1, 3)), [-1], {"deform": [False]}, "no joint .* may carry weight"),
             (np.zeros((1, 3)), [-1], {"deform": [True, True]}, "deform has the shape"),
+            (np.zeros((1, 3)), [-1], {"orientations": np.eye(3)}, "orientations has the shape"),
+            (np.zeros((1, 3)), [-1], {"orientations": np.full((1, 3, 3), np.inf)}, "orientation"),
             (np.zeros((1, 3)), [0], {"names": ("hip",)}, 'cycle: "hip" -> "hip"'),
             (
                 np.zeros((4, 3)),

@@ -134,3 +134,13 @@ def test_a_hidden_attachment_is_read_too(loaded):
     (sword,) = loaded(builder).attachments
     assert sword.name == "attachment 0"
     assert_allclose(sword.mesh.vertices, COLUMN + REST[1], atol=1e-6)
+
+
+def test_inverse_binds_tell_how_joints_are_turned_at_rest(loaded):
+    builder = Builder()
+    nodes = [builder.node(name=name) for name in "ab"]
+    quarter = np.array([[0, -1, 0, 0], [1, 0, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1.0]])
+    stretched = np.linalg.inv(quarter @ np.diag([2.0, 3.0, 4.0, 1.0]))
+    builder.node(mesh=builder.mesh(), skin=builder.skin(nodes, [np.eye(4), stretched]))
+    axes = loaded(builder).skeleton.orientations
+    assert_allclose(axes, [np.eye(3), quarter[:3, :3]], atol=1e-6)
