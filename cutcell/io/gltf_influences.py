@@ -24,6 +24,12 @@ def pack_influences(weights: NDArray) -> tuple[NDArray, NDArray]:
         Rows sum to one as exactly as float32 can, over all s sets together.
     """
     rounded = normalised(weights).astype(np.float32)
+    # What rounding took or gave goes to the heaviest, where it matters least, before they are
+    # sorted: so what was saved is sorted the same way when it is loaded and saved again.
+    rows, heaviest = np.arange(len(weights)), rounded.argmax(axis=1)
+    largest = rounded[rows, heaviest].astype(np.float64)
+    rest = 1 - rounded.sum(axis=1, dtype=np.float64)
+    rounded[rows, heaviest] = np.where(largest > 0, largest + rest, 0)
     most = int((rounded > 0).sum(axis=1).max(initial=1))
     sets = max(-(-most // 4), 1)
     slots = min(4 * sets, weights.shape[1])
@@ -33,10 +39,6 @@ def pack_influences(weights: NDArray) -> tuple[NDArray, NDArray]:
     joints = np.zeros((len(weights), 4 * sets), np.uint16)
     joints[:, :slots] = order
     joints[shares == 0] = 0
-    # What rounding took or gave goes to the heaviest, where it matters least.
-    held = shares[:, 0] > 0
-    rest = 1 - shares.astype(np.float64).sum(axis=1)
-    shares[held, 0] = (shares[held, 0].astype(np.float64) + rest[held]).astype(np.float32)
     return (
         joints.reshape(-1, sets, 4).transpose(1, 0, 2),
         shares.reshape(-1, sets, 4).transpose(1, 0, 2),

@@ -1,183 +1,128 @@
-"""Where the bytes of a glTF document lie: freeing, reusing and adding accessors."""
+"""Where the bytes of a glTF document lie when it is written again.
+
+Nothing is overwritten in place. What is stored gets buffer views of its own, and `Storage.finish`
+puts one new buffer together: the bytes of every buffer view that is still needed are copied once,
+and what was stored is appended. Views that only dropped accessors use are left out.
+
+The numbers of accessors and buffer views never change, so that everything else that refers
+to them stays right, extensions too.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from bisect import bisect_right
+from collections.abc import Iterable
+from itertools import chain
+from math import inf
 from typing import Any
 
-import numpy as np
 import pygltflib
 from numpy.typing import NDArray
 
-from .gltf_accessors import COMPONENTS, WIDTHS
+from ..errors import FileError
+from .gltf_accessors import COMPONENTS
+from .gltf_references import accessors_in, places_in, views_in
 
 ALIGNMENT = 8
-ACCESSOR_KEYS = ("indices", "inverseBindMatrices", "input", "output")
 CODES = {dtype: code for code, dtype in COMPONENTS.items()}
 
 
 class Storage:
     """The accessors, buffer views and bytes of a document that is being edited.
 
-    All buffers become one. The numbers of accessors and buffer views never change, so
-    that everything else that refers to them stays right, extensions too.
+    Parameters
+    ----------
+    document : dict
+        The JSON, to be edited.
+    buffers : list of bytes
+    dropped : iterable of int
+        Accessors that are given up. Those that the document still refers to are left alone.
     """
 
-    def __init__(self, document: dict[str, Any], buffers: list[bytes]) -> None:
+    def __init__(
+        self, document: dict[str, Any], buffers: list[bytes], dropped: Iterable[int]
+    ) -> None:
         self.document = document
         self.accessors: list[dict[str, Any]] = document.setdefault("accessors", [])
         self.views: list[dict[str, Any]] = document.setdefault("bufferViews", [])
-        self.data = bytearray()
-        self._free_accessors: set[int] = set()
-        self._free_views: set[int] = set()
-        self._dead: list[tuple[int, int]] = []
-        starts = [self._append(buffer) for buffer in buffers]
-        for view in self.views:
-            if starts[view["buffer"]]:
-                view["byteOffset"] = view.get("byteOffset", 0) + starts[view["buffer"]]
-            view["buffer"] = 0
-        kept = document.get("buffers", [])[:1]
-        document["buffers"] = kept or [{"byteLength": 0}]
-
-    def free(self, accessors: set[int]) -> None:
-        """Give accessors up, and the buffer views that only they used.
-
-        Accessors that the document still refers to are left alone.
-        """
-        rest = {k: v for k, v in self.document.items() if k not in ("accessors", "bufferViews")}
-        known = {i for i in accessors if 0 <= i < len(self.accessors)}
-        self._free_accessors = known - set(_accessors_in(rest))
+        self._buffers = buffers
+        rest = {k: v for k, v in document.items() if k not in ("accessors", "bufferViews")}
+        known = {i for i in dropped if type(i) is int and 0 <= i < len(self.accessors)}
+        self._free_accessors = known - set(accessors_in(rest))
         kept = [a for i, a in enumerate(self.accessors) if i not in self._free_accessors]
         freed = [self.accessors[i] for i in self._free_accessors]
-        self._free_views = set(_views_in(freed)) - set(_views_in([kept, rest]))
-        self._dead = [_extent(self.views[i]) for i in self._free_views]
+        self._dead = frozenset(views_in(freed)) - frozenset(views_in([rest, kept]))
+        self._free_views = set(self._dead)
+        live = [view for i, view in enumerate(self.views) if i not in self._dead]
+        self._places = list(places_in([rest, kept, live]))
+        self._arrays: dict[Any, tuple[int, bytearray]] = {}
+        self._added: list[tuple[int, bytearray]] = []
 
-    def stored_type(self, accessor: int | None) -> np.dtype | None:
+    def stored_type(self, accessor: int | None) -> Any:
         """Return the component type of an accessor, if there is one."""
         return None if accessor is None else COMPONENTS[self.accessors[accessor]["componentType"]]
 
     def store(self, values: NDArray, preferred: int | None) -> int:
         """Store a VEC4 array and return its accessor.
 
+        Arrays of one type share a buffer view if those that they replace shared one.
+
         Parameters
         ----------
         values : array, shape (n, 4), uint8, uint16 or float32, little-endian
         preferred : int, optional
-            A freed accessor to become this one; its place in the buffer is used again
-            where the array fits.
+            A dropped accessor, to become this one.
         """
-        if preferred in self._free_accessors:
-            index: int = preferred  # type: ignore[assignment]
-        else:
-            index = self._new(self.accessors)
-        accessor = self.accessors[index]
-        view = accessor.get("bufferView")
-        if view not in self._free_views and self._overwrite(index, values):
-            self._free_accessors.discard(index)
-            return index
-        if view not in self._free_views:
-            view = self._new(self.views)
-            self.views[view].update(buffer=0, byteOffset=0, byteLength=0)
+        index = preferred
+        if index is None or index not in self._free_accessors:
+            index = _new(self.accessors)
         self._free_accessors.discard(index)
-        self._free_views.discard(view)
-        self._put(view, values)
-        for key in ("byteOffset", "normalized", "sparse", "min", "max"):
+        accessor = self.accessors[index]
+        view, content = self._array_view(accessor.get("bufferView"), values)
+        for key in ("normalized", "sparse", "min", "max"):
             accessor.pop(key, None)
-        accessor["bufferView"] = view
-        accessor["componentType"] = CODES[values.dtype]
-        accessor["count"] = len(values)
-        accessor["type"] = pygltflib.VEC4
+        accessor.update(
+            bufferView=view,
+            byteOffset=len(content),
+            componentType=CODES[values.dtype],
+            count=len(values),
+            type=pygltflib.VEC4,
+        )
+        content += values.tobytes()
         return index
 
-    def _overwrite(self, index: int, values: NDArray) -> bool:
-        """Put values where a freed accessor's own stand between others', if they fit there."""
-        accessor = self.accessors[index]
-        same = (CODES[values.dtype], len(values), pygltflib.VEC4)
-        if same != tuple(accessor.get(k) for k in ("componentType", "count", "type")):
-            return False
-        view = accessor.get("bufferView")
-        if view is None or "sparse" in accessor or self._overlapped(view):
-            return False
-        if self._shares_bytes(index):
-            return False
-        start = self.views[view].get("byteOffset", 0) + accessor.get("byteOffset", 0)
-        stride = self.views[view].get("byteStride") or 4 * values.itemsize
-        strides = (stride, values.itemsize)
-        np.ndarray(values.shape, values.dtype, self.data, start, strides)[:] = values
-        for key in ("normalized", "min", "max"):
-            accessor.pop(key, None)
-        return True
-
-    def _shares_bytes(self, index: int) -> bool:
-        """Tell whether another accessor reads bytes that are this one's too."""
-        view = self.accessors[index]["bufferView"]
-        stride = self.views[view].get("byteStride", 0)
-        start, end, width = self._span(index, stride)
-        for i, other in enumerate(self.accessors):
-            if i == index or i in self._free_accessors:
-                continue
-            if view in _views_in(other.get("sparse")):
-                return True
-            if other.get("bufferView") != view:
-                continue
-            other_start, other_end, other_width = self._span(i, stride)
-            apart = (other_start - start) % stride if stride else 0
-            between = width <= apart <= stride - other_width
-            if other_start < end and start < other_end and not between:
-                return True
-        return False
-
-    def _span(self, index: int, stride: int) -> tuple[int, int, int]:
-        """Return where an accessor starts and ends in its view, and an element's length."""
-        accessor = self.accessors[index]
-        width = WIDTHS[accessor["type"]] * COMPONENTS[accessor["componentType"]].itemsize
-        start = accessor.get("byteOffset", 0)
-        return start, start + (stride or width) * (accessor["count"] - 1) + width, width
-
-    def _overlapped(self, view: int) -> bool:
-        """Tell whether another buffer view in use covers bytes of this one."""
-        start, end = _extent(self.views[view])
-        return any(
-            i != view and i not in self._free_views and other_start < end and start < other_end
-            for i, (other_start, other_end) in enumerate(map(_extent, self.views))
-        )
-
-    def _put(self, index: int, values: NDArray) -> None:
-        """Make a view hold just these values, in its old place if they fit."""
-        view, content = self.views[index], values.tobytes()
-        start, end = _extent(view)
-        if start % 4 or end - start < len(content) or self._overlapped(index):
-            start = self._append(content)
-        else:
-            self.data[start : start + len(content)] = content
-        view.pop("byteStride", None)
-        view["byteOffset"], view["byteLength"] = start, len(content)
-        view["target"] = pygltflib.ARRAY_BUFFER
+    def _array_view(self, old: int | None, values: NDArray) -> tuple[int, bytearray]:
+        """Return the buffer view that an array goes to, and the content of that so far."""
+        key = old if old in self._dead else None, values.dtype
+        if key not in self._arrays:
+            free = self._free_views & {old} or self._free_views
+            view = min(free) if free else _new(self.views)
+            self._free_views.discard(view)
+            # An extension of the old view told of the old bytes, such as how they were compressed.
+            own = {k: v for k, v in self.views[view].items() if k in ("name", "extras")}
+            stride = 4 * values.itemsize
+            self.views[view] = {**own, "byteStride": stride, "target": pygltflib.ARRAY_BUFFER}
+            self._arrays[key] = view, bytearray()
+        return self._arrays[key]
 
     def add_view(self, content: bytes) -> int:
-        """Append bytes and return their buffer view."""
-        index = self._new(self.views)
-        start = self._append(content)
-        self.views[index].update(buffer=0, byteOffset=start, byteLength=len(content))
-        return index
+        """Store bytes and return their buffer view."""
+        self._added.append((_new(self.views), bytearray(content)))
+        return self._added[-1][0]
 
-    def _append(self, content: bytes) -> int:
-        self.data += bytes(-len(self.data) % ALIGNMENT)
-        start = len(self.data)
-        self.data += content
-        return start
+    def finish(self) -> bytes:
+        """Return the one buffer; the document then refers to it, and to no other.
 
-    @staticmethod
-    def _new(objects: list[dict[str, Any]]) -> int:
-        objects.append({})
-        return len(objects) - 1
-
-    def compact(self) -> None:
-        """Take the bytes that were freed and not used again out of the buffer.
-
-        What is left over of freed accessors and views stays as empty shells, unless it
-        stands at the end of its list.
+        What is left over of dropped accessors and their views stays as empty shells, unless
+        it stands at the end of its list.
         """
+        data = self._repack()
+        # Arrays stand last, as they will when this document is loaded and written again.
+        for view, content in chain(self._added, self._arrays.values()):
+            data += bytes(-len(data) % ALIGNMENT)
+            self.views[view].update(buffer=0, byteOffset=len(data), byteLength=len(content))
+            data += content
+        data += bytes(-len(data) % 4)
         for i in self._free_accessors:
             for key in ("bufferView", "byteOffset", "sparse", "min", "max"):
                 self.accessors[i].pop(key, None)
@@ -185,80 +130,52 @@ class Storage:
             self.views[i] = {"buffer": 0, "byteLength": 1}
         _drop_last(self.accessors, self._free_accessors)
         _drop_last(self.views, self._free_views)
-        live = [_extent(v) for i, v in enumerate(self.views) if i not in self._free_views]
-        gaps = [_aligned(gap) for gap in _without(self._dead, live)]
-        gaps = [(a, b) for a, b in gaps if b > a]
-        for view in self.views:
-            start, _ = _extent(view)
-            shift = sum(b - a for a, b in gaps if b <= start)
-            if shift:
-                view["byteOffset"] = start - shift
-        for a, b in reversed(gaps):
-            del self.data[a:b]
-        self._free_accessors, self._free_views, self._dead = set(), set(), []
+        self.document["buffers"] = self.document.get("buffers", [])[:1] or [{}]
+        self.document["buffers"][0]["byteLength"] = len(data)
+        return bytes(data)
 
-    def finish(self) -> bytes:
-        """Return the one buffer, and write its length into the document."""
-        self.data += bytes(-len(self.data) % 4)
-        self.document["buffers"][0]["byteLength"] = len(self.data)
-        return bytes(self.data)
+    def _repack(self) -> bytearray:
+        """Copy all bytes that are still needed, and let the document find them there."""
+        data = bytearray()
+        copied = []
+        for buffer, start, end in _merged(map(self._span, self._places)):
+            data += bytes((start - len(data)) % ALIGNMENT)  # what was aligned stays so
+            copied.append((buffer, start, len(data)))
+            data += self._buffers[buffer][start:end]
+        for place in self._places:
+            buffer, old = place["buffer"], place.get("byteOffset", 0)
+            _, start, now = copied[bisect_right(copied, (buffer, old, inf)) - 1]
+            place["buffer"] = 0
+            if now - start:
+                place["byteOffset"] = old + now - start
+        return data
 
-
-def _dicts_in(value: Any) -> Iterator[dict[str, Any]]:
-    """Yield every object inside a JSON value; unknown extensions are looked into too."""
-    stack = [value]
-    while stack:
-        value = stack.pop()
-        if isinstance(value, dict):
-            yield value
-            stack.extend(value.values())
-        elif isinstance(value, list):
-            stack.extend(value)
-
-
-def _accessors_in(value: Any) -> Iterator[int]:
-    for owner in _dicts_in(value):
-        yield from _numbers(owner.get(k) for k in ACCESSOR_KEYS)
-        lists = [owner.get("attributes"), *(owner.get("targets") or ())]
-        for found in lists:
-            if isinstance(found, dict):
-                yield from _numbers(found.values())
+    def _span(self, place: dict[str, Any]) -> tuple[int, int, int]:
+        """Return the buffer of a place, and where its bytes start and end there."""
+        buffer, start = place["buffer"], place.get("byteOffset", 0)
+        end, length = start + place["byteLength"], len(self._buffers[buffer])
+        if not 0 <= start <= end <= length:
+            raise FileError(
+                f"its document refers to the bytes {start} to {end} of buffers[{buffer}], which "
+                f"has {length}"
+            )
+        return buffer, start, end
 
 
-def _views_in(value: Any) -> Iterator[int]:
-    for owner in _dicts_in(value):
-        yield from _numbers([owner.get("bufferView")])
-
-
-def _numbers(values: Iterable[Any]) -> list[int]:
-    return [v for v in values if type(v) is int]
-
-
-def _extent(view: dict[str, Any]) -> tuple[int, int]:
-    start = view.get("byteOffset", 0)
-    return start, start + view["byteLength"]
-
-
-def _aligned(gap: tuple[int, int]) -> tuple[int, int]:
-    """Shrink a gap so that taking it out keeps everything behind it aligned."""
-    a, b = gap
-    return -(-a // ALIGNMENT) * ALIGNMENT, b // ALIGNMENT * ALIGNMENT
-
-
-def _without(ranges: list[tuple[int, int]], taken: list[tuple[int, int]]) -> list[tuple[int, int]]:
-    """Return the parts of ranges that no taken one overlaps, ascending and apart."""
-    edges = [(a, 1) for a, _ in ranges] + [(b, -1) for _, b in ranges]
-    edges += [(a, -(2**32)) for a, _ in taken] + [(b, 2**32) for _, b in taken]
-    found: list[tuple[int, int]] = []
-    level, opened = 0, 0
-    for at, step in sorted(edges, key=lambda e: e[0]):
-        if level > 0 and at > opened:
-            if found and found[-1][1] == opened:
-                opened = found.pop()[0]
-            found.append((opened, at))
-        level += step
-        opened = at
+def _merged(spans: Iterable[tuple[int, int, int]]) -> list[tuple[int, int, int]]:
+    """Return spans in ascending order, those that touch or overlap as one."""
+    found: list[tuple[int, int, int]] = []
+    for buffer, start, end in sorted(spans):
+        if found and found[-1][0] == buffer and start <= found[-1][2]:
+            found[-1] = (buffer, found[-1][1], max(found[-1][2], end))
+        else:
+            found.append((buffer, start, end))
     return found
+
+
+def _new(objects: list[dict[str, Any]]) -> int:
+    objects.append({})
+    return len(objects) - 1
 
 
 def _drop_last(objects: list[dict[str, Any]], free: set[int]) -> None:

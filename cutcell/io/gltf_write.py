@@ -45,11 +45,10 @@ def rewritten(rig: Rig, path: Path) -> dict[Path, bytes]:
     _check_same(rig, source)
     document = json.loads(json.dumps(source.document.json))  # a copy, and quicker than deepcopy
     before = [_take_influences(document, part) for part in source.parts]
-    storage = Storage(document, source.document.buffers)
-    storage.free({v for old in before for v in old.values()})
+    dropped = [accessor for old in before for accessor in old.values()]
+    storage = Storage(document, source.document.buffers, dropped)
     for part, old in zip(source.parts, before, strict=True):
         _store(storage, document, rig, part, old)
-    storage.compact()
     carried = carry_images(storage, source.document, path)
     return {**carried, **_packed(storage, source.document, path)}
 
