@@ -123,9 +123,10 @@ def only_weights(event: Any) -> bool:
 
 def warning(state: State) -> tuple[str, str] | None:
     """Return what a person should know about the result."""
-    if state.binding is None or not state.binding.warnings:
+    if state.binding is None:
         return None
-    return "warning", " ".join(sentence(text) for text in state.binding.warnings)
+    texts = [*state.rig.warnings, *state.binding.warnings]
+    return ("warning", " ".join(sentence(text) for text in texts)) if texts else None
 
 
 def stage_text(stage: str) -> str:

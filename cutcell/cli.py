@@ -6,6 +6,7 @@ Nothing heavy is imported before a command runs, so that `--help` answers at onc
 from __future__ import annotations
 
 import time
+from collections.abc import Iterator
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -199,10 +200,10 @@ def bind(
         "fallback": summary.summarize_fallback(binding.distances),
         "influences": summary.summarize_weights(binding.weights),
         "seconds": seconds,
-        "warnings": list(binding.warnings),
+        "warnings": [*loaded.warnings, *binding.warnings],
     }
     if not quiet:
-        print_warnings(binding.warnings)
+        print_warnings(document["warnings"])
     if json:
         print_json(document)
     elif not quiet:
@@ -276,10 +277,12 @@ def graph(
         "graph": summary.summarize_graph(built),
         "fallback": distances and summary.summarize_fallback(distances),
         "seconds": seconds,
+        "warnings": list(loaded.warnings) if loaded else [],
     }
     if json:
         print_json(document)
     else:
+        print_warnings(loaded.warnings if loaded else ())
         print_table(rig.name, report_rows(document))
 
 
@@ -330,9 +333,18 @@ def compare(
     if plot is not None:
         check_plot(plot)
     names = None if methods is None else [name.strip() for name in methods.split(",")]
-    loaded = (_load(path, None) for path in rigs)
+    warnings: list[str] = []
+
+    def load_each() -> Iterator[Rig]:
+        for path in rigs:
+            loaded = _load(path, None)
+            warnings.extend(f"{path.name}: {text}" for text in loaded.warnings)
+            yield loaded
+
     with progress_bars(quiet) as progress:
-        comparison = measure(loaded, names, resolution=resolution, progress=progress)
+        comparison = measure(load_each(), names, resolution=resolution, progress=progress)
+    if not quiet:
+        print_warnings(warnings)
     if plot is not None:
         plot_comparison(comparison, plot)
     if json:

@@ -201,7 +201,7 @@ def render(
         )
         worker.draw_apart(order, out, progress)
     if not quiet:
-        print_warnings(binding.warnings)
+        print_warnings([*loaded.warnings, *binding.warnings])
         typer.echo(f"{out}: {pixels[0]} x {pixels[1]} pixels, {_kilobytes(out)}")
 
 

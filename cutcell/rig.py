@@ -197,6 +197,8 @@ class Rig:
     allowed : array_like, shape (n, j), bool, optional
         Which joints the file can store for which vertex; None when all. A glTF primitive
         can only name the joints of its own skin.
+    warnings : tuple of str
+        What a person should know of how the file was read, in sentences.
     source
         What `cutcell.save` needs to write the same document again; opaque.
 
@@ -217,6 +219,7 @@ class Rig:
     name: str = "rig"
     world: NDArray[np.float64] = field(default_factory=lambda: np.eye(4))
     allowed: NDArray[np.bool_] | None = None
+    warnings: tuple[str, ...] = ()
     source: Any = field(default=None, repr=False)
 
     def __post_init__(self) -> None:

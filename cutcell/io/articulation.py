@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from ..errors import FileError, SkeletonError, WeightsError
 from ..rig import Rig, Skeleton, TriangleMesh
 from .files import read_bytes
-from .weights import carrying, normalised
+from .weights import carrying, summed
 
 REQUIRED = ("vertices", "faces", "joints", "bones")
 
@@ -44,14 +44,14 @@ def read_articulation(path: Path) -> Rig:
     if joints.ndim != 2 or joints.shape[1] != 3:
         raise SkeletonError(f"joints has the shape {joints.shape}, expected (any, 3)")
     count = len(joints)
-    weights = _weights(arrays, len(mesh.vertices), count)
+    weights, warnings = _weights(arrays, len(mesh.vertices), count, f'mesh "{path.stem}"')
     skeleton = Skeleton(
         joints,
         _parents(arrays, count),
         _names(arrays, count),
         carrying(weights),  # type: ignore[arg-type]
     )
-    return Rig(mesh, skeleton, weights, name=path.stem)
+    return Rig(mesh, skeleton, weights, name=path.stem, warnings=tuple(warnings))
 
 
 def _arrays(data: bytes) -> dict[str, NDArray]:
@@ -109,9 +109,11 @@ def _names(arrays: dict[str, NDArray], count: int) -> tuple[str, ...]:
     return tuple(n.decode("utf-8", "replace") if isinstance(n, bytes) else str(n) for n in names)
 
 
-def _weights(arrays: dict[str, NDArray], vertices: int, joints: int) -> NDArray | None:
+def _weights(
+    arrays: dict[str, NDArray], vertices: int, joints: int, owner: str
+) -> tuple[NDArray | None, list[str]]:
     if "skinning_weights_value" not in arrays:
-        return None
+        return None, []
     parts = []
     for names in (("row", "rows"), ("col", "cols")):
         keys = [f"skinning_weights_{n}" for n in names]
@@ -136,11 +138,7 @@ def _weights(arrays: dict[str, NDArray], vertices: int, joints: int) -> NDArray 
             f"the skinning weights are {shape.reshape(-1).tolist()}, but the mesh has {vertices} "
             f"vertices and the skeleton {joints} joints"
         )
-    if not (np.isfinite(values) & (values >= 0)).all():
-        raise WeightsError("a skinning weight is negative or not a number")
-    weights = np.zeros((vertices, joints))
-    np.add.at(weights, (rows, columns), values)
-    return normalised(weights)
+    return summed(rows, columns, values, (vertices, joints), owner)
 
 
 def articulation_bytes(rig: Rig) -> bytes:

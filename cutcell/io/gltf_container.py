@@ -41,6 +41,8 @@ class Document:
     """GLB chunks that are neither JSON nor the binary buffer."""
     decoded: dict[int, Any] = field(default_factory=dict)
     """Accessors read so far."""
+    warnings: list[str] = field(default_factory=list)
+    """What a person should know of how it was read, in sentences."""
 
     def items(self, kind: str) -> list[dict[str, Any]]:
         """Return a top-level list of objects such as "nodes"; empty when absent."""

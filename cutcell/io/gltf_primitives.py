@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ..errors import FileError, MeshError, WeightsError
 from .gltf_accessors import read_accessor
 from .gltf_container import Document
-from .weights import normalised
+from .weights import summed
 
 DRAWS_TRIANGLES = (pygltflib.TRIANGLES, pygltflib.TRIANGLE_STRIP, pygltflib.TRIANGLE_FAN)
 
@@ -116,14 +116,14 @@ def read_weights(
 ) -> NDArray | None:
     """Return the weights on a skin's joints, shape (count, joints), or None without any.
 
-    Rows are scaled to sum to one; rows of zero stay zero.
+    Rows are scaled to sum to one; rows of zero stay zero. Weights that are negative or not a
+    number count as none, of which the document warns.
     """
     found = attributes(primitive, user)
     sets = influence_sets(found)
     if not sets:
         return None
-    weights = np.zeros((count, joints))
-    rows = np.arange(count)
+    joint_sets, share_sets = [], []
     for n in sets:
         where, share = _influences(document, found, n, user)
         if len(where) != count or len(share) != count:
@@ -131,10 +131,14 @@ def read_weights(
                 f"{user}: {count} vertices but {len(where)} JOINTS_{n} and {len(share)} WEIGHTS_{n}"
             )
         _check_influences(where, share, joints, n, user)
-        for k in range(4):
-            carrying = share[:, k] > 0
-            np.add.at(weights, (rows[carrying], where[carrying, k]), share[carrying, k])
-    return normalised(weights)
+        joint_sets.append(where)
+        share_sets.append(share)
+    where, share = np.concatenate(joint_sets, axis=1), np.concatenate(share_sets, axis=1)
+    held = share != 0  # also true for what is not a number
+    rows = np.nonzero(held)[0]
+    weights, warnings = summed(rows, where[held], share[held], (count, joints), user)
+    document.warnings += warnings
+    return weights
 
 
 def _influences(
@@ -152,12 +156,8 @@ def _influences(
 
 
 def _check_influences(where: NDArray, share: NDArray, joints: int, n: int, user: str) -> None:
-    bad = np.flatnonzero(~(np.isfinite(share) & (share >= 0)).all(axis=1))
-    if len(bad):
-        raise WeightsError(
-            f"{user}: vertex {bad[0]} has a weight in WEIGHTS_{n} that is negative or not a number"
-        )
-    bad = np.flatnonzero(((where >= joints) & (share > 0)).any(axis=1))
+    carrying = np.isfinite(share) & (share > 0)
+    bad = np.flatnonzero(((where >= joints) & carrying).any(axis=1))
     if len(bad):
         raise WeightsError(
             f"{user}: vertex {bad[0]} is weighted to joint {where[bad[0]].max()} in JOINTS_{n}, "

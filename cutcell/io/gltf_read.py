@@ -85,6 +85,7 @@ def _read(document: Document, path: Path) -> Rig:
         path.stem,
         bind.world,
         _allowed(parts, len(mesh.vertices), len(bind.nodes)),
+        tuple(document.warnings),
         GltfSource(document, parts, skeleton.names),
     )
 

@@ -55,15 +55,20 @@ def numbered_words(text: str) -> Iterator[tuple[int, list[str]]]:
 
 def numbers(words: list[str], count: int, line: int) -> list[float]:
     """Return exactly `count` finite numbers."""
-    try:
-        values = [float(word) for word in words]
-    except ValueError:
-        raise FileError(f'line {line}: "{" ".join(words)}" are not numbers') from None
+    values = [one_number(word, line) for word in words]
     if len(values) != count:
         raise FileError(f"line {line}: {len(values)} numbers, expected {count}")
     if not np.isfinite(values).all():
         raise FileError(f"line {line}: {' '.join(words)} is not finite")
     return values
+
+
+def one_number(word: str, line: int) -> float:
+    """Return a number, which need not be finite."""
+    try:
+        return float(word)
+    except ValueError:
+        raise FileError(f'line {line}: "{word[:40]}" is not a number') from None
 
 
 def _corner(word: str, count: int, line: int) -> int:

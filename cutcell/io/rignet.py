@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from ..errors import FileError, SkeletonError, WeightsError
 from ..rig import Rig, Skeleton
 from .files import naming, read_text
-from .objects import numbered_words, numbers, parse_obj, write_obj
-from .weights import carrying, normalised
+from .objects import numbered_words, numbers, one_number, parse_obj, write_obj
+from .weights import carrying, summed
 
 
 @dataclass
@@ -56,9 +56,9 @@ def read_rignet(path: Path) -> Rig:
     with naming(path):
         said = _parse(text)
         skeleton_names = tuple(said.positions)
-        weights = _weights(said, len(mesh.vertices), skeleton_names)
+        weights, warnings = _weights(said, len(mesh.vertices), skeleton_names, f'mesh "{obj.stem}"')
         skeleton = _skeleton(said, weights)
-        return Rig(mesh, skeleton, weights, name=obj.stem)
+        return Rig(mesh, skeleton, weights, name=obj.stem, warnings=tuple(warnings))
 
 
 def _parse(text: str) -> _Text:
@@ -112,11 +112,13 @@ def _skeleton(said: _Text, weights: NDArray | None) -> Skeleton:
     )
 
 
-def _weights(said: _Text, vertices: int, names: tuple[str, ...]) -> NDArray | None:
+def _weights(
+    said: _Text, vertices: int, names: tuple[str, ...], owner: str
+) -> tuple[NDArray | None, list[str]]:
     if not said.skin:
-        return None
+        return None, []
     place = {name: j for j, name in enumerate(names)}
-    weights = np.zeros((vertices, len(names)))
+    rows, columns, values = [], [], []
     for line, words in said.skin:
         vertex = int(words[0]) if words and words[0].isdecimal() else -1
         if not 0 <= vertex < vertices:
@@ -129,11 +131,11 @@ def _weights(said: _Text, vertices: int, names: tuple[str, ...]) -> NDArray | No
         for name, word in zip(words[1::2], words[2::2], strict=True):
             if name not in place:
                 raise WeightsError(f'line {line}: there is no joint "{name}"')
-            share = numbers([word], 1, line)[0]
-            if share < 0:
-                raise WeightsError(f"line {line}: the weight {word} is negative")
-            weights[vertex, place[name]] += share
-    return normalised(weights)
+            rows.append(vertex)
+            columns.append(place[name])
+            values.append(one_number(word, line))
+    shape = vertices, len(names)
+    return summed(np.array(rows, int), np.array(columns, int), np.array(values), shape, owner)
 
 
 def rignet_files(path: Path, rig: Rig) -> dict[Path, bytes]:

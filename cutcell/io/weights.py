@@ -5,9 +5,56 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+LARGE = 1e300
+"""Weights above it are scaled down before they are added: a sum must not overflow."""
+
+
+def summed(
+    rows: NDArray, columns: NDArray, values: NDArray, shape: tuple[int, int], owner: str
+) -> tuple[NDArray[np.float64], list[str]]:
+    """Return the weight matrix of a list of influences, with rows that sum to one or to zero.
+
+    A weight that is negative or not a finite number counts as none.
+
+    Parameters
+    ----------
+    rows, columns, values : array, shape (k,)
+        Vertex, joint and weight of each influence; what occurs twice is added.
+    shape : (int, int)
+        Vertices and joints.
+    owner : str
+        Whose weights they are, for the warning.
+
+    Returns
+    -------
+    weights : array, shape (n, j), float64
+    warnings : list of str
+        One sentence if weights were left out.
+    """
+    values = values.astype(np.float64)
+    good = np.isfinite(values) & (values >= 0)
+    warnings = []
+    if not good.all():
+        bad = len(np.unique(rows[~good]))
+        warnings.append(
+            f"{owner}: {bad:,} of {shape[0]:,} vertices {'has' if bad == 1 else 'have'} weights "
+            "that are negative or not a number; these weights count as none"
+        )
+        rows, columns, values = rows[good], columns[good], values[good]
+    if values.max(initial=0) > LARGE:
+        top = np.zeros(shape[0])
+        np.maximum.at(top, rows, values)
+        values = values / np.where(top > 0, top, 1)[rows]
+    weights = np.zeros(shape)
+    np.add.at(weights, (rows, columns), values)
+    return normalised(weights), warnings
+
 
 def normalised(weights: NDArray) -> NDArray[np.float64]:
     """Scale each row to sum to one; rows of zero stay zero."""
+    if weights.max(initial=0) > LARGE:
+        top = weights.max(axis=1, keepdims=True)
+        weights = weights / np.where(top > 0, top, 1)
     sums = weights.sum(axis=1, keepdims=True)
     return np.divide(weights, sums, out=np.zeros(weights.shape), where=sums > 0)
 

@@ -1,6 +1,7 @@
 """A session without a browser: opening, binding, failing, cancelling."""
 
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -215,6 +216,11 @@ def test_what_is_told_reads_well(session):
     assert stage_text("") == "Starting"
     assert summary(session.state) == ""
     assert warning(session.state) is None
+
+
+def test_what_was_odd_about_the_file_is_told(bound):
+    bound.state.rig = replace(bound.state.rig, warnings=("two weights are odd",))
+    assert warning(bound.state) == ("warning", "Two weights are odd.")
 
 
 def test_methods_are_compared_one_after_the_other_and_one_that_fails_stops_none(
