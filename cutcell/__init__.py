@@ -12,6 +12,8 @@ _HOMES = {
     "Rig": "rig",
     "Clip": "rig",
     "Attachment": "rig",
+    "Part": "rig",
+    "LeftOut": "rig",
     "load": "io",
     "save": "io",
     "build_graph": "graph",

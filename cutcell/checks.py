@@ -1,10 +1,15 @@
 """Checks of parameters at the public doors."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Collection
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from .errors import ParameterError
+from .errors import ParameterError, SkeletonError
+
+if TYPE_CHECKING:
+    from .rig import Skeleton
 
 
 def check_integer(name: str, value: Any, low: int, high: int, why: str = "") -> int:
@@ -55,6 +60,23 @@ def check_choice(name: str, value: Any, choices: Collection[Any]) -> Any:
         listed = ", ".join(repr(c) for c in choices)
         raise ParameterError(f"{name} must be one of {listed}, not {value!r}")
     return value
+
+
+def check_has_joints(skeleton: Skeleton) -> None:
+    """Refuse the skeleton of a mesh that came without one, and say how to give it one.
+
+    Raises
+    ------
+    SkeletonError
+        It has no joints.
+    """
+    if len(skeleton.joints) == 0:
+        raise SkeletonError(
+            "the rig has no skeleton; export the mesh together with its armature, or save it as "
+            "OBJ or PLY and put a skeleton beside it in a JSON file of the same name, for example "
+            '{"joints": [{"name": "root", "position": [0, 0, 0], "parent": null}, '
+            '{"name": "tip", "position": [0, 1, 0], "parent": "root"}]}'
+        )
 
 
 def _is_whole(value: Any) -> bool:

@@ -38,7 +38,7 @@ from .render_command import EPILOG, render
 from .report import report_rows
 
 if TYPE_CHECKING:
-    from .rig import Rig, TriangleMesh
+    from .rig import Rig
 
 app = typer.Typer(
     name="cutcell",
@@ -166,7 +166,9 @@ def bind(
     graph: rays along x, y and z cut the mesh, and the pieces inside become edges.
     """
     from . import summary
+    from .checks import check_has_joints
     from .io import save
+    from .io.files import naming
     from .skinning import DEFAULT_LEAF
     from .skinning import bind as compute
 
@@ -186,6 +188,8 @@ def bind(
     }
     _check_output(out)
     loaded = _load(rig, skeleton)
+    with naming(rig):
+        check_has_joints(loaded.skeleton)
     with progress_bars(quiet) as progress:
         binding = compute(loaded, **parameters, progress=progress)
     save(out, loaded.with_weights(binding.weights))
@@ -195,6 +199,7 @@ def bind(
         "output": str(out),
         "parameters": parameters,
         "mesh": summary.summarize_mesh(loaded.mesh, binding.graph),
+        "meshes": summary.summarize_parts(loaded),
         "skeleton": summary.summarize_skeleton(loaded.skeleton),
         "graph": summary.summarize_graph(binding.graph),
         "fallback": summary.summarize_fallback(binding.distances),
@@ -239,12 +244,12 @@ def graph(
     from .geodesics import bone_distances
     from .graph import build_graph
 
-    mesh, loaded = _load_mesh(rig, skeleton)
+    loaded = _load(rig, skeleton)
     seconds: dict[str, float] = {}
     start = time.perf_counter()
     with progress_bars(quiet=json) as progress:
         built = build_graph(
-            mesh,
+            loaded.mesh,
             resolution,
             connectivity=_neighbours(connectivity),
             winding_threshold=winding_threshold,
@@ -252,7 +257,7 @@ def graph(
         )
         seconds["graph"] = round(time.perf_counter() - start, 4)
         distances = None
-        if loaded:
+        if len(loaded.skeleton.joints):
             start = time.perf_counter()
             distances = bone_distances(
                 built,
@@ -272,17 +277,18 @@ def graph(
             "samples": samples,
             "leaf": leaf or "point",
         },
-        "mesh": summary.summarize_mesh(mesh, built),
-        "skeleton": loaded and summary.summarize_skeleton(loaded.skeleton),
+        "mesh": summary.summarize_mesh(loaded.mesh, built),
+        "meshes": summary.summarize_parts(loaded),
+        "skeleton": distances and summary.summarize_skeleton(loaded.skeleton),
         "graph": summary.summarize_graph(built),
         "fallback": distances and summary.summarize_fallback(distances),
         "seconds": seconds,
-        "warnings": list(loaded.warnings) if loaded else [],
+        "warnings": list(loaded.warnings),
     }
     if json:
         print_json(document)
     else:
-        print_warnings(loaded.warnings if loaded else ())
+        print_warnings(loaded.warnings)
         print_table(rig.name, report_rows(document))
 
 
@@ -382,20 +388,6 @@ def _load(path: Path, skeleton: Path | None) -> Rig:
     from .io import load
 
     return load(path, skeleton=skeleton)
-
-
-def _load_mesh(path: Path, skeleton: Path | None) -> tuple[TriangleMesh, Rig | None]:
-    """Load a rig, or a mesh that has no skeleton beside it."""
-    from .io.files import naming
-    from .io.rignet import rig_file
-    from .io.skeleton_json import skeleton_file
-    from .io.soup import MESHES, read_mesh
-
-    if path.suffix.lower() not in MESHES or skeleton or skeleton_file(path) or rig_file(path):
-        loaded = _load(path, skeleton)
-        return loaded.mesh, loaded
-    with naming(path):
-        return read_mesh(path), None
 
 
 def _check_output(path: Path) -> None:

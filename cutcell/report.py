@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
+
+MOST_NAMES = 12
+"""Names listed in one row of a table; `--json` has them all."""
 
 
 def report_rows(document: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
@@ -20,6 +23,7 @@ def report_rows(document: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
         f"{_count(mesh['vertices'], 'vertex')} ({mesh['welded_vertices']:,} places), "
         f"{_count(mesh['triangles'], 'triangle')}, {_count(mesh['components'], 'component')}",
     )
+    yield from _part_rows(document["meshes"])
     if mesh["closed"]:
         yield "surface", "closed"
     else:
@@ -48,6 +52,30 @@ def report_rows(document: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
         influences = document["influences"]
         yield "influences", f"{influences['mean']:.2f} a vertex, {influences['most']} at most"
     yield "seconds", ", ".join(f"{name} {value:.2f}" for name, value in document["seconds"].items())
+
+
+def _part_rows(meshes: Mapping[str, Sequence[Mapping[str, Any]]]) -> Iterator[tuple[str, str]]:
+    parts = meshes["parts"]
+    if len(parts) > 1 or parts[0]["hidden"]:
+        yield "parts", _named(parts, [_hidden(part) for part in parts])
+    if meshes["attachments"]:
+        notes = [f"on {a['joint']}" + (", hidden" * a["hidden"]) for a in meshes["attachments"]]
+        yield "attachments", _named(meshes["attachments"], notes)
+    if meshes["left_out"]:
+        yield "left out", _named(meshes["left_out"], [out["why"] for out in meshes["left_out"]])
+
+
+def _hidden(part: Mapping[str, Any]) -> str:
+    return "hidden" if part["hidden"] else ""
+
+
+def _named(items: Sequence[Mapping[str, Any]], notes: Sequence[str]) -> str:
+    shown = [
+        item["name"] + (f" ({note})" if note else "")
+        for item, note in zip(items[:MOST_NAMES], notes, strict=False)
+    ]
+    more = [f"and {len(items) - MOST_NAMES} more"] if len(items) > MOST_NAMES else []
+    return f"{len(items):,}: " + ", ".join(shown + more)
 
 
 def _fallback(fallback: Mapping[str, Any]) -> str:

@@ -68,6 +68,8 @@ class TriangleMesh:
 class Skeleton:
     """Joints and their parents, in the space and units of the mesh.
 
+    A mesh without a skeleton has one of no joints, `Skeleton([], [])`.
+
     Parameters
     ----------
     joints : array_like, shape (j, 3), float64
@@ -85,8 +87,8 @@ class Skeleton:
     Raises
     ------
     SkeletonError
-        No joints, a position or an orientation that is not finite, a parent out of range, a
-        cycle, a wrong number of names, or no joint that may carry weight.
+        A position or an orientation that is not finite, a parent out of range, a cycle, a wrong
+        number of names, or joints of which none may carry weight.
     """
 
     joints: NDArray[np.float64]
@@ -98,8 +100,6 @@ class Skeleton:
     def __post_init__(self) -> None:
         joints = _array(self.joints, np.float64, (None, 3), "joints", SkeletonError)
         count = len(joints)
-        if count == 0:
-            raise SkeletonError("the skeleton has no joints; it needs at least one")
         parents = _array(self.parents, np.int64, (count,), "parents", SkeletonError)
         names = tuple(self.names) or tuple(f"joint {i}" for i in range(count))
         if len(names) != count:
@@ -113,9 +113,10 @@ class Skeleton:
             )
         deform = np.ones(count, bool) if self.deform is None else self.deform
         deform = _array(deform, np.bool_, (count,), "deform", SkeletonError)
-        if not deform.any():
+        if count and not deform.any():
             raise SkeletonError("no joint of the skeleton may carry weight (deform is all False)")
-        _check_acyclic(parents, names)
+        if count:
+            _check_acyclic(parents, names)
         if self.orientations is not None:
             shape = (count, 3, 3)
             axes = _array(self.orientations, np.float64, shape, "orientations", SkeletonError)
@@ -170,12 +171,40 @@ class Clip:
 class Attachment:
     """An unskinned mesh that hangs rigidly on one joint, such as a sword in a hand.
 
-    Its vertices are in the rig's space at rest. It is shown and moved, never bound.
+    Its vertices are in the rig's space at rest. It is shown and moved, never bound; `hidden`
+    is whether the file says not to show it.
     """
 
     name: str
     mesh: TriangleMesh
     joint: int
+    hidden: bool = False
+
+
+@dataclass(frozen=True)
+class Part:
+    """One of the meshes that a file holds under names of their own: some vertices of the rig.
+
+    Parameters
+    ----------
+    name : str
+    vertices : slice
+        Its vertices in the rig's mesh.
+    hidden : bool
+        Whether the file says not to show it. It is bound all the same.
+    """
+
+    name: str
+    vertices: slice
+    hidden: bool = False
+
+
+@dataclass(frozen=True)
+class LeftOut:
+    """A mesh of the file that the rig does not hold, and why in a few words."""
+
+    name: str
+    why: str
 
 
 @dataclass(frozen=True, eq=False)
@@ -197,6 +226,10 @@ class Rig:
     allowed : array_like, shape (n, j), bool, optional
         Which joints the file can store for which vertex; None when all. A glTF primitive
         can only name the joints of its own skin.
+    parts : tuple of Part
+        The meshes that `mesh` is made of, by name; the whole as one part when left out.
+    left_out : tuple of LeftOut
+        Meshes of the file that are not here.
     warnings : tuple of str
         What a person should know of how the file was read, in sentences.
     source
@@ -219,6 +252,8 @@ class Rig:
     name: str = "rig"
     world: NDArray[np.float64] = field(default_factory=lambda: np.eye(4))
     allowed: NDArray[np.bool_] | None = None
+    parts: tuple[Part, ...] = ()
+    left_out: tuple[LeftOut, ...] = ()
     warnings: tuple[str, ...] = ()
     source: Any = field(default=None, repr=False)
 
@@ -236,6 +271,8 @@ class Rig:
         if self.allowed is not None:
             allowed = _array(self.allowed, np.bool_, shape, "allowed", WeightsError)
             object.__setattr__(self, "allowed", _frozen(allowed))
+        if not self.parts or self.parts[-1].vertices.stop != shape[0]:  # of another mesh
+            object.__setattr__(self, "parts", (Part(self.name, slice(0, shape[0])),))
         self._check_units()
 
     def with_weights(self, weights: NDArray[np.float64] | None) -> Rig:

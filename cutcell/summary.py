@@ -11,7 +11,7 @@ from scipy.sparse.csgraph import connected_components
 
 from .geodesics import FALLBACK_REASONS, BoneDistances
 from .graph import INTERIOR, MESH, SURFACE, CutCellGraph
-from .rig import Skeleton, TriangleMesh
+from .rig import Rig, Skeleton, TriangleMesh
 
 KINDS = {"mesh": MESH, "interior": INTERIOR, "surface": SURFACE}
 """Name of each kind of node and edge."""
@@ -47,6 +47,34 @@ def summarize_mesh(mesh: TriangleMesh, graph: CutCellGraph) -> dict[str, Any]:
         "open_edges": int((uses == 1).sum()),
         "non_manifold_edges": int((uses > 2).sum()),
         "closed": bool(graph.is_closed),
+    }
+
+
+def summarize_parts(rig: Rig) -> dict[str, list[dict[str, Any]]]:
+    """List the meshes of a rig's file by name.
+
+    Returns
+    -------
+    dict
+        `parts`, those that the rig's mesh is made of: `name`, `first` vertex, number of
+        `vertices`, whether the file has it `hidden`; `attachments`: `name`, `joint`, `hidden`;
+        `left_out`: `name`, `why`.
+    """
+    return {
+        "parts": [
+            {
+                "name": part.name,
+                "first": part.vertices.start,
+                "vertices": part.vertices.stop - part.vertices.start,
+                "hidden": part.hidden,
+            }
+            for part in rig.parts
+        ],
+        "attachments": [
+            {"name": a.name, "joint": rig.skeleton.names[a.joint], "hidden": a.hidden}
+            for a in rig.attachments
+        ],
+        "left_out": [{"name": out.name, "why": out.why} for out in rig.left_out],
     }
 
 

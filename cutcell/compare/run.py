@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..baselines import METHODS, BaselineBinding, Method
-from ..checks import check_choice
+from ..checks import check_choice, check_has_joints
 from ..errors import Cancelled, CutcellError, ParameterError, WeightsError
 from ..graph import build_graph
 from ..metrics import (
@@ -64,8 +64,8 @@ def compare(
     ------
     ParameterError
         An unknown method, a parameter out of range, or no rigs.
-    WeightsError
-        A rig without weights.
+    SkeletonError, WeightsError
+        A rig without joints or without weights.
     """
     chosen = _chosen(methods, {"resolution": resolution, "max_influences": max_influences})
     scores = [_compare_rig(rig, chosen, progress) for rig in rigs]
@@ -95,6 +95,7 @@ def _chosen(
 
 
 def _compare_rig(rig: Rig, methods: Mapping[str, Method], progress: Progress) -> RigScore:
+    check_has_joints(rig.skeleton)
     if rig.weights is None:
         raise WeightsError(f'rig "{rig.name}" has no weights of its own to compare with')
     progress(rig.name, 0.0)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..checks import check_choice
+from ..checks import check_choice, check_has_joints
 from ..compiled import lean
 from ..errors import MeshError
 from ..graph import CutCellGraph
@@ -62,8 +62,11 @@ def bone_segments(skeleton: Skeleton, leaf: str = "point") -> Bones:
     ------
     ParameterError
         An unknown `leaf`.
+    SkeletonError
+        No joints.
     """
     check_choice("leaf", leaf, LEAVES[:2])
+    check_has_joints(skeleton)
     start, end, joint = [], [], []
     for j in np.flatnonzero(skeleton.deform):
         head = skeleton.joints[j]

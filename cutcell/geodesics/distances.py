@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from ..checks import check_choice, check_integer, check_number
+from ..checks import check_choice, check_has_joints, check_integer, check_number
 from ..errors import ParameterError, WeightsError
 from ..graph import CutCellGraph
 from ..progress import Progress, silent
@@ -167,6 +167,8 @@ def bone_distances(
         A parameter is out of its range.
     MeshError
         The mesh has collapsed into points.
+    SkeletonError
+        No joints.
     WeightsError
         `allowed` has the wrong shape or leaves a vertex without any joint.
 
@@ -179,6 +181,7 @@ def bone_distances(
     if nearest_joints is not None:
         nearest_joints = check_integer("nearest_joints", nearest_joints, 1, 1_000_000)
     within = check_number("within", within, 1, np.inf)
+    check_has_joints(skeleton)
     if graph.connectivity != "any" or allowed is not None:
         nearest_joints = None
     progress("distances", 0.0)

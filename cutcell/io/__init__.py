@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
+from ..checks import check_has_joints
 from ..errors import CutcellError, FileError
 from ..rig import Rig
 from .articulation import articulation_bytes, read_articulation
@@ -30,8 +31,8 @@ def load(path: str | os.PathLike[str], skeleton: str | os.PathLike[str] | None =
     ----------
     path : path
         A GLB or glTF file; RigNet's ``.obj`` or ``.txt``; an Articulation-XL ``.npz``; or a
-        mesh (OBJ, PLY, STL, OFF) with a skeleton in a JSON file beside it. ``docs/formats.md``
-        says what is taken from each.
+        mesh (OBJ, PLY, STL, OFF) with a skeleton in a JSON file beside it. A mesh without a
+        skeleton becomes a rig without joints. ``docs/formats.md`` says what is taken from each.
     skeleton : path, optional
         The skeleton of a mesh, where it does not stand beside it under the mesh's name.
 
@@ -89,11 +90,14 @@ def save(path: str | os.PathLike[str], rig: Rig) -> None:
     ------
     FileError
         Another ending, or the file cannot be written.
+    SkeletonError
+        The rig has no joints, so that there are no weights to save.
     WeightsError
         The rig has no weights, or some that its glTF document cannot hold.
     """
     path = Path(path)
     with naming(path):
+        check_has_joints(rig.skeleton)
         if not path.parent.is_dir():
             raise FileError(f"there is no folder {path.parent} to save it in")
         write_all(_files(path, rig))

@@ -44,6 +44,8 @@ def read_articulation(path: Path) -> Rig:
     if joints.ndim != 2 or joints.shape[1] != 3:
         raise SkeletonError(f"joints has the shape {joints.shape}, expected (any, 3)")
     count = len(joints)
+    if count == 0:
+        raise SkeletonError("has no joints")
     weights, warnings = _weights(arrays, len(mesh.vertices), count, f'mesh "{path.stem}"')
     skeleton = Skeleton(
         joints,

@@ -12,9 +12,12 @@ from numpy.typing import NDArray
 
 from ..errors import CutcellError, FileError, MeshError
 from ..rig import Attachment, Rig, TriangleMesh
+from ..rig import Part as NamedPart
+from .gltf_bare import read_bare
 from .gltf_clips import read_clips
 from .gltf_container import Document, read_document
 from .gltf_nodes import Nodes
+from .gltf_parts import hidden_nodes, left_out_meshes, mesh_name, vanishes
 from .gltf_primitives import (
     attributes,
     draws_triangles,
@@ -64,48 +67,48 @@ def read_gltf(path: Path) -> Rig:
 
 def _read(document: Document, path: Path) -> Rig:
     nodes = Nodes(document)
-    skinned = _skinned_nodes(document, nodes)
+    skinned = _skinned_nodes(nodes)
+    if not skinned:
+        return read_bare(document, nodes, path.stem)
     for i in skinned:
         document.item("skins", nodes.raw[i]["skin"], document.label("nodes", i))
     skins = list(dict.fromkeys(nodes.raw[i]["skin"] for i in skinned))
     bind = read_bind(document, nodes, skins)
-    parts, vertices, faces, stored = _read_parts(document, nodes, skinned, bind)
+    parts, vertices, faces, stored, named = _read_parts(document, nodes, skinned, bind)
     if not faces or not sum(len(f) for f in faces):
         raise MeshError("its skinned meshes have no triangles")
     mesh = TriangleMesh(np.concatenate(vertices), np.concatenate(faces))  # type: ignore[arg-type]
     weights = _dense(parts, stored, len(mesh.vertices), len(bind.nodes))
     used = None if weights is None else carrying(weights)
     skeleton = read_skeleton(document, nodes, bind, used)
+    attached = _read_attachments(document, nodes, bind)
     return Rig(
         mesh,
         skeleton,
         weights,
-        read_clips(document, nodes, bind.nodes, np.array(bind.inverse), bind.world),
-        _read_attachments(document, nodes, bind),
-        path.stem,
-        bind.world,
-        _allowed(parts, len(mesh.vertices), len(bind.nodes)),
-        tuple(document.warnings),
-        GltfSource(document, parts, skeleton.names),
+        clips=read_clips(document, nodes, bind.nodes, np.array(bind.inverse), bind.world),
+        attachments=tuple(attached.values()),
+        name=path.stem,
+        world=bind.world,
+        allowed=_allowed(parts, len(mesh.vertices), len(bind.nodes)),
+        parts=named,
+        left_out=left_out_meshes(document, nodes, skinned, attached),
+        warnings=tuple(document.warnings),
+        source=GltfSource(document, parts, skeleton.names),
     )
 
 
-def _skinned_nodes(document: Document, nodes: Nodes) -> list[int]:
+def _skinned_nodes(nodes: Nodes) -> list[int]:
     """Return the nodes with a skinned mesh, those of the default scene if it has any."""
     skinned = [i for i, n in enumerate(nodes.raw) if "skin" in n and "mesh" in n]
-    if skinned:
-        return sorted(set(skinned) & set(nodes.in_scene())) or skinned
-    if any("mesh" in n for n in nodes.raw):
-        raise FileError(
-            "has a mesh but no skeleton (no skin); export it together with its armature, or "
-            "save the mesh as OBJ or PLY and put a skeleton beside it as a JSON file"
-        )
-    raise FileError("has no mesh")
+    if not skinned and not any("mesh" in n for n in nodes.raw):
+        raise FileError("has no mesh")
+    return sorted(set(skinned) & set(nodes.in_scene())) or skinned
 
 
 def _read_parts(
     document: Document, nodes: Nodes, skinned: list[int], bind: Bind
-) -> tuple[list[Part], list[NDArray], list[NDArray], list[NDArray | None]]:
+) -> tuple[list[Part], list[NDArray], list[NDArray], list[NDArray | None], tuple[NamedPart, ...]]:
     """Read every vertex buffer once, however many primitives draw from it.
 
     A mesh that stands in the scene twice, with two skins, is read for the first: both
@@ -115,10 +118,12 @@ def _read_parts(
     vertices: list[NDArray] = []
     faces: list[NDArray] = []
     stored: list[NDArray | None] = []
+    named: list[NamedPart] = []
+    hidden = hidden_nodes(nodes)
     seen: set[tuple[int, int]] = set()
     total = 0
     for i in skinned:
-        mesh, skin = nodes.raw[i]["mesh"], nodes.raw[i]["skin"]
+        mesh, skin, first = nodes.raw[i]["mesh"], nodes.raw[i]["skin"], total
         for k, primitive in enumerate(primitives(document, mesh, document.label("nodes", i))):
             if (mesh, k) in seen or not draws_triangles(primitive):
                 continue
@@ -137,7 +142,10 @@ def _read_parts(
             if np.linalg.det(bind.to_rig[skin][:3, :3]) < 0:
                 corners = corners[:, ::-1]  # mirrored: what was outside stays outside
             faces.append(corners + parts[key].rows.start)
-    return list(parts.values()), vertices, faces, stored
+        if total > first:
+            rows = slice(first, total)
+            named.append(NamedPart(mesh_name(document, nodes, i), rows, i in hidden))
+    return list(parts.values()), vertices, faces, stored, tuple(named)
 
 
 def _vertex_key(primitive: dict[str, Any], label: str) -> tuple:
@@ -171,9 +179,11 @@ def _allowed(parts: list[Part], vertices: int, joints: int) -> NDArray | None:
     return allowed
 
 
-def _read_attachments(document: Document, nodes: Nodes, bind: Bind) -> tuple[Attachment, ...]:
+def _read_attachments(document: Document, nodes: Nodes, bind: Bind) -> dict[int, Attachment]:
+    """Return the attachment of each node that has one."""
     place = {node: j for j, node in enumerate(bind.nodes)}
-    found: list[Attachment] = []
+    hidden = hidden_nodes(nodes)
+    found: dict[int, Attachment] = {}
     for i, node in enumerate(nodes.raw):
         if "mesh" not in node or "skin" in node:
             continue
@@ -188,7 +198,7 @@ def _read_attachments(document: Document, nodes: Nodes, bind: Bind) -> tuple[Att
             local = nodes.local[a] @ local
         joint = place[chain[above]]
         vertices, faces, drawn = read_triangles(document, node["mesh"], document.label("nodes", i))
-        if not drawn:
+        if not drawn or not local[:3, :3].any():
             continue
         to_rig = np.linalg.inv(bind.inverse[joint]) @ local
         if np.linalg.det(to_rig[:3, :3]) < 0:
@@ -198,5 +208,5 @@ def _read_attachments(document: Document, nodes: Nodes, bind: Bind) -> tuple[Att
             mesh = TriangleMesh(_moved(vertices, to_rig), faces)  # type: ignore[arg-type]
         except MeshError as e:
             raise MeshError(f"{document.label('nodes', i)}: {e}") from None
-        found.append(Attachment(str(name), mesh, joint))
-    return tuple(found)
+        found[i] = Attachment(str(name), mesh, joint, i in hidden or vanishes(nodes, i))
+    return found

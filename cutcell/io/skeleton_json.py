@@ -39,6 +39,8 @@ def read_skeleton_json(path: Path) -> Skeleton:
         joints = data.get("joints") if isinstance(data, dict) else None
         if not isinstance(joints, list):
             raise FileError('is not a skeleton: it must be {"joints": [...]}')
+        if not joints:
+            raise SkeletonError("the skeleton has no joints; it needs at least one")
         names = [_name(joint, k) for k, joint in enumerate(joints)]
         twice = next((n for n in names if names.count(n) > 1), None)
         if twice is not None:

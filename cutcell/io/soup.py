@@ -1,4 +1,4 @@
-"""A bare mesh (OBJ, PLY, STL, OFF) with a skeleton beside it."""
+"""A bare mesh (OBJ, PLY, STL, OFF), with a skeleton beside it or without."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import FileError, MeshError
-from ..rig import Rig, TriangleMesh
+from ..rig import Rig, Skeleton, TriangleMesh
 from .files import read_bytes, read_text
 from .objects import parse_obj
 from .skeleton_json import read_skeleton_json, skeleton_file
@@ -18,7 +18,7 @@ MESHES = (".obj", ".ply", ".stl", ".off")
 
 
 def read_soup(path: Path, skeleton: Path | None) -> Rig:
-    """Load a mesh and its skeleton; the mesh comes without weights.
+    """Load a mesh and its skeleton, if it has one; the mesh comes without weights.
 
     Parameters
     ----------
@@ -29,13 +29,8 @@ def read_soup(path: Path, skeleton: Path | None) -> Rig:
     """
     mesh = read_mesh(path)
     found = skeleton or skeleton_file(path)
-    if found is None:
-        raise FileError(
-            f"is a mesh without a skeleton: put one beside it as {path.stem}.json, for example "
-            '{"joints": [{"name": "root", "position": [0, 0, 0], "parent": null}, '
-            '{"name": "tip", "position": [0, 1, 0], "parent": "root"}]}'
-        )
-    return Rig(mesh, read_skeleton_json(found), name=path.stem)
+    joints = Skeleton([], []) if found is None else read_skeleton_json(found)  # type: ignore[arg-type]
+    return Rig(mesh, joints, name=path.stem)
 
 
 def read_mesh(path: Path) -> TriangleMesh:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..checks import check_integer
+from ..checks import check_has_joints, check_integer
 from ..pose import linear_blend_skinning
 from ..rig import Rig
 from .counting import vertex_shares
@@ -65,11 +65,14 @@ def clip_error(
 
     Raises
     ------
+    SkeletonError
+        No joints.
     WeightsError
         Weights that do not fit the rig or each other.
     ParameterError
         `frames` out of range, or an unknown `count`.
     """
+    check_has_joints(rig.skeleton)
     ours, theirs = checked_pair(predicted, reference)
     check_fit(ours, rig.mesh, rig.skeleton)
     frames = check_integer("frames", frames, 1, 100_000)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..checks import check_number
+from ..checks import check_has_joints, check_number
 from ..errors import ParameterError, WeightsError
 from ..rig import Rig, Skeleton, TriangleMesh
 from .counting import vertex_shares
@@ -120,6 +120,8 @@ def deformation_error(
 
     Raises
     ------
+    SkeletonError
+        No joints.
     WeightsError
         Weights that do not fit the rig or each other.
     ParameterError
@@ -130,6 +132,7 @@ def deformation_error(
     Paper section 4.1.1.
     """
     mesh, skeleton = parts_of(rig)
+    check_has_joints(skeleton)
     ours, theirs = checked_pair(predicted, reference)
     check_fit(ours, mesh, skeleton)
     degrees = check_number("degrees", degrees, 0, 180)

@@ -9,7 +9,7 @@ from time import perf_counter
 import numpy as np
 from numpy.typing import NDArray
 
-from ..checks import check_choice, check_integer
+from ..checks import check_choice, check_has_joints, check_integer
 from ..geodesics import FALLBACK_REASONS, BoneDistances, bone_distances
 from ..graph import CutCellGraph, build_graph
 from ..progress import Progress, silent
@@ -98,7 +98,7 @@ def bind(
     ------
     ParameterError
         A parameter is out of its range.
-    MeshError, WeightsError
+    MeshError, SkeletonError, WeightsError
         The rig cannot be bound; the sentence says why.
 
     Examples
@@ -110,6 +110,7 @@ def bind(
     if max_influences is not None:
         max_influences = check_integer("max_influences", max_influences, 1, MOST_INFLUENCES)
     check_choice("falloff", falloff, FALLOFFS)
+    check_has_joints(rig.skeleton)
     leaf = leaf or DEFAULT_LEAF[falloff]
     if not kernels_are_compiled():
         progress("compile", 0.0)

@@ -74,6 +74,14 @@ class TestSkeleton:
         assert made.names == ("joint 0", "joint 1")
         assert made.deform.all()
 
+    def test_a_mesh_without_a_skeleton_has_one_of_no_joints(self):
+        none = Skeleton([], [])
+        assert none.joints.shape == (0, 3)
+        assert none.parents.shape == none.deform.shape == (0,)
+        assert none.names == none.children == ()
+        assert none.subtree.shape == (0, 0)
+        assert Skeleton([], [], orientations=[]).orientations.shape == (0, 3, 3)
+
     def test_several_roots_are_allowed(self):
         made = Skeleton(np.zeros((3, 3)), [-1, -1, 1])
         assert [c.tolist() for c in made.children] == [[], [2], []]
@@ -81,7 +89,6 @@ class TestSkeleton:
     @pytest.mark.parametrize(
         ("joints", "parents", "kwargs", "sentence"),
         [
-            ([], [], {}, "the skeleton has no joints"),
             (np.zeros((2, 3)), [-1], {}, r"parents has the shape \(1,\), expected \(2,\)"),
             (np.zeros((2, 3)), [-1, 0], {"names": ("a",)}, "2 joints but 1 names"),
             ([[0, 0, np.nan]], [-1], {"names": ("hip",)}, 'joint "hip" has a coordinate'),

@@ -99,3 +99,10 @@ def test_every_ending_it_lets_through_can_be_saved(run, bar, tmp_path, ending):
     else:
         assert result.exit_code == 0
         assert cutcell.load(tmp_path / f"out{ending}").weights is not None
+
+
+def test_a_mesh_without_a_skeleton_is_refused_by_name(run, tmp_path):
+    path = write_obj(tmp_path / "alone.obj")
+    told = refused(run("bind", path, tmp_path / "out.glb"))
+    assert told.startswith("error: alone.obj: the rig has no skeleton; export the mesh")
+    assert not (tmp_path / "out.glb").exists()

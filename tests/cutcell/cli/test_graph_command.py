@@ -4,6 +4,7 @@ import json
 
 import cutcell
 from tests.cutcell.cli.files import bar_faces, refused, write_obj
+from tests.cutcell.io.gltf_builder import column
 
 
 def test_counts_what_the_library_builds(run, bar):
@@ -42,6 +43,26 @@ def test_needs_no_skeleton(run, tmp_path):
     assert document["mesh"]["open_edges"] == 4
     assert not document["mesh"]["closed"]
     assert "open: 4 edges with one triangle" in run("graph", path, "-r", 8).stdout
+
+
+def test_names_the_meshes_of_the_file(run, tmp_path):
+    builder = column()
+    builder.node(name="hat", mesh=builder.mesh(), skin=0)
+    builder.node(1, name="sword", mesh=builder.mesh())
+    builder.node(name="floor", mesh=builder.mesh())
+    path = builder.save(tmp_path / "rig.glb")
+    document = json.loads(run("graph", path, "-r", 8, "--json").stdout)
+    assert document["meshes"] == {
+        "parts": [
+            {"name": "body", "first": 0, "vertices": 12, "hidden": False},
+            {"name": "hat", "first": 12, "vertices": 12, "hidden": False},
+        ],
+        "attachments": [{"name": "sword", "joint": "tip", "hidden": False}],
+        "left_out": [{"name": "floor", "why": "has no skin and hangs on no joint"}],
+    }
+    words = run("graph", path, "-r", 8).stdout
+    for expected in ("2: body, hat", "1: sword (on tip)", "1: floor (has no skin and hangs"):
+        assert expected in words
 
 
 def test_a_bare_mesh_that_is_wrong_is_named(run, tmp_path):

@@ -126,7 +126,6 @@ CASES = {
         "meshes are compressed",
     ),
     "no mesh": (drop("nodes", 2, "mesh"), F, "has no mesh"),
-    "no skin": (drop("nodes", 2, "skin"), F, "a mesh but no skeleton .no skin.; export it"),
     "nodes no list": (put(["nodes"], {}), F, '"nodes" of the glTF document must be a list'),
     "node no object": (put(["nodes", 0], 7), F, '"nodes" of the glTF document must be a list'),
     "children no list": (put(["nodes", 0, "children"], 1), F, '"children" must be a list'),

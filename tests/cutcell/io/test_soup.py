@@ -51,9 +51,10 @@ def test_a_skeleton_elsewhere(tmp_path):
         cutcell.load(path, skeleton=tmp_path / "gone.json")
 
 
-def test_a_mesh_on_its_own_says_what_to_write(tmp_path):
-    with pytest.raises(cutcell.FileError, match=r"^column\.ply: .* put one beside it") as caught:
-        cutcell.load(write(tmp_path, joints=None))
+def test_a_mesh_on_its_own_says_what_to_write_before_it_is_bound(tmp_path):
+    alone = cutcell.load(write(tmp_path, joints=None))
+    with pytest.raises(S, match=r"no skeleton; .* put a skeleton beside it") as caught:
+        cutcell.bind(alone)
     example = str(caught.value)
     shown = json.loads(example[example.index("{") :])
     assert cutcell.load(write(tmp_path, joints=shown["joints"])).skeleton.names == ("root", "tip")
