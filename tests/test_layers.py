@@ -27,7 +27,7 @@ IMPORT_SECONDS = 0.3
 
 # Each part of the core may use itself and those on lines above it.
 ORDER = [
-    {"errors", "progress", "checks", "rig", "compiled", "threads", "unions", "sorting"},
+    {"errors", "progress", "checks", "rig", "apart", "compiled", "threads", "unions", "sorting"},
     {"io"},
     {"graph"},
     {"geodesics"},

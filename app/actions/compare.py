@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 from numpy.typing import NDArray
 
+from cutcell.apart import stoppable
 from cutcell.baselines import METHODS, Method
-from cutcell.baselines.apart import stoppable
 from cutcell.errors import CutcellError
 from cutcell.metrics import (
     DeformationError,

@@ -9,10 +9,9 @@ from time import perf_counter
 import numpy as np
 from numpy.typing import NDArray
 
+from ..apart import LIMIT, WorkFailedError, run_apart
 from ..geodesics import distance_to_segment
-from .apart import LIMIT, run_apart
 from .body import Body, Same
-from .result import MethodFailedError
 from .voxels import PAD, voxelize
 
 FACES = 400
@@ -70,7 +69,7 @@ def _make(given: Same) -> tuple[Cage | None, str, float]:
     job = {"solid": voxelize(body).solid, "points": used * size + PAD, "faces": FACES}
     try:
         found = run_apart("cage", job, LIMIT, "libigl's cage")
-    except MethodFailedError as error:
+    except WorkFailedError as error:
         return None, str(error), perf_counter() - begin
     vertices = (found["vertices"] - PAD) / size
     bones = body.bones

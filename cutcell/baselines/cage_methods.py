@@ -8,13 +8,14 @@ from time import perf_counter
 import numpy as np
 from numpy.typing import NDArray
 
+from ..apart import WorkFailedError
 from ..checks import check_integer
 from ..rig import Rig
 from .body import Body
 from .cage import Cage, make_cage
 from .harmonic import harmonic_values
 from .mean_value import mean_values
-from .result import BaselineBinding, MethodFailedError, finish
+from .result import BaselineBinding, finish
 
 CAGE_RESOLUTION = 32
 """Voxels along the longest side whose hull the cage is."""
@@ -120,7 +121,7 @@ def _bind(
     begin = perf_counter()
     try:
         weights = carry(cage, body)
-    except MethodFailedError as error:
+    except WorkFailedError as error:
         seconds["weights"] = perf_counter() - begin
         return BaselineBinding(None, seconds, failed=str(error))
     weights, warnings = finish(

@@ -11,7 +11,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.linalg import cg
 from scipy.spatial import cKDTree
 
-from .result import MethodFailedError
+from ..apart import WorkFailedError
 from .voxels import mark_triangles
 
 MARGIN = 2
@@ -48,7 +48,7 @@ def harmonic_values(
 
     Raises
     ------
-    MethodFailedError
+    WorkFailedError
         The equations could not be solved.
     """
     origin = vertices.min(axis=0) - MARGIN / resolution
@@ -108,7 +108,7 @@ def _solve(number: NDArray, inside: NDArray, known: NDArray) -> NDArray[np.float
     for column_ in np.flatnonzero(right.any(axis=0)):
         found[:, column_], failed = cg(matrix, right[:, column_], rtol=ACCURACY)
         if failed:
-            raise MethodFailedError("the harmonic equations could not be solved")
+            raise WorkFailedError("the harmonic equations could not be solved")
     return found
 
 

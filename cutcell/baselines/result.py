@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..checks import check_integer, check_number
-from ..errors import CutcellError
 from ..rig import Rig
 from ..skinning.prune import prune
 from .body import Body
@@ -37,10 +36,6 @@ class BaselineBinding:
     seconds: Mapping[str, float] = field(default_factory=dict)
     warnings: tuple[str, ...] = ()
     failed: str = ""
-
-
-class MethodFailedError(CutcellError):
-    """A method has no weights for a rig; never leaves this package."""
 
 
 def finish(

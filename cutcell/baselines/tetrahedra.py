@@ -9,9 +9,8 @@ from time import perf_counter
 import numpy as np
 from numpy.typing import NDArray
 
-from .apart import run_apart
+from ..apart import WorkFailedError, run_apart
 from .body import Body, Same
-from .result import MethodFailedError
 
 HANDLES = 5
 """Points on each bone that the weights are tied to: the middles of its fifths."""
@@ -79,10 +78,10 @@ def _fill(given: Same) -> tuple[Tetrahedra | None, str, float]:
     warnings: tuple[str, ...] = ()
     try:
         found = run_apart("tetgen", job, limit, "TetGen")
-    except MethodFailedError as first:
+    except WorkFailedError as first:
         try:
             found = run_apart("tetwild", job | {"edge": EDGE}, limit, "fTetWild")
-        except MethodFailedError as second:
+        except WorkFailedError as second:
             return None, f"{first}; {second}", perf_counter() - begin
         warnings = (f"{first}; fTetWild filled it, nearly",)
     seconds = perf_counter() - begin

@@ -6,11 +6,11 @@ from time import perf_counter
 
 import numpy as np
 
+from ..apart import LIMIT, WorkFailedError, run_apart
 from ..checks import check_integer, check_number
 from ..rig import Rig
-from .apart import LIMIT, run_apart
 from .body import Body
-from .result import BaselineBinding, MethodFailedError, finish
+from .result import BaselineBinding, finish
 from .tetrahedra import tetrahedra
 
 SOLVERS = {
@@ -164,7 +164,7 @@ def _bind(
     }
     try:
         result = run_apart(method, job, limit, SOLVERS[method])
-    except MethodFailedError as error:
+    except WorkFailedError as error:
         seconds["weights"] = perf_counter() - begin
         return BaselineBinding(None, seconds, filled.warnings, failed=str(error))
     begin, found = perf_counter() - float(result["seconds"]), result["weights"]

@@ -25,7 +25,6 @@ from .files import read_bytes
 MAGIC = pygltflib.MAGIC
 JSON_CHUNK = 0x4E4F534A
 BINARY_CHUNK = 0x004E4942
-COMPRESSED = ("KHR_draco_mesh_compression", "EXT_meshopt_compression")
 
 
 @dataclass(eq=False)
@@ -98,7 +97,7 @@ def read_document(path: Path) -> Document:
     Raises
     ------
     FileError
-        Not a glTF 2.0 file, cut short, compressed, or one of its buffers is not there.
+        Not a glTF 2.0 file, cut short, or one of its buffers is not there.
     """
     data = read_bytes(path)
     binary: bytes | None = None
@@ -162,18 +161,13 @@ def _check_version(document: Document) -> None:
         raise FileError('is JSON, but not glTF: it has no "asset" with a "version"')
     if not str(asset["version"]).startswith("2."):
         raise FileError(f"is glTF {asset['version']}; only glTF 2.0 can be read")
-    used = document.json.get("extensionsUsed", [])
-    for name in COMPRESSED:
-        if isinstance(used, list) and name in used:
-            raise FileError(
-                f"its meshes are compressed ({name}), which cannot be read; save it "
-                "uncompressed first, for example from Blender"
-            )
 
 
 def _buffer_bytes(path: Path, buffer: dict[str, Any], i: int, binary: bytes | None) -> bytes:
     user = f"buffers[{i}]"
     length = whole(buffer, "byteLength", user)
+    if _is_placeholder(buffer):
+        return b""  # nothing lies here: its buffer views are compressed, and lie elsewhere
     uri = buffer.get("uri")
     if uri is None:
         if i != 0 or binary is None:
@@ -184,6 +178,12 @@ def _buffer_bytes(path: Path, buffer: dict[str, Any], i: int, binary: bytes | No
     if len(data) < length:
         raise FileError(f"{user} is cut short: {length} bytes announced, {len(data)} there")
     return data[:length]
+
+
+def _is_placeholder(buffer: dict[str, Any]) -> bool:
+    extensions = buffer.get("extensions")
+    said = extensions.values() if isinstance(extensions, dict) else ()
+    return any(isinstance(value, dict) and value.get("fallback") is True for value in said)
 
 
 def read_uri(path: Path, uri: Any, user: str) -> bytes:

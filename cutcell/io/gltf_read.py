@@ -16,6 +16,8 @@ from ..rig import Part as NamedPart
 from .gltf_bare import read_bare
 from .gltf_clips import read_clips
 from .gltf_container import Document, read_document
+from .gltf_draco import decompress_draco
+from .gltf_meshopt import decompress_meshopt
 from .gltf_nodes import Nodes
 from .gltf_parts import hidden_nodes, left_out_meshes, mesh_name, vanishes
 from .gltf_primitives import (
@@ -57,7 +59,10 @@ class GltfSource:
 def read_gltf(path: Path) -> Rig:
     """Load a GLB or glTF file; see `cutcell.load`."""
     try:
-        return _read(read_document(path), path)
+        document = read_document(path)
+        decompress_meshopt(document)
+        decompress_draco(document)
+        return read_rig(document, path)
     except CutcellError:
         raise
     except (TypeError, ValueError, KeyError, IndexError, AttributeError, OverflowError) as e:
@@ -65,7 +70,8 @@ def read_gltf(path: Path) -> Rig:
         raise FileError(f"its glTF document is malformed ({type(e).__name__}: {e})") from e
 
 
-def _read(document: Document, path: Path) -> Rig:
+def read_rig(document: Document, path: Path) -> Rig:
+    """Return what a document with plain accessors holds."""
     nodes = Nodes(document)
     skinned = _skinned_nodes(nodes)
     if not skinned:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import sys
 from importlib import import_module
+from pathlib import Path
 from time import perf_counter
 
 import numpy as np
@@ -18,24 +19,43 @@ TASKS = {
     "biharmonic": "smooth:unbounded",
     "quasi_harmonic": "quasi_harmonic:quasi_harmonic",
     "cage": "cage:make_cage",
+    "draco": "draco:decode",
 }
 """Module and function of each task; it takes the job's arrays, and returns the result's."""
 
+EXTRAS = {"draco": "cutcell"}
+"""What installs the library of a task, where it is not `cutcell[peers]`."""
 
-def main(task: str, job_path: str, result_path: str) -> None:
+
+def main(task: str, job_path: str, result_path: str, memory: str = "0") -> None:
     """Do one task."""
     module, function = TASKS[task].split(":")
+    limit_memory(int(memory))
     with np.load(job_path) as job:
         given = {name: job[name] for name in job.files}
     begin = perf_counter()
     try:
         result = getattr(import_module(f"cutcell.workers.{module}"), function)(**given)
     except ModuleNotFoundError as error:
-        failed = f"{error.name} is not installed; try: pip install 'cutcell[peers]'"
+        extra = EXTRAS.get(task, "cutcell[peers]")
+        failed = f"{error.name} is not installed; try: pip install '{extra}'"
         result = {"failed": failed}
     except (RuntimeError, ValueError, MemoryError) as error:
         result = {"failed": str(error) or type(error).__name__}
     np.savez(result_path, **result, seconds=perf_counter() - begin)
+
+
+def limit_memory(allowance: int) -> None:
+    """Let this process take so many more bytes, 0 for any; only Linux sees to it."""
+    try:
+        import resource
+
+        pages = int(Path("/proc/self/statm").read_text().split()[0])
+    except (ImportError, OSError):
+        return
+    if allowance:
+        most = pages * resource.getpagesize() + allowance
+        resource.setrlimit(resource.RLIMIT_AS, (most, resource.RLIM_INFINITY))
 
 
 if __name__ == "__main__":

@@ -8,8 +8,8 @@ from app.actions import compare
 from app.jobs import COMPARING
 from app.panels.compare import rows_of
 from app.session import Session
+from cutcell.apart import _WANTED
 from cutcell.baselines import METHODS, BaselineBinding
-from cutcell.baselines.apart import _WANTED
 from tests.viewers.arm import arm_rig
 
 

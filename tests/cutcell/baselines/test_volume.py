@@ -9,8 +9,8 @@ import pytest
 from scipy.optimize import approx_fprime, lsq_linear
 from scipy.spatial import cKDTree
 
-from cutcell import Rig, Skeleton, TriangleMesh
-from cutcell.baselines import METHODS, apart
+from cutcell import Rig, Skeleton, TriangleMesh, apart
+from cutcell.baselines import METHODS
 from cutcell.baselines.tetrahedra import _fill as fill
 from cutcell.workers import __main__ as workers
 from cutcell.workers import quasi_harmonic, smooth, tetrahedra

@@ -120,11 +120,6 @@ def flat_strip(b):
 CASES = {
     "no asset": (drop("asset"), F, 'no "asset"'),
     "version 1": (put(["asset", "version"], "1.0"), F, "is glTF 1.0; only glTF 2.0"),
-    "compressed": (
-        put(["extensionsUsed"], ["KHR_draco_mesh_compression"]),
-        F,
-        "meshes are compressed",
-    ),
     "no mesh": (drop("nodes", 2, "mesh"), F, "has no mesh"),
     "nodes no list": (put(["nodes"], {}), F, '"nodes" of the glTF document must be a list'),
     "node no object": (put(["nodes", 0], 7), F, '"nodes" of the glTF document must be a list'),

@@ -6,8 +6,8 @@ import time
 import psutil
 import pytest
 
-from cutcell.baselines import apart
-from cutcell.baselines.result import MethodFailedError
+from cutcell import apart
+from cutcell.apart import WorkFailedError
 from cutcell.errors import Cancelled
 
 
@@ -36,7 +36,7 @@ def test_what_is_no_longer_wanted_ends_with_its_process(sleeping):
 
 
 def test_what_takes_too_long_is_ended_and_says_so(sleeping):
-    with pytest.raises(MethodFailedError, match=r"the sleeper took longer than 0\.3 seconds"):
+    with pytest.raises(WorkFailedError, match=r"the sleeper took longer than 0\.3 seconds"):
         apart.run_apart("bbw", {}, 0.3, "the sleeper")
     assert not sleepers()
 
@@ -47,5 +47,5 @@ def test_nobody_is_asked_outside_the_block(sleeping):
 
     with apart.stoppable(never):
         pass
-    with pytest.raises(MethodFailedError):
+    with pytest.raises(WorkFailedError):
         apart.run_apart("bbw", {}, 0.1, "the sleeper")

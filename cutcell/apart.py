@@ -15,9 +15,9 @@ from typing import Any
 
 import numpy as np
 
-from .result import MethodFailedError
+from .errors import CutcellError
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[1]
 COMMAND = (sys.executable, "-m", "cutcell.workers")
 LIMIT = 120.0
 """Seconds that any such process may take, unless told otherwise."""
@@ -45,7 +45,13 @@ def stoppable(wanted: Callable[[], object]) -> Iterator[None]:
         _WANTED.reset(token)
 
 
-def run_apart(task: str, job: Mapping[str, Any], limit: float, who: str) -> dict[str, Any]:
+class WorkFailedError(CutcellError):
+    """Work in a process of its own has no result; its caller says what that means."""
+
+
+def run_apart(
+    task: str, job: Mapping[str, Any], limit: float, who: str, memory: int = 0
+) -> dict[str, Any]:
     """Do a task of `cutcell.workers`.
 
     Parameters
@@ -57,6 +63,8 @@ def run_apart(task: str, job: Mapping[str, Any], limit: float, who: str) -> dict
         Seconds after which to give up.
     who : str
         Whose fault a crash is, for the message.
+    memory : int
+        Bytes that the task may take, 0 for any; only Linux sees to it.
 
     Returns
     -------
@@ -64,7 +72,7 @@ def run_apart(task: str, job: Mapping[str, Any], limit: float, who: str) -> dict
 
     Raises
     ------
-    MethodFailedError
+    WorkFailedError
         There is no result; the sentence says why.
     Exception
         Whatever `stoppable` was given raises.
@@ -72,15 +80,15 @@ def run_apart(task: str, job: Mapping[str, Any], limit: float, who: str) -> dict
     with tempfile.TemporaryDirectory() as folder:
         job_path, result_path = Path(folder, "job.npz"), Path(folder, "result.npz")
         np.savez(job_path, **job)
-        command = [*COMMAND, task, str(job_path), str(result_path)]
+        command = [*COMMAND, task, str(job_path), str(result_path), str(memory)]
         path = os.pathsep.join(filter(None, [str(ROOT), os.environ.get("PYTHONPATH")]))
         done = _done(command, folder, {**os.environ, "PYTHONPATH": path}, limit, who)
         if done.returncode != 0 or not result_path.exists():
-            raise MethodFailedError(_last_words(done, who))
+            raise WorkFailedError(_last_words(done, who))
         with np.load(result_path) as result:
             found = {name: result[name] for name in result.files}
     if "failed" in found:
-        raise MethodFailedError(str(found["failed"]))
+        raise WorkFailedError(str(found["failed"]))
     return found
 
 
@@ -102,9 +110,7 @@ def _done(
                     out, err = process.communicate(timeout=max(min(ASK_EVERY, left), 0))
                 except subprocess.TimeoutExpired:
                     if left <= 0:
-                        raise MethodFailedError(
-                            f"{who} took longer than {limit:g} seconds"
-                        ) from None
+                        raise WorkFailedError(f"{who} took longer than {limit:g} seconds") from None
                     continue
                 return subprocess.CompletedProcess(command, process.returncode, out, err)
         except BaseException:
