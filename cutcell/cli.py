@@ -15,7 +15,7 @@ import typer
 
 from . import __version__
 from .console import for_people, print_json, print_table, print_warnings, progress_bars
-from .errors import FileError, MissingLibraryError, ParameterError
+from .errors import MissingLibraryError, ParameterError
 from .options import (
     Alpha,
     Connectivity,
@@ -51,10 +51,6 @@ app = typer.Typer(
 
 Exit codes: 0 done; 2 wrong input, and one sentence says what; 130 stopped by Ctrl-C.""",
 )
-
-
-ENDINGS = (".glb", ".gltf", ".npz", ".txt")
-"""Of the files that rigs are saved in, as `cutcell.io` names them."""
 
 
 def _print_version(wanted: bool) -> None:
@@ -167,7 +163,7 @@ def bind(
     """
     from . import summary
     from .checks import check_has_joints
-    from .io import save
+    from .io import check_output, save
     from .io.files import naming
     from .skinning import DEFAULT_LEAF
     from .skinning import bind as compute
@@ -186,17 +182,19 @@ def bind(
         "symmetric": symmetric,
         "locked": lock or [],
     }
-    _check_output(out)
+    check_output(out)
     loaded = _load(rig, skeleton)
     with naming(rig):
         check_has_joints(loaded.skeleton)
+    check_output(out, loaded)
     with progress_bars(quiet) as progress:
         binding = compute(loaded, **parameters, progress=progress)
-    save(out, loaded.with_weights(binding.weights))
+    files = save(out, loaded.with_weights(binding.weights))
     seconds = {name: round(value, 4) for name, value in binding.seconds.items()}
     document = {
         "input": str(rig),
         "output": str(out),
+        "files": [str(file) for file in files],
         "parameters": parameters,
         "mesh": summary.summarize_mesh(loaded.mesh, binding.graph),
         "meshes": summary.summarize_parts(loaded),
@@ -388,14 +386,3 @@ def _load(path: Path, skeleton: Path | None) -> Rig:
     from .io import load
 
     return load(path, skeleton=skeleton)
-
-
-def _check_output(path: Path) -> None:
-    """Meet a wrong name before the work, not after it; `save` checks again."""
-    if path.suffix.lower() not in ENDINGS:
-        raise FileError(
-            f'{path.name}: a rig cannot be saved as "{path.suffix}"; end the name in one of '
-            f"{', '.join(ENDINGS)}"
-        )
-    if not path.parent.is_dir():
-        raise FileError(f"{path.name}: there is no folder {path.parent} to save it in")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
 MOST_NAMES = 12
@@ -51,6 +52,8 @@ def report_rows(document: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     if "influences" in document:
         influences = document["influences"]
         yield "influences", f"{influences['mean']:.2f} a vertex, {influences['most']} at most"
+    if len(document.get("files", ())) > 1:
+        yield "files", ", ".join(Path(file).name for file in document["files"])
     yield "seconds", ", ".join(f"{name} {value:.2f}" for name, value in document["seconds"].items())
 
 

@@ -301,6 +301,8 @@ def _array(value: Any, dtype: Any, shape: tuple, name: str, error: type) -> NDAr
         array = np.asarray(value)
         if array.size == 0:
             array = np.zeros([0 if s is None else s for s in shape] if None in shape else shape)
+        if array.dtype.kind not in "biufO":  # complex ones would lose a part, words become numbers
+            raise error(f"{name} must be an array of real numbers, not of {array.dtype}")
         fractions = np.issubdtype(dtype, np.integer) and np.issubdtype(array.dtype, np.floating)
         if fractions and not np.array_equal(array, np.round(array)):
             raise error(f"{name} must be whole numbers")

@@ -27,7 +27,18 @@ IMPORT_SECONDS = 0.3
 
 # Each part of the core may use itself and those on lines above it.
 ORDER = [
-    {"errors", "progress", "checks", "rig", "apart", "compiled", "threads", "unions", "sorting"},
+    {
+        "apart",
+        "checks",
+        "compiled",
+        "errors",
+        "progress",
+        "rig",
+        "sorting",
+        "threads",
+        "unions",
+        "writing",
+    },
     {"io"},
     {"graph"},
     {"geodesics"},

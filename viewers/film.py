@@ -5,6 +5,7 @@ from __future__ import annotations
 import zlib
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +15,7 @@ from PIL import Image
 
 from cutcell.errors import FileError, MissingLibraryError
 from cutcell.progress import Progress, silent
+from cutcell.writing import check_place, replacing, write_all
 
 from .camera import Camera, around, sees
 from .description import Description
@@ -91,7 +93,8 @@ def draw(order: Order, path: str | Path, progress: Progress = silent) -> None:
     Raises
     ------
     FileError
-        Another ending, a film that does not move, or a folder that is not there.
+        Another ending, a film that does not move, a folder that is not there, or a file that
+        cannot be written.
     MissingLibraryError
         MP4 without the library that writes it.
     """
@@ -103,7 +106,7 @@ def draw(order: Order, path: str | Path, progress: Progress = silent) -> None:
     with Studio(order.description, THEMES[order.theme], (width, height), order.legend) as studio:
         camera = _camera(order, studio)
         if kind in PICTURES:
-            Image.fromarray(studio.draw(camera)).save(path, quality=92)
+            _write_picture(path, studio.draw(camera))
         else:
             _WRITERS[kind](path, _frames(order, studio, camera, FRAMES[kind], progress))
     progress("drawing", 1.0)
@@ -127,8 +130,7 @@ def check_picture_file(path: Path, moves: bool = False) -> str:
             f"{what} as {' or '.join(fitting)}"
             + ("; ask for a turntable or a clip" if other and not moves else "")
         )
-    if not path.absolute().parent.is_dir():
-        raise FileError(f"{path.name}: there is no folder {path.parent} to save it in")
+    check_place(path)
     return kind
 
 
@@ -234,6 +236,14 @@ def _pose_at(motion: Motion, time: float) -> NDArray[np.float64]:
     return (1 - part) * motion.poses[after - 1] + part * motion.poses[after]
 
 
+def _write_picture(path: Path, pixels: NDArray[np.uint8]) -> None:
+    # In memory first: on a full disk Pillow leaves half a JPEG, and raises nothing.
+    written = BytesIO()
+    kind = Image.registered_extensions()[path.suffix.lower()]
+    Image.fromarray(pixels).save(written, format=kind, quality=92)
+    write_all({path: written.getvalue()})
+
+
 def _write_mp4(path: Path, frames: Iterator[NDArray[np.uint8]]) -> None:
     try:
         import av
@@ -242,7 +252,8 @@ def _write_mp4(path: Path, frames: Iterator[NDArray[np.uint8]]) -> None:
             "MP4 needs a library that is not installed; install it by: pip install 'cutcell[app]',"
             " or save a GIF"
         ) from None
-    with av.open(str(path), "w", options={"movflags": "faststart"}) as film:
+    options = {"movflags": "faststart"}  # it is read back to be moved: a file it must be
+    with replacing(path) as (unready,), av.open(str(unready), "w", options=options) as film:
         stream: Any = None
         for pixels in frames:
             if stream is None:
@@ -277,9 +288,16 @@ def _write_gif(path: Path, frames: Iterator[NDArray[np.uint8]]) -> None:
             yield picture.quantize(palette=palette, dither=Image.Dither.NONE)
 
     every = images()
+    written = BytesIO()
     next(every).save(
-        path, save_all=True, append_images=every, duration=1000 // FRAMES[".gif"], loop=0
+        written,
+        format="gif",
+        save_all=True,
+        append_images=every,
+        duration=1000 // FRAMES[".gif"],
+        loop=0,
     )
+    write_all({path: written.getvalue()})
 
 
 _WRITERS: dict[str, Callable[[Path, Iterator[NDArray[np.uint8]]], None]] = {

@@ -19,6 +19,7 @@ from typing import Any
 from cutcell import errors
 from cutcell.errors import CutcellError
 from cutcell.progress import Progress, silent
+from cutcell.writing import write_all
 
 from .film import Order, check_picture_file, draw
 from .opengl import require_opengl
@@ -57,7 +58,7 @@ def draw_apart(order: Order, path: str | Path, progress: Progress = silent) -> N
         if process.returncode or not drawn.exists():
             require_opengl()
             raise RuntimeError(f"the picture could not be drawn: {grumble}")
-        path.write_bytes(drawn.read_bytes())
+        write_all({path: drawn.read_bytes()})
 
 
 def _watch(process: subprocess.Popen[str], progress: Progress) -> str:

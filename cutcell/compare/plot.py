@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from importlib import import_module
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from ..errors import FileError, MissingLibraryError, ParameterError
+from ..writing import check_place, write_all
 from .scores import Comparison
 
 OURS, THEIRS, INK, FAINT = "#d9660a", "#3f6fa3", "#22262d", "#d9dde3"
@@ -70,10 +72,10 @@ def plot_comparison(comparison: Comparison, path: str | Path) -> None:
         color="#5b6470",
     )
     figure.tight_layout(rect=(0, 0.045, 1, 1), w_pad=1.5)
-    try:
-        figure.savefig(path, dpi=160, facecolor="white")
-    except OSError as error:
-        raise FileError(f"{path.name}: cannot be written ({error.strerror or error})") from None
+    # In memory first: on a full disk Matplotlib fails in ways that do not tell why.
+    drawn = BytesIO()
+    figure.savefig(drawn, format=path.suffix[1:].lower(), dpi=160, facecolor="white")
+    write_all({path: drawn.getvalue()})
 
 
 def check_plot(path: str | Path) -> Path:
@@ -89,8 +91,7 @@ def check_plot(path: str | Path) -> Path:
     path = Path(path)
     if path.suffix.lower() not in ENDINGS:
         raise FileError(f'{path.name}: a plot cannot be "{path.suffix}"; end in .png, .svg or .pdf')
-    if not path.parent.is_dir():
-        raise FileError(f"{path.name}: there is no folder {path.parent} to save it in")
+    check_place(path)
     try:
         import_module("matplotlib")
     except ModuleNotFoundError:

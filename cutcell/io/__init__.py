@@ -8,20 +8,23 @@ from pathlib import Path
 from ..checks import check_has_joints
 from ..errors import CutcellError, FileError
 from ..rig import Rig
+from ..writing import check_place, write_all
 from .articulation import articulation_bytes, read_articulation
-from .files import naming, read_bytes, write_all
+from .files import naming, read_bytes
 from .gltf_container import MAGIC
 from .gltf_fresh import new_glb
 from .gltf_read import GltfSource, read_gltf
 from .gltf_write import rewritten
-from .rignet import read_rignet, rig_file, rignet_files
+from .rignet import check_mesh_file, read_rignet, rig_file, rignet_files
 from .soup import MESHES, read_soup
 
 __all__ = ["load", "save"]
 
 GLTF = (".glb", ".gltf", ".vrm")
 READABLE = "GLB, glTF, RigNet (.obj with .txt), Articulation-XL (.npz), or OBJ, PLY, STL, OFF"
-WRITABLE = ".glb, .gltf, .txt (RigNet, with an .obj) or .npz (Articulation-XL)"
+WRITABLE = ".glb, .gltf, .vrm, .txt (RigNet, with an .obj) or .npz (Articulation-XL)"
+SAVED = (*GLTF, ".txt", ".npz")
+"""The endings that `save` takes."""
 
 
 def load(path: str | os.PathLike[str], skeleton: str | os.PathLike[str] | None = None) -> Rig:
@@ -71,36 +74,71 @@ def _load(path: Path, skeleton: Path | None) -> Rig:
     raise FileError(f'"{kind}" cannot be read; give {READABLE} (from Blender: export as GLB)')
 
 
-def save(path: str | os.PathLike[str], rig: Rig) -> None:
+def save(path: str | os.PathLike[str], rig: Rig) -> tuple[Path, ...]:
     """Save a rig.
 
     A rig that was loaded from glTF goes back into its own document, in which only the skin
-    weights change; another one becomes a new GLB. The files are written under temporary
-    names first, so that a failure leaves what was there, and a rig may be saved over the
-    file it came from.
+    weights change; another one becomes a new GLB. All files are written whole or not at all:
+    a failure leaves what was there, and a rig may be saved over the file it came from. A file
+    that is not named here, such as the mesh or the buffer beside it, is never replaced if
+    it is another's; ``docs/formats.md`` says how.
 
     Parameters
     ----------
     path : path
-        Ends in ``.glb``, ``.gltf``, ``.txt`` (RigNet, with the mesh as an ``.obj`` beside it)
-        or ``.npz`` (Articulation-XL).
+        Ends in ``.glb``, ``.gltf``, ``.vrm``, ``.txt`` (RigNet, with the mesh as an ``.obj``
+        beside it) or ``.npz`` (Articulation-XL).
     rig : Rig
+
+    Returns
+    -------
+    tuple of Path
+        The files that were written, `path` last.
 
     Raises
     ------
     FileError
         Another ending, or the file cannot be written.
-    SkeletonError
-        The rig has no joints, so that there are no weights to save.
+    MeshError, SkeletonError
+        The rig has no joints; or its mesh or skeleton is no longer that of its glTF document; or
+        they do not fit in a new GLB, whose numbers have 32 bits.
     WeightsError
         The rig has no weights, or some that its glTF document cannot hold.
     """
     path = Path(path)
     with naming(path):
         check_has_joints(rig.skeleton)
-        if not path.parent.is_dir():
-            raise FileError(f"there is no folder {path.parent} to save it in")
-        write_all(_files(path, rig))
+        check_output(path, rig)
+        files = _files(path, rig)
+        write_all(files)
+        return tuple(files)
+
+
+def check_output(path: Path, rig: Rig | None = None) -> None:
+    """Meet what would stop `save` before the work whose result is to be saved.
+
+    Parameters
+    ----------
+    path : Path
+    rig : Rig, optional
+        Its weights do not matter.
+
+    Raises
+    ------
+    FileError
+        See `save`.
+    """
+    kind = path.suffix.lower()
+    with naming(path):
+        if kind not in SAVED:
+            raise FileError(f'a rig cannot be saved as "{kind}"; end the name in {WRITABLE}')
+        check_place(path)
+        if rig is None:
+            return
+        if kind == ".gltf" and not isinstance(rig.source, GltfSource):
+            raise FileError("a rig that did not come from glTF is saved as .glb, not as .gltf")
+        if kind == ".txt":
+            check_mesh_file(path, rig.mesh)
 
 
 def _files(path: Path, rig: Rig) -> dict[Path, bytes]:
@@ -109,13 +147,7 @@ def _files(path: Path, rig: Rig) -> dict[Path, bytes]:
         return rignet_files(path, rig)
     if kind == ".npz":
         return {path: articulation_bytes(rig)}
-    if kind in (".glb", ".gltf", ".vrm"):
-        if isinstance(rig.source, GltfSource):
-            return _rewritten(rig, path)
-        if kind == ".glb":
-            return {path: new_glb(rig)}
-        raise FileError("a rig that did not come from glTF is saved as .glb, not as .gltf")
-    raise FileError(f'a rig cannot be saved as "{kind}"; end the name in {WRITABLE}')
+    return _rewritten(rig, path) if isinstance(rig.source, GltfSource) else {path: new_glb(rig)}
 
 
 def _rewritten(rig: Rig, path: Path) -> dict[Path, bytes]:

@@ -1,15 +1,13 @@
-"""Reading and writing whole files, with errors that name them."""
+"""Reading whole files, with errors that name them."""
 
 from __future__ import annotations
 
-import os
-import secrets
-import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 from ..errors import CutcellError, FileError
+from ..writing import reason
 
 
 @contextmanager
@@ -41,7 +39,7 @@ def read_bytes(path: Path) -> bytes:
     except IsADirectoryError:
         raise FileError(f"{path}: is a folder; give a file in it") from None
     except (OSError, ValueError) as e:  # ValueError: a null byte in the path
-        raise FileError(f"{path}: cannot be read ({_reason(e)})") from None
+        raise FileError(f"{path}: cannot be read ({reason(e)})") from None
     if not data:
         raise FileError(f"{path.name}: the file is empty")
     return data
@@ -53,41 +51,3 @@ def read_text(path: Path) -> str:
         return read_bytes(path).decode("utf-8-sig")
     except UnicodeDecodeError as e:
         raise FileError(f"{path.name}: is not a text file (byte {e.start} is not UTF-8)") from None
-
-
-def write_all(contents: dict[Path, bytes]) -> None:
-    """Write files so that a failure leaves the old ones as they were.
-
-    Everything is written under temporary names in the same folders first, then renamed
-    in the order given.
-    """
-    written: list[tuple[Path, Path]] = []
-    try:
-        for path, data in contents.items():
-            path.parent.mkdir(parents=True, exist_ok=True)
-            real = path.resolve()  # through a link, not over it
-            written.append((_write_beside(real, data), real))
-        for temporary, real in written:
-            os.replace(temporary, real)
-    except OSError as e:
-        raise FileError(f"{path}: cannot be written ({_reason(e)})") from None
-    finally:
-        for temporary, _ in written:
-            temporary.unlink(missing_ok=True)
-
-
-def _write_beside(path: Path, data: bytes) -> Path:
-    temporary = path.with_name(f".{path.name[:40]}.{secrets.token_hex(4)}")
-    try:
-        with temporary.open("xb") as file:
-            file.write(data)
-        if path.exists():
-            shutil.copymode(path, temporary)
-    except OSError:
-        temporary.unlink(missing_ok=True)
-        raise
-    return temporary
-
-
-def _reason(error: BaseException) -> str:
-    return getattr(error, "strerror", None) or str(error)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import mimetypes
+import os
 from pathlib import Path
 from typing import Any
 
@@ -30,7 +31,7 @@ def carry_images(storage: Storage, document: Document, target: Path) -> dict[Pat
         Files to write beside the document.
     """
     source = document.path
-    moved = source.parent.resolve() != target.parent.resolve()
+    moved = os.path.realpath(source.parent) != os.path.realpath(target.parent)
     to_text = target.suffix.lower() == ".gltf"
     if not moved and (to_text or document.binary):
         return {}
@@ -40,20 +41,27 @@ def carry_images(storage: Storage, document: Document, target: Path) -> dict[Pat
         if not isinstance(uri, str) or uri.startswith("data:"):
             continue
         found, goal = beside(source, uri), beside(target, uri)
-        if found is None or goal is None or not found.is_file():
+        content = None if found is None else _content(found)
+        if found is None or goal is None or content is None:
             continue
-        content = found.read_bytes()
-        if to_text:
-            _check_free(goal, content)
-            files[goal] = content
-        else:
+        if not to_text:
             _embed(storage, image, found.name, content)
+        elif not os.path.lexists(goal):
+            files[goal] = content
+        elif _content(goal) != content:
+            raise FileError(
+                f"its image {uri} would replace another file of that name; save it in another "
+                "folder, or as .glb, which takes images in"
+            )
     return files
 
 
-def _check_free(goal: Path, content: bytes) -> None:
-    if goal.exists() and (not goal.is_file() or goal.read_bytes() != content):
-        raise FileError(f"its image {goal.name} would replace another file, {goal}")
+def _content(file: Path) -> bytes | None:
+    """Return what is in a file; None if it is not there, or none that can be read."""
+    try:
+        return file.read_bytes()
+    except (OSError, ValueError):
+        return None
 
 
 def _embed(storage: Storage, image: dict[str, Any], name: str, content: bytes) -> None:

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from ..errors import FileError, MeshError, SkeletonError, WeightsError
 from ..rig import Rig
+from .gltf_buffer_file import buffer_file, relative_uri
 from .gltf_container import Document, pack_glb
 from .gltf_images import carry_images
 from .gltf_influences import pack_influences
@@ -50,7 +51,7 @@ def rewritten(rig: Rig, path: Path) -> dict[Path, bytes]:
     for part, old in zip(source.parts, before, strict=True):
         _store(storage, document, rig, part, old)
     carried = carry_images(storage, source.document, path)
-    return {**carried, **_packed(storage, source.document, path)}
+    return {**carried, **_packed(storage, source.document, path, carried)}
 
 
 def _check_same(rig: Rig, source: GltfSource) -> None:
@@ -109,7 +110,9 @@ def _check_reachable(weights: NDArray, rig: Rig, part: Part) -> None:
         )
 
 
-def _packed(storage: Storage, document: Document, path: Path) -> dict[Path, bytes]:
+def _packed(
+    storage: Storage, document: Document, path: Path, carried: dict[Path, bytes]
+) -> dict[Path, bytes]:
     uris = [buffer.get("uri") for buffer in document.items("buffers")]
     data = storage.finish()
     own = storage.document["buffers"][0] if data else {}
@@ -120,9 +123,9 @@ def _packed(storage: Storage, document: Document, path: Path) -> dict[Path, byte
         head = "data:application/octet-stream;base64,"
         own["uri"] = head + base64.b64encode(data).decode()
         return {path: _text(storage.document)}
-    beside = path.with_suffix(".bin")
-    own["uri"] = beside.name.replace("%", "%25").replace("#", "%23").replace("?", "%3F")
-    return {beside: data, path: _text(storage.document)}
+    file = buffer_file(path, document, carried)
+    own["uri"] = relative_uri(file)
+    return {file: data, path: _text(storage.document)}
 
 
 def _text(document: dict[str, Any]) -> bytes:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+from io import BytesIO, StringIO
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..errors import FileError, ParameterError
 from ..rig import Rig
+from ..writing import check_place, write_all
 
 DIGITS = 7
 """Significant digits of a CSV's numbers: what 32 bits hold."""
@@ -32,47 +34,53 @@ def save_numbers(path: str | Path, rig: Rig, **tables: ArrayLike) -> None:
     Raises
     ------
     FileError
-        Another ending, or a folder that is not there.
+        Another ending, a folder that is not there, or a file that cannot be written.
     ParameterError
-        No table, several for a CSV, or one of another shape.
+        No table, several for a CSV, one of another shape, or not of real numbers.
     """
     path = Path(path)
     shape = (len(rig.mesh.vertices), len(rig.skeleton.joints))
-    arrays = {name: np.asarray(table, np.float64) for name, table in tables.items()}
+    arrays = {name: np.asarray(table) for name, table in tables.items()}
     for name, array in arrays.items():
+        if array.dtype.kind not in "biuf":
+            raise ParameterError(f"{name} must be real numbers, not {array.dtype}")
         if array.shape != shape:
             raise ParameterError(
                 f"{name} has the shape {array.shape}, but the rig has {shape[0]} vertices and "
                 f"{shape[1]} joints"
             )
-    if not path.absolute().parent.is_dir():
-        raise FileError(f"{path.name}: there is no folder {path.parent} to save it in")
+    check_place(path)
     kind = path.suffix.lower()
     if kind == ".npz":
-        _save_npz(path, rig, arrays)
+        if not arrays:
+            raise ParameterError("there are no numbers to save")
+        pack = _packed_npz
     elif kind == ".csv":
         if len(arrays) != 1:
             raise ParameterError(f"a CSV holds one table, not {len(arrays)}; save an NPZ for all")
-        _save_csv(path, rig, next(iter(arrays.values())))
+        pack = _packed_csv
     else:
         raise FileError(f'{path.name}: numbers are saved as .csv or .npz, not as "{kind}"')
+    write_all({path: pack(rig, arrays)})
 
 
-def _save_npz(path: Path, rig: Rig, arrays: dict[str, NDArray[np.float64]]) -> None:
-    if not arrays:
-        raise ParameterError("there are no numbers to save")
+def _packed_npz(rig: Rig, arrays: dict[str, NDArray]) -> bytes:
+    packed = BytesIO()
     np.savez_compressed(
-        path,
+        packed,
         joint_names=np.array(rig.skeleton.names),
         parents=rig.skeleton.parents,
         vertex_indices=np.arange(len(rig.mesh.vertices)),
-        **arrays,  # type: ignore[arg-type]
+        **{name: array.astype(np.float64) for name, array in arrays.items()},  # type: ignore[arg-type]
     )
+    return packed.getvalue()
 
 
-def _save_csv(path: Path, rig: Rig, table: NDArray[np.float64]) -> None:
-    with path.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(["vertex", *rig.skeleton.names])
-        for vertex, row in enumerate(table.tolist()):
-            writer.writerow([vertex, *(f"{value:.{DIGITS}g}" for value in row)])
+def _packed_csv(rig: Rig, arrays: dict[str, NDArray]) -> bytes:
+    (table,) = arrays.values()
+    packed = StringIO(newline="")
+    writer = csv.writer(packed)
+    writer.writerow(["vertex", *rig.skeleton.names])
+    for vertex, row in enumerate(table.astype(np.float64).tolist()):
+        writer.writerow([vertex, *(f"{value:.{DIGITS}g}" for value in row)])
+    return packed.getvalue().encode()

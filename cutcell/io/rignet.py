@@ -6,14 +6,16 @@ Lines of the second: ``joints NAME x y z``, ``root NAME``, ``hier PARENT CHILD``
 
 from __future__ import annotations
 
+import os
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import FileError, SkeletonError, WeightsError
-from ..rig import Rig, Skeleton
+from ..errors import CutcellError, FileError, SkeletonError, WeightsError
+from ..rig import Rig, Skeleton, TriangleMesh
 from .files import naming, read_text
 from .objects import numbered_words, numbers, one_number, parse_obj, write_obj
 from .weights import carrying, summed
@@ -155,9 +157,40 @@ def rignet_files(path: Path, rig: Rig) -> dict[Path, bytes]:
             pairs = " ".join(f"{names[j]} {float(row[j])!r}" for j in carrying)
             if pairs:
                 lines.append(f"skin {i} {pairs}")
-    stem = path.stem.removesuffix("_rig") if path.stem != "_rig" else path.stem
     text = "\n".join(lines) + "\n"
-    return {path.with_name(f"{stem}.obj"): write_obj(rig.mesh).encode(), path: text.encode()}
+    obj = _mesh_goal(path)
+    mesh = {} if check_mesh_file(path, rig.mesh) else {obj: write_obj(rig.mesh).encode()}
+    return {**mesh, path: text.encode()}
+
+
+def check_mesh_file(path: Path, mesh: TriangleMesh) -> bool:
+    """Tell whether the mesh stands beside a rig file already; it then stays as it is.
+
+    Its texture coordinates, normals and materials are not the rig's to write again.
+
+    Raises
+    ------
+    FileError
+        A file of that name is there, and holds something else.
+    """
+    obj = _mesh_goal(path)
+    if not os.path.lexists(obj):
+        return False
+    with suppress(CutcellError):
+        there = parse_obj(read_text(obj))
+        same = np.array_equal(there.vertices, mesh.vertices)
+        if same and np.array_equal(there.faces, mesh.faces):
+            return True
+    raise FileError(
+        f"its mesh belongs in {obj.name}, but a file of that name is there and holds another "
+        "mesh; choose another name, or remove that file"
+    )
+
+
+def _mesh_goal(path: Path) -> Path:
+    """Return where the mesh of a rig file is written."""
+    stem = path.stem.removesuffix("_rig") if path.stem != "_rig" else path.stem
+    return path.with_name(f"{stem}.obj")
 
 
 def word_names(names: tuple[str, ...]) -> list[str]:

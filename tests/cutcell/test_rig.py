@@ -59,7 +59,7 @@ class TestMesh:
             (CORNERS[:, :2], TETRAHEDRON, r"vertices has the shape \(4, 2\), expected \(any, 3\)"),
             (CORNERS, [[0, 1, 2, 3]], r"faces has the shape \(1, 4\)"),
             (CORNERS, [[0, 1, 2.5]], "faces must be whole numbers"),
-            ([["a", "b", "c"]], TETRAHEDRON, "vertices must be an array of numbers"),
+            ([["a", "b", "c"]], TETRAHEDRON, "vertices must be an array of real numbers"),
             ([[0, 0, 0], [1, 0]], TETRAHEDRON, "vertices must be an array of numbers"),
         ],
     )

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import cutcell
-from cutcell.cli import ENDINGS
+from cutcell.io import SAVED
 from cutcell.skinning.weights import DEFAULT_LEAF
 from tests.cutcell.cli.files import BAR, JOINTS, bar_faces, refused, write_obj
 
@@ -91,7 +91,7 @@ def test_a_wrong_output_is_told_before_the_work(run, bar, tmp_path, name, senten
     assert sentence in refused(run("bind", bar, tmp_path / name, "-r", 10_000))
 
 
-@pytest.mark.parametrize("ending", ENDINGS)
+@pytest.mark.parametrize("ending", SAVED)
 def test_every_ending_it_lets_through_can_be_saved(run, bar, tmp_path, ending):
     result = run("bind", bar, tmp_path / f"out{ending}", "-r", 8)
     if ending == ".gltf":  # only what came from glTF
@@ -106,3 +106,26 @@ def test_a_mesh_without_a_skeleton_is_refused_by_name(run, tmp_path):
     told = refused(run("bind", path, tmp_path / "out.glb"))
     assert told.startswith("error: alone.obj: the rig has no skeleton; export the mesh")
     assert not (tmp_path / "out.glb").exists()
+
+
+def test_the_mesh_that_was_read_is_left_as_it_is(run, bar, tmp_path):
+    textured = bar.read_text() + "vt 0 0\n"
+    bar.write_text(textured)
+    result = run("bind", bar, tmp_path / "bar.txt", "-r", 8, "--json")
+    assert json.loads(result.stdout)["files"] == [str(tmp_path / "bar.txt")]
+    assert bar.read_text() == textured
+
+
+def test_a_file_that_would_be_replaced_is_told_before_the_work(run, bar, tmp_path):
+    (tmp_path / "out.obj").write_text("another mesh")
+    sentence = refused(run("bind", bar, tmp_path / "out.txt", "-r", 10_000))
+    assert "out.txt: its mesh belongs in out.obj" in sentence
+    assert (tmp_path / "out.obj").read_text() == "another mesh"
+
+
+def test_all_files_that_are_written_are_told(run, bar, tmp_path):
+    run("bind", bar, tmp_path / "one.glb", "-r", 8)
+    (tmp_path / "two.bin").write_text("of something else")
+    result = run("bind", tmp_path / "one.glb", tmp_path / "two.gltf", "-r", 8)
+    assert "files         two-2.bin, two.gltf" in result.stdout
+    assert (tmp_path / "two.bin").read_text() == "of something else"

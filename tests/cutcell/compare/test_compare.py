@@ -234,7 +234,7 @@ def test_figures_that_cannot_be_drawn_say_why(tmp_path, monkeypatch):
         plot_comparison(found, tmp_path / "plot.png")
     (tmp_path / "taken.png").mkdir()
     found = compare([character()], ["euclidean"])
-    with pytest.raises(FileError, match="cannot be written"):
+    with pytest.raises(FileError, match="is a folder"):
         plot_comparison(found, tmp_path / "taken.png")
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     with pytest.raises(MissingLibraryError, match=r"cutcell\[plot\]"):
