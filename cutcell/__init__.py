@@ -14,6 +14,8 @@ _HOMES = {
     "Attachment": "rig",
     "Part": "rig",
     "LeftOut": "rig",
+    "deform_joints": "deform",
+    "DeformJoints": "deform",
     "load": "io",
     "save": "io",
     "build_graph": "graph",

@@ -39,6 +39,7 @@ ORDER = [
         "unions",
         "writing",
     },
+    {"deform"},
     {"io"},
     {"graph"},
     {"geodesics"},

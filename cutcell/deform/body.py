@@ -57,7 +57,6 @@ class Body:
             ).sum(axis=1)
         return np.abs(winding) > INSIDE * 4 * np.pi
 
-
     def encloses(self, point: NDArray[np.float64]) -> bool:
         """Tell whether the surface encloses a point (3,), however close it is."""
         a, b, c = np.moveaxis(self._corners - point, 1, 0)
@@ -73,7 +72,8 @@ def _samples(corners: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray
     sides = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
     splits = np.clip(np.ceil(sides / SPACING), 1, MOST_SPLITS).astype(int)
     area = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]) / 2
-    points, areas = [], []
+    points: list[NDArray] = []
+    areas: list[NDArray] = []
     for n in np.unique(splits):
         mine = splits == n
         weights = _middles(int(n))
@@ -89,11 +89,11 @@ def _merged(
     cell = np.floor(points / CELL).astype(np.int64)
     key = (cell * [1 << 42, 1 << 21, 1]).sum(axis=1)
     where, count = np.unique(key, return_inverse=True, return_counts=True)[1:]
-    sums = [
-        np.stack([np.bincount(where, x, len(count)) for x in values.T], axis=1)
-        for values in (points, areas)
-    ]
-    return sums[0] / count[:, None], sums[1]
+
+    def summed(values: NDArray[np.float64]) -> NDArray[np.float64]:
+        return np.stack([np.bincount(where, x, len(count)) for x in values.T], axis=1)
+
+    return summed(points) / count[:, None], summed(areas)
 
 
 def _middles(splits: int) -> NDArray[np.float64]:

@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from ..rig import Skeleton, TriangleMesh
+from ..checks import check_has_joints
+from ..rig import FAR_OUTSIDE, Skeleton, TriangleMesh
 from .body import SPACING, Body
 from .names import is_control, is_end_marker, is_fingertip, is_root, is_socket, may_be_control
 
@@ -62,7 +63,13 @@ def deform_joints(mesh: TriangleMesh, skeleton: Skeleton) -> DeformJoints:
     -------
     DeformJoints
         At least one joint may carry weight.
+
+    Raises
+    ------
+    SkeletonError
+        The skeleton has no joints.
     """
+    check_has_joints(skeleton)
     found = _Guess(mesh, skeleton)
     found.by_name()
     if found.is_body:
@@ -117,14 +124,17 @@ class _Guess:
                 self._rule_out(j, "part of a control")
 
     def by_place(self) -> None:
-        """Rule out what is away from the body, roots on the floor, and ends of bones."""
+        """Rule out what is away from the body, roots on the floor, and ends of bones.
+
+        What is very far away is in other units, which `Rig` refuses.
+        """
         for j in self.leaves_first:
             if not self.deform[j]:
                 continue
             below = self._bones_below(j)
             if not len(below) and self._ends_a_bone(j):
                 self._rule_out(j, "end marker: no skin beyond it")
-            elif self.distance[j] > OUTSIDE and not self._leads_into_body(j, below):
+            elif OUTSIDE < self.distance[j] < FAR_OUTSIDE and not self._leads_into_body(j, below):
                 self._rule_out(j, "outside of the body")
             elif self.parents[j] < 0 and self._stands_beside(j, below):
                 self._rule_out(j, "root beside the body")

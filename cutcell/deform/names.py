@@ -4,29 +4,30 @@ from __future__ import annotations
 
 import re
 
-END_WORDS = frozenset({"end", "nub", "site", "effector", "eff"})
+
+def _set(text: str) -> frozenset[str]:
+    return frozenset(text.split())
+
+
+END_WORDS = _set("end nub site effector eff")
 """Last word of an end marker: Blender's and Sketchfab's `_end`, 3ds Max' `Nub`, BVH's `End Site`,
 Softimage's `eff`."""
-CONTROL_WORDS = frozenset(
-    """
-    pole target ctrl ctl control controller pv polevector goal aim lookat
-    locator marker helper dummy null camera mch tracker trajectory footsteps
-    """.split()
+CONTROL_WORDS = _set(
+    "pole target ctrl ctl control controller pv polevector goal aim lookat locator marker helper "
+    "dummy null camera mch tracker trajectory footsteps"
 )
 """Words of a joint that animators handle, and that moves other joints."""
 CONTROL_PARTS = ("control", "ctrl", "target", "orient", "polevector", "helper", "locator")
 """The same inside longer words, as in `LEGCONTROL`."""
+UNSURE = _set("ik weapon holster prop props item")
+"""Words of a joint that either moves skin itself or only stands for another joint."""
 SOCKET_PARTS = ("socket", "slot", "attach")
 """Words of a joint that things are hung on, which are meshes of their own."""
-UNSURE = frozenset({"ik", "weapon", "holster", "prop", "props", "item"})
-"""Words of a joint that either moves skin itself or only stands for another joint."""
-FOOT_ROLLS = frozenset({"heel", "toe", "toes", "foot", "ball", "bank"})
+FOOT_ROLLS = _set("heel toe toes foot ball bank")
 """With "roll": a pivot of a foot control. An arm's roll joint moves skin."""
-DIGITS = frozenset("thumb index middle ring pinky little finger toe".split())
+DIGITS = _set("thumb index middle ring pinky little finger toe")
 FOURTH = re.compile(r"Hand(Thumb|Index|Middle|Ring|Pinky)4$")
-ROOT_WORDS = frozenset(
-    "root master armature base global world origin reference rig trajectory ground".split()
-)
+ROOT_WORDS = _set("root master armature base global world origin reference rig trajectory ground")
 
 
 def words(name: str) -> list[str]:

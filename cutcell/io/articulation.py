@@ -17,8 +17,9 @@ from numpy.typing import NDArray
 
 from ..errors import FileError, SkeletonError, WeightsError
 from ..rig import Rig, Skeleton, TriangleMesh
+from .deforming import with_deform
 from .files import read_bytes
-from .weights import carrying, summed
+from .weights import summed
 
 REQUIRED = ("vertices", "faces", "joints", "bones")
 
@@ -47,13 +48,9 @@ def read_articulation(path: Path) -> Rig:
     if count == 0:
         raise SkeletonError("has no joints")
     weights, warnings = _weights(arrays, len(mesh.vertices), count, f'mesh "{path.stem}"')
-    skeleton = Skeleton(
-        joints,
-        _parents(arrays, count),
-        _names(arrays, count),
-        carrying(weights),  # type: ignore[arg-type]
-    )
-    return Rig(mesh, skeleton, weights, name=path.stem, warnings=tuple(warnings))
+    skeleton = Skeleton(joints, _parents(arrays, count), _names(arrays, count))
+    skeleton, told = with_deform(mesh, skeleton, weights)
+    return Rig(mesh, skeleton, weights, name=path.stem, warnings=(*warnings, *told))
 
 
 def _arrays(data: bytes) -> dict[str, NDArray]:

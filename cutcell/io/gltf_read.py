@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from ..errors import CutcellError, FileError, MeshError
 from ..rig import Attachment, Rig, TriangleMesh
 from ..rig import Part as NamedPart
+from .deforming import with_deform
 from .gltf_bare import read_bare
 from .gltf_clips import read_clips
 from .gltf_container import Document, read_document
@@ -30,7 +31,6 @@ from .gltf_primitives import (
     read_weights,
 )
 from .gltf_skins import Bind, read_bind, read_skeleton
-from .weights import carrying
 
 
 @dataclass(eq=False)
@@ -85,8 +85,7 @@ def read_rig(document: Document, path: Path) -> Rig:
         raise MeshError("its skinned meshes have no triangles")
     mesh = TriangleMesh(np.concatenate(vertices), np.concatenate(faces))  # type: ignore[arg-type]
     weights = _dense(parts, stored, len(mesh.vertices), len(bind.nodes))
-    used = None if weights is None else carrying(weights)
-    skeleton = read_skeleton(document, nodes, bind, used)
+    skeleton, told = with_deform(mesh, read_skeleton(nodes, bind), weights)
     attached = _read_attachments(document, nodes, bind)
     return Rig(
         mesh,
@@ -99,7 +98,7 @@ def read_rig(document: Document, path: Path) -> Rig:
         allowed=_allowed(parts, len(mesh.vertices), len(bind.nodes)),
         parts=named,
         left_out=left_out_meshes(document, nodes, skinned, attached),
-        warnings=tuple(document.warnings),
+        warnings=(*document.warnings, *told),
         source=GltfSource(document, parts, skeleton.names),
     )
 

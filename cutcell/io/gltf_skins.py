@@ -123,15 +123,8 @@ def _rest_world(nodes: Nodes, joints: list[int], inverse: NDArray) -> NDArray:
     return np.eye(4)
 
 
-def read_skeleton(document: Document, nodes: Nodes, bind: Bind, used: NDArray | None) -> Skeleton:
-    """Return the joints with positions, parents and unique names.
-
-    Parameters
-    ----------
-    document, nodes, bind
-    used : array, shape (j,), bool, or None
-        Which joints may carry weight; all for None.
-    """
+def read_skeleton(nodes: Nodes, bind: Bind) -> Skeleton:
+    """Return the joints with positions, orientations, parents and unique names."""
     place = {node: j for j, node in enumerate(bind.nodes)}
     parents = [
         next((place[a] for a in nodes.ancestors(node) if a in place), -1) for node in bind.nodes
@@ -146,7 +139,7 @@ def read_skeleton(document: Document, nodes: Nodes, bind: Bind, used: NDArray | 
         raise FileError("a joint has no finite rest position")
     names = unique_names([nodes.raw[node].get("name") for node in bind.nodes])
     orientations = _nearest_orthogonal(at_rest[:, :3, :3])
-    return Skeleton(positions, np.array(parents), names, used, orientations)  # type: ignore[arg-type]
+    return Skeleton(positions, np.array(parents), names, orientations=orientations)  # type: ignore[arg-type]
 
 
 def _nearest_orthogonal(linear: NDArray) -> NDArray:

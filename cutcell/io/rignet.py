@@ -16,9 +16,10 @@ from numpy.typing import NDArray
 
 from ..errors import CutcellError, FileError, SkeletonError, WeightsError
 from ..rig import Rig, Skeleton, TriangleMesh
+from .deforming import with_deform
 from .files import naming, read_text
 from .objects import numbered_words, numbers, one_number, parse_obj, write_obj
-from .weights import carrying, summed
+from .weights import summed
 
 
 @dataclass
@@ -59,8 +60,8 @@ def read_rignet(path: Path) -> Rig:
         said = _parse(text)
         skeleton_names = tuple(said.positions)
         weights, warnings = _weights(said, len(mesh.vertices), skeleton_names, f'mesh "{obj.stem}"')
-        skeleton = _skeleton(said, weights)
-        return Rig(mesh, skeleton, weights, name=obj.stem, warnings=tuple(warnings))
+        skeleton, told = with_deform(mesh, _skeleton(said), weights)
+        return Rig(mesh, skeleton, weights, name=obj.stem, warnings=(*warnings, *told))
 
 
 def _parse(text: str) -> _Text:
@@ -103,15 +104,10 @@ def _joint(words: list[str], at: int, line: int) -> str:
     return words[at]
 
 
-def _skeleton(said: _Text, weights: NDArray | None) -> Skeleton:
+def _skeleton(said: _Text) -> Skeleton:
     place = {name: j for j, name in enumerate(said.positions)}
     parents = [place[said.parents[n]] if n in said.parents else -1 for n in place]
-    return Skeleton(
-        np.array(list(said.positions.values())),
-        np.array(parents),
-        tuple(place),
-        carrying(weights),  # type: ignore[arg-type]
-    )
+    return Skeleton(np.array(list(said.positions.values())), np.array(parents), tuple(place))
 
 
 def _weights(

@@ -21,8 +21,8 @@ def skeleton_file(path: Path) -> Path | None:
     return next((c for c in choices if c.is_file()), None)
 
 
-def read_skeleton_json(path: Path) -> Skeleton:
-    """Read a skeleton.
+def read_skeleton_json(path: Path) -> tuple[Skeleton, bool]:
+    """Read a skeleton, and whether the file says which joints may carry weight.
 
     Raises
     ------
@@ -48,12 +48,14 @@ def read_skeleton_json(path: Path) -> Skeleton:
         place = {name: k for k, name in enumerate(names)}
         for name, joint in zip(names, joints, strict=True):
             _check_fields(joint, name)
-        return Skeleton(
+        says_deform = any("deform" in joint for joint in joints)
+        skeleton = Skeleton(
             np.array([_position(j, n) for n, j in zip(names, joints, strict=True)]),
             np.array([_parent(j, n, place) for n, j in zip(names, joints, strict=True)], int),  # type: ignore[arg-type]
             tuple(names),
             np.array([_deform(j, n) for n, j in zip(names, joints, strict=True)], bool),
         )
+        return skeleton, says_deform
 
 
 def _name(joint: Any, k: int) -> str:

@@ -10,6 +10,7 @@ import numpy as np
 
 from ..errors import FileError, MeshError
 from ..rig import Rig, Skeleton, TriangleMesh
+from .deforming import with_deform
 from .files import read_bytes, read_text
 from .objects import parse_obj
 from .skeleton_json import read_skeleton_json, skeleton_file
@@ -29,8 +30,13 @@ def read_soup(path: Path, skeleton: Path | None) -> Rig:
     """
     mesh = read_mesh(path)
     found = skeleton or skeleton_file(path)
-    joints = Skeleton([], []) if found is None else read_skeleton_json(found)  # type: ignore[arg-type]
-    return Rig(mesh, joints, name=path.stem)
+    if found is None:
+        return Rig(mesh, Skeleton([], []), name=path.stem)  # type: ignore[arg-type]
+    joints, says_deform = read_skeleton_json(found)
+    told: list[str] = []
+    if not says_deform:
+        joints, told = with_deform(mesh, joints, None)
+    return Rig(mesh, joints, name=path.stem, warnings=tuple(told))
 
 
 def read_mesh(path: Path) -> TriangleMesh:

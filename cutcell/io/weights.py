@@ -57,10 +57,3 @@ def normalised(weights: NDArray) -> NDArray[np.float64]:
         weights = weights / np.where(top > 0, top, 1)
     sums = weights.sum(axis=1, keepdims=True)
     return np.divide(weights, sums, out=np.zeros(weights.shape), where=sums > 0)
-
-
-def carrying(weights: NDArray | None) -> NDArray[np.bool_] | None:
-    """Return which joints carry weight, shape (j,), or None (all may) when none does."""
-    if weights is None or not weights.any():
-        return None
-    return np.asarray((weights > 0).any(axis=0))
