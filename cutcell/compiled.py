@@ -1,9 +1,30 @@
-"""How the innermost kernels are compiled."""
+"""How kernels are compiled."""
 
 from collections.abc import Callable
 from typing import Any
 
 from numba import njit
+from numba.core.dispatcher import Dispatcher
+
+from .kernel_cache import KernelCache
+
+
+def compiled(kernel: Callable | None = None, **options: Any) -> Any:
+    """Compile a kernel that runs without Python's lock, and keep it (`kernel_cache`).
+
+    Parameters
+    ----------
+    kernel : callable
+        Left out where the decorator is used with options.
+    **options
+        Of `numba.njit`.
+    """
+    if kernel is None:
+        return lambda kernel: compiled(kernel, **options)
+    dispatcher = njit(nogil=True, **options)(kernel)
+    if isinstance(dispatcher, Dispatcher):  # it is a plain function under NUMBA_DISABLE_JIT
+        dispatcher._cache = KernelCache(kernel)  # type: ignore[attr-defined]
+    return dispatcher
 
 
 def lean(kernel: Callable) -> Callable:
@@ -13,11 +34,10 @@ def lean(kernel: Callable) -> Callable:
     atomic addition, dearer than what is done with the row, and dearer still while another
     thread counts, too. Whoever calls the kernel holds its arrays anyhow.
     """
-    options: Any = {"cache": True, "nogil": True, "_nrt": False}
-    return njit(**options)(kernel)
+    return compiled(kernel, _nrt=False)
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def put(values, place):
     """Copy the entries of an array (n,) into one at least as long.
 
@@ -33,5 +53,4 @@ def side_by_side(kernel: Callable) -> Callable:
     To divide by zero gives infinity there: to look out for it and raise an error takes a branch.
     A product may be added without being rounded first.
     """
-    options: Any = {"cache": True, "nogil": True, "_nrt": False, "error_model": "numpy"}
-    return njit(fastmath={"contract"}, **options)(kernel)
+    return compiled(kernel, _nrt=False, error_model="numpy", fastmath={"contract"})

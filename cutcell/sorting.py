@@ -1,10 +1,11 @@
 """Items sorted into groups in linear time."""
 
 import numpy as np
-from numba import njit
+
+from .compiled import compiled
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def sort_into(group, count):
     """Sort items by group, the items of each in order (counting sort).
 

@@ -7,10 +7,11 @@ no later than itself.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
+
+from .compiled import compiled
 
 
-@njit(cache=True, nogil=True, inline="always")
+@compiled(inline="always")
 def root(first, i):
     """Return the lowest member of i's group."""
     while first[i] != i:
@@ -19,7 +20,7 @@ def root(first, i):
     return i
 
 
-@njit(cache=True, nogil=True, inline="always")
+@compiled(inline="always")
 def join(first, i, j):
     """Make one group of those of i and j; return its lowest member."""
     a, b = root(first, i), root(first, j)
@@ -28,7 +29,7 @@ def join(first, i, j):
     return low
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def numbered(first):
     """Return the number of each member's group, in the order of the lowest, and the lowest."""
     count = len(first)

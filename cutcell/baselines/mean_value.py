@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from ..compiled import compiled
 from ..threads import in_threads, parts
 
 TOUCHING = 1e-9
@@ -40,7 +40,7 @@ def mean_values(
     return np.concatenate(found)
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _coordinates(vertices, faces, points):
     result = np.zeros((len(points), len(vertices)))
     unit, away = np.empty((len(vertices), 3)), np.empty(len(vertices))
@@ -65,7 +65,7 @@ def _coordinates(vertices, faces, points):
     return result
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _add_face(unit, away, face, row):
     """Add what a triangle gives to its corners; True if the point lies on it: no other counts."""
     theta, cosine, sine = np.empty(3), np.empty(3), np.empty(3)

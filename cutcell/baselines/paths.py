@@ -5,10 +5,10 @@ from __future__ import annotations
 from heapq import heappop, heappush
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 from scipy.sparse import coo_array
 
+from ..compiled import compiled
 from ..threads import in_threads, parts
 
 
@@ -51,7 +51,7 @@ def path_lengths(
     return np.concatenate(found)
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _search(indptr, indices, lengths, first, source, start):
     result = np.full((len(first) - 1, len(indptr) - 1), np.inf)
     for one in range(len(first) - 1):

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from ..compiled import compiled
 from ..threads import in_threads, parts
 
 LEAF = 4
@@ -88,7 +88,7 @@ def _build(points, faces):
     )
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _blocked(points, faces, low, high, child, first, vertex, target):
     result = np.zeros(len(vertex), np.bool_)
     for q in range(len(vertex)):
@@ -115,7 +115,7 @@ def _blocked(points, faces, low, high, child, first, vertex, target):
     return result
 
 
-@njit(cache=True)
+@compiled
 def _meets_box(start, way, low, high):
     enter, leave = 0.0, 1.0
     for axis in range(3):
@@ -128,7 +128,7 @@ def _meets_box(start, way, low, high):
     return enter <= leave
 
 
-@njit(cache=True)
+@compiled
 def _meets_triangle(start, way, a, b, c):
     """Whether the segment meets the triangle strictly between its ends (Möller & Trumbore)."""
     side, other, away = b - a, c - a, start - a

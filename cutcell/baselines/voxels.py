@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 from scipy.ndimage import label
 
+from ..compiled import compiled
 from .body import Body
 
 PAD = 2
@@ -92,7 +92,7 @@ def voxelize(body: Body) -> Voxels:
     return Voxels(solid, number, centres, resolution)
 
 
-@njit(cache=True)
+@compiled
 def mark_triangles(triangles, marked):
     """Mark the unit boxes that triangles (m, 3, 3) touch: box (i, j, k) starts at that corner."""
     low, high = np.empty(3, np.int64), np.empty(3, np.int64)
@@ -115,7 +115,7 @@ def mark_triangles(triangles, marked):
                     marked[i, j, k] = _touches(corners)
 
 
-@njit(cache=True)
+@compiled
 def _touches(corners):
     """Whether a triangle meets the unit box around the origin: no axis separates them.
 
@@ -136,7 +136,7 @@ def _touches(corners):
     return True
 
 
-@njit(cache=True)
+@compiled
 def _separates(axis, corners):
     radius = HALF * (abs(axis[0]) + abs(axis[1]) + abs(axis[2]))
     least, most = np.inf, -np.inf

@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 from scipy.spatial.distance import cdist
 
+from ..compiled import compiled
 from ..sorting import sort_into
 from .bones import Bones, Sources
 from .labels import NOBODY, find_room, no_labels
@@ -71,7 +71,7 @@ def rank_bones(bones: Bones, sources: Sources) -> Ranking:
     return Ranking(joints, places, table, rank, begin)
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _rank(order, start, end, joint, bone):
     """Rank joints by the first of their bones; list sources by bone."""
     table, rank = np.empty((len(order), 7)), np.empty(len(order), np.int32)
@@ -143,7 +143,7 @@ def begin(
     return Front(each, labels, anchors, least)
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _enter_sources(labels, anchors, least, each, group, rank, node, bone, distance):
     for s in range(len(node)):
         joint, anchor = rank[bone[s]], ~bone[s]
@@ -156,7 +156,7 @@ def _enter_sources(labels, anchors, least, each, group, rank, node, bone, distan
             least[node[s]] = min(least[node[s]], distance[s])
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def line_up(labels, head, scale):
     """Put all labels that are there into their buckets."""
     for label in range(len(labels)):

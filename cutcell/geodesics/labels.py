@@ -7,9 +7,9 @@ often than the rest, and stand by themselves: those of a node fit into one line 
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from ..compiled import compiled
 from .queue import LOOSE
 
 NOBODY, NOTHING = -1, -(2**31)
@@ -37,7 +37,7 @@ def no_labels(nodes: int, each: int) -> tuple[NDArray[np.void], NDArray[np.int32
     return labels, np.full(nodes * each, NOTHING, np.int32)
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _empty(labels):
     for label in range(len(labels)):
         labels[label].distance, labels[label].joint = np.inf, NOBODY
@@ -45,7 +45,7 @@ def _empty(labels):
         labels[label].before = 0
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def find_room(labels, each, v, joint):
     """Return the label of a joint at node v or, if it has none, its farthest."""
     own, farthest, most = -1, v * each, 0.0
@@ -57,7 +57,7 @@ def find_room(labels, each, v, joint):
     return own if own >= 0 else farthest
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def follows_anchor(anchors, each, v, anchor):
     """Tell whether any label of node v has an anchor."""
     found = False

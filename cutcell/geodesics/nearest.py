@@ -7,9 +7,9 @@ takes one pass, is far quicker than growing a tree over them.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from ..compiled import compiled
 from ..sorting import sort_into
 
 IN_A_CELL = 4
@@ -71,12 +71,12 @@ class NodeGrid:
         return _beside(grid, self._resolution, np.clip(points, -1, 2))
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def _cell(x, side):
     return min(max(int(np.floor(x * side)), 0), side - 1)
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _sort_into_cells(nodes, chosen, side):
     """Sort the chosen nodes by cell; return where each cell begins, and their order."""
     count = len(nodes)
@@ -88,7 +88,7 @@ def _sort_into_cells(nodes, chosen, side):
     return sort_into(cell, side * side * side)
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _find_nearest(grid, points, slack, found):
     """List nodes for each point; return how many there are, also beyond the room for them."""
     nodes, start, order, side = grid
@@ -113,7 +113,7 @@ def _find_nearest(grid, points, slack, found):
     return count
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _near_enough(grid, x, y, z):
     """Return the squared distance to the nearest node in the innermost shell of cells with any."""
     nodes, start, order, side = grid
@@ -133,7 +133,7 @@ def _near_enough(grid, x, y, z):
     return least
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _beside(grid, resolution, points):
     nodes, start, order, side = grid
     found = np.zeros(len(points), np.bool_)
@@ -162,7 +162,7 @@ def _beside(grid, resolution, points):
     return found
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def _squared(nodes, n, x, y, z):
     x, y, z = nodes[n, 0] - x, nodes[n, 1] - y, nodes[n, 2] - z
     return x * x + y * y + z * z

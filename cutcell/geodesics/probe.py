@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
+from ..compiled import compiled
 from ..graph import CutCellGraph
 from ..graph.interior import OUTSIDE, point_number
 from .nearest import NodeGrid
@@ -70,7 +70,7 @@ class BodyProbe:
         return _ways_out(start, direction, step, self._resolution, table)
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _inside(points, resolution, table):
     found = np.empty(len(points), np.bool_)
     for p in range(len(points)):
@@ -78,7 +78,7 @@ def _inside(points, resolution, table):
     return found
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def _is_inside(resolution, table, x, y, z):
     start, first, last, number = table
     x, y, z = np.floor(x * resolution), np.floor(y * resolution), np.floor(z * resolution)
@@ -88,7 +88,7 @@ def _is_inside(resolution, table, x, y, z):
     return point_number(start, first, last, number, column, int(z)) != OUTSIDE
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _ways_out(start, direction, step, resolution, table):
     away = np.zeros(len(start))
     for p in range(len(start)):
@@ -109,7 +109,7 @@ def _ways_out(start, direction, step, resolution, table):
     return away
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _to_nearest(points, others):
     result = np.empty(len(points))
     for p in range(len(points)):

@@ -11,19 +11,20 @@ number of buckets a unit of distance. The last bucket holds everything that lies
 """
 
 import numpy as np
-from numba import njit
+
+from ..compiled import compiled
 
 END, LOOSE, SETTLED = -1, -2, -3
 """What `after` holds instead of another label: last of its bucket, in no bucket, or done."""
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def bucket_of(head, scale, distance):
     """Return the bucket of a distance."""
     return min(int(distance * scale), len(head) - 1)
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def join(head, labels, bucket, label):
     """Put a label that is in no bucket into one."""
     follower = head[bucket]
@@ -32,7 +33,7 @@ def join(head, labels, bucket, label):
         labels[follower].before = label
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def leave(head, labels, label):
     """Take a label out of its bucket, if it is in one."""
     after, before = labels[label].after, labels[label].before
@@ -47,7 +48,7 @@ def leave(head, labels, label):
     labels[label].after = LOOSE
 
 
-@njit(cache=True)
+@compiled
 def move_on(head, scale, labels):
     """Spread what lies beyond the last bucket over all; return the distance they begin at."""
     label, origin = head[-1], np.inf

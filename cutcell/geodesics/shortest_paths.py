@@ -16,10 +16,9 @@ lowers the distances of all.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
-from ..compiled import lean
+from ..compiled import compiled, lean
 from ..graph import CutCellGraph
 from ..graph.neighbours import Adjacency, list_neighbours
 from ..progress import Progress, silent
@@ -165,7 +164,7 @@ def _sweep_nodes(adjacency, waiting, distance, first, last, forth):
     return any_waited
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def _slice(first, last, k, forth):
     """Return where the k-th of SLICES begins and ends; counted from the end if not `forth`."""
     k = k if forth else SLICES - 1 - k

@@ -8,9 +8,8 @@ for that neighbour (`graph.contracted`). Where it follows another anchor, the li
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
-from ..compiled import lean
+from ..compiled import compiled, lean
 from ..graph import CutCellGraph
 from ..graph.interior import OUTSIDE
 from .labels import follows_anchor
@@ -28,7 +27,7 @@ def body_of(graph: CutCellGraph) -> tuple:
     return graph.lattice.resolution, graph.first_point, left.first_crossing, left.places, steps
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def bend_of(nodes, bones, each, anchor, here):
     """Return the place of an anchor; of a bone, the point nearest to here."""
     if anchor >= 0:
@@ -42,14 +41,14 @@ def bend_of(nodes, bones, each, anchor, here):
     return x + t * ex, y + t * ey, z + t * ez
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def straight(p, q):
     """Return how far two places are apart."""
     x, y, z = p[0] - q[0], p[1] - q[1], p[2] - q[2]
     return np.sqrt(x * x + y * y + z * z)
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def sees(body, anchors, each, u, v, here, anchor, bend):
     """Tell whether the straight way from the bend to the lattice point v stays inside.
 
@@ -80,7 +79,7 @@ def sees(body, anchors, each, u, v, here, anchor, bend):
     return _walk(steps, point, x, y, z)
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def _beside(steps, point, way):
     """Return the point that a line in some way, -1 to 1 along each axis, passes next to."""
     for axis in range(3):
@@ -88,7 +87,7 @@ def _beside(steps, point, way):
     return point
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def _step(steps, point, axis, way):
     """Return the point next along an axis, itself if the way is 0; OUTSIDE if none is joined."""
     if point == OUTSIDE or way == 0:

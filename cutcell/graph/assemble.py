@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
-from ..compiled import put
+from ..compiled import compiled, put
 from ..threads import in_threads
 from .cutcell_graph import INTERIOR, MESH, SURFACE, CutCellGraph
 from .inside_edges import diagonal_edges, edge_starts, fill_edges
@@ -114,7 +113,7 @@ def _kinds(counts: list[int]) -> NDArray[np.uint8]:
     return np.repeat(np.array([MESH, INTERIOR, SURFACE], np.uint8), counts)
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _number_used(low, high, crossings, first):
     """Give the crossings at the ends of runs numbers from `first` on, and the others NONE."""
     node = np.full(crossings, NONE, np.int32)
@@ -130,7 +129,7 @@ def _number_used(low, high, crossings, first):
     return node
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _fill_mesh(vertices, mesh_edges, nodes, edges, lengths):
     put(vertices.reshape(-1), nodes.reshape(-1))
     for e in range(len(mesh_edges)):
@@ -139,7 +138,7 @@ def _fill_mesh(vertices, mesh_edges, nodes, edges, lengths):
         lengths[e] = _apart(vertices, a, vertices, b)
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _fill_crossings(resolution, axes, hits, mesh, first, nodes, triangle, edges, lengths):
     """Place the crossings along one axis that have nodes, and tie them to their corners."""
     u, v, along = axes
@@ -162,7 +161,7 @@ def _fill_crossings(resolution, axes, hits, mesh, first, nodes, triangle, edges,
                 lengths[e] = _apart(nodes, n, vertices, corner)
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def _apart(a, i, b, j):
     x, y, z = a[i, 0] - b[j, 0], a[i, 1] - b[j, 1], a[i, 2] - b[j, 2]
     return np.sqrt(x * x + y * y + z * z)

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from ..compiled import compiled
 from .interior import OUTSIDE
 
 NO_BLOCK = -1
@@ -37,7 +37,7 @@ def find_blocks(
     return _find_blocks(places, resolution, steps)
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _find_blocks(places, resolution, steps):
     deep = np.zeros(len(places), np.bool_)
     for p in range(len(steps)):
@@ -52,7 +52,7 @@ def _find_blocks(places, resolution, steps):
     return innermost
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def _begins_block(place, resolution, outward):
     """Tell if a block begins at a place, and write in which columns of `steps` it goes on."""
     begins = True
@@ -65,7 +65,7 @@ def _begins_block(place, resolution, outward):
     return begins
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def _fill_block(p, steps, deep, outward, block):
     """List the points of a block, until one is not deep inside; tell if all are."""
     block[0] = p

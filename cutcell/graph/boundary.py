@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from ..compiled import compiled
 from .mesh_edges import find_edges
 
 
@@ -46,7 +46,7 @@ def boundary_of(edges: NDArray[np.int32], balance: NDArray[np.int32]) -> Boundar
     return Boundary(*_loops(edges[is_open], balance[is_open], int(edges.max()) + 1))
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _loops(edges, count, vertices):
     """Cut the boundary chain into closed loops without repeated vertices.
 

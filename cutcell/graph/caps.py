@@ -19,10 +19,9 @@ from functools import partial
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
-from ..compiled import lean
+from ..compiled import compiled, lean
 from ..threads import in_threads
 from .boundary import Boundary, boundary_of, find_boundary
 from .solid_angle import between, cross, length
@@ -165,7 +164,7 @@ def _gap(points, step):
     return total / count
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _strips(a, b, drawn):
     loop, start = np.empty(4 * len(a), np.int64), np.empty(len(a) + 1, np.int64)
     size = count = start[0] = 0
@@ -187,7 +186,7 @@ def _strips(a, b, drawn):
     return loop[:size].copy(), start[: count + 1].copy()
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _fans(vertices, loop, start):
     apex, middles = np.empty(len(start) - 1, np.int64), np.zeros((len(start) - 1, 3))
     faces = np.empty((len(loop), 3), np.int32)
@@ -211,7 +210,7 @@ def _fans(vertices, loop, start):
     return apex, middles[:fans].copy(), faces[:count].copy()
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _area(vertices, faces):
     total = 0.0
     for f in range(len(faces)):

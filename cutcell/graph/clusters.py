@@ -30,10 +30,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
-from ..compiled import lean
+from ..compiled import compiled, lean
 from ..threads import in_threads, parts
 from . import moments
 from .caps import Caps
@@ -143,7 +142,7 @@ def _divide(points, order, axis, begin, middle, end):
             return
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _sum_up(rim, first, apex, start):
     """Return the spheres, but for their radii; the moments; and the areas next to rim, apex."""
     leaves = len(start) - 1
@@ -176,7 +175,7 @@ def _sum_up(rim, first, apex, start):
     return sphere, summed, weight
 
 
-@njit(cache=True)
+@compiled
 def _add_fan(rim, span, apex, centre, summed, weight):
     """Add the moments of one cap, and its triangles' areas to those next to the rim."""
     begin, end = span
@@ -191,7 +190,7 @@ def _add_fan(rim, span, apex, centre, summed, weight):
     return total
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _surround(rim, first, apex, start, weight, part, step, sphere):
     """Find the radius and the cubic mean of each so-manieth cluster, from `part` on.
 
@@ -219,7 +218,7 @@ def _surround(rim, first, apex, start, weight, part, step, sphere):
         sphere[k, 4] = min(mean, sphere[k, 3])
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def left_out(sphere, far, reach):
     """Return what the expansion of a cluster leaves out in a ball as far off as that."""
     room = far - sphere[3] - reach

@@ -15,9 +15,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from ..compiled import compiled
 from ..sorting import sort_into
 from .blocks import NO_BLOCK
 from .neighbours import count_ends, list_ends
@@ -73,7 +73,7 @@ def contract(
 
 
 # A single kernel, so that another thread is asked for Python's lock but once.
-@njit(cache=True, nogil=True)
+@compiled
 def _contract(nodes, edges, block, mesh):
     first_crossing = mesh + len(block)
     ends = len(edges) - CORNERS * (len(nodes) - first_crossing)
@@ -93,7 +93,7 @@ def _contract(nodes, edges, block, mesh):
     return indptr, indices, places, node, number, crossing
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _find_stand_ins(edges, block, mesh, count):
     """Return which node stands for each; less than 0 for those that stay."""
     stand_in = np.full(count, NOT_FOUND, np.int32)
@@ -110,7 +110,7 @@ def _find_stand_ins(edges, block, mesh, count):
     return stand_in
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _number(stand_in):
     """Return which nodes stay, and the number of each node."""
     node, number = np.empty(len(stand_in), np.int32), np.empty(len(stand_in), np.int32)
@@ -125,7 +125,7 @@ def _number(stand_in):
     return node[:count].copy(), number
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _leave_out(nodes, edges, block, mesh, stand_in, number, left):
     """List the edges between nodes that stay, and one between neighbouring blocks."""
     first_crossing = mesh + len(block)
@@ -145,7 +145,7 @@ def _leave_out(nodes, edges, block, mesh, stand_in, number, left):
     return count
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _list_neighbours(edges, count):
     indptr = np.zeros(count + 1, np.int32)
     count_ends(edges, 0, count, indptr[1:])
@@ -156,7 +156,7 @@ def _list_neighbours(edges, count):
     return indptr, indices
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def _in_line(nodes, a, u, v):
     """Tell if a node lies on the line along an axis through two others."""
     for axis in range(3):
@@ -165,7 +165,7 @@ def _in_line(nodes, a, u, v):
     return True
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _add_shortcuts(edges, ends, start, order, mesh, number, left, count):
     """List shortcuts from lattice points to corners, each once, from `count` on.
 

@@ -8,9 +8,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from ..compiled import compiled
 from .clusters import Clusters
 from .field import ERROR, value_at
 from .rays import in_space
@@ -67,7 +67,7 @@ class Doubt(NamedTuple):
     clusters: Clusters
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def code_at(doubt, axis, ray, cell, stop):
     """Return the code of a cell on a ray, and where it ends that cells have it.
 
@@ -90,7 +90,7 @@ def code_at(doubt, axis, ray, cell, stop):
     return code, until
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def in_field(leaves, leaf, p):
     """Return the value of a leaf's field at a point, and how far that may be off."""
     x, y, z = leaves.place[leaf]
@@ -98,7 +98,7 @@ def in_field(leaves, leaf, p):
     return value, leaves.field[leaf, ERROR] + ROUNDING
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def need_between(value, error):
     """Return the next whole number above a value that may be off, or UNSURE."""
     if error >= 0.5:

@@ -6,13 +6,13 @@ A field is a row of SIZE numbers: a value, its gradient (x, y, z), the second de
 
 from __future__ import annotations
 
-from numba import njit
+from ..compiled import compiled
 
 SIZE = 10
 ERROR = SIZE - 1
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def value_at(field, x, y, z):
     """Return the value at a way (x, y, z) from the place."""
     linear = field[1] * x + field[2] * y + field[3] * z
@@ -20,7 +20,7 @@ def value_at(field, x, y, z):
     return field[0] + linear + square / 2 + field[6] * x * y + field[7] * x * z + field[8] * y * z
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def move(field, x, y, z):
     """Make it a field around the place a way (x, y, z) off."""
     field[0] = value_at(field, x, y, z)
@@ -29,7 +29,7 @@ def move(field, x, y, z):
     field[3] += field[7] * x + field[8] * y - (field[4] + field[5]) * z
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def change(field, half):
     """Return how much the value changes at most in a cube around the place, of that half side."""
     linear = abs(field[1]) + abs(field[2]) + abs(field[3])

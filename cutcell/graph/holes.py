@@ -24,9 +24,8 @@ round, chi' is 0 everywhere, and all is left to the clusters.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
-from ..compiled import put
+from ..compiled import compiled, put
 from ..threads import in_threads
 from .caps import Caps
 from .clusters import ROOT, cluster
@@ -83,7 +82,7 @@ def find_doubt(caps: Caps, resolution: int, winding_threshold: float) -> Doubt:
     return Doubt(coarse, fine, Leaves(place, field, is_torn, start, near), clusters)
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _decide(clusters, resolution, tau, corner, top, coarse):
     """Put the codes of the blocks in a cube of `top` cells into `coarse`.
 
@@ -147,7 +146,7 @@ def _decide(clusters, resolution, tau, corner, top, coarse):
     return blocks[:rows].copy(), fine[:rows].copy(), leaves[:kept].copy(), nearby[:listed].copy()
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def _take_over(field, place, mine, q):
     """Move the field of a block around `place` to the middle of one of its halves."""
     way = between(place, q)
@@ -155,7 +154,7 @@ def _take_over(field, place, mine, q):
     move(mine, way[0], way[1], way[2])
 
 
-@njit(cache=True)
+@compiled
 def _halve(waiting, count):
     """Put a block's eight halves in its place; return how many blocks wait."""
     x, y, z, size, depth = waiting[count]
@@ -169,14 +168,14 @@ def _halve(waiting, count):
     return count + 8
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def _keep(leaf, field, q, is_torn):
     put(field, leaf)
     leaf[SIZE], leaf[SIZE + 1], leaf[SIZE + 2] = q
     leaf[TORN], leaf[COUNT] = is_torn, 0
 
 
-@njit(cache=True)
+@compiled
 def _code(field, is_torn, half, size, tau):
     """Return NEED + need of a block; or 0 if its field is to be kept; or UNSURE."""
     error = field[ERROR] + ROUNDING

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from ..compiled import compiled
 from .interior import OUTSIDE, InteriorPoints, place_on_ray, point_number
 from .segments import NONE, Runs
 
@@ -50,7 +50,7 @@ def fill_edges(
     _fill_edges(place, run, points.table, ends, edges, lengths, steps)
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _edge_starts(first, last, low, high, start):
     starts = np.empty(len(first) + 1, np.int64)
     starts[0] = start
@@ -60,7 +60,7 @@ def _edge_starts(first, last, low, high, start):
     return starts
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _fill_edges(place, runs, table, ends, edges, lengths, steps):
     resolution, axis, first_point = place
     ray, first, last, low, high, start = runs
@@ -107,13 +107,13 @@ def diagonal_edges(steps: NDArray[np.int32], first_point: int) -> NDArray[np.int
     return edges
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def _step(steps, point, column):
     """Return the next point, OUTSIDE if there is none or the point is none."""
     return steps[point, column] if point != OUTSIDE else OUTSIDE
 
 
-@njit(cache=True)
+@compiled
 def _mark_cells(steps):
     """Mark the points that are the lowest corner of a cell inside."""
     cell = np.empty(len(steps), np.bool_)
@@ -127,7 +127,7 @@ def _mark_cells(steps):
     return cell
 
 
-@njit(cache=True)
+@compiled
 def _list_diagonals(steps, cell, first_point, edges):
     """Count the diagonals; and list them where there is room."""
     count = 0
@@ -149,7 +149,7 @@ def _list_diagonals(steps, cell, first_point, edges):
     return count
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def _add(edges, count, first_point, a, b):
     if len(edges):
         edges[count, 0], edges[count, 1] = first_point + a, first_point + b

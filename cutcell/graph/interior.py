@@ -10,9 +10,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from ..compiled import compiled
 from ..threads import in_threads
 from .rays import in_space
 from .segments import Runs
@@ -78,7 +78,7 @@ def _number_stretches(
     return InteriorPoints(resolution, *_count_stretches(column, first, last, resolution))
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _count_stretches(column, first, last, resolution):
     """Drop empty stretches, and count stretches and points up to each column and stretch."""
     filled = 0
@@ -107,7 +107,7 @@ def _missed_points(runs: Runs, axis: int, points: InteriorPoints) -> NDArray[np.
     return missed
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def point_number(start, first, last, number, column, z):
     """Return the number of the point at z in a column, or OUTSIDE."""
     for s in range(start[column], start[column + 1]):
@@ -116,14 +116,14 @@ def point_number(start, first, last, number, column, z):
     return np.int64(OUTSIDE)
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def place_on_ray(axis, ray, k, resolution):
     """Return column and z of the lattice point k on a ray."""
     x, y, z = in_space(axis, ray // resolution, ray % resolution, k)
     return x * resolution + y, z
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _find_missed(ray, first_k, last_k, axis, resolution, start, first, last, number, missed):
     count = 0
     for r in range(len(ray)):
@@ -136,7 +136,7 @@ def _find_missed(ray, first_k, last_k, axis, resolution, start, first, last, num
     return count
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _put_positions(resolution, start, first, last, number, out):
     for column in range(resolution * resolution):
         for s in range(start[column], start[column + 1]):

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
-from ..compiled import put
+from ..compiled import compiled, put
 
 
 def find_edges(faces: NDArray[np.int32]) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
@@ -28,7 +27,7 @@ def find_edges(faces: NDArray[np.int32]) -> tuple[NDArray[np.int32], NDArray[np.
     return _find_edges(faces, int(faces.max()) + 1)
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _find_edges(faces, vertices):
     # Two counting sorts: the sides by their higher vertex, then, stable, by their lower.
     by_high = np.zeros(vertices + 1, np.int32)

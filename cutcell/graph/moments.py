@@ -9,31 +9,31 @@ and third degree; a row of SIZE numbers holds their coefficients:
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
+from ..compiled import compiled
 from .solid_angle import between, cross, length
 
 SIZE = 19
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def linear(p, x, y, z):
     return p[0] * x + p[1] * y + p[2] * z
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def square(p, x, y, z):
     return x * (p[3] * x + p[6] * y + p[7] * z) + y * (p[4] * y + p[8] * z) + p[5] * z * z
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def cube(p, x, y, z):
     of_x = p[9] * x * x + p[12] * x * y + p[13] * x * z + p[14] * y * y + p[16] * z * z
     of_y = p[10] * y * y + p[15] * y * z + p[17] * z * z + p[18] * x * z
     return x * of_x + y * of_y + p[11] * z * z * z
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def _add_square(p, a, b, factor):
     """Add the product of two linear forms."""
     p[3] += factor * a[0] * b[0]
@@ -44,7 +44,7 @@ def _add_square(p, a, b, factor):
     p[8] += factor * (a[1] * b[2] + a[2] * b[1])
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def _add_cube(p, a, b, factor):
     """Add the product of a linear form and a quadratic one (xx, yy, zz, xy, xz, yz)."""
     p[9] += factor * a[0] * b[0]
@@ -59,13 +59,13 @@ def _add_cube(p, a, b, factor):
     p[18] += factor * (a[0] * b[5] + a[1] * b[4] + a[2] * b[3])
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def _squared(a):
     x, y, z = a
     return x * x, y * y, z * z, 2 * x * y, 2 * x * z, 2 * y * z
 
 
-@njit(cache=True)
+@compiled
 def add_triangle(p, a, b, c):
     """Add the moments of a triangle, its corners seen from the centre; return its area."""
     normal = cross(between(a, b), between(a, c))
@@ -81,7 +81,7 @@ def add_triangle(p, a, b, c):
     return length(normal)
 
 
-@njit(cache=True)
+@compiled
 def add_moved(p, q, way):
     """Add the moments q of a cluster whose centre lies that way from the one of p."""
     p[0] += q[0]
@@ -94,7 +94,7 @@ def add_moved(p, q, way):
         p[i] += q[i]
 
 
-@njit(cache=True)
+@compiled
 def make_harmonic(p):
     """Leave out the multiples of |n|^2, which cover nothing."""
     mean = (p[3] + p[4] + p[5]) / 3
@@ -106,7 +106,7 @@ def make_harmonic(p):
     _add_cube(p, (x, y, z), (-1.0, -1.0, -1.0, 0.0, 0.0, 0.0), 1.0)
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def held(p):
     """Return a row of moments as numbers: a loop that writes to arrays need not read them anew."""
     # fmt: off
@@ -117,7 +117,7 @@ def held(p):
     # fmt: on
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def add_expansion(field, p, r, far):
     """Add the field of a cluster at r, as far off as that."""
     near = 1 / far

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import TypeAlias
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from ..compiled import compiled
 from ..threads import in_threads, parts, threads
 
 Adjacency: TypeAlias = tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.float64]]
@@ -28,7 +28,7 @@ def list_neighbours(
     return indptr, indices, both_ways
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def count_ends(edges, first, last, ends):
     """Count the edges that end at each of some nodes."""
     for e in range(len(edges)):
@@ -37,7 +37,7 @@ def count_ends(edges, first, last, ends):
                 ends[edges[e, side]] += 1
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def list_ends(edges, lengths, first, last, place, indices, both_ways):
     """List the neighbours of some nodes, and how far they are where lengths are given.
 

@@ -19,10 +19,9 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
-from ..compiled import put
+from ..compiled import compiled, put
 from ..threads import in_threads, threads
 
 AXES = ((1, 2, 0), (0, 2, 1), (0, 1, 2))
@@ -114,7 +113,7 @@ def strip_bounds(resolution: int) -> list[tuple[int, int]]:
     return list(pairwise(np.arange(count + 1) * resolution // count))
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def in_space(axis, u, v, along):
     """Return (x, y, z) of what the rays along an axis see as (u, v, along)."""
     if axis == 0:
@@ -124,7 +123,7 @@ def in_space(axis, u, v, along):
     return u, v, along
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _draw_strip(vertices, faces, resolution, flip, first, last):
     """Draw the triangles on the columns first <= i < last.
 
@@ -154,7 +153,7 @@ def _draw_strip(vertices, faces, resolution, flip, first, last):
     return _by_ray(place[:size], hits[:size], (last - first) * resolution)
 
 
-@njit(cache=True)
+@compiled
 def _by_ray(place, hits, rays):
     counts = np.zeros(rays, np.int64)
     for k in range(len(hits)):
@@ -170,7 +169,7 @@ def _by_ray(place, hits, rays):
     return counts, position, triangle, sign
 
 
-@njit(cache=True)
+@compiled
 def grown(array):
     """Return a copy of an array with room for twice as many rows."""
     larger = np.empty((2 * array.shape[0], *array.shape[1:]), array.dtype)
@@ -178,7 +177,7 @@ def grown(array):
     return larger
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def first_at_least(coordinate, resolution):
     """Return the first i >= 0 whose (i + 1/2) / R is not below the coordinate."""
     i = max(0, int(np.ceil(coordinate * resolution - 0.5)))
@@ -189,7 +188,7 @@ def first_at_least(coordinate, resolution):
     return i
 
 
-@njit(cache=True)
+@compiled
 def column_span(vertices, faces, f, pu):
     """Return where the line u = pu enters and leaves the triangle f, lower v first.
 
@@ -212,7 +211,7 @@ def column_span(vertices, faces, f, pu):
     return left_v, left_a, right_v, right_a, -1
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def edge_height(vertices, a, b, pu):
     """Return v and the third coordinate of an edge at u = pu; a is its end on the left.
 
@@ -225,14 +224,14 @@ def edge_height(vertices, a, b, pu):
     return v, along
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def height_between(low_v, low_a, high_v, high_a, pv):
     """Return the coordinate along the ray where v = pv between the two ends of a span."""
     along = low_a + (pv - low_v) * (high_a - low_a) / (high_v - low_v)
     return min(max(along, min(low_a, high_a)), max(low_a, high_a))
 
 
-@njit(cache=True)
+@compiled
 def _sort_rays(counts, position, triangle, sign):
     end = 0
     for ray in range(len(counts)):
@@ -252,7 +251,7 @@ def _sort_rays(counts, position, triangle, sign):
             position[k], triangle[k], sign[k] = p, t, s
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def _after(position0, sign0, triangle0, position1, sign1, triangle1):
     if position0 != position1:
         return position0 > position1

@@ -11,10 +11,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
-from ..compiled import lean
+from ..compiled import compiled, lean
 from ..threads import in_threads
 from .asked import answer
 from .boundary import Boundary
@@ -105,7 +104,7 @@ def find_runs(
     return [Runs(*np.ascontiguousarray(of_axis.T)) for of_axis in of_axes]
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _walk_rays(shared, seen, first_ray, last_ray, answers, is_listing):
     """List the runs of a strip of rays, as rows (ray, first, last, low, high).
 
@@ -268,7 +267,7 @@ def _in_torn(shared, seen, p, point, leaf, chi, lid, torn, tools):
     return chi + torn[1] >= need_between(tau + value, error)
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def _turns(seen, boundary, p):
     """Return what is missing from the crossings ahead to the winding number."""
     axis, vertices = seen[:2]

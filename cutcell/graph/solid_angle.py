@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
+
+from ..compiled import compiled
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def turning(a, b, la, lb):
     """Return what an edge a -> b of a loop adds to the gradient of the solid angle over 4 pi.
 
@@ -19,7 +20,7 @@ def turning(a, b, la, lb):
     return n[0] * factor, n[1] * factor, n[2] * factor
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def distance_to_edge(a, b):
     """Return how far the point is from the edge between a and b."""
     e = between(a, b)
@@ -28,7 +29,7 @@ def distance_to_edge(a, b):
     return length((a[0] + t * e[0], a[1] + t * e[1], a[2] + t * e[2]))
 
 
-@njit(cache=True)
+@compiled
 def is_within(a, b, c, reach):
     """Tell whether a triangle comes within reach of the point, its edge a, b left out."""
     n = cross(between(a, b), between(a, c))
@@ -41,25 +42,25 @@ def is_within(a, b, c, reach):
     return min(distance_to_edge(a, c), distance_to_edge(b, c)) <= reach
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def between(a, b):
     """Return the way from a to b."""
     return b[0] - a[0], b[1] - a[1], b[2] - a[2]
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def dot(a, b):
     """Return the inner product."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def cross(a, b):
     """Return the vector product."""
     return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def length(a):
     """Return the Euclidean length."""
     return np.sqrt(dot(a, a))

@@ -16,9 +16,8 @@ but for the jump by one where it is passed: such a ball is called torn.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
-from ..compiled import lean
+from ..compiled import compiled, lean
 from .clusters import left_out
 from .field import ERROR
 from .moments import add_expansion
@@ -131,7 +130,7 @@ def _add_caps(clusters, leaf, field, q, reach, may_tear):
     return is_torn
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def _seen(clusters, k, q, reach):
     """Return the way to a cluster, how far that is, and what its expansion leaves out."""
     r = between(q, clusters.sphere[k])
@@ -139,7 +138,7 @@ def _seen(clusters, k, q, reach):
     return r, distance, left_out(clusters.sphere[k], distance, reach)
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def after(k):
     """Return the cluster that follows on k and all that it is made of, 0 after the last."""
     while k & 1:

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from ..compiled import compiled
 from ..unions import join, numbered
 
 WELD_TOLERANCE = 1e-6
@@ -50,7 +50,7 @@ def weld(
     return welded, index
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _sort_ties(place, points, order):
     """Sort points at the same place along the direction by their coordinates."""
     for i in range(1, len(place)):
@@ -62,7 +62,7 @@ def _sort_ties(place, points, order):
             k -= 1
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def _precedes(a, b):
     if a[0] != b[0]:
         return a[0] < b[0]
@@ -71,7 +71,7 @@ def _precedes(a, b):
     return a[2] < b[2]
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _merge(place, points, tolerance, slack):
     """Return the first point of each group, and the group of each point."""
     count = len(points)

@@ -16,10 +16,9 @@ the mesh by a curtain that the ray cannot meet.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
-from ..compiled import lean
+from ..compiled import compiled, lean
 from ..errors import ParameterError
 from ..rig import TriangleMesh
 from ..threads import in_threads, parts
@@ -92,7 +91,7 @@ def _bin_faces(vertices, faces):
     return cells, start, listed
 
 
-@njit(cache=True)
+@compiled
 def _list_faces(low, high, cells, cursor, listed):
     for f in range(len(low)):
         for i in range(low[f, 0], high[f, 0] + 1):
@@ -102,7 +101,7 @@ def _list_faces(low, high, cells, cursor, listed):
                 cursor[i * cells + j] += 1
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _number_at(points, vertices, faces, cells, start, listed, boundary):
     number = np.empty(len(points))
     for q in range(len(points)):
@@ -167,7 +166,7 @@ def boundary_turns(vertices, boundary, pu, pv, height):
     return turns + np.arctan2(y, x) / (2 * np.pi)
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def _seen(vertices, a, pu, pv, height):
     """Return u and v of a vertex seen from the ray's start, and its distance less its height."""
     u, v, w = vertices[a, 0] - pu, vertices[a, 1] - pv, vertices[a, 2] - height
@@ -179,7 +178,7 @@ def _seen(vertices, a, pu, pv, height):
     return u, v, beside / (length + w) if w > 0 else length - w
 
 
-@njit(cache=True)
+@compiled
 def _side(vertices, a, b, pu, pv, imaginary):
     """Return on which side of the edge a -> b the ray passes: +1 right, -1 left."""
     a_left = vertices[a, 0] <= pu

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from ..compiled import compiled
 from ..threads import in_threads
 from .elimination import LANES, Factors, factorise, substitute
 from .skin import Skin
@@ -78,7 +78,7 @@ class Diffusion:
         return spread
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _solve(begin, rows, values, pivots, order, hold, weights, joints, spread):
     """Put the equilibrium of some joints' weights into `spread`."""
     right = np.zeros((len(order), LANES))

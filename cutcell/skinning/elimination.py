@@ -8,10 +8,9 @@ less around the work than in a general factorisation, which is most of it for sm
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
-from ..compiled import lean, put
+from ..compiled import compiled, lean, put
 from ..geodesics.queue import END, join, leave
 
 LINKS = np.dtype([("after", np.int32), ("before", np.int32)], align=True)
@@ -25,7 +24,7 @@ Factors = tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.float64], NDArr
 """L below its diagonal of ones, by columns: starts, rows, values; and D."""
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def order_of_elimination(start, column):
     """Put the unknowns in an order that fills little: next is what touches the fewest others.
 
@@ -86,7 +85,7 @@ def order_of_elimination(start, column):
     return order
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _edges_as_cliques(start, column):
     """Return where cliques begin, their members, and the cliques of each unknown.
 
@@ -152,7 +151,7 @@ def _relist(v, clique, start, held, holds, size, outside):
     return touched
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def factorise(start, column, value, diagonal, order):
     """Compute L D Lᵀ of a positive definite matrix, row after row.
 
@@ -240,7 +239,7 @@ def substitute(begin, rows, values, pivots, right):
 
 
 # One by one, lanes stay in registers: in a loop each would be written before the next is read.
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def _lanes(right, k):
     return (
         right[k, 0],
@@ -254,13 +253,13 @@ def _lanes(right, k):
     )
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def _put(right, k, here):
     right[k, 0], right[k, 1], right[k, 2], right[k, 3] = here[0], here[1], here[2], here[3]
     right[k, 4], right[k, 5], right[k, 6], right[k, 7] = here[4], here[5], here[6], here[7]
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def _less(here, times, there):
     return (
         here[0] - times * there[0],

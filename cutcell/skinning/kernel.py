@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from ..compiled import compiled
 from ..threads import in_threads, parts
 from .prune import keep_largest
 
@@ -78,13 +78,13 @@ BLOCK = 64
 """Vertices whose weights fit into the nearest cache: distances are stored by joint."""
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _paper_kernel(distance, diagonal, alpha, weights, begin, stop):
     for first in range(begin, stop, BLOCK):
         _fall(distance, diagonal, alpha, first, weights[first : min(first + BLOCK, stop)])
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _pruned_paper_kernel(
     distance, diagonal, alpha, most, threshold, priority, weights, begin, stop
 ):
@@ -97,7 +97,7 @@ def _pruned_paper_kernel(
             keep_largest(rows[v], most, threshold, priority, kept, weights[first + v])
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _fall(distance, diagonal, alpha, first, rows):
     for j in range(len(distance)):
         for v in range(len(rows)):
@@ -107,7 +107,7 @@ def _fall(distance, diagonal, alpha, first, rows):
         _normalise(rows[v])
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _normalise(row):
     least = np.inf
     for steepness in row:

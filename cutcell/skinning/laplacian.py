@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
+
+from ..compiled import compiled
 
 THINNEST = 1e-4
 """Height of a triangle, as part of its longest side, below which it counts as no thinner: needles
@@ -32,7 +33,7 @@ def cotangent_laplacian(points: NDArray[np.float64], faces: NDArray[np.int32]) -
     return matrix
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def vertex_areas(points, faces):
     """Return each vertex's part of the surface, shape (k,) (mixed areas, Meyer et al. 2003).
 
@@ -44,7 +45,7 @@ def vertex_areas(points, faces):
     return total
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def vertex_normals(points, faces):
     """Return unit normals, shape (k, 3): the faces' average by area; zero where there is none."""
     normals = np.zeros((len(points), 3))
@@ -57,7 +58,7 @@ def vertex_normals(points, faces):
     return normals
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def stiffness(points, faces):
     """Return rows of `cotangent_laplacian`: where they begin, columns (their own first), values."""
     count = len(points)
@@ -83,7 +84,7 @@ def stiffness(points, faces):
     return _merge(start, column, value)
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _merge(start, column, value):
     """Add up what is at one place of the matrix."""
     place = np.full(len(start) - 1, -1)
@@ -101,7 +102,7 @@ def _merge(start, column, value):
     return start, column[:end], value[:end]
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _cotangent(p, q, r):
     """Return the cotangent of the angle at p; zero where two corners are at one place."""
     ax, ay, az = q[0] - p[0], q[1] - p[1], q[2] - p[2]
@@ -116,14 +117,14 @@ def _cotangent(p, q, r):
     return (ax * bx + ay * by + az * bz) / double_area if longest > 0 else 0.0
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _across(p, q, r):
     ax, ay, az = q[0] - p[0], q[1] - p[1], q[2] - p[2]
     bx, by, bz = r[0] - p[0], r[1] - p[1], r[2] - p[2]
     return ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _add_normals(points, faces, normals):
     for f in range(len(faces)):
         x, y, z = _across(points[faces[f, 0]], points[faces[f, 1]], points[faces[f, 2]])
@@ -133,7 +134,7 @@ def _add_normals(points, faces, normals):
             normals[faces[f, corner], 2] += z
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _add_areas(points, faces, total):
     for f in range(len(faces)):
         p, q, r = points[faces[f, 0]], points[faces[f, 1]], points[faces[f, 2]]
@@ -153,7 +154,7 @@ def _add_areas(points, faces, total):
         total[faces[f, 2]] += of_r
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _apart(p, q):
     """Return the squared distance of two points."""
     x, y, z = p[0] - q[0], p[1] - q[1], p[2] - q[2]

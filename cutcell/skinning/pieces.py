@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
-from ..compiled import lean
+from ..compiled import compiled, lean
 from ..geodesics import Bones
 from ..sorting import sort_into
 from ..threads import in_threads
@@ -20,7 +19,7 @@ INSIDE = 0.5
 """A point is inside a piece if this part of six rays from it leave the piece."""
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def find_pieces(faces, count):
     """Return for each of `count` places the number of its piece: what edges join is one."""
     first = np.arange(count)
@@ -89,7 +88,7 @@ def _crossed(
         room = count
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _sort_into_columns(samples):
     """Return where the samples of each column of the grid begin, and their order."""
     column = np.empty(len(samples), np.int64)
@@ -149,7 +148,7 @@ def _passed(points, corners, u, v):
     return -turn if above == 1 else 0
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def _cell(u):
     return min(max(int(u * CELLS), 0), CELLS - 1)
 

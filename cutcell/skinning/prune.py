@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from ..compiled import compiled
 from ..threads import in_threads, parts, threads
 
 EQUAL = 1 + 1e-9
@@ -46,14 +46,14 @@ def prune(
     return pruned
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _prune(weights, most, threshold, priority, pruned):
     kept = np.empty(len(priority), np.intp)
     for v in range(len(weights)):
         keep_largest(weights[v], most, threshold, priority, kept, pruned[v])
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def keep_largest(row, most, threshold, priority, kept, pruned):
     """Prune one vertex: see `prune`. `pruned` holds zeros, and `kept` has room for all joints."""
     count = 0

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from ..compiled import compiled
 from ..graph import CutCellGraph
 from .elimination import order_of_elimination
 from .laplacian import stiffness, vertex_areas, vertex_normals
@@ -55,7 +55,7 @@ class Skin:
 
 
 # A single kernel, so that another thread is asked for Python's lock but once.
-@njit(cache=True, nogil=True)
+@compiled
 def _look_at(points, faces):
     normals, areas = vertex_normals(points, faces), vertex_areas(points, faces)
     conducts = stiffness(points, faces)

@@ -1,20 +1,17 @@
 """What `load_kernels` has loaded, no binding has to compile; what is stale is announced."""
 
-import os
 import subprocess
 import sys
 import textwrap
-from ast import literal_eval
 from contextlib import nullcontext
 from dataclasses import fields
-from importlib.util import find_spec
 from itertools import pairwise
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 import cutcell
+from cutcell import kernel_cache
 from cutcell.graph import build_graph
 from cutcell.skinning import kernels, kernels_are_compiled, load_kernels
 from cutcell.skinning.specimens import block_graph, chain, tube
@@ -65,44 +62,11 @@ def test_nothing_is_compiled_after_the_first_time():
     assert done.stdout.strip() == "set()", done.stdout + done.stderr
 
 
-HELPED = """
-from numba import njit
-from helper import number
-
-@njit(cache=True)
-def kernel():
-    return number()
-"""
-
-
-def test_kernels_are_compiled_anew_where_another_file_of_theirs_has_changed(tmp_path):
-    (tmp_path / "kernel.py").write_text(HELPED)
-    helper = tmp_path / "helper.py"
-    forgets = "from cutcell.skinning.kernels import forget; from kernel import kernel; "
-
-    def answer(number, first=""):
-        helper.write_text(f"from numba import njit\n\n@njit\ndef number(): return {number}\n")
-        command = [sys.executable, "-c", f"{forgets}{first}print(kernel())"]
-        environment = {**os.environ, "PYTHONPATH": f"{ROOT}{os.pathsep}{tmp_path}"}
-        done = subprocess.run(command, capture_output=True, text=True, env=environment, timeout=240)
-        return done.stdout.strip() or done.stderr
-
-    assert answer(1) == "1"
-    assert answer(2) == "1"  # what numba does by itself
-    assert answer(2, "forget([kernel]); ") == "2"
-    assert answer(3, "kernel(); forget([kernel]); ") == "2"  # in use
-
-
 @pytest.fixture
 def another_machine(tmp_path, monkeypatch):
-    """Keep the note of what was compiled in a folder of its own, and the sources it is of."""
-    for folder in ("graph", "geodesics", "skinning"):
-        (tmp_path / folder).mkdir()
-        (tmp_path / folder / "kernel.py").write_text("one")
-    monkeypatch.setattr(kernels, "PACKAGE", tmp_path)
-    monkeypatch.setattr(kernels, "_known", False)
-    monkeypatch.setattr(kernels, "_stamp_path", lambda: tmp_path / "kernels.stamp")
-    monkeypatch.setattr(kernels, "forget", lambda kernels: None)
+    """Begin with nothing compiled on disk, and as if nothing were compiled in this process."""
+    monkeypatch.setattr(kernel_cache, "folders", lambda: (tmp_path / "kernels-new",))
+    monkeypatch.setattr(kernels, "_loaded", False)
     monkeypatch.setattr(kernels, "_beside", lambda function: nullcontext())
     return tmp_path
 
@@ -111,34 +75,8 @@ def test_kernels_are_compiled_once_they_were_loaded(another_machine, monkeypatch
     assert not kernels_are_compiled()
     load_kernels()
     assert kernels_are_compiled()
-    monkeypatch.setattr(kernels, "_known", False)  # as a process started later
+    monkeypatch.setattr(kernels, "_loaded", False)  # as a process started later
     assert kernels_are_compiled()
-    assert [path.name for path in another_machine.glob("kernels.*")] == ["kernels.stamp"]
-
-
-def test_the_files_of_all_kernels_are_watched():
-    watched = {path for pattern in kernels.SOURCES for path in kernels.PACKAGE.glob(pattern)}
-    command = (
-        "from cutcell.skinning import kernels; print([k.__module__ for k in kernels._kernels()])"
-    )
-    done = subprocess.run([sys.executable, "-c", command], capture_output=True, text=True, cwd=ROOT)
-    modules = {"cutcell.compiled", *literal_eval(done.stdout)}
-    assert len(modules) > 10
-    assert {Path(find_spec(module).origin) for module in modules} <= watched
-
-
-@pytest.mark.parametrize("folder", ["graph", "geodesics", "skinning"])
-def test_after_a_change_of_the_code_kernels_are_not_compiled(folder, another_machine):
-    load_kernels()
-    (another_machine / folder / "kernel.py").write_text("another")
-    assert not kernels_are_compiled()
-
-
-@pytest.mark.parametrize("what", ["numba.__version__", "sys.implementation.cache_tag"])
-def test_for_another_compiler_kernels_are_not_compiled(what, another_machine, monkeypatch):
-    load_kernels()
-    monkeypatch.setattr(f"cutcell.skinning.kernels.{what}", "another")
-    assert not kernels_are_compiled()
 
 
 def test_a_compile_is_announced_once(another_machine):
@@ -150,10 +88,15 @@ def test_a_compile_is_announced_once(another_machine):
     assert stages == "compile graph distances weights | graph distances weights | "
 
 
-def test_where_no_note_can_be_kept_binding_goes_on(another_machine, monkeypatch):
-    monkeypatch.setattr(kernels, "_stamp_path", lambda: another_machine / "away" / "kernels.stamp")
+def test_where_nothing_can_be_kept_one_sentence_says_so(another_machine, monkeypatch, caplog):
+    (another_machine / "kernels-new").write_text("not a folder")
+    monkeypatch.setattr(kernel_cache, "refusals", [])
     load_kernels()
-    assert not kernels_are_compiled()
+    assert [record.name for record in caplog.records] == ["cutcell"]
+    assert "cannot be kept" in caplog.text
+    assert "NUMBA_CACHE_DIR" in caplog.text
+    assert kernels_are_compiled()  # in this process
+    assert not kernel_cache.is_complete()
 
 
 def kinds(thing):
@@ -175,9 +118,19 @@ def test_the_graph_made_by_hand_is_of_the_types_that_are_built():
 
 def test_another_process_compiles_meanwhile(tmp_path, monkeypatch):
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
-    with kernels._beside("_write_stamp"):
-        assert not list(tmp_path.rglob("kernels.stamp"))  # it takes a second to start
-    assert len(list(tmp_path.rglob("kernels.stamp"))) == 1
+    with kernels._beside("kernel_cache.mark_complete"):
+        assert not list(tmp_path.rglob("complete"))  # it takes a second to start
+    assert len(list(tmp_path.rglob("complete"))) == 1
+
+
+def test_no_other_process_is_started_where_it_could_hand_nothing_over(monkeypatch):
+    monkeypatch.setattr(kernel_cache, "folders", tuple)
+    monkeypatch.setattr(kernel_cache, "refusals", [])
+    monkeypatch.delattr(subprocess, "Popen")
+    done = []
+    with kernels._beside("compile_after_graph"):
+        done.append(True)
+    assert done
 
 
 def test_it_ends_with_what_is_done_meanwhile(tmp_path, monkeypatch):
