@@ -115,14 +115,14 @@ def mark_complete() -> None:
 
 def write(name: str, content: bytes) -> Path | None:
     """Write a file whole into the first folder that takes it; return that, None if none does."""
-    failed: OSError | None = None
+    why = "no folder to keep them in is known"
     for folder in folders():
         try:
             _write(folder, name, content)
             return folder
         except OSError as error:
-            failed = error
-    refusals.append(str(failed or "no folder to keep it in is known"))
+            why = f"{folder.parent}: {error.strerror or error}"
+    refusals.append(why)
     return None
 
 
