@@ -52,7 +52,7 @@ class TriangleMesh:
                 f"only {len(vertices)} (numbered from 0); faces out of range: {len(bad)}"
             )
         used = vertices[np.unique(faces)]
-        if np.ptp(used, axis=0).max() == 0:
+        if (used == used[0]).all():
             raise MeshError("all faces of the mesh lie in one point; it has no extent")
         object.__setattr__(self, "vertices", _frozen(vertices))
         object.__setattr__(self, "faces", _frozen(faces.astype(np.int32)))
@@ -280,10 +280,12 @@ class Rig:
         return replace(self, weights=weights)
 
     def _check_units(self) -> None:
-        low, high = self.mesh.bounds
         joints = self.skeleton.joints
-        outside = np.maximum(np.maximum(low - joints, joints - high), 0)
-        distance = np.linalg.norm(outside, axis=1)
+        unit = np.abs(self.mesh.bounds).max()  # squares of what is measured must not overflow
+        with np.errstate(over="ignore"):
+            low, high = self.mesh.bounds / unit
+            outside = np.maximum(np.maximum(low - joints / unit, joints / unit - high), 0)
+            distance = np.linalg.norm(outside, axis=1)
         diagonal = np.linalg.norm(high - low)
         far = np.flatnonzero((distance > FAR_OUTSIDE * diagonal) & self.skeleton.deform)
         if len(far):

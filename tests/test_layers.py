@@ -32,6 +32,7 @@ ORDER = [
         "checks",
         "compiled",
         "errors",
+        "kernel_cache",
         "progress",
         "rig",
         "sorting",

@@ -12,7 +12,7 @@ from ..writing import check_place, write_all
 from .articulation import articulation_bytes, read_articulation
 from .files import naming, read_bytes
 from .gltf_container import MAGIC
-from .gltf_fresh import new_glb
+from .gltf_fresh import check_fits, new_glb
 from .gltf_read import GltfSource, read_gltf
 from .gltf_write import rewritten
 from .rignet import check_mesh_file, read_rignet, rig_file, rignet_files
@@ -125,7 +125,7 @@ def check_output(path: Path, rig: Rig | None = None) -> None:
 
     Raises
     ------
-    FileError
+    FileError, MeshError, SkeletonError
         See `save`.
     """
     kind = path.suffix.lower()
@@ -139,6 +139,8 @@ def check_output(path: Path, rig: Rig | None = None) -> None:
             raise FileError("a rig that did not come from glTF is saved as .glb, not as .gltf")
         if kind == ".txt":
             check_mesh_file(path, rig.mesh)
+        elif kind != ".npz" and not isinstance(rig.source, GltfSource):
+            check_fits(rig)
 
 
 def _files(path: Path, rig: Rig) -> dict[Path, bytes]:

@@ -19,6 +19,7 @@ from ..errors import FileError, SkeletonError, WeightsError
 from ..rig import Rig, Skeleton, TriangleMesh
 from .deforming import with_deform
 from .files import read_bytes
+from .names import HALVES, has_halves, whole_characters
 from .weights import summed
 
 REQUIRED = ("vertices", "faces", "joints", "bones")
@@ -48,7 +49,11 @@ def read_articulation(path: Path) -> Rig:
     if count == 0:
         raise SkeletonError("has no joints")
     weights, warnings = _weights(arrays, len(mesh.vertices), count, f'mesh "{path.stem}"')
-    skeleton = Skeleton(joints, _parents(arrays, count), _names(arrays, count))
+    parents, names = _parents(arrays, count), _names(arrays, count)
+    if any(map(has_halves, names)):
+        warnings.append(HALVES)
+    names = tuple(map(whole_characters, names))
+    skeleton = Skeleton(joints, parents, names)
     skeleton, told = with_deform(mesh, skeleton, weights)
     return Rig(mesh, skeleton, weights, name=path.stem, warnings=(*warnings, *told))
 
@@ -153,7 +158,7 @@ def articulation_bytes(rig: Rig) -> bytes:
         "joints": skeleton.joints,
         "bones": np.stack([skeleton.parents[held], held], axis=1).astype(np.int32),
         "root_index": np.array(int(np.flatnonzero(skeleton.parents < 0)[0])),
-        "joint_names": np.array(skeleton.names, dtype=np.str_),
+        "joint_names": np.array([whole_characters(name) for name in skeleton.names], np.str_),
     }
     if rig.weights is not None:
         rows, columns = np.nonzero(rig.weights)

@@ -11,6 +11,7 @@ from __future__ import annotations
 import base64
 import binascii
 import json
+import re
 import struct
 from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
@@ -21,8 +22,10 @@ import pygltflib
 
 from ..errors import FileError
 from .files import read_bytes
+from .names import HALVES, whole_characters
 
 MAGIC = pygltflib.MAGIC
+SURROGATE = re.compile(rb"\\u[dD][89a-fA-F]")
 JSON_CHUNK = 0x4E4F534A
 BINARY_CHUNK = 0x004E4942
 
@@ -111,7 +114,8 @@ def read_document(path: Path) -> Document:
             "is not a glTF file: it starts with neither the letters glTF (binary) nor a "
             "brace (JSON text)"
         )
-    document = Document(path, _parse(text), [], data[:4] == MAGIC, others)
+    parsed, warnings = _parse(text)
+    document = Document(path, parsed, [], data[:4] == MAGIC, others, warnings=warnings)
     _check_version(document)
     for i, buffer in enumerate(document.items("buffers")):
         document.buffers.append(_buffer_bytes(path, buffer, i, binary))
@@ -141,14 +145,20 @@ def _split_chunks(data: bytes) -> tuple[bytes, bytes | None, list[tuple[int, byt
     return chunks[0][1], None, chunks[1:]
 
 
-def _parse(text: bytes) -> dict[str, Any]:
+def _parse(text: bytes) -> tuple[dict[str, Any], list[str]]:
+    """Return the JSON object in a text, and what is to be told of it."""
+    warnings = []
     try:
         document = json.loads(text.decode("utf-8-sig").rstrip("\0"), parse_constant=_no_constant)
+        if SURROGATE.search(text):
+            whole = with_whole_names(document)
+            warnings += [HALVES] if whole != document else []
+            document = whole
     except (ValueError, RecursionError) as e:
         raise FileError(f"its JSON cannot be read: {e}") from None
     if not isinstance(document, dict):
         raise FileError("its JSON is not an object")
-    return document
+    return document, warnings
 
 
 def _no_constant(name: str) -> float:
@@ -216,6 +226,19 @@ def beside(path: Path, uri: str) -> Path | None:
     if outside or "\0" in str(name) or not name.parts:
         return None
     return path.parent.joinpath(*name.parts)
+
+
+def with_whole_names(document: dict[str, Any]) -> dict[str, Any]:
+    """Return a document in which no text holds half of a character."""
+    return json.loads(whole_characters(json.dumps(document, ensure_ascii=False)))
+
+
+def json_bytes(document: dict[str, Any]) -> bytes:
+    """Return a document as JSON text."""
+    try:
+        return json.dumps(document, separators=(",", ":"), allow_nan=False).encode()
+    except ValueError as e:
+        raise FileError(f"its document cannot be written as JSON: {e}") from None
 
 
 def pack_glb(text: bytes, binary: bytes, chunks: list[tuple[int, bytes]]) -> bytes:

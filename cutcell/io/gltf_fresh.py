@@ -10,13 +10,16 @@ import pygltflib as gl
 from numpy.typing import NDArray
 
 from .. import __version__
-from ..errors import WeightsError
+from ..errors import CutcellError, FileError, MeshError, SkeletonError, WeightsError
 from ..rig import Clip, Rig, TriangleMesh
-from .gltf_container import pack_glb
+from .gltf_container import json_bytes, pack_glb, with_whole_names
 from .gltf_influences import pack_influences
 from .gltf_nodes import decompose
 
 CODES = {"f": gl.FLOAT, "u1": gl.UNSIGNED_BYTE, "u2": gl.UNSIGNED_SHORT, "u4": gl.UNSIGNED_INT}
+MOST_JOINTS = 2**16
+MOST_SHIFT = 1e-3
+"""How far rounding to 32 bits may move a point, in sizes of the mesh."""
 KINDS = {1: gl.SCALAR, 3: gl.VEC3, 4: gl.VEC4, 16: gl.MAT4}
 
 
@@ -25,14 +28,56 @@ def new_glb(rig: Rig) -> bytes:
 
     Raises
     ------
+    MeshError, SkeletonError
+        A coordinate does not fit in the 32 bits that glTF has for a number, or there are too many
+        joints.
     WeightsError
         The rig has no weights yet.
     """
     if rig.weights is None:
         raise WeightsError("the rig has no weights to save; bind it first")
+    check_fits(rig)
     file = _File()
     file.add_rig(rig)
     return file.packed()
+
+
+def check_fits(rig: Rig) -> None:
+    """Refuse a rig that a new GLB cannot hold.
+
+    Raises
+    ------
+    MeshError, SkeletonError
+        See `new_glb`.
+    """
+    if len(rig.skeleton.joints) > MOST_JOINTS:
+        raise SkeletonError(
+            f"glTF numbers at most {MOST_JOINTS:,} joints, and the skeleton has "
+            f"{len(rig.skeleton.joints):,}; save it as .npz or .txt"
+        )
+    meshes = {"its mesh": rig.mesh}
+    meshes |= {f'the attachment "{one.name}"': one.mesh for one in rig.attachments}
+    for what, mesh in meshes.items():
+        _check_places(mesh.vertices, mesh, what, MeshError)
+    _check_places(rig.skeleton.joints, rig.mesh, "its skeleton", SkeletonError)
+
+
+def _check_places(
+    points: NDArray, mesh: TriangleMesh, what: str, error: type[CutcellError]
+) -> None:
+    """Refuse points that would move by much, for a mesh's size, when they are stored as float32."""
+    with np.errstate(over="ignore"):
+        size = np.ptp(mesh.bounds, axis=0).max()
+        stored = points.astype(np.float32).astype(np.float64)
+    shifts = np.abs(stored - points).max(axis=1, initial=0)
+    bad = np.flatnonzero(~(np.isfinite(stored).all(axis=1) & (shifts <= MOST_SHIFT * size)))
+    if len(bad):
+        x, y, z = points[bad[0]]
+        raise error(
+            f"glTF's numbers have 32 bits: {what} at ({x:.4g}, {y:.4g}, {z:.4g}) would move by "
+            "more than a thousandth of the mesh's size; scale it or move it to the origin, or save "
+            "it as .npz or .txt"
+        )
 
 
 class _File:
@@ -155,9 +200,11 @@ class _File:
     def packed(self) -> bytes:
         self.data += b"\0" * (-len(self.data) % 4)
         self.gltf.buffers = [gl.Buffer(byteLength=len(self.data))]
-        document = json.loads(self.gltf.gltf_to_json())
-        text = json.dumps(document, separators=(",", ":"))
-        return pack_glb(text.encode(), bytes(self.data), [])
+        try:
+            document = json.loads(self.gltf.gltf_to_json())
+        except ValueError as e:  # such as a scale of the scene that is no number
+            raise FileError(f"it cannot be written as JSON: {e}") from None
+        return pack_glb(json_bytes(with_whole_names(document)), bytes(self.data), [])
 
 
 def vertex_normals(mesh: TriangleMesh) -> NDArray[np.float32]:

@@ -15,10 +15,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import FileError, MeshError, SkeletonError, WeightsError
+from ..errors import MeshError, SkeletonError, WeightsError
 from ..rig import Rig
 from .gltf_buffer_file import buffer_file, relative_uri
-from .gltf_container import Document, pack_glb
+from .gltf_container import Document, json_bytes, pack_glb
 from .gltf_images import carry_images
 from .gltf_influences import pack_influences
 from .gltf_read import GltfSource, Part
@@ -118,18 +118,11 @@ def _packed(
     own = storage.document["buffers"][0] if data else {}
     own.pop("uri", None)
     if path.suffix.lower() != ".gltf":
-        return {path: pack_glb(_text(storage.document), data, document.chunks)}
+        return {path: pack_glb(json_bytes(storage.document), data, document.chunks)}
     if uris and all(isinstance(u, str) and u.startswith("data:") for u in uris):
         head = "data:application/octet-stream;base64,"
         own["uri"] = head + base64.b64encode(data).decode()
-        return {path: _text(storage.document)}
+        return {path: json_bytes(storage.document)}
     file = buffer_file(path, document, carried)
     own["uri"] = relative_uri(file)
-    return {file: data, path: _text(storage.document)}
-
-
-def _text(document: dict[str, Any]) -> bytes:
-    try:
-        return json.dumps(document, separators=(",", ":"), allow_nan=False).encode()
-    except ValueError as e:
-        raise FileError(f"its document cannot be written as JSON: {e}") from None
+    return {file: data, path: json_bytes(storage.document)}

@@ -18,6 +18,7 @@ from ..errors import CutcellError, FileError, SkeletonError, WeightsError
 from ..rig import Rig, Skeleton, TriangleMesh
 from .deforming import with_deform
 from .files import naming, read_text
+from .names import whole_characters
 from .objects import numbered_words, numbers, one_number, parse_obj, write_obj
 from .weights import summed
 
@@ -194,7 +195,7 @@ def word_names(names: tuple[str, ...]) -> list[str]:
     words: list[str] = []
     taken: set[str] = set()
     for name in names:
-        word = base = "_".join(name.split()) or "joint"
+        word = base = "_".join(whole_characters(name).split()) or "joint"
         k = 2
         while word in taken:
             word, k = f"{base}_{k}", k + 1

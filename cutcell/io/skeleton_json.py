@@ -11,6 +11,7 @@ import numpy as np
 from ..errors import FileError, SkeletonError
 from ..rig import Skeleton
 from .files import naming, read_text
+from .names import has_halves
 
 FIELDS = ("name", "position", "parent", "deform")
 
@@ -64,6 +65,8 @@ def _name(joint: Any, k: int) -> str:
     name = joint.get("name")
     if not isinstance(name, str) or not name:
         raise SkeletonError(f'joint {k} needs a "name"')
+    if has_halves(name):
+        raise SkeletonError(f"the name of joint {k} holds half of a character (a lone surrogate)")
     return name
 
 

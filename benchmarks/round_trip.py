@@ -1,0 +1,219 @@
+"""Whether what is bound and saved is the same when it is loaded again, in every format.
+
+python -m benchmarks.round_trip [FILE...] [--resolution 32] [--markdown OUT]
+
+Mesh, skeleton, clips and attachments must be equal, weights to the precision of the format, and
+Khronos' glTF validator must not find what it did not find in the file as it came. Ends with exit
+code 1 if anything differs.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import tempfile
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+import numpy as np
+
+import cutcell
+from cutcell.io import SAVED
+from cutcell.io.gltf_accessors import read_accessor
+from cutcell.io.gltf_container import Document
+from cutcell.io.rignet import word_names
+from tests.gltf_validator.validator import reports
+
+from .rigs import ROOT, SHARED
+from .tables import Table, publish
+
+SEVERITIES = ("error", "warning", "information", "hint")
+GLTF = (".glb", ".gltf", ".vrm")
+SINGLE = 2e-7
+"""What weights may differ by where they are stored as float32."""
+READ = ("*.glb", "*.gltf", "*.vrm", "*.npz", "*.txt", "*.fbx")
+
+
+def differences(rig: cutcell.Rig, again: cutcell.Rig, kind: str) -> Iterator[str]:
+    """Yield what is not the same in a rig that was saved and loaded again.
+
+    Parameters
+    ----------
+    rig, again : Rig
+        Before and after.
+    kind : str
+        The ending of the file between them.
+    """
+    new = kind in GLTF and rig.source is None
+    size = float(np.ptp(rig.mesh.bounds, axis=0).max())
+    exact = {"rtol": 0, "atol": 1e-6 * size if new else 0}
+    names = tuple(word_names(rig.skeleton.names)) if kind == ".txt" else rig.skeleton.names
+    if not _same(rig.mesh.vertices, again.mesh.vertices, **exact):
+        yield "vertices"
+    if not _same(rig.mesh.faces, again.mesh.faces):
+        yield "faces"
+    if not _same(rig.skeleton.joints, again.skeleton.joints, **exact):
+        yield "joints"
+    if names != again.skeleton.names or not _same(rig.skeleton.parents, again.skeleton.parents):
+        yield "names and parents"
+    if not _same(rig.weights, again.weights, rtol=0, atol=SINGLE if kind in GLTF else 1e-15):
+        yield "weights"
+    if kind in GLTF:
+        yield from _differences_of_gltf(rig, again, exact)
+
+
+def _differences_of_gltf(rig: cutcell.Rig, again: cutcell.Rig, exact: dict) -> Iterator[str]:
+    if not _same(rig.world, again.world, atol=max(exact["atol"], 1e-12)):
+        yield "place in the scene"
+    clips = [(c.name, c.times, c.transforms) for c in rig.clips]
+    if len(clips) != len(again.clips) or any(
+        name != other.name
+        or not _same(times, other.times, rtol=1e-6)
+        or not _same(transforms, other.transforms, **exact)
+        for (name, times, transforms), other in zip(clips, again.clips, strict=True)
+    ):
+        yield "clips"
+    if len(rig.attachments) != len(again.attachments) or any(
+        one.name != other.name
+        or one.joint != other.joint
+        or not _same(one.mesh.vertices, other.mesh.vertices, **exact)
+        for one, other in zip(rig.attachments, again.attachments, strict=True)
+    ):
+        yield "attachments"
+    if rig.source is not None:
+        yield from _differences_of_documents(rig.source.document, again.source.document)
+
+
+def _differences_of_documents(before: Document, after: Document) -> Iterator[str]:
+    """Compare all accessors but those of the weights, and all images."""
+    found = [p["attributes"] for m in before.items("meshes") for p in m["primitives"]]
+    old = {v for a in found for k, v in a.items() if k.startswith(("JOINTS_", "WEIGHTS_"))}
+    for i, accessor in enumerate(before.items("accessors")):
+        if i in old:
+            continue
+        values = [read_accessor(d, i, accessor["type"], "it") for d in (before, after)]
+        if not np.array_equal(*values, equal_nan=values[0].dtype.kind == "f"):
+            yield f"accessor {i}"
+    for image, other in zip(before.items("images"), after.items("images"), strict=True):
+        stored = [_bytes(before, image), _bytes(after, other)]
+        if None not in stored and stored[0] != stored[1]:
+            yield "images"
+
+
+def _bytes(document: Document, image: dict) -> bytes | None:
+    if "bufferView" not in image:
+        return None
+    view = document.json["bufferViews"][image["bufferView"]]
+    start = view.get("byteOffset", 0)
+    return document.buffers[view["buffer"]][start : start + view["byteLength"]]
+
+
+def _same(a: np.ndarray | None, b: np.ndarray | None, rtol: float = 0, atol: float = 0) -> bool:
+    if a is None or b is None or a.shape != b.shape:
+        return a is b
+    return bool(np.allclose(a, b, rtol=rtol, atol=atol))
+
+
+def findings(*paths: Path) -> list[Counter]:
+    """Count what the validator finds in glTF files, by severity and kind."""
+    return [
+        Counter(f"{SEVERITIES[m['severity']]} {m['code']}" for m in report["issues"]["messages"])
+        for report in reports(*paths)
+    ]
+
+
+def round_trip(path: Path, resolution: int, folder: Path) -> dict[str, str]:
+    """Bind a file, save it in each format and load it again.
+
+    Returns
+    -------
+    dict of str to str
+        For each ending "equal", or what is not.
+    """
+    rig = cutcell.load(path)
+    rig = rig.with_weights(cutcell.bind(rig, resolution).weights)
+    told: dict[str, str] = {}
+    saved: list[Path] = []
+    for kind in SAVED:
+        if kind == ".gltf" and rig.source is None:
+            continue
+        out = folder / kind[1:] / f"{path.stem}{kind}"
+        out.parent.mkdir()
+        try:
+            cutcell.save(out, rig)
+            again = cutcell.load(out)
+            told[kind] = ", ".join(differences(rig, again, kind)) or "equal"
+            twice = out.with_stem("twice")
+            cutcell.save(twice, again)
+        except cutcell.CutcellError as error:
+            told[kind] = str(error)
+            continue
+        if rig.source and kind != ".gltf" and twice.read_bytes() != out.read_bytes():
+            told[kind] += "; other bytes when it is saved again"
+        if kind in GLTF:
+            saved.append(out)
+    before = findings(path)[0] if rig.source else Counter()
+    for out, found in zip(saved, findings(*saved), strict=True):
+        worse = found - before
+        severe = [f"{n} {what}" for what, n in worse.items() if what.startswith(("err", "warn"))]
+        if severe:
+            told[out.suffix] += "; new: " + ", ".join(severe)
+        elif worse:
+            told[out.suffix] += f" ({', '.join(f'{n} {what}' for what, n in worse.items())})"
+    return told
+
+
+def files(paths: Sequence[Path] = ()) -> list[Path]:
+    """Return the files to try: those named, or all that are at hand."""
+    folders = ROOT / "assets", SHARED / "rigs", SHARED / "wild"
+    return [Path(path) for path in paths] or [
+        path for folder in folders for kind in READ for path in sorted(folder.rglob(kind))
+    ]
+
+
+def table(options: argparse.Namespace) -> tuple[Table, bool]:
+    """Try all files; return the table, and whether all of it is equal."""
+    paths = files(options.files)
+    stems = Counter(path.stem for path in paths)
+    found = Table(
+        "Round trips",
+        ["file", *(kind[1:] for kind in SAVED)],
+        f"Bound at R={options.resolution}, saved, and loaded again. In brackets: objects that "
+        "the validator newly tells of without finding fault.",
+    )
+    good = True
+    for path in paths:
+        name = path.stem if stems[path.stem] == 1 else f"{path.parent.name}/{path.stem}"
+        with tempfile.TemporaryDirectory(prefix="cutcell-round-trip-") as folder:
+            try:
+                told = round_trip(path, options.resolution, Path(folder))
+            except cutcell.CutcellError as error:
+                found.add(name, f"not loaded: {error}", *["-"] * (len(SAVED) - 1))
+                print(found.rows[-1], file=sys.stderr)
+                continue
+        good &= all(text == "equal" or text.startswith("equal (") for text in told.values())
+        found.add(name, *(told.get(kind, "-") for kind in SAVED))
+        print(found.rows[-1], file=sys.stderr)
+    return found, good
+
+
+def arguments(given: Sequence[str] | None = None) -> argparse.Namespace:
+    """Read the command line."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.round_trip", description=__doc__)
+    parser.add_argument("files", nargs="*", metavar="FILE", help="all at hand when left out")
+    parser.add_argument("--resolution", type=int, default=32, metavar="R")
+    parser.add_argument("--markdown", type=Path, metavar="OUT")
+    return parser.parse_args(given)
+
+
+def main(given: Sequence[str] | None = None) -> int:
+    """Print the table, and write it too if a file is named."""
+    options = arguments(given)
+    found, good = table(options)
+    publish([found], options.markdown)
+    return 0 if good else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
