@@ -10,6 +10,7 @@ from ..errors import CutcellError, FileError
 from ..rig import Rig
 from ..writing import check_place, write_all
 from .articulation import articulation_bytes, read_articulation
+from .fbx import read_fbx
 from .files import naming, read_bytes
 from .gltf_container import MAGIC
 from .gltf_fresh import check_fits, new_glb
@@ -21,7 +22,9 @@ from .soup import MESHES, read_soup
 __all__ = ["load", "save"]
 
 GLTF = (".glb", ".gltf", ".vrm")
-READABLE = "GLB, glTF, RigNet (.obj with .txt), Articulation-XL (.npz), or OBJ, PLY, STL, OFF"
+READABLE = (
+    "GLB, glTF, VRM, FBX, RigNet (.obj with .txt), Articulation-XL (.npz), or OBJ, PLY, STL, OFF"
+)
 WRITABLE = ".glb, .gltf, .vrm, .txt (RigNet, with an .obj) or .npz (Articulation-XL)"
 SAVED = (*GLTF, ".txt", ".npz")
 """The endings that `save` takes."""
@@ -33,8 +36,8 @@ def load(path: str | os.PathLike[str], skeleton: str | os.PathLike[str] | None =
     Parameters
     ----------
     path : path
-        A GLB or glTF file; RigNet's ``.obj`` or ``.txt``; an Articulation-XL ``.npz``; or a
-        mesh (OBJ, PLY, STL, OFF) with a skeleton in a JSON file beside it. A mesh without a
+        A GLB, glTF, VRM or FBX file; RigNet's ``.obj`` or ``.txt``; an Articulation-XL ``.npz``;
+        or a mesh (OBJ, PLY, STL, OFF) with a skeleton in a JSON file beside it. A mesh without a
         skeleton becomes a rig without joints. ``docs/formats.md`` says what is taken from each.
     skeleton : path, optional
         The skeleton of a mesh, where it does not stand beside it under the mesh's name.
@@ -67,6 +70,8 @@ def _load(path: Path, skeleton: Path | None) -> Rig:
     if kind in MESHES:
         rig = rig_file(path) if kind == ".obj" and skeleton is None else None
         return read_rignet(rig) if rig else read_soup(path, skeleton)
+    if kind == ".fbx":
+        return read_fbx(path)
     if kind in GLTF or read_bytes(path)[:4] == MAGIC:
         return read_gltf(path)
     if kind == ".json":
@@ -131,7 +136,7 @@ def check_output(path: Path, rig: Rig | None = None) -> None:
     kind = path.suffix.lower()
     with naming(path):
         if kind not in SAVED:
-            raise FileError(f'a rig cannot be saved as "{kind}"; end the name in {WRITABLE}')
+            raise FileError(_not_written(path))
         check_place(path)
         if rig is None:
             return
@@ -141,6 +146,13 @@ def check_output(path: Path, rig: Rig | None = None) -> None:
             check_mesh_file(path, rig.mesh)
         elif kind != ".npz" and not isinstance(rig.source, GltfSource):
             check_fits(rig)
+
+
+def _not_written(path: Path) -> str:
+    """Return why no rig can be saved under a name, and under which it can."""
+    if path.suffix.lower() == ".fbx":
+        return f"FBX can be read, not written; save it as {path.stem}.glb, which Blender imports"
+    return f'a rig cannot be saved as "{path.suffix}"; end the name in {WRITABLE}'
 
 
 def _files(path: Path, rig: Rig) -> dict[Path, bytes]:

@@ -70,8 +70,8 @@ def read_gltf(path: Path) -> Rig:
         raise FileError(f"its glTF document is malformed ({type(e).__name__}: {e})") from e
 
 
-def read_rig(document: Document, path: Path) -> Rig:
-    """Return what a document with plain accessors holds."""
+def read_rig(document: Document, path: Path, world: NDArray | None = None) -> Rig:
+    """Return what a document with plain accessors holds; `world` is of `read_bind`."""
     nodes = Nodes(document)
     skinned = _skinned_nodes(nodes)
     if not skinned:
@@ -79,7 +79,7 @@ def read_rig(document: Document, path: Path) -> Rig:
     for i in skinned:
         document.item("skins", nodes.raw[i]["skin"], document.label("nodes", i))
     skins = list(dict.fromkeys(nodes.raw[i]["skin"] for i in skinned))
-    bind = read_bind(document, nodes, skins)
+    bind = read_bind(document, nodes, skins, world)
     parts, vertices, faces, stored, named = _read_parts(document, nodes, skinned, bind)
     if not faces or not sum(len(f) for f in faces):
         raise MeshError("its skinned meshes have no triangles")

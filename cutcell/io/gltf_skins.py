@@ -36,8 +36,13 @@ class Bind:
     """Joints whose skin has no inverse bind matrices to take a position from."""
 
 
-def read_bind(document: Document, nodes: Nodes, skins: list[int]) -> Bind:
-    """Bring the skins of a file together; the first one sets the space."""
+def read_bind(
+    document: Document, nodes: Nodes, skins: list[int], world: NDArray | None = None
+) -> Bind:
+    """Bring the skins of a file together; the first one sets the space.
+
+    `world` leads from there to the scene; the joints at rest say where it is when left out.
+    """
     bind = Bind()
     place: dict[int, int] = {}
     for skin in skins:
@@ -46,7 +51,7 @@ def read_bind(document: Document, nodes: Nodes, skins: list[int]) -> Bind:
         shared = [k for k, node in enumerate(joints) if node in place]
         if not bind.nodes:
             to_rig = np.eye(4)
-            bind.world = _rest_world(nodes, joints, inverse)
+            bind.world = _rest_world(nodes, joints, inverse) if world is None else world
         elif shared:
             known = bind.inverse[place[joints[shared[0]]]]
             to_rig = np.linalg.inv(known) @ inverse[shared[0]]

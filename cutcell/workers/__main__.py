@@ -5,6 +5,7 @@ The result also tells the `seconds` that the task took, the process's start left
 
 from __future__ import annotations
 
+import os
 import sys
 from importlib import import_module
 from pathlib import Path
@@ -20,10 +21,11 @@ TASKS = {
     "quasi_harmonic": "quasi_harmonic:quasi_harmonic",
     "cage": "cage:make_cage",
     "draco": "draco:decode",
+    "fbx": "fbx:read",
 }
 """Module and function of each task; it takes the job's arrays, and returns the result's."""
 
-EXTRAS = {"draco": "cutcell"}
+EXTRAS = {"draco": "cutcell", "fbx": "cutcell", "usd": "cutcell[usd]"}
 """What installs the library of a task, where it is not `cutcell[peers]`."""
 
 
@@ -60,3 +62,4 @@ def limit_memory(allowance: int) -> None:
 
 if __name__ == "__main__":
     main(*sys.argv[1:])
+    os._exit(0)  # the result is written; some libraries crash as they are taken down
