@@ -235,8 +235,8 @@ def main_file(paths: list[Path]) -> Path:
     names = ", ".join(path.name for path in paths)
     if not found:
         raise FileError(
-            f"no character among the dropped files ({names}); drop a GLB, glTF, OBJ, PLY, STL, "
-            "OFF or NPZ file, and the files that belong to it together with it"
+            f"no character among the dropped files ({names}); drop a GLB, glTF, VRM, FBX, USD, "
+            "OBJ, PLY, STL, OFF or NPZ file, and the files that belong to it together with it"
         )
     if len(found) > 1:
         raise FileError(f"more than one character was dropped ({names}); drop one at a time")

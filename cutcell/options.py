@@ -15,7 +15,8 @@ RigFile = Annotated[
     Path,
     typer.Argument(
         metavar="RIG",
-        help="A character: .glb or .gltf; RigNet's .obj with .txt; Articulation-XL's .npz; or a"
+        help="A character: .glb, .gltf or .vrm; .fbx; .usd, .usda, .usdc or .usdz (needs"
+        " cutcell[usd]); RigNet's .obj with .txt; Articulation-XL's .npz; or a"
         " mesh (.obj, .ply, .stl, .off) with a skeleton in a .json beside it.",
     ),
 ]

@@ -14,7 +14,7 @@ from ..upload import FileDrop
 from .parts import GAP, caption, section
 
 OWN = "Your own"
-HINT = f"GLB, glTF, OBJ, NPZ, … · up to {MAX_UPLOAD // 2**20} MB"
+HINT = f"GLB, glTF, VRM, FBX, USD, OBJ, … · up to {MAX_UPLOAD // 2**20} MB"
 
 
 def character(session: Session) -> pmui.Column:

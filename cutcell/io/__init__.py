@@ -18,12 +18,14 @@ from .gltf_read import GltfSource, read_gltf
 from .gltf_write import rewritten
 from .rignet import check_mesh_file, read_rignet, rig_file, rignet_files
 from .soup import MESHES, read_soup
+from .usd import USD, read_usd
 
 __all__ = ["load", "save"]
 
 GLTF = (".glb", ".gltf", ".vrm")
 READABLE = (
-    "GLB, glTF, VRM, FBX, RigNet (.obj with .txt), Articulation-XL (.npz), or OBJ, PLY, STL, OFF"
+    "GLB, glTF, VRM, FBX, USD, RigNet (.obj with .txt), Articulation-XL (.npz), or OBJ, PLY, STL, "
+    "OFF"
 )
 WRITABLE = ".glb, .gltf, .vrm, .txt (RigNet, with an .obj) or .npz (Articulation-XL)"
 SAVED = (*GLTF, ".txt", ".npz")
@@ -36,7 +38,7 @@ def load(path: str | os.PathLike[str], skeleton: str | os.PathLike[str] | None =
     Parameters
     ----------
     path : path
-        A GLB, glTF, VRM or FBX file; RigNet's ``.obj`` or ``.txt``; an Articulation-XL ``.npz``;
+        A GLB, glTF, VRM, FBX or USD file; RigNet's ``.obj`` or ``.txt``; an Articulation-XL ``.npz``;
         or a mesh (OBJ, PLY, STL, OFF) with a skeleton in a JSON file beside it. A mesh without a
         skeleton becomes a rig without joints. ``docs/formats.md`` says what is taken from each.
     skeleton : path, optional
@@ -72,6 +74,8 @@ def _load(path: Path, skeleton: Path | None) -> Rig:
         return read_rignet(rig) if rig else read_soup(path, skeleton)
     if kind == ".fbx":
         return read_fbx(path)
+    if kind in USD:
+        return read_usd(path)
     if kind in GLTF or read_bytes(path)[:4] == MAGIC:
         return read_gltf(path)
     if kind == ".json":

@@ -22,6 +22,7 @@ TASKS = {
     "cage": "cage:make_cage",
     "draco": "draco:decode",
     "fbx": "fbx:read",
+    "usd": "usd:read",
 }
 """Module and function of each task; it takes the job's arrays, and returns the result's."""
 

@@ -11,7 +11,7 @@ import ufbx
 
 FRAMES_A_SECOND = 30.0
 MOST_TRIANGLES_OF_A_FACE = 10_000
-KEEP = []
+KEEP: list[list] = []
 """What must never be released."""
 
 
@@ -37,7 +37,7 @@ def read(data):
         scene = ufbx.load_memory(data.tobytes(), **options())
     except ufbx.UfbxError as error:
         raise RuntimeError(f"it is damaged ({error})") from None
-    KEEP.append(scene)
+    KEEP.append([scene])
     nodes = kept(scene.nodes)
     place = {node.element_id: i for i, node in enumerate(nodes)}
     parents = [place[p.element_id] if (p := node.parent) else -1 for node in nodes]
@@ -48,7 +48,8 @@ def read(data):
         "node_hidden": np.array([not node.visible for node in nodes]),
         "node_bones": np.array([node.attrib_type == ufbx.ElementType.BONE for node in nodes]),
     }
-    names, at = [], []
+    names: list[str] = []
+    at: list[int] = []
     for mesh in kept(scene.meshes):
         places = kept(mesh.instances)
         if not mesh.num_faces or not places:
@@ -141,7 +142,9 @@ def influences(skins, place):
 
 def clips(scene, place):
     """Return every animation as keys of its nodes, from time 0 on, to be joined by lines."""
-    names, tracks, keys = [], [], [np.zeros((0, 5))]
+    names: list[str] = []
+    tracks: list[tuple[int, ...]] = []
+    keys = [np.zeros((0, 5))]
     for stack in kept(scene.anim_stacks):
         baked = ufbx.bake_anim(
             scene,
@@ -152,7 +155,7 @@ def clips(scene, place):
             key_reduction_enabled=True,
             key_reduction_rotation=True,
         )
-        KEEP.append(baked)
+        KEEP.append([baked])
         before = len(tracks)
         for node in kept(baked.nodes):
             moves = (node.translation_keys, node.rotation_keys, node.scale_keys)

@@ -134,7 +134,11 @@ def _lines(records, indent):
         arrays = [v for v in values if isinstance(v, np.ndarray)]
         if arrays:
             numbers = ",".join(repr(x) for x in arrays[0].tolist())
-            lines += [f"{indent}{name}: *{len(arrays[0])} {{", f"{inner}a: {numbers}", f"{indent}}}"]
+            lines += [
+                f"{indent}{name}: *{len(arrays[0])} {{",
+                f"{inner}a: {numbers}",
+                f"{indent}}}",
+            ]
             continue
         shown = ", ".join(f'"{v}"' if isinstance(v, str) else repr(v) for v in values)
         lines.append(f"{indent}{name}: {shown}" + (" {" if children else ""))

@@ -138,9 +138,9 @@ def test_missing_empty_or_a_folder(tmp_path, end):
 
 
 def test_other_kinds_of_files(tmp_path):
-    (tmp_path / "a.fbx").write_bytes(b"Kaydara FBX Binary")
-    with pytest.raises(F, match=r'a\.fbx: "\.fbx" cannot be read; give GLB, glTF'):
-        cutcell.load(tmp_path / "a.fbx")
+    (tmp_path / "a.blend").write_bytes(b"BLENDER-v300")
+    with pytest.raises(F, match=r'a\.blend: "\.blend" cannot be read; give GLB, glTF, VRM, FBX'):
+        cutcell.load(tmp_path / "a.blend")
     (tmp_path / "a.json").write_text("{}")
     with pytest.raises(F, match=r"a\.json: is not a mesh; give the mesh"):
         cutcell.load(tmp_path / "a.json")

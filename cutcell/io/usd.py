@@ -1,0 +1,42 @@
+"""USD files with UsdSkel: read in a process of their own, where usd-core is installed."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from ..apart import WorkFailedError, run_apart
+from ..errors import FileError
+from ..rig import Rig
+from .files import read_bytes
+from .gltf_read import read_rig
+from .scene_document import scene_document
+from .scene_joints import scene_world
+
+USD = (".usd", ".usda", ".usdc", ".usdz")
+SECONDS, MEMORY = 120.0, 2**32
+LOST = (
+    "of a USD, the meshes, skeletons, weights and motion are read; it is saved as a GLB without "
+    "its materials, texture coordinates and blend shapes"
+)
+
+
+def read_usd(path: Path) -> Rig:
+    """Load a USD file; see `cutcell.load`.
+
+    Raises
+    ------
+    FileError
+        Not such a file, damaged, or usd-core is not installed.
+    """
+    read_bytes(path)  # says what it says of every file: not there, a folder, empty
+    try:
+        scene = run_apart(
+            "usd", {"path": np.array(str(path.resolve()))}, SECONDS, "the USD reader", MEMORY
+        )
+    except WorkFailedError as e:
+        raise FileError(f"cannot be read as USD: {e}") from None
+    document = scene_document(scene, path, "cutcell, from USD")
+    document.warnings.append(LOST)
+    return read_rig(document, path, scene_world(scene))
