@@ -57,7 +57,8 @@ def to_query(state: State, kept: str = "", camera: list[float] | None = None) ->
         said["rig"] = state.demo or f"~{kept}"
     said["panel"] = state.panel
     if state.rig is not None:
-        said["bone"] = state.rig.skeleton.names[state.joint]
+        if not state.bare:
+            said["bone"] = state.rig.skeleton.names[state.joint]
         if state.vertex is not None:
             said["vertex"] = str(state.vertex)
     for name, parameter in simple(state).items():

@@ -188,9 +188,12 @@ class Opening:
         # All at once: a menu whose value changes twice in a moment may tell the first one back.
         with batch_call_watchers(state):
             state.param.update(
-                rig=rig, binding=None, field=None, turns={}, moving=False, playing=False,
+                rig=rig, binding=None, bare_graph=None, field=None, turns={}, moving=False,
+                playing=False,
                 clip=first_clip(rig), message=None, joint=first_joint(rig), vertex=None,
             )  # fmt: skip
+            if state.bare:
+                state.panel = "graph"
             self._land(rig, arrival)
             compare.carry(state, before, arrival)
             chosen()

@@ -109,6 +109,9 @@ class Session:
         rig, method = state.rig, weights.generous(self)
         if rig is None:
             return
+        if state.bare:
+            self._build(told)
+            return
         graph = self._bound_for = method_of(state, GRAPH)
 
         def done(binding: Any) -> None:
@@ -126,15 +129,31 @@ class Session:
             failed=lambda: self._go_back(graph),
         )
 
+    def _build(self, told: tuple[str, str] | None) -> None:
+        """Build the graph of a mesh without a skeleton."""
+        rig = self.state.rig
+        wanted = self._bound_for = method_of(self.state, GRAPH)
+        chosen = {name: value for name, value in wanted.items() if name != "leaf"}
+
+        def done(graph: Any) -> None:
+            self._held = wanted
+            self.state.param.update(bare_graph=graph, message=told)
+
+        self.start(
+            lambda progress: cutcell.build_graph(rig.mesh, progress=progress, **chosen),
+            done,
+            failed=lambda: self._go_back(wanted),
+        )
+
     def _go_back(self, graph: dict[str, Any]) -> None:
         """Choose what the page holds instead of what no graph came of; at first, the defaults."""
         state = self.state
-        held = self._held if state.binding is not None else method_of(State(), GRAPH)
+        held = self._held if state.graph is not None else method_of(State(), GRAPH)
         if method_of(state, GRAPH) != graph or graph == held:
             return
         self._bound_for = held
         self.habits.withdraw(held)
-        if state.binding is None:
+        if state.graph is None:
             self.bind(state.message)
 
     def _rebind(self) -> None:
@@ -148,7 +167,7 @@ class Session:
             self.state.param.update(
                 busy=False, message=("info", "Cancelled. The page keeps what it had.")
             )
-            if self.state.binding is not None:
+            if self.state.graph is not None:
                 self._go_back(self._bound_for)
 
     def start(
@@ -202,7 +221,8 @@ class Session:
     def pick_vertex(self, vertex: int | None) -> None:
         """Choose a vertex to look at closely; None for no more."""
         state = self.state
-        if state.rig is None or (vertex is not None and vertex >= len(state.rig.mesh.vertices)):
+        count = 0 if state.rig is None or state.bare else len(state.rig.mesh.vertices)
+        if vertex is not None and vertex >= count:
             return
         state.vertex = vertex
 

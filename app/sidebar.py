@@ -9,9 +9,18 @@ import panel_material_ui as pmui
 from .panels import PANELS
 from .panels.bone import bone
 from .panels.character import character
+from .panels.parts import lead
 from .panels.take_along import take_along
 from .session import Session
 from .tabs import Tabs
+
+BARE = ("graph", "learn")
+"""The panels for a mesh without a skeleton."""
+NO_SKELETON = (
+    "This mesh has no skeleton, so it has no bones to measure from, to weigh or to move; its graph "
+    "can be seen. Export it together with its armature, or drop it together with a skeleton in a "
+    "JSON file of the same name."
+)
 
 
 def sidebar(session: Session) -> list[Any]:
@@ -35,17 +44,20 @@ def panels(session: Session) -> tuple[Tabs, pmui.Column]:
     built: dict[str, Any] = {}
 
     def shown(*events: Any) -> None:
+        tabs.value = state.panel
+        if state.bare and state.panel not in BARE:
+            place.objects = [lead(NO_SKELETON)]
+            return
         for panel in PANELS:
             if panel.id == state.panel:
                 place.objects = [
                     built.get(panel.id) or built.setdefault(panel.id, panel.build(session))
                 ]
-        tabs.value = state.panel
 
     def chosen(event: Any) -> None:
         state.panel = event.new
 
-    state.param.watch(shown, "panel")
+    state.param.watch(shown, ["panel", "rig"])
     tabs.param.watch(chosen, "value")
     shown()
     return tabs, place

@@ -32,7 +32,12 @@ def status_line(session: Session) -> pmui.Row:
     state = session.state
     small = {"fontSize": "12px", "lineHeight": 1.4, "fontVariantNumeric": "tabular-nums"}
     counts = pmui.Typography(
-        when(lambda *_: summary(state), state.param.rig, state.param.binding),
+        when(
+            lambda *_: summary(state),
+            state.param.rig,
+            state.param.binding,
+            state.param.bare_graph,
+        ),
         visible=when(lambda busy: not busy, state.param.busy),
         sx={**small, **_ONE_LINE, "color": "text.secondary"},
         margin=(10, 16),
@@ -100,7 +105,7 @@ def messages(session: Session) -> pmui.Column:
         if event.new:
             alert.visible = False
 
-    state.param.watch(told, ["message", "binding"])
+    state.param.watch(told, ["message", "binding", "bare_graph"])
     alert.param.watch(closed, "closed")
     return pmui.Column(alert, margin=0, sizing_mode="stretch_width", stylesheets=[_PLACE])
 
@@ -123,9 +128,9 @@ def only_weights(event: Any) -> bool:
 
 def warning(state: State) -> tuple[str, str] | None:
     """Return what a person should know about the result."""
-    if state.binding is None:
+    if state.graph is None:
         return None
-    texts = [*state.rig.warnings, *state.binding.warnings]
+    texts = [*state.rig.warnings, *(state.binding.warnings if state.binding else ())]
     return ("warning", " ".join(sentence(text) for text in texts)) if texts else None
 
 
@@ -141,13 +146,13 @@ def summary(state: State) -> str:
         return ""
     mesh, joints = rig.mesh, len(rig.skeleton.joints)
     parts = [f"{len(mesh.vertices):,} vertices · {len(mesh.faces):,} faces · {joints} joints"]
-    if binding is not None:
-        graph = binding.graph
+    if state.graph is not None:
+        graph = state.graph
         kinds = np.bincount(graph.edge_kind, minlength=3)
         parts.append(
             f"{len(graph.nodes):,} nodes · {len(graph.edges):,} edges ({kinds[MESH]:,} mesh, "
             f"{kinds[INTERIOR]:,} interior, {kinds[SURFACE]:,} surface)"
         )
-        seconds = binding.seconds.items()
+        seconds = binding.seconds.items() if binding is not None else ()
         parts.append(" · ".join(f"{stage} {value:.2f} s" for stage, value in seconds))
     return "  |  ".join(parts)

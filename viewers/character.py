@@ -134,7 +134,7 @@ def drawn_segments(
     Returns
     -------
     start, end : array, shape (b, 3)
-        In the scene's space.
+        In the scene's space. None for a mesh without a skeleton.
     joint : array, shape (b,)
         The joint that each bone belongs to and moves with.
     """
@@ -145,8 +145,9 @@ def drawn_segments(
     for j in range(len(joints)):
         if not len(skeleton.children[j]):
             pairs.append((joints[j], joints[j] + _stub(skeleton, joints, j, size), j))
-    start, end, joint = zip(*pairs, strict=True)
-    return np.array(start), np.array(end), np.array(joint)
+    start, end, joint = zip(*pairs, strict=True) if pairs else ((), (), ())
+    shape = (-1, 3)
+    return np.reshape(start, shape), np.reshape(end, shape), np.array(joint, np.intp)
 
 
 def _stub(skeleton: Skeleton, joints: NDArray, j: int, size: float) -> NDArray[np.float64]:

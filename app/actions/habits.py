@@ -112,6 +112,8 @@ class Habits:
     def play(self) -> None:
         """Play the motion, or halt it; on the panel where things move."""
         state = self._session.state
+        if state.bare:
+            return
         if not state.moving or state.panel not in ("pose", "compare"):
             panel = state.panel if state.panel == "compare" else "pose"
             state.param.update(panel=panel, moving=True, playing=True)
@@ -121,11 +123,15 @@ class Habits:
     def step(self, count: int) -> None:
         """Choose the next joint of the list, or the one before."""
         state = self._session.state
+        if state.bare:
+            return
         state.joint = (state.joint + count) % len(state.rig.skeleton.names)
 
     def parent(self) -> None:
         """Choose the joint that the chosen one hangs on."""
         state = self._session.state
+        if state.bare:
+            return
         above = int(state.rig.skeleton.parents[state.joint])
         if above >= 0:
             state.joint = above
@@ -133,6 +139,8 @@ class Habits:
     def child(self) -> None:
         """Choose the first joint that hangs on the chosen one."""
         state = self._session.state
+        if state.bare:
+            return
         below = state.rig.skeleton.children[state.joint]
         if len(below):
             state.joint = int(below[0])

@@ -8,7 +8,7 @@ import panel_material_ui as pmui
 
 from ..session import Session
 from ..state import State
-from .parts import GAP, caption, cutting, lead, section, slider, when
+from .parts import GAP, caption, cutting, lead, section, slider, weightless, when
 
 
 def geodesics(session: Session) -> pmui.Column:
@@ -17,7 +17,7 @@ def geodesics(session: Session) -> pmui.Column:
     idle = caption(
         "This bone carries no weight, so no distance begins at it.",
         visible=when(
-            lambda rig, joint: rig is not None and not rig.skeleton.deform[joint],
+            weightless,
             state.param.rig,
             state.param.joint,
         ),

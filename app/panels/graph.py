@@ -13,7 +13,7 @@ from cutcell.graph import INTERIOR, MESH, SURFACE
 from ..session import Session
 from ..state import LAYERS, State
 from ..theme import LAYER_COLORS
-from .parts import GAP, caption, choice, cutting, lead, section, slider, when
+from .parts import GAP, caption, choice, cutting, lead, section, slider, weightless, when
 
 KINDS = {"mesh_edges": MESH, "interior_edges": INTERIOR, "surface_edges": SURFACE}
 LEAF_TITLES = {"point": "A point", "extend": "Extended", "fit": "Fitted"}
@@ -45,7 +45,7 @@ def _layer(state: State, name: str) -> pmui.Row:
         sx=look if color else {},
     )
     number = pmui.Typography(
-        when(lambda *_: count(state, name), state.param.binding, state.param.rig),
+        when(lambda *_: count(state, name), *_built(state), state.param.rig),
         sx={
             "fontSize": "12px",
             "color": "text.secondary",
@@ -65,9 +65,9 @@ def count(state: State, layer: str) -> str:
     """Return how many faces or edges a layer has, as text."""
     if layer == "body":
         return "" if state.rig is None else f"{len(state.rig.mesh.faces):,} faces"
-    if state.binding is None:
+    if state.graph is None:
         return ""
-    return f"{np.count_nonzero(state.binding.graph.edge_kind == KINDS[layer]):,}"
+    return f"{np.count_nonzero(state.graph.edge_kind == KINDS[layer]):,}"
 
 
 def _colors(state: State) -> list[Any]:
@@ -75,10 +75,7 @@ def _colors(state: State) -> list[Any]:
         "The chosen bone carries no weight, so no distance begins at it.",
         visible=when(
             lambda shown, rig, joint, slicing: (
-                shown == "distance"
-                and not slicing
-                and rig is not None
-                and not rig.skeleton.deform[joint]
+                shown == "distance" and not slicing and weightless(rig, joint)
             ),
             state.param.edge_colors,
             state.param.rig,
@@ -129,6 +126,10 @@ def _cut(state: State) -> tuple[Any, Any]:
     return state.param.cut_axis, state.param.slicing
 
 
+def _built(state: State) -> tuple[Any, Any]:
+    return state.param.binding, state.param.bare_graph
+
+
 def _ends(value: int) -> dict[str, int]:
     """Return between which resolutions the slider moves: the useful ones, and the chosen one."""
     return {"start": min(16, value), "end": max(160, value)}
@@ -164,9 +165,9 @@ def _build(session: Session) -> list[Any]:
         sizing_mode="stretch_width",
         on_click=lambda event: session.bind(),
         visible=when(
-            lambda rig, binding, busy: rig is not None and binding is None and not busy,
+            lambda rig, binding, bare, busy: rig is not None and not (binding or bare or busy),
             state.param.rig,
-            state.param.binding,
+            *_built(state),
             state.param.busy,
         ),
     )

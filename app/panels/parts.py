@@ -118,6 +118,11 @@ def slider(parameter: Any, label: str, whole: bool = False, **params: Any) -> An
     return made
 
 
+def weightless(rig: Any, joint: int) -> bool:
+    """Whether a joint is there that carries no weight."""
+    return rig is not None and joint < len(rig.skeleton.deform) and not rig.skeleton.deform[joint]
+
+
 def cutting(state: Any) -> list[Any]:
     """Return the choice of a cutting plane and the slider that moves it."""
     position = slider(

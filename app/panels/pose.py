@@ -36,7 +36,7 @@ def _turning(session: Session) -> pmui.Column:
         when(
             lambda rig, joint: (
                 ""
-                if rig is None
+                if rig is None or joint >= len(rig.skeleton.names)
                 else f"Turn {rig.skeleton.names[joint]}: drag its rings, or the sliders."
             ),
             state.param.rig,

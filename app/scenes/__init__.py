@@ -45,7 +45,8 @@ def resolve(state: State, memo: Memo | None = None) -> Description:
     """
     if state.rig is None:
         return Description()
-    whole = SCENES.get(state.panel, plain)(state, memo or Memo())
+    scene = SCENES["graph"] if state.bare else SCENES.get(state.panel, plain)
+    whole = scene(state, memo or Memo())
     if whole.legend is None or not (_coloured(whole.actors) and state.rig.attachments):
         return whole
     swatches = (*whole.legend.swatches, (ATTACHMENT, RIGID))

@@ -68,6 +68,8 @@ def character(
 
 
 def _skeleton(state: State, memo: Memo, coloured: bool) -> dict[str, Actor]:
+    if state.bare:
+        return {}
     rig = state.rig
     shown = memo("segments", (rig,), lambda: drawn_segments(rig))
     kept = _behind_cut(state, *shown) if state.panel in CUT else None
@@ -104,7 +106,7 @@ def cut_of(state: State) -> Cut | None:
 
 def cells_of(state: State, count: float) -> float:
     """Return the length of some cells of the lattice, in the scene's units."""
-    resolution = state.binding.graph.lattice.resolution
+    resolution = state.graph.lattice.resolution
     return count * float(np.ptp(bounds_of(state), axis=0).max()) / resolution
 
 
@@ -136,6 +138,8 @@ def first_joint(rig: Rig) -> int:
     """Return the joint to begin with: an arm if there is one, else the longest bone."""
     skeleton = rig.skeleton
     start, end, joint = drawn_segments(rig)
+    if not len(joint):
+        return 0  # of a mesh without a skeleton: nothing asks which
     inner = np.array([len(skeleton.children[j]) > 0 for j in joint])
     useful = skeleton.deform[joint] & inner & (skeleton.parents[joint] >= 0)
     arm = np.array([bool(_ARM.search(skeleton.names[j])) for j in joint])

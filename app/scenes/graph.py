@@ -34,7 +34,7 @@ SHELL = 0.5
 
 def graph(state: State, memo: Memo) -> Description:
     """Return the scene of the panel Graph: the layers of the graph, or a slice's rays."""
-    if state.slicing and state.binding is not None:
+    if state.slicing and state.graph is not None:
         return _slice(state, memo)
     cut = cut_of(state)
     thick = slab_of(state) if cut is not None else {}
@@ -50,9 +50,9 @@ def graph(state: State, memo: Memo) -> Description:
 
 def graph_layers(state: State, memo: Memo) -> tuple[dict[str, Actor], Legend | None]:
     """Return the graph's actors, and how to read their colours."""
-    if state.binding is None:
+    if state.graph is None:
         return {}, None
-    rig, lattice, theme = state.rig, state.binding.graph, theme_of(state)
+    rig, lattice, theme = state.rig, state.graph, theme_of(state)
     field, look, legend = _field(state, memo)
     drawn = memo(
         "graph",
@@ -76,7 +76,7 @@ def _thin(state: State, name: str) -> float:
 def _field(state: State, memo: Memo) -> tuple[Any, dict[str, Any], Legend | None]:
     """Return what edges are coloured by: values at nodes, how they are shown, the legend."""
     if state.edge_colors == "depth":
-        depth = memo("depth", (state.binding.graph,), lambda: depth_field(state.binding.graph))
+        depth = memo("depth", (state.graph,), lambda: depth_field(state.graph))
         most = distance_limits(depth)[1]
         legend = Legend("Depth below the surface", "depth", "0", f"{most:.3f} of the longest side")
         return depth, {"shades": "depth"}, legend
@@ -99,23 +99,23 @@ def body_opacity(state: State) -> float:
     """Return how opaque the body is: see-through where the graph would else be hidden."""
     whole = state.cut_axis == "off"
     looks_inside = whole and (state.interior_edges or state.surface_edges)
-    return SEE_THROUGH if looks_inside and state.binding is not None else 1.0
+    return SEE_THROUGH if looks_inside and state.graph is not None else 1.0
 
 
 def slab_of(state: State) -> dict[str, float]:
     """Return how much is kept behind the cut, of the interior and of the rest; 0 is all."""
-    if state.binding is None or state.cut_keeps == "half":
+    if state.graph is None or state.cut_keeps == "half":
         return {}
     if state.cut_keeps == "face":
         return {"interior": cells_of(state, FACE_CELLS)}
-    thick = cells_of(state, state.slab * state.binding.graph.lattice.resolution)
+    thick = cells_of(state, state.slab * state.graph.lattice.resolution)
     return {"interior": thick, "rest": thick}
 
 
 def _slice(state: State, memo: Memo) -> Description:
     """Return the scene of one slice: its rays, and the body behind it."""
     rig, theme = state.rig, theme_of(state)
-    resolution = state.binding.graph.lattice.resolution
+    resolution = state.graph.lattice.resolution
     place = slice_place(rig, state.slice_axis, state.slice_position, resolution)
     normal, index, cut = place
     axis, _ = file_axis(rig, state.slice_rays)
@@ -138,7 +138,7 @@ def _slice(state: State, memo: Memo) -> Description:
         "slice scene", (found, theme.name), lambda: slice_scene(rig, found, theme)
     )
     shell = character(state, memo, visible=state.body, opacity=SHELL)
-    for name in ("bones", "bone outlines"):
+    for name in {"bones", "bone outlines"} & shell.keys():
         shell[name] = replace(shell[name], visible=False)  # they would hide the slice
     return Description({**shell, **actors}, cut=_pulled(cut, state), legend=legend)
 

@@ -18,6 +18,7 @@ class Common(param.Parameterized):
     demo: Any = param.String("", doc="Id of the demo character that was chosen; else empty.")
     rig: Any = param.Parameter(None, doc="The character: a cutcell.Rig, or None at first.")
     binding: Any = param.Parameter(None, doc="What was computed for it, or None so far.")
+    bare_graph: Any = param.Parameter(None, doc="The graph of a mesh without a skeleton.")
 
     joint: Any = param.Integer(0, doc="The chosen joint.")
     vertex: Any = param.Integer(None, allow_None=True, doc="The clicked vertex, or None.")
@@ -34,6 +35,16 @@ class Common(param.Parameterized):
     stage: Any = param.String("", doc="What is being computed.")
     fraction: Any = param.Number(0.0, doc="How much of the stage is done, from 0 to 1.")
     message: Any = param.Parameter(None, doc="(severity, sentence) to show, or None.")
+
+    @property
+    def bare(self) -> bool:
+        """Whether what stands there is a mesh without a skeleton: it has a graph, and no more."""
+        return self.rig is not None and not len(self.rig.skeleton.joints)
+
+    @property
+    def graph(self) -> Any:
+        """The graph of what stands there; None so far."""
+        return self.bare_graph if self.binding is None else self.binding.graph
 
     @property
     def weights(self) -> Any:

@@ -38,9 +38,10 @@ def load(path: str | os.PathLike[str], skeleton: str | os.PathLike[str] | None =
     Parameters
     ----------
     path : path
-        A GLB, glTF, VRM, FBX or USD file; RigNet's ``.obj`` or ``.txt``; an Articulation-XL ``.npz``;
-        or a mesh (OBJ, PLY, STL, OFF) with a skeleton in a JSON file beside it. A mesh without a
-        skeleton becomes a rig without joints. ``docs/formats.md`` says what is taken from each.
+        A GLB, glTF, VRM, FBX or USD file; RigNet's ``.obj`` or ``.txt``; an Articulation-XL
+        ``.npz``; or a mesh (OBJ, PLY, STL, OFF) with a skeleton in a JSON file beside it. A mesh
+        without a skeleton becomes a rig without joints. ``docs/formats.md`` says what is taken
+        from each.
     skeleton : path, optional
         The skeleton of a mesh, where it does not stand beside it under the mesh's name.
 

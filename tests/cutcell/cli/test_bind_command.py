@@ -85,7 +85,10 @@ def test_warns_of_vertices_that_no_path_reaches(run, tmp_path):
 
 @pytest.mark.parametrize(
     ("name", "sentence"),
-    [("o.fbx", 'cannot be saved as ".fbx"'), ("no/where/o.glb", "there is no folder")],
+    [
+        ("o.fbx", "FBX can be read, not written; save it as o.glb"),
+        ("no/where/o.glb", "there is no folder"),
+    ],
 )
 def test_a_wrong_output_is_told_before_the_work(run, bar, tmp_path, name, sentence):
     assert sentence in refused(run("bind", bar, tmp_path / name, "-r", 10_000))

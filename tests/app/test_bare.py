@@ -1,0 +1,98 @@
+"""A mesh without a skeleton on the page: its graph is there, the rest says why it is not."""
+
+import numpy as np
+import pytest
+
+from app.choices import to_query
+from app.panels import PANELS
+from app.panels.bone import bone
+from app.panels.take_along import take_along
+from app.scenes import resolve
+from app.sidebar import NO_SKELETON, panels
+from app.status import messages, summary
+from cutcell.rig import Rig, Skeleton
+from tests.viewers.arm import arm_rig
+
+
+def bare_arm():
+    rig = arm_rig()
+    return Rig(rig.mesh, Skeleton([], []), name="statue", warnings=("it has no skin",))
+
+
+@pytest.fixture
+def bare(session, loop):
+    """Return a session on which a bare mesh stands, with all panels built for a rig before."""
+    session.state.resolution = 16
+    session.opening.rig(arm_rig())
+    loop.run_until(lambda: session.state.binding is not None)
+    session.built = [panels(session), bone(session), take_along(session), messages(session)]
+    for panel in PANELS:
+        session.state.panel = panel.id
+    session.opening.rig(bare_arm())
+    loop.run_until(lambda: session.state.bare_graph is not None)
+    loop.run_until(lambda: not session.working)
+    return session
+
+
+def test_the_panel_graph_opens_and_shows_it(bare):
+    state = bare.state
+    assert state.panel == "graph"
+    assert state.binding is None
+    assert "0 joints" in summary(state)
+    assert f"{len(state.graph.nodes):,} nodes" in summary(state)
+    actors = resolve(state).actors
+    assert "interior edges" in actors
+    assert "bones" not in actors
+    assert "bone" not in to_query(state)
+
+
+@pytest.mark.parametrize("panel", [panel.id for panel in PANELS])
+def test_every_panel_can_be_looked_at(bare, loop, panel):
+    bare.state.panel = panel
+    loop.run_for(0.1)
+    assert bare.state.message is None
+    assert "body" in resolve(bare.state).actors
+    _, place = bare.built[0]
+    told = [one.object for one in place.objects if hasattr(one, "object")]
+    assert (told == [NO_SKELETON]) == (panel not in ("graph", "learn"))
+
+
+def test_cuts_slices_and_keys_do_no_harm(bare, loop):
+    state = bare.state
+    for change in (
+        {"cut_axis": "x"},
+        {"slicing": True},
+        {"slicing": False, "edge_colors": "depth"},
+    ):
+        state.param.update(**change)
+        assert resolve(state).actors
+    state.edge_colors = "distance"
+    assert resolve(state).actors
+    for act in ("play", "parent", "child", "reset"):
+        getattr(bare.habits, act)()
+    bare.habits.step(1)
+    bare.pick(0)
+    bare.pick_vertex(0)
+    assert state.vertex is None
+    assert not state.moving
+    loop.run_for(0.1)
+    assert state.message is None
+
+
+def test_another_resolution_builds_again(bare, loop):
+    before = bare.state.bare_graph
+    bare.state.resolution = 24
+    loop.run_until(lambda: bare.state.bare_graph is not before)
+    assert bare.state.bare_graph.lattice.resolution == 24
+    bare.state.resolution = 10_000
+    loop.run_until(lambda: bare.state.message is not None)
+    assert bare.state.message[0] == "error"
+    assert bare.state.resolution == 24
+
+
+def test_a_character_after_it_is_bound_as_ever(bare, loop):
+    bare.opening.rig(arm_rig())
+    loop.run_until(lambda: bare.state.binding is not None)
+    assert bare.state.bare_graph is None
+    assert np.isfinite(bare.state.weights).all()
+    assert "bones" in resolve(bare.state).actors
