@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
+from cutcell.writing import write_all
+
 from .rigs import ROOT
 
 PAGE_SPEED = ROOT / "docs" / "page-speed.md"
@@ -32,4 +34,4 @@ def fill(path: Path, blocks: Mapping[str, str]) -> None:
         if not found or not closed:
             raise ValueError(f"{path.name} lacks the marks {begin} and {end}")
         text = f"{head}{begin}\n{block.strip()}\n{end}{tail}"
-    path.write_text(text, encoding="utf-8")
+    write_all({path: text.encode()})

@@ -29,6 +29,7 @@ from cutcell.compare import Comparison, compare, comparison_markdown
 from cutcell.compare.plot import plot_comparison
 from cutcell.metrics.deformation import longest_side
 from cutcell.rig import Rig
+from cutcell.writing import write_all
 
 from .document import fill
 from .rigs import ROOT, SHARED
@@ -95,7 +96,7 @@ def measured(
             continue
         known = known.merged(found)
         if keep:
-            keep.write_text(json.dumps(known.to_dict(), indent=1) + "\n", encoding="utf-8")
+            write_all({keep: (json.dumps(known.to_dict(), indent=1) + "\n").encode()})
     return known
 
 

@@ -13,6 +13,8 @@ from collections.abc import Sequence
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
+from cutcell.writing import write_all
+
 from . import accuracy, growth, memory, speed
 from .rigs import ROOT
 
@@ -118,8 +120,7 @@ def main(given: Sequence[str] | None = None) -> None:
     for name in options.parts:
         measured = [table.markdown() for table in PARTS[name](options)]
         parts.append("\n\n".join([f"## {HEADINGS[name]}", *measured]) + "\n")
-    options.out.parent.mkdir(parents=True, exist_ok=True)
-    options.out.write_text("\n".join(parts))
+    write_all({options.out: "\n".join(parts).encode()})
 
 
 if __name__ == "__main__":

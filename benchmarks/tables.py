@@ -6,6 +6,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from cutcell.writing import write_all
+
 
 @dataclass
 class Table:
@@ -54,7 +56,7 @@ def publish(tables: Iterable[Table], out: Path | None) -> None:
     text = "\n\n".join(table.markdown() for table in tables)
     print(text)
     if out:
-        out.write_text(text + "\n")
+        write_all({out: (text + "\n").encode()})
 
 
 def seconds(value: float) -> str:
