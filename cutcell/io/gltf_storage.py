@@ -153,11 +153,12 @@ class Storage:
     def _span(self, place: dict[str, Any]) -> tuple[int, int, int]:
         """Return the buffer of a place, and where its bytes start and end there."""
         buffer, start = place["buffer"], place.get("byteOffset", 0)
-        end, length = start + place["byteLength"], len(self._buffers[buffer])
+        end = start + place["byteLength"]
+        length = len(self._buffers[buffer]) if 0 <= buffer < len(self._buffers) else 0
         if not 0 <= start <= end <= length:
             raise FileError(
                 f"its document refers to the bytes {start} to {end} of buffers[{buffer}], which "
-                f"has {length}"
+                f"has {length}; the file is damaged"
             )
         return buffer, start, end
 

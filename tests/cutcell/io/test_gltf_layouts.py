@@ -289,12 +289,15 @@ def test_an_extension_that_names_bytes_itself(tmp_path):
     assert after.json["extras"] == {"buffer": 1, "byteLength": 4}
 
 
-def test_a_document_that_refers_to_bytes_that_are_not_there_is_refused(tmp_path):
+@pytest.mark.parametrize("buffer", [0, 1, -1])
+def test_a_document_that_refers_to_bytes_that_are_not_there_is_refused(tmp_path, buffer):
     layout = Layout()
     layout.mesh(0)
-    layout.views.append({"buffer": 0, "byteOffset": 8, "byteLength": 10_000})
+    layout.views.append({"buffer": buffer, "byteOffset": 8, "byteLength": 10_000})
     rig = cutcell.load(layout.save(tmp_path / "in.gltf"))
-    sentence = r"out\.glb: its document refers to the bytes 8 to 10008 of buffers\[0\], which has"
+    sentence = (
+        rf"out\.glb: its document refers to the bytes 8 to 10008 of buffers\[{buffer}\], which"
+    )
     with pytest.raises(cutcell.FileError, match=sentence):
         cutcell.save(tmp_path / "out.glb", rig)
 
