@@ -5,6 +5,8 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
+import numpy as np
+
 from ..checks import check_has_joints
 from ..errors import CutcellError, FileError
 from ..rig import Rig
@@ -118,7 +120,7 @@ def save(path: str | os.PathLike[str], rig: Rig) -> tuple[Path, ...]:
     path = Path(path)
     with naming(path):
         check_has_joints(rig.skeleton)
-        check_output(path, rig)
+        check_output(path)
         files = _files(path, rig)
         write_all(files)
         return tuple(files)
@@ -143,14 +145,15 @@ def check_output(path: Path, rig: Rig | None = None) -> None:
         if kind not in SAVED:
             raise FileError(_not_written(path))
         check_place(path)
-        if rig is None:
+        if rig is None or kind == ".npz":
             return
-        if kind == ".gltf" and not isinstance(rig.source, GltfSource):
-            raise FileError("a rig that did not come from glTF is saved as .glb, not as .gltf")
         if kind == ".txt":
             check_mesh_file(path, rig.mesh)
-        elif kind != ".npz" and not isinstance(rig.source, GltfSource):
-            check_fits(rig)
+        elif isinstance(rig.source, GltfSource):
+            none = np.zeros((len(rig.mesh.vertices), len(rig.skeleton.joints)))
+            _rewritten(rig.with_weights(none), path)
+        else:
+            _check_new(kind, rig)
 
 
 def _not_written(path: Path) -> str:
@@ -166,7 +169,17 @@ def _files(path: Path, rig: Rig) -> dict[Path, bytes]:
         return rignet_files(path, rig)
     if kind == ".npz":
         return {path: articulation_bytes(rig)}
-    return _rewritten(rig, path) if isinstance(rig.source, GltfSource) else {path: new_glb(rig)}
+    if isinstance(rig.source, GltfSource):
+        return _rewritten(rig, path)
+    _check_new(kind, rig)
+    return {path: new_glb(rig)}
+
+
+def _check_new(kind: str, rig: Rig) -> None:
+    """Refuse what cannot become a glTF file of its own."""
+    if kind == ".gltf":
+        raise FileError("a rig that did not come from glTF is saved as .glb, not as .gltf")
+    check_fits(rig)
 
 
 def _rewritten(rig: Rig, path: Path) -> dict[Path, bytes]:

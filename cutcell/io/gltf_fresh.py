@@ -26,17 +26,15 @@ KINDS = {1: gl.SCALAR, 3: gl.VEC3, 4: gl.VEC4, 16: gl.MAT4}
 def new_glb(rig: Rig) -> bytes:
     """Return a rig as a GLB file: mesh, normals, skin, joints as nodes, clips, attachments.
 
+    `check_fits` says whether the rig can become one.
+
     Raises
     ------
-    MeshError, SkeletonError
-        A coordinate does not fit in the 32 bits that glTF has for a number, or there are too many
-        joints.
     WeightsError
         The rig has no weights yet.
     """
     if rig.weights is None:
         raise WeightsError("the rig has no weights to save; bind it first")
-    check_fits(rig)
     file = _File()
     file.add_rig(rig)
     return file.packed()
@@ -48,7 +46,8 @@ def check_fits(rig: Rig) -> None:
     Raises
     ------
     MeshError, SkeletonError
-        See `new_glb`.
+        A coordinate does not fit in the 32 bits that glTF has for a number, or there are too many
+        joints.
     """
     if len(rig.skeleton.joints) > MOST_JOINTS:
         raise SkeletonError(
