@@ -101,6 +101,10 @@ class Opening:
         self._held.add(key)
         self.files(here, key)
 
+    def choose(self, query: str) -> None:
+        """Choose what an address says, before any character is there."""
+        self._session.state.param.update(**from_query(query, self._session.state)[0])
+
     def arrive(self, query: str, otherwise: Callable[[], None]) -> None:
         """Show what an address says.
 

@@ -11,6 +11,7 @@ from urllib.parse import urlencode
 
 import panel as pn
 import panel_material_ui as pmui
+from panel.io.resources import LOCAL_DIST
 from tornado.ioloop import IOLoop
 
 from assets import DEMOS
@@ -38,6 +39,8 @@ def page(path: Path | None = None) -> pmui.Page:
         The character to open; the first demo when left out.
     """
     document: Any = pn.state.curdoc
+    # Panel sets this as it writes a session's HTML; here that is written once for all of them.
+    document.template_variables["dist_url"] = LOCAL_DIST
     gate = Gate(on_its_thread(document, IOLoop.current()))
     pn.state.onload(gate.open)
     session = Session(gate)
@@ -54,7 +57,10 @@ def page(path: Path | None = None) -> pmui.Page:
         else:
             session.opening.files([path])
 
-    session.opening.arrive(asked(), otherwise)
+    query = asked()
+    session.opening.choose(query)
+    # Whoever only asks for the page, and never looks at it, makes nothing be computed.
+    session.view.when_seen(lambda: session.opening.arrive(query, otherwise))
     return result
 
 

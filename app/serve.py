@@ -7,18 +7,38 @@ import signal
 import socket
 import sys
 import threading
+from contextlib import suppress
 from pathlib import Path
+from typing import Any
 
 import panel as pn
 import panel_material_ui  # noqa: F401  its components must be known before a page is served
+from bokeh.settings import settings
+from bokeh.util.browser import view
 
+from cutcell.console import print_warnings
 from cutcell.skinning import kernels_are_compiled, load_kernels
 
+from .handlers import guard
 from .page import page
 
 PORTS_TRIED = 20
 MAX_MESSAGE = 32 * 1024 * 1024
+MAX_BODY = 64 * 1024
+"""Bytes of a request's body: nothing is sent that way."""
 LOCAL = ("localhost", "127.0.0.1", "::1")
+
+ENDINGS = {
+    "check_unused_sessions_milliseconds": 5000,
+    "unused_session_lifetime_milliseconds": 15000,
+}
+"""Sessions whose browser is gone give their memory and files back soon."""
+
+EXPOSED = (
+    "the page listens on {address}: everyone who can reach port {port} of this machine can open "
+    "it, upload files and let it compute. There is no password, and nothing is encrypted. Without "
+    "--address it is served to this machine only."
+)
 
 
 def serve(
@@ -36,7 +56,8 @@ def serve(
     port : int
         Where; 0 takes any free one. A port that is taken makes way for the next free one.
     address : str
-        Who may connect: "localhost", or "0.0.0.0" for all.
+        What to listen on: "localhost" for this machine only; the address of a network's
+        interface, or "0.0.0.0" for all of them, for everyone in that network.
     show : bool
         Whether to open a browser.
 
@@ -55,26 +76,48 @@ def serve(
     if threading.current_thread() is threading.main_thread():
         # An orderly end, so that what was uploaded is removed.
         signal.signal(signal.SIGTERM, lambda number, frame: sys.exit(0))
+    server = begin(path, chosen, address)
+    # It listens from here on; told sooner, the address could be asked for too soon.
+    host = "localhost" if address in ("0.0.0.0", "::", *LOCAL) else in_brackets(address)
+    url = f"http://{host}:{chosen}"
+    print(f"The page is at {url} (stop with Ctrl+C)", flush=True)
+    if address not in LOCAL:
+        print_warnings([EXPOSED.format(address=address, port=chosen)])
+    if show:
+        server.io_loop.add_callback(view, url)
+    server.start()
+    server.io_loop.start()
+
+
+def begin(path: Path | None, port: int, address: str = "localhost", **more: Any) -> Any:
+    """Return a server of the page that listens, and whose loop is still to be started.
+
+    Parameters
+    ----------
+    path : Path, optional
+        The character to open; a demo when left out.
+    port : int
+    address : str
+        As in `serve`.
+    **more
+        For `panel.serve`.
+    """
     server = pn.serve(
         {"/": lambda: page(path)},
-        port=chosen,
-        address=None if address == "localhost" else address,
-        websocket_origin=allowed_origins(address, chosen),
+        port=port,
+        address="127.0.0.1" if address == "localhost" else address,
         websocket_max_message_size=MAX_MESSAGE,
+        http_server_kwargs={"max_body_size": MAX_BODY},
         title="cutcell",
-        show=show,
+        show=False,
         start=False,
         verbose=False,
         threaded=False,
-        # Sessions whose browser is gone give their memory and files back soon.
-        check_unused_sessions_milliseconds=5000,
-        unused_session_lifetime_milliseconds=15000,
+        **{**ENDINGS, **more},
     )
-    # It listens from here on; told sooner, the address could be asked for too soon.
-    host = "localhost" if address in ("0.0.0.0", "::", *LOCAL) else address
-    print(f"The page is at http://{host}:{chosen} (stop with Ctrl+C)", flush=True)
-    server.start()
-    server.io_loop.start()
+    text = guard(server._tornado, allowed_hosts(address, port))
+    server.io_loop.add_callback(text.make)
+    return server
 
 
 def free_port(port: int, address: str = "localhost") -> int:
@@ -100,12 +143,24 @@ def free_port(port: int, address: str = "localhost") -> int:
     raise OSError(errno.EADDRINUSE, f"the ports {port} to {port + PORTS_TRIED - 1} are taken")
 
 
-def allowed_origins(address: str, port: int) -> list[str]:
+def allowed_hosts(address: str, port: int) -> list[str]:
     """Return the hosts, with their port, under which a browser may know this server."""
-    if address in LOCAL:
-        return [f"localhost:{port}", f"127.0.0.1:{port}"]
-    names = {address, "localhost", "127.0.0.1", socket.gethostname(), socket.getfqdn()}
-    if address in ("0.0.0.0", "::"):
-        for info in socket.getaddrinfo(socket.gethostname(), None):
-            names.add(str(info[4][0]))
-    return [f"{name}:{port}" for name in sorted(names)]
+    names = ["localhost", "127.0.0.1", *(["[::1]"] if ":" in address else [])]
+    if address not in LOCAL:
+        known = {in_brackets(address), socket.gethostname(), socket.getfqdn()}
+        if address in ("0.0.0.0", "::"):
+            known |= {in_brackets(str(info[4][0])) for info in _own_addresses()}
+        names += sorted(known - {*names})
+    # Bokeh's own setting, for names that only a person can know: of a proxy, or a tunnel.
+    return [*(f"{name}:{port}".lower() for name in names), *settings.allowed_ws_origin()]
+
+
+def _own_addresses() -> list[Any]:
+    with suppress(OSError):  # a machine that does not know its own name
+        return socket.getaddrinfo(socket.gethostname(), None)
+    return []
+
+
+def in_brackets(address: str) -> str:
+    """Return an address as it stands in a URL: one of IPv6 in brackets, without its zone."""
+    return f"[{address.partition('%')[0]}]" if ":" in address else address

@@ -58,6 +58,8 @@ class SceneView(JSComponent):
         self.aspect = 4 / 3
         self.time = 0.0
         self._ready = False
+        self._seen = False
+        self._awaited: list[Callable[[], Any]] = []
         self._count = 0
         self._parts: dict[str, Any] = {}
         self._shown = Description()
@@ -68,6 +70,12 @@ class SceneView(JSComponent):
     def listen(self, kind: str, act: Callable[[dict[str, Any]], Any]) -> None:
         """Call a function with every message of a kind that the browser sends."""
         self._listeners[kind] = act
+
+    def when_seen(self, act: Callable[[], Any]) -> None:
+        """Do something once, as soon as a browser has the view, or says that it cannot show it."""
+        self._awaited.append(act)
+        if self._seen:
+            self._begin()
 
     def present(self, description: Description) -> None:
         """Make the view what a description says."""
@@ -115,6 +123,9 @@ class SceneView(JSComponent):
             first = {"lights": LIGHTS, **changes(Description(), self._wanted, self._sent)}
             self._send({**first, **self._parts})
             self._shown = self._wanted
+            self._begin()
+        elif kind == "cannot show":
+            self._begin()
         elif kind == "pick" and self._on_pick is not None:
             self._on_pick(int(data["joint"]))
         elif kind in self._listeners:
@@ -126,6 +137,12 @@ class SceneView(JSComponent):
             self.aspect = min(max(float(data.get("aspect", self.aspect)), 0.3), 4.0)
             self.at_home = bool(data.get("home", False))
             self.on_camera()
+
+    def _begin(self) -> None:
+        self._seen = True
+        awaited, self._awaited = self._awaited, []
+        for act in awaited:
+            act()
 
 
 def changes(old: Description, new: Description, sent: set[str]) -> dict[str, Any]:

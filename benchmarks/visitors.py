@@ -74,7 +74,7 @@ class Visitor:
         self.heard: list[str] = []
         self._count = 0
         self._news = threading.Event()
-        self._socket = _wait(self._connect(address.replace("http", "ws") + "/ws", query))
+        self._socket = _wait(self._connect(address, query))
         self._listening = asyncio.run_coroutine_threadsafe(self._listen(), _loop())
         self.wait_for('"ACK"')
         self._send("PULL-DOC-REQ", {})
@@ -115,7 +115,11 @@ class Visitor:
         while True:
             try:
                 return await websocket_connect(
-                    HTTPRequest(address, request_timeout=PATIENCE),
+                    HTTPRequest(
+                        address.replace("http", "ws") + "/ws",
+                        request_timeout=PATIENCE,
+                        headers={"Origin": address},
+                    ),
                     subprotocols=["bokeh", token],
                     max_message_size=MAX_MESSAGE,
                 )

@@ -91,7 +91,11 @@ def open_page(
     ] = 5006,
     address: Annotated[
         str,
-        typer.Option("--address", help="Who may connect: this machine only, or 0.0.0.0 for all."),
+        typer.Option(
+            "--address",
+            help="What to listen on. localhost: this machine only. 0.0.0.0, or the address of one"
+            " network: everyone there can use the page, without a password or encryption.",
+        ),
     ] = "localhost",
     show: Annotated[
         bool, typer.Option("--show/--no-show", help="Open a browser on the page.")

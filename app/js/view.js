@@ -221,6 +221,7 @@ export function render({model}) {
     model.send_msg({type: "ready", width: window.innerWidth, dark})
   }).catch((error) => {
     console.error(error)
+    model.send_msg({type: "cannot show"})  // all but the view goes on
     overlay.fail(`The 3D view cannot be shown: ${error.message}.`)
   })
   model.on("remove", () => view?.remove())

@@ -5,28 +5,18 @@ import logging
 import time
 import weakref
 
-import panel as pn
-import panel_material_ui  # noqa: F401  its components must be known before a page is served
 import pytest
 
-from app.page import page
-from app.serve import free_port
 from app.session import Session
 from assets import demo_path
 from benchmarks.visitors import BOUND, Visitor
+from tests.app.serving import serving
 
 
 @pytest.fixture(scope="module")
 def address():
-    port = free_port(0)
-    server = pn.serve(
-        {"/": lambda: page(demo_path("robot"))},
-        port=port, threaded=True, show=False, verbose=False,
-        websocket_origin=[f"localhost:{port}"],
-        check_unused_sessions_milliseconds=100, unused_session_lifetime_milliseconds=200,
-    )  # fmt: skip
-    yield f"http://localhost:{port}"
-    server.stop()
+    with serving(demo_path("robot")) as here:
+        yield here.address
 
 
 @pytest.fixture(autouse=True)

@@ -4,7 +4,7 @@ import socket
 
 import pytest
 
-from app.serve import allowed_origins, free_port
+from app.serve import allowed_hosts, free_port
 
 
 @pytest.fixture
@@ -34,7 +34,19 @@ def test_when_all_ports_are_taken(monkeypatch, taken):
         free_port(taken)
 
 
-def test_who_may_connect():
-    assert allowed_origins("localhost", 1) == ["localhost:1", "127.0.0.1:1"]
-    assert f"{socket.gethostname()}:1" in allowed_origins("0.0.0.0", 1)
-    assert "10.1.2.3:1" in allowed_origins("10.1.2.3", 1)
+def test_under_which_names_browsers_know_it(monkeypatch):
+    assert allowed_hosts("localhost", 1) == ["localhost:1", "127.0.0.1:1"]
+    assert "[::1]:1" in allowed_hosts("::1", 1)
+    assert f"{socket.gethostname().lower()}:1" in allowed_hosts("0.0.0.0", 1)
+    assert "10.1.2.3:1" in allowed_hosts("10.1.2.3", 1)
+    assert "[fe80::1]:1" in allowed_hosts("fe80::1%eth0", 1)
+    monkeypatch.setenv("BOKEH_ALLOW_WS_ORIGIN", "rigs.example:443")
+    assert "rigs.example:443" in allowed_hosts("localhost", 1)
+
+
+def test_a_machine_that_does_not_know_its_own_name_serves_all_the_same(monkeypatch):
+    def unknown(*args, **kwargs):
+        raise socket.gaierror("no such name")
+
+    monkeypatch.setattr(socket, "getaddrinfo", unknown)
+    assert "localhost:1" in allowed_hosts("0.0.0.0", 1)

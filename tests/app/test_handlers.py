@@ -1,0 +1,201 @@
+"""Who is let in, and what it costs to be asked."""
+
+import http.client
+import re
+import socket
+import time
+
+import psutil
+import pytest
+from bokeh.util.token import generate_jwt_token, generate_session_id
+
+from app import handlers
+from app.session import Session
+from benchmarks.visitors import Visitor
+from tests.app.serving import serving
+
+
+@pytest.fixture(scope="module")
+def here():
+    with serving() as here:
+        yield here
+
+
+@pytest.fixture
+def begun(here, monkeypatch):
+    """Collect the sessions that begin, in order."""
+    wait_until(lambda: not here.sessions)
+    seen = []
+    begin = Session.__init__
+
+    def noted(self, *args, **kwargs):
+        begin(self, *args, **kwargs)
+        seen.append(self)
+
+    monkeypatch.setattr(Session, "__init__", noted)
+    return seen
+
+
+def get(here, path="/", method="GET", **headers):
+    """Ask for a page; return the answer, its text in `text`."""
+    connection = http.client.HTTPConnection("127.0.0.1", here.port, timeout=30)
+    try:
+        given = {name.replace("_", "-"): value for name, value in headers.items()}
+        connection.request(method, path, headers={"Host": here.host, **given})
+        answer = connection.getresponse()
+        answer.text = answer.read().decode()
+        return answer
+    finally:
+        connection.close()
+
+
+def upgrade(here, origin=None, token=None, host=None):
+    """Ask for a websocket as no browser could; return the status of the answer."""
+    token = token or generate_jwt_token(generate_session_id())
+    lines = [
+        "GET /ws HTTP/1.1", f"Host: {host or here.host}", "Connection: Upgrade",
+        "Upgrade: websocket", "Sec-WebSocket-Version: 13",
+        "Sec-WebSocket-Key: x3JJHMbDL1EzLkh9GBhXDw==", f"Sec-WebSocket-Protocol: bokeh, {token}",
+        *([] if origin is None else [f"Origin: {origin}"]), "", "",
+    ]  # fmt: skip
+    with socket.create_connection(("127.0.0.1", here.port), 30) as raw:
+        raw.sendall("\r\n".join(lines).encode())
+        return int(raw.recv(100).split()[1])
+
+
+def wait_until(condition, seconds=30):
+    end = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < end, "it did not come about in time"
+        time.sleep(0.05)
+
+
+def listening(port):
+    """Return the addresses on which this process listens at a port."""
+    found = psutil.Process().net_connections("inet")
+    return {one.laddr.ip for one in found if one.laddr.port == port and one.status == "LISTEN"}
+
+
+def test_it_listens_to_this_machine_only(here):
+    assert listening(here.port) == {"127.0.0.1"}
+
+
+def test_it_listens_to_all_only_when_asked():
+    with serving(address="0.0.0.0") as here:
+        assert listening(here.port) == {"0.0.0.0"}
+
+
+@pytest.mark.parametrize(
+    "origin", [None, "null", "", "http://evil.example", "http://localhost:1", "http://localhost"]
+)
+def test_a_missing_or_foreign_origin_is_refused(here, begun, origin):
+    assert upgrade(here, origin) == 403
+    assert not begun
+
+
+def test_a_page_of_this_server_may_open_a_websocket(here):
+    assert upgrade(here, here.address) == 101
+    assert upgrade(here, f"http://127.0.0.1:{here.port}") == 101
+
+
+def test_who_is_gone_at_once_is_forgotten(here):
+    for _ in range(3):
+        upgrade(here, here.address)
+    wait_until(lambda: not here.sessions)
+
+
+def test_a_host_that_this_server_is_not_is_refused(here, begun):
+    # A name that its owner lets point to 127.0.0.1, once the browser has his page.
+    host = f"rebound.example:{here.port}"
+    answer = get(here, Host=host)
+    assert answer.status == 421
+    assert here.address in answer.text
+    assert upgrade(here, f"http://{host}", host=host) == 421
+    assert get(here, "/static/js/bokeh.min.js", Host=host).status == 421
+    assert get(here, Host=f"127.0.0.1:{here.port}").status == 200
+    assert not begun
+
+
+def test_a_strange_host_is_told_as_text(here):
+    assert "<b>" not in get(here, Host="<b>x</b>").text
+
+
+@pytest.mark.parametrize("token", ["abc", "abc.def", "e30", "%00", "a.b.c"])
+def test_a_token_that_is_none_begins_nothing(here, begun, token):
+    assert upgrade(here, here.address, token) == 101  # and is closed at once
+    assert get(here).status == 200
+    assert not begun
+
+
+def test_whoever_only_asks_for_the_page_begins_no_session(here, begun):
+    get(here)  # the first makes the text, for which a page is laid out and thrown away
+    begun.clear()
+    for path in ("/", "/?rig=robot", "/?bokeh-session-id=abc", "/?theme=1"):
+        answer = get(here, path, Bokeh_Session_Id="") if "id" in path else get(here, path)
+        assert answer.status == 200
+        assert "bokeh" in answer.text
+    for path in ("/autoload.js?bokeh-autoload-element=a", "/metadata"):
+        assert get(here, path).status == 404
+    assert get(here, method="HEAD").status == 200
+    assert begun == []
+    assert here.sessions == []
+
+
+def test_each_visitor_gets_a_token_of_their_own(here):
+    texts = [get(here).text for _ in range(2)]
+    tokens = [re.findall(r'"token":"([^"]+)"', text.replace("&quot;", '"')) for text in texts]
+    assert all(len(found) == 1 for found in tokens)
+    assert tokens[0] != tokens[1]
+    assert handlers.TOKEN not in texts[0]
+
+
+def test_nothing_is_computed_before_a_browser_has_the_view(here, begun, monkeypatch):
+    monkeypatch.setattr(Visitor, "tell", lambda self, **message: None)
+    silent = Visitor(here.address, "?rig=robot&panel=graph")
+    wait_until(lambda: begun)
+    session = begun[-1]
+    time.sleep(0.5)
+    assert not session.working
+    assert session.state.rig is None
+    assert session.state.panel == "graph", "what the address says is chosen"
+    monkeypatch.undo()
+    silent.tell(type="ready", width=1200)
+    wait_until(lambda: session.state.rig is not None)
+    silent.close()
+
+
+def test_a_browser_that_cannot_show_the_view_gets_all_else(here, begun, monkeypatch):
+    tell = Visitor.tell
+    monkeypatch.setattr(Visitor, "tell", lambda self, **message: tell(self, type="cannot show"))
+    visitor = Visitor(here.address, "?rig=robot")
+    wait_until(lambda: begun and begun[-1].state.binding is not None, 120)
+    visitor.close()
+
+
+def test_when_the_server_is_full_it_says_so_and_takes_visitors_again(here, monkeypatch):
+    wait_until(lambda: not here.sessions)
+    monkeypatch.setattr(handlers, "MOST_SESSIONS", 2)
+    visitors = [Visitor(here.address, "?rig=robot") for _ in range(2)]
+    assert len(here.sessions) == 2
+    answer = get(here)
+    assert answer.status == 503
+    assert "pages of this server are open" in answer.text
+    assert get(here, method="HEAD").status == 503
+    assert upgrade(here, here.address) == 503
+    visitors[0].close()
+    wait_until(lambda: get(here).status == 200)
+    visitors[1].close()
+
+
+def test_no_other_site_can_frame_the_page(here):
+    assert "frame-ancestors 'self'" in get(here).getheader("Content-Security-Policy")
+
+
+def test_a_large_body_is_refused(here):
+    connection = http.client.HTTPConnection("127.0.0.1", here.port, timeout=30)
+    connection.putrequest("POST", "/", skip_host=True)
+    connection.putheader("Host", here.host)
+    connection.putheader("Content-Length", str(10**9))
+    connection.endheaders()
+    assert connection.getresponse().status in (400, 413)
+    connection.close()
