@@ -18,7 +18,7 @@ from viewers.camera import Camera, framing
 
 from .actions import compare, learn
 from .choices import first_clip, from_query
-from .keep import KEEP
+from .keep import KEEP, Group
 from .scenes.common import bones_part, bounds_of, first_joint
 from .upload import Receiver
 from .view import camera_part
@@ -52,6 +52,8 @@ class Opening:
         self._session = session
         self.kept = ""
         self._held: set[str] = set()
+        self._owner = object()
+        self._receivers: list[Receiver] = []
         self._told = ""
         self._arrival: dict[str, Any] = {}
 
@@ -89,17 +91,21 @@ class Opening:
             path = main_file(paths)
         except CutcellError as error:
             self._session.fail(error)
-            self._keep(self.kept)
+            self._leave(key)
             return
-        opened = functools.partial(self._keep, key)
-        self._open(lambda: cutcell.load(path), f"opening {path.name}", opened, demo="")
+        self._open(
+            lambda: cutcell.load(path),
+            f"opening {path.name}",
+            lambda: self._keep(key),
+            failed=lambda: self._leave(key),
+            demo="",
+        )
 
-    def upload(self, paths: list[Path]) -> None:
-        """Show the character in files that a person dropped; keep them for a while."""
+    def upload(self, group: Group) -> None:
+        """Show the character in files that a person dropped; they are kept for a while."""
         self._arrival = {}  # what an address says is of another character
-        key, here = KEEP.put(paths)
-        self._held.add(key)
-        self.files(here, key)
+        self._held.add(group.key)
+        self.files(group.paths, group.key)
 
     def choose(self, query: str) -> None:
         """Choose what an address says, before any character is there."""
@@ -144,19 +150,31 @@ class Opening:
         told, self._told = self._told, ""
         return told
 
+    def stay(self) -> None:
+        """Let go of what was to stand there instead of the character that does."""
+        self._keep(self.kept)
+
     def close(self) -> None:
-        """Let go of what was uploaded."""
+        """Let go of what was uploaded, and of what is still being sent."""
         self._keep("")
+        for receiver in self._receivers:
+            receiver.drop()
 
     def _keep(self, key: str) -> None:
         self.kept = key
         for other in self._held - {key}:
-            self._held.remove(other)
-            KEEP.leave(other)
+            self._leave(other)
+
+    def _leave(self, key: str) -> None:
+        if key in self._held and key != self.kept:
+            self._held.remove(key)
+            KEEP.leave(key)
 
     def receiver(self) -> Receiver:
         """Return what takes files from the browser and opens them."""
-        return Receiver(self._session.folder, self.upload, self._session.fail)
+        receiver = Receiver(KEEP, self._owner, self.upload, self._session.fail)
+        self._receivers.append(receiver)
+        return receiver
 
     def rig(self, rig: Rig) -> None:
         """Show a character that is loaded already, and bind it."""
@@ -170,6 +188,7 @@ class Opening:
         opened: Callable[[], None] = lambda: None,
         chosen: Callable[[], None] = lambda: None,
         then: Callable[[], None] = lambda: None,
+        failed: Callable[[], None] = lambda: None,
         **more: Any,
     ) -> None:
         def work(progress: Progress) -> Rig:
@@ -182,7 +201,7 @@ class Opening:
             self._stand(rig, chosen)
             then()
 
-        self._session.start(work, done)
+        self._session.start(work, done, failed=failed)
 
     def _stand(self, rig: Rig, chosen: Callable[[], None] = lambda: None) -> None:
         session = self._session

@@ -20,6 +20,7 @@ from cutcell.console import print_warnings
 from cutcell.skinning import kernels_are_compiled, load_kernels
 
 from .handlers import guard
+from .keep import KEEP
 from .page import page
 
 PORTS_TRIED = 20
@@ -76,6 +77,7 @@ def serve(
     if threading.current_thread() is threading.main_thread():
         # An orderly end, so that what was uploaded is removed.
         signal.signal(signal.SIGTERM, lambda number, frame: sys.exit(0))
+    KEEP.sweep_by_the_clock()
     server = begin(path, chosen, address)
     # It listens from here on; told sooner, the address could be asked for too soon.
     host = "localhost" if address in ("0.0.0.0", "::", *LOCAL) else in_brackets(address)

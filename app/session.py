@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-import tempfile
+import shutil
 import threading
 from collections.abc import Callable
 from pathlib import Path
@@ -16,6 +16,7 @@ from viewers.camera import Camera, framing
 
 from .actions import WATCHERS, weights
 from .jobs import COMPUTING, Jobs, Schedule, Turn
+from .keep import KEEP
 from .opening import Opening
 from .scenes import Memo, resolve
 from .scenes.common import bounds_of, theme_of
@@ -43,8 +44,7 @@ class Session:
         self.opening = Opening(self)
         self.habits: Any = None
         self._schedule = schedule
-        self._files = tempfile.TemporaryDirectory(prefix="cutcell-", ignore_cleanup_errors=True)
-        self.folder = Path(self._files.name)
+        self._folder: Path | None = None
         self.view = SceneView(self.pick, self.opening.receiver(), sizing_mode="stretch_both")
         self._jobs: dict[str, Jobs] = {}
         self._closed = False
@@ -164,6 +164,7 @@ class Session:
     def cancel(self) -> None:
         """Stop computing; what was there stays."""
         if self.jobs("main").cancel():
+            self.opening.stay()
             self.state.param.update(
                 busy=False, message=("info", "Cancelled. The page keeps what it had.")
             )
@@ -240,6 +241,13 @@ class Session:
     def _theme(self, *events: Any) -> None:
         self.view.tell(theme=theme_part(theme_of(self.state)))
 
+    @property
+    def folder(self) -> Path:
+        """A folder for files that are about to be handed over."""
+        if self._folder is None or not self._folder.is_dir():
+            self._folder = KEEP.storage.make()
+        return self._folder
+
     def close(self) -> None:
         """Stop all work and remove what was uploaded."""
         self._closed = True
@@ -248,7 +256,8 @@ class Session:
         for jobs in self._jobs.values():
             jobs.close()
         self.opening.close()
-        self._files.cleanup()
+        if self._folder is not None:
+            shutil.rmtree(self._folder, ignore_errors=True)
 
 
 def sentence(text: str) -> str:

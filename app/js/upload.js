@@ -47,6 +47,8 @@ class Uploader {
         answer = await this.ask({type: this.stopped ? "upload-cancel" : "upload-end"})
       }
       if (!answer.ok) { this.refused?.(answer.message) }
+    } catch (error) {
+      await this.ask({type: "upload-cancel", unreadable: true})  // moved or changed on its disk
     } finally {
       this.busy = false
       this.ended()

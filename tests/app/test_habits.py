@@ -7,7 +7,6 @@ from app.actions.compare import choose
 from app.choices import first_clip, from_query, to_query
 from app.history import TOGETHER, History
 from app.jobs import Gate
-from app.keep import Keep
 from app.opening import GONE
 from app.scenes.common import first_joint
 from app.session import Session
@@ -15,6 +14,18 @@ from app.state import State
 from app.state.compare import standard
 from assets import demo_path
 from tests.viewers.arm import arm_rig
+
+
+def upload(session, path):
+    """Give a file to a page as its browser does."""
+    receiver, data = session.opening.receiver(), path.read_bytes()
+    files = [{"name": path.name, "size": len(data)}]
+    for message in (
+        {"type": "upload-begin", "files": files},
+        {"type": "upload-piece", "index": 0, "data": data},
+        {"type": "upload-end"},
+    ):
+        assert receiver.answer(message) == {"ok": True}
 
 
 def said(session):
@@ -124,7 +135,7 @@ def test_an_uploaded_character_is_there_again_while_it_is_kept(session, loop, tm
     path = tmp_path / "mine.glb"
     path.write_bytes(demo_path("robot").read_bytes())
     session.state.resolution = 16
-    session.opening.upload([path])
+    upload(session, path)
     loop.run_until(lambda: session.state.binding is not None)
     query = said(session)
     assert f"rig=~{session.opening.kept}" in query
@@ -142,7 +153,7 @@ def test_a_file_that_is_dropped_while_the_page_loads_wins_over_its_address(loop,
     session.opening.arrive("?rig=robot&bone=hand.L&camera=1,2,3,0,1,0&resolution=16", lambda: None)
     path = tmp_path / "mine.glb"
     path.write_bytes(demo_path("octopus").read_bytes())
-    session.opening.upload([path])
+    upload(session, path)
     gate.open()
     loop.run_until(lambda: session.state.binding is not None)
     expected = cutcell.load(demo_path("octopus"))
@@ -157,20 +168,6 @@ def test_an_address_of_a_file_that_is_gone_says_so(session, loop):
     session.opening.arrive("?rig=~gone", lambda: session.opening.rig(arm_rig()))
     loop.run_until(lambda: session.state.message is not None)
     assert session.state.message == ("info", GONE)
-
-
-def test_files_go_some_time_after_they_were_left(tmp_path):
-    keep = Keep(seconds=0.0)
-    (tmp_path / "a.glb").write_bytes(b"1")
-    key, (path,) = keep.put([tmp_path / "a.glb"])
-    assert path.read_bytes() == b"1"
-    assert keep.take(key) == [path]
-    keep.leave(key)
-    assert path.exists()
-    keep.leave(key)
-    assert not path.exists()
-    assert keep.take(key) is None
-    keep.close()
 
 
 def test_undo_and_redo():

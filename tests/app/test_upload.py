@@ -1,19 +1,37 @@
 """Files from the browser."""
 
+import errno
+import os
+from pathlib import Path
+
 import pytest
 
+from app.keep import Keep
 from app.opening import main_file
 from app.state import MAX_UPLOAD
-from app.upload import Receiver, safe_name
+from app.storage import Storage
+from app.upload import NAME_BYTES, Receiver, safe_name
 from cutcell.errors import FileError
 
 
 @pytest.fixture
-def receiver(tmp_path):
+def keep(tmp_path):
+    keep = Keep(Storage(tmp_path))
+    yield keep
+    keep.close()
+
+
+@pytest.fixture
+def receiver(keep):
     received, refused = [], []
-    receiver = Receiver(tmp_path, received.append, refused.append)
+    receiver = Receiver(keep, "a page", lambda group: received.append(group.paths), refused.append)
     receiver.received, receiver.refused = received, refused
     return receiver
+
+
+def files_in(folder):
+    """Return all files but the lock of the storage."""
+    return [p for p in folder.rglob("*") if p.is_file() and p.name != "lock"]
 
 
 def send(receiver, *files, piece=3):
@@ -60,7 +78,7 @@ def test_more_than_announced_is_refused(receiver, tmp_path):
     receiver.answer({"type": "upload-begin", "files": [{"name": "a.glb", "size": 2}]})
     answer = receiver.answer({"type": "upload-piece", "index": 0, "data": b"123"})
     assert not answer["ok"]
-    assert not [p for p in tmp_path.rglob("*") if p.is_file()]
+    assert not files_in(tmp_path)
 
 
 def test_less_than_announced_is_refused(receiver):
@@ -74,7 +92,7 @@ def test_a_cancelled_upload_leaves_nothing(receiver, tmp_path):
     receiver.answer({"type": "upload-begin", "files": [{"name": "a.glb", "size": 4}]})
     receiver.answer({"type": "upload-piece", "index": 0, "data": b"12"})
     assert receiver.answer({"type": "upload-cancel"}) == {"ok": True}
-    assert not [p for p in tmp_path.rglob("*") if p.is_file()]
+    assert not files_in(tmp_path)
     assert not receiver.received
     assert not receiver.refused
 
@@ -89,6 +107,111 @@ def test_other_messages_are_no_concern(receiver):
 
 
 @pytest.mark.parametrize(
+    "message",
+    [
+        {"type": "upload-begin"},
+        {"type": "upload-begin", "files": 3},
+        {"type": "upload-begin", "files": [{"name": "a.glb"}]},
+        {"type": "upload-begin", "files": [{"name": "a.glb", "size": "large"}]},
+        {"type": "upload-begin", "files": [{"name": "a.glb", "size": float("nan")}]},
+        {"type": "upload-piece", "index": 0, "data": 10**12},  # bytes(10**12) would be all memory
+        {"type": "upload-piece", "index": "x", "data": b"1"},
+    ],
+)
+def test_a_message_that_is_none_is_answered_in_a_sentence(receiver, message):
+    receiver.answer({"type": "upload-begin", "files": [{"name": "a.glb", "size": 4}]})
+    answer = receiver.answer(message)
+    assert not answer["ok"]
+    assert "reload" in answer["message"]
+    assert send(receiver, ("b.glb", b"1234")) == {"ok": True}
+
+
+def test_two_files_of_one_name_are_refused_before_they_are_sent(receiver, tmp_path):
+    announced = [{"name": name, "size": 3} for name in ("x/a.bin", "y/a.bin", "b.gltf")]
+    answer = receiver.answer({"type": "upload-begin", "files": announced})
+    assert 'two of the files are called "a.bin"' in answer["message"]
+    assert not files_in(tmp_path)
+
+
+def test_a_file_that_the_browser_cannot_read_is_told(receiver, tmp_path):
+    receiver.answer({"type": "upload-begin", "files": [{"name": "a.glb", "size": 4}]})
+    answer = receiver.answer({"type": "upload-cancel", "unreadable": True})
+    assert "could not read" in answer["message"]
+    assert not files_in(tmp_path)
+
+
+def test_names_of_85_chinese_letters_arrive(receiver):
+    name = "骨" * 85 + ".glb"  # 259 bytes: more than a file's name may have
+    assert send(receiver, (name, b"1234")) == {"ok": True}
+    (path,) = receiver.received[0]
+    assert path.read_bytes() == b"1234"
+    assert path.name.endswith("骨骨.glb")
+    assert len(path.name.encode()) <= NAME_BYTES
+
+
+def test_after_a_full_disk_uploads_work_again(receiver, tmp_path, monkeypatch):
+    opened = Path.open
+
+    def full(self, mode="r", *args, **kwargs):
+        if mode == "ab":
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(self))
+        return opened(self, mode, *args, **kwargs)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Path, "open", full)
+        answer = send(receiver, ("a.glb", b"1234"))
+    assert not answer["ok"]
+    assert "disk is full" in answer["message"]
+    assert str(tmp_path) not in answer["message"]
+    assert not files_in(tmp_path), "what came is removed, and gives its room back"
+    assert send(receiver, ("a.glb", b"1234")) == {"ok": True}
+
+
+def test_after_the_folder_is_gone_uploads_work_again(receiver, keep, tmp_path):
+    assert send(receiver, ("a.glb", b"1234")) == {"ok": True}
+    for folder in tmp_path.iterdir():
+        for path in sorted(folder.rglob("*"), reverse=True):
+            path.rmdir() if path.is_dir() else path.unlink()
+        folder.rmdir()
+    assert send(receiver, ("b.glb", b"1234")) == {"ok": True}
+    assert receiver.received[-1][0].read_bytes() == b"1234"
+
+
+def test_a_folder_that_is_a_loop_of_links_is_told_in_a_sentence(tmp_path):
+    loop = tmp_path / "loop"
+    loop.symlink_to(loop)
+    refused = []
+    receiver = Receiver(Keep(Storage(loop)), "a page", pytest.fail, refused.append)
+    answer = send(receiver, ("a.glb", b"1234"))
+    assert not answer["ok"]
+    assert "could not store the file" in answer["message"]
+    assert str(tmp_path) not in answer["message"]
+
+
+def test_two_uploads_at_once_do_not_mix(keep):
+    received = []
+    one, other = (
+        Receiver(keep, "a page", lambda group: received.append(group.paths[0]), pytest.fail)
+        for _ in range(2)
+    )
+    for receiver in (one, other):
+        receiver.answer({"type": "upload-begin", "files": [{"name": "a.glb", "size": 4}]})
+    for data in (b"12", b"34"):
+        one.answer({"type": "upload-piece", "index": 0, "data": data})
+        other.answer({"type": "upload-piece", "index": 0, "data": data[::-1]})
+    assert one.answer({"type": "upload-end"}) == {"ok": True}
+    assert other.answer({"type": "upload-end"}) == {"ok": True}
+    assert [path.read_bytes() for path in received] == [b"1234", b"2143"]
+
+
+def test_a_new_upload_takes_the_place_of_one_that_was_not_finished(receiver, tmp_path):
+    receiver.answer({"type": "upload-begin", "files": [{"name": "a.glb", "size": 9}]})
+    receiver.answer({"type": "upload-piece", "index": 0, "data": b"12"})
+    assert send(receiver, ("b.glb", b"1234")) == {"ok": True}
+    assert [path.name for path in files_in(tmp_path)] == ["b.glb"]
+
+
+@pytest.mark.parametrize(
     ("name", "expected"),
     [
         ("a.glb", "a.glb"),
@@ -98,6 +221,10 @@ def test_other_messages_are_no_concern(receiver):
         ("..", "file"),
         ("x\n\0.glb", "x.glb"),
         ("é.glb", "é.glb"),
+        ("a\u202eblg.glb", "ablg.glb"),
+        ("\ud800.glb", "glb"),
+        ("." * 300, "file"),
+        ("a" * 500 + ".glb", "a" * (NAME_BYTES - 4) + ".glb"),
     ],
 )
 def test_names_cannot_lead_elsewhere(name, expected):
