@@ -78,7 +78,7 @@ def to_query(state: State, kept: str = "", camera: list[float] | None = None) ->
         said["step"] = str(state.tour + 1)
     if camera is not None:
         said["camera"] = ",".join(f"{x:.4g}" for x in camera)
-    return urlencode(said, quote_via=quote, safe=",:;~")
+    return urlencode(said, quote_via=quote, safe=",:;~", errors="replace")
 
 
 def from_query(query: str, state: State) -> tuple[dict[str, Any], dict[str, Any], list[str]]:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
+from cutcell.display import shown_name
 from cutcell.geodesics import FALLBACK_REASONS
 from cutcell.graph import MESH, CutCellGraph
 from viewers.palette import joint_colors, to_hex
@@ -42,7 +43,12 @@ def vertex_facts(state: State, memo: Memo) -> dict[str, Any] | None:
 
     def bone(joint: int, **values: float) -> dict[str, Any]:
         color = to_hex(tuple(colors[joint]))
-        return {"joint": int(joint), "name": rig.skeleton.names[joint], "color": color, **values}
+        return {
+            "joint": int(joint),
+            "name": shown_name(rig.skeleton.names[joint]),
+            "color": color,
+            **values,
+        }
 
     artist = None if rig.weights is None else rig.weights[vertex]
     ours = binding.weights[vertex]

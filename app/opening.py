@@ -19,6 +19,7 @@ from viewers.camera import Camera, framing
 from .actions import compare, learn
 from .choices import first_clip, from_query
 from .keep import KEEP, Group
+from .messages import shown
 from .scenes.common import bones_part, bounds_of, first_joint
 from .upload import Receiver
 from .view import camera_part
@@ -132,7 +133,7 @@ class Opening:
             arrival["told"] = GONE
         elif problems:
             arrival["told"] = (
-                f"The address says what this page does not know ({', '.join(problems)}); "
+                f"The address says what this page does not know ({shown(', '.join(problems))}); "
                 "the rest of it was taken."
             )
         if learn.opens(arrival):

@@ -20,6 +20,7 @@ from .favicon import FAVICON
 from .inspector import inspector
 from .jobs import Gate, on_its_thread
 from .memory import let_go, tidy_soon
+from .panels.parts import words
 from .session import Session
 from .sidebar import sidebar
 from .status import messages, status_line
@@ -83,7 +84,7 @@ def _told(fail: Callable[[Exception], None] | None, error: Exception) -> None:
 
 def layout(session: Session) -> pmui.Page:
     """Return the page of a session."""
-    tagline = pmui.Typography(
+    tagline = words(
         "geodesic skinning weights for any mesh",
         sx={"color": "text.secondary", "fontSize": 13, "display": {"xs": "none", "sm": "block"}},
         margin=(2, 0, 0, 16),

@@ -21,6 +21,7 @@ from cutcell.skinning import kernels_are_compiled, load_kernels
 
 from .handlers import guard
 from .keep import KEEP
+from .log import log_to_terminal
 from .page import page
 
 PORTS_TRIED = 20
@@ -77,6 +78,7 @@ def serve(
     if threading.current_thread() is threading.main_thread():
         # An orderly end, so that what was uploaded is removed.
         signal.signal(signal.SIGTERM, lambda number, frame: sys.exit(0))
+    log_to_terminal()
     KEEP.sweep_by_the_clock()
     server = begin(path, chosen, address)
     # It listens from here on; told sooner, the address could be asked for too soon.

@@ -17,6 +17,7 @@ from viewers.camera import Camera, framing
 from .actions import WATCHERS, weights
 from .jobs import COMPUTING, Jobs, Schedule, Turn
 from .keep import KEEP
+from .messages import told
 from .opening import Opening
 from .scenes import Memo, resolve
 from .scenes.common import bounds_of, theme_of
@@ -200,15 +201,9 @@ class Session:
 
     def fail(self, error: Exception) -> None:
         """Tell what went wrong; the page keeps what it had."""
-        if isinstance(error, CutcellError):
-            self.state.message = ("error", sentence(str(error)))
-            return
-        logger.error("unexpected error", exc_info=error)
-        self.state.message = (
-            "error",
-            f"Something unexpected went wrong ({type(error).__name__}: {error}). The page keeps "
-            "what it had; the details are in the server's log.",
-        )
+        if not isinstance(error, CutcellError | MemoryError):
+            logger.error("unexpected error", exc_info=error)
+        self.state.message = ("error", told(error))
 
     # Looking
 
@@ -258,12 +253,3 @@ class Session:
         self.opening.close()
         if self._folder is not None:
             shutil.rmtree(self._folder, ignore_errors=True)
-
-
-def sentence(text: str) -> str:
-    """Return a message as a sentence: with a full stop, and a capital if it begins a word."""
-    text = text.strip()
-    first = text.split(" ", 1)[0]
-    if first.isalpha():
-        text = text[:1].upper() + text[1:]
-    return text + ("" if text.endswith((".", "!", "?")) else ".")

@@ -9,8 +9,9 @@ import panel_material_ui as pmui
 
 from cutcell.graph import INTERIOR, MESH, SURFACE
 
-from .panels.parts import when
-from .session import Session, sentence
+from .messages import sentence, shown
+from .panels.parts import when, words
+from .session import Session
 from .state import State
 
 TITLES = {
@@ -31,7 +32,7 @@ def status_line(session: Session) -> pmui.Row:
     """Return the slim line under the canvas."""
     state = session.state
     small = {"fontSize": "12px", "lineHeight": 1.4, "fontVariantNumeric": "tabular-nums"}
-    counts = pmui.Typography(
+    counts = words(
         when(
             lambda *_: summary(state),
             state.param.rig,
@@ -43,7 +44,7 @@ def status_line(session: Session) -> pmui.Row:
         margin=(10, 16),
         sizing_mode="stretch_width",
     )
-    stage = pmui.Typography(
+    stage = words(
         when(stage_text, state.param.stage),
         visible=state.param.busy,
         sx={**small, **_ONE_LINE, "minWidth": "150px", "maxWidth": "46vw"},
@@ -131,7 +132,7 @@ def warning(state: State) -> tuple[str, str] | None:
     if state.graph is None:
         return None
     texts = [*state.rig.warnings, *(state.binding.warnings if state.binding else ())]
-    return ("warning", " ".join(sentence(text) for text in texts)) if texts else None
+    return ("warning", " ".join(sentence(shown(text)) for text in texts)) if texts else None
 
 
 def stage_text(stage: str) -> str:

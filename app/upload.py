@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import errno
 from collections.abc import Callable
 from typing import Any
 
@@ -12,6 +11,7 @@ from panel.custom import JSComponent
 from cutcell.errors import CutcellError, FileError
 
 from .keep import Group, Keep
+from .messages import FULL
 from .scripts import script
 from .state import MAX_UPLOAD
 
@@ -19,8 +19,6 @@ MAX_FILES = 64
 
 NAME_BYTES = 200
 """Of a file's name: most systems take 255, and what is made of the file has a longer one."""
-
-FULL = (errno.ENOSPC, getattr(errno, "EDQUOT", errno.ENOSPC))
 
 
 class Receiver:

@@ -11,11 +11,12 @@ from typing import Any, TypeVar
 
 import typer
 from rich.console import Console
-from rich.markup import escape
 from rich.progress import BarColumn, TaskID, TextColumn, TimeElapsedColumn
 from rich.progress import Progress as Bars
 from rich.table import Table
+from rich.text import Text
 
+from .display import json_safe, printable
 from .errors import CutcellError
 from .progress import Progress, silent
 
@@ -59,13 +60,14 @@ def progress_bars(quiet: bool = False) -> Iterator[Progress]:
     if quiet or not console.is_terminal:
         yield silent
         return
-    columns = (TextColumn("{task.description:<18}"), BarColumn(), TimeElapsedColumn())
+    stage_name = TextColumn("{task.description:<18}", markup=False)
+    columns = (stage_name, BarColumn(), TimeElapsedColumn())
     with Bars(*columns, console=console, transient=True) as bars:
         tasks: dict[str, TaskID] = {}
 
         def report(stage: str, fraction: float) -> None:
             if stage not in tasks:
-                tasks[stage] = bars.add_task(STAGES.get(stage, stage), total=1.0)
+                tasks[stage] = bars.add_task(STAGES.get(stage, printable(stage)), total=1.0)
             bars.update(tasks[stage], completed=fraction)
 
         yield report
@@ -73,17 +75,24 @@ def progress_bars(quiet: bool = False) -> Iterator[Progress]:
 
 def print_json(document: Mapping[str, Any]) -> None:
     """Print one JSON document, and nothing else, on standard output."""
-    sys.stdout.write(json.dumps(document, indent=2, ensure_ascii=False, allow_nan=False) + "\n")
+    text = json.dumps(document, indent=2, ensure_ascii=False, allow_nan=False)
+    sys.stdout.write(json_safe(text) + "\n")
+
+
+def print_line(text: str) -> None:
+    """Print a line on standard output."""
+    sys.stdout.write(printable(text) + "\n")
 
 
 def print_table(title: str, rows: Iterable[tuple[str, str]]) -> None:
     """Print named results below each other on standard output."""
-    table = Table(title=escape(title), title_justify="left", title_style="bold", box=None)
+    heading = Text(printable(title), "bold")
+    table = Table(title=heading, title_justify="left", box=None)
     table.show_header = False
     table.add_column(style="dim", no_wrap=True)
     table.add_column()
     for name, value in rows:
-        table.add_row(name, escape(value))
+        table.add_row(name, Text(printable(value)))
     Console(highlight=False).print(table)
 
 
@@ -96,4 +105,4 @@ def print_warnings(warnings: Iterable[str]) -> None:
 def _to_stderr(label: str, message: str, style: str) -> None:
     # Soft wrapping leaves lines whole, so that a sentence can be searched for and copied.
     console = Console(stderr=True, highlight=False, soft_wrap=True)
-    console.print(f"[{style}]{label}:[/] {escape(message)}")
+    console.print(Text.assemble((f"{label}:", style), f" {printable(message)}"))

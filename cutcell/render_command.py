@@ -9,7 +9,7 @@ from typing import Annotated, Any
 
 import typer
 
-from .console import for_people, print_warnings, progress_bars
+from .console import for_people, print_line, print_warnings, progress_bars
 from .errors import MissingLibraryError, ParameterError
 from .options import FILES, Resolution, RigFile, SkeletonFile
 
@@ -202,7 +202,7 @@ def render(
         worker.draw_apart(order, out, progress)
     if not quiet:
         print_warnings([*loaded.warnings, *binding.warnings])
-        typer.echo(f"{out}: {pixels[0]} x {pixels[1]} pixels, {_kilobytes(out)}")
+        print_line(f"{out}: {pixels[0]} x {pixels[1]} pixels, {_kilobytes(out)}")
 
 
 def _libraries() -> tuple[Any, Any, Any]:

@@ -31,6 +31,7 @@ ORDER = [
         "apart",
         "checks",
         "compiled",
+        "display",
         "errors",
         "kernel_cache",
         "progress",

@@ -10,11 +10,15 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
+from cutcell.display import printable
+
 from .description import Legend
 from .palette import Color, Theme, colormap, to_bytes
 from .tiles import Tile
 
 CARD = {"light": (255, 255, 255, 216), "dark": (24, 28, 36, 216)}
+MOST = 200
+"""Letters of what is written; far fewer are seen."""
 LINE = {"light": (31, 38, 50, 40), "dark": (232, 236, 243, 40)}
 
 
@@ -38,12 +42,13 @@ def write_legend(picture: NDArray[np.uint8], legend: Legend, theme: Theme) -> ND
     widest = picture.shape[1] - 4 * pad
     least = ends.getlength(f"{legend.low}     {legend.high}")
     indent = 2 * bar + round(0.6 * unit)
-    least = max([least, *(indent + ends.getlength(text) for _, text in legend.swatches)])
-    width = ceil(min(max(18 * unit, title.getlength(legend.title), least), widest))
-    name = _shortened(legend.title, title, width)
+    swatches = [(color, printable(text, MOST)) for color, text in legend.swatches]
+    least = max([least, *(indent + ends.getlength(text) for _, text in swatches)])
+    width = ceil(min(max(18 * unit, title.getlength(printable(legend.title, MOST)), least), widest))
+    name = _shortened(printable(legend.title, MOST), title, width)
     scale = bar + round(0.6 * unit) + _height(ends) if legend.colormap else 0
     row = _height(ends) + round(0.4 * unit)
-    height = _height(title) + round(0.7 * unit) + scale + row * len(legend.swatches)
+    height = _height(title) + round(0.7 * unit) + scale + row * len(swatches)
     left, top = 2 * pad, picture.shape[0] - height - 3 * pad
     image, draw = _open(picture)
     box = (left - pad, top - pad, left + width + pad, top + height + pad)
@@ -60,7 +65,7 @@ def write_legend(picture: NDArray[np.uint8], legend: Legend, theme: Theme) -> ND
         draw.text((left, below), legend.low, font=ends, fill=ink)
         draw.text((left + width, below), legend.high, font=ends, fill=ink, anchor="ra")
     top += scale
-    for color, text in legend.swatches:
+    for color, text in swatches:
         middle = top + row // 2
         patch = (left, middle - bar // 2, left + 2 * bar, middle + bar // 2)
         draw.rounded_rectangle(patch, bar // 3, fill=_ink(color))
@@ -81,7 +86,7 @@ def write_captions(
             draw.line((left, top, left, top + height), fill=LINE[theme.name], width=1)
         if top:
             draw.line((left, top, left + width, top), fill=LINE[theme.name], width=1)
-        name = _shortened(text, font, width - 6 * pad)
+        name = _shortened(printable(text, MOST), font, width - 6 * pad)
         half = font.getlength(name) / 2 + 1.4 * pad
         middle, upper = left + width / 2, top + 1.6 * pad
         box = (middle - half, upper, middle + half, upper + _height(font) + 1.6 * pad)

@@ -23,6 +23,7 @@ from cutcell.progress import Progress
 from cutcell.rig import Rig
 
 from ..jobs import COMPARING, WAITING
+from ..messages import shown, told
 from ..scenes.compare import found_of
 from ..state import State
 from ..state.compare import FEWEST_VIEWS, MOST_VIEWS, NOW, offered, standard
@@ -111,11 +112,7 @@ def find(session: Session) -> None:
 
     def failed(error: Exception) -> None:
         session.fail(error)
-        done(
-            Compared(
-                rig, None, f"something unexpected went wrong ({type(error).__name__}: {error})"
-            )
-        )
+        done(Compared(rig, None, told(error)))
 
     def report(stage: str, fraction: float) -> None:
         state.queued = stage == WAITING
@@ -144,9 +141,9 @@ def measured(rig: Rig, name: str, binding: Any, resolution: int, progress: Progr
             with stoppable(lambda: progress(name, 0.0)):
                 found = method(rig, **options_of(method, resolution=resolution, progress=progress))
         except CutcellError as error:
-            return Compared(rig, None, str(error))
+            return Compared(rig, None, shown(str(error)))
         if found.weights is None:
-            return Compared(rig, None, found.failed, float(sum(found.seconds.values())))
+            return Compared(rig, None, shown(found.failed), float(sum(found.seconds.values())))
         weights, seconds, source = found.weights, found.seconds, None
     progress(name, 0.9)
     share = vertex_shares(rig.mesh)

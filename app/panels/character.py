@@ -11,7 +11,7 @@ from assets import DEMOS
 from ..session import Session
 from ..state import MAX_UPLOAD
 from ..upload import FileDrop
-from .parts import GAP, caption, section
+from .parts import GAP, as_text, caption, section
 
 OWN = "Your own"
 HINT = f"GLB, glTF, VRM, FBX, USD, OBJ, … · up to {MAX_UPLOAD // 2**20} MB"
@@ -39,7 +39,7 @@ def character(session: Session) -> pmui.Column:
         own = {} if state.demo else {OWN: ""}
         select.param.update(options={**own, **demos}, value=state.demo)
         lessons = {demo.id: demo.lesson for demo in DEMOS}
-        lesson.object = lessons.get(state.demo) or (state.rig.name if state.rig else "")
+        lesson.object = as_text(lessons.get(state.demo) or (state.rig.name if state.rig else ""))
 
     select.param.watch(chosen, "value")
     state.param.watch(shown, ["demo", "rig"])

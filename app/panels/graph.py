@@ -13,7 +13,7 @@ from cutcell.graph import INTERIOR, MESH, SURFACE
 from ..session import Session
 from ..state import LAYERS, State
 from ..theme import LAYER_COLORS
-from .parts import GAP, caption, choice, cutting, lead, section, slider, weightless, when
+from .parts import GAP, caption, choice, cutting, lead, section, slider, weightless, when, words
 
 KINDS = {"mesh_edges": MESH, "interior_edges": INTERIOR, "surface_edges": SURFACE}
 LEAF_TITLES = {"point": "A point", "extend": "Extended", "fit": "Fitted"}
@@ -44,7 +44,7 @@ def _layer(state: State, name: str) -> pmui.Row:
         margin=(1, 0),
         sx=look if color else {},
     )
-    number = pmui.Typography(
+    number = words(
         when(lambda *_: count(state, name), *_built(state), state.param.rig),
         sx={
             "fontSize": "12px",

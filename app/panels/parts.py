@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -9,8 +10,27 @@ import panel as pn
 import panel_material_ui as pmui
 import param
 
+from cutcell.display import printable, shown_name
+
 GAP = (4, 0)
 """Space above and below a widget, and beside it."""
+
+
+def as_text(text: str) -> str:
+    """Return a text that Panel shows as it stands: it takes texts for Markdown, and so for HTML.
+
+    What a file calls its joints could otherwise bring a script along.
+    """
+    return _PUNCTUATION.sub(lambda found: f"&#{ord(found.group())};", printable(text or ""))
+
+
+_PUNCTUATION = re.compile(r"[!-/:-@\[-`{-~]")
+
+
+def words(text: Any, **params: Any) -> pmui.Typography:
+    """Return a text, or what follows a parameter, as it stands."""
+    shown = as_text(text) if isinstance(text, str) else when(as_text, text)
+    return pmui.Typography(shown, **params)
 
 
 def section(title: str, *objects: Any, **params: Any) -> pmui.Column:
@@ -18,7 +38,7 @@ def section(title: str, *objects: Any, **params: Any) -> pmui.Column:
     params = {"margin": (14, 20, 4, 20), "sizing_mode": "stretch_width", **params}
     if not title:
         return pmui.Column(*objects, **params)
-    heading = pmui.Typography(
+    heading = words(
         title,
         variant="overline",
         margin=(0, 0, 2, 0),
@@ -30,14 +50,14 @@ def section(title: str, *objects: Any, **params: Any) -> pmui.Column:
 def lead(text: Any) -> pmui.Typography:
     """Return the sentence that a panel begins with: what is seen there."""
     look = {"fontSize": "13px", "lineHeight": 1.45, "color": "text.primary", "display": "block"}
-    return pmui.Typography(text, sx=look, margin=(12, 20, 0, 20), sizing_mode="stretch_width")
+    return words(text, sx=look, margin=(12, 20, 0, 20), sizing_mode="stretch_width")
 
 
 def caption(text: Any = "", **params: Any) -> pmui.Typography:
     """Return a line of small, quiet text."""
     look = {"color": "text.secondary", "lineHeight": 1.45, "display": "block", "letterSpacing": 0}
     params = {"margin": (2, 0, 6, 0), "sizing_mode": "stretch_width", **params}
-    return pmui.Typography(text, variant="caption", sx=look, **params)
+    return words(text, variant="caption", sx=look, **params)
 
 
 def when(function: Callable[..., Any], *parameters: Any) -> Any:
@@ -46,13 +66,13 @@ def when(function: Callable[..., Any], *parameters: Any) -> Any:
 
 
 def unique_names(names: Sequence[str]) -> list[str]:
-    """Return names of which none comes twice: one that comes again gets its index added."""
-    unique: list[str] = []
-    for index, name in enumerate(names):
+    """Return names to be shown, of which none comes twice: one that does gets its index added."""
+    unique: dict[str, None] = {}
+    for index, name in enumerate(map(shown_name, names)):
         while name in unique:
             name = f"{name} ({index})"
-        unique.append(name)
-    return unique
+        unique[name] = None
+    return list(unique)
 
 
 def offer(select: pmui.Select, names: Sequence[str], index: int) -> None:

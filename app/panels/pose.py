@@ -7,12 +7,14 @@ from typing import Any
 import panel_material_ui as pmui
 from bokeh.models import PrintfTickFormatter
 
+from cutcell.display import shown_name
+
 from ..actions import pose as actions
 from ..rows import Rows
 from ..scenes.pose import error_of, has_rival
 from ..session import Session
 from ..state import State
-from .parts import GAP, caption, choice, lead, offer, section, unique_names, when
+from .parts import GAP, as_text, caption, choice, lead, offer, section, unique_names, when
 
 AXES = ("x", "y", "z")
 RING_COLORS = ("#e5484d", "#30a46c", "#3e83f8")
@@ -33,15 +35,7 @@ def pose(session: Session) -> pmui.Column:
 def _turning(session: Session) -> pmui.Column:
     state = session.state
     about = caption(
-        when(
-            lambda rig, joint: (
-                ""
-                if rig is None or joint >= len(rig.skeleton.names)
-                else f"Turn {rig.skeleton.names[joint]}: drag its rings, or the sliders."
-            ),
-            state.param.rig,
-            state.param.joint,
-        ),
+        when(_how_to_turn, state.param.rig, state.param.joint),
         margin=0,
     )
     rest = pmui.Button(
@@ -55,6 +49,12 @@ def _turning(session: Session) -> pmui.Column:
     )
     angles = [_angle(session, axis) for axis in range(3)]
     return section("", about, *angles, rest, margin=(8, 20, 4, 20))
+
+
+def _how_to_turn(rig: Any, joint: int) -> str:
+    if rig is None or joint >= len(rig.skeleton.names):
+        return ""
+    return f"Turn {shown_name(rig.skeleton.names[joint])}: drag its rings, or the sliders."
 
 
 def _angle(session: Session, axis: int) -> pmui.FloatSlider:
@@ -149,7 +149,7 @@ def _comparison(session: Session) -> pmui.Column:
     def listed(*events: Any) -> None:
         rows = worst_rows(state)
         worst.param.update(rows=rows, chosen=chosen_row(state))
-        heading.object = WORST_TEXT if rows else ""
+        heading.object = as_text(WORST_TEXT if rows else "")
 
     state.param.watch(listed, ["errors", "binding", "turns", "joint"])
     listed()
@@ -184,7 +184,7 @@ def worst_rows(state: State) -> list[tuple[str, str, float]]:
     turns = _worst(state)
     top = turns[0].mean if turns else 1.0
     return [
-        (f"{one.name} about {one.axis.upper()}", f"{one.mean:.3g} cm²", one.mean / top)
+        (f"{shown_name(one.name)} about {one.axis.upper()}", f"{one.mean:.3g} cm²", one.mean / top)
         for one in turns
     ]
 

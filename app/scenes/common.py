@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from cutcell.display import shown_name
 from cutcell.rig import Rig
 from viewers.character import attachments, body, bones, drawn_segments
 from viewers.description import Actor, Cut, Description
@@ -130,7 +131,7 @@ def bones_part(state: State) -> dict[str, Any]:
         "start": start.ravel(),
         "end": end.ravel(),
         "joint": joint.astype(np.int32),
-        "names": list(state.rig.skeleton.names),
+        "names": [shown_name(name) for name in state.rig.skeleton.names],
     }
 
 

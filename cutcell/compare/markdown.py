@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
+from ..display import printable
 from .scores import MEASURES, Comparison, MethodScore
 
 
@@ -35,7 +36,7 @@ def comparison_markdown(comparison: Comparison) -> str:
     if failures:
         lines += ["", "## Failed", ""]
         lines += [
-            f"- {method} on {', '.join(rigs)}: {reason}"
+            printable(f"- {method} on {', '.join(rigs)}: {reason}")
             for (method, reason), rigs in failures.items()
         ]
     return "\n".join(lines) + "\n"
@@ -68,4 +69,8 @@ def text(value: float | None, measure: str) -> str:
 
 def _table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> list[str]:
     align = ["---", *["---:"] * (len(head) - 1)]
-    return ["| " + " | ".join(row) + " |" for row in (head, align, *rows)]
+    return ["| " + " | ".join(map(_cell_text, row)) + " |" for row in (head, align, *rows)]
+
+
+def _cell_text(text: str) -> str:
+    return printable(text).replace("|", "\\|")

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from rich.console import Console, Group, RenderableType
-from rich.markup import escape
 from rich.table import Table
 from rich.text import Text
 
+from ..display import printable, shown_name
 from .markdown import text
 from .scores import Comparison, RigScore
 
@@ -41,7 +41,8 @@ def comparison_table(comparison: Comparison, width: int) -> RenderableType:
     for (method, reason), names in failures.items():
         which = "all rigs" if len(names) == len(comparison.rigs) else ", ".join(names)
         on = "" if len(comparison.rigs) == 1 else f" on {which}"
-        parts.append(Text.assemble((f"{method} failed{on}", "bold yellow"), f": {reason}"))
+        told = printable(f"{method} failed{on}")
+        parts.append(Text.assemble((told, "bold yellow"), f": {printable(reason)}"))
     return Group(*parts)
 
 
@@ -52,7 +53,8 @@ def print_comparison(comparison: Comparison) -> None:
 
 
 def _table(title: str, *columns: str) -> Table:
-    table = Table(title=escape(title), title_justify="left", title_style="bold", box=None)
+    heading = Text(printable(title), "bold")
+    table = Table(title=heading, title_justify="left", box=None)
     table.pad_edge = False
     table.add_column(columns[0], no_wrap=True, min_width=11)
     for name in columns[1:]:
@@ -77,8 +79,9 @@ def _one_rig(rig: RigScore, width: int) -> Table:
             table.add_row(score.method, Text("failed", "yellow"))
             continue
         cells = [text(getattr(score, name), name) for name in names]
-        turn = f"{score.worst[0].name}, {score.worst[0].axis}" if score.worst else ""
-        table.add_row(score.method, *cells, escape(turn))
+        worst = score.worst[0] if score.worst else None
+        turn = f"{shown_name(worst.name)}, {worst.axis}" if worst else ""
+        table.add_row(score.method, *cells, Text(turn))
     return table
 
 
@@ -96,10 +99,10 @@ def _summary(comparison: Comparison, width: int) -> Table:
     for method in comparison.methods:
         found = {name: comparison.statistic(method, name) for name in FIELDS}
         l1, deformation = found["l1"], found["deformation"]
-        cells = [text(l1.median, "l1"), text(l1.mean, "l1")]
+        cells: list[str | Text] = [text(l1.median, "l1"), text(l1.mean, "l1")]
         for value in (deformation.median, deformation.mean, deformation.worst):
             cells.append(text(value, "deformation"))
-        cells.append(escape(deformation.worst_rig) if deformation.worst else "")
+        cells.append(Text(shown_name(deformation.worst_rig) if deformation.worst else ""))
         if width >= ROOMY:
             cells += [text(found[name].median, name) for name in ("clips", "crosstalk")]
         cells.append(text(found["seconds"].median, "seconds"))
@@ -116,7 +119,7 @@ def _rigs(comparison: Comparison) -> Table:
     table.add_column("cm²", justify="right", no_wrap=True)
     table.add_column("by", no_wrap=True)
     for rig in comparison.rigs:
-        cells = [escape(rig.name), f"{rig.vertices:,}", str(rig.joints)]
+        cells: list[str | Text] = [Text(shown_name(rig.name)), f"{rig.vertices:,}", str(rig.joints)]
         for name in ("l1", "deformation"):
             values = [
                 (getattr(score, name), score.method)

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..display import spreadsheet_cell
 from ..errors import FileError, ParameterError
 from ..rig import Rig
 from ..writing import check_place, write_all
@@ -24,8 +25,9 @@ def save_numbers(path: str | Path, rig: Rig, **tables: ArrayLike) -> None:
     ----------
     path : str or Path
         Ends in ".csv": one table, a row a vertex and a column a joint, with a first column
-        of vertex numbers and a first row of joint names. Or in ".npz": all tables, and
-        beside them "joint_names" (j,), "parents" (j,) and "vertex_indices" (n,).
+        of vertex numbers and a first row of joint names, none of which a spreadsheet takes for
+        a formula (`display.spreadsheet_cell`). Or in ".npz": all tables, and beside them
+        "joint_names" (j,), "parents" (j,) and "vertex_indices" (n,).
     rig : Rig
         What the numbers belong to.
     **tables : array_like, shape (n, j)
@@ -80,7 +82,7 @@ def _packed_csv(rig: Rig, arrays: dict[str, NDArray]) -> bytes:
     (table,) = arrays.values()
     packed = StringIO(newline="")
     writer = csv.writer(packed)
-    writer.writerow(["vertex", *rig.skeleton.names])
+    writer.writerow(["vertex", *map(spreadsheet_cell, rig.skeleton.names)])
     for vertex, row in enumerate(table.astype(np.float64).tolist()):
         writer.writerow([vertex, *(f"{value:.{DIGITS}g}" for value in row)])
     return packed.getvalue().encode()

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import asyncio
 import threading
-from collections.abc import Iterator
+import time
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -59,5 +60,14 @@ def serving(path: Path | None = None, address: str = "localhost") -> Iterator[Se
     try:
         yield Serving(port, found[0])
     finally:
+        # What visitors began must not take its turn from the tests that follow.
+        _wait_until(lambda: not found[0].get_sessions("/"))
+        _wait_until(lambda: all(t.name != "cutcell job" for t in threading.enumerate()))
         found[0].io_loop.add_callback(found[0].io_loop.stop)
         thread.join(30)
+
+
+def _wait_until(condition: Callable[[], bool], seconds: float = 60.0) -> None:
+    end = time.monotonic() + seconds
+    while not condition() and time.monotonic() < end:
+        time.sleep(0.05)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import cutcell
-from app.session import Session, sentence
+from app.session import Session
 from app.status import stage_text, summary, warning
 from cutcell.errors import MeshError
 from tests.viewers.arm import arm_rig
@@ -207,17 +207,6 @@ def test_real_characters_open(session, loop, rigs):
     np.testing.assert_allclose(session.state.binding.weights.sum(axis=1), 1, atol=1e-6)
 
 
-def test_what_is_told_reads_well(session):
-    assert sentence("it failed") == "It failed."
-    assert sentence("Done!") == "Done!"
-    assert sentence("bad.glb: not a file") == "bad.glb: not a file."
-    assert stage_text("graph") == "Building the graph"
-    assert stage_text("opening a.glb") == "Opening a.glb"
-    assert stage_text("") == "Starting"
-    assert summary(session.state) == ""
-    assert warning(session.state) is None
-
-
 def test_what_was_odd_about_the_file_is_told(bound):
     bound.state.rig = replace(bound.state.rig, warnings=("two weights are odd",))
     assert warning(bound.state) == ("warning", "Two weights are odd.")
@@ -310,3 +299,11 @@ def test_the_wave_is_told_once_and_not_frame_by_frame(bound, loop):
     assert films[0]["end"] > 0
     bound.state.front = 0.5
     assert [parts for parts in told if "film" in parts] == [{"film": films[0]}]
+
+
+def test_what_is_told_reads_well(session):
+    assert stage_text("graph") == "Building the graph"
+    assert stage_text("opening a.glb") == "Opening a.glb"
+    assert stage_text("") == "Starting"
+    assert summary(session.state) == ""
+    assert warning(session.state) is None

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 import cutcell
-from app.view import SceneView, camera_part, changes, theme_part
+from app.changes import changes
+from app.view import SceneView, camera_part, theme_part
 from tests.viewers.arm import arm_rig
 from viewers.camera import framing
 from viewers.description import Cut, Description

@@ -1,0 +1,25 @@
+"""The server's log, on a terminal that whoever visits must not be able to write to."""
+
+from __future__ import annotations
+
+import logging
+
+from cutcell.display import printable
+
+LINE = 4000
+
+
+class Printable(logging.Formatter):
+    """Writes requests, names and tracebacks without what a terminal would obey."""
+
+    def format(self, record: logging.LogRecord) -> str:
+        """Return a record as text."""
+        return "\n".join(printable(line, LINE) for line in super().format(record).split("\n"))
+
+
+def log_to_terminal() -> None:
+    """Write warnings and errors to standard error."""
+    handler = logging.StreamHandler()
+    handler.setFormatter(Printable())
+    logging.basicConfig(level=logging.WARNING, handlers=[handler])
+    logging.captureWarnings(True)

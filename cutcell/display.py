@@ -1,0 +1,109 @@
+"""Names and messages as they can be shown: whatever a file calls its joints, meshes and clips.
+
+A name may hold line breaks, control characters that a terminal obeys, marks that turn the
+direction of writing around, or the beginning of a spreadsheet's formula.
+"""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from collections.abc import Iterable
+from pathlib import Path
+
+MOST_LETTERS = 80
+"""Of a name."""
+MOST_OF_A_MESSAGE = 2000
+
+FORMULA = tuple("=+-@\t\r＝＋－＠")
+"""What a spreadsheet takes a cell for a formula by."""
+
+_HIDDEN = ("Cc", "Cf", "Cs", "Zl", "Zp")
+"""Unicode's categories of control and format characters, lone surrogates, and line ends."""
+_JOINERS = "\u200c\u200d"
+"""Format characters that some scripts, and composed emoji, are not written without."""
+
+_NOT_PLAIN = re.compile(r"[^\n\x20-\x7e]")
+
+# A folder that begins at the root, with what follows it up to the last part.
+_FOLDERS = re.compile(r"(?<![\w.:/\\])(?:[A-Za-z]:)?[\\/](?:[^\s\\/\"':;,()]+[\\/])+(?=[^\s\\/])")
+
+
+class _Escapes(dict[int, str]):
+    """What stands for each character, as far as it was needed."""
+
+    def __missing__(self, code: int) -> str:
+        char = chr(code)
+        hidden = unicodedata.category(char) in _HIDDEN and char not in _JOINERS
+        self[code] = shown = char.encode("unicode_escape").decode() if hidden else char
+        return shown
+
+
+_ESCAPES = _Escapes()
+
+
+def printable(text: str, most: int = MOST_OF_A_MESSAGE) -> str:
+    r"""Return a text on one line, in which nothing is hidden.
+
+    Parameters
+    ----------
+    text : str
+    most : int
+        Letters; what is longer is cut.
+
+    Returns
+    -------
+    str
+        With an escape, such as ``\x1b``, in the place of each control character, line end,
+        direction mark or lone surrogate.
+    """
+    if len(text) > most:
+        text = text[: most - 1] + "…"
+    return text if text.isprintable() else text.translate(_ESCAPES)
+
+
+def shown_name(name: str) -> str:
+    """Return a name as it is shown: printable, and not too long."""
+    return printable(name, MOST_LETTERS)
+
+
+def spreadsheet_cell(name: str) -> str:
+    """Return a name as a cell of a table; one that looks like a formula begins with an apostrophe.
+
+    References
+    ----------
+    OWASP, "CSV Injection".
+    """
+    shown = printable(name)
+    return f"'{shown}" if name.lstrip().startswith(FORMULA) or name.startswith(FORMULA) else shown
+
+
+def json_safe(text: str) -> str:
+    """Return a JSON document in which strings hold no raw control characters either.
+
+    JSON itself only forbids those below a space; the others become escapes, which mean the same.
+    """
+    return _NOT_PLAIN.sub(lambda found: _json_escape(found.group()), text)
+
+
+def without_folders(text: str, known: Iterable[Path] = ()) -> str:
+    """Return a message that tells the names of files, and not where they are.
+
+    Parameters
+    ----------
+    text : str
+    known : iterable of Path
+        Folders whose names may hold anything, spaces for one; others are found by their form.
+    """
+    for folder in sorted({str(path) for path in known}, key=len, reverse=True):
+        if len(folder) > 1:
+            inner = r"[\\/](?:[^\s\\/\"':;,()]+[\\/])*"
+            text = re.sub(re.escape(folder.rstrip("\\/")) + inner, "", text)
+    return _FOLDERS.sub("", text)
+
+
+def _json_escape(char: str) -> str:
+    if _ESCAPES[ord(char)] == char:
+        return char
+    pair = char.encode("utf-16-be", "surrogatepass").hex()
+    return "".join(f"\\u{pair[i : i + 4]}" for i in range(0, len(pair), 4))
