@@ -22,7 +22,8 @@ const STYLE = `
 .legend span { display: flex; justify-content: space-between; gap: 8px; margin-top: 4px; opacity: .75;
   font-variant-numeric: tabular-nums; }
 .legend i { font-style: normal; }
-.legend p { margin: 5px 0 0; display: flex; align-items: center; gap: 8px; opacity: .9; }
+.legend p { margin: 5px 0 0; display: flex; align-items: center; gap: 8px; opacity: .9;
+  overflow-wrap: anywhere; }
 .legend p::before { content: ""; width: 14px; height: 8px; border-radius: 3px; flex: none;
   background: var(--swatch); }
 .bone { padding: 4px 8px; transform: translate(14px, -110%); white-space: nowrap; }
