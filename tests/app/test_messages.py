@@ -16,7 +16,7 @@ from cutcell.errors import FileError
     ("error", "expected"),
     [
         (FileError("/tmp/cutcell-a/b/rig.glb: the file is empty"), "rig.glb: the file is empty."),
-        (FileError('joint "a\x1b[31m\nb" is twice there'), 'Joint "a\\x1b[31m\\nb" is twice there.'),
+        (FileError('joint "a\x1b[31m\nb" is bad'), 'Joint "a\\x1b[31m\\nb" is bad.'),
         (MemoryError("Unable to allocate 44.0 GiB"), "There is not enough memory for this; a"),
         (
             OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), "/tmp/cutcell-x/a.csv"),
