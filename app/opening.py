@@ -108,9 +108,20 @@ class Opening:
         self._held.add(group.key)
         self.files(group.paths, group.key)
 
-    def choose(self, query: str) -> None:
-        """Choose what an address says, before any character is there."""
-        self._session.state.param.update(**from_query(query, self._session.state)[0])
+    def choose(self, query: str, first: str = "") -> None:
+        """Choose what an address says, before any character is there.
+
+        Parameters
+        ----------
+        query : str
+        first : str
+            The demo that is to come where it says nothing of that; empty for none.
+        """
+        state = self._session.state
+        choices, arrival, _ = from_query(query, state)
+        demo = learn.demo_of(arrival) if learn.opens(arrival) else arrival.get("rig", first)
+        known = {demo.id for demo in DEMOS if demo.path.exists()}
+        state.param.update(**choices, demo=demo if demo in known else "")
 
     def arrive(self, query: str, otherwise: Callable[[], None]) -> None:
         """Show what an address says.

@@ -49,19 +49,20 @@ def page(path: Path | None = None) -> pmui.Page:
     # must not in turn hold the document.
     fail = weakref.WeakMethod(session.fail)
     pn.config.exception_handler = lambda error: _told(fail(), error)
+    query = asked()
+    first = "" if path is not None else next(demo.id for demo in DEMOS if demo.path.exists())
+    session.opening.choose(query, first)
     result = layout(session)
     document.on_session_destroyed(functools.partial(_close, session))
 
     def otherwise() -> None:
         if path is None:
-            session.opening.demo(next(demo.id for demo in DEMOS if demo.path.exists()))
+            session.opening.demo(first)
         else:
             session.opening.files([path])
 
-    query = asked()
-    session.opening.choose(query)
     # Whoever only asks for the page, and never looks at it, makes nothing be computed.
-    session.view.when_seen(lambda: session.opening.arrive(query, otherwise))
+    session.view.when_seen(lambda: session.later(lambda: session.opening.arrive(query, otherwise)))
     return result
 
 

@@ -52,8 +52,12 @@ def opens(arrival: dict[str, Any]) -> bool:
     """
     if "tour" not in arrival or "bone" in arrival:
         return False
-    demo = TOUR[arrival["tour"]].look.demo
-    return bool(arrival.get("rig", demo) == demo)
+    return bool(arrival.get("rig", demo_of(arrival)) == demo_of(arrival))
+
+
+def demo_of(arrival: dict[str, Any]) -> str:
+    """Return the character of the step that an address names."""
+    return str(TOUR[arrival["tour"]].look.demo)
 
 
 def show(session: Session, look: Look, said: frozenset[str] = frozenset()) -> None:
