@@ -24,7 +24,8 @@ def as_text(text: str) -> str:
     return _PUNCTUATION.sub(lambda found: f"&#{ord(found.group())};", printable(text or ""))
 
 
-_PUNCTUATION = re.compile(r"[!-/:-@\[-`{-~]")
+_PUNCTUATION = re.compile(r"[!-&(-+\-/<-@\[-`{-~]|[.:](?=\S)|(?<=\d)\.")
+"""All but what ends sentences and their parts; an address, for one, would become a link."""
 
 
 def words(text: Any, **params: Any) -> pmui.Typography:

@@ -3,12 +3,15 @@
 import errno
 import logging
 import os
+from html import unescape
 
+import panel_material_ui as pmui
 import pytest
 
 from app.log import Printable
 from app.messages import sentence, told
 from app.panels.parts import as_text, unique_names
+from cutcell.display import printable
 from cutcell.errors import FileError
 
 
@@ -50,8 +53,25 @@ def test_the_log_obeys_nobody():
     assert text.count("\n") >= 3, "a traceback keeps its lines"
 
 
-def test_texts_are_neither_markdown_nor_html():
-    assert as_text("<b>*x*</b>\n") == "&#60;b&#62;&#42;x&#42;&#60;&#47;b&#62;&#92;n"
+@pytest.mark.parametrize(
+    "text",
+    [
+        "<b>x</b>", "*x* **y** _z_ `c`", "[x](https://example.org)", "www.example.org", "1. x",
+        "2) x", "- x", "# x", "> x", "&lt;b&gt;", "\\*", "a:b", "https://x", "it's, so; well. No!",
+        "!", "\n", "    x",
+    ],
+)  # fmt: skip
+def test_texts_are_neither_markdown_nor_html(text):
+    sent = pmui.Typography(as_text(text))._transform_object(as_text(text))["object"]
+    put_on_the_page = unescape(sent).strip()
+    assert put_on_the_page.startswith("<p>")
+    assert put_on_the_page.endswith("</p>")
+    inner = put_on_the_page[3:-4]
+    assert "<" not in inner
+    assert unescape(inner).strip() == printable(text).strip()
+
+
+def test_no_text_is_none():
     assert as_text("") == as_text(None) == ""
 
 
