@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from difflib import get_close_matches
 from typing import Any
 
-from cutcell import bind
-from cutcell.checks import check_choice
+from cutcell import bind, build_graph
+from cutcell.checks import check_choice, check_has_joints
 from cutcell.errors import ParameterError
 from cutcell.progress import Progress, silent
 from cutcell.rig import Clip, Rig
@@ -119,6 +119,8 @@ def describe(
     ------
     ParameterError
         No such panel, bone, axis or method; nothing to compare with.
+    SkeletonError
+        A mesh without a skeleton, on any panel but "graph".
 
     Examples
     --------
@@ -127,6 +129,9 @@ def describe(
     """
     choices = choices or Choices()
     state = _state(rig, choices)
+    if state.bare:
+        state.bare_graph = build_graph(rig.mesh, resolution, connectivity="any", progress=progress)
+        return resolve(state)
     state.binding = bind(rig, resolution, progress=progress) if binding is None else binding
     if wants_field(state):
         distances = state.binding.distances
@@ -146,7 +151,7 @@ def describe(
 
 
 def check(rig: Rig, choices: Choices, view: str = "three-quarter") -> None:
-    """Raise ParameterError for choices that a rig does not offer, before anything is computed."""
+    """Raise an error for choices that a rig does not offer, before anything is computed."""
     _state(rig, choices)
     check_choice("view", view, VIEWS)
 
@@ -235,6 +240,8 @@ def _find(what: str, name: str, names: list[str], rig: Rig) -> int:
 
 def _state(rig: Rig, choices: Choices) -> State:
     panel = PANELS[check_choice("panel", choices.panel, PANELS)]
+    if panel != "graph":
+        check_has_joints(rig.skeleton)
     state = State(rig=rig, panel=panel, dark=choices.dark, skeleton=choices.skeleton)
     state.joint = first_joint(rig) if choices.bone is None else find_bone(rig, choices.bone)
     if choices.bone is not None:

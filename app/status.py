@@ -154,6 +154,7 @@ def summary(state: State) -> str:
             f"{len(graph.nodes):,} nodes · {len(graph.edges):,} edges ({kinds[MESH]:,} mesh, "
             f"{kinds[INTERIOR]:,} interior, {kinds[SURFACE]:,} surface)"
         )
-        seconds = binding.seconds.items() if binding is not None else ()
+    if binding is not None:
+        seconds = binding.seconds.items()
         parts.append(" · ".join(f"{stage} {value:.2f} s" for stage, value in seconds))
     return "  |  ".join(parts)

@@ -172,6 +172,7 @@ def render(
     film.check_picture_file(out, moves=moves)
     pixels = _size(size) if size else FILM_SIZE if moves else PICTURE_SIZE
     from .io import load
+    from .io.files import naming
 
     loaded = load(rig, skeleton=skeleton_file)
     choices = scenes.Choices(
@@ -188,11 +189,13 @@ def render(
         dark=dark,
     )
     # A wrong name is told before anything long begins.
-    scenes.check(loaded, choices, view)
+    with naming(rig):
+        scenes.check(loaded, choices, view)
     from .skinning import bind
 
+    bare = not len(loaded.skeleton.joints)
     with progress_bars(quiet) as progress:
-        binding = bind(loaded, resolution, progress=progress)
+        binding = None if bare else bind(loaded, resolution, progress=progress)
         description = scenes.describe(
             loaded, choices, binding=binding, resolution=resolution, progress=progress
         )
@@ -201,7 +204,7 @@ def render(
         )
         worker.draw_apart(order, out, progress)
     if not quiet:
-        print_warnings([*loaded.warnings, *binding.warnings])
+        print_warnings([*loaded.warnings, *(binding.warnings if binding else ())])
         print_line(f"{out}: {pixels[0]} x {pixels[1]} pixels, {_kilobytes(out)}")
 
 

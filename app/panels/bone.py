@@ -7,7 +7,7 @@ from typing import Any
 import panel_material_ui as pmui
 
 from ..session import Session
-from .parts import GAP, offer, section, unique_names
+from .parts import GAP, offer, section, unique_names, when
 
 
 def bone(session: Session) -> pmui.Column:
@@ -43,4 +43,5 @@ def bone(session: Session) -> pmui.Column:
         margin=(4, 0, 0, 8),
     )
     row = pmui.Row(select, seen, margin=0, sizing_mode="stretch_width")
-    return section("", row, margin=(2, 20, 4, 20))
+    shown = when(lambda rig: not state.bare, state.param.rig)
+    return section("", row, margin=(2, 20, 4, 20), visible=shown)

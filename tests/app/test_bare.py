@@ -7,9 +7,11 @@ from app.choices import to_query
 from app.panels import PANELS
 from app.panels.bone import bone
 from app.panels.take_along import take_along
+from app.render import Choices, describe
 from app.scenes import resolve
 from app.sidebar import NO_SKELETON, panels
 from app.status import messages, summary
+from cutcell.errors import SkeletonError
 from cutcell.rig import Rig, Skeleton
 from tests.viewers.arm import arm_rig
 
@@ -39,6 +41,8 @@ def test_the_panel_graph_opens_and_shows_it(bare):
     assert state.panel == "graph"
     assert state.binding is None
     assert "0 joints" in summary(state)
+    assert not summary(state).endswith("|  ")
+    assert not bare.built[1].visible
     assert f"{len(state.graph.nodes):,} nodes" in summary(state)
     actors = resolve(state).actors
     assert "interior edges" in actors
@@ -96,3 +100,11 @@ def test_a_character_after_it_is_bound_as_ever(bare, loop):
     assert bare.state.bare_graph is None
     assert np.isfinite(bare.state.weights).all()
     assert "bones" in resolve(bare.state).actors
+
+
+def test_a_picture_of_its_graph():
+    scene = describe(bare_arm(), Choices("graph"), resolution=16)
+    assert "interior edges" in scene.actors
+    for panel in ("weights", "distance", "pose", "compare"):
+        with pytest.raises(SkeletonError, match="the rig has no skeleton; export the mesh"):
+            describe(bare_arm(), Choices(panel), resolution=16)
