@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from .. import __version__
 from ..errors import CutcellError, FileError, MeshError, SkeletonError, WeightsError
-from ..rig import Clip, Rig, TriangleMesh
+from ..rig import Clip, Rig, Skeleton, TriangleMesh
 from .gltf_container import json_bytes, pack_glb, with_whole_names
 from .gltf_influences import pack_influences
 from .gltf_nodes import decompose
@@ -111,8 +111,7 @@ class _File:
             setattr(primitive.attributes, f"JOINTS_{n}", self._array(where.astype(small), target))
             setattr(primitive.attributes, f"WEIGHTS_{n}", self._array(share, target))
         self.gltf.meshes.append(gl.Mesh(name=rig.name, primitives=[primitive]))
-        binds = np.tile(np.eye(4), (joints, 1, 1))
-        binds[:, :3, 3] = -rig.skeleton.joints
+        binds = _inverses(rig.skeleton)
         stored = self._array(binds.transpose(0, 2, 1).reshape(-1, 16).astype(np.float32))
         self.gltf.skins = [gl.Skin(inverseBindMatrices=stored, joints=list(range(joints)))]
         mesh_node = self._node(name=rig.name, mesh=0, skin=0)
@@ -128,13 +127,12 @@ class _File:
     def _add_joints(self, rig: Rig) -> None:
         """Add a node a joint, in order, and one above the roots that carries the world."""
         skeleton = rig.skeleton
-        for j, parent in enumerate(skeleton.parents):
-            above = skeleton.joints[parent] if parent >= 0 else 0.0
-            self._node(
-                name=skeleton.names[j],
-                translation=(skeleton.joints[j] - above).tolist(),
-                children=skeleton.children[j].tolist(),
-            )
+        local = _at_joints(skeleton)
+        held = np.flatnonzero(skeleton.parents >= 0)
+        local[held] = _inverses(skeleton)[skeleton.parents[held]] @ local[held]
+        for j, children in enumerate(skeleton.children):
+            place = _transform(local[j])
+            self._node(name=skeleton.names[j], children=children.tolist(), **place)
         roots = np.flatnonzero(skeleton.parents < 0).tolist()
         top = self._node(name="armature", children=roots)
         if not np.array_equal(rig.world, np.eye(4)):
@@ -147,7 +145,7 @@ class _File:
             node = self._node(
                 name=attachment.name,
                 mesh=len(self.gltf.meshes) - 1,
-                translation=(-rig.skeleton.joints[attachment.joint]).tolist(),
+                **_transform(_inverses(rig.skeleton)[attachment.joint]),
             )
             self.gltf.nodes[attachment.joint].children.append(node)
 
@@ -222,11 +220,37 @@ def vertex_normals(mesh: TriangleMesh) -> NDArray[np.float32]:
     return unit[same].astype(np.float32)
 
 
+def _at_joints(skeleton: Skeleton) -> NDArray:
+    """Return where each joint is at rest and how it is turned, shape (j, 4, 4)."""
+    matrices = np.tile(np.eye(4), (len(skeleton.joints), 1, 1))
+    if skeleton.orientations is not None:
+        matrices[:, :3, :3] = skeleton.orientations
+    matrices[:, :3, 3] = skeleton.joints
+    return matrices
+
+
+def _inverses(skeleton: Skeleton) -> NDArray:
+    """Return the inverse bind matrices; their linear parts are orthogonal."""
+    matrices = _at_joints(skeleton)
+    matrices[:, :3, :3] = matrices[:, :3, :3].transpose(0, 2, 1)
+    matrices[:, :3, 3:] = -matrices[:, :3, :3] @ matrices[:, :3, 3:]
+    return matrices
+
+
+def _transform(matrix: NDArray) -> dict[str, list[float]]:
+    """Return a node's fields for a matrix without shear; what is left out is the identity's."""
+    translation, rotation, scale = decompose(matrix)
+    fields = {"translation": translation.tolist()}
+    if not np.allclose(matrix[:3, :3], np.eye(3), rtol=0, atol=1e-12):
+        fields["rotation"] = (rotation * (-1 if rotation[3] < 0 else 1)).tolist()
+    if scale[0] < 0:  # a joint whose axes are mirrored
+        fields["scale"] = [-1.0, 1.0, 1.0]
+    return fields
+
+
 def _local_poses(rig: Rig, clip: Clip) -> dict[str, NDArray]:
     """Return what each joint's node does, relative to its parent's node."""
-    at_joint = np.tile(np.eye(4), (len(rig.skeleton.joints), 1, 1))
-    at_joint[:, :3, 3] = rig.skeleton.joints
-    world = clip.transforms @ at_joint
+    world = clip.transforms @ _at_joints(rig.skeleton)
     local = world.copy()
     held = np.flatnonzero(rig.skeleton.parents >= 0)
     local[:, held] = np.linalg.inv(world[:, rig.skeleton.parents[held]]) @ world[:, held]

@@ -113,3 +113,30 @@ def test_real_characters_can_be_made_anew(tmp_path, rigs):
         assert_allclose(again.weights, rig.weights, atol=1e-6)
         for before, after in zip(rig.clips, again.clips, strict=True):
             assert_allclose(after.transforms, before.transforms, atol=1e-4)
+
+
+def turned_rig(mirrored):
+    """Return the column with turned joints, the second one mirrored if wanted, and a clip."""
+    rng = np.random.default_rng(3)
+    axes = np.linalg.qr(rng.normal(size=(2, 3, 3)))[0]
+    axes *= np.linalg.det(axes)[:, None, None]
+    if mirrored:
+        axes[1, :, 0] *= -1
+    skeleton = cutcell.Skeleton(REST, [-1, 0], ("root", "tip"), orientations=axes)
+    sword = cutcell.Attachment("sword", cutcell.TriangleMesh(COLUMN + 1, FACES), 1)
+    clip = swing(skeleton, 0, "z", 50, seconds=0.5)
+    rig = small_rig()
+    return cutcell.Rig(rig.mesh, skeleton, rig.weights, (clip,), (sword,))
+
+
+@pytest.mark.parametrize("mirrored", [False, True])
+def test_how_joints_are_turned_at_rest_comes_back(tmp_path, mirrored):
+    rig = turned_rig(mirrored)
+    cutcell.save(tmp_path / "new.glb", rig)
+    check_valid(tmp_path / "new.glb")
+    again = cutcell.load(tmp_path / "new.glb")
+    assert_allclose(again.skeleton.orientations, rig.skeleton.orientations, atol=1e-6)
+    assert_allclose(again.skeleton.joints, rig.skeleton.joints, atol=1e-6)
+    assert_allclose(again.world, np.eye(4), atol=1e-6)
+    assert_allclose(again.clips[0].transforms, rig.clips[0].transforms, atol=1e-5)
+    assert_allclose(again.attachments[0].mesh.vertices, COLUMN + 1, atol=1e-6)
