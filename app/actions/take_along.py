@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import cutcell
+from cutcell.io import binary_ending
 from cutcell.io.numbers import save_numbers
 from cutcell.progress import Progress
 from cutcell.rig import Clip
@@ -21,6 +22,7 @@ from ..jobs import DRAWING
 from ..scenes import following, resolve
 from ..scenes.pose import SWING_DEGREES, clip_of
 from ..state import State
+from ..upload import safe_name
 
 if TYPE_CHECKING:
     from ..session import Session
@@ -83,7 +85,7 @@ def bound_file(session: Session, done: Done) -> None:
         state.message = ("info", "There are no weights to download yet.")
         return
     rig = state.rig.with_weights(state.binding.weights)
-    path = session.folder / f"{_stem(session)}-bound.glb"
+    path = session.folder / f"{_stem(session)}-bound{binary_ending(rig)}"
 
     def work(progress: Progress) -> tuple[str, bytes]:
         progress("writing the file", 0.0)
@@ -133,8 +135,9 @@ def _draw(session: Session, order: Order, ending: str, done: Done) -> None:
 
 
 def _stem(session: Session) -> str:
+    """Return what the files of a character are called; its own name may be no file's name."""
     rig = session.state.rig
-    return (Path(rig.name).stem if rig is not None else "") or "character"
+    return safe_name(Path(rig.name).stem) if rig is not None and rig.name else "character"
 
 
 def _taken(path: Path) -> tuple[str, bytes]:

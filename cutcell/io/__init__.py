@@ -163,6 +163,13 @@ def _not_written(path: Path) -> str:
     return f'a rig cannot be saved as "{path.suffix}"; end the name in {WRITABLE}'
 
 
+def binary_ending(rig: Rig) -> str:
+    """Return the ending of a rig as one binary glTF file: an avatar stays ".vrm"."""
+    source = rig.source
+    avatar = isinstance(source, GltfSource) and source.document.path.suffix.lower() == ".vrm"
+    return ".vrm" if avatar else ".glb"
+
+
 def _files(path: Path, rig: Rig) -> dict[Path, bytes]:
     kind = path.suffix.lower()
     if kind == ".txt":

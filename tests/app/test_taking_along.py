@@ -1,6 +1,7 @@
 """What a person takes along from a session: the bound character, pictures, films, numbers."""
 
 import io
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from app.actions.take_along import (
     take_picture,
     take_turntable,
 )
+from tests.cutcell.io.gltf_builder import column
 
 
 def test_the_bound_character_can_be_taken_along(bound, loop, tmp_path):
@@ -25,6 +27,38 @@ def test_the_bound_character_can_be_taken_along(bound, loop, tmp_path):
     path.write_bytes(content)
     loaded = cutcell.load(path)
     np.testing.assert_allclose(loaded.weights, bound.state.binding.weights, atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("name", "taken_as"),
+    [
+        ("骨" * 85, "骨" * 66 + "-bound.glb"),
+        ("a/b\\c:d.glb", "cd-bound.glb"),
+        ("..", "file-bound.glb"),
+        ("nul\0l\ud800.obj", "null-bound.glb"),
+        ("", "character-bound.glb"),
+        ('<"?*|>', "file-bound.glb"),
+    ],
+)
+def test_a_name_that_no_file_can_have_is_no_hindrance(bound, loop, name, taken_as):
+    bound.state.rig = replace(bound.state.rig, name=name)
+    got = []
+    bound_file(bound, lambda *file: got.append(file))
+    loop.run_until(lambda: bool(got))
+    assert got[0][0] == taken_as
+    assert got[0][1].startswith(b"glTF")
+
+
+def test_an_avatar_keeps_its_ending(session, loop, tmp_path):
+    path = column().save(tmp_path / "avatar.glb").rename(tmp_path / "avatar.vrm")
+    session.state.resolution = 16
+    session.opening.rig(cutcell.load(path))
+    loop.run_until(lambda: session.state.binding is not None)
+    got = []
+    bound_file(session, lambda *file: got.append(file))
+    loop.run_until(lambda: bool(got))
+    assert got[0][0] == "avatar-bound.vrm"
+    assert got[0][1].startswith(b"glTF")
 
 
 def test_nothing_to_take_along_is_told(session):
