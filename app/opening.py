@@ -11,6 +11,7 @@ from param.parameterized import batch_call_watchers
 
 import cutcell
 from assets import DEMOS, demo_path
+from cutcell.apart import stoppable
 from cutcell.errors import CutcellError, FileError
 from cutcell.progress import Progress
 from cutcell.rig import Rig
@@ -204,8 +205,9 @@ class Opening:
         **more: Any,
     ) -> None:
         def work(progress: Progress) -> Rig:
-            progress(stage, 0.0)
-            return load()
+            with stoppable(lambda: progress(stage, 0.0)):  # some are read by processes of their own
+                progress(stage, 0.0)
+                return load()
 
         def done(rig: Rig) -> None:
             opened()

@@ -11,8 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import CutcellError, FileError, MeshError
-from ..rig import Attachment, Rig, TriangleMesh
-from ..rig import Part as NamedPart
+from ..rig import Attachment, Part, Rig, TriangleMesh
 from .deforming import with_deform
 from .gltf_bare import read_bare
 from .gltf_clips import read_clips
@@ -34,7 +33,7 @@ from .gltf_skins import Bind, read_bind, read_skeleton
 
 
 @dataclass(eq=False)
-class Part:
+class StoredPart:
     """Vertices that are stored together: one vertex buffer bound to one skin."""
 
     label: str
@@ -52,7 +51,7 @@ class GltfSource:
     """What a rig remembers of its glTF file, for saving."""
 
     document: Document
-    parts: list[Part]
+    parts: list[StoredPart]
     joints: tuple[str, ...]
 
 
@@ -113,17 +112,17 @@ def _skinned_nodes(nodes: Nodes) -> list[int]:
 
 def _read_parts(
     document: Document, nodes: Nodes, skinned: list[int], bind: Bind
-) -> tuple[list[Part], list[NDArray], list[NDArray], list[NDArray | None], tuple[NamedPart, ...]]:
+) -> tuple[list[StoredPart], list[NDArray], list[NDArray], list[NDArray | None], tuple[Part, ...]]:
     """Read every vertex buffer once, however many primitives draw from it.
 
     A mesh that stands in the scene twice, with two skins, is read for the first: both
     draw with the same stored weights.
     """
-    parts: dict[Any, Part] = {}
+    parts: dict[Any, StoredPart] = {}
     vertices: list[NDArray] = []
     faces: list[NDArray] = []
     stored: list[NDArray | None] = []
-    named: list[NamedPart] = []
+    named: list[Part] = []
     hidden = hidden_nodes(nodes)
     seen: set[tuple[int, int]] = set()
     total = 0
@@ -139,7 +138,7 @@ def _read_parts(
             key = (skin, _vertex_key(primitive, label))
             if key not in parts:
                 rows = slice(total, total := total + len(positions))
-                parts[key] = Part(label, [], skin, rows, bind.skins[skin])
+                parts[key] = StoredPart(label, [], skin, rows, bind.skins[skin])
                 vertices.append(_moved(positions, bind.to_rig[skin]))
                 joints = len(bind.skins[skin])
                 stored.append(read_weights(document, primitive, len(positions), joints, label))
@@ -149,7 +148,7 @@ def _read_parts(
             faces.append(corners + parts[key].rows.start)
         if total > first:
             rows = slice(first, total)
-            named.append(NamedPart(mesh_name(document, nodes, i), rows, i in hidden))
+            named.append(Part(mesh_name(document, nodes, i), rows, i in hidden))
     return list(parts.values()), vertices, faces, stored, tuple(named)
 
 
@@ -165,7 +164,7 @@ def _moved(points: NDArray, matrix: NDArray) -> NDArray:
     return points @ matrix[:3, :3].T + matrix[:3, 3]
 
 
-def _dense(parts: list[Part], stored: list, vertices: int, joints: int) -> NDArray | None:
+def _dense(parts: list[StoredPart], stored: list, vertices: int, joints: int) -> NDArray | None:
     if all(s is None for s in stored):
         return None
     weights = np.zeros((vertices, joints))
@@ -175,7 +174,7 @@ def _dense(parts: list[Part], stored: list, vertices: int, joints: int) -> NDArr
     return weights
 
 
-def _allowed(parts: list[Part], vertices: int, joints: int) -> NDArray | None:
+def _allowed(parts: list[StoredPart], vertices: int, joints: int) -> NDArray | None:
     if all(len(part.joints) == joints for part in parts):
         return None
     allowed = np.zeros((vertices, joints), bool)

@@ -21,7 +21,7 @@ from .gltf_buffer_file import buffer_file, relative_uri
 from .gltf_container import Document, json_bytes, pack_glb
 from .gltf_images import carry_images
 from .gltf_influences import pack_influences
-from .gltf_read import GltfSource, Part
+from .gltf_read import GltfSource, StoredPart
 from .gltf_storage import Storage
 
 
@@ -67,7 +67,7 @@ def _check_same(rig: Rig, source: GltfSource) -> None:
         raise SkeletonError(f"the rig's joints are no longer those of its document; {remedy}")
 
 
-def _take_influences(document: dict[str, Any], part: Part) -> dict[str, int]:
+def _take_influences(document: dict[str, Any], part: StoredPart) -> dict[str, int]:
     """Remove JOINTS_n and WEIGHTS_n from a part's primitives and return what they were."""
     taken: dict[str, int] = {}
     for primitive in _primitives(document, part):
@@ -77,12 +77,12 @@ def _take_influences(document: dict[str, Any], part: Part) -> dict[str, int]:
     return taken
 
 
-def _primitives(document: dict[str, Any], part: Part) -> list[dict[str, Any]]:
+def _primitives(document: dict[str, Any], part: StoredPart) -> list[dict[str, Any]]:
     return [document["meshes"][mesh]["primitives"][k] for mesh, k in part.primitives]
 
 
 def _store(
-    storage: Storage, document: dict[str, Any], rig: Rig, part: Part, old: dict[str, int]
+    storage: Storage, document: dict[str, Any], rig: Rig, part: StoredPart, old: dict[str, int]
 ) -> None:
     weights = rig.weights[part.rows]  # type: ignore[index]
     _check_reachable(weights, rig, part)
@@ -98,7 +98,7 @@ def _store(
             primitive["attributes"].update(new)
 
 
-def _check_reachable(weights: NDArray, rig: Rig, part: Part) -> None:
+def _check_reachable(weights: NDArray, rig: Rig, part: StoredPart) -> None:
     outside = np.ones(weights.shape[1], bool)
     outside[part.joints] = False
     rows, columns = np.nonzero(weights * outside)

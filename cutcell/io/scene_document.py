@@ -38,15 +38,20 @@ def scene_document(scene: Mapping[str, NDArray], path: Path, generator: str) -> 
     Raises
     ------
     FileError
-        It has no meshes.
+        It has no meshes, or a node's place is not finite.
     MeshError
         A mesh's faces or weights are of vertices that it does not have.
     """
     if not len(scene["mesh_names"]):
         raise FileError("has no mesh")
+    bad = np.flatnonzero(~np.isfinite(scene["node_transforms"]).all(axis=1))
+    if len(bad):
+        name = scene["node_names"][bad[0]]
+        raise FileError(f'node "{name}" has a place, turn or scale that is not a finite number')
     made = _Making(generator)
     made.add_nodes(scene)
-    skins = scene_skins(scene)
+    with np.errstate(over="ignore", invalid="ignore"):  # what is not finite then is told later
+        skins = scene_skins(scene)
     for k in range(len(scene["mesh_names"])):
         made.add_mesh(scene, k, skins.get(k))
     made.add_clips(scene)

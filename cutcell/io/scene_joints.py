@@ -49,12 +49,14 @@ def scene_skins(scene: Mapping[str, NDArray]) -> dict[int, SceneSkin]:
 
 def scene_world(scene: Mapping[str, NDArray]) -> NDArray | None:
     """Return where the first skinned mesh stands, which its joints in a pose may not tell."""
-    skinned = scene_skins(scene)
+    with np.errstate(over="ignore", invalid="ignore"):
+        skinned = scene_skins(scene)
     if not skinned:
         return None
-    world = _worlds(scene["node_transforms"], scene["node_parents"].tolist())
     first = min(skinned)
-    stands = world[int(scene["mesh_nodes"][first])] @ scene[f"mesh_{first}_place"]
+    with np.errstate(over="ignore", invalid="ignore"):
+        world = _worlds(scene["node_transforms"], scene["node_parents"].tolist())
+        stands = world[int(scene["mesh_nodes"][first])] @ scene[f"mesh_{first}_place"]
     return stands if _inverse(stands)[1] else None
 
 

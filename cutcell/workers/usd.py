@@ -30,11 +30,18 @@ def read(path):
     """
     file = Path(str(path)).resolve()
     try:
-        stage = Usd.Stage.Open(str(file))
+        return read_stage(file)
     except Tf.ErrorException as error:
         reasons = [e.commentary for e in error.args] or [str(error)]
         reason = " ".join(reasons[0].replace(f"{file.parent}/", "").split())
         raise RuntimeError(f"it is damaged ({reason[:200]})") from None
+    except (TypeError, AttributeError, IndexError, KeyError, np.linalg.LinAlgError) as error:
+        raise RuntimeError(f"it is damaged ({error})") from None
+
+
+def read_stage(file):
+    """Read an opened file's meshes, skeletons and motion."""
+    stage = Usd.Stage.Open(str(file))
     for layer in stage.GetUsedLayers():
         real = Path(layer.realPath or file)
         if real != file and file.parent not in real.parents:

@@ -170,6 +170,7 @@ class TestDamage:
             (text(joints=", ".join(["0, 7"] * 12)), "weighted to joints out of range"),
             (text(corners="0, 1, 2"), "body lacks corners"),
             (text(corners=", ".join(["99"] * FACES.size)), 'mesh "body": a face uses a vertex'),
+            (text(up_one=moved("nan", 0, 0)), 'node "tip" has a place, turn or scale that is not'),
             ('#usda 1.0\ndef Xform "nothing"\n{\n}\n', "has no mesh"),
         ],
     )
