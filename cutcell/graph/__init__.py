@@ -3,6 +3,7 @@
 from .build import build_graph
 from .cutcell_graph import INTERIOR, MESH, SURFACE, CutCellGraph
 from .lattice import Lattice
+from .orientation import inverted_faces
 from .slice import RaySlice, slice_rays
 from .winding import winding_number
 
@@ -14,6 +15,7 @@ __all__ = [
     "Lattice",
     "RaySlice",
     "build_graph",
+    "inverted_faces",
     "slice_rays",
     "winding_number",
 ]

@@ -28,6 +28,7 @@ def assemble(
     runs: Sequence[Runs],
     lattice: Lattice,
     connectivity: int | str,
+    inverted: NDArray[np.bool_],
 ) -> CutCellGraph:
     """Build the graph from what the rays found.
 
@@ -43,6 +44,8 @@ def assemble(
     crossings, runs : of the rays along x, y and z
     lattice : Lattice
     connectivity : {6, 26, "any"}
+    inverted : array, shape (m,), bool
+        Which of the faces were turned round.
 
     Raises
     ------
@@ -106,6 +109,7 @@ def assemble(
         connectivity=connectivity,
         interior=points,
         steps=steps,
+        inverted=inverted,
     )
 
 

@@ -35,7 +35,8 @@ class Boundary(NamedTuple):
 
 def find_boundary(faces: NDArray[np.int32]) -> Boundary:
     """Find the boundary of welded faces, shape (m, 3)."""
-    return boundary_of(*find_edges(faces))
+    edges, balance, _ = find_edges(faces)
+    return boundary_of(edges, balance)
 
 
 def boundary_of(edges: NDArray[np.int32], balance: NDArray[np.int32]) -> Boundary:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from ..checks import check_choice, check_number
 from ..progress import Progress, silent
 from ..rig import TriangleMesh
@@ -11,6 +13,7 @@ from .boundary import boundary_of
 from .cutcell_graph import CutCellGraph
 from .lattice import Lattice
 from .mesh_edges import find_edges
+from .orientation import find_inverted, flipped
 from .rays import cast_all_rays
 from .segments import find_runs
 from .weld import weld
@@ -26,6 +29,7 @@ def build_graph(
     connectivity: int | str = 6,
     rays: str = "raster",
     winding: str = "exact",
+    orient: bool = True,
     progress: Progress = silent,
 ) -> CutCellGraph:
     """Cut a lattice with a mesh and connect what lies inside.
@@ -48,6 +52,9 @@ def build_graph(
     winding : {"exact", "fast"}
         What decides which pieces are inside: exact winding numbers, or libigl's
         approximation at every midpoint. This and `rays` are for comparing.
+    orient : bool
+        Whether faces that are inside out count as turned round, see `inverted_faces`. The
+        mesh itself stays as it is.
     progress : callable
         See `cutcell.progress`; the stage is called "graph".
 
@@ -76,7 +83,13 @@ def build_graph(
     progress("graph", 0.0)
     vertices, vertex_node = weld(lattice.to_unit(mesh.vertices))
     faces = vertex_node[mesh.faces]
-    mesh_edges, balance = find_edges(faces)
+    mesh_edges, balance, partner = find_edges(faces)
+    inverted = np.zeros(len(faces), np.bool_)
+    if orient:
+        inverted = find_inverted(vertices, faces, partner)
+    if inverted.any():
+        faces = flipped(faces, inverted)
+        mesh_edges, balance, _ = find_edges(faces)
     boundary = boundary_of(mesh_edges, balance)
     progress("graph", 0.1)
     if rays == "raster":
@@ -94,6 +107,6 @@ def build_graph(
     progress("graph", 0.8)
     is_closed = len(boundary.loop) == 0
     found = vertices, vertex_node, faces, mesh_edges, is_closed, crossings, runs
-    graph = assemble(*found, lattice, connectivity)
+    graph = assemble(*found, lattice, connectivity, inverted)
     progress("graph", 1.0)
     return graph

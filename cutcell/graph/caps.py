@@ -24,8 +24,8 @@ from numpy.typing import NDArray
 from ..compiled import compiled, lean
 from ..threads import in_threads
 from .boundary import Boundary, boundary_of, find_boundary
+from .patches import inconsistent_faces
 from .solid_angle import between, cross, length
-from .turned import find_turned
 from .weld import weld
 
 PULLS = 3e-4, 3e-3
@@ -105,7 +105,7 @@ def cap_holes(vertices: NDArray[np.float64], faces: NDArray[np.int32], boundary:
 
 def _turned_back(vertices: NDArray[np.float64], faces: NDArray[np.int32]) -> Boundary:
     """Return loops around each face to be turned round, twice, and those that are left then."""
-    turned = find_turned(vertices, faces)
+    turned = inconsistent_faces(vertices, faces)
     left = find_boundary(np.where(turned[:, None], faces[:, ::-1], faces))
     faces = faces[turned]
     faces = np.repeat(faces[(faces != np.roll(faces, 1, axis=1)).all(axis=1)], 2, axis=0)
@@ -114,7 +114,7 @@ def _turned_back(vertices: NDArray[np.float64], faces: NDArray[np.int32]) -> Bou
 
 
 def _capped(vertices: NDArray[np.float64], loops: Boundary) -> Caps:
-    apex, middles, faces = _fans(vertices, *loops)
+    apex, middles, faces = fans(vertices, *loops)
     vertices = np.concatenate([vertices, middles])
     return Caps(vertices, faces, *loops, apex, _area(vertices, faces))
 
@@ -187,7 +187,7 @@ def _strips(a, b, drawn):
 
 
 @compiled
-def _fans(vertices, loop, start):
+def fans(vertices, loop, start):
     apex, middles = np.empty(len(start) - 1, np.int64), np.zeros((len(start) - 1, 3))
     faces = np.empty((len(loop), 3), np.int32)
     fans = count = 0

@@ -44,7 +44,8 @@ class CutCellGraph:
     vertex_node : array, shape (n,), int32
         The node of each vertex of the mesh as it was given.
     faces : array, shape (m, 3), int32
-        The mesh's triangles between nodes; those that welding closed up are still there.
+        The mesh's triangles between nodes, all facing outward as far as can be told; those that
+        welding closed up are still there.
     lattice : Lattice
     is_closed : bool
         Whether the faces leave no boundary, so that inside and outside are never in doubt.
@@ -56,6 +57,8 @@ class CutCellGraph:
         For each interior lattice point those next to it up x, y, z and down x, y, z, if the edge
         between lies inside and is not crossed by the surface; else -1. No rows with connectivity
         6, where nobody asks.
+    inverted : array, shape (m,), bool
+        Which faces are inside out in the mesh itself, see `inverted_faces`.
     """
 
     nodes: NDArray[np.float64]
@@ -71,6 +74,7 @@ class CutCellGraph:
     connectivity: int | str
     interior: InteriorPoints
     steps: NDArray[np.int32]
+    inverted: NDArray[np.bool_]
 
     @property
     def first_point(self) -> int:

@@ -15,6 +15,7 @@ from ..checks import check_choice, check_integer, check_number
 from ..errors import ParameterError
 from ..rig import TriangleMesh
 from .lattice import Lattice
+from .orientation import oriented
 from .rays import AXES, Crossings, cast_rays
 from .weld import weld
 from .winding import winding_number
@@ -61,6 +62,7 @@ def slice_rays(
     normal: int,
     index: int,
     winding_threshold: float = 0.5,
+    orient: bool = True,
 ) -> RaySlice:
     """Dice the rays of one slice of the lattice.
 
@@ -77,6 +79,8 @@ def slice_rays(
         Which slice, from 0 to R - 1: the one at (index + 1/2) / R.
     winding_threshold : float
         tau: segments with at least this winding number are kept.
+    orient : bool
+        As of `build_graph`.
 
     Returns
     -------
@@ -100,6 +104,8 @@ def slice_rays(
     index = check_integer("index", index, 0, resolution - 1)
     threshold = check_number("winding_threshold", winding_threshold, 0, 1)
 
+    if orient:
+        mesh = oriented(mesh)
     vertices, vertex_node = weld(lattice.to_unit(mesh.vertices))
     crossings = cast_rays(vertices, vertex_node[mesh.faces], resolution, axis)
     u, v, along = AXES[axis]

@@ -166,6 +166,12 @@ def bind(
 
 def _warnings(graph: CutCellGraph, distances: BoneDistances) -> tuple[str, ...]:
     found = []
+    inverted = int(graph.inverted.sum())
+    if inverted:
+        found.append(
+            f"{inverted} of {len(graph.inverted)} faces are inside out and count as turned round; "
+            "the mesh itself stays as it is"
+        )
     for reason, text in enumerate(FALLBACK_REASONS[1:], start=1):
         count = int((distances.fallback == reason).sum())
         if count:
@@ -175,8 +181,7 @@ def _warnings(graph: CutCellGraph, distances: BoneDistances) -> tuple[str, ...]:
             )
     if not (graph.node_kind == 1).any():
         found.append(
-            "no lattice point lies inside the mesh, distances run over its surface alone: "
-            "are its faces turned inside out, or is it thinner than a lattice cell? Try a "
-            "higher resolution"
+            "no lattice point lies inside the mesh, distances run over its surface alone: it is "
+            "open, or thinner than a lattice cell. Try a higher resolution"
         )
     return tuple(found)

@@ -13,13 +13,15 @@ AROUND = 16
 MISSING = 5, 25, 45, 65, 85
 """Faces of the tube that leave small holes: enough holes for a tree of them."""
 STUD = np.array([[0.3, 0, 0.5], [0.35, 0, 0.5], [0.3, 0.05, 0.5], [0.3, 0, 0.55]])
-"""Beside the tube: pieces of a mesh are looked at where there are several."""
+"""Beside the tube: pieces of a mesh are looked at where there are several. It is inside out."""
+BAND = np.array([[0.3, 0, 0.1], [0.3, 0, 0.2], [0.4, 0, 0.15], [0.4, 0.1, 0.1], [0.3, 0.1, 0.15]])
+"""A Moebius band of five faces: it has no inside and no outside."""
 SIDE = 8
 """Lattice points along each side of the block."""
 
 
 def tube() -> TriangleMesh:
-    """Return a tube with holes, and a stud beside it."""
+    """Return a tube with holes, and beside it a stud and a band."""
     turn = np.linspace(0, 2 * np.pi, AROUND, endpoint=False)
     heights = np.linspace(0, 1, 5)
     rings = [np.stack([np.cos(turn) / 5, np.sin(turn) / 5, np.full(AROUND, z)], 1) for z in heights]
@@ -28,8 +30,11 @@ def tube() -> TriangleMesh:
     faces = [[here, beside, beside + AROUND], [here, beside + AROUND, here + AROUND]]
     whole = np.concatenate([np.stack(face, axis=1) for face in faces])
     cut = np.delete(whole, MISSING, axis=0)
-    stud = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]) + len(rings) * AROUND
-    return TriangleMesh(np.concatenate([*rings, STUD]), np.concatenate([cut, stud]))
+    count = len(rings) * AROUND
+    stud = np.array([[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]]) + count
+    band = (np.arange(5)[:, None] + np.arange(3)) % 5 + count + len(STUD)
+    vertices = np.concatenate([*rings, STUD, BAND])
+    return TriangleMesh(vertices, np.concatenate([cut, stud, band]))
 
 
 def chain() -> Skeleton:
@@ -84,4 +89,5 @@ def block_graph() -> CutCellGraph:
         connectivity="any",
         interior=stretches,
         steps=np.stack([*up, *down], axis=1),
+        inverted=np.zeros(len(mesh.faces), bool),
     )

@@ -5,7 +5,17 @@ import sys
 import numpy as np
 import pytest
 
-from benchmarks import accuracy, growth, memory, meshers, report, speed, tables, timing
+from benchmarks import (
+    accuracy,
+    growth,
+    memory,
+    meshers,
+    orientation,
+    report,
+    speed,
+    tables,
+    timing,
+)
 from benchmarks.rigs import ROOT, load_characters
 from tests.benchmarks.markdown import read_tables
 
@@ -70,6 +80,15 @@ def test_convergence_order():
     assert accuracy.order([10, 20, 40], [0.4, 0.2, 0.1]) == "1.00"
     assert accuracy.order([10, 20, 40], [0.4, 0.2, 1e-9]) == "exact"
     assert accuracy.order([10], [0.4]) == "-"
+
+
+def test_orientation(capsys):
+    broken = ROOT / "assets" / "biped_flipped_arm.glb"
+    orientation.main([DEMO, str(broken), "--resolution", "8"])
+    (rows,) = read_tables(capsys.readouterr().out).values()
+    assert rows[0]["mesh"] == "biped_flipped_arm"
+    assert int(rows[0]["turned"]) > 1000
+    assert rows[-1]["mesh"] == "**nothing turned, all the same: 1**"
 
 
 def test_growth(capsys, tmp_path):

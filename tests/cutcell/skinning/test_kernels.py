@@ -46,10 +46,12 @@ SCRIPT = textwrap.dedent(
     assert kernels_are_compiled()
     loaded = versions()
     assert loaded
-    for demo in ("robot", "biped_cape", "biped_soup"):
+    for demo in ("robot", "biped_cape", "biped_soup", "biped_flipped_arm"):
         rig = cutcell.load(demo_path(demo))
         for options in OPTIONS:
             cutcell.bind(rig, 24, **options)
+    mesh = cutcell.load(demo_path("robot")).mesh
+    cutcell.build_graph(cutcell.TriangleMesh(mesh.vertices, mesh.faces[:, ::-1]), 24)
     now = versions()
     print({name for name in now if now[name] != loaded.get(name, 0)})
     """

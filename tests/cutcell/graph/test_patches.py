@@ -5,7 +5,7 @@ import pytest
 
 from cutcell.graph.boundary import find_boundary
 from cutcell.graph.caps import cap_holes
-from cutcell.graph.turned import find_turned
+from cutcell.graph.patches import inconsistent_faces
 from tests import meshes
 
 
@@ -14,7 +14,7 @@ def test_turned_faces_are_found(share):
     vertices, faces = meshes.ball(2)
     turned = np.random.default_rng(0).random(len(faces)) < share
     faces = np.where(turned[:, None], faces[:, ::-1], faces)
-    np.testing.assert_array_equal(find_turned(vertices, faces), turned)
+    np.testing.assert_array_equal(inconsistent_faces(vertices, faces), turned)
 
 
 def test_what_has_one_side_alone_is_left_as_it_is():
@@ -26,7 +26,7 @@ def test_what_has_one_side_alone_is_left_as_it_is():
     strip = [[a, a + 1, a + 13], [a, a + 13, a + 12]]
     faces = np.concatenate([np.stack(f, axis=1) for f in strip] + [[[11, 12, 0], [11, 0, 23]]])
     vertices = np.concatenate([middle - wide, middle + wide])
-    assert not find_turned(vertices, faces.astype(np.int32)).any()
+    assert not inconsistent_faces(vertices, faces.astype(np.int32)).any()
 
 
 def test_caps_of_many_turned_faces_close_the_mesh_and_are_small():
