@@ -214,15 +214,16 @@ TOUR = (
         ),
     ),
     Step(
-        "Why this one fails: inside out",
+        "Why this one failed: inside out",
         "How does a ray know that it is inside? It asks for the winding number: how often the "
         "skin wraps around a point, counted with a sign. It is 1 inside and 0 outside; what has "
         "at least τ = ½ is kept.\n\n"
         "On this twin the triangles of the right arm face inwards. The skin wraps the other way "
         "round and the number is −1: for the map the arm is hollow. It has no orange streets, "
-        "and its distances creep along the skin.",
+        "and its distances creep along the skin. So faces whose back is what one sees from outside "
+        "are turned round first; here they are not.",
         r"w(p) = \frac{1}{4\pi}\sum_{t} \Omega_t(p) \;\ge\; \tau",
-        "Compare the two arms in the cut. The remedy is to turn the arm's faces round.",
+        "Compare the two arms in the cut. Then switch on “Turn inverted faces”: the arm fills.",
         Look(
             "graph",
             bone="forearm.R",
@@ -230,7 +231,7 @@ TOUR = (
             near=0.5,
             angles=(4.0, 6.0),
             demo="biped_flipped_arm",
-            choices=CUT,
+            choices={**CUT, "orient": False},
         ),
     ),
     Step(

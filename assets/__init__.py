@@ -63,7 +63,7 @@ DEMOS: tuple[Demo, ...] = (
     Demo(
         "biped_flipped_arm",
         "Walker, one arm inside out",
-        "The right arm's triangles face inwards, so its winding number is negative.",
+        "The right arm's triangles face inwards; they are found, and count as turned round.",
     ),
     Demo(
         "biped_cape",

@@ -67,6 +67,14 @@ WindingThreshold = Annotated[
         rich_help_panel=METHOD,
     ),
 ]
+Orient = Annotated[
+    bool,
+    typer.Option(
+        "--orient/--no-orient",
+        help="Take faces that are inside out as turned round, or all faces as the file has them.",
+        rich_help_panel=METHOD,
+    ),
+]
 Samples = Annotated[
     int,
     typer.Option(

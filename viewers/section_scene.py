@@ -24,7 +24,12 @@ def section_resolution(graph: CutCellGraph) -> int:
 
 
 def section_rays(
-    rig: Rig, graph: CutCellGraph, normal: int, index: int, winding_threshold: float
+    rig: Rig,
+    graph: CutCellGraph,
+    normal: int,
+    index: int,
+    winding_threshold: float,
+    orient: bool = True,
 ) -> RaySlice:
     """Return the rays that a section is made of, finer than the lattice."""
     return slice_rays(
@@ -34,6 +39,7 @@ def section_rays(
         normal=normal,
         index=index,
         winding_threshold=winding_threshold,
+        orient=orient,
     )
 
 

@@ -171,9 +171,24 @@ def _build(session: Session) -> list[Any]:
             state.param.busy,
         ),
     )
+    orient = pmui.Switch.from_param(
+        state.param.orient,
+        label="Turn inverted faces",
+        size="small",
+        margin=(4, 0, 2, 0),
+        description="",
+        visible=when(
+            lambda binding, orient: (
+                not orient or (binding is not None and binding.graph.inverted.any())
+            ),
+            state.param.binding,
+            state.param.orient,
+        ),
+    )
     return [
         resolution,
         threshold,
+        orient,
         caption("Paths inside run along", margin=(4, 0, 0, 0)),
         choice(state.param.connectivity, {"6 axes": 6, "26 diagonals": 26, "Any angle": "any"}),
         caption("The last bone of a chain is", margin=(4, 0, 0, 0)),

@@ -90,11 +90,11 @@ def _section(
     rig, graph, field = state.rig, state.binding.graph, field_of(state)
     if field is None:
         return {}
-    tau = state.winding_threshold
+    tau, orient = state.winding_threshold, state.orient
     rays = memo(
         "section rays",
-        (rig, graph, normal, index, tau),
-        lambda: section_rays(rig, graph, normal, index, tau),
+        (rig, graph, normal, index, tau, orient),
+        lambda: section_rays(rig, graph, normal, index, tau, orient),
     )
     inside = memo("section", (rays, field), lambda: section(rig, graph, rays, normal, field))
     return {"inside": replace(inside, colormap="distance", limits=limits, film=state.wave)}

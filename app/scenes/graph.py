@@ -121,7 +121,7 @@ def _slice(state: State, memo: Memo) -> Description:
     axis, _ = file_axis(rig, state.slice_rays)
     if axis == normal:
         axis = (normal + 1) % 3
-    inputs = (rig, resolution, axis, normal, index, state.winding_threshold)
+    inputs = (rig, resolution, axis, normal, index, state.winding_threshold, state.orient)
     found = memo(
         "slice",
         inputs,
@@ -132,6 +132,7 @@ def _slice(state: State, memo: Memo) -> Description:
             normal=normal,
             index=index,
             winding_threshold=state.winding_threshold,
+            orient=state.orient,
         ),
     )
     actors, legend = memo(

@@ -7,7 +7,7 @@ from typing import Any
 
 import cutcell
 
-GRAPH = ("resolution", "connectivity", "winding_threshold", "leaf")
+GRAPH = ("resolution", "connectivity", "winding_threshold", "orient", "leaf")
 """What distances are measured again for."""
 
 WEIGHTS = ("falloff", "alpha", "max_influences", "threshold")

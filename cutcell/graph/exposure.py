@@ -9,7 +9,6 @@ between two faces.
 from __future__ import annotations
 
 import numpy as np
-
 from numpy.typing import NDArray
 
 from ..compiled import compiled

@@ -58,6 +58,7 @@ def bind(
     *,
     connectivity: int | str = "any",
     winding_threshold: float = 0.5,
+    orient: bool = True,
     samples: int = 5,
     leaf: str | None = None,
     falloff: str = "rig",
@@ -76,7 +77,7 @@ def bind(
     rig : Rig
         Its own weights are not used, except that joints without any stay without
         (`Skeleton.deform`).
-    resolution, connectivity, winding_threshold
+    resolution, connectivity, winding_threshold, orient
         See `build_graph`. The default measures geodesic distances; connectivity 6 is the
         paper's, whose paths inside follow the axes.
     samples, leaf
@@ -122,6 +123,7 @@ def bind(
         resolution,
         winding_threshold=winding_threshold,
         connectivity=connectivity,
+        orient=orient,
         progress=progress,
     )
     ticks.append(perf_counter())

@@ -36,9 +36,14 @@ def test_options_reach_the_library(run, bar, tmp_path):
         "smoothing": 3,
     }
     words = [w for k, v in options.items() for w in (f"--{k.replace('_', '-')}", v)]
-    result = run("bind", bar, tmp_path / "bound.glb", *words, "--json")
+    result = run("bind", bar, tmp_path / "bound.glb", *words, "--no-orient", "--json")
     document = json.loads(result.stdout)
-    assert document["parameters"] == {**options, "symmetric": False, "locked": []}
+    assert document["parameters"] == {
+        **options,
+        "orient": False,
+        "symmetric": False,
+        "locked": [],
+    }
     assert document["influences"] == {"mean": 1.0, "most": 1}
     assert set(document["seconds"]) == {"graph", "distances", "weights"}
 
