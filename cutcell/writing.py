@@ -21,7 +21,7 @@ from .errors import FileError
 
 try:
     import fcntl
-except ImportError:  # Windows, where a file that is open cannot be removed anyway
+except ImportError:  # on Windows
     fcntl = None  # type: ignore[assignment]
 
 MARK = ".cutcell-"
@@ -137,7 +137,7 @@ def _temporary(target: Path) -> Iterator[Path]:
                 if not path.exists():
                     continue  # swept before it was locked
                 if fcntl is None:
-                    file.close()
+                    file.close()  # Windows does not rename what is open
                 yield path
                 return
             finally:
@@ -145,12 +145,13 @@ def _temporary(target: Path) -> Iterator[Path]:
 
 
 def _lock(file: BinaryIO, waiting: bool = False) -> None:
-    if fcntl is None:
-        return
+    """Lock a file, or raise OSError where it is locked; without locks nothing is ever swept."""
     try:
+        if fcntl is None:
+            raise OSError("this system has no such locks")
         fcntl.flock(file, fcntl.LOCK_EX | (0 if waiting else fcntl.LOCK_NB))
     except OSError:
-        if not waiting:  # else it is a file system without locks, where nothing is swept
+        if not waiting:
             raise
 
 
