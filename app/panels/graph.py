@@ -179,7 +179,7 @@ def _build(session: Session) -> list[Any]:
         description="",
         visible=when(
             lambda binding, orient: (
-                not orient or (binding is not None and binding.graph.inverted.any())
+                not orient or (binding is not None and bool(binding.graph.inverted.any()))
             ),
             state.param.binding,
             state.param.orient,
