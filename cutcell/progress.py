@@ -11,8 +11,17 @@ Every stage calls it often enough for a bar to move. To cancel, raise
 """
 
 
+Tell = Callable[[float], object]
+"""Called with the fraction that is done of a part of a stage, from 0 to 1; see `share_of`."""
+
+
 def silent(stage: str, fraction: float) -> None:
     """Report nothing."""
+
+
+def share_of(tell: Tell, low: float, high: float) -> Tell:
+    """Report a part of the work that goes from one fraction of the whole to another."""
+    return lambda done: tell(low + (high - low) * done)
 
 
 class Shares:

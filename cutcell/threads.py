@@ -26,30 +26,48 @@ def threads() -> int:
     return int(getattr(numba.config, "NUMBA_NUM_THREADS"))  # noqa: B009
 
 
-def in_threads(work: Callable[[Item], Result], items: Iterable[Item]) -> list[Result]:
+def in_threads(
+    work: Callable[[Item], Result],
+    items: Iterable[Item],
+    tell: Callable[[float], object] = lambda done: None,
+) -> list[Result]:
     """Apply `work`, which should spend its time in nogil kernels, to each item.
 
     The calling thread works, too, and waits for no other that has not begun: small work is done
     in less time than it takes to wake one. Work that calls for threads itself runs in its own.
+
+    Parameters
+    ----------
+    work : callable
+    items : iterable
+    tell : callable
+        Told the fraction that is done after each item, by one thread at a time. What it raises goes
+        through, and ends the work.
     """
     items = list(items)
-    if len(items) < 2 or threads() < 2 or getattr(_here, "is_worker", False):
-        return [work(item) for item in items]
     results: dict[int, Result] = {}
-    waiting = iter(enumerate(items))
+    waiting, telling = iter(enumerate(items)), threading.Lock()
 
     def take() -> None:
-        for place, item in waiting:
-            results[place] = work(item)
+        try:
+            for place, item in waiting:
+                results[place] = work(item)
+                with telling:
+                    tell(len(results) / len(items))
+        except BaseException:
+            for _ in waiting:  # nobody takes another
+                pass
+            raise
 
+    if len(items) < 2 or threads() < 2 or getattr(_here, "is_worker", False):
+        take()
+        return [results[place] for place in range(len(items))]
     helpers = [_pool(threads() - 1).submit(take) for _ in range(min(threads(), len(items)) - 1)]
     _here.is_worker = True
     try:
         take()
     finally:
         _here.is_worker = False
-        for _ in waiting:  # after an error nobody takes another
-            pass
         begun = [helper for helper in helpers if not helper.cancel()]
         for helper in begun:
             helper.exception()  # wait for all, whatever one of them raises

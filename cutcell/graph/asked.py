@@ -8,18 +8,25 @@ at all clusters, not only at those nearby, where what is far from the block leav
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 from numpy.typing import NDArray
 
 from ..compiled import lean
+from ..progress import Tell
 from ..sorting import sort_into
-from ..threads import in_threads, parts
+from ..threads import in_threads
 from .clusters import ROOT
 from .cover import CLEAR, LANES, ROOM, VALUE, WIDTH, Y, Z, cover
-from .doubt import ROUNDING, UNSURE, Doubt, need_between
+from .doubt import ROUNDING, Doubt
 from .field import ERROR, value_at
 from .solid_angle import between, length
 
+OUTSIDE, INSIDE, UNTOLD = 0, 1, 2
+"""Answers. Where it is untold only an exact sum can tell."""
+ABOVE = 3
+"""The column of a query after the midpoint's coordinates."""
 FIRST, LAST = 1e-2, 1e-9
 """What a cluster may leave out: where it begins, and from where on it is too much work."""
 STEP = 1e-2
@@ -28,76 +35,93 @@ SAFE = 0.7
 """Of the room that there is, how much is to be left out the next time."""
 HOPELESS = 0.8
 """Where the field of a leaf may be off by so much of the room, all clusters are looked at."""
+A_WHILE = 10_000_000
+"""Midpoints times caps that are looked at in less than a tenth of a second."""
 
 
 def answer(
-    doubt: Doubt, winding_threshold: float, leaf: NDArray[np.int32], points: NDArray[np.float64]
-) -> NDArray[np.int32]:
-    """Tell how many crossings ahead it takes to be inside at each midpoint.
+    doubt: Doubt,
+    leaf: NDArray[np.int32],
+    queries: NDArray[np.float64],
+    tell: Tell = lambda done: None,
+) -> NDArray[np.uint8]:
+    """Tell which midpoints are inside.
 
     Parameters
     ----------
     doubt : Doubt
-    winding_threshold : float
-        tau.
     leaf : array, shape (q,), int32
         The leaf of `doubt` that each midpoint lies in.
-    points : array, shape (q, 3)
+    queries : array, shape (q, 4)
+        Each midpoint, and what the caps may cover of the view from it at most if it is inside: the
+        crossings ahead, caps counted, less tau.
+    tell : callable
+        See `progress.Tell`.
 
     Returns
     -------
-    array, shape (q,), int32
-        UNSURE where only an exact sum can tell.
+    array, shape (q,), uint8
+        INSIDE, OUTSIDE or UNTOLD.
     """
     start, order = sort_into(leaf, len(doubt.leaves.place))
-    needs = np.empty(len(leaf), np.int32)
-    asked = points, start, order, np.array([ROOT], np.int32)
+    answers = np.empty(len(leaf), np.uint8)
+    every = np.array([ROOT], np.int32)
 
-    def some(part: slice) -> None:
-        seen = np.empty(ROOM)
-        _answer(doubt, winding_threshold, *asked, part.start, part.stop, seen, needs)
+    def some(part: tuple[int, int]) -> None:
+        _answer(doubt, queries, leaf, start, order, every, *part, np.empty(ROOM), answers)
 
-    in_threads(some, parts(len(start) - 1))
-    return needs
+    in_threads(some, _portions(doubt, leaf, start, order), tell)
+    return answers
+
+
+def _portions(doubt, leaf, start, order):
+    """Cut the midpoints, in their order, so that none takes long; groups stay together."""
+    begins = np.flatnonzero((np.arange(len(order)) - start[leaf[order]]) % WIDTH == 0)
+    size = max(1, A_WHILE // len(doubt.clusters.apex))
+    chosen = begins[np.searchsorted(begins, np.arange(0, begins.max(initial=-1) + 1, size))]
+    return list(pairwise(np.append(np.unique(chosen), len(order)).tolist()))
 
 
 @lean
-def _answer(doubt, tau, points, start, order, every, first, last, seen, needs):
-    """Answer the midpoints of the leaves from `first` to before `last`; `order` is changed.
+def _answer(doubt, queries, leaf, start, order, every, first, last, seen, answers):
+    """Answer what `order` lists from `first` to before `last`, and put it in another order.
 
     `every` holds the cluster of all caps; `seen` is room for what `cover` fills in.
     """
-    for leaf in range(first, last):
-        for begin in range(start[leaf], start[leaf + 1], WIDTH):
-            unsure = order[begin : min(begin + WIDTH, start[leaf + 1])]
-            _answer_some(doubt, tau, points, leaf, unsure, every, seen, needs)
+    while first < last:
+        here = leaf[order[first]]
+        end = min(first + WIDTH, start[here + 1])
+        _answer_some(doubt, queries, here, order[first:end], every, seen, answers)
+        first = end
 
 
 @lean
-def _answer_some(doubt, tau, points, leaf, unsure, every, seen, needs):
+def _answer_some(doubt, queries, leaf, unsure, every, seen, answers):
     """Answer at most WIDTH midpoints of a leaf."""
     leaves, clusters = doubt.leaves, doubt.clusters
     middle, field = leaves.place[leaf], leaves.field[leaf]
     near = leaves.near[leaves.start[leaf] : leaves.start[leaf + 1]]
     is_near, tolerance = not leaves.is_torn[leaf], FIRST
     while len(unsure) and tolerance > LAST:
-        lanes, centre, reach = _line_up(unsure, points, seen)
+        lanes, centre, reach = _line_up(unsure, queries, seen)
         known = (field[ERROR] if is_near else 0.0) + ROUNDING
         among = near if is_near else every
         off = cover(clusters, among, centre, reach, tolerance, seen, lanes)
-        left, margin = 0, 0.5
+        left, margin = 0, np.inf
         for i in range(len(unsure)):
             q, is_clear = unsure[i], seen[CLEAR + i] > 0
-            value = tau + seen[VALUE + i]
+            short = queries[q, ABOVE] - seen[VALUE + i]
             if is_near:
-                way = between(middle, points[q])
-                value += value_at(field, way[0], way[1], way[2])
-            needs[q] = need_between(value, known + off if is_clear else np.inf)
-            short = abs(value - np.round(value))
-            if needs[q] == UNSURE and is_clear and (is_near or short > known):
-                unsure[left] = q
-                left += 1
-                margin = min(margin, short)
+                way = between(middle, queries[q])
+                short -= value_at(field, way[0], way[1], way[2])
+            answers[q] = INSIDE if short > 0 else OUTSIDE
+            short = abs(short)
+            if not is_clear or short <= known + off:
+                answers[q] = UNTOLD
+                if is_clear and (is_near or short > known):
+                    unsure[left] = q
+                    left += 1
+                    margin = min(margin, short)
         unsure = unsure[:left]
         if is_near and known > HOPELESS * margin:
             is_near, tolerance = False, min(max((SAFE * margin / 2) ** 2, 1e-4), FIRST)
@@ -107,17 +131,19 @@ def _answer_some(doubt, tau, points, leaf, unsure, every, seen, needs):
 
 
 @lean
-def _line_up(which, points, seen):
+def _line_up(which, queries, seen):
     """Put midpoints side by side; return how many lanes they fill, and a ball around them."""
     count = len(which)
     x = y = z = 0.0
     for q in which:
-        x, y, z = x + points[q, 0] / count, y + points[q, 1] / count, z + points[q, 2] / count
+        x += queries[q, 0] / count
+        y += queries[q, 1] / count
+        z += queries[q, 2] / count
     reach = 0.0
     for q in which:
-        reach = max(reach, length(between((x, y, z), points[q])))
+        reach = max(reach, length(between((x, y, z), queries[q])))
     lanes = -(-count // LANES) * LANES
     for i in range(lanes):
         q = which[min(i, count - 1)]
-        seen[i], seen[Y + i], seen[Z + i] = points[q, 0], points[q, 1], points[q, 2]
+        seen[i], seen[Y + i], seen[Z + i] = queries[q, 0], queries[q, 1], queries[q, 2]
     return lanes, (x, y, z), reach

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..checks import check_choice, check_number
-from ..progress import Progress, silent
+from ..progress import Progress, share_of, silent
 from ..rig import TriangleMesh
 from .assemble import assemble
 from .backends import cast_rays_embree, cast_rays_open3d, find_runs_fast
@@ -80,7 +80,10 @@ def build_graph(
     check_choice("rays", rays, ("raster", *CASTERS))
     check_choice("winding", winding, ("exact", "fast"))
 
-    progress("graph", 0.0)
+    def tell(done: float) -> None:
+        progress("graph", done)
+
+    tell(0.0)
     vertices, vertex_node = weld(lattice.to_unit(mesh.vertices))
     faces = vertex_node[mesh.faces]
     mesh_edges, balance, partner = find_edges(faces)
@@ -91,22 +94,30 @@ def build_graph(
         faces = flipped(faces, inverted)
         mesh_edges, balance, _ = find_edges(faces)
     boundary = boundary_of(mesh_edges, balance)
-    progress("graph", 0.1)
+    tell(0.05)
     if rays == "raster":
-        crossings = cast_all_rays(vertices, faces, resolution)
+        crossings = cast_all_rays(vertices, faces, resolution, share_of(tell, 0.05, 0.2))
     else:
         crossings = [CASTERS[rays](vertices, faces, resolution, axis) for axis in range(3)]
-    progress("graph", 0.4)
+    tell(0.2)
     if winding == "exact":
-        runs = find_runs(vertices, faces, crossings, boundary, resolution, winding_threshold)
+        runs = find_runs(
+            vertices,
+            faces,
+            crossings,
+            boundary,
+            resolution,
+            winding_threshold,
+            share_of(tell, 0.2, 0.9),
+        )
     else:
         runs = [
             find_runs_fast(vertices, faces, found, resolution, axis, winding_threshold)
             for axis, found in enumerate(crossings)
         ]
-    progress("graph", 0.8)
+    tell(0.9)
     is_closed = len(boundary.loop) == 0
     found = vertices, vertex_node, faces, mesh_edges, is_closed, crossings, runs
     graph = assemble(*found, lattice, connectivity, inverted)
-    progress("graph", 1.0)
+    tell(1.0)
     return graph

@@ -22,6 +22,9 @@ Y, Z, VALUE, RE, IM, CLEAR, ROOM = (WIDTH * row for row in range(1, 8))
 covered; the real and the imaginary part of angles; above zero what is clear of rounding."""
 LANES = 8
 """Points filled up to a multiple of this leave none over for a loop of its own."""
+SPARED = 8
+"""Triangles after which angles, products of complex numbers, are scaled. One multiplies them by
+something between 1e-35 (a corner is 1e-15 away) and 20."""
 NEAR = 1e-7
 """Nearer to a cap than this, relative to its size, rounding may put a point on either side."""
 TINY = 1e-300
@@ -50,7 +53,7 @@ def cover(clusters, among, centre, reach, tolerance, seen, lanes):
     error : float
         What that may leave out.
     """
-    error, leaves = 0.0, len(clusters.start) - 1
+    error, leaves, spared = 0.0, len(clusters.start) - 1, 0
     for i in range(lanes):
         seen[VALUE + i] = seen[IM + i] = 0.0
         seen[RE + i] = seen[CLEAR + i] = 1.0
@@ -68,7 +71,7 @@ def cover(clusters, among, centre, reach, tolerance, seen, lanes):
             else:
                 for loop in range(clusters.start[k - leaves], clusters.start[k - leaves + 1]):
                     rim = clusters.rim[clusters.first[loop] : clusters.first[loop + 1]]
-                    _turn(rim, clusters.apex[loop], seen, lanes)
+                    spared = _turn(rim, clusters.apex[loop], seen, lanes, spared)
             k = after(k)
     for i in range(lanes):
         seen[VALUE + i] += np.arctan2(seen[IM + i], seen[RE + i]) / (2 * np.pi)
@@ -89,12 +92,29 @@ def _add_afar(moments, sphere, seen, lanes):
 
 
 @lean
-def _turn(rim, apex, seen, lanes):
-    """Turn angles by what one cap covers, as `view._turned` does for one point."""
+def _turn(rim, apex, seen, lanes, spared):
+    """Turn angles by what one cap covers, as `view._turned` does for one point.
+
+    `spared` triangles came since angles were scaled; returns how many it is now.
+    """
     # Where the apex is the rim's first vertex, the edges next to it span nothing.
     begin, end = (2, len(rim)) if len(rim) <= 4 else (1, len(rim) + 1)
     for e in range(begin, end):
         _turn_by(apex, rim[e - 1], rim[e if e < len(rim) else 0], seen, lanes)
+        spared += 1
+        if spared == SPARED:
+            _scale(seen, lanes)
+            spared = 0
+    return spared
+
+
+@side_by_side
+def _scale(seen, lanes):
+    """Scale the complex numbers, so that further products stay within the floats."""
+    for i in range(lanes):
+        scale = 1 / (abs(seen[RE + i]) + abs(seen[IM + i]) + TINY)
+        seen[RE + i] *= scale
+        seen[IM + i] *= scale
 
 
 @side_by_side
@@ -121,7 +141,6 @@ def _turn_by(p, q, r, seen, lanes):
         up = (was >= 0) & (triple >= 0) & (im < 0)
         down = (was < 0) & (triple < 0) & (im >= 0)
         seen[VALUE + i] += np.float64(up) - np.float64(down)
-        scale = 1 / (abs(re) + abs(im) + TINY)
-        seen[RE + i], seen[IM + i] = re * scale, im * scale
+        seen[RE + i], seen[IM + i] = re, im
         clear = abs(triple) + max(rest, 0.0) - NEAR * la * lb * lc
         seen[CLEAR + i] = min(seen[CLEAR + i], clear)

@@ -26,6 +26,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..compiled import compiled, put
+from ..progress import Tell
 from ..threads import in_threads
 from .caps import Caps
 from .clusters import ROOT, cluster
@@ -47,7 +48,9 @@ SPLIT = 5e-3
 """What a cluster may leave out in a block, or else it is halved."""
 
 
-def find_doubt(caps: Caps, resolution: int, winding_threshold: float) -> Doubt:
+def find_doubt(
+    caps: Caps, resolution: int, winding_threshold: float, tell: Tell = lambda done: None
+) -> Doubt:
     """Bound the caps' winding number over the cells of the lattice.
 
     Parameters
@@ -56,6 +59,8 @@ def find_doubt(caps: Caps, resolution: int, winding_threshold: float) -> Doubt:
     resolution : int
     winding_threshold : float
         tau.
+    tell : callable
+        See `progress.Tell`.
     """
     clusters = cluster(caps)
     blocks = -(-resolution // BLOCK)
@@ -69,6 +74,7 @@ def find_doubt(caps: Caps, resolution: int, winding_threshold: float) -> Doubt:
     found = in_threads(
         lambda corner: _decide(clusters, resolution, winding_threshold, corner, top, coarse),
         [*corners, np.full(3, resolution)],  # the last one lies outside: never an empty list
+        tell,
     )
     rows = count = 0
     for blocks, fine, leaves, _ in found:

@@ -22,14 +22,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..compiled import compiled, put
+from ..progress import Tell
 from ..threads import in_threads, threads
+from .solid_angle import between, cross
 
 AXES = ((1, 2, 0), (0, 2, 1), (0, 1, 2))
 """For rays along x, y, z: the two axes (u, v) of the plane they cross, and their own."""
 
 STRIPS = 4
-"""Strips of columns drawn in parallel for each axis, at most: enough that no core idles for long.
-With few cores each has several anyhow, and of a small mesh a strip is drawn in no time."""
+"""Strips of columns drawn in parallel for each axis, where that is enough that no core idles for
+long. With few cores each has several anyhow, and of a small mesh a strip is drawn in no time."""
+A_STRIP = 2_000_000
+"""Crossings, or steps of a walk, that take about a tenth of a second: more are cut further."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,18 +82,28 @@ def cast_rays(
 
 
 def cast_all_rays(
-    vertices: NDArray[np.float64], faces: NDArray[np.int32], resolution: int
+    vertices: NDArray[np.float64],
+    faces: NDArray[np.int32],
+    resolution: int,
+    tell: Tell = lambda done: None,
 ) -> list[Crossings]:
-    """Cast the rays along x, y and z, see `cast_rays`."""
-    return _cast(vertices, faces, resolution, (0, 1, 2))
+    """Cast the rays along x, y and z, see `cast_rays` and `progress.Tell`."""
+    return _cast(vertices, faces, resolution, (0, 1, 2), tell)
 
 
-def _cast(vertices, faces, resolution, axes):
+def expected_crossings(
+    vertices: NDArray[np.float64], faces: NDArray[np.int32], resolution: int
+) -> float:
+    """Estimate how many crossings the rays along x, y and z have: R^2 times projected areas."""
+    return resolution**2 * _projected_area(vertices, faces)
+
+
+def _cast(vertices, faces, resolution, axes, tell=lambda done: None):
     if len(faces) == 0:  # as of the caps of a closed mesh
         start = np.zeros(resolution * resolution + 1, np.int64)
         nothing = Crossings(start, np.empty(0), np.empty(0, np.int32), np.empty(0, np.int8))
         return [nothing] * len(axes)
-    bounds = strip_bounds(resolution)
+    bounds = strip_bounds(resolution, expected_crossings(vertices, faces, resolution))
     projected = {axis: np.ascontiguousarray(vertices[:, AXES[axis]]) for axis in axes}
 
     def draw(part):
@@ -97,7 +111,7 @@ def _cast(vertices, faces, resolution, axes):
         flip = -1 if axis == 1 else 1  # x cross z points along -y
         return _draw_strip(projected[axis], faces, resolution, flip, first, last)
 
-    strips = in_threads(draw, [(axis, *bound) for axis in axes for bound in bounds])
+    strips = in_threads(draw, [(axis, *bound) for axis in axes for bound in bounds], tell)
     found = []
     for k in range(len(axes)):
         parts = zip(*strips[k * len(bounds) : (k + 1) * len(bounds)], strict=True)
@@ -107,9 +121,9 @@ def _cast(vertices, faces, resolution, axes):
     return found
 
 
-def strip_bounds(resolution: int) -> list[tuple[int, int]]:
+def strip_bounds(resolution: int, work: float) -> list[tuple[int, int]]:
     """Cut the columns 0 to R - 1 into strips, which can be worked on in parallel."""
-    count = min(STRIPS, threads())
+    count = min(max(min(STRIPS, threads()), int(work / A_STRIP)), resolution)
     return list(pairwise(np.arange(count + 1) * resolution // count))
 
 
@@ -151,6 +165,17 @@ def _draw_strip(vertices, faces, resolution, flip, first, last):
                 size += 1
                 j += 1
     return _by_ray(place[:size], hits[:size], (last - first) * resolution)
+
+
+@compiled
+def _projected_area(vertices, faces):
+    """Sum the areas of all triangles as seen along x, along y and along z."""
+    total = 0.0
+    for f in range(len(faces)):
+        a, b, c = vertices[faces[f, 0]], vertices[faces[f, 1]], vertices[faces[f, 2]]
+        normal = cross(between(a, b), between(a, c))
+        total += abs(normal[0]) + abs(normal[1]) + abs(normal[2])
+    return total / 2
 
 
 @compiled

@@ -14,8 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..compiled import compiled, lean
+from ..progress import Tell, share_of
 from ..threads import in_threads
-from .asked import answer
+from .asked import ABOVE, INSIDE, UNTOLD, answer
 from .boundary import Boundary
 from .caps import cap_holes
 from .clusters import ROOT
@@ -26,7 +27,7 @@ from .rays import AXES, Crossings, cast_all_rays, first_at_least, grown, in_spac
 from .winding import boundary_turns
 
 NONE = -1
-NO_ANSWERS = np.zeros(0, np.int32)
+NO_ANSWERS = np.zeros(0, np.uint8)
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,6 +57,7 @@ def find_runs(
     boundary: Boundary,
     resolution: int,
     winding_threshold: float,
+    tell: Tell = lambda done: None,
 ) -> list[Runs]:
     """Find the kept segments along x, y and z.
 
@@ -71,10 +73,13 @@ def find_runs(
     resolution : int
     winding_threshold : float
         tau: segments with at least this winding number are kept.
+    tell : callable
+        See `progress.Tell`.
     """
     caps = cap_holes(vertices, faces, boundary)
-    closing = cast_all_rays(caps.vertices, caps.faces, resolution)
-    doubt = find_doubt(caps, resolution, winding_threshold)
+    tell(0.05)
+    closing = cast_all_rays(caps.vertices, caps.faces, resolution, share_of(tell, 0.05, 0.15))
+    doubt = find_doubt(caps, resolution, winding_threshold, share_of(tell, 0.15, 0.3))
     shared = resolution, winding_threshold, doubt, boundary
     views = []
     for axis, (u, v, along) in enumerate(AXES):
@@ -84,18 +89,22 @@ def find_runs(
         found = tuple((c.start, c.position, c.sign) for c in (crossings[axis], closing[axis]))
         views.append((axis, np.ascontiguousarray(vertices[:, [u, v, along]]), calm, *found))
 
-    strips = strip_bounds(resolution)
+    walked = sum(resolution**3 + len(c.position) for c in crossings)
+    strips = strip_bounds(resolution, walked)
     work = [(seen, i * resolution, j * resolution) for seen in views for i, j in strips]
-    listed = in_threads(lambda part: _walk_rays(shared, *part, NO_ANSWERS, True), work)
+    listed = in_threads(
+        lambda part: _walk_rays(shared, *part, NO_ANSWERS, True), work, share_of(tell, 0.3, 0.5)
+    )
     rows = [found for found, *_ in listed]
     unsure = [k for k, (*_, is_done) in enumerate(listed) if not is_done]
     if unsure:
-        leaf, points = (np.concatenate([listed[k][column] for k in unsure]) for column in (1, 2))
+        leaf, queries = (np.concatenate([listed[k][column] for k in unsure]) for column in (1, 2))
         ends = np.cumsum([len(listed[k][1]) for k in unsure])
-        answers = np.split(answer(doubt, winding_threshold, leaf, points), ends[:-1])
+        answers = answer(doubt, leaf, queries, share_of(tell, 0.5, 0.9))
         again = in_threads(
             lambda asked: _walk_rays(shared, *work[asked[0]], asked[1], False)[0],
-            zip(unsure, answers, strict=True),
+            zip(unsure, np.split(answers, ends[:-1]), strict=True),
+            share_of(tell, 0.9, 1),
         )
         for k, found in zip(unsure, again, strict=True):
             rows[k] = found
@@ -108,25 +117,36 @@ def find_runs(
 def _walk_rays(shared, seen, first_ray, last_ray, answers, is_listing):
     """List the runs of a strip of rays, as rows (ray, first, last, low, high).
 
-    First it is listed which midpoints to ask about: the leaf and the place of each. With the
-    answers, in the same order, the rays are walked once more, unless there was nothing to ask.
+    First it is listed which midpoints to ask about: the leaf of each, and what `answer` takes.
+    With the answers, in the same order, the rays are walked once more, unless nothing was asked.
     """
     rows = np.empty((256, 5), np.int32)
-    leaf, points = np.empty(256, np.int32), np.empty((256, 3))
+    leaf, queries = np.empty(256, np.int32), np.empty((256, ABOVE + 1))
     torn, tools = np.empty(2, np.int64), (np.full(1, ROOT, np.int32), np.empty(ROOM))
     filled, is_done = (0, 0), True
     while first_ray < last_ray:
-        room = rows, leaf, points, answers, torn, tools
+        room = rows, leaf, queries, answers, torn, tools
         ray, filled, is_sure = _walk(shared, seen, first_ray, last_ray, is_listing, filled, *room)
         if ray < last_ray:
-            rows, leaf, points = grown(rows), grown(leaf), grown(points)
+            rows, leaf, queries = grown(rows), grown(leaf), grown(queries)
         first_ray, is_done = ray, is_done and is_sure
-    return rows[: filled[0]], leaf[: filled[1]], points[: filled[1]], is_done
+    return rows[: filled[0]], leaf[: filled[1]], queries[: filled[1]], is_done
 
 
 @lean
 def _walk(
-    shared, seen, first_ray, last_ray, is_listing, filled, rows, leaf, points, answers, torn, tools
+    shared,
+    seen,
+    first_ray,
+    last_ray,
+    is_listing,
+    filled,
+    rows,
+    leaf,
+    queries,
+    answers,
+    torn,
+    tools,
 ):
     """Walk rays while there is room; return who is next, what is filled, and if all was sure."""
     resolution, calm, start, cap_start = shared[0], seen[2], seen[3][0], seen[4][0]
@@ -141,15 +161,15 @@ def _walk(
         is_full = count + 2 * segments > len(rows)
         if is_full or (is_listing and asked + segments > len(leaf)):
             return r, (count, asked), is_sure
-        room = rows, leaf, points, answers, torn, tools
+        room = rows, leaf, queries, answers, torn, tools
         count, asked, sure = _walk_ray(shared, seen, r, is_listing, count, asked, *room)
         is_sure &= sure
     return last_ray, (count, asked), is_sure
 
 
 @lean
-def _walk_ray(shared, seen, r, is_listing, count, asked, rows, leaf, points, answers, torn, tools):
-    """Add the runs and questions of one ray; return how many there are, and if all was sure."""
+def _walk_ray(shared, seen, r, is_listing, count, asked, rows, leaf, queries, answers, torn, tools):
+    """Add the runs and queries of one ray; return how many there are, and if all was sure."""
     resolution, tau, doubt = shared[:3]
     axis, _, calm, (start, position, sign), (cap_start, cap_position, cap_sign) = seen
     begin, end = start[r], start[r + 1]
@@ -202,12 +222,13 @@ def _walk_ray(shared, seen, r, is_listing, count, asked, rows, leaf, points, ans
                     kept, until = False, cell + 1
                     is_asked = _is_asked(doubt.leaves, code, point, tau)
                     if not is_listing and is_asked:
-                        kept = _as_answered(shared, seen, p, answers[asked], chi, lid)
+                        kept = _as_answered(shared, seen, p, answers[asked], chi)
                     elif not is_listing:
                         kept = _in_torn(shared, seen, p, point, code, chi, lid, torn, tools)
                     elif is_asked:
                         leaf[asked] = code
-                        points[asked, 0], points[asked, 1], points[asked, 2] = point
+                        queries[asked, 0], queries[asked, 1], queries[asked, 2] = point
+                        queries[asked, ABOVE] = chi + lid - tau
                     asked += is_asked
                     is_sure = False
                 until = max(s + 1, min(until, beyond + (c < end)))
@@ -239,10 +260,10 @@ def _is_asked(leaves, leaf, point, tau):
 
 
 @lean
-def _as_answered(shared, seen, p, need, chi, lid):
+def _as_answered(shared, seen, p, answer, chi):
     """Tell whether a midpoint is inside, given the answer."""
-    if need < UNSURE:
-        return chi + lid >= need
+    if answer != UNTOLD:
+        return answer == INSIDE
     _, tau, _, boundary = shared
     return chi + _turns(seen, boundary, p) >= tau
 

@@ -6,7 +6,7 @@ import time
 import pytest
 
 from cutcell import Cancelled
-from cutcell.progress import Shares
+from cutcell.progress import Shares, share_of
 
 
 def test_shares_are_told_as_a_whole():
@@ -47,3 +47,11 @@ def test_who_cancels_stops_every_share():
     for share in (0, 1, 0):
         with pytest.raises(Cancelled):
             shares.tell(share, 0.5)
+
+
+def test_parts_of_the_work_are_told_as_fractions_of_the_whole():
+    told = []
+    tell = share_of(share_of(told.append, 0.5, 1), 0, 0.5)
+    for done in (0, 0.5, 1):
+        tell(done)
+    assert told == [0.5, 0.625, 0.75]

@@ -3,9 +3,11 @@
 import os
 import sys
 import threading
+import time
 
 import pytest
 
+from cutcell import Cancelled
 from cutcell.threads import in_threads, meanwhile, parts, threads
 
 
@@ -83,3 +85,26 @@ def test_a_forked_process_starts_threads_of_its_own():
         ok = in_threads(abs, range(-4, 0)) == [4, 3, 2, 1]
         os._exit(0 if ok else 1)
     assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
+
+
+def test_progress_is_told_after_each_item():
+    told = []
+    in_threads(lambda k: k, range(20), told.append)
+    assert told == [k / 20 for k in range(1, 21)]
+
+
+@pytest.mark.parametrize("count", [1, 2, 8])
+def test_who_is_told_can_end_the_work(count, monkeypatch):
+    monkeypatch.setattr("cutcell.threads.threads", lambda: count)
+    begun = []
+
+    def stop(done):
+        raise Cancelled
+
+    def work(k):
+        begun.append(k)
+        time.sleep(0.001)
+
+    with pytest.raises(Cancelled):
+        in_threads(work, range(1000), stop)
+    assert len(begun) <= count

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from cutcell.graph.asked import answer
+from cutcell.graph.asked import UNTOLD, answer
 from cutcell.graph.boundary import find_boundary
 from cutcell.graph.caps import cap_holes
-from cutcell.graph.doubt import BLOCK, UNSURE
+from cutcell.graph.doubt import BLOCK
 from cutcell.graph.holes import find_doubt
 from tests import meshes, naive
 
@@ -37,10 +37,11 @@ SHAPES = {name: make for name, make in meshes.OPEN.items() if name != "degenerat
 
 
 def questions(doubt, each, rng):
-    """Choose leaves, and points in the cells of each; those of one leaf not in a row."""
+    """Choose leaves, and queries in the cells of each; those of one leaf not in a row."""
     leaf = np.unique(doubt.fine[doubt.fine >= 0])
     leaf = rng.permutation(np.repeat(rng.permutation(leaf)[:40], each)).astype(np.int32)
-    return leaf, doubt.leaves.place[leaf] + rng.uniform(-1, 1, (len(leaf), 3)) / RESOLUTION
+    points = doubt.leaves.place[leaf] + rng.uniform(-1, 1, (len(leaf), 3)) / RESOLUTION
+    return leaf, np.column_stack([points, rng.integers(-1, 3, len(leaf)) - TAU])
 
 
 @pytest.mark.parametrize("each", [1, 17])
@@ -51,16 +52,29 @@ def test_answers_are_those_of_the_exact_sum(name, each):
     vertices = (vertices - low) / side * 0.9 + 0.05
     caps = cap_holes(vertices, faces, find_boundary(faces))
     doubt = find_doubt(caps, RESOLUTION, TAU)
-    leaf, points = questions(doubt, each, np.random.default_rng(1))
+    leaf, queries = questions(doubt, each, np.random.default_rng(1))
     assert len(leaf) >= each
-    found = answer(doubt, TAU, leaf, points)
-    covered = TAU + naive.winding_number(caps.vertices, caps.faces, points)
-    is_plain = np.abs(covered - np.round(covered)) > 1e-6
+    told = []
+    found = answer(doubt, leaf, queries, told.append)
+    assert told[-1] == 1
+    inside = queries[:, 3] - naive.winding_number(caps.vertices, caps.faces, queries[:, :3])
+    is_plain = np.abs(inside) > 1e-6
     assert is_plain.mean() > 0.9
-    np.testing.assert_array_equal(found[is_plain], np.ceil(covered[is_plain]))
+    np.testing.assert_array_equal(found[is_plain], inside[is_plain] > 0)
     # What one asks does not hang on what others ask.
     some = np.flatnonzero(np.random.default_rng(2).random(len(leaf)) < 0.3)
-    np.testing.assert_array_equal(answer(doubt, TAU, leaf[some], points[some]), found[some])
+    np.testing.assert_array_equal(answer(doubt, leaf[some], queries[some]), found[some])
+
+
+def test_many_portions_give_what_one_does(monkeypatch):
+    vertices, faces = torn_ball(0.2)
+    doubt = find_doubt(cap_holes(vertices, faces, find_boundary(faces)), RESOLUTION, TAU)
+    leaf, queries = questions(doubt, 300, np.random.default_rng(1))  # more than are seen at once
+    found = answer(doubt, leaf, queries)
+    told = []
+    monkeypatch.setattr("cutcell.graph.asked.A_WHILE", 1)
+    np.testing.assert_array_equal(answer(doubt, leaf, queries, told.append), found)
+    assert len(told) == 80  # two groups a leaf
 
 
 def test_a_midpoint_on_a_cap_is_left_to_the_exact_sum():
@@ -72,12 +86,14 @@ def test_a_midpoint_on_a_cap_is_left_to_the_exact_sum():
     block = doubt.coarse[tuple(cell.T // BLOCK)]
     leaf = np.where(block >= 0, doubt.fine[block, *(cell.T % BLOCK)], -1)
     assert (leaf >= 0).sum() > 100
-    found = answer(doubt, TAU, leaf[leaf >= 0].astype(np.int32), spots[leaf >= 0])
-    assert (found == UNSURE).all()
+    # What the triangle itself covers there is a half, on one side or on the other.
+    queries = np.column_stack([spots, np.full(len(spots), 0.1)])[leaf >= 0]
+    found = answer(doubt, leaf[leaf >= 0].astype(np.int32), queries)
+    assert (found == UNTOLD).all()
 
 
 def test_nothing_asked_is_nothing_answered():
     vertices, faces = torn_ball(0.2)
     caps = cap_holes(vertices, faces, find_boundary(faces))
     doubt = find_doubt(caps, RESOLUTION, TAU)
-    assert len(answer(doubt, TAU, np.zeros(0, np.int32), np.zeros((0, 3)))) == 0
+    assert len(answer(doubt, np.zeros(0, np.int32), np.zeros((0, 4)))) == 0
