@@ -35,6 +35,7 @@ _HOMES = {
     "SkeletonError": "errors",
     "WeightsError": "errors",
     "ParameterError": "errors",
+    "TooLargeError": "errors",
     "MissingLibraryError": "errors",
     "Cancelled": "errors",
 }

@@ -34,7 +34,7 @@ Command = TypeVar("Command", bound=Callable[..., Any])
 
 
 def for_people(command: Command) -> Command:
-    """Turn an error that a person can mend into one sentence and exit code 2."""
+    """Turn what a person can mend, a lack of memory too, into one sentence and exit code 2."""
 
     @wraps(command)
     def run(*args: Any, **kwargs: Any) -> Any:
@@ -42,6 +42,11 @@ def for_people(command: Command) -> Command:
             return command(*args, **kwargs)
         except CutcellError as error:
             _to_stderr("error", str(error), "bold red")
+            raise typer.Exit(WRONG_INPUT) from None
+        except MemoryError as error:
+            why = f" ({str(error).rstrip('.')})" if str(error) else ""
+            advice = "choose a lower resolution, or close other programs"
+            _to_stderr("error", f"there is not enough memory{why}; {advice}", "bold red")
             raise typer.Exit(WRONG_INPUT) from None
         except KeyboardInterrupt:
             _to_stderr("stopped", "by Ctrl-C", "bold yellow")

@@ -25,6 +25,10 @@ class ParameterError(CutcellError):
     """A parameter is out of its range."""
 
 
+class TooLargeError(CutcellError):
+    """What was asked for would not fit in memory."""
+
+
 class MissingLibraryError(CutcellError):
     """An optional library is needed and absent."""
 

@@ -7,13 +7,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .errors import MeshError, SkeletonError, WeightsError
+from .memory import check_matrix
 
+LONG_CYCLE = 10
+"""Joints of a cycle that are named; of a longer one only the first and the last."""
 FAR_OUTSIDE = 10.0
 """A joint this many bounding-box diagonals away from the mesh is in another unit."""
 
@@ -131,7 +135,9 @@ class Skeleton:
     @cached_property
     def children(self) -> tuple[NDArray[np.intp], ...]:
         """The child joints of each joint, ascending."""
-        return tuple(np.flatnonzero(self.parents == j) for j in range(len(self.joints)))
+        ordered = np.argsort(self.parents, kind="stable")
+        starts = np.searchsorted(self.parents[ordered], np.arange(len(self.joints) + 1))
+        return tuple(ordered[a:b] for a, b in pairwise(starts))
 
     @cached_property
     def subtree(self) -> NDArray[np.bool_]:
@@ -260,6 +266,7 @@ class Rig:
     def __post_init__(self) -> None:
         shape = (len(self.mesh.vertices), len(self.skeleton.joints))
         if self.weights is not None:
+            check_matrix(*shape)
             weights = _array(self.weights, np.float64, shape, "weights", WeightsError)
             bad = np.flatnonzero(~(np.isfinite(weights) & (weights >= 0)).all(axis=1))
             if len(bad):
@@ -338,16 +345,19 @@ def _check_finite(points: NDArray, what: str, error: type, names: Any = None) ->
 
 def _check_acyclic(parents: NDArray, names: tuple[str, ...]) -> None:
     above = parents.copy()
-    for _ in range(len(parents)):
+    for _ in range(len(parents).bit_length() + 1):  # each time twice as far
         climbing = above >= 0
         if not climbing.any():
             return
-        above[climbing] = parents[above[climbing]]
+        above[climbing] = above[above[climbing]]
     joint = int(np.flatnonzero(above >= 0)[0])
     for _ in range(len(parents)):
         joint = int(parents[joint])  # walk until surely on the cycle itself
     cycle = [joint]
     while parents[cycle[-1]] != joint:
         cycle.append(int(parents[cycle[-1]]))
-    chain = " -> ".join(f'"{names[j]}"' for j in [*cycle, joint])
+    shown = [f'"{names[j]}"' for j in [*cycle, joint]]
+    if len(shown) > LONG_CYCLE:
+        shown[LONG_CYCLE // 2 : -LONG_CYCLE // 2] = ["..."]
+    chain = " -> ".join(shown)
     raise SkeletonError(f"the skeleton has a cycle: {chain}; every joint needs a root above it")

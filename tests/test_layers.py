@@ -34,6 +34,7 @@ ORDER = [
         "display",
         "errors",
         "kernel_cache",
+        "memory",
         "progress",
         "rig",
         "sorting",

@@ -12,6 +12,7 @@ from .backends import cast_rays_embree, cast_rays_open3d, find_runs_fast
 from .boundary import boundary_of
 from .cutcell_graph import CutCellGraph
 from .lattice import Lattice
+from .memory import check_estimate
 from .mesh_edges import find_edges
 from .orientation import find_inverted, flipped
 from .rays import cast_all_rays
@@ -94,6 +95,8 @@ def build_graph(
         faces = flipped(faces, inverted)
         mesh_edges, balance, _ = find_edges(faces)
     boundary = boundary_of(mesh_edges, balance)
+    tell(0.03)
+    check_estimate(vertices, faces, boundary, resolution, winding_threshold, connectivity)
     tell(0.05)
     if rays == "raster":
         crossings = cast_all_rays(vertices, faces, resolution, share_of(tell, 0.05, 0.2))

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
-import math
-import os
-import re
-from pathlib import Path
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
 
 from ..errors import ParameterError
+from ..memory import SHARE, available_memory
 from .blocks import BLOCK_POINTS
+from .boundary import Boundary
+from .interior import interior_points
+from .rays import cast_all_rays, expected_crossings
+from .segments import NONE, find_runs
 
 BYTES_PER_NODE = {6: 345, 26: 950, "any": 150}
 """Peak of a graph and its distances, by connectivity; measured by benchmarks/memory.py."""
@@ -18,21 +23,72 @@ SHALLOW = 1.5
 """Lattice points in no block, a crossing, at most; measured were 1.2."""
 BYTES_BESIDES = 64 << 20
 """What does not grow with the nodes: the mesh, its holes and its weights, at most."""
-SHARE = 0.8
-"""Of the free memory that one graph may take."""
+BYTES_PER_CROSSING = 100
+"""Peak of casting rays and of walking them, whether or not anything is inside."""
+COARSE = 64
+"""Resolution at which nodes are counted to estimate those of a far finer lattice."""
+FAR_FINER = 2
+"""Times that resolution: below, the graph itself is soon there."""
+CERTAIN = 1.1
+"""Times the free memory that an estimate must exceed to be relied on."""
+
+
+def check_estimate(
+    vertices: NDArray[np.float64],
+    faces: NDArray[np.int32],
+    boundary: Boundary,
+    resolution: int,
+    winding_threshold: float,
+    connectivity: int | str,
+) -> None:
+    """Refuse a graph that would surely take more memory than is free, before rays are cast.
+
+    Parameters
+    ----------
+    vertices, faces, boundary
+        Of the welded mesh, in the unit cube.
+    resolution, winding_threshold, connectivity
+        As of the graph.
+
+    Raises
+    ------
+    ParameterError
+        It would not fit; the sentence says which resolution would.
+    """
+    crossings = expected_crossings(vertices, faces, resolution)
+    _refuse_over(lambda scale: BYTES_PER_CROSSING * crossings * scale**2, resolution, CERTAIN)
+    points = resolution**3 * float(np.ptp(vertices, axis=0).prod())
+    most = needed_memory(len(vertices), points, crossings, connectivity)
+    if resolution < FAR_FINER * COARSE or most <= available_memory(most / SHARE) * SHARE:
+        return
+    rays = cast_all_rays(vertices, faces, COARSE)
+    runs = find_runs(vertices, faces, rays, boundary, COARSE, winding_threshold)
+    ends = sum(
+        np.count_nonzero(run.low != NONE) + np.count_nonzero(run.high != NONE) for run in runs
+    )
+    finer = resolution / COARSE
+    nodes = len(vertices), len(interior_points(runs, COARSE)) * finer**3, ends * finer**2
+    check_memory(*nodes, resolution, connectivity, CERTAIN)
 
 
 def check_memory(
-    vertices: int, points: int, crossings: int, resolution: int, connectivity: int | str
+    vertices: float,
+    points: float,
+    crossings: float,
+    resolution: int,
+    connectivity: int | str,
+    certain: float = 1,
 ) -> None:
     """Refuse a graph that would take more memory than is free.
 
     Parameters
     ----------
-    vertices, points, crossings : int
+    vertices, points, crossings : float
         How many nodes of each kind the graph will have.
     resolution : int
     connectivity : {6, 26, "any"}
+    certain : float
+        How many times as much as is free it must take to be refused.
 
     Raises
     ------
@@ -44,8 +100,13 @@ def check_memory(
         # Points fill the volume, crossings the surface, and vertices stay as they are.
         return needed_memory(vertices, points * scale**3, crossings * scale**2, connectivity)
 
+    _refuse_over(needed, resolution, certain)
+
+
+def _refuse_over(needed: Callable[[float], float], resolution: int, certain: float) -> None:
+    """Refuse what needs more than is free; `needed` tells it for multiples of the resolution."""
     free = available_memory(needed(1) / SHARE) * SHARE
-    if needed(1) <= free:
+    if needed(1) <= certain * free:
         return
     fits = next((r for r in range(resolution, 1, -1) if needed(r / resolution) <= free), None)
     advice = f"a resolution of {fits} would fit" if fits else "no resolution would fit"
@@ -65,24 +126,3 @@ def needed_memory(
     shallow = min(points, SHALLOW * crossings)
     labelled = vertices + crossings + shallow + (points - shallow) / BLOCK_POINTS
     return bytes_ + labelled * BYTES_PER_LABELLED
-
-
-def available_memory(enough: float = math.inf) -> int:
-    """Return how many bytes new data may take without swapping, or no less than is enough."""
-    free = _pages("SC_AVPHYS_PAGES")
-    if free >= enough:
-        return free  # how much the system could clear takes far longer to find out
-    try:
-        found = re.search(r"MemAvailable:\s+(\d+) kB", Path("/proc/meminfo").read_text())
-    except OSError:
-        found = None
-    if found:
-        return int(found[1]) * 1024
-    return _pages("SC_PHYS_PAGES") // 2
-
-
-def _pages(name: str) -> int:
-    """Return the size of some pages of memory, 0 where the system does not tell."""
-    if name not in os.sysconf_names:
-        return 0
-    return os.sysconf("SC_PAGE_SIZE") * os.sysconf(name)

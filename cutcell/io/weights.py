@@ -5,8 +5,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ..memory import check_matrix
+
 LARGE = 1e300
 """Weights above it are scaled down before they are added: a sum must not overflow."""
+COPIES = 2
+"""Of the matrix at a time, before and after its rows are scaled."""
 
 
 def summed(
@@ -45,6 +49,7 @@ def summed(
         top = np.zeros(shape[0])
         np.maximum.at(top, rows, values)
         values = values / np.where(top > 0, top, 1)[rows]
+    check_matrix(*shape, copies=COPIES)
     weights = np.zeros(shape)
     np.add.at(weights, (rows, columns), values)
     return normalised(weights), warnings

@@ -12,11 +12,12 @@ from numpy.typing import NDArray
 from ..checks import check_choice, check_has_joints, check_integer
 from ..geodesics import FALLBACK_REASONS, BoneDistances, bone_distances
 from ..graph import CutCellGraph, build_graph
+from ..memory import check_matrix
 from ..progress import Progress, silent
 from ..rig import Rig
 from ..threads import meanwhile
 from .kernels import kernels_are_compiled, load_kernels
-from .refine import refine_weights
+from .refine import check_refinement, refine_weights
 from .skin import Skin
 from .weights import (
     DEFAULT_LEAF,
@@ -26,6 +27,9 @@ from .weights import (
     reach_needed,
     skinning_weights,
 )
+
+COPIES = 4
+"""Matrices of vertices and joints that there are at a time, distances and weights, at most."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,6 +116,8 @@ def bind(
         max_influences = check_integer("max_influences", max_influences, 1, MOST_INFLUENCES)
     check_choice("falloff", falloff, FALLOFFS)
     check_has_joints(rig.skeleton)
+    check_refinement(rig, smoothing, symmetric, locked)
+    check_matrix(len(rig.mesh.vertices), len(rig.skeleton.joints), COPIES)
     leaf = leaf or DEFAULT_LEAF[falloff]
     if not kernels_are_compiled():
         progress("compile", 0.0)

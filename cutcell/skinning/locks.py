@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from difflib import get_close_matches
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..checks import check_integer
 from ..errors import ParameterError, WeightsError
 from ..rig import Rig, Skeleton
 
@@ -45,14 +46,9 @@ def lock_joints(
     WeightsError
         The rig has no weights to keep.
     """
-    held = _mask(rig.skeleton, locked)
-    if not held.any():
+    held = locked_joints(rig, locked)
+    if not held.any() or rig.weights is None:
         return weights
-    if rig.weights is None:
-        raise WeightsError(
-            f"{rig.name} has no weights of its own, so no joint of it can be locked; "
-            "leave out the locked joints"
-        )
     kept = np.where(held, rig.weights, 0.0)
     free = np.where(held, 0.0, weights)
     if max_influences is not None:
@@ -64,10 +60,28 @@ def lock_joints(
     return np.divide(result, total, out=weights.copy(), where=total > 0)
 
 
-def _mask(skeleton: Skeleton, locked: Sequence[int | str]) -> NDArray[np.bool_]:
-    held = np.zeros(len(skeleton.names), bool)
+def locked_joints(rig: Rig, locked: Sequence[int | str]) -> NDArray[np.bool_]:
+    """Tell of each joint whether it is locked, shape (j,).
+
+    Raises
+    ------
+    ParameterError
+        There is no such joint, or `locked` is no list of joints.
+    WeightsError
+        The rig has no weights to keep.
+    """
+    if isinstance(locked, str) or not isinstance(locked, Iterable):
+        raise ParameterError(
+            f"locked must be a list of joints, by index or by name, not {locked!r}"
+        )
+    held = np.zeros(len(rig.skeleton.names), bool)
     for joint in locked:
-        held[joint_index(skeleton, joint)] = True
+        held[joint_index(rig.skeleton, joint)] = True
+    if held.any() and rig.weights is None:
+        raise WeightsError(
+            f"{rig.name} has no weights of its own, so no joint of it can be locked; "
+            "leave out the locked joints"
+        )
     return held
 
 
@@ -88,9 +102,7 @@ def joint_index(skeleton: Skeleton, joint: int | str) -> int:
             f'there is no joint "{joint}" among the {len(names)} of the skeleton; there is '
             + ", ".join(f'"{name}"' for name in close)
         )
-    if not 0 <= joint < len(names):
-        raise ParameterError(f"there is no joint {joint}; joints go from 0 to {len(names) - 1}")
-    return int(joint)
+    return check_integer("joint", joint, 0, len(names) - 1, "or the name of one")
 
 
 def _largest(weights: NDArray[np.float64], room: NDArray[np.intp]) -> NDArray[np.float64]:

@@ -7,10 +7,11 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from ..checks import check_integer
 from ..rig import Rig
-from .locks import lock_joints
+from .locks import lock_joints, locked_joints
 from .prune import prune
-from .smoothing import smooth_weights
+from .smoothing import MOST_PASSES, smooth_weights
 from .symmetry import balance, find_mirror, mirror_weights
 
 
@@ -60,6 +61,22 @@ def refine_weights(
         if mirror is not None:
             weights = balance(weights, mirror)
     return lock_joints(rig, weights, locked, max_influences)
+
+
+def check_refinement(
+    rig: Rig, smoothing: int, symmetric: bool, locked: Sequence[int | str]
+) -> None:
+    """Refuse what `refine_weights` would, before weights are computed.
+
+    Raises
+    ------
+    ParameterError, MeshError, WeightsError
+        What is asked is out of range, or the rig is not made for it.
+    """
+    check_integer("smoothing", smoothing, 0, MOST_PASSES)
+    if symmetric:
+        find_mirror(rig)
+    locked_joints(rig, locked)
 
 
 def _permitted(rig: Rig, weights: NDArray[np.float64]) -> NDArray[np.float64]:

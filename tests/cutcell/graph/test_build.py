@@ -13,7 +13,8 @@ from scipy.sparse.csgraph import connected_components
 from benchmarks.growth import run
 from cutcell import Cancelled, ParameterError, TriangleMesh, build_graph
 from cutcell.graph import INTERIOR, MESH, SURFACE
-from cutcell.graph.memory import available_memory, needed_memory
+from cutcell.graph.memory import needed_memory
+from cutcell.graph.rays import cast_all_rays
 from tests import meshes, naive
 
 RABBIT = Path(__file__).resolve().parents[3] / "assets" / "rabbit.glb"
@@ -177,12 +178,34 @@ def test_a_graph_that_does_not_fit_is_refused(monkeypatch):
     assert build_graph(TriangleMesh(*meshes.ball()), fits).lattice.resolution == fits
 
 
-def test_memory_is_looked_for_no_further_than_needed(monkeypatch):
-    whole = available_memory()
-    assert available_memory(1) > 0
-    monkeypatch.setattr("cutcell.graph.memory._pages", lambda name: 1000)
-    assert available_memory(1000) == 1000
-    assert available_memory(1001) == pytest.approx(whole, rel=0.2)
+def test_a_graph_that_does_not_fit_by_far_is_refused_before_rays_are_cast(monkeypatch):
+    cast = []
+    monkeypatch.setattr(
+        "cutcell.graph.build.cast_all_rays",
+        lambda *given: cast.append(given) or cast_all_rays(*given),
+    )
+    mesh = TriangleMesh(*meshes.ball())
+    sentence = r"resolution 1024 needs about (\d+) GB, .* a resolution of (\d+) would fit"
+    with pytest.raises(ParameterError, match=sentence) as refusal:
+        build_graph(mesh, 1024, connectivity=26)
+    assert not cast
+    # A ball of diameter 1024 cells.
+    found = re.search(sentence, str(refusal.value))
+    assert float(found[1]) == pytest.approx(np.pi / 6 * 1024**3 * 950 / 1e9, rel=0.05)
+    monkeypatch.setattr("cutcell.graph.memory.available_memory", lambda _: 10**9)
+    with pytest.raises(ParameterError, match=sentence.replace("1024", "200")) as refusal:
+        build_graph(mesh, 200, connectivity=26)
+    assert not cast
+    fits = int(re.search(r"of (\d+) would", str(refusal.value))[1])
+    build_graph(mesh, fits, connectivity=26)
+
+
+def test_rays_that_meet_too_many_triangles_are_refused_before_they_are_cast(monkeypatch):
+    monkeypatch.delattr("cutcell.graph.build.cast_all_rays")
+    monkeypatch.setattr("cutcell.graph.memory.available_memory", lambda _: 10**7)
+    corners = np.random.default_rng(0).random((500, 3, 3))
+    with pytest.raises(ParameterError, match=r"resolution 64 needs about .* would fit"):
+        build_graph(TriangleMesh(corners.reshape(-1, 3), np.arange(1500).reshape(-1, 3)), 64)
 
 
 @pytest.mark.parametrize("connectivity", ["any", 6])

@@ -4,7 +4,15 @@ import numpy as np
 import pytest
 
 import cutcell
-from cutcell import MeshError, ParameterError, Rig, Skeleton, TriangleMesh, WeightsError
+from cutcell import (
+    CutcellError,
+    MeshError,
+    ParameterError,
+    Rig,
+    Skeleton,
+    TriangleMesh,
+    WeightsError,
+)
 from cutcell.skinning import refine_weights
 from cutcell.skinning.locks import joint_index, lock_joints
 from cutcell.skinning.smoothing import smooth_weights
@@ -193,7 +201,9 @@ def test_unknown_joints_are_told_with_what_sounds_alike():
     assert joint_index(skeleton, "LeftArm") == 1
     with pytest.raises(ParameterError, match=r'no joint "LeftArn" .* there is "LeftArm"'):
         joint_index(skeleton, "LeftArn")
-    with pytest.raises(ParameterError, match="no joint 3; joints go from 0 to 2"):
+    with pytest.raises(
+        ParameterError, match="joint must be a whole number from 0 to 2, not 3; or the name of one"
+    ):
         joint_index(skeleton, 3)
 
 
@@ -224,3 +234,21 @@ def test_what_a_file_cannot_store_stays_away():
     found = refine_weights(bounded, weights, smoothing=3)
     assert (found[1:, 3] == 0).all()
     np.testing.assert_allclose(found.sum(axis=1), 1)
+
+
+@pytest.mark.parametrize(
+    ("asked", "sentence"),
+    [
+        ({"locked": 5}, "locked must be a list of joints, by index or by name, not 5"),
+        ({"locked": "hip"}, "locked must be a list of joints, by index or by name, not 'hip'"),
+        ({"locked": ["hop"]}, 'there is no joint "hop"'),
+        ({"locked": ["hip"]}, "has no weights of its own"),
+        ({"smoothing": -1}, "smoothing must be a whole number"),
+    ],
+)
+def test_what_cannot_be_refined_is_refused_before_weights_are_computed(asked, sentence):
+    rig = mirrored_rig()
+    with pytest.raises(CutcellError, match=sentence):
+        cutcell.bind(rig, progress=lambda stage, done: pytest.fail("it has begun"), **asked)
+    with pytest.raises(CutcellError, match=sentence):
+        refine_weights(rig, random_weights(len(rig.mesh.vertices), 4), **asked)
