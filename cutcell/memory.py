@@ -39,13 +39,32 @@ def check_matrix(vertices: int, joints: int, copies: int = 1) -> None:
         They would not fit.
     """
     needed = float(vertices) * joints * copies * BYTES_PER_WEIGHT
+    check_room(
+        needed,
+        f"weights of {vertices:,} vertices for {joints:,} joints",
+        "leave out vertices or joints",
+    )
+
+
+def check_room(needed: float, what: str, advice: str) -> None:
+    """Refuse what takes more bytes than are free.
+
+    Raises
+    ------
+    TooLargeError
+        It would not fit.
+    """
     free = available_memory(needed / SHARE) * SHARE
     if needed > free:
         raise TooLargeError(
-            f"weights of {vertices:,} vertices for {joints:,} joints need about "
-            f"{needed / 1e9:.2g} GB, but only {free / 1e9:.2g} GB of memory are free for them; "
-            "leave out vertices or joints"
+            f"{what} need about {gigabytes(needed)}, but only {gigabytes(free)} of memory are free "
+            f"for them; {advice}"
         )
+
+
+def gigabytes(size: float) -> str:
+    """Write a number of bytes with two digits that count."""
+    return f"{float(f'{size / 1e9:.2g}'):,.15g} GB"
 
 
 def available_memory(enough: float = math.inf) -> int:

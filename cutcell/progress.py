@@ -11,7 +11,7 @@ Every stage calls it often enough for a bar to move. To cancel, raise
 """
 
 
-Tell = Callable[[float], object]
+Tell = Callable[[float], None]
 """Called with the fraction that is done of a part of a stage, from 0 to 1; see `share_of`."""
 
 

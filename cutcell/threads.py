@@ -7,16 +7,23 @@ threads that start such a loop at once, say two sessions of the page, end the pr
 import os
 import threading
 from collections.abc import Callable, Iterable
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor, wait
 from functools import cache
 from itertools import pairwise
 from typing import Any, TypeVar
 
 import numba
+import numpy as np
+from numpy.typing import NDArray
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
 Second = TypeVar("Second")
+
+TELL_EVERY = 0.1
+"""Seconds between two looks at a long kernel."""
+MANY_STEPS = 50_000
+"""A kernel of fewer is done before it would be looked at."""
 
 _here = threading.local()
 
@@ -29,7 +36,7 @@ def threads() -> int:
 def in_threads(
     work: Callable[[Item], Result],
     items: Iterable[Item],
-    tell: Callable[[float], object] = lambda done: None,
+    tell: Callable[[float], None] = lambda done: None,
 ) -> list[Result]:
     """Apply `work`, which should spend its time in nogil kernels, to each item.
 
@@ -91,6 +98,45 @@ def meanwhile(work: Callable[[], Result]) -> Callable[[], Result]:
         return work
     task = _pool(threads() - 1).submit(work)
     return lambda: work() if task.cancel() else task.result()
+
+
+def watched(
+    work: Callable[[NDArray[np.int64]], Result], steps: int, tell: Callable[[float], None]
+) -> Result:
+    """Tell how far a long kernel is, ten times a second, and let it be stopped.
+
+    Parameters
+    ----------
+    work : callable
+        Calls the kernel, with an array of two numbers: the kernel writes to the first how many
+        steps it has done, and returns early, with anything, once the second is not 0.
+    steps : int
+        How many there are.
+    tell : callable
+        Told the fraction that is done. What it raises goes through, and stops the kernel.
+    """
+    pace = np.zeros(2, np.int64)
+    if steps < MANY_STEPS:
+        return work(pace)
+    result: Future[Result] = Future()
+
+    def run() -> None:
+        _mark_worker()
+        try:
+            result.set_result(work(pace))
+        except BaseException as error:
+            result.set_exception(error)
+
+    runner = threading.Thread(target=run, name="cutcell-watched")
+    runner.start()
+    try:
+        while True:
+            if wait([result], TELL_EVERY).done:
+                return result.result()
+            tell(pace[0] / steps)
+    finally:
+        pace[1] = 1
+        runner.join()
 
 
 def parts(count: int, at_once: int = 0) -> list[slice]:

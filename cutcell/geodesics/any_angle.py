@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 from ..compiled import lean
 from ..graph import CutCellGraph
 from ..progress import Progress, Shares, silent
-from ..threads import in_threads
+from ..threads import in_threads, parts, threads
 from .bones import TIE, Bones, Sources
 from .front import Front, Ranking, begin, in_halves, line_up, rank_bones
 from .labels import NOBODY, find_room, follows_anchor
@@ -43,10 +43,10 @@ SPAN = 1
 """Units of distance that the buckets cover at a time."""
 ROOMS = 1, 3
 """Labels a node for which the kernel is compiled with their number built in, a third faster."""
-PAUSES = 8
-"""How often a unit of distance is interrupted, to report and to be cancelled, at most."""
-A_PAUSE = 20_000
-"""Labels that are settled in a few milliseconds: fewer are not interrupted."""
+A_WHILE = 25_000
+"""Labels that are settled in a few hundredths of a second: then progress is told."""
+A_PART = 2_000_000
+"""Distances that are looked at in less than a tenth of a second."""
 
 
 def any_angle_paths(
@@ -111,7 +111,12 @@ def any_angle_paths(
 
     in_threads(spread, range(len(groups)))
     if within < np.inf and least is None:  # either half knew of its own joints alone
-        _leave_out(within, ON_BONE / graph.lattice.resolution, result.min(axis=0), result)
+        near = ON_BONE / graph.lattice.resolution
+        in_threads(
+            lambda part: _leave_out(within, near, result[:, part]),
+            parts(len(targets), threads() + result.size // A_PART),
+            lambda done: progress("distances", 1.0),
+        )
     return result
 
 
@@ -144,20 +149,20 @@ def _spread(
     scale = float(FINENESS * graph.lattice.resolution**2)
     head = np.full(int(SPAN * scale), END, np.int32)
     line_up(labels, head, scale)
-    step = len(head) // (SPAN * min(PAUSES, 1 + len(labels) // A_PAUSE))
     adjacency = graph.contracted.indptr, graph.contracted.indices
     ahead = np.empty(int(np.diff(adjacency[0]).max()) + 1, np.int64)
     known = adjacency, body_of(graph), ranking.table, within
     given = *known, rooms, labels, front.anchors, front.least, head, scale, ahead
-    origin = 0.0
+    last, origin, settled = len(head) - 1, 0.0, 0
+    bucket = 0
     while True:
-        for bucket in range(0, len(head) - 1, step):
-            tell(min(origin + bucket / scale, 0.99))
-            last = min(bucket + step, len(head) - 1)
-            _settle(*given, origin, bucket, last)
-            if (head[last:] == END).all():
+        bucket, count = _settle(*given, origin, bucket, A_WHILE)
+        settled += count
+        tell(min(settled / len(labels), 0.99))
+        if bucket == last:
+            if head[last] == END:
                 return
-        origin = move_on(head, scale, labels)
+            origin, bucket = move_on(head, scale, labels), 0
 
 
 @lean
@@ -181,11 +186,14 @@ def _read(nodes, body, bones, labels, anchors, each, targets, row, distance):
 
 
 @lean
-def _leave_out(within, near, least, distance):
+def _leave_out(within, near, distance):
     """Forget what is more than so many times as far as the nearest, which is at least `near`."""
-    for j in range(len(distance)):
-        for t in range(len(least)):
-            if distance[j, t] > within * max(least[t], near):
+    for t in range(distance.shape[1]):
+        least = np.inf
+        for j in range(len(distance)):
+            least = min(least, distance[j, t])
+        for j in range(len(distance)):
+            if distance[j, t] > within * max(least, near):
                 distance[j, t] = np.inf
 
 
@@ -203,18 +211,21 @@ def _settle(
     scale,
     ahead,
     origin,
-    first,
-    last,
+    bucket,
+    most,
 ):
-    """Settle labels by distance, bucket after bucket.
+    """Settle labels by distance, bucket after bucket but for the last; about `most` of them.
 
     `rooms` has as many entries as a node has labels; `ahead` is room for a node's edges.
+    Returns the bucket to go on with, and how many labels have been settled.
     """
     each = len(rooms)
     indptr, indices = adjacency
     resolution, first_point, first_crossing, nodes, _ = body
-    for bucket in range(first, last):
-        while head[bucket] != END:
+    settled = 0
+    while bucket < len(head) - 1 and settled < most:
+        while head[bucket] != END and settled < most:
+            settled += 1
             label = head[bucket]
             leave(head, labels, label)
             labels[label].after = SETTLED
@@ -261,3 +272,5 @@ def _settle(
                 labels[room].distance = reached
                 least[v] = min(least[v], reached)
                 join(head, labels, max(bucket_of(head, scale, reached - origin), bucket), room)
+        bucket += head[bucket] == END
+    return bucket, settled

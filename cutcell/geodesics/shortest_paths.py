@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from ..compiled import compiled, lean
 from ..graph import CutCellGraph
 from ..graph.neighbours import Adjacency, list_neighbours
-from ..progress import Progress, silent
+from ..progress import Progress, Shares, Tell, silent
 from ..threads import in_threads, parts, threads
 from .bones import Sources
 from .lanes import LANES, lower
@@ -61,19 +61,19 @@ def shortest_paths(
     result = np.empty((groups * LANES, len(targets)))
     begin, end = place[sources.node], place[targets]
 
+    shares = Shares(progress, "distances", groups)
+
     def one_group(group: int) -> None:
         lane = sources.bone - group * LANES
         mine = (lane >= 0) & (lane < LANES)
-        starts = begin[mine], lane[mine], sources.distance[mine]
-        waiting, distance = np.zeros(len(place), np.bool_), np.empty((len(place), LANES))
-        rows = result[group * LANES : (group + 1) * LANES]
-        _find_distances(*adjacency, *starts, end, waiting, distance, rows)
+        distance, waiting = np.full((len(place), LANES), np.inf), np.zeros(len(place), np.bool_)
+        np.minimum.at(distance, (begin[mine], lane[mine]), sources.distance[mine])
+        waiting[begin[mine]] = True
+        _sweep_body(adjacency, waiting, distance, lambda done: shares.tell(group, done))
+        result[group * LANES : (group + 1) * LANES] = distance[end].T
+        shares.tell(group, 1.0)
 
-    step = 2 * threads()
-    for first in range(0, groups, step):
-        progress("distances", first / groups)
-        in_threads(one_group, range(first, min(first + step, groups)))
-    progress("distances", 1.0)
+    in_threads(one_group, range(groups))
     return result[:bones]
 
 
@@ -100,39 +100,30 @@ def _renumber(edges, place, renumbered):
         renumbered[e, 0], renumbered[e, 1] = place[edges[e, 0]], place[edges[e, 1]]
 
 
-@lean
-def _find_distances(
-    indptr, indices, lengths, node, lane, apart, targets, waiting, distance, result
-):
-    """Write the distances of one group of bones at the targets, shape (LANES, t)."""
-    for v in range(len(distance)):
-        for k in range(LANES):
-            distance[v, k] = np.inf
-    for s in range(len(node)):
-        distance[node[s], lane[s]] = min(distance[node[s], lane[s]], apart[s])
-        waiting[node[s]] = True
-    _sweep_body((indptr, indices, lengths), waiting, distance)
-    for t in range(len(targets)):
-        for k in range(LANES):
-            result[k, t] = distance[targets[t], k]
+def _sweep_body(
+    adjacency: Adjacency,
+    waiting: NDArray[np.bool_],
+    distance: NDArray[np.float64],
+    tell: Tell,
+) -> None:
+    """Sweep thick slices, forth and back, until no node waits.
 
-
-# Two kernels for two sizes of slices: numba cannot load one that calls itself from its cache.
-@lean
-def _sweep_body(adjacency, waiting, distance):
-    """Sweep thick slices, forth and back, until no node waits."""
-    forth, waited = True, True
+    Nobody knows how many sweeps are left: of what is, each is told as a half.
+    """
+    forth, waited, left = True, True, 1.0
     while waited:
         waited = False
         for k in range(SLICES):
-            begin, end = _slice(0, len(waiting), k, forth)
-            waited |= _sweep_slice(adjacency, waiting, distance, begin, end, forth)
-        forth = not forth
+            bounds = _slice(0, len(waiting), k, forth)
+            waited |= _sweep_slice(*adjacency, waiting, distance, *bounds, forth)
+            tell(1 - left)
+        forth, left = not forth, left / 2
 
 
 @lean
-def _sweep_slice(adjacency, waiting, distance, first, last, forth):
+def _sweep_slice(indptr, indices, lengths, waiting, distance, first, last, forth):
     """Sweep thin slices of a thick one until no node waits in it; tell whether any did."""
+    adjacency = indptr, indices, lengths
     any_waited, waited = False, True
     while waited:
         waited = False

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import ParameterError
-from ..memory import SHARE, available_memory
+from ..memory import SHARE, available_memory, gigabytes
 from .blocks import BLOCK_POINTS
 from .boundary import Boundary
 from .interior import interior_points
@@ -23,8 +23,8 @@ SHALLOW = 1.5
 """Lattice points in no block, a crossing, at most; measured were 1.2."""
 BYTES_BESIDES = 64 << 20
 """What does not grow with the nodes: the mesh, its holes and its weights, at most."""
-BYTES_PER_CROSSING = 100
-"""Peak of casting rays and of walking them, whether or not anything is inside."""
+BYTES_PER_CROSSING = 80
+"""Peak of casting rays, at the mesh and at the caps of its holes, whatever is inside."""
 COARSE = 64
 """Resolution at which nodes are counted to estimate those of a far finer lattice."""
 FAR_FINER = 2
@@ -111,8 +111,8 @@ def _refuse_over(needed: Callable[[float], float], resolution: int, certain: flo
     fits = next((r for r in range(resolution, 1, -1) if needed(r / resolution) <= free), None)
     advice = f"a resolution of {fits} would fit" if fits else "no resolution would fit"
     raise ParameterError(
-        f"resolution {resolution} needs about {needed(1) / 1e9:.2g} GB, but only "
-        f"{free / 1e9:.2g} GB of memory are free for it; {advice}"
+        f"resolution {resolution} needs about {gigabytes(needed(1))}, but only "
+        f"{gigabytes(free)} of memory are free for it; {advice}"
     )
 
 

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..compiled import compiled, lean
+from ..memory import check_room
 from ..progress import Tell, share_of
 from ..threads import in_threads
 from .asked import ABOVE, INSIDE, UNTOLD, answer
@@ -27,6 +28,8 @@ from .rays import AXES, Crossings, cast_all_rays, first_at_least, grown, in_spac
 from .winding import boundary_turns
 
 NONE = -1
+BYTES_PER_QUERY = 80
+"""Once midpoints are listed, to answer them takes so much more."""
 NO_ANSWERS = np.zeros(0, np.uint8)
 
 
@@ -92,9 +95,19 @@ def find_runs(
     walked = sum(resolution**3 + len(c.position) for c in crossings)
     strips = strip_bounds(resolution, walked)
     work = [(seen, i * resolution, j * resolution) for seen in views for i, j in strips]
-    listed = in_threads(
-        lambda part: _walk_rays(shared, *part, NO_ANSWERS, True), work, share_of(tell, 0.3, 0.5)
-    )
+    asked: list[int] = []
+
+    def list_queries(part):
+        found = _walk_rays(shared, *part, NO_ANSWERS, True)
+        asked.append(len(found[1]))
+        check_room(
+            sum(asked) * BYTES_PER_QUERY,
+            f"{sum(asked):,} midpoints among holes and loose triangles",
+            "choose a lower resolution",
+        )
+        return found
+
+    listed = in_threads(list_queries, work, share_of(tell, 0.3, 0.5))
     rows = [found for found, *_ in listed]
     unsure = [k for k, (*_, is_done) in enumerate(listed) if not is_done]
     if unsure:
@@ -102,7 +115,7 @@ def find_runs(
         ends = np.cumsum([len(listed[k][1]) for k in unsure])
         answers = answer(doubt, leaf, queries, share_of(tell, 0.5, 0.9))
         again = in_threads(
-            lambda asked: _walk_rays(shared, *work[asked[0]], asked[1], False)[0],
+            lambda told: _walk_rays(shared, *work[told[0]], told[1], False)[0],
             zip(unsure, np.split(answers, ends[:-1]), strict=True),
             share_of(tell, 0.9, 1),
         )

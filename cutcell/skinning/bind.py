@@ -156,6 +156,7 @@ def bind(
         threshold=threshold,
         allowed=rig.allowed,
         skin=skin and skin(),
+        progress=progress,
     )
     weights = refine_weights(
         rig,

@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..compiled import compiled
-from ..threads import in_threads
+from ..progress import Shares, Tell
+from ..threads import in_threads, parts, watched
 from .elimination import LANES, Factors, factorise, substitute
 from .skin import Skin
 
@@ -46,7 +47,13 @@ class Diffusion:
     order: NDArray[np.int32]
 
     @classmethod
-    def over(cls, skin: Skin, depth: NDArray[np.float64], resolution: int) -> Diffusion:
+    def over(
+        cls,
+        skin: Skin,
+        depth: NDArray[np.float64],
+        resolution: int,
+        tell: Tell = lambda done: None,
+    ) -> Diffusion:
         """Prepare the equation.
 
         Parameters
@@ -57,36 +64,53 @@ class Diffusion:
             Distance to the nearest bone through the body, in the unit cube.
         resolution : int
             R, of the lattice that distances were measured on.
+        tell : callable
+            See `progress.Tell`.
         """
         depth = np.maximum(depth, LEAST_CELLS / resolution)
         # A place without area conducts nothing; any positive number lets it keep its own weights.
         hold = np.maximum(skin.areas, 1e-12) * SHARPNESS / depth**2
         start, column, value = skin.stiffness
         diagonal = value[start[:-1]] + hold
-        return cls(hold, factorise(start, column, value, diagonal, skin.order), skin.order)
+        matrix = start, column, value, diagonal
+        factors = watched(lambda pace: factorise(*matrix, skin.order, pace), len(hold), tell)
+        return cls(hold, factors, skin.order)
 
-    def spread(self, weights: NDArray[np.float64]) -> NDArray[np.float64]:
+    def spread(
+        self, weights: NDArray[np.float64], tell: Tell = lambda done: None
+    ) -> NDArray[np.float64]:
         """Return the equilibrium of weights p, shape (k, j); rows sum to one before and after."""
-        used = np.flatnonzero(weights.any(axis=0))
+        used = np.flatnonzero(weights.max(axis=0))
         spread = np.zeros_like(weights)
-        known = self.order, self.hold, weights
-        in_threads(
-            lambda joints: _solve(*self.factors, *known, joints, spread),
-            [used[first : first + LANES] for first in range(0, len(used), LANES)],
-        )
-        spread /= spread.sum(axis=1, keepdims=True)
+        groups = [used[first : first + LANES] for first in range(0, len(used), LANES)]
+        shares = Shares(lambda stage, done: tell(done), "weights", len(groups))
+
+        def solve(group: int) -> None:
+            known = *self.factors, self.order, self.hold, weights, groups[group], spread
+            watched(
+                lambda pace: _solve(*known, pace),
+                2 * len(self.hold),
+                lambda done: shares.tell(group, done),
+            )
+            shares.tell(group, 1.0)
+
+        def normalise(part: slice) -> None:
+            spread[part] /= spread[part].sum(axis=1, keepdims=True)
+
+        in_threads(solve, range(len(groups)))
+        in_threads(normalise, parts(len(spread)), lambda done: tell(1.0))
         return spread
 
 
 @compiled
-def _solve(begin, rows, values, pivots, order, hold, weights, joints, spread):
-    """Put the equilibrium of some joints' weights into `spread`."""
+def _solve(begin, rows, values, pivots, order, hold, weights, joints, spread, pace):
+    """Put the equilibrium of some joints' weights into `spread`; see `substitute` for `pace`."""
     right = np.zeros((len(order), LANES))
     for k in range(len(order)):
         v = order[k]
         for lane in range(len(joints)):
             right[k, lane] = hold[v] * weights[v, joints[lane]]
-    substitute(begin, rows, values, pivots, right)
+    substitute(begin, rows, values, pivots, right, pace)
     for k in range(len(order)):
         for lane in range(len(joints)):
             spread[order[k], joints[lane]] = max(right[k, lane], 0.0)

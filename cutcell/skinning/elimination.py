@@ -152,7 +152,7 @@ def _relist(v, clique, start, held, holds, size, outside):
 
 
 @compiled
-def factorise(start, column, value, diagonal, order):
+def factorise(start, column, value, diagonal, order, pace):
     """Compute L D Lᵀ of a positive definite matrix, row after row.
 
     Parameters
@@ -162,6 +162,8 @@ def factorise(start, column, value, diagonal, order):
     diagonal : array, shape (k,)
     order : array, shape (k,), int32
         See `order_of_elimination`.
+    pace : array, shape (2,), int64
+        See `threads.watched`: a row is a step.
 
     Returns
     -------
@@ -194,6 +196,9 @@ def factorise(start, column, value, diagonal, order):
     row = np.zeros(count)
     last_met[:] = -1
     for k in range(count):
+        pace[0] = k
+        if pace[1] != 0:
+            break
         v = order[k]
         # What row k has entries in: all on the ways up the tree from those of the matrix.
         first = count
@@ -223,15 +228,24 @@ def factorise(start, column, value, diagonal, order):
 
 
 @lean
-def substitute(begin, rows, values, pivots, right):
-    """Solve L D Lᵀ x = b for `LANES` of b side by side, shape (k, LANES), in place."""
+def substitute(begin, rows, values, pivots, right, pace):
+    """Solve L D Lᵀ x = b for `LANES` of b side by side, shape (k, LANES), in place.
+
+    `pace`: see `threads.watched`; there are 2 k steps.
+    """
     count = len(pivots)
     for c in range(count):
+        pace[0] = c
+        if pace[1] != 0:
+            return
         here = _lanes(right, c)
         if here != NOTHING:
             for p in range(begin[c], begin[c + 1]):
                 _put(right, rows[p], _less(_lanes(right, rows[p]), values[p], here))
     for c in range(count - 1, -1, -1):
+        pace[0] = 2 * count - c
+        if pace[1] != 0:
+            return
         here = _less(NOTHING, -1 / pivots[c], _lanes(right, c))
         for p in range(begin[c], begin[c + 1]):
             here = _less(here, values[p], _lanes(right, rows[p]))

@@ -6,11 +6,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..compiled import compiled
+from ..progress import Tell
 from ..threads import in_threads, parts, threads
 
 EQUAL = 1 + 1e-9
 """Times a weight: what is less counts as equal to it. Two bones that meet in a joint weigh the
 same wherever that joint is the nearest of both, and rounding must not choose between them."""
+
+A_PART = 2_000_000
+"""Weights that are looked at in some hundredths of a second."""
 
 
 def prune(
@@ -18,6 +22,7 @@ def prune(
     max_influences: int | None,
     threshold: float,
     priority: NDArray[np.intp],
+    tell: Tell = lambda done: None,
 ) -> NDArray[np.float64]:
     """Keep the largest weights of each vertex and make them sum to one again.
 
@@ -32,6 +37,8 @@ def prune(
         largest.
     priority : array, shape (j,)
         The joints in the order in which they are kept among equal weights.
+    tell : callable
+        See `progress.Tell`.
 
     Returns
     -------
@@ -41,7 +48,8 @@ def prune(
     pruned = np.zeros_like(weights, order="C")
     in_threads(
         lambda part: _prune(weights[part], most, threshold, priority, pruned[part]),
-        parts(len(weights), threads()),
+        parts(len(weights), threads() + weights.size // A_PART),
+        tell,
     )
     return pruned
 

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from ..compiled import lean
 from ..geodesics import BoneDistances, Bones
+from ..progress import Tell, share_of
 from ..threads import together
 from .diffusion import Diffusion
 from .pieces import bones_held
@@ -25,7 +26,9 @@ LEAST_CELLS = 0.01
 """Lattice cells: distances that are all shorter are equal."""
 
 
-def rig_kernel(distances: BoneDistances, skin: Skin) -> NDArray[np.float64]:
+def rig_kernel(
+    distances: BoneDistances, skin: Skin, tell: Tell = lambda done: None
+) -> NDArray[np.float64]:
     """Turn distances into weights for animation.
 
     Parameters
@@ -34,6 +37,8 @@ def rig_kernel(distances: BoneDistances, skin: Skin) -> NDArray[np.float64]:
         Best with bones fitted to the body, `leaf="fit"`.
     skin : Skin
         Of their graph.
+    tell : callable
+        See `progress.Tell`.
 
     Returns
     -------
@@ -53,10 +58,10 @@ def rig_kernel(distances: BoneDistances, skin: Skin) -> NDArray[np.float64]:
         return held
 
     def prepare() -> Diffusion:
-        return Diffusion.over(skin, distance.min(axis=0), resolution)
+        return Diffusion.over(skin, distance.min(axis=0), resolution, share_of(tell, 0, 0.5))
 
     held, diffusion = together(divide, prepare)
-    return dress(graph, skin, held, diffusion.spread(weights))
+    return dress(graph, skin, held, diffusion.spread(weights, share_of(tell, 0.5, 1)))
 
 
 @lean

@@ -8,9 +8,10 @@ from numpy.typing import NDArray
 from ..checks import check_choice, check_integer, check_number
 from ..errors import ParameterError
 from ..geodesics import BoneDistances
+from ..progress import Progress, share_of, silent
 from ..threads import in_threads, parts, threads
 from .kernel import paper_kernel, pruned_paper_kernel
-from .prune import prune
+from .prune import A_PART, prune
 from .rig_falloff import NEAREST_JOINTS, TOWARDS, permitted, rig_kernel
 from .skin import Skin
 
@@ -29,6 +30,7 @@ def skinning_weights(
     threshold: float = 0.0,
     allowed: NDArray[np.bool_] | None = None,
     skin: Skin | None = None,
+    progress: Progress = silent,
 ) -> NDArray[np.float64]:
     """Turn distances into weights.
 
@@ -49,6 +51,8 @@ def skinning_weights(
         Which joints each vertex may follow; see `Rig.allowed`.
     skin : Skin, optional
         Of the distances' graph, if it is known already; "paper" does not ask for it.
+    progress : callable
+        See `cutcell.progress`; the stage is called "weights".
 
     Returns
     -------
@@ -76,23 +80,29 @@ def skinning_weights(
             f"{known} nearest joints of each vertex alone: measure them again with "
             f"nearest_joints={needed}{', for all' * (needed is None)}"
         )
+
+    def tell(done: float) -> None:
+        progress("weights", done)
+
     kept = max_influences, threshold, _by_position(distances)
     place, diagonal = distances.graph.vertex_node, distances.graph.lattice.diagonal
     if allowed is None:  # what is at one place gets the same
         if falloff == "paper":
             pruned = pruned_paper_kernel(distances.at_places, diagonal, alpha, *kept)
         else:
-            pruned = prune(rig_kernel(distances, skin or Skin.of(distances.graph)), *kept)
+            spread = rig_kernel(distances, skin or Skin.of(distances.graph), share_of(tell, 0, 0.8))
+            pruned = prune(spread, *kept, share_of(tell, 0.8, 0.9))
         weights = np.empty((len(place), pruned.shape[1]))
         in_threads(
             lambda part: pruned.take(place[part], axis=0, out=weights[part], mode="clip"),
-            parts(len(place), threads()),
+            parts(len(place), threads() + weights.size // A_PART),
+            share_of(tell, 0.9, 1),
         )
         return weights
     if falloff == "paper":
         weights = paper_kernel(distances.joint, diagonal, alpha)
     else:
-        weights = rig_kernel(distances, skin or Skin.of(distances.graph))[place]
+        weights = rig_kernel(distances, skin or Skin.of(distances.graph), tell)[place]
     return prune(permitted(weights, distances.joint, allowed), *kept)
 
 

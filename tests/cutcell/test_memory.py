@@ -5,7 +5,7 @@ import pytest
 
 import cutcell
 from cutcell import Rig, Skeleton, TooLargeError, TriangleMesh, memory
-from cutcell.memory import available_memory, check_matrix
+from cutcell.memory import available_memory, check_matrix, gigabytes
 from tests import meshes
 
 GB = 10**9
@@ -108,6 +108,11 @@ def test_a_matrix_that_does_not_fit_is_refused(monkeypatch):
     sentence = "weights of 10,000 vertices for 6,000 joints need about 0.96 GB, but only 0.8 GB"
     with pytest.raises(TooLargeError, match=sentence):
         check_matrix(10_000, 6_000, copies=2)
+
+
+def test_sizes_are_written_with_two_digits():
+    sizes = {521e9: "520 GB", 44.1e9: "44 GB", 3e12: "3,000 GB", 1.26e6: "0.0013 GB", 0: "0 GB"}
+    assert [gigabytes(size) for size in sizes] == list(sizes.values())
 
 
 def rig(joints=3):

@@ -185,7 +185,7 @@ def test_a_graph_that_does_not_fit_by_far_is_refused_before_rays_are_cast(monkey
         lambda *given: cast.append(given) or cast_all_rays(*given),
     )
     mesh = TriangleMesh(*meshes.ball())
-    sentence = r"resolution 1024 needs about (\d+) GB, .* a resolution of (\d+) would fit"
+    sentence = r"resolution 1024 needs about ([\d.]+) GB, .* a resolution of (\d+) would fit"
     with pytest.raises(ParameterError, match=sentence) as refusal:
         build_graph(mesh, 1024, connectivity=26)
     assert not cast

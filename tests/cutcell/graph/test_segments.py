@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from cutcell import TriangleMesh, winding_number
+from cutcell import TooLargeError, TriangleMesh, winding_number
 from cutcell.graph.boundary import find_boundary
 from cutcell.graph.midpoints import list_segments
 from cutcell.graph.rays import cast_all_rays
@@ -74,3 +74,12 @@ def test_runs_equal_those_of_exact_numbers(name, tau):
         )
         assert long.any()
         np.testing.assert_array_equal(rows, others)
+
+
+def test_more_midpoints_than_fit_in_memory_are_refused_while_they_are_listed(monkeypatch):
+    vertices, faces = apart(0.7)
+    boundary, crossings = find_boundary(faces), cast_all_rays(vertices, faces, RESOLUTION)
+    monkeypatch.setattr("cutcell.memory.available_memory", lambda enough: 1000)
+    monkeypatch.setattr("cutcell.graph.segments.answer", lambda *given: pytest.fail("listed all"))
+    with pytest.raises(TooLargeError, match=r"midpoints among holes .* choose a lower resolution"):
+        find_runs(vertices, faces, crossings, boundary, RESOLUTION, 0.5)

@@ -21,6 +21,7 @@ def positive(matrix):
     return csr_array(matrix + coo_array((weight, (np.arange(len(weight)),) * 2)))
 
 
+PACE = np.zeros(2, np.int64)
 MATRICES = {
     "mesh": lambda: of_mesh(*meshes.torus()),
     "random": random_matrix,
@@ -47,7 +48,7 @@ def of_mesh(vertices, faces):
 def factorised(matrix):
     start, column = matrix.indptr.astype(np.int32), matrix.indices.astype(np.int32)
     order = order_of_elimination(start, column)
-    return order, factorise(start, column, matrix.data, matrix.diagonal(), order)
+    return order, factorise(start, column, matrix.data, matrix.diagonal(), order, PACE)
 
 
 @pytest.mark.parametrize("name", MATRICES)
@@ -71,7 +72,7 @@ def test_many_right_sides_are_solved_at_once(name):
     right = np.random.default_rng(1).random((len(order), LANES))
     right[:, 3] = 0
     found = right[order]
-    substitute(*factors, found)
+    substitute(*factors, found, PACE)
     expected = np.linalg.solve(matrix.toarray(), right)
     np.testing.assert_allclose(found, expected[order], atol=1e-9)
 
@@ -83,3 +84,17 @@ def test_the_order_fills_no_more_than_minimum_degree_does(mesh):
     options = {"SymmetricMode": True}
     peer = splu(matrix.tocsc(), "MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=options)
     assert len(values) <= 1.1 * (peer.L.nnz - matrix.shape[0])
+
+
+def test_both_kernels_can_be_stopped():
+    matrix = random_matrix()
+    order, factors = factorised(matrix)
+    start, column = matrix.indptr.astype(np.int32), matrix.indices.astype(np.int32)
+    stop = np.array([5, 1])
+    stopped = factorise(start, column, matrix.data, matrix.diagonal(), order, stop)
+    assert stop[0] == 0
+    assert not np.array_equal(stopped[2], factors[2])
+    right = np.ones((len(order), LANES))
+    substitute(*factors, right, stop)
+    assert (right == 1).all()
+    assert ([2 * len(order), 0] == PACE).all() or PACE[0] == len(order) - 1
