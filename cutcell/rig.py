@@ -238,6 +238,9 @@ class Rig:
         Meshes of the file that are not here.
     warnings : tuple of str
         What a person should know of how the file was read, in sentences.
+    weight_sums : array, shape (n,), float64, optional
+        What the weights of each vertex summed to in the file, before they were scaled to one;
+        NaN where some were negative or no numbers. None where `weights` are not the file's.
     source
         What `cutcell.save` needs to write the same document again; opaque.
 
@@ -261,6 +264,7 @@ class Rig:
     parts: tuple[Part, ...] = ()
     left_out: tuple[LeftOut, ...] = ()
     warnings: tuple[str, ...] = ()
+    weight_sums: NDArray[np.float64] | None = None
     source: Any = field(default=None, repr=False)
 
     def __post_init__(self) -> None:
@@ -284,7 +288,7 @@ class Rig:
 
     def with_weights(self, weights: NDArray[np.float64] | None) -> Rig:
         """Return the same rig with other weights, shape (n, j), or with none."""
-        return replace(self, weights=weights)
+        return replace(self, weights=weights, weight_sums=None)
 
     def _check_units(self) -> None:
         joints = self.skeleton.joints

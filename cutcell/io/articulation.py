@@ -20,7 +20,7 @@ from ..rig import Rig, Skeleton, TriangleMesh
 from .deforming import with_deform
 from .files import read_bytes
 from .names import HALVES, has_halves, whole_characters
-from .weights import summed
+from .weights import NO_WEIGHTS, ReadWeights, summed
 
 REQUIRED = ("vertices", "faces", "joints", "bones")
 
@@ -48,14 +48,22 @@ def read_articulation(path: Path) -> Rig:
     count = len(joints)
     if count == 0:
         raise SkeletonError("has no joints")
-    weights, warnings = _weights(arrays, len(mesh.vertices), count, f'mesh "{path.stem}"')
+    read = _weights(arrays, len(mesh.vertices), count, f'mesh "{path.stem}"')
+    warnings = list(read.warnings)
     parents, names = _parents(arrays, count), _names(arrays, count)
     if any(map(has_halves, names)):
         warnings.append(HALVES)
     names = tuple(map(whole_characters, names))
     skeleton = Skeleton(joints, parents, names)
-    skeleton, told = with_deform(mesh, skeleton, weights)
-    return Rig(mesh, skeleton, weights, name=path.stem, warnings=(*warnings, *told))
+    skeleton, told = with_deform(mesh, skeleton, read.weights)
+    return Rig(
+        mesh,
+        skeleton,
+        read.weights,
+        name=path.stem,
+        warnings=(*warnings, *told),
+        weight_sums=read.sums,
+    )
 
 
 def _arrays(data: bytes) -> dict[str, NDArray]:
@@ -113,11 +121,9 @@ def _names(arrays: dict[str, NDArray], count: int) -> tuple[str, ...]:
     return tuple(n.decode("utf-8", "replace") if isinstance(n, bytes) else str(n) for n in names)
 
 
-def _weights(
-    arrays: dict[str, NDArray], vertices: int, joints: int, owner: str
-) -> tuple[NDArray | None, list[str]]:
+def _weights(arrays: dict[str, NDArray], vertices: int, joints: int, owner: str) -> ReadWeights:
     if "skinning_weights_value" not in arrays:
-        return None, []
+        return NO_WEIGHTS
     parts = []
     for names in (("row", "rows"), ("col", "cols")):
         keys = [f"skinning_weights_{n}" for n in names]

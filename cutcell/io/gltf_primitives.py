@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ..errors import FileError, MeshError, WeightsError
 from .gltf_accessors import read_accessor
 from .gltf_container import Document
-from .weights import summed
+from .weights import NO_WEIGHTS, ReadWeights, summed
 
 DRAWS_TRIANGLES = (pygltflib.TRIANGLES, pygltflib.TRIANGLE_STRIP, pygltflib.TRIANGLE_FAN)
 
@@ -113,8 +113,8 @@ def influence_sets(found: dict[str, Any]) -> list[int]:
 
 def read_weights(
     document: Document, primitive: dict[str, Any], count: int, joints: int, user: str
-) -> NDArray | None:
-    """Return the weights on a skin's joints, shape (count, joints), or None without any.
+) -> ReadWeights:
+    """Return the weights on a skin's joints, shape (count, joints), `NO_WEIGHTS` without any.
 
     Rows are scaled to sum to one; rows of zero stay zero. Weights that are negative or not a
     number count as none, of which the document warns.
@@ -122,7 +122,7 @@ def read_weights(
     found = attributes(primitive, user)
     sets = influence_sets(found)
     if not sets:
-        return None
+        return NO_WEIGHTS
     joint_sets, share_sets = [], []
     for n in sets:
         where, share = _influences(document, found, n, user)
@@ -136,9 +136,9 @@ def read_weights(
     where, share = np.concatenate(joint_sets, axis=1), np.concatenate(share_sets, axis=1)
     held = share != 0  # also true for what is not a number
     rows = np.nonzero(held)[0]
-    weights, warnings = summed(rows, where[held], share[held], (count, joints), user)
-    document.warnings += warnings
-    return weights
+    read = summed(rows, where[held], share[held], (count, joints), user)
+    document.warnings += read.warnings
+    return read
 
 
 def _influences(

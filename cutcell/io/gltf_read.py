@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,6 +30,7 @@ from .gltf_primitives import (
     read_weights,
 )
 from .gltf_skins import Bind, read_bind, read_skeleton
+from .weights import ReadWeights
 
 
 @dataclass(eq=False)
@@ -46,13 +47,39 @@ class StoredPart:
     """Joint of the rig for each joint of the skin."""
 
 
-@dataclass(eq=False)
+@dataclass(frozen=True, eq=False)
+class StoredFaces:
+    """Triangles that are stored together: those of one primitive.
+
+    Parameters
+    ----------
+    mesh, primitive : int
+    first_vertex : int
+        The primitive's first vertex in the rig.
+    rows : slice
+        The triangles in the rig's mesh.
+    is_mirrored : bool
+        Whether they run the other way in the file.
+    turned : array, shape (m,), bool, optional
+        Where they are no longer the file's: which of those that are left were turned round.
+    """
+
+    mesh: int
+    primitive: int
+    first_vertex: int
+    rows: slice
+    is_mirrored: bool
+    turned: NDArray[np.bool_] | None = None
+
+
+@dataclass(frozen=True, eq=False)
 class GltfSource:
     """What a rig remembers of its glTF file, for saving."""
 
     document: Document
     parts: list[StoredPart]
     joints: tuple[str, ...]
+    faces: tuple[StoredFaces, ...] = ()
 
 
 def read_gltf(path: Path) -> Rig:
@@ -79,11 +106,12 @@ def read_rig(document: Document, path: Path, world: NDArray | None = None) -> Ri
         document.item("skins", nodes.raw[i]["skin"], document.label("nodes", i))
     skins = list(dict.fromkeys(nodes.raw[i]["skin"] for i in skinned))
     bind = read_bind(document, nodes, skins, world)
-    parts, vertices, faces, stored, named = _read_parts(document, nodes, skinned, bind)
-    if not faces or not sum(len(f) for f in faces):
+    stored = _read_parts(document, nodes, skinned, bind)
+    parts = stored.parts
+    if not sum(len(corners) for corners in stored.faces):
         raise MeshError("its skinned meshes have no triangles")
-    mesh = TriangleMesh(np.concatenate(vertices), np.concatenate(faces))  # type: ignore[arg-type]
-    weights = _dense(parts, stored, len(mesh.vertices), len(bind.nodes))
+    mesh = TriangleMesh(np.concatenate(stored.vertices), np.concatenate(stored.faces))  # type: ignore[arg-type]
+    weights, sums = _dense(parts, stored.weights, len(mesh.vertices), len(bind.nodes))
     skeleton, told = with_deform(mesh, read_skeleton(nodes, bind), weights)
     attached = _read_attachments(document, nodes, bind)
     return Rig(
@@ -95,10 +123,11 @@ def read_rig(document: Document, path: Path, world: NDArray | None = None) -> Ri
         name=path.stem,
         world=bind.world,
         allowed=_allowed(parts, len(mesh.vertices), len(bind.nodes)),
-        parts=named,
+        parts=tuple(stored.named),
         left_out=left_out_meshes(document, nodes, skinned, attached),
         warnings=(*document.warnings, *told),
-        source=GltfSource(document, parts, skeleton.names),
+        weight_sums=sums,
+        source=GltfSource(document, parts, skeleton.names, tuple(stored.drawn)),
     )
 
 
@@ -110,22 +139,28 @@ def _skinned_nodes(nodes: Nodes) -> list[int]:
     return sorted(set(skinned) & set(nodes.in_scene())) or skinned
 
 
-def _read_parts(
-    document: Document, nodes: Nodes, skinned: list[int], bind: Bind
-) -> tuple[list[StoredPart], list[NDArray], list[NDArray], list[NDArray | None], tuple[Part, ...]]:
+class _Stored(NamedTuple):
+    """What is stored of the skinned meshes; vertices and weights are those of `parts`."""
+
+    parts: list[StoredPart]
+    vertices: list[NDArray]
+    weights: list[ReadWeights]
+    faces: list[NDArray]
+    drawn: list[StoredFaces]
+    named: list[Part]
+
+
+def _read_parts(document: Document, nodes: Nodes, skinned: list[int], bind: Bind) -> _Stored:
     """Read every vertex buffer once, however many primitives draw from it.
 
     A mesh that stands in the scene twice, with two skins, is read for the first: both
     draw with the same stored weights.
     """
     parts: dict[Any, StoredPart] = {}
-    vertices: list[NDArray] = []
-    faces: list[NDArray] = []
-    stored: list[NDArray | None] = []
-    named: list[Part] = []
+    _, vertices, weights, faces, drawn, named = read = _Stored([], [], [], [], [], [])
     hidden = hidden_nodes(nodes)
     seen: set[tuple[int, int]] = set()
-    total = 0
+    total = triangles = 0
     for i in skinned:
         mesh, skin, first = nodes.raw[i]["mesh"], nodes.raw[i]["skin"], total
         for k, primitive in enumerate(primitives(document, mesh, document.label("nodes", i))):
@@ -141,15 +176,21 @@ def _read_parts(
                 parts[key] = StoredPart(label, [], skin, rows, bind.skins[skin])
                 vertices.append(_moved(positions, bind.to_rig[skin]))
                 joints = len(bind.skins[skin])
-                stored.append(read_weights(document, primitive, len(positions), joints, label))
+                weights.append(read_weights(document, primitive, len(positions), joints, label))
             parts[key].primitives.append((mesh, k))
-            if np.linalg.det(bind.to_rig[skin][:3, :3]) < 0:
-                corners = corners[:, ::-1]  # mirrored: what was outside stays outside
-            faces.append(corners + parts[key].rows.start)
+            is_mirrored = bool(np.linalg.det(bind.to_rig[skin][:3, :3]) < 0)
+            if is_mirrored:
+                corners = corners[:, ::-1]  # what was outside stays outside
+            start, rows = (
+                parts[key].rows.start,
+                slice(triangles, triangles := triangles + len(corners)),
+            )
+            faces.append(corners + start)
+            drawn.append(StoredFaces(mesh, k, start, rows, is_mirrored))
         if total > first:
             rows = slice(first, total)
             named.append(Part(mesh_name(document, nodes, i), rows, i in hidden))
-    return list(parts.values()), vertices, faces, stored, tuple(named)
+    return read._replace(parts=list(parts.values()))
 
 
 def _vertex_key(primitive: dict[str, Any], label: str) -> tuple:
@@ -164,14 +205,18 @@ def _moved(points: NDArray, matrix: NDArray) -> NDArray:
     return points @ matrix[:3, :3].T + matrix[:3, 3]
 
 
-def _dense(parts: list[StoredPart], stored: list, vertices: int, joints: int) -> NDArray | None:
-    if all(s is None for s in stored):
-        return None
-    weights = np.zeros((vertices, joints))
-    for part, values in zip(parts, stored, strict=True):
-        if values is not None:
-            weights[part.rows, part.joints] = values
-    return weights
+def _dense(
+    parts: list[StoredPart], stored: list[ReadWeights], vertices: int, joints: int
+) -> tuple[NDArray | None, NDArray | None]:
+    """Return the weights of all parts, and what each row summed to in the file."""
+    if all(read.weights is None for read in stored):
+        return None, None
+    weights, sums = np.zeros((vertices, joints)), np.zeros(vertices)
+    for part, read in zip(parts, stored, strict=True):
+        if read.weights is not None and read.sums is not None:
+            weights[part.rows, part.joints] = read.weights
+            sums[part.rows] = read.sums
+    return weights, sums
 
 
 def _allowed(parts: list[StoredPart], vertices: int, joints: int) -> NDArray | None:

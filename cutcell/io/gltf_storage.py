@@ -24,6 +24,7 @@ from .gltf_accessors import COMPONENTS
 from .gltf_references import accessors_in, places_in, views_in
 
 ALIGNMENT = 8
+KINDS = {1: pygltflib.SCALAR, 3: pygltflib.VEC3, 4: pygltflib.VEC4}
 CODES = {dtype: code for code, dtype in COMPONENTS.items()}
 
 
@@ -63,13 +64,14 @@ class Storage:
         return None if accessor is None else COMPONENTS[self.accessors[accessor]["componentType"]]
 
     def store(self, values: NDArray, preferred: int | None) -> int:
-        """Store a VEC4 array and return its accessor.
+        """Store an array and return its accessor.
 
         Arrays of one type share a buffer view if those that they replace shared one.
 
         Parameters
         ----------
-        values : array, shape (n, 4), uint8, uint16 or float32, little-endian
+        values : array, shape (n, 1), (n, 3) or (n, 4), uint8, uint16, uint32 or float32,
+            little-endian. A single column holds indices of vertices.
         preferred : int, optional
             A dropped accessor, to become this one.
         """
@@ -86,22 +88,26 @@ class Storage:
             byteOffset=len(content),
             componentType=CODES[values.dtype],
             count=len(values),
-            type=pygltflib.VEC4,
+            type=KINDS[values.shape[1]],
         )
         content += values.tobytes()
         return index
 
     def _array_view(self, old: int | None, values: NDArray) -> tuple[int, bytearray]:
         """Return the buffer view that an array goes to, and the content of that so far."""
-        key = old if old in self._dead else None, values.dtype
+        key = old if old in self._dead else None, values.dtype, values.shape[1]
         if key not in self._arrays:
             free = self._free_views & {old} or self._free_views
             view = min(free) if free else _new(self.views)
             self._free_views.discard(view)
             # An extension of the old view told of the old bytes, such as how they were compressed.
             own = {k: v for k, v in self.views[view].items() if k in ("name", "extras")}
-            stride = 4 * values.itemsize
-            self.views[view] = {**own, "byteStride": stride, "target": pygltflib.ARRAY_BUFFER}
+            if values.shape[1] == 1:
+                use: dict[str, int] = {"target": pygltflib.ELEMENT_ARRAY_BUFFER}
+            else:
+                stride = values.shape[1] * values.itemsize
+                use = {"byteStride": stride, "target": pygltflib.ARRAY_BUFFER}
+            self.views[view] = {**own, **use}
             self._arrays[key] = view, bytearray()
         return self._arrays[key]
 

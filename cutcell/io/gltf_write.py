@@ -1,4 +1,4 @@
-"""Writing new weights into a glTF document, and nothing else.
+"""Writing new weights into a glTF document, and nothing else but faces that were mended.
 
 The document's JSON is edited, not made anew: whatever it holds besides the skin weights
 stays, and so does the number of every object in it, because extensions and extras may
@@ -19,6 +19,7 @@ from ..errors import MeshError, SkeletonError, WeightsError
 from ..rig import Rig
 from .gltf_buffer_file import buffer_file, relative_uri
 from .gltf_container import Document, json_bytes, pack_glb
+from .gltf_faces import store_faces, take_faces
 from .gltf_images import carry_images
 from .gltf_influences import pack_influences
 from .gltf_read import GltfSource, StoredPart
@@ -31,7 +32,8 @@ def rewritten(rig: Rig, path: Path) -> dict[Path, bytes]:
     Parameters
     ----------
     rig : Rig
-        Loaded from a GLB or glTF file; only its weights may have changed.
+        Loaded from a GLB or glTF file; only its weights may have changed, and its faces by
+        `with_faces`.
     path : Path
         Where the document will stand: ``.glb``, or ``.gltf`` with a ``.bin`` beside it.
 
@@ -47,9 +49,12 @@ def rewritten(rig: Rig, path: Path) -> dict[Path, bytes]:
     document = json.loads(json.dumps(source.document.json))  # a copy, and quicker than deepcopy
     before = [_take_influences(document, part) for part in source.parts]
     dropped = [accessor for old in before for accessor in old.values()]
+    faces = take_faces(document, rig)
+    dropped += [accessor for new in faces for accessor in new.old.values()]
     storage = Storage(document, source.document.buffers, dropped)
     for part, old in zip(source.parts, before, strict=True):
         _store(storage, document, rig, part, old)
+    store_faces(storage, faces)
     carried = carry_images(storage, source.document, path)
     return {**carried, **_packed(storage, source.document, path, carried)}
 
@@ -58,6 +63,11 @@ def _check_same(rig: Rig, source: GltfSource) -> None:
     if rig.weights is None:
         raise WeightsError("the rig has no weights to save; bind it first")
     remedy = "set the rig's source to None to write a new file instead"
+    triangles = source.faces[-1].rows.stop
+    if len(rig.mesh.faces) != triangles:
+        raise MeshError(
+            f"the rig has {len(rig.mesh.faces)} faces, its document {triangles}; {remedy}"
+        )
     count = source.parts[-1].rows.stop
     if len(rig.mesh.vertices) != count:
         raise MeshError(

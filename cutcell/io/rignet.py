@@ -12,7 +12,6 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..errors import CutcellError, FileError, SkeletonError, WeightsError
 from ..rig import Rig, Skeleton, TriangleMesh
@@ -20,7 +19,7 @@ from .deforming import with_deform
 from .files import naming, read_text
 from .names import whole_characters
 from .objects import numbered_words, numbers, one_number, parse_obj, write_obj
-from .weights import summed
+from .weights import NO_WEIGHTS, ReadWeights, summed
 
 
 @dataclass
@@ -60,9 +59,16 @@ def read_rignet(path: Path) -> Rig:
     with naming(path):
         said = _parse(text)
         skeleton_names = tuple(said.positions)
-        weights, warnings = _weights(said, len(mesh.vertices), skeleton_names, f'mesh "{obj.stem}"')
-        skeleton, told = with_deform(mesh, _skeleton(said), weights)
-        return Rig(mesh, skeleton, weights, name=obj.stem, warnings=(*warnings, *told))
+        read = _weights(said, len(mesh.vertices), skeleton_names, f'mesh "{obj.stem}"')
+        skeleton, told = with_deform(mesh, _skeleton(said), read.weights)
+        return Rig(
+            mesh,
+            skeleton,
+            read.weights,
+            name=obj.stem,
+            warnings=(*read.warnings, *told),
+            weight_sums=read.sums,
+        )
 
 
 def _parse(text: str) -> _Text:
@@ -111,11 +117,9 @@ def _skeleton(said: _Text) -> Skeleton:
     return Skeleton(np.array(list(said.positions.values())), np.array(parents), tuple(place))
 
 
-def _weights(
-    said: _Text, vertices: int, names: tuple[str, ...], owner: str
-) -> tuple[NDArray | None, list[str]]:
+def _weights(said: _Text, vertices: int, names: tuple[str, ...], owner: str) -> ReadWeights:
     if not said.skin:
-        return None, []
+        return NO_WEIGHTS
     place = {name: j for j, name in enumerate(names)}
     rows, columns, values = [], [], []
     for line, words in said.skin:

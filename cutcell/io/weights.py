@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -13,9 +15,30 @@ COPIES = 2
 """Of the matrix at a time, before and after its rows are scaled."""
 
 
+class ReadWeights(NamedTuple):
+    """Weights as they were read.
+
+    Parameters
+    ----------
+    weights : array, shape (n, j), float64
+        Rows sum to one or to zero. None if there are no weights.
+    warnings : tuple of str
+        A sentence if some were left out.
+    sums : array, shape (n,)
+        What each row summed to in the file; NaN where a weight was left out.
+    """
+
+    weights: NDArray[np.float64] | None
+    warnings: tuple[str, ...]
+    sums: NDArray[np.float64] | None
+
+
+NO_WEIGHTS = ReadWeights(None, (), None)
+
+
 def summed(
     rows: NDArray, columns: NDArray, values: NDArray, shape: tuple[int, int], owner: str
-) -> tuple[NDArray[np.float64], list[str]]:
+) -> ReadWeights:
     """Return the weight matrix of a list of influences, with rows that sum to one or to zero.
 
     A weight that is negative or not a finite number counts as none.
@@ -28,21 +51,17 @@ def summed(
         Vertices and joints.
     owner : str
         Whose weights they are, for the warning.
-
-    Returns
-    -------
-    weights : array, shape (n, j), float64
-    warnings : list of str
-        One sentence if weights were left out.
     """
     values = values.astype(np.float64)
     good = np.isfinite(values) & (values >= 0)
-    warnings = []
+    warnings: tuple[str, ...] = ()
+    sums = np.zeros(shape[0])
     if not good.all():
+        sums[rows[~good]] = np.nan
         bad = len(np.unique(rows[~good]))
-        warnings.append(
+        warnings = (
             f"{owner}: {bad:,} of {shape[0]:,} vertices {'has' if bad == 1 else 'have'} weights "
-            "that are negative or not a number; these weights count as none"
+            "that are negative or not a number; these weights count as none",
         )
         rows, columns, values = rows[good], columns[good], values[good]
     if values.max(initial=0) > LARGE:
@@ -52,7 +71,7 @@ def summed(
     check_matrix(*shape, copies=COPIES)
     weights = np.zeros(shape)
     np.add.at(weights, (rows, columns), values)
-    return normalised(weights), warnings
+    return ReadWeights(normalised(weights), warnings, sums + weights.sum(axis=1))
 
 
 def normalised(weights: NDArray) -> NDArray[np.float64]:

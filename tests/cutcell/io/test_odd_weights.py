@@ -55,6 +55,8 @@ def test_odd_weights_count_as_none_and_are_told(tmp_path, make, name, owner, val
     rig = cutcell.load(make(tmp_path / name, value))
     assert_allclose(rig.weights, SHARES[:, :2])
     assert rig.warnings == (f"{owner}: {TWO}",)
+    assert np.isnan(rig.weight_sums).sum() == 2
+    assert rig.with_weights(rig.weights).weight_sums is None
     cutcell.save(tmp_path / "out.glb", rig)
     again = cutcell.load(tmp_path / "out.glb")
     assert_allclose(again.weights, rig.weights, atol=1e-7)
@@ -63,9 +65,10 @@ def test_odd_weights_count_as_none_and_are_told(tmp_path, make, name, owner, val
 
 def test_a_vertex_with_nothing_but_odd_weights_has_none():
     rows, columns = np.array([0, 0, 1]), np.array([0, 1, 1])
-    weights, warnings = summed(rows, columns, np.array([np.nan, -1, 2]), (2, 2), "it")
+    weights, warnings, sums = summed(rows, columns, np.array([np.nan, -1, 2]), (2, 2), "it")
     assert_array_equal(weights, [[0, 0], [0, 1]])
     assert warnings[0].startswith("it: 1 of 2 vertices has weights that are negative")
+    assert_array_equal(sums, [np.nan, 2])
 
 
 @pytest.mark.parametrize("most", [1.0, 1e300, 1.7e308])
