@@ -50,7 +50,7 @@ ORDER = [
     {"pose"},
     {"metrics"},
     {"workers"},
-    {"baselines", "diagnose", "dataset"},
+    {"baselines", "diagnosis", "dataset"},
     {"summary", "compare"},
     {"options", "console", "report", "render_command", "cli", "__main__"},
 ]

@@ -1,0 +1,105 @@
+"""Whether a diagnosis names the fault of damaged rigs, and says nothing grave of sound ones.
+
+python -m benchmarks.diagnosis [RIG ...] [--resolution R] [--markdown OUT]
+
+Each rig is damaged in each way of `damages.py`. A fault counts as found if a finding of its code
+is there that names at least half of the elements that were damaged.
+"""
+
+from __future__ import annotations
+
+import argparse
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+import cutcell
+from cutcell.diagnosis import Diagnosis
+
+from .damages import DAMAGES, READING, Damaged
+from .rigs import rig_paths
+from .tables import Table, publish
+
+RIGS = ("kaykit_knight", "khronos_CesiumMan", "quaternius_wolf", "quaternius_wizard")
+"""The real rigs that are damaged if none is named; demo characters where they are absent."""
+DEMOS = ("octopus", "robot")
+SEVERE = ("error", "warning")
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Measure and print."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("rigs", nargs="*", type=Path)
+    parser.add_argument("--resolution", type=int, default=64)
+    parser.add_argument("--markdown", type=Path)
+    options = parser.parse_args(arguments)
+    sound = [load(path) for path in rig_paths(options.rigs)]
+    chosen = sound if options.rigs else [one for one in sound if one.name in RIGS]
+    chosen = chosen or [one for one in sound if one.name in DEMOS]
+    publish(
+        [damaged_table(chosen, options.resolution), sound_table(sound, options.resolution)],
+        options.markdown,
+    )
+
+
+def load(path: Path) -> cutcell.Rig:
+    """Load a rig; it is called after its file."""
+    return cutcell.load(path)
+
+
+def damaged_table(rigs: Sequence[cutcell.Rig], resolution: int) -> Table:
+    """Return which damage is found in which rig."""
+    columns = ("damage", "code", *(rig.name for rig in rigs))
+    note = (
+        "The severity of the finding that names the damage, or what was missed; behind it other "
+        "errors and warnings that the sound rig does not have."
+    )
+    table = Table("Damaged copies", columns, note)
+    before = {rig.name: cutcell.diagnose(rig, resolution) for rig in rigs}
+    found = total = 0
+    with tempfile.TemporaryDirectory() as folder:
+        for name, (code, damage) in DAMAGES.items():
+            cells = []
+            for rig in rigs:
+                more = (Path(folder),) if damage in READING else ()
+                damaged = damage(rig, 7, *more)
+                after = cutcell.diagnose(damaged.rig, resolution)
+                is_found, cell = judge(code, damaged, before[rig.name], after)
+                found, total = found + is_found, total + 1
+                cells.append(cell)
+            table.add(name, code, *cells)
+    table.add(f"**found: {found} of {total}**", *[""] * (len(columns) - 1))
+    return table
+
+
+def judge(code: str, damaged: Damaged, before: Diagnosis, after: Diagnosis) -> tuple[bool, str]:
+    """Tell whether the damage was found, and what a cell of the table says of it."""
+    share = 0.0
+    if code in after:
+        named = getattr(after[code], damaged.kind)
+        share = float(np.isin(damaged.elements, named).mean())
+    is_found = share >= 0.5
+    severity = after[code].severity if code in after else ""
+    cell = severity if is_found else f"**missed** ({share:.0%})"
+    known = {f.code for f in before.findings if f.severity in SEVERE} | {code}
+    others = [f.code for f in after.findings if f.severity in SEVERE and f.code not in known]
+    return is_found, ", ".join([cell, *others])
+
+
+def sound_table(rigs: Sequence[cutcell.Rig], resolution: int) -> Table:
+    """Return what is said of rigs as they are."""
+    table = Table("Rigs as they are", ("rig", "errors", "warnings", "notes"))
+    for rig in rigs:
+        diagnosis = cutcell.diagnose(rig, resolution)
+        table.add(
+            rig.name,
+            *(", ".join(f.code for f in diagnosis.of(severity)) or "-" for severity in SEVERE),
+            len(diagnosis.of("note")),
+        )
+    return table
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,15 @@
+"""What is wrong with a rig: checks that name the elements at fault, and repairs."""
+
+from .finding import SEVERITIES, TITLES, Diagnosis, Finding
+from .repair import Repaired
+from .run import diagnose, unreadable
+
+__all__ = [
+    "SEVERITIES",
+    "TITLES",
+    "Diagnosis",
+    "Finding",
+    "Repaired",
+    "diagnose",
+    "unreadable",
+]

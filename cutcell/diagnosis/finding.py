@@ -1,0 +1,213 @@
+"""What a diagnosis finds: findings with a code, a severity, and the elements at fault."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import ParameterError
+from ..rig import Rig
+
+if TYPE_CHECKING:
+    from .repair import Repaired
+
+SEVERITIES = ("error", "warning", "note")
+"""The gravest first. Error: a binding, or another program, goes wrong because of it. Warning: most
+likely a fault. Note: good to know."""
+
+TITLES = {
+    "unreadable": "Unreadable file",
+    "cyclic-joints": "Cycle of joints",
+    "stray-vertices": "Stray vertices",
+    "no-interior": "No interior",
+    "inverted-faces": "Inverted faces",
+    "cracks": "Cracks",
+    "holes": "Missing faces",
+    "rims": "Open rims",
+    "non-manifold-edges": "Non-manifold edges",
+    "duplicate-faces": "Duplicate faces",
+    "degenerate-faces": "Degenerate faces",
+    "self-intersections": "Self-intersections",
+    "unwelded-vertices": "Unwelded vertices",
+    "unused-vertices": "Unused vertices",
+    "unreachable-vertices": "Unreachable vertices",
+    "thin-parts": "Thin parts",
+    "boneless-components": "Components without a bone",
+    "joints-outside": "Joints outside the body",
+    "coincident-joints": "Coincident joints",
+    "zero-length-bones": "Bones of zero length",
+    "flat-hierarchy": "No hierarchy",
+    "control-joints": "Control joints",
+    "unused-joints": "Unused joints",
+    "invalid-weights": "Invalid weights",
+    "unweighted-vertices": "Vertices without weight",
+    "unnormalised-weights": "Weights that do not sum to one",
+    "leaked-weights": "Leaked weights",
+    "torn-seams": "Seams that tear",
+    "many-influences": "More than four influences",
+}
+"""The codes of all findings, and what they are called."""
+
+
+def _none() -> NDArray[np.intp]:
+    return np.zeros(0, np.intp)
+
+
+@dataclass(frozen=True, eq=False)
+class Finding:
+    """One thing that was found.
+
+    Parameters
+    ----------
+    code : str
+        A key of `TITLES`; it stays the same from version to version.
+    severity : {"error", "warning", "note"}
+    message : str
+        What was found, in a sentence with numbers.
+    advice : str
+        What to do about it, in a line.
+    vertices, faces, joints : arrays of int
+        The elements at fault, as indices into the rig's vertices, faces and joints; ascending.
+    details : tuple of str
+        A line for each part or joint, where one sentence does not tell enough.
+    repair : str
+        What `Diagnosis.repaired` does about it; empty where nothing is safe.
+    """
+
+    code: str
+    severity: str
+    message: str
+    advice: str
+    vertices: NDArray[np.intp] = field(default_factory=_none)
+    faces: NDArray[np.intp] = field(default_factory=_none)
+    joints: NDArray[np.intp] = field(default_factory=_none)
+    details: tuple[str, ...] = ()
+    repair: str = ""
+
+    @property
+    def title(self) -> str:
+        """What it is called."""
+        return TITLES[self.code]
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return it as plain data."""
+        return {
+            "code": self.code,
+            "severity": self.severity,
+            "title": self.title,
+            "message": self.message,
+            "advice": self.advice,
+            "details": list(self.details),
+            "vertices": self.vertices.tolist(),
+            "faces": self.faces.tolist(),
+            "joints": self.joints.tolist(),
+            "repair": self.repair or None,
+        }
+
+
+@dataclass(frozen=True, eq=False)
+class Diagnosis:
+    """All that was found of a rig, the gravest first.
+
+    Parameters
+    ----------
+    rig : Rig
+        What was looked at.
+    findings : tuple of Finding
+    """
+
+    rig: Rig
+    findings: tuple[Finding, ...]
+
+    def of(self, severity: str) -> tuple[Finding, ...]:
+        """Return the findings of one severity."""
+        return tuple(finding for finding in self.findings if finding.severity == severity)
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """How many findings there are of each severity."""
+        return {severity: len(self.of(severity)) for severity in SEVERITIES}
+
+    def __getitem__(self, code: str) -> Finding:
+        """Return the finding of a code; KeyError if there is none."""
+        for finding in self.findings:
+            if finding.code == code:
+                return finding
+        raise KeyError(code)
+
+    def __contains__(self, code: object) -> bool:
+        """Whether there is a finding of a code."""
+        return any(finding.code == code for finding in self.findings)
+
+    def repaired(self, codes: Iterable[str] | None = None) -> Repaired:
+        """Return the rig with its faults repaired, as far as that is safe.
+
+        Parameters
+        ----------
+        codes : iterable of str, optional
+            Which findings to repair; all that can be when left out.
+
+        Raises
+        ------
+        ParameterError
+            There is no finding of such a code, or no safe repair of it.
+        """
+        from .repair import repair
+
+        chosen = [finding for finding in self.findings if finding.repair]
+        if codes is not None:
+            able = {finding.code: finding for finding in chosen}
+            wanted = list(codes)
+            for code in wanted:
+                if code not in able:
+                    known = ", ".join(able) or "none"
+                    raise ParameterError(
+                        f'there is nothing to repair of the code "{code}"; repairable: {known}'
+                    )
+            chosen = [able[code] for code in dict.fromkeys(wanted)]
+        return repair(self.rig, chosen)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return it as plain data."""
+        return {"counts": self.counts, "findings": [finding.to_dict() for finding in self.findings]}
+
+
+def by_gravity(findings: Iterable[Finding]) -> tuple[Finding, ...]:
+    """Sort findings: by severity, then in the order of `TITLES`."""
+    order = list(TITLES)
+    return tuple(
+        sorted(findings, key=lambda f: (SEVERITIES.index(f.severity), order.index(f.code)))
+    )
+
+
+def share(part: float, whole: float) -> str:
+    """Return a part of a whole in per cent: "12%", "0.3%", "under 0.1%"."""
+    ratio = part / whole if whole > 0 else 0.0
+    if 0 < ratio < 0.001:
+        return "under 0.1%"
+    return f"{ratio:.0%}" if ratio >= 0.1 else f"{ratio:.1%}"
+
+
+def count(number: int, one: str, verb: str = "") -> str:
+    """Return a number with its noun, and a verb if one follows: "1 face is", "3,109 faces are".
+
+    Parameters
+    ----------
+    number : int
+    one : str
+        The noun, of one.
+    verb : str
+        Of many: "are", "have", "lie", ...
+    """
+    noun = one if number == 1 else _MANY.get(one, one + "s")
+    if verb and number == 1:
+        verb = _ONE.get(verb, verb + "s")
+    return f"{number:,} {noun} {verb}".rstrip()
+
+
+_MANY = {"vertex": "vertices"}
+_ONE = {"are": "is", "have": "has", "carry": "carries", "do": "does"}

@@ -1,0 +1,150 @@
+"""Self-intersections: a grid of cells finds faces that are near, and pairs of these are tested.
+
+Faces that share a vertex are not compared. The work is bounded: where there are too many pairs, it
+is told that there may be more.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..compiled import compiled
+from ..graph.solid_angle import between, cross, dot
+from .finding import Finding, count, share
+from .subject import Subject
+
+MOST_TESTS = 5_000_000
+MOST_CELLS = 64
+"""Along the longest side."""
+MOST_ENTRIES = 40
+"""Cells that a face lies in, on average: with more, the cells are made larger."""
+
+
+def find_intersections(subject: Subject) -> Iterator[Finding]:
+    """Look for faces that pass through others."""
+    faces = subject.faces
+    if not len(faces):
+        return
+    is_crossed, is_whole = intersecting_faces(subject.points, faces)
+    found = subject.whole[is_crossed]
+    if not len(found):
+        return
+    least = "" if is_whole else "At least "
+    part = share(subject.areas[found].sum(), subject.areas.sum())
+    yield Finding(
+        "self-intersections",
+        "note",
+        f"{least}{count(len(found), 'face', 'intersect')} others, {part} of the surface.",
+        "Leave it if parts are meant to overlap. Where they overlap they are one body.",
+        faces=found,
+    )
+
+
+def intersecting_faces(
+    points: NDArray[np.float64], faces: NDArray[np.int32]
+) -> tuple[NDArray[np.bool_], bool]:
+    """Tell which faces pass through another that they share no vertex with.
+
+    Parameters
+    ----------
+    points : array, shape (k, 3)
+        In the unit cube.
+    faces : array, shape (w, 3), int32
+
+    Returns
+    -------
+    array, shape (w,), bool
+    is_whole : bool
+        Whether all pairs were tested.
+    """
+    corners = points[faces]
+    low, high = corners.min(axis=1), corners.max(axis=1)
+    cells = int(np.clip(np.sqrt(len(faces) / 6), 1, MOST_CELLS))
+    while cells > 1:
+        first, last = (np.clip((x * cells).astype(np.int64), 0, cells - 1) for x in (low, high))
+        if (last - first + 1).prod(axis=1).sum() <= MOST_ENTRIES * len(faces):
+            break
+        cells //= 2
+    first, last = (np.clip((x * cells).astype(np.int64), 0, cells - 1) for x in (low, high))
+    found, is_whole = _cross(points, faces, low, high, first, last, cells, MOST_TESTS)
+    return found, bool(is_whole)
+
+
+@compiled
+def _cross(points, faces, low, high, first, last, cells, most):
+    start = np.zeros(cells**3 + 1, np.int64)
+    for f in range(len(faces)):
+        for x in range(first[f, 0], last[f, 0] + 1):
+            for y in range(first[f, 1], last[f, 1] + 1):
+                for z in range(first[f, 2], last[f, 2] + 1):
+                    start[(x * cells + y) * cells + z + 1] += 1
+    start = np.cumsum(start)
+    cursor, listed = start[:-1].copy(), np.empty(start[-1], np.int32)
+    for f in range(len(faces)):
+        for x in range(first[f, 0], last[f, 0] + 1):
+            for y in range(first[f, 1], last[f, 1] + 1):
+                for z in range(first[f, 2], last[f, 2] + 1):
+                    cell = (x * cells + y) * cells + z
+                    listed[cursor[cell]] = f
+                    cursor[cell] += 1
+
+    found, tests = np.zeros(len(faces), np.bool_), 0
+    for cell in range(cells**3):
+        for i in range(start[cell], start[cell + 1]):
+            f = listed[i]
+            for j in range(i + 1, start[cell + 1]):
+                g = listed[j]
+                if found[f] and found[g]:
+                    continue
+                if not _boxes_meet(low, high, f, g) or _share_a_vertex(faces, f, g):
+                    continue
+                tests += 1
+                if tests > most:
+                    return found, False
+                if _pierces(points, faces, f, g) or _pierces(points, faces, g, f):
+                    found[f] = found[g] = True
+    return found, True
+
+
+@compiled(inline="always")
+def _boxes_meet(low, high, f, g):
+    for axis in range(3):
+        if low[f, axis] > high[g, axis] or low[g, axis] > high[f, axis]:
+            return False
+    return True
+
+
+@compiled(inline="always")
+def _share_a_vertex(faces, f, g):
+    for i in range(3):
+        for j in range(3):
+            if faces[f, i] == faces[g, j]:
+                return True
+    return False
+
+
+@compiled
+def _pierces(points, faces, f, g):
+    """Tell whether a side of face f passes through the inside of face g."""
+    a, b, c = points[faces[g, 0]], points[faces[g, 1]], points[faces[g, 2]]
+    normal = cross(between(a, b), between(a, c))
+    heights = (
+        dot(normal, between(a, points[faces[f, 0]])),
+        dot(normal, between(a, points[faces[f, 1]])),
+        dot(normal, between(a, points[faces[f, 2]])),
+    )
+    for k in range(3):
+        if heights[k] * heights[(k + 1) % 3] >= 0:
+            continue  # what only touches does not pass through
+        p, q = points[faces[f, k]], points[faces[f, (k + 1) % 3]]
+        way = between(p, q)
+        pa, pb, pc = between(p, a), between(p, b), between(p, c)
+        u = dot(way, cross(pb, pc))
+        v = dot(way, cross(pc, pa))
+        w = dot(way, cross(pa, pb))
+        if (u > 0 and v > 0 and w > 0) or (u < 0 and v < 0 and w < 0):
+            return True
+    return False

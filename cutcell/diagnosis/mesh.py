@@ -1,0 +1,208 @@
+"""Faults of the surface: faces, edges, rims and vertices."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .cracks import find_cracks
+from .finding import Finding, count, share
+from .intersections import find_intersections
+from .subject import Subject
+
+UNWELDED = 0.9
+"""Of the corners of all faces, for how many there are vertices of their own in a soup."""
+HOLES = 8
+"""Missing triangles that are no accident of the modeller's any more."""
+FLAT = 1e-10
+"""A face with less area than this, for its longest side squared, has none."""
+STRAY = 2.0
+"""Sizes of the rest of the mesh that a stray vertex is away from it, at least."""
+FEW = 0.01
+"""Of the vertices, at most so many can be strays."""
+
+
+def check_mesh(subject: Subject) -> Iterator[Finding]:
+    """Look for faults of the surface."""
+    yield from _stray(subject)
+    yield from _inverted(subject)
+    yield from find_cracks(subject)
+    yield from _open(subject)
+    yield from _non_manifold(subject)
+    yield from _doubled(subject)
+    yield from _degenerate(subject)
+    yield from find_intersections(subject)
+    yield from _vertices(subject)
+
+
+def _stray(subject: Subject) -> Iterator[Finding]:
+    vertices = subject.rig.mesh.vertices
+    used = np.flatnonzero(subject.is_used)
+    points = vertices[used]
+    low, high = np.quantile(points, [FEW, 1 - FEW], axis=0)
+    size = (high - low).max()
+    away = np.maximum(low - points, points - high).max(axis=1)
+    found = used[away > STRAY * size]
+    if not len(found) or len(found) > FEW * len(used):
+        return
+    farthest = away.max() / size if size else np.inf
+    yield Finding(
+        "stray-vertices",
+        "error",
+        f"{count(len(found), 'vertex', 'lie')} away from the rest, up to {farthest:.0f} times its "
+        "size. The lattice spans all of it, so its cells are too large for the body.",
+        "Delete them, or move them back to their neighbours.",
+        vertices=found,
+    )
+
+
+def _inverted(subject: Subject) -> Iterator[Finding]:
+    found = np.flatnonzero(subject.graph.inverted)
+    if not len(found):
+        return
+    part = share(subject.areas[found].sum(), subject.areas.sum())
+    yield Finding(
+        "inverted-faces",
+        "warning",
+        f"{count(len(found), 'face', 'are')} turned inside out, {part} of the surface: renderers "
+        "that cull back faces show holes there.",
+        "Flip them. Binding already treats them as flipped.",
+        faces=found,
+        repair="flip them, and the normals that point inward",
+    )
+
+
+def _open(subject: Subject) -> Iterator[Finding]:
+    loop, start = subject.boundary
+    if not len(loop):
+        return
+    lengths = np.diff(start)
+    is_hole = np.zeros(len(lengths), bool)
+    short = np.flatnonzero(lengths == 3)
+    corners = np.sort(loop[start[short][:, None] + np.arange(3)], axis=1)
+    is_hole[short] = ~_are_faces(corners, subject.faces)  # a lone triangle has such a rim, too
+    holes = int(is_hole.sum())
+    of = np.repeat(np.arange(len(lengths)), lengths)
+    if holes >= HOLES:
+        yield Finding(
+            "holes",
+            "warning",
+            f"{count(holes, 'triangle', 'are')} missing from the surface.",
+            "Fill the holes. Small ones do not harm the binding.",
+            vertices=_on(subject, loop[is_hole[of]]),
+        )
+    else:
+        is_hole[:] = False
+    rims = ~is_hole
+    if rims.any():
+        yield Finding(
+            "rims",
+            "note",
+            f"{count(int(rims.sum()), 'open rim')} with {count(int(lengths[rims].sum()), 'edge')}: "
+            "the surface is not closed there.",
+            "Leave it if it is meant to be open. Large openings make the inside ambiguous.",
+            vertices=_on(subject, loop[rims[of]]),
+        )
+
+
+def _are_faces(corners: NDArray[np.int64], faces: NDArray[np.int32]) -> NDArray[np.bool_]:
+    """Tell which triples of vertices, ascending, are corners of a face."""
+    every = np.concatenate([np.sort(faces, axis=1), corners])
+    _, which = np.unique(every, axis=0, return_inverse=True)
+    which = which.ravel()
+    return np.isin(which[len(faces) :], which[: len(faces)])
+
+
+def _on(subject: Subject, places: NDArray[np.int64]) -> NDArray[np.intp]:
+    mask = np.zeros(len(subject.points), bool)
+    mask[places] = True
+    return subject.vertices_at(mask)
+
+
+def _non_manifold(subject: Subject) -> Iterator[Finding]:
+    faces = subject.faces
+    if not len(faces):
+        return
+    sides = np.sort(faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+    key = sides[:, 0].astype(np.int64) * len(subject.points) + sides[:, 1]
+    _, which, uses = np.unique(key, return_inverse=True, return_counts=True)
+    edges = int((uses > 2).sum())
+    if not edges:
+        return
+    found = (uses[which.ravel()] > 2).reshape(-1, 3).any(axis=1)
+    yield Finding(
+        "non-manifold-edges",
+        "note",
+        f"{count(edges, 'edge', 'are')} shared by more than two faces.",
+        "Harmless for binding. Editing tools may stop there: split these edges.",
+        faces=subject.whole[found],
+    )
+
+
+def _doubled(subject: Subject) -> Iterator[Finding]:
+    faces = np.sort(subject.faces, axis=1)
+    _, first, which = np.unique(faces, axis=0, return_index=True, return_inverse=True)
+    is_first = np.zeros(len(faces), bool)
+    is_first[first] = True
+    # The two sides of a sheet are no duplicates.
+    here = subject.graph.faces[subject.whole]
+    turn = _rolled(here)
+    same = (turn == turn[first][which.ravel()]).all(axis=1)
+    found = subject.whole[~is_first & same]
+    if not len(found):
+        return
+    yield Finding(
+        "duplicate-faces",
+        "note",
+        f"{count(len(found), 'face', 'lie')} on another with the same corners.",
+        "Delete them: they flicker when drawn.",
+        faces=found,
+        repair="drop them, and keep one of each",
+    )
+
+
+def _rolled(faces: NDArray[np.int32]) -> NDArray[np.int32]:
+    """Begin each face at its lowest corner; its winding stays."""
+    first = faces.argmin(axis=1)
+    return np.take_along_axis(faces, (first[:, None] + [0, 1, 2]) % 3, axis=1)
+
+
+def _degenerate(subject: Subject) -> Iterator[Finding]:
+    corners = subject.points[subject.welded[subject.rig.mesh.faces]]
+    longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
+    found = np.flatnonzero(subject.is_collapsed | (subject.areas <= FLAT * longest**2))
+    if not len(found) or len(found) == len(subject.areas):
+        return
+    yield Finding(
+        "degenerate-faces",
+        "note",
+        f"{count(len(found), 'face', 'have')} no area.",
+        "Delete them.",
+        faces=found,
+        repair="drop them",
+    )
+
+
+def _vertices(subject: Subject) -> Iterator[Finding]:
+    faces = subject.rig.mesh.faces
+    used = int(subject.is_used.sum())
+    if used >= UNWELDED * faces.size and len(faces) > 1:
+        yield Finding(
+            "unwelded-vertices",
+            "note",
+            f"No face shares its vertices with another: {used:,} vertices, of which welding leaves "
+            f"{len(np.unique(subject.welded[subject.is_used])):,}.",
+            "Harmless: binding welds them. Merge them by distance for other programs.",
+            vertices=np.flatnonzero(subject.is_used),
+        )
+    unused = np.flatnonzero(~subject.is_used)
+    if len(unused):
+        yield Finding(
+            "unused-vertices",
+            "note",
+            f"No face uses {count(len(unused), 'vertex')}.",
+            "Delete them if nothing needs them. They are bound by straight distances.",
+            vertices=unused,
+        )

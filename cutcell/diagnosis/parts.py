@@ -1,0 +1,206 @@
+"""Parts of the body that the graph does not reach, fill or tie to a bone."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from ..display import shown_name
+from ..geodesics import BoneDistances
+from ..geodesics.fallback import NOT_ALLOWED, UNREACHED
+from ..graph import INTERIOR, winding_number
+from ..rig import TriangleMesh
+from ..skinning.laplacian import vertex_areas, vertex_normals
+from ..skinning.pieces import bones_held
+from ..skinning.worn import SMALL
+from .finding import Finding, count, share
+from .subject import Subject
+
+FAR = 1.5
+"""Cells: skin that is farther from every lattice point inside has none below it."""
+DEPTHS = np.array([0.05, 0.1, 0.15, 0.2, 0.3, 0.45, 0.65, 0.9, 1.2])
+"""Cells below the skin at which it is looked for the inside."""
+THIN, FEW = 0.005, 0.02
+"""Of the surface, and of its vertices: less than both of these may be thin."""
+SAMPLES = 1500
+"""Vertices at which thickness is measured."""
+ENOUGH = 1.2
+"""Cells that a part must be thick to hold lattice points nearly everywhere."""
+MOST_LINES = 40
+"""Parts or joints that are told one by one."""
+
+
+def check_parts(subject: Subject) -> Iterator[Finding]:
+    """Look for parts of the body that the graph leaves out."""
+    if (subject.graph.node_kind == INTERIOR).any():
+        yield from _thin(subject)
+    else:
+        yield Finding(
+            "no-interior",
+            "error",
+            "No point of the lattice lies inside the mesh: distances run over its surface alone "
+            f"(R = {subject.graph.lattice.resolution}).",
+            "Close the mesh, or give it walls; raise the resolution if it is only thin.",
+            vertices=np.flatnonzero(subject.is_used),
+        )
+    if subject.distances is not None:
+        yield from _unreachable(subject, subject.distances)
+        yield from _loose(subject, subject.distances)
+
+
+def _thin(subject: Subject) -> Iterator[Finding]:
+    graph, points = subject.graph, subject.points
+    resolution = graph.lattice.resolution
+    faces = graph.faces[subject.whole]
+    inside = graph.nodes[graph.node_kind == INTERIOR]
+    used = np.zeros(len(points), bool)
+    used[faces] = True
+    far = used & (cKDTree(inside).query(points)[0] * resolution > FAR)
+    if not far.any():
+        return
+    areas = vertex_areas(points, faces)
+    depth = _depths(points, faces, np.flatnonzero(far), resolution)
+    thin = np.zeros(len(points), bool)
+    thin[np.flatnonzero(far)[depth > 0]] = True
+    start, end = subject.edges.edges.T
+    beside = np.union1d(start[thin[end]], end[thin[start]])  # at sharp rims nothing is below
+    thin[beside] |= far[beside]
+    part, total = areas[thin].sum(), areas.sum()
+    if part < THIN * total and thin.sum() < FEW * used.sum():
+        return
+    typical = _median(depth[depth > 0], areas[far][depth > 0])
+    needed = ENOUGH * resolution / typical
+    enough = int(np.ceil(needed / 16) * 16)
+    advice = f"A resolution of {enough} would fill most of them." if enough > resolution else (
+        "Paths run over their skin, which is nearly as good."
+    )  # fmt: skip
+    yield Finding(
+        "thin-parts",
+        "note",
+        f"Below {share(part, total)} of the surface the body is too thin for a lattice point at "
+        f"R = {resolution}.",
+        advice,
+        vertices=subject.vertices_at(thin),
+    )
+
+
+def _median(values: NDArray[np.float64], weights: NDArray[np.float64]) -> float:
+    """Return the median of values that count by their weights."""
+    order = np.argsort(values)
+    total = np.cumsum(weights[order])
+    return float(values[order[np.searchsorted(total, total[-1] / 2)]])
+
+
+def _depths(
+    points: NDArray[np.float64],
+    faces: NDArray[np.int32],
+    places: NDArray[np.intp],
+    resolution: int,
+) -> NDArray[np.float64]:
+    """Measure how thick the body is below vertices, in cells; 0 where nothing is inside.
+
+    Of many vertices only some are looked at; each other one has what the nearest of these has.
+    """
+    step = -(-len(places) // SAMPLES)
+    chosen = places[::step]
+    normals = vertex_normals(points, faces)[chosen]
+    below = points[chosen, None] - DEPTHS[:, None] / resolution * normals[:, None]
+    body = TriangleMesh(points, faces)
+    inside = winding_number(body, below.reshape(-1, 3)).reshape(len(chosen), -1) >= 0.5
+    deep = np.cumprod(inside, axis=1).sum(axis=1)
+    depth = np.concatenate([[0], DEPTHS])[deep]
+    if step == 1:
+        return depth
+    nearest: NDArray[np.float64] = depth[cKDTree(points[chosen]).query(points[places])[1]]
+    return nearest
+
+
+def _unreachable(subject: Subject, distances: BoneDistances) -> Iterator[Finding]:
+    lost = np.flatnonzero((distances.fallback == UNREACHED) & subject.is_used)
+    if len(lost):
+        pieces = np.unique(subject.component[subject.welded[lost]])
+        sizes = _longest_sides(subject)
+        large = pieces[sizes[pieces] > SMALL]
+        follows = (
+            "they follow their nearest bones in a straight line"
+            if len(large)
+            else "small components follow what they sit on"
+        )
+        yield Finding(
+            "unreachable-vertices",
+            "warning" if len(large) else "note",
+            f"No path through the body leads from a bone to {count(len(lost), 'vertex')} in "
+            f"{count(len(pieces), 'component')}: {follows}.",
+            "Let the component touch the body, or put a joint into it.",
+            vertices=lost,
+            details=_lines(subject, pieces),
+        )
+    barred = np.flatnonzero(distances.fallback == NOT_ALLOWED)
+    if len(barred):
+        yield Finding(
+            "unreachable-vertices",
+            "note",
+            f"{count(len(barred), 'vertex')} cannot follow the joints that come near: the skin of "
+            "their mesh in the file does not have these.",
+            "Give all meshes one skin.",
+            vertices=barred,
+        )
+
+
+def _loose(subject: Subject, distances: BoneDistances) -> Iterator[Finding]:
+    total = int(subject.component.max()) + 1
+    used = np.unique(subject.component[subject.welded[subject.is_used]])
+    if len(used) < 2:
+        return
+    faces = subject.graph.faces[subject.whole]
+    held = bones_held(subject.points, faces, subject.component, distances.bones)
+    loose = np.setdiff1d(used, np.flatnonzero(held.max(axis=1, initial=0) > 0))
+    if not len(loose):
+        return
+    mask = np.zeros(total, bool)
+    mask[loose] = True
+    yield Finding(
+        "boneless-components",
+        "note",
+        f"{len(loose):,} of {len(used):,} connected components "
+        f"{'contains' if len(loose) == 1 else 'contain'} no bone.",
+        "No action needed if each follows the joint that is named here.",
+        vertices=subject.vertices_at(mask[subject.component]),
+        details=_lines(subject, loose),
+    )
+
+
+def _longest_sides(subject: Subject) -> NDArray[np.float64]:
+    low = np.full((int(subject.component.max()) + 1, 3), np.inf)
+    high = -low
+    np.minimum.at(low, subject.component, subject.points)
+    np.maximum.at(high, subject.component, subject.points)
+    return (high - low).max(axis=1)
+
+
+def _lines(subject: Subject, pieces: NDArray[np.integer]) -> tuple[str, ...]:
+    """Tell of components, the largest first: how many vertices, and what they hang on."""
+    piece = np.where(subject.is_used, subject.component[subject.welded], -1)
+    sizes = np.bincount(piece[piece >= 0], minlength=int(subject.component.max()) + 1)
+    order = pieces[np.argsort(-sizes[pieces], kind="stable")]
+    lines = [
+        f"{count(int(sizes[p]), 'vertex', 'follow')} "
+        f"{shown_name(_holder(subject, np.flatnonzero(piece == p)))}"
+        for p in order[:MOST_LINES]
+    ]
+    if len(order) > MOST_LINES:
+        lines.append(f"and {len(order) - MOST_LINES} more")
+    return tuple(lines)
+
+
+def _holder(subject: Subject, vertices: NDArray[np.intp]) -> str:
+    """Return the name of the joint that some vertices follow most: by weights, else the nearest."""
+    weights, names = subject.rig.weights, subject.rig.skeleton.names
+    if weights is not None and weights[vertices].any():
+        return names[int(weights[vertices].sum(axis=0).argmax())]
+    assert subject.distances is not None
+    nearest = subject.distances.joint[:, vertices].argmin(axis=0)
+    return names[int(np.bincount(nearest).argmax())]

@@ -1,0 +1,131 @@
+"""Repairs that are safe: they change no more than what was found, and lose nothing of the file."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from ..graph.lattice import Lattice
+from ..graph.weld import weld
+from ..io.gltf_faces import with_faces
+from ..rig import Rig
+from ..skinning.prune import prune
+from .finding import Finding
+from .weights import INFLUENCES
+
+TURNED = ("inverted-faces",)
+DROPPED = ("duplicate-faces", "degenerate-faces")
+
+
+@dataclass(frozen=True, eq=False)
+class Repaired:
+    """A rig after its repair.
+
+    Parameters
+    ----------
+    rig : Rig
+    done : tuple of str
+        What was done, in sentences.
+    repaired : tuple of Finding
+        Those it was done about.
+    """
+
+    rig: Rig
+    done: tuple[str, ...]
+    repaired: tuple[Finding, ...]
+
+
+def repair(rig: Rig, findings: Sequence[Finding]) -> Repaired:
+    """Repair what was found of a rig.
+
+    Parameters
+    ----------
+    rig : Rig
+    findings : sequence of Finding
+        Of this rig, each with a `repair`.
+
+    Returns
+    -------
+    Repaired
+        The rig keeps its glTF document: saving it writes faces and weights, and nothing else.
+    """
+    before, found = rig, {finding.code: finding for finding in findings}
+    for code, mend in WEIGHTS.items():  # of vertices, whose numbers stay
+        if code in found and rig.weights is not None:
+            rig = rig.with_weights(_allowed(rig, mend(rig, found[code])))
+    turned, dropped = (
+        _mask(len(before.mesh.faces), [found[code].faces for code in codes if code in found])
+        for codes in (TURNED, DROPPED)
+    )
+    if turned.any() or dropped.any():
+        rig = with_faces(rig, ~dropped, turned)
+    done = tuple(f"{finding.title}: {finding.repair}." for finding in findings)
+    return Repaired(rig, done, tuple(findings))
+
+
+def _mask(count: int, which: list[NDArray[np.intp]]) -> NDArray[np.bool_]:
+    mask = np.zeros(count, bool)
+    for rows in which:
+        mask[rows] = True
+    return mask
+
+
+def _allowed(rig: Rig, weights: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return weights on joints that the file can store, scaled to sum to one."""
+    if rig.allowed is not None:
+        kept = np.where(rig.allowed, weights, 0)
+        weights = np.where(kept.any(axis=1, keepdims=True), kept, _weights(rig))
+    sums = weights.sum(axis=1, keepdims=True)
+    return np.divide(weights, sums, out=np.zeros_like(weights), where=sums > 0)
+
+
+def _as_they_are(rig: Rig, finding: Finding) -> NDArray[np.float64]:
+    """Return the weights: loading left out what is no number, and sums are scaled after."""
+    return _weights(rig)
+
+
+def _filled(rig: Rig, finding: Finding) -> NDArray[np.float64]:
+    """Give vertices without weight those of the nearest vertex with some."""
+    weights = _weights(rig).copy()
+    having = np.flatnonzero(weights.any(axis=1))
+    if len(having):
+        vertices = rig.mesh.vertices
+        nearest = cKDTree(vertices[having]).query(vertices[finding.vertices])[1]
+        weights[finding.vertices] = weights[having[nearest]]
+    return weights
+
+
+def _together(rig: Rig, finding: Finding) -> NDArray[np.float64]:
+    """Give vertices in one place the mean of their weights."""
+    weights = _weights(rig).copy()
+    _, place = weld(Lattice.around(rig.mesh, 2).to_unit(rig.mesh.vertices))
+    group = place[finding.vertices]
+    places, which = np.unique(group, return_inverse=True)
+    sums = np.zeros((len(places), weights.shape[1]))
+    np.add.at(sums, which, weights[finding.vertices])
+    weights[finding.vertices] = (sums / np.bincount(which)[:, None])[which]
+    return weights
+
+
+def _pruned(rig: Rig, finding: Finding) -> NDArray[np.float64]:
+    weights = _weights(rig)
+    return prune(weights, INFLUENCES, 0.0, np.arange(weights.shape[1]))
+
+
+def _weights(rig: Rig) -> NDArray[np.float64]:
+    assert rig.weights is not None  # findings about weights are of rigs that have some
+    return rig.weights
+
+
+WEIGHTS: dict[str, Callable[[Rig, Finding], NDArray[np.float64]]] = {
+    "invalid-weights": _as_they_are,
+    "unweighted-vertices": _filled,
+    "unnormalised-weights": _as_they_are,
+    "torn-seams": _together,
+    "many-influences": _pruned,
+}
+"""How weights are repaired, in this order."""

@@ -1,0 +1,145 @@
+"""What the checks look at: properties of a rig that are computed once, when first asked for."""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..deform import DeformJoints, deform_joints
+from ..deform.body import SPACING, Body
+from ..geodesics import BoneDistances, bone_distances
+from ..graph import CutCellGraph, build_graph
+from ..graph.boundary import Boundary, boundary_of
+from ..graph.mesh_edges import MeshEdges, find_edges
+from ..progress import Progress, silent
+from ..rig import Rig, TriangleMesh
+from ..skinning.pieces import find_pieces
+
+
+class Subject:
+    """A rig under diagnosis.
+
+    Parameters
+    ----------
+    rig : Rig
+    resolution : int
+    distances : BoneDistances, optional
+        Of the rig, where they are known already.
+    progress : callable
+    """
+
+    def __init__(
+        self,
+        rig: Rig,
+        resolution: int = 64,
+        distances: BoneDistances | None = None,
+        progress: Progress = silent,
+    ) -> None:
+        self.rig, self.resolution, self.progress = rig, resolution, progress
+        if distances is not None:
+            self.distances, self.graph = distances, distances.graph
+
+    @cached_property
+    def graph(self) -> CutCellGraph:
+        """The cut-cell graph."""
+        return build_graph(
+            self.rig.mesh, self.resolution, connectivity="any", progress=self.progress
+        )
+
+    @cached_property
+    def distances(self) -> BoneDistances | None:
+        """Distances from bones to the vertices; None for a mesh without joints."""
+        if not len(self.rig.skeleton.joints):
+            return None
+        return bone_distances(
+            self.graph,
+            self.rig.skeleton,
+            leaf="fit",
+            nearest_joints=3,
+            allowed=self.rig.allowed,
+            progress=self.progress,
+        )
+
+    @property
+    def welded(self) -> NDArray[np.int32]:
+        """The welded vertex of each vertex of the file, shape (n,)."""
+        return self.graph.vertex_node
+
+    @cached_property
+    def points(self) -> NDArray[np.float64]:
+        """Welded vertices in the unit cube, shape (k, 3)."""
+        return self.graph.nodes[: self.graph.first_point]
+
+    @cached_property
+    def is_used(self) -> NDArray[np.bool_]:
+        """Whether a face uses each vertex of the file, shape (n,)."""
+        used = np.zeros(len(self.welded), bool)
+        used[self.rig.mesh.faces] = True
+        return used
+
+    @cached_property
+    def is_collapsed(self) -> NDArray[np.bool_]:
+        """Which faces have a repeated corner once vertices are welded, shape (m,)."""
+        a, b, c = self.welded[self.rig.mesh.faces].T
+        found: NDArray[np.bool_] = (a == b) | (b == c) | (c == a)
+        return found
+
+    @cached_property
+    def whole(self) -> NDArray[np.intp]:
+        """The faces that have not collapsed."""
+        return np.flatnonzero(~self.is_collapsed)
+
+    @cached_property
+    def faces(self) -> NDArray[np.int32]:
+        """`whole` between welded vertices, as the file has them, shape (w, 3)."""
+        return self.welded[self.rig.mesh.faces[self.whole]]
+
+    @cached_property
+    def edges(self) -> MeshEdges:
+        """The edges of `faces` once they all face outward."""
+        return find_edges(self.graph.faces[self.whole])
+
+    @cached_property
+    def boundary(self) -> Boundary:
+        """Loops of edges that the faces leave open."""
+        return boundary_of(self.edges.edges, self.edges.balance)
+
+    @cached_property
+    def areas(self) -> NDArray[np.float64]:
+        """The area of each face of the file in the unit cube, shape (m,)."""
+        a, b, c = self.points[self.welded[self.rig.mesh.faces]].transpose(1, 0, 2)
+        area: NDArray[np.float64] = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
+        return area
+
+    @cached_property
+    def component(self) -> NDArray[np.int32]:
+        """The connected component of each welded vertex, shape (k,)."""
+        return find_pieces(self.graph.faces, len(self.points))
+
+    @cached_property
+    def body(self) -> Body:
+        """What tells inside from outside near the surface."""
+        faces = np.where(
+            self.graph.inverted[:, None], self.rig.mesh.faces[:, ::-1], self.rig.mesh.faces
+        )
+        return Body(TriangleMesh(self.rig.mesh.vertices, faces))
+
+    @cached_property
+    def joint_distance(self) -> NDArray[np.float64]:
+        """How far each joint is from the body, in the unit cube; 0 inside; shape (j,)."""
+        joints = self.body.to_unit(self.rig.skeleton.joints)
+        away = self.body.to_surface(joints)
+        deep = np.flatnonzero(away > SPACING)
+        away[deep[self.body.inside(joints[deep])]] = 0
+        return away
+
+    @cached_property
+    def guess(self) -> DeformJoints:
+        """Which joints move skin, by names and places."""
+        return deform_joints(self.rig.mesh, self.rig.skeleton)
+
+    def vertices_at(self, welded: NDArray[np.bool_]) -> NDArray[np.intp]:
+        """Return the vertices of the file at some welded vertices, shape (k,) bool."""
+        return np.flatnonzero(welded[self.welded] & self.is_used)

@@ -1,0 +1,192 @@
+"""Faults of the weights that a file brings along."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..display import shown_name
+from ..geodesics import BoneDistances, distance_to_segment
+from ..geodesics.fallback import REACHED
+from .finding import Finding, count
+from .subject import Subject
+
+ROUNDING = 0.01
+"""By how much weights may miss one: three weights of eight bits miss it by 0.006."""
+INFLUENCES = 4
+"""What game engines read."""
+NOTICED = 0.05
+"""A weight below it does not show."""
+LEAP = 0.2
+"""Of the longest side: weight that is held over this much more way through the body than straight
+through the air, and than from the nearest joint, has leaked across a gap."""
+FAR = 0.4
+"""As far beyond the nearest joint it is out of place, whatever lies between."""
+OUTSIDE = 0.05
+"""Of the longest side: joints that are farther from the body tell nothing about ways through it."""
+DIFFERENT = 0.02
+"""Weights of vertices in one place may differ by this much in total."""
+SEAMS = 0.05
+"""Of all places on the surface: where more of them tear, it is no accident of a few layers."""
+MOST_LINES = 40
+
+
+def check_weights(subject: Subject) -> Iterator[Finding]:
+    """Look for faults of the file's weights; a fresh character has none."""
+    weights = subject.rig.weights
+    if weights is None or not len(subject.rig.skeleton.joints):
+        return
+    yield from _numbers(subject, weights)
+    yield from _torn(subject, weights)
+    if subject.distances is not None:
+        yield from _leaked(subject, subject.distances, weights)
+
+
+def _numbers(subject: Subject, weights: NDArray[np.float64]) -> Iterator[Finding]:
+    sums = subject.rig.weight_sums
+    sums = weights.sum(axis=1) if sums is None else sums
+    invalid = np.flatnonzero(np.isnan(sums))
+    if len(invalid):
+        yield Finding(
+            "invalid-weights",
+            "error",
+            f"{count(len(invalid), 'vertex', 'have')} weights in the file that are negative or no "
+            "numbers; these count as none.",
+            "Paint or compute them anew.",
+            vertices=invalid,
+            repair="leave these weights out, and scale the others to sum to one",
+        )
+    empty = np.flatnonzero((weights.sum(axis=1) == 0) & subject.is_used)
+    if len(empty):
+        yield Finding(
+            "unweighted-vertices",
+            "error",
+            f"{count(len(empty), 'vertex', 'have')} no weight: left behind when others move.",
+            "Weight them, or bind again.",
+            vertices=empty,
+            repair="give them the weights of the nearest vertex that has some",
+        )
+    off = np.flatnonzero((np.abs(sums - 1) > ROUNDING) & (sums > 0))
+    if len(off):
+        low, high = sums[off].min(), sums[off].max()
+        yield Finding(
+            "unnormalised-weights",
+            "warning",
+            f"In the file, the weights of {count(len(off), 'vertex', 'do')} not sum to one, but to "
+            f"{low:.3g} to {high:.3g}: other programs may scale or shift the skin there.",
+            "Normalise them.",
+            vertices=off,
+            repair="scale them to sum to one",
+        )
+    influences = (weights > 0).sum(axis=1)
+    many = np.flatnonzero(influences > INFLUENCES)
+    if len(many):
+        yield Finding(
+            "many-influences",
+            "note",
+            f"{count(len(many), 'vertex', 'follow')} up to {influences.max()} joints; game engines "
+            f"read {INFLUENCES}.",
+            f"Keep the {INFLUENCES} largest, if an engine is to read it.",
+            vertices=many,
+            repair=f"keep the {INFLUENCES} largest weights of each vertex",
+        )
+
+
+def _torn(subject: Subject, weights: NDArray[np.float64]) -> Iterator[Finding]:
+    place = subject.welded
+    order = np.argsort(place, kind="stable")
+    first = order[np.searchsorted(place[order], np.arange(len(subject.points)))]
+    apart = np.abs(weights - weights[first[place]]).sum(axis=1) > DIFFERENT
+    torn = np.zeros(len(subject.points), bool)
+    torn[place[apart & subject.is_used]] = True
+    if not torn.any():
+        return
+    places = len(np.unique(place[subject.is_used]))
+    number = int(torn.sum())
+    yield Finding(
+        "torn-seams",
+        "warning" if number > SEAMS * places else "note",
+        f"At {count(number, 'place')} of {places:,} vertices lie together that follow different "
+        "joints: the skin tears open there when it moves.",
+        "Give vertices in one place the same weights.",
+        vertices=subject.vertices_at(torn),
+        repair="give vertices in one place the mean of their weights",
+    )
+
+
+def _leaked(
+    subject: Subject, distances: BoneDistances, weights: NDArray[np.float64]
+) -> Iterator[Finding]:
+    vertex, joint = np.nonzero((weights > NOTICED) & _told(subject, distances))
+    asked = distances.fallback[vertex] == REACHED
+    vertex, joint = vertex[asked], joint[asked]
+    nearest = distances.joint.min(axis=0)
+    through = _through(subject, distances, vertex, joint)
+    straight = _straight(subject, distances, vertex, joint)
+    beyond = through - nearest[vertex]
+    with np.errstate(invalid="ignore"):
+        leaked = (np.minimum(through - straight, beyond) > LEAP) | (beyond > FAR)
+    leaked &= np.isfinite(beyond)
+    if not leaked.any():
+        return
+    vertex, joint = vertex[leaked], joint[leaked]
+    found, joints = np.unique(vertex), np.unique(joint)
+    names = subject.rig.skeleton.names
+    lines = []
+    for j in joints[:MOST_LINES]:
+        mine = vertex[joint == j]
+        lines.append(
+            f"{shown_name(names[j])}: up to {weights[mine, j].max():.0%} of "
+            f"{count(len(mine), 'vertex')} far from it"
+        )
+    yield Finding(
+        "leaked-weights",
+        "warning",
+        f"{count(len(found), 'vertex', 'follow')} joints that are far away through the body, past "
+        "nearer ones.",
+        "Take this weight away, or bind again.",
+        vertices=found,
+        joints=joints,
+        details=tuple(lines),
+    )
+
+
+def _told(subject: Subject, distances: BoneDistances) -> NDArray[np.bool_]:
+    """Tell from which joints ways through the body are known, shape (j,)."""
+    told = np.zeros(len(subject.joint_distance), bool)
+    told[distances.bones.joint] = True
+    return told & (subject.joint_distance <= OUTSIDE)
+
+
+def _through(
+    subject: Subject, distances: BoneDistances, vertex: NDArray[np.intp], joint: NDArray[np.intp]
+) -> NDArray[np.float64]:
+    """Return the distances through the body of vertices from joints, measured if not known."""
+    through = distances.joint[joint, vertex]
+    unknown = np.isinf(through)
+    if unknown.any():
+        which = np.isin(distances.bones.joint, joint[unknown])
+        some = replace(
+            distances,
+            bones=distances.bones.some(which),
+            sources=distances.sources.some(which),
+        )
+        through = some.all_joints(subject.progress)[joint, vertex]
+    return through
+
+
+def _straight(
+    subject: Subject, distances: BoneDistances, vertex: NDArray[np.intp], joint: NDArray[np.intp]
+) -> NDArray[np.float64]:
+    """Return the straight distances of vertices from the bones of joints."""
+    bones, points = distances.bones, subject.points[subject.welded]
+    least = np.full(len(vertex), np.inf)
+    for j in np.unique(joint):
+        mine = np.flatnonzero(joint == j)
+        for b in np.flatnonzero(bones.joint == j):
+            away = distance_to_segment(points[vertex[mine]], bones.start[b], bones.end[b])
+            least[mine] = np.minimum(least[mine], away)
+    return least

@@ -1,0 +1,86 @@
+"""A repair removes what it was for, brings nothing new, and can be saved into the document."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose, assert_array_equal
+
+import cutcell
+from assets import demo_path
+from benchmarks.damages import DAMAGES, READING
+from cutcell import ParameterError
+from cutcell.io.gltf_container import read_document
+from tests.cutcell.diagnosis.worm import worm
+
+WORM = worm()
+REPAIRABLE = [
+    "a patch of faces turned",
+    "faces doubled",
+    "faces without area",
+    "weights no numbers",
+    "weights of 3/4",
+    "skin without weight",
+    "six influences",
+    "seams that tear",
+]
+
+
+def from_lowest(faces):
+    """Begin each face at its lowest corner; its orientation stays."""
+    return np.array([np.roll(face, -face.argmin()) for face in faces])
+
+
+def damaged(name, folder):
+    code, damage = DAMAGES[name]
+    rig = damage(WORM, 7, *([folder] if damage in READING else [])).rig
+    return code, cutcell.diagnose(rig, 24)
+
+
+@pytest.mark.parametrize("name", REPAIRABLE)
+def test_a_repair_removes_its_finding_and_brings_no_other(name, tmp_path):
+    code, before = damaged(name, tmp_path)
+    repaired = before.repaired([code])
+    assert [f.code for f in repaired.repaired] == [code]
+    assert len(repaired.done) == 1
+    after = cutcell.diagnose(repaired.rig, 24)
+    assert code not in after
+    assert {f.code for f in after.findings} <= {f.code for f in before.findings}
+    sums = repaired.rig.weights.sum(axis=1)
+    assert np.logical_or(np.abs(sums - 1) < 1e-9, sums == 0).all()
+
+
+def test_what_is_not_safe_is_not_offered(tmp_path):
+    _, before = damaged("a hole torn", tmp_path)
+    assert not before["rims"].repair
+    with pytest.raises(ParameterError, match='nothing to repair of the code "rims"'):
+        before.repaired(["rims"])
+
+
+def test_everything_that_can_be_is_repaired_at_once(tmp_path):
+    _, before = damaged("weights no numbers", tmp_path)
+    assert {f.code for f in before.findings} == {"invalid-weights", "unweighted-vertices"}
+    assert cutcell.diagnose(before.repaired().rig, 24).findings == ()
+
+
+def test_skin_without_weight_gets_that_of_its_neighbours(tmp_path):
+    _, before = damaged("skin without weight", tmp_path)
+    rows = before["unweighted-vertices"].vertices
+    filled = before.repaired().rig.weights
+    assert np.abs(filled[rows] - WORM.weights[rows]).sum(axis=1).mean() < 0.6
+    rest = np.delete(np.arange(len(filled)), rows)
+    assert_allclose(filled[rest], WORM.weights[rest], atol=1e-12)
+
+
+def test_a_repaired_document_keeps_all_else(tmp_path):
+    rig = cutcell.load(demo_path("biped_flipped_arm"))
+    repaired = cutcell.diagnose(rig, 24).repaired().rig
+    cutcell.save(tmp_path / "fixed.glb", repaired)
+    again = cutcell.load(tmp_path / "fixed.glb")
+    sound = cutcell.load(demo_path("biped"))
+    assert_array_equal(from_lowest(again.mesh.faces), from_lowest(sound.mesh.faces))
+    assert_array_equal(again.mesh.vertices, rig.mesh.vertices)
+    assert_allclose(again.weights, rig.weights, atol=1e-6)
+    before, after = (
+        read_document(p).json for p in (demo_path("biped_flipped_arm"), tmp_path / "fixed.glb")
+    )
+    for kept in ("animations", "nodes", "materials", "skins"):
+        assert after.get(kept) == before.get(kept)
