@@ -63,16 +63,14 @@ def _check_same(rig: Rig, source: GltfSource) -> None:
     if rig.weights is None:
         raise WeightsError("the rig has no weights to save; bind it first")
     remedy = "set the rig's source to None to write a new file instead"
-    triangles = source.faces[-1].rows.stop
-    if len(rig.mesh.faces) != triangles:
-        raise MeshError(
-            f"the rig has {len(rig.mesh.faces)} faces, its document {triangles}; {remedy}"
-        )
     count = source.parts[-1].rows.stop
     if len(rig.mesh.vertices) != count:
         raise MeshError(
             f"the rig has {len(rig.mesh.vertices)} vertices, its document {count}; {remedy}"
         )
+    count = source.faces[-1].rows.stop
+    if len(rig.mesh.faces) != count:
+        raise MeshError(f"the rig has {len(rig.mesh.faces)} faces, its document {count}; {remedy}")
     if rig.skeleton.names != source.joints:
         raise SkeletonError(f"the rig's joints are no longer those of its document; {remedy}")
 
