@@ -1,4 +1,4 @@
-"""The `cutcell` command: app, bind, graph, compare; render has a file of its own.
+"""The `cutcell` command: app, bind, graph, compare; diagnose and render have files of their own.
 
 Nothing heavy is imported before a command runs, so that `--help` answers at once.
 """
@@ -15,6 +15,8 @@ import typer
 
 from . import __version__
 from .console import for_people, print_json, print_table, print_warnings, progress_bars
+from .diagnose_command import EPILOG as DIAGNOSE_EPILOG
+from .diagnose_command import diagnose
 from .errors import MissingLibraryError, ParameterError
 from .options import (
     Alpha,
@@ -369,6 +371,7 @@ def compare(
         print_comparison(comparison)
 
 
+app.command(epilog=DIAGNOSE_EPILOG)(diagnose)
 app.command(epilog=EPILOG)(render)
 
 

@@ -28,6 +28,7 @@ STAGES = {
     "graph": "Building the graph",
     "distances": "Finding distances",
     "weights": "Weighting",
+    "checks": "Checking",
 }
 
 Command = TypeVar("Command", bound=Callable[..., Any])

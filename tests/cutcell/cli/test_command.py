@@ -22,7 +22,7 @@ class TestHelp:
     def test_version(self, run):
         assert run("--version").stdout == f"cutcell {cutcell.__version__}\n"
 
-    @pytest.mark.parametrize("command", ["app", "bind", "graph", "render"])
+    @pytest.mark.parametrize("command", ["app", "bind", "graph", "diagnose", "render"])
     def test_each_command_shows_examples(self, run, command):
         shown = run(command, "--help")
         assert shown.exit_code == 0
