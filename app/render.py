@@ -12,11 +12,10 @@ from cutcell.checks import check_choice, check_has_joints
 from cutcell.errors import ParameterError
 from cutcell.progress import Progress, silent
 from cutcell.rig import Clip, Rig
-from viewers.character import pose_in_scene
 from viewers.description import Description
 from viewers.error_scene import Gap
-from viewers.film import Motion, Order
-from viewers.pose_scene import pose_at
+from viewers.film import Order
+from viewers.pose_scene import clip_in_scene, pose_at
 
 from .actions.compare import measured
 from .actions.pose import motion_error
@@ -191,7 +190,7 @@ def order(
     motion = None
     if choices.clip is not None and choices.time is None:
         clip = find_clip(rig, choices.clip)
-        motion = Motion(clip.times, pose_in_scene(rig, clip.transforms))
+        motion = clip_in_scene(rig, clip)
     theme = "dark" if choices.dark else "light"
     return Order(description, theme, size, None, direction, turntable, motion, legend)
 

@@ -10,7 +10,7 @@ _HOMES = {
     "TriangleMesh": "rig",
     "Skeleton": "rig",
     "Rig": "rig",
-    "Clip": "rig",
+    "Clip": "motion",
     "Attachment": "rig",
     "Part": "rig",
     "LeftOut": "rig",

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from .errors import MeshError, SkeletonError, WeightsError
 from .memory import check_matrix
+from .motion import Clip
 
 LONG_CYCLE = 10
 """Joints of a cycle that are named; of a longer one only the first and the last."""
@@ -149,28 +150,6 @@ class Skeleton:
             inside[above[k], k] = True
             above[k] = self.parents[above[k]]
         return _frozen(inside)
-
-
-@dataclass(frozen=True, eq=False)
-class Clip:
-    """A motion, ready to skin with.
-
-    Parameters
-    ----------
-    name : str
-    times : array, shape (f,), seconds, ascending from 0
-    transforms : array, shape (f, j, 4, 4)
-        Takes a point of the rest mesh, held by one joint, to where it is at that time.
-    """
-
-    name: str
-    times: NDArray[np.float64]
-    transforms: NDArray[np.float64]
-
-    @property
-    def duration(self) -> float:
-        """Length in seconds."""
-        return float(self.times[-1]) if len(self.times) else 0.0
 
 
 @dataclass(frozen=True, eq=False)

@@ -35,6 +35,7 @@ ORDER = [
         "errors",
         "kernel_cache",
         "memory",
+        "motion",
         "progress",
         "rig",
         "sorting",

@@ -14,6 +14,8 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from cutcell.errors import FileError, MissingLibraryError
+from cutcell.motion import Clip
+from cutcell.pose import pose_at
 from cutcell.progress import Progress, silent
 from cutcell.writing import check_place, replacing, write_all
 
@@ -35,21 +37,6 @@ FRAMES = {".mp4": 30, ".gif": 20}
 
 
 @dataclass(frozen=True, eq=False)
-class Motion:
-    """Poses over time.
-
-    Parameters
-    ----------
-    times : array, shape (f,), seconds
-    poses : array, shape (f, j, 4, 4)
-        In the scene's space.
-    """
-
-    times: NDArray[np.float64]
-    poses: NDArray[np.float64]
-
-
-@dataclass(frozen=True, eq=False)
 class Order:
     """What is to be drawn: a picture, or a film where it turns or moves.
 
@@ -65,7 +52,8 @@ class Order:
         Where to look from, where no camera is given.
     turntable : bool
         Whether the camera goes once around.
-    motion : Motion, optional
+    motion : Clip, optional
+        In the scene's space; see `pose_scene.clip_in_scene`.
     legend : bool
     """
 
@@ -75,7 +63,7 @@ class Order:
     camera: Camera | None = None
     direction: tuple[float, float, float] | None = None
     turntable: bool = False
-    motion: Motion | None = None
+    motion: Clip | None = None
     legend: bool = True
 
 
@@ -165,7 +153,7 @@ def _frames(
     for k in range(count):
         progress("drawing", k / count)
         if order.motion is not None:
-            pose = _pose_at(order.motion, k / fps)
+            pose = pose_at(order.motion, k / fps)
             studio.show(replace(order.description, pose=pose))
         angle = 2 * np.pi * k / count if order.turntable else 0.0
         yield studio.draw(around(camera, angle))
@@ -191,8 +179,8 @@ def _poses(order: Order) -> list[Any]:
     """Return the poses that are seen, or some of them; None for rest."""
     if order.motion is None:
         return [order.description.pose]
-    poses = order.motion.poses
-    return list(poses[np.linspace(0, len(poses) - 1, min(len(poses), PROBED)).astype(int)])
+    probed = min(len(order.motion.times), PROBED)
+    return list(order.motion.sample(np.linspace(0, order.motion.duration, probed)))
 
 
 def _points(order: Order, poses: list[Any]) -> NDArray[np.float64]:
@@ -218,22 +206,11 @@ def _box(order: Order, poses: list[Any]) -> NDArray[np.float64]:
 def _length(order: Order) -> float:
     if order.motion is None:
         return TURN_SECONDS
-    duration = float(order.motion.times[-1]) if len(order.motion.times) else 0.0
+    duration = order.motion.duration
     if order.turntable:
         # Whole rounds of the motion, so that the film closes.
         return duration * max(round(TURN_SECONDS / duration), 1) if duration else TURN_SECONDS
     return min(max(duration, 0.1), LONGEST)
-
-
-def _pose_at(motion: Motion, time: float) -> NDArray[np.float64]:
-    times = motion.times
-    if len(times) < 2 or times[-1] <= 0:
-        return motion.poses[0]
-    time = time % times[-1]
-    after = int(np.clip(np.searchsorted(times, time, side="right"), 1, len(times) - 1))
-    span = times[after] - times[after - 1]
-    part = np.clip((time - times[after - 1]) / span, 0, 1) if span > 0 else 0.0
-    return (1 - part) * motion.poses[after - 1] + part * motion.poses[after]
 
 
 def _write_picture(path: Path, pixels: NDArray[np.uint8]) -> None:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from cutcell.rig import Clip, Rig
+from cutcell.motion import Clip
+from cutcell.pose import clips as motion
+from cutcell.rig import Rig
 
 from .character import attachments, body, bones, pose_in_scene
 from .description import Description
@@ -53,16 +55,37 @@ def posed(description: Description, rig: Rig, transforms: ArrayLike | None) -> D
 def pose_at(rig: Rig, clip: Clip, time: float) -> NDArray[np.float64]:
     """Return a motion's pose at a time in seconds, in the scene's space, shape (j, 4, 4).
 
-    The motion repeats; between frames matrices are mixed linearly, as the page does it.
+    The motion repeats.
     """
-    if not clip.duration:
-        return pose_in_scene(rig, clip.transforms[0])
-    time = time % clip.duration
-    after = int(np.clip(np.searchsorted(clip.times, time, side="right"), 1, len(clip.times) - 1))
-    span = clip.times[after] - clip.times[after - 1]
-    part = np.clip((time - clip.times[after - 1]) / span, 0, 1) if span > 0 else 0.0
-    mixed = (1 - part) * clip.transforms[after - 1] + part * clip.transforms[after]
-    return pose_in_scene(rig, mixed)
+    return pose_in_scene(rig, motion.pose_at(clip, time))
+
+
+def clip_in_scene(rig: Rig, clip: Clip) -> Clip:
+    """Return a motion of the rig as one of the scene's poses."""
+    return Clip(clip.name, motion=_InScene(clip, rig.world))
+
+
+@dataclass(frozen=True, eq=False)
+class _InScene:
+    """A clip's motion in the space that a matrix (4, 4) leads to."""
+
+    clip: Clip
+    world: NDArray[np.float64]
+
+    @property
+    def joints(self) -> int:
+        return self.clip.joints
+
+    @property
+    def duration(self) -> float:
+        return self.clip.duration
+
+    @property
+    def times(self) -> NDArray[np.float64]:
+        return self.clip.times
+
+    def sample(self, seconds: NDArray[np.float64]) -> NDArray[np.float64]:
+        return self.world @ self.clip.sample(seconds) @ np.linalg.inv(self.world)
 
 
 def turn(axis: str, degrees: float) -> NDArray[np.float64]:

@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from cutcell.errors import CutcellError
 from cutcell.progress import Progress, silent
 from cutcell.rig import Clip, Rig
-from viewers.character import pose_in_scene
 from viewers.error_scene import WHOLE, Gap, scene_error
-from viewers.pose_scene import turn
+from viewers.pose_scene import pose_at, turn
 
 from ..scenes.pose import (
     angles_of,
@@ -54,7 +54,11 @@ def tell_motion(session: Session) -> None:
     state = session.state
     clip = clip_of(state)
     inputs = (state.rig, clip is None, state.motion)
-    part = session.memo("clip", inputs, lambda: clip_part(state, clip))
+    try:
+        part = session.memo("clip", inputs, lambda: clip_part(state, clip))
+    except CutcellError as error:  # what the file holds cannot be played
+        part = None
+        session.fail(error)
     session.view.tell(clip=part, playing=state.playing and part is not None)
 
 
@@ -178,11 +182,12 @@ def motion_error(
     most : float
         What nearly all vertices stay below, in every frame.
     """
-    frames = np.unique(np.linspace(0, len(clip.times) - 1, FRAMES).round().astype(int))
+    times = clip.times
+    frames = np.unique(np.linspace(0, len(times) - 1, FRAMES).round().astype(int))
     mean = greatest = most = 0.0
     for done, frame in enumerate(frames[frames >= 0]):
         progress("error", done / len(frames))
-        squared = gap.squared(pose_in_scene(rig, clip.transforms[frame]))
+        squared = gap.squared(pose_at(rig, clip, times[frame]))
         mean += float(squared.mean()) / len(frames)
         greatest = max(greatest, float(squared.max()))
         most = max(most, float(np.quantile(squared, WHOLE)))

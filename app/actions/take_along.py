@@ -12,10 +12,9 @@ from cutcell.io import binary_ending
 from cutcell.io.numbers import save_numbers
 from cutcell.progress import Progress
 from cutcell.rig import Clip
-from viewers.character import pose_in_scene
 from viewers.description import Description
-from viewers.film import Motion, Order
-from viewers.pose_scene import pose_at, swing
+from viewers.film import Order
+from viewers.pose_scene import clip_in_scene, pose_at, swing
 from viewers.worker import draw_apart
 
 from ..jobs import DRAWING
@@ -51,8 +50,7 @@ def take_motion(session: Session, ending: str, done: Done) -> None:
     if state.weights is None:
         session.state.message = ("info", "There are no weights to move the skin by yet.")
         return
-    clip = chosen_clip(state)
-    motion = Motion(clip.times, pose_in_scene(state.rig, clip.transforms))
+    motion = clip_in_scene(state.rig, chosen_clip(state))
     order = _order(session, FILM_PIXELS, following(state, session.memo))
     _draw(session, replace(order, motion=motion), ending, done)
 

@@ -169,9 +169,14 @@ class Clip {
     return this.times[this.times.length - 1] || 1
   }
 
+  // It starts again whenever it has ended; the end is a moment of its own, as `pose_at` has it.
+  moment(time) {
+    return time >= 0 && time <= this.duration ? time : time % this.duration
+  }
+
   at(time) {
     const {times, size, matrices, pose} = this
-    const t = time % this.duration
+    const t = this.moment(time)
     const final = times.length - 1
     // Most often it is the same frame as before, or the next one.
     let next = Math.min(this.next, final)
@@ -180,7 +185,7 @@ class Clip {
     this.next = next
     const last = Math.max(next - 1, 0)
     const span = times[next] - times[last]
-    const f = span > 0 ? (t - times[last]) / span : 0
+    const f = span > 0 ? (t - times[last]) / span : 1  // without one: at the end
     for (let i = 0, a = last * size, b = next * size; i < size; i++) {
       pose[i] = (1 - f) * matrices[a + i] + f * matrices[b + i]
     }

@@ -45,7 +45,7 @@ class Transport {
   }
 
   tick(clip, time) {
-    const now = time % clip.duration
+    const now = clip.moment(time)
     this.track.value = now
     this.clock.textContent = `${now.toFixed(2)} / ${clip.duration.toFixed(2)} s`
   }

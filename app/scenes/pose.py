@@ -21,6 +21,10 @@ from .memo import Memo
 
 SWING_DEGREES = 50.0
 GHOST_OPACITY = 0.38
+MOST_NUMBERS = 2**22
+"""Of a motion, sent to the browser (16 MB): a long one of many joints has fewer frames there."""
+TOGETHER = 64
+"""Frames that are sampled at a time."""
 VIEWS = ("cutcell", "The file's own weights")
 
 
@@ -155,10 +159,16 @@ def clip_of(state: State) -> Clip | None:
 
 def clip_part(state: State, clip: Clip | None) -> dict[str, Any] | None:
     """Return a motion as the view is told it."""
-    if clip is None or not len(clip.times):
+    if clip is None or not len(times := clip.times):
         return None
-    matrices = pose_in_scene(state.rig, clip.transforms).astype(np.float32)
-    return {"times": clip.times.astype(np.float32), "matrices": matrices.ravel()}
+    most = max(MOST_NUMBERS // max(16 * clip.joints, 1), 2)
+    if len(times) > most:
+        times = np.linspace(0, clip.duration, most)
+    matrices = np.empty((len(times), clip.joints, 4, 4), np.float32)
+    for first in range(0, len(times), TOGETHER):
+        frames = slice(first, first + TOGETHER)
+        matrices[frames] = pose_in_scene(state.rig, clip.sample(times[frames]))
+    return {"times": times, "matrices": matrices.ravel()}
 
 
 def gizmo_part(state: State) -> dict[str, Any] | None:

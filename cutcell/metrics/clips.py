@@ -80,11 +80,12 @@ def clip_error(
     unit = CM2 / longest_side(rig.mesh) ** 2
     errors = []
     for clip in rig.clips:
-        chosen = np.unique(np.linspace(0, len(clip.times) - 1, frames).round().astype(int))
+        times = clip.times
+        chosen = np.unique(np.linspace(0, len(times) - 1, frames).round().astype(int))
         chosen = chosen[chosen >= 0]
         largest, total = np.zeros(len(ours)), 0.0
         for frame in chosen:
-            transforms = clip.transforms[frame]
+            transforms = clip.sample(times[frame])
             apart = linear_blend_skinning(rig.mesh.vertices, ours, transforms)
             apart -= linear_blend_skinning(rig.mesh.vertices, theirs, transforms)
             squared = unit * (apart * apart).sum(axis=1)

@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import ParameterError
-from ..rig import Clip, Skeleton
+from ..motion import Clip
+from ..rig import Skeleton
 from .kinematics import axis_rotation, checked_joint, forward_kinematics
 
 
@@ -22,27 +23,17 @@ def pose_at(clip: Clip, seconds: float) -> NDArray[np.float64]:
     Returns
     -------
     array, shape (j, 4, 4), float64
-        Between two frames the matrices are mixed linearly: good for frames that are
-        close together, as those of a loaded clip are.
 
     Raises
     ------
     ParameterError
         A time that is not finite, or a clip without frames.
     """
-    if not np.isfinite(seconds):
-        raise ParameterError(f"seconds must be a finite number, not {seconds}")
-    if len(clip.times) == 0:
-        raise ParameterError(f'clip "{clip.name}" has no frames')
-    if clip.duration <= 0:
-        return clip.transforms[0].copy()
     # The end is a frame of its own, not yet the start again.
-    at = seconds if 0 <= seconds <= clip.duration else seconds % clip.duration
-    right = min(max(int(np.searchsorted(clip.times, at, side="right")), 1), len(clip.times) - 1)
-    left = right - 1
-    span = clip.times[right] - clip.times[left]
-    share = np.clip((at - clip.times[left]) / span, 0, 1) if span > 0 else 0.0
-    return (1 - share) * clip.transforms[left] + share * clip.transforms[right]
+    duration = clip.duration
+    if np.isfinite(seconds) and duration > 0 and not 0 <= seconds <= duration:
+        seconds %= duration
+    return clip.sample(seconds)
 
 
 def swing(

@@ -9,11 +9,12 @@ import pytest
 from PIL import Image
 
 import viewers.worker
+from cutcell import Clip
 from cutcell.errors import Cancelled, FileError, MissingLibraryError
 from tests.viewers.arm import arm_rig
 from viewers.camera import Camera, around, framing, sees
 from viewers.character import pose_in_scene
-from viewers.film import FRAMES, Motion, Order, _camera, draw
+from viewers.film import FRAMES, Order, _camera, draw
 from viewers.palette import DARK, LIGHT
 from viewers.studio import Studio
 from viewers.weights_scene import weights_scene
@@ -35,7 +36,7 @@ def scene(rig):
 @pytest.fixture(scope="module")
 def motion(rig):
     clip = rig.clips[0]
-    return Motion(0.3 * clip.times, pose_in_scene(rig, clip.transforms))
+    return Clip(clip.name, 0.3 * clip.times, pose_in_scene(rig, clip.transforms))
 
 
 def picture(scene, **options):
@@ -172,11 +173,11 @@ def test_a_process_that_dies_without_reason_is_told(scene, tmp_path, monkeypatch
 
 def test_a_film_has_room_for_all_of_its_motion(scene, motion, tmp_path):
     """A body that leaps by twice its height is seen at the top of its leap, and none is cut."""
-    leap = np.tile(np.eye(4), (2, motion.poses.shape[1], 1, 1))
+    leap = np.tile(np.eye(4), (2, motion.joints, 1, 1))
     leap[1, :, 1, 3] = 2 * np.ptp(scene.bounds[:, 1])
     seen = []
     path = tmp_path / "leap.gif"
-    draw(Order(scene, size=SIZE, motion=Motion(np.array([0.0, 0.5]), leap), legend=False), path)
+    draw(Order(scene, size=SIZE, motion=Clip("leap", [0.0, 0.5], leap), legend=False), path)
     with Image.open(path) as film:
         for at in range(film.n_frames):
             film.seek(at)
@@ -188,13 +189,13 @@ def test_a_film_has_room_for_all_of_its_motion(scene, motion, tmp_path):
 
 
 def test_a_camera_steps_back_for_a_motion_if_it_saw_the_whole_character(scene, motion):
-    leap = np.tile(np.eye(4), (2, motion.poses.shape[1], 1, 1))
+    leap = np.tile(np.eye(4), (2, motion.joints, 1, 1))
     leap[1, :, 1, 3] = 2 * np.ptp(scene.bounds[:, 1])
     whole = framing(scene.bounds, direction=(1.0, 0.2, 0.4))
     position, target = np.array(whole.position), np.array(whole.focal_point)
     close = Camera(tuple((target + 0.2 * (position - target)).tolist()), whole.focal_point)
     with Studio(scene, size=(120, 120)) as studio:
-        far = _camera(Order(scene, camera=whole, motion=Motion(np.array([0.0, 1]), leap)), studio)
+        far = _camera(Order(scene, camera=whole, motion=Clip("leap", [0, 1], leap)), studio)
         assert sees(far, np.concatenate([scene.bounds, scene.bounds + leap[1, 0, :3, 3]]))
         way = np.array(far.position) - np.array(far.focal_point)
         assert np.dot(way, position - target) == pytest.approx(
@@ -202,12 +203,12 @@ def test_a_camera_steps_back_for_a_motion_if_it_saw_the_whole_character(scene, m
         )
         assert np.linalg.norm(way) > np.linalg.norm(position - target)
         for camera, poses in ((close, leap), (whole, leap[:1])):
-            moving = Order(scene, camera=camera, motion=Motion(np.arange(len(poses)), poses))
+            moving = Order(scene, camera=camera, motion=Clip("leap", range(len(poses)), poses))
             assert _camera(moving, studio) is camera
 
 
 def test_a_picture_of_a_pose_sees_the_pose(scene, motion):
-    away = np.tile(np.eye(4), (motion.poses.shape[1], 1, 1))
+    away = np.tile(np.eye(4), (motion.joints, 1, 1))
     away[:, 0, 3] = 5 * np.ptp(scene.bounds[:, 0])
     posed = replace(scene, pose=away)
     with Studio(posed, size=(120, 120)) as studio:

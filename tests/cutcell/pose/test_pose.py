@@ -170,10 +170,10 @@ EYES = np.tile(np.eye(3), (2, 1, 1))
             lambda: cutcell.linear_blend_skinning([[0, 0, 0]], [[1], [1]], [np.eye(4)]),
             "1 vertices but 2 rows of weights",
         ),
-        (lambda: pose_at(ramp(), np.nan), "seconds must be a finite number"),
+        (lambda: pose_at(ramp(), np.nan), "seconds must be finite numbers"),
         (
             lambda: pose_at(cutcell.Clip("none", np.zeros(0), np.zeros((0, 1, 4, 4))), 0),
-            'clip "none" has no frames',
+            "a clip without frames cannot be played",
         ),
         (lambda: swing(SKELETON, 0, "x", 5, seconds=0), "seconds and fps must be positive"),
         (lambda: swing(SKELETON, 7, "x", 5), "no joint 7"),
