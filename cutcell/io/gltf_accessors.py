@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -20,8 +21,66 @@ COMPONENTS: dict[int, np.dtype] = {
     pygltflib.FLOAT: np.dtype("<f4"),
 }
 WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}
-MOST_ZEROS = 10_000_000
-"""Longest accessor without data of its own: a file of a few bytes can ask for any."""
+BYTES_PER_NUMBER = 8
+"""Decoded; every accessor counts with them, since many can show the same bytes."""
+
+
+@dataclass(frozen=True, eq=False)
+class Stored:
+    """Elements of one type among the bytes of a buffer; none of them are copied.
+
+    Without bytes all are zero.
+    """
+
+    count: int
+    width: int
+    dtype: np.dtype
+    buffer: bytes | None = field(repr=False)
+    start: int = 0
+    stride: int = 0
+
+    def array(self) -> NDArray:
+        """Return them as they are stored, shape (count, width)."""
+        shape = self.count, self.width
+        if self.buffer is None:
+            return np.broadcast_to(np.zeros((), self.dtype), shape)
+        strides = self.stride, self.dtype.itemsize
+        return np.ndarray(shape, self.dtype, self.buffer, self.start, strides)
+
+
+@dataclass(frozen=True, eq=False)
+class Accessor:
+    """The checked elements of an accessor, to be decoded when they are wanted."""
+
+    base: Stored
+    normalized: bool = False
+    rows: Stored | None = None
+    """Elements that a sparse accessor replaces, and by what."""
+    replaced: Stored | None = None
+
+    def __len__(self) -> int:
+        return self.base.count
+
+    @property
+    def is_float(self) -> bool:
+        """Whether decoded elements are floats."""
+        return self.normalized or self.base.dtype.kind == "f"
+
+    def decoded(self, at: NDArray[np.intp] | slice = slice(None)) -> NDArray:
+        """Return some elements, shape (k, width).
+
+        float64 for floats and normalised integers, else the stored integer type.
+        """
+        values = self.base.array()
+        if self.rows is not None and self.replaced is not None:
+            values = values.copy()
+            values[self.rows.array()[:, 0]] = self.replaced.array()
+        values = values[at]
+        if self.base.dtype.kind == "f":
+            return values.astype(np.float64)
+        if self.normalized:
+            return np.maximum(values.astype(np.float64) / np.iinfo(self.base.dtype).max, -1.0)
+        return values
 
 
 def read_accessor(document: Document, index: Any, kind: str, user: str) -> NDArray:
@@ -42,29 +101,37 @@ def read_accessor(document: Document, index: Any, kind: str, user: str) -> NDArr
     array, shape (count, width)
         float64 for floats and normalised integers, else the stored integer type.
     """
-    accessor = document.item("accessors", index, user)
-    if accessor.get("type") != kind:
-        raise FileError(f"{user}: accessors[{index}] is {accessor.get('type')}, expected {kind}")
+    found = find_accessor(document, index, kind, user)
     if index not in document.decoded:
-        document.decoded[index] = _decode(document, accessor, f"accessors[{index}]")
+        document.decoded[index] = found.decoded()
     return document.decoded[index]
 
 
-def _decode(document: Document, accessor: dict[str, Any], user: str) -> NDArray:
+def find_accessor(document: Document, index: Any, kind: str, user: str) -> Accessor:
+    """Return an accessor, checked and not decoded; see `read_accessor`."""
+    accessor = document.item("accessors", index, user)
+    if accessor.get("type") != kind:
+        raise FileError(f"{user}: accessors[{index}] is {accessor.get('type')}, expected {kind}")
+    if index not in document.accessors:
+        document.accessors[index] = _checked(document, accessor, f"accessors[{index}]")
+    return document.accessors[index]
+
+
+def _checked(document: Document, accessor: dict[str, Any], user: str) -> Accessor:
     width = WIDTHS[accessor["type"]]
     dtype = component(accessor, user)
     count = whole(accessor, "count", user)
     if count < 1:
         raise FileError(f"{user} is empty: its count is 0")
     if "bufferView" in accessor:
-        values = _viewed(document, accessor, count, width, dtype, user)
-    elif count > MOST_ZEROS:
-        raise FileError(f"{user} asks for {count} elements and has no data")
+        base = _viewed(document, accessor, count, width, dtype, user)
     else:
-        values = np.zeros((count, width), dtype)
-    if "sparse" in accessor:
-        values = _with_sparse(document, accessor["sparse"], values, user)
-    return _normalised(values, accessor)
+        base = Stored(count, width, dtype, None)
+    document.allowance.take(count * width * BYTES_PER_NUMBER, user)
+    normalized = accessor.get("normalized") is True and dtype.kind != "f"
+    if "sparse" not in accessor:
+        return Accessor(base, normalized)
+    return Accessor(base, normalized, *_sparse(document, accessor["sparse"], base, user))
 
 
 def component(owner: dict[str, Any], user: str) -> np.dtype:
@@ -77,7 +144,7 @@ def component(owner: dict[str, Any], user: str) -> np.dtype:
 
 def _viewed(
     document: Document, owner: dict[str, Any], count: int, width: int, dtype: np.dtype, user: str
-) -> NDArray:
+) -> Stored:
     """Return `count` elements that `owner` finds in its buffer view."""
     view = document.item("bufferViews", owner["bufferView"], user)
     name = f"bufferViews[{owner['bufferView']}]"
@@ -99,13 +166,11 @@ def _viewed(
             f"{user} runs past {name}: {count} elements from byte {offset} need "
             f"{offset + stride * (count - 1) + element} bytes, {length} are there"
         )
-    if stride == element:
-        flat = np.frombuffer(buffer, dtype, count * width, start + offset)
-        return flat.reshape(count, width)
-    return np.ndarray((count, width), dtype, buffer, start + offset, (stride, dtype.itemsize))
+    return Stored(count, width, dtype, buffer, start + offset, stride)
 
 
-def _with_sparse(document: Document, sparse: Any, values: NDArray, user: str) -> NDArray:
+def _sparse(document: Document, sparse: Any, base: Stored, user: str) -> tuple[Stored, ...]:
+    """Return the numbers and the values of the elements that a sparse accessor replaces."""
     user = f"{user}, sparse"
     if not isinstance(sparse, dict):
         raise FileError(f"{user}: must be an object")
@@ -117,19 +182,8 @@ def _with_sparse(document: Document, sparse: Any, values: NDArray, user: str) ->
             raise FileError(f'{user}: "indices" and "values" need a "bufferView"')
     count = whole(sparse, "count", user)
     if count == 0:
-        return values
-    rows = _viewed(document, where, count, 1, component(where, user), user)[:, 0]
-    if rows.dtype.kind != "u" or rows.max() >= len(values):
-        raise FileError(f"{user}: an index is out of range (0 to {len(values) - 1})")
-    values = values.copy()
-    values[rows] = _viewed(document, what, count, values.shape[1], values.dtype, user)
-    return values
-
-
-def _normalised(values: NDArray, accessor: dict[str, Any]) -> NDArray:
-    if values.dtype.kind == "f":
-        return values.astype(np.float64)
-    if accessor.get("normalized") is True:
-        largest = np.iinfo(values.dtype).max
-        return np.maximum(values.astype(np.float64) / largest, -1.0)
-    return values
+        return ()
+    rows = _viewed(document, where, count, 1, component(where, user), user)
+    if rows.dtype.kind != "u" or rows.array().max() >= base.count:
+        raise FileError(f"{user}: an index is out of range (0 to {base.count - 1})")
+    return rows, _viewed(document, what, count, base.width, base.dtype, user)

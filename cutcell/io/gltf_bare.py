@@ -11,9 +11,6 @@ from .gltf_nodes import Nodes
 from .gltf_parts import hidden_nodes, left_out_meshes, mesh_name, vanishes
 from .gltf_primitives import read_triangles
 
-MOST_VERTICES = 50_000_000
-"""A document of a few bytes can place one mesh any number of times."""
-
 
 def read_bare(document: Document, nodes: Nodes, name: str) -> Rig:
     """Return the scene's meshes as a rig without joints, in the scene's space and units."""
@@ -32,13 +29,12 @@ def read_bare(document: Document, nodes: Nodes, name: str) -> Rig:
         if np.linalg.det(world[:3, :3]) < 0:
             corners = corners[:, ::-1]  # mirrored: what was outside stays outside
         kept.append(i)
+        document.allowance.take(points.nbytes + corners.nbytes, document.label("nodes", i))
         vertices.append(points @ world[:3, :3].T + world[:3, 3])
         faces.append(corners + total)
         rows = slice(total, total := total + len(points))
         hides = i in hidden or vanishes(nodes, i)
         parts.append(Part(mesh_name(document, nodes, i), rows, hides))
-        if total > MOST_VERTICES:
-            raise MeshError(f"its scene shows more than {MOST_VERTICES:,} vertices")
     if not faces:
         raise MeshError("its meshes have no triangles")
     return Rig(

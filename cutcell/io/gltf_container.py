@@ -21,6 +21,7 @@ from urllib.parse import unquote
 import pygltflib
 
 from ..errors import FileError
+from .allowance import Allowance
 from .files import read_bytes
 from .names import HALVES, whole_characters
 
@@ -37,20 +38,45 @@ class Document:
     path: Path
     json: dict[str, Any]
     buffers: list[bytes]
+    size: int = 0
+    """Bytes of its JSON."""
     binary: bool = True
     """Whether it came as a GLB container."""
     chunks: list[tuple[int, bytes]] = field(default_factory=list)
     """GLB chunks that are neither JSON nor the binary buffer."""
+    accessors: dict[int, Any] = field(default_factory=dict)
+    """Accessors checked so far."""
     decoded: dict[int, Any] = field(default_factory=dict)
-    """Accessors read so far."""
+    """Accessors decoded so far."""
+    finite: set[int] = field(default_factory=set)
+    """Accessors that were seen to hold finite numbers only."""
+    triangles: dict[int, Any] = field(default_factory=dict)
+    """Vertices, faces and primitives of meshes read so far."""
+    _checked: dict[str, list[dict[str, Any]]] = field(default_factory=dict)
+    allowance: Allowance = field(init=False)
+    """Memory that may be taken to read it."""
     warnings: list[str] = field(default_factory=list)
     """What a person should know of how it was read, in sentences."""
+
+    def __post_init__(self) -> None:
+        self.allow()
+
+    def allow(self) -> None:
+        """Count anew what may be taken to read it, by the size that it has now."""
+        self.allowance = Allowance(self.size + sum(map(len, self.buffers)))
+
+    def forget(self) -> None:
+        """Let go of what was only needed to read it."""
+        for found in (self.accessors, self.decoded, self.finite, self.triangles):
+            found.clear()
 
     def items(self, kind: str) -> list[dict[str, Any]]:
         """Return a top-level list of objects such as "nodes"; empty when absent."""
         found = self.json.get(kind, [])
-        if not isinstance(found, list) or not all(isinstance(x, dict) for x in found):
-            raise FileError(f'"{kind}" of the glTF document must be a list of objects')
+        if found is not self._checked.get(kind):  # long lists are asked for again and again
+            if not isinstance(found, list) or not all(isinstance(x, dict) for x in found):
+                raise FileError(f'"{kind}" of the glTF document must be a list of objects')
+            self._checked[kind] = found
         return found
 
     def item(self, kind: str, index: Any, user: str) -> dict[str, Any]:
@@ -68,7 +94,7 @@ class Document:
 
     def label(self, kind: str, index: int) -> str:
         """Return how to name an object to people: by its name, else by its number."""
-        name = self.items(kind)[index].get("name")
+        name = self.item(kind, index, "the document").get("name")
         one = "mesh" if kind == "meshes" else kind.removesuffix("s")
         return f'{one} "{name}"' if isinstance(name, str) and name else f"{kind}[{index}]"
 
@@ -115,10 +141,11 @@ def read_document(path: Path) -> Document:
             "brace (JSON text)"
         )
     parsed, warnings = _parse(text)
-    document = Document(path, parsed, [], data[:4] == MAGIC, others, warnings=warnings)
+    document = Document(path, parsed, [], len(text), data[:4] == MAGIC, others, warnings=warnings)
     _check_version(document)
     for i, buffer in enumerate(document.items("buffers")):
         document.buffers.append(_buffer_bytes(path, buffer, i, binary))
+    document.allow()
     return document
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from typing import Any
 
 import numpy as np
@@ -20,6 +21,7 @@ class Nodes:
         Parent of each node, -1 for none.
     levels : list of int arrays
         Nodes by depth, roots first.
+    depth : array, shape (k,), int
     translation, rotation, scale : arrays, shape (k, 3), (k, 4), (k, 3)
         Rest pose; rotations are quaternions (x, y, z, w).
     local, world : arrays, shape (k, 4, 4)
@@ -31,6 +33,9 @@ class Nodes:
         self.raw = document.items("nodes")
         self.parents = _parents(document)
         self.levels = _levels(document, self.parents)
+        self.depth = np.zeros(len(self.raw), int)
+        for depth, level in enumerate(self.levels):
+            self.depth[level] = depth
         self._read_transforms()
         self.world = self.compose_world(self.local[None])[0]
 
@@ -75,12 +80,35 @@ class Nodes:
             world[:, level] = world[:, parents[level]] @ local[:, level]
         return world
 
-    def ancestors(self, node: int) -> list[int]:
-        """Return the nodes above, nearest first."""
-        above = []
-        while (node := self.parents[node]) >= 0:
-            above.append(node)
-        return above
+    def with_ancestors(self, some: list[int]) -> list[int]:
+        """Return some nodes and all that are above any of them, each once."""
+        found: set[int] = set()
+        for node in some:
+            while node >= 0 and node not in found:
+                found.add(node)
+                node = self.parents[node]
+        return sorted(found)
+
+    def nearest(self, some: Collection[int]) -> list[int]:
+        """Return for each node the nearest of some, itself or above it; -1 for none."""
+        found = [-1] * len(self.raw)
+        for level in self.levels:
+            for i in level.tolist():
+                parent = self.parents[i]
+                found[i] = i if i in some else found[parent] if parent >= 0 else -1
+        return found
+
+    def relative_to(self, some: list[int]) -> NDArray[np.float64]:
+        """Return matrices, shape (k, 4, 4), from each node to the nearest of some above it."""
+        relative = self.local.copy()
+        parents = np.array(self.parents, int)
+        chosen = np.zeros(len(self.raw), bool)
+        chosen[some] = True
+        relative[chosen] = np.eye(4)
+        for level in self.levels[1:]:
+            other = level[~chosen[level]]
+            relative[other] = relative[parents[other]] @ relative[other]
+        return relative
 
     def in_scene(self) -> list[int]:
         """Return the nodes of the default scene, ascending; all when there is no scene."""

@@ -52,11 +52,15 @@ def left_out_meshes(
     here = set(nodes.in_scene())
     kept = {*bound, *attached}
     found = []
+    draws: dict[int, bool] = {}
     for i, node in enumerate(nodes.raw):
         if "mesh" not in node or i in kept:
             continue
-        drawn = primitives(document, node["mesh"], document.label("nodes", i))
-        if not any(draws_triangles(p) for p in drawn):
+        mesh = node["mesh"]
+        if mesh not in draws:
+            drawn = primitives(document, mesh, document.label("nodes", i))
+            draws[mesh] = any(draws_triangles(p) for p in drawn)
+        if not draws[mesh]:
             why = "is points or lines"
         elif i not in here:
             why = "is outside of the scene"

@@ -13,6 +13,10 @@ from .gltf_accessors import read_accessor
 from .gltf_container import Document
 from .weights import NO_WEIGHTS, ReadWeights, summed
 
+BYTES_PER_CORNER = 24
+"""Of a triangle; in a strip or a fan each corner makes one."""
+BYTES_PER_SET = 4 * (8 + 8)
+"""Of a vertex' joints and weights, as a list of influences."""
 DRAWS_TRIANGLES = (pygltflib.TRIANGLES, pygltflib.TRIANGLE_STRIP, pygltflib.TRIANGLE_FAN)
 
 
@@ -42,13 +46,17 @@ def read_positions(document: Document, primitive: dict[str, Any], user: str) -> 
     found = attributes(primitive, user)
     if "POSITION" not in found:
         raise MeshError(f"{user} has no POSITION")
-    positions = read_accessor(document, found["POSITION"], "VEC3", user).astype(np.float64)
+    index = found["POSITION"]
+    positions = np.asarray(read_accessor(document, index, "VEC3", user), np.float64)
+    if index in document.finite:  # many primitives may share it
+        return positions
     bad = np.flatnonzero(~np.isfinite(positions).all(axis=1))
     if len(bad):
         raise MeshError(
             f"{user}: vertex {bad[0]} has a coordinate that is not a finite number; "
             f"{len(bad)} of {len(positions)} are so"
         )
+    document.finite.add(index)
     return positions
 
 
@@ -58,6 +66,7 @@ def read_faces(document: Document, primitive: dict[str, Any], count: int, user: 
         corners = read_accessor(document, primitive["indices"], "SCALAR", user)[:, 0]
         if corners.dtype.kind != "u":
             raise FileError(f"{user}: its indices are {corners.dtype}, not unsigned integers")
+        document.allowance.take(len(corners) * BYTES_PER_CORNER, user)
         corners = corners.astype(np.int64)
         bad = np.flatnonzero(corners >= count)
         if len(bad):
@@ -66,6 +75,7 @@ def read_faces(document: Document, primitive: dict[str, Any], count: int, user: 
                 f"(numbered from 0); {len(bad)} indices are so"
             )
     else:
+        document.allowance.take(count * BYTES_PER_CORNER, user)
         corners = np.arange(count)
     mode = primitive.get("mode", pygltflib.TRIANGLES)
     if mode == pygltflib.TRIANGLES:
@@ -86,6 +96,15 @@ def read_triangles(
     document: Document, mesh: Any, user: str
 ) -> tuple[NDArray, NDArray, list[dict[str, Any]]]:
     """Return vertices, faces and triangle primitives of a whole mesh, buffers counted once."""
+    document.item("meshes", mesh, user)
+    if mesh not in document.triangles:
+        document.triangles[mesh] = _triangles(document, mesh, user)
+    return document.triangles[mesh]
+
+
+def _triangles(
+    document: Document, mesh: int, user: str
+) -> tuple[NDArray, NDArray, list[dict[str, Any]]]:
     vertices: list[NDArray] = []
     faces: list[NDArray] = []
     start: dict[Any, int] = {}
@@ -126,6 +145,7 @@ def read_weights(
     joint_sets, share_sets = [], []
     for n in sets:
         where, share = _influences(document, found, n, user)
+        document.allowance.take(len(where) * BYTES_PER_SET, user)
         if len(where) != count or len(share) != count:
             raise WeightsError(
                 f"{user}: {count} vertices but {len(where)} JOINTS_{n} and {len(share)} WEIGHTS_{n}"
@@ -133,6 +153,7 @@ def read_weights(
         _check_influences(where, share, joints, n, user)
         joint_sets.append(where)
         share_sets.append(share)
+    document.allowance.take_weights(count, joints)
     where, share = np.concatenate(joint_sets, axis=1), np.concatenate(share_sets, axis=1)
     held = share != 0  # also true for what is not a number
     rows = np.nonzero(held)[0]

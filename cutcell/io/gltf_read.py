@@ -88,6 +88,7 @@ def read_gltf(path: Path) -> Rig:
         document = read_document(path)
         decompress_meshopt(document)
         decompress_draco(document)
+        document.allow()  # what was compressed is larger now
         return read_rig(document, path)
     except CutcellError:
         raise
@@ -101,7 +102,9 @@ def read_rig(document: Document, path: Path, world: NDArray | None = None) -> Ri
     nodes = Nodes(document)
     skinned = _skinned_nodes(nodes)
     if not skinned:
-        return read_bare(document, nodes, path.stem)
+        rig = read_bare(document, nodes, path.stem)
+        document.forget()
+        return rig
     for i in skinned:
         document.item("skins", nodes.raw[i]["skin"], document.label("nodes", i))
     skins = list(dict.fromkeys(nodes.raw[i]["skin"] for i in skinned))
@@ -111,14 +114,16 @@ def read_rig(document: Document, path: Path, world: NDArray | None = None) -> Ri
     if not sum(len(corners) for corners in stored.faces):
         raise MeshError("its skinned meshes have no triangles")
     mesh = TriangleMesh(np.concatenate(stored.vertices), np.concatenate(stored.faces))  # type: ignore[arg-type]
-    weights, sums = _dense(parts, stored.weights, len(mesh.vertices), len(bind.nodes))
+    weights, sums = _dense(document, parts, stored.weights, len(mesh.vertices), len(bind.nodes))
     skeleton, told = with_deform(mesh, read_skeleton(nodes, bind), weights)
     attached = _read_attachments(document, nodes, bind)
+    clips = read_clips(document, nodes, bind.nodes, np.array(bind.inverse), bind.world)
+    document.forget()
     return Rig(
         mesh,
         skeleton,
         weights,
-        clips=read_clips(document, nodes, bind.nodes, np.array(bind.inverse), bind.world),
+        clips=clips,
         attachments=tuple(attached.values()),
         name=path.stem,
         world=bind.world,
@@ -159,19 +164,23 @@ def _read_parts(document: Document, nodes: Nodes, skinned: list[int], bind: Bind
     parts: dict[Any, StoredPart] = {}
     _, vertices, weights, faces, drawn, named = read = _Stored([], [], [], [], [], [])
     hidden = hidden_nodes(nodes)
-    seen: set[tuple[int, int]] = set()
+    seen: set[int] = set()
     total = triangles = 0
     for i in skinned:
         mesh, skin, first = nodes.raw[i]["mesh"], nodes.raw[i]["skin"], total
+        document.item("meshes", mesh, document.label("nodes", i))
+        if mesh in seen:
+            continue
+        seen.add(mesh)
         for k, primitive in enumerate(primitives(document, mesh, document.label("nodes", i))):
-            if (mesh, k) in seen or not draws_triangles(primitive):
+            if not draws_triangles(primitive):
                 continue
-            seen.add((mesh, k))
             label = f"{document.label('meshes', mesh)}, primitive {k}"
             positions = read_positions(document, primitive, label)
             corners = read_faces(document, primitive, len(positions), label)
             key = (skin, _vertex_key(primitive, label))
             if key not in parts:
+                document.allowance.take(positions.nbytes, label)
                 rows = slice(total, total := total + len(positions))
                 parts[key] = StoredPart(label, [], skin, rows, bind.skins[skin])
                 vertices.append(_moved(positions, bind.to_rig[skin]))
@@ -206,11 +215,16 @@ def _moved(points: NDArray, matrix: NDArray) -> NDArray:
 
 
 def _dense(
-    parts: list[StoredPart], stored: list[ReadWeights], vertices: int, joints: int
+    document: Document,
+    parts: list[StoredPart],
+    stored: list[ReadWeights],
+    vertices: int,
+    joints: int,
 ) -> tuple[NDArray | None, NDArray | None]:
     """Return the weights of all parts, and what each row summed to in the file."""
     if all(read.weights is None for read in stored):
         return None, None
+    document.allowance.take_weights(vertices, joints)
     weights, sums = np.zeros((vertices, joints)), np.zeros(vertices)
     for part, read in zip(parts, stored, strict=True):
         if read.weights is not None and read.sums is not None:
@@ -233,23 +247,19 @@ def _read_attachments(document: Document, nodes: Nodes, bind: Bind) -> dict[int,
     place = {node: j for j, node in enumerate(bind.nodes)}
     hidden = hidden_nodes(nodes)
     found: dict[int, Attachment] = {}
+    nearest = nodes.nearest(place)
+    # From the mesh up to the joint by the local transforms: a joint that is scaled to nothing at
+    # rest (a hidden weapon) could not be inverted.
+    local = nodes.relative_to(bind.nodes)
     for i, node in enumerate(nodes.raw):
-        if "mesh" not in node or "skin" in node:
+        if "mesh" not in node or "skin" in node or nearest[i] < 0:
             continue
-        chain = [i, *nodes.ancestors(i)]
-        above = next((k for k, a in enumerate(chain) if a in place), None)
-        if above is None:
-            continue
-        # From the mesh up to the joint by the local transforms: a joint that is scaled to
-        # nothing at rest (a hidden weapon) could not be inverted.
-        local = np.eye(4)
-        for a in chain[:above]:
-            local = nodes.local[a] @ local
-        joint = place[chain[above]]
+        joint = place[nearest[i]]
         vertices, faces, drawn = read_triangles(document, node["mesh"], document.label("nodes", i))
-        if not drawn or not local[:3, :3].any():
+        if not drawn or not local[i, :3, :3].any():
             continue
-        to_rig = np.linalg.inv(bind.inverse[joint]) @ local
+        document.allowance.take(vertices.nbytes + faces.nbytes, document.label("nodes", i))
+        to_rig = np.linalg.inv(bind.inverse[joint]) @ local[i]
         if np.linalg.det(to_rig[:3, :3]) < 0:
             faces = faces[:, ::-1]
         name = node.get("name") or f"attachment {len(found)}"

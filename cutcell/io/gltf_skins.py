@@ -6,6 +6,7 @@ A joint's rest position is where its inverse bind matrix comes from, inverse(IBM
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -61,12 +62,12 @@ def read_bind(
             raise SkeletonError(
                 f"{document.label('skins', skin)}: its inverse bind matrices cannot be inverted"
             )
-        back = np.linalg.inv(to_rig)
+        moved = inverse @ np.linalg.inv(to_rig)
         for k, node in enumerate(joints):
             if node not in place:
                 place[node] = len(bind.nodes)
                 bind.nodes.append(node)
-                bind.inverse.append(inverse[k] @ back)
+                bind.inverse.append(moved[k])
                 if not given and len(joints) > 1:
                     bind.unbound.add(place[node])
         bind.skins[skin] = [place[node] for node in joints]
@@ -81,8 +82,8 @@ def _skin_joints(document: Document, skin: int) -> list[int]:
         raise SkeletonError(f"{user} has no joints")
     for node in joints:
         document.item("nodes", node, user)
-    if len(set(joints)) < len(joints):
-        twice = next(node for node in joints if joints.count(node) > 1)
+    twice = next((node for node, times in Counter(joints).items() if times > 1), None)
+    if twice is not None:
         raise SkeletonError(f"{user} names {document.label('nodes', twice)} twice as a joint")
     return joints
 
@@ -97,23 +98,24 @@ def _inverse_binds(document: Document, skin: int, joints: list[int]) -> tuple[ND
             f"{user} has {len(joints)} joints but {len(stored)} inverse bind matrices"
         )
     inverse = stored[: len(joints)].astype(np.float64).reshape(-1, 4, 4).transpose(0, 2, 1)
-    for k, node in enumerate(joints):
-        if not _invertible(inverse[k]):
-            raise SkeletonError(
-                f"{user}: the inverse bind matrix of the joint {document.label('nodes', node)} "
-                "cannot be inverted"
-            )
+    bad = np.flatnonzero(~_invertible(inverse))
+    if len(bad):
+        raise SkeletonError(
+            f"{user}: the inverse bind matrix of the joint "
+            f"{document.label('nodes', joints[bad[0]])} cannot be inverted"
+        )
     inverse = inverse.copy()
     inverse[:, 3] = [0, 0, 0, 1]  # exporters leave rounding noise here
     return inverse, True
 
 
-def _invertible(matrix: NDArray) -> bool:
-    if not np.isfinite(matrix).all():
-        return False
-    linear = matrix[:3, :3]
-    size = np.linalg.norm(linear, axis=0).prod()
-    return bool(size > 0 and abs(np.linalg.det(linear)) > 1e-9 * size)
+def _invertible(matrices: NDArray) -> NDArray[np.bool_]:
+    """Tell which matrices, shape (..., 4, 4), can be inverted."""
+    linear = matrices[..., :3, :3]
+    with np.errstate(over="ignore", invalid="ignore"):
+        size = np.linalg.norm(linear, axis=-2).prod(axis=-1)
+        finite = np.isfinite(matrices).all(axis=(-2, -1)) & np.isfinite(size)
+        return finite & (size > 0) & (np.abs(np.linalg.det(linear)) > 1e-9 * size)
 
 
 def _rest_world(nodes: Nodes, joints: list[int], inverse: NDArray) -> NDArray:
@@ -121,7 +123,7 @@ def _rest_world(nodes: Nodes, joints: list[int], inverse: NDArray) -> NDArray:
 
     The other joints may stand in a pose; the topmost one seldom does.
     """
-    for k in sorted(range(len(joints)), key=lambda k: len(nodes.ancestors(joints[k]))):
+    for k in np.argsort(nodes.depth[joints], kind="stable").tolist():
         world = nodes.world[joints[k]] @ inverse[k]
         if _invertible(world):  # a joint may be scaled to nothing to hide what it holds
             return world
@@ -130,10 +132,9 @@ def _rest_world(nodes: Nodes, joints: list[int], inverse: NDArray) -> NDArray:
 
 def read_skeleton(nodes: Nodes, bind: Bind) -> Skeleton:
     """Return the joints with positions, orientations, parents and unique names."""
-    place = {node: j for j, node in enumerate(bind.nodes)}
-    parents = [
-        next((place[a] for a in nodes.ancestors(node) if a in place), -1) for node in bind.nodes
-    ]
+    place = {node: j for j, node in enumerate(bind.nodes)} | {-1: -1}
+    nearest = [*nodes.nearest(set(bind.nodes)), -1]  # the last stands for what is above a root
+    parents = [place[nearest[nodes.parents[node]]] for node in bind.nodes]
     at_rest = np.linalg.inv(np.array(bind.inverse))
     if bind.unbound:
         by_nodes = np.linalg.inv(bind.world) @ nodes.world[bind.nodes]
@@ -158,11 +159,13 @@ def unique_names(names: list) -> tuple[str, ...]:
     given = [n if isinstance(n, str) and n else f"joint {i}" for i, n in enumerate(names)]
     taken = set(given)
     seen: set[str] = set()
+    numbers: dict[str, int] = {}
     unique = []
     for name in given:
-        candidate, k = name, 2
+        candidate = name
         while candidate in seen or (candidate != name and candidate in taken):
-            candidate, k = f"{name} ({k})", k + 1
+            numbers[name] = numbers.get(name, 1) + 1
+            candidate = f"{name} ({numbers[name]})"
         seen.add(candidate)
         unique.append(candidate)
     return tuple(unique)

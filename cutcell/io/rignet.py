@@ -198,11 +198,12 @@ def word_names(names: tuple[str, ...]) -> list[str]:
     """Return names without spaces, still unique: words are what these lines are made of."""
     words: list[str] = []
     taken: set[str] = set()
+    numbers: dict[str, int] = {}
     for name in names:
         word = base = "_".join(whole_characters(name).split()) or "joint"
-        k = 2
         while word in taken:
-            word, k = f"{base}_{k}", k + 1
+            numbers[base] = numbers.get(base, 1) + 1
+            word = f"{base}_{numbers[base]}"
         taken.add(word)
         words.append(word)
     return words

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections import Counter
 from pathlib import Path
 from typing import Any
 
@@ -43,7 +44,7 @@ def read_skeleton_json(path: Path) -> tuple[Skeleton, bool]:
         if not joints:
             raise SkeletonError("the skeleton has no joints; it needs at least one")
         names = [_name(joint, k) for k, joint in enumerate(joints)]
-        twice = next((n for n in names if names.count(n) > 1), None)
+        twice = next((name for name, times in Counter(names).items() if times > 1), None)
         if twice is not None:
             raise SkeletonError(f'the joint "{twice}" is there twice; names must differ')
         place = {name: k for k, name in enumerate(names)}

@@ -82,14 +82,6 @@ def test_there_is_nothing_to_save(alone, tmp_path, end):
     assert not (tmp_path / f"out{end}").exists()
 
 
-def test_a_scene_that_shows_one_mesh_without_end_is_refused(loaded, monkeypatch):
-    monkeypatch.setattr("cutcell.io.gltf_bare.MOST_VERTICES", 20)
-    builder = bare()
-    builder.node(mesh=0)
-    with pytest.raises(cutcell.MeshError, match=r"^rig\.glb: its scene shows more than 20 vert"):
-        loaded(builder)
-
-
 def test_lines_alone_are_no_mesh(loaded):
     builder = bare()
     builder.json["meshes"][0]["primitives"][0]["mode"] = 1
