@@ -8,20 +8,23 @@ parent and child, ``root_index``, ``joint_names`` (j,), and the weights as a spa
 from __future__ import annotations
 
 import io
+import math
 import zipfile
-import zlib
 from pathlib import Path
 
 import numpy as np
+from numpy.lib import format as npy
 from numpy.typing import NDArray
 
-from ..errors import FileError, SkeletonError, WeightsError
+from ..errors import CutcellError, FileError, SkeletonError, WeightsError
 from ..rig import Rig, Skeleton, TriangleMesh
+from .allowance import Allowance
 from .deforming import with_deform
-from .files import read_bytes
+from .files import one_line, read_bytes
 from .names import HALVES, has_halves, whole_characters
 from .weights import NO_WEIGHTS, ReadWeights, summed
 
+HEADERS = {(1, 0): npy.read_array_header_1_0, (2, 0): npy.read_array_header_2_0}
 REQUIRED = ("vertices", "faces", "joints", "bones")
 
 
@@ -67,27 +70,40 @@ def read_articulation(path: Path) -> Rig:
 
 
 def _arrays(data: bytes) -> dict[str, NDArray]:
-    found = {}
+    allowance = Allowance(len(data))
+    if data.startswith(npy.MAGIC_PREFIX):
+        raise FileError("is a single array, not an npz archive of several")
     try:
-        archive = np.load(io.BytesIO(data), allow_pickle=False)
-        if not isinstance(archive, np.lib.npyio.NpzFile):
-            raise FileError("is a single array, not an npz archive of several")
-        with archive:
-            for name in archive.files:
-                found[name] = archive[name]
-    except FileError:
+        with zipfile.ZipFile(io.BytesIO(data)) as archive:
+            return {
+                member.filename.removesuffix(".npy"): _array(archive, member, allowance)
+                for member in archive.infolist()
+            }
+    except CutcellError:
         raise
-    except ValueError as e:
-        if "pickle" in str(e).lower() or "object array" in str(e).lower():
-            raise FileError(
-                "holds pickled Python objects, which could run any code and are not opened; "
-                "save its arrays as plain numbers and text"
-            ) from None
-        raise FileError(f"is not a readable npz archive: {e}") from None
-    except (OSError, EOFError, KeyError, zipfile.BadZipFile, zlib.error, NotImplementedError,
-            SyntaxError, MemoryError, RuntimeError, TypeError, OverflowError) as e:  # fmt: skip
-        raise FileError(f"is not a readable npz archive: {e}") from None
-    return found
+    except Exception as e:  # zipfile and its decoders raise whatever their parsing runs into
+        raise FileError(f"is not a readable npz archive: {one_line(e)}") from None
+
+
+def _array(archive: zipfile.ZipFile, member: zipfile.ZipInfo, allowance: Allowance) -> NDArray:
+    """Read an array, after a look at what its header says that it holds."""
+    what = f'its array "{member.filename[:40]}"'
+    allowance.take(2 * member.file_size, what)
+    stored = io.BytesIO(archive.read(member))
+    version = npy.read_magic(stored)
+    if version not in HEADERS:
+        raise FileError(f"{what} is of the npy version {version[0]}.{version[1]}")
+    shape, _, dtype = HEADERS[version](stored)
+    if dtype.hasobject:
+        raise FileError(
+            "holds pickled Python objects, which could run any code and are not opened; "
+            "save its arrays as plain numbers and text"
+        )
+    size, there = math.prod(shape) * dtype.itemsize, member.file_size - stored.tell()
+    if min(shape, default=0) < 0 or size != there:
+        raise FileError(f"{what} announces {size:,} bytes and holds {there:,}")
+    stored.seek(0)
+    return npy.read_array(stored, allow_pickle=False)
 
 
 def _parents(arrays: dict[str, NDArray], count: int) -> NDArray:

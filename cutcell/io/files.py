@@ -9,6 +9,9 @@ from pathlib import Path
 from ..errors import CutcellError, FileError
 from ..writing import reason
 
+LONGEST = 200
+"""Characters of what another library says."""
+
 
 @contextmanager
 def naming(path: Path) -> Iterator[None]:
@@ -43,6 +46,12 @@ def read_bytes(path: Path) -> bytes:
     if not data:
         raise FileError(f"{path.name}: the file is empty")
     return data
+
+
+def one_line(error: Exception) -> str:
+    """Return what another library says of a file, as part of a sentence."""
+    said = " ".join(str(error).split()) or type(error).__name__
+    return said if len(said) <= LONGEST else f"{said[:LONGEST]}..."
 
 
 def read_text(path: Path) -> str:

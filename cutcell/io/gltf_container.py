@@ -22,7 +22,7 @@ import pygltflib
 
 from ..errors import FileError
 from .allowance import Allowance
-from .files import read_bytes
+from .files import one_line, read_bytes
 from .names import HALVES, whole_characters
 
 MAGIC = pygltflib.MAGIC
@@ -143,8 +143,9 @@ def read_document(path: Path) -> Document:
     parsed, warnings = _parse(text)
     document = Document(path, parsed, [], len(text), data[:4] == MAGIC, others, warnings=warnings)
     _check_version(document)
+    files: dict[str, bytes] = {}
     for i, buffer in enumerate(document.items("buffers")):
-        document.buffers.append(_buffer_bytes(path, buffer, i, binary))
+        document.buffers.append(_buffer_bytes(path, buffer, i, binary, files))
     document.allow()
     return document
 
@@ -182,7 +183,7 @@ def _parse(text: bytes) -> tuple[dict[str, Any], list[str]]:
             warnings += [HALVES] if whole != document else []
             document = whole
     except (ValueError, RecursionError) as e:
-        raise FileError(f"its JSON cannot be read: {e}") from None
+        raise FileError(f"its JSON cannot be read: {one_line(e)}") from None
     if not isinstance(document, dict):
         raise FileError("its JSON is not an object")
     return document, warnings
@@ -200,7 +201,10 @@ def _check_version(document: Document) -> None:
         raise FileError(f"is glTF {asset['version']}; only glTF 2.0 can be read")
 
 
-def _buffer_bytes(path: Path, buffer: dict[str, Any], i: int, binary: bytes | None) -> bytes:
+def _buffer_bytes(
+    path: Path, buffer: dict[str, Any], i: int, binary: bytes | None, files: dict[str, bytes]
+) -> bytes:
+    """Return the bytes of a buffer; `files` keeps what was read, for others that want the same."""
     user = f"buffers[{i}]"
     length = whole(buffer, "byteLength", user)
     if _is_placeholder(buffer):
@@ -211,7 +215,11 @@ def _buffer_bytes(path: Path, buffer: dict[str, Any], i: int, binary: bytes | No
             raise FileError(f"{user} has no data: neither a uri nor a binary chunk")
         data = binary
     else:
-        data = read_uri(path, uri, user)
+        if not isinstance(uri, str):
+            raise FileError(f'{user}: "uri" must be text')
+        if uri not in files:
+            files[uri] = read_uri(path, uri, user)
+        data = files[uri]
     if len(data) < length:
         raise FileError(f"{user} is cut short: {length} bytes announced, {len(data)} there")
     return data[:length]

@@ -10,6 +10,9 @@ import numpy as np
 from ..errors import FileError, MeshError
 from ..rig import TriangleMesh
 
+MOST = 2**31 - 2
+"""Number of a vertex, counted from 0."""
+
 
 def parse_obj(text: str) -> TriangleMesh:
     """Read vertices and faces; polygons are cut into fans of triangles.
@@ -59,7 +62,7 @@ def numbers(words: list[str], count: int, line: int) -> list[float]:
     if len(values) != count:
         raise FileError(f"line {line}: {len(values)} numbers, expected {count}")
     if not np.isfinite(values).all():
-        raise FileError(f"line {line}: {' '.join(words)} is not finite")
+        raise FileError(f"line {line}: {' '.join(words)[:80]} is not finite")
     return values
 
 
@@ -75,8 +78,10 @@ def _corner(word: str, count: int, line: int) -> int:
     try:
         index = int(word.split("/")[0])
     except ValueError:
-        raise FileError(f'line {line}: "{word}" is not a corner of a face') from None
+        raise FileError(f'line {line}: "{word[:40]}" is not a corner of a face') from None
     at = index - 1 if index > 0 else count + index
     if index == 0 or at < 0:
         raise FileError(f"line {line}: vertex {index} is out of range; they start at 1")
+    if at > MOST:
+        raise FileError(f"line {line}: vertex {word[:40]} is out of range")
     return at

@@ -21,6 +21,9 @@ from .names import whole_characters
 from .objects import numbered_words, numbers, one_number, parse_obj, write_obj
 from .weights import NO_WEIGHTS, ReadWeights, summed
 
+MOST_DIGITS = 20
+"""Of a vertex' number."""
+
 
 @dataclass
 class _Text:
@@ -79,14 +82,14 @@ def _parse(text: str) -> _Text:
             if not rest:
                 raise FileError(f"line {number}: a joint needs a name")
             if rest[0] in said.positions:
-                raise SkeletonError(f'line {number}: the joint "{rest[0]}" is there twice')
+                raise SkeletonError(f'line {number}: the joint "{rest[0][:40]}" is there twice')
             said.positions[rest[0]] = numbers(rest[1:], 3, number)
         elif kind == "root":
             said.roots += [_joint(rest, 0, number)]
         elif kind == "hier":
             parent, child = _joint(rest, 0, number), _joint(rest, 1, number)
             if said.parents.get(child, parent) != parent:
-                raise SkeletonError(f'line {number}: the joint "{child}" has two parents')
+                raise SkeletonError(f'line {number}: the joint "{child[:40]}" has two parents')
             said.parents[child] = parent
         elif kind == "skin":
             said.skin.append((number, rest))
@@ -98,10 +101,12 @@ def _parse(text: str) -> _Text:
         raise SkeletonError("has no joints (no lines that start with the word joints)")
     for name in [*said.parents, *said.parents.values(), *said.roots]:
         if name not in said.positions:
-            raise SkeletonError(f'the joint "{name}" has no line that gives its position')
+            raise SkeletonError(f'the joint "{name[:40]}" has no line that gives its position')
     for name in said.roots:
         if name in said.parents:
-            raise SkeletonError(f'the joint "{name}" is a root but hangs on "{said.parents[name]}"')
+            raise SkeletonError(
+                f'the joint "{name[:40]}" is a root but hangs on "{said.parents[name][:40]}"'
+            )
     return said
 
 
@@ -123,17 +128,18 @@ def _weights(said: _Text, vertices: int, names: tuple[str, ...], owner: str) -> 
     place = {name: j for j, name in enumerate(names)}
     rows, columns, values = [], [], []
     for line, words in said.skin:
-        vertex = int(words[0]) if words and words[0].isdecimal() else -1
+        known = words and words[0].isdecimal() and len(words[0]) <= MOST_DIGITS
+        vertex = int(words[0]) if known else -1
         if not 0 <= vertex < vertices:
             raise WeightsError(
-                f"line {line}: there is no vertex {words[0] if words else '(missing)'}; the "
+                f"line {line}: there is no vertex {words[0][:40] if words else '(missing)'}; the "
                 f"mesh has {vertices} (numbered from 0)"
             )
         if len(words) % 2 == 0:
             raise WeightsError(f"line {line}: joints and weights must come in pairs")
         for name, word in zip(words[1::2], words[2::2], strict=True):
             if name not in place:
-                raise WeightsError(f'line {line}: there is no joint "{name}"')
+                raise WeightsError(f'line {line}: there is no joint "{name[:40]}"')
             rows.append(vertex)
             columns.append(place[name])
             values.append(one_number(word, line))

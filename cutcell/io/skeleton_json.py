@@ -11,7 +11,7 @@ import numpy as np
 
 from ..errors import FileError, SkeletonError
 from ..rig import Skeleton
-from .files import naming, read_text
+from .files import naming, one_line, read_text
 from .names import has_halves
 
 FIELDS = ("name", "position", "parent", "deform")
@@ -34,10 +34,11 @@ def read_skeleton_json(path: Path) -> tuple[Skeleton, bool]:
         A joint is unusable: no position, a parent that is not there, a cycle.
     """
     with naming(path):
+        text = read_text(path)
         try:
-            data = json.loads(read_text(path))
-        except (json.JSONDecodeError, RecursionError) as e:
-            raise FileError(f"its JSON cannot be read: {e}") from None
+            data = json.loads(text)
+        except (ValueError, RecursionError) as e:  # also numbers of thousands of digits
+            raise FileError(f"its JSON cannot be read: {one_line(e)}") from None
         joints = data.get("joints") if isinstance(data, dict) else None
         if not isinstance(joints, list):
             raise FileError('is not a skeleton: it must be {"joints": [...]}')
@@ -93,7 +94,8 @@ def _parent(joint: dict[str, Any], name: str, place: dict[str, int]) -> int:
     if parent is None:
         return -1
     if not isinstance(parent, str) or parent not in place:
-        raise SkeletonError(f'joint "{name}": its parent {parent!r} is not a joint of the file')
+        wrong = repr(parent)[:40]
+        raise SkeletonError(f'joint "{name}": its parent {wrong} is not a joint of the file')
     return place[parent]
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from ..errors import FileError, MeshError
 from ..rig import Rig, Skeleton, TriangleMesh
 from .deforming import with_deform
-from .files import read_bytes, read_text
+from .files import one_line, read_bytes, read_text
 from .objects import parse_obj
 from .skeleton_json import read_skeleton_json, skeleton_file
 
@@ -55,7 +55,7 @@ def _through_trimesh(data: bytes, kind: str) -> TriangleMesh:
     try:
         loaded: Any = trimesh.load(io.BytesIO(data), file_type=kind, process=False, force="mesh")
     except Exception as e:  # trimesh's readers raise whatever their parsing runs into
-        raise FileError(f"is not a readable {kind.upper()} file ({e})") from e
+        raise FileError(f"is not a readable {kind.upper()} file ({one_line(e)})") from e
     faces = getattr(loaded, "faces", np.zeros((0, 3), int))
     if not len(faces):
         raise MeshError("has no triangles")
