@@ -2,26 +2,75 @@
 
 from __future__ import annotations
 
+import math
 import threading
 import time
 from collections.abc import Callable
-from typing import Any, Protocol
+from functools import partial
+from typing import Any
 
 from cutcell.errors import Cancelled
-from cutcell.progress import Progress
+from cutcell.progress import Progress, silent
 
 Schedule = Callable[[Callable[[], Any]], Any]
 """Runs a function later, on the thread that owns the page."""
 
-COMPUTING = threading.Lock()
-"""Numeric libraries share one pool of threads: sessions compute in turn."""
+PATIENCE = 1.0
+"""Seconds that others wait for work that was stopped, and goes on because it does not look."""
 
-COMPARING = threading.BoundedSemaphore(4)
+MOST_DEAF = 3
+"""How much such work goes on beside what is wanted; then others wait all the same."""
+
+
+class Turns:
+    """What work waits for: so many do work of a kind at a time.
+
+    Parameters
+    ----------
+    places : int
+        How many.
+    """
+
+    def __init__(self, places: int = 1) -> None:
+        self._places = places
+        self._change = threading.Condition()
+        self._held: set[Job] = set()
+
+    def take(self, job: Job, seconds: float) -> bool:
+        """Take a turn, or tell after some seconds that there was none."""
+        with self._change:
+            free = self._change.wait_for(self._free, seconds)
+            if free:
+                self._held.add(job)
+            return free
+
+    def give_back(self, job: Job) -> None:
+        """Let another one work."""
+        with self._change:
+            self._held.discard(job)
+            self._change.notify_all()
+
+    def _free(self) -> bool:
+        now = time.monotonic()
+        deaf = sum(now - job.stopped > PATIENCE for job in self._held)
+        return len(self._held) - min(deaf, MOST_DEAF) < self._places
+
+
+COMPUTING = Turns()
+"""Binding takes all cores and much memory: sessions compute in turn."""
+
+COMPARING = Turns(4)
 """Methods that are compared may take minutes, most of them in processes of their own: some
 sessions do so at once, so that none waits for another's slow method."""
 
-DRAWING = threading.Lock()
+DRAWING = Turns()
 """Pictures and films are drawn in turn, while others compute."""
+
+DESCRIBING = Turns(4)
+"""Scenes of large characters are described while others compute."""
+
+READING = Turns(4)
+"""Files are read in processes of their own, while others compute."""
 
 WAITING = "waiting for another computation"
 """The stage of work that waits for its turn."""
@@ -49,16 +98,6 @@ def on_its_thread(document: Any, loop: Any) -> Schedule:
             document.add_next_tick_callback(action)
 
     return lambda action: loop.add_callback(add, action)
-
-
-class Turn(Protocol):
-    """What work waits for, a lock or a semaphore: so many have it at a time."""
-
-    def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
-        """Take it, or tell after some seconds that it was not free."""
-
-    def release(self) -> None:
-        """Give it back."""
 
 
 class Gate:
@@ -98,9 +137,15 @@ class Job:
 
     def __init__(self, schedule: Schedule, report: Progress) -> None:
         self.cancelled = threading.Event()
+        self.stopped = math.inf
         self._schedule = schedule
         self._report = report
         self._last = ("", 0.0)
+
+    def cancel(self) -> None:
+        """Stop it, as soon as it looks."""
+        self.stopped = time.monotonic()
+        self.cancelled.set()
 
     def progress(self, stage: str, fraction: float) -> None:
         """Tell the page, or stop the work when it is no longer wanted."""
@@ -115,9 +160,9 @@ class Job:
         """Run an action on the page's own thread, unless the job is stopped till then."""
         self._schedule(lambda: None if self.cancelled.is_set() else action())
 
-    def wait_for(self, turn: Turn) -> None:
+    def wait_for(self, turns: Turns) -> None:
         """Wait until no other session, or few enough of them, do work of the kind."""
-        while not turn.acquire(timeout=0.05):
+        while not turns.take(self, 0.05):
             self.progress(WAITING, 0.0)
 
 
@@ -146,12 +191,11 @@ class Jobs:
         done: Callable[[Any], None],
         failed: Callable[[Exception], None],
         report: Progress,
-        turn: Turn = COMPUTING,
+        turns: Turns = COMPUTING,
     ) -> Job | None:
         """Do some work in a thread; `done`, `failed` and `report` run on the page's thread.
 
-        It waits until no other session does work that takes turns by the same lock (or fewer
-        do than a semaphore lets).
+        It waits until no other session, or few enough of them, do work that takes the same turns.
         Whatever ran before is stopped, and none of its results arrive any more.
         """
         self.cancel()
@@ -159,7 +203,7 @@ class Jobs:
             return None
         job = self._current = Job(self._schedule, report)
         ends = (self._finishing(job, done), self._finishing(job, failed))
-        arguments = (job, work, *ends, turn)
+        arguments = (job, work, *ends, turns)
         threading.Thread(target=_run, args=arguments, daemon=True, name="cutcell job").start()
         return job
 
@@ -167,7 +211,7 @@ class Jobs:
         """Stop what runs; return whether there was anything to stop."""
         job, self._current = self._current, None
         if job is not None:
-            job.cancelled.set()
+            job.cancel()
         return job is not None
 
     def close(self) -> None:
@@ -184,19 +228,60 @@ class Jobs:
         return finish
 
 
+class Newest:
+    """Work that begins again while it goes on: one at a time, and then only what was asked last.
+
+    What a slider asks for as it is dragged would else pile up, since it does not look whether it
+    is still wanted.
+
+    Parameters
+    ----------
+    jobs : Jobs
+    failed : callable
+        Called on the page's thread with what goes wrong.
+    """
+
+    def __init__(self, jobs: Jobs, failed: Callable[[Exception], None]) -> None:
+        self._jobs = jobs
+        self._failed = failed
+        self._next: tuple[Callable[[Progress], Any], Callable[[Any], None]] | None = None
+
+    def do(self, work: Callable[[Progress], Any], done: Callable[[Any], None]) -> None:
+        """Do some work, now or after what goes on; `done` runs on the page's thread."""
+        if self._jobs.running:
+            self._next = (work, done)
+            return
+
+        def then(act: Callable[[Any], None], value: Any) -> None:
+            try:
+                act(value)
+            finally:
+                waiting, self._next = self._next, None
+                if waiting is not None and not self._jobs.running:
+                    self.do(*waiting)
+
+        ends = (partial(then, done), partial(then, self._failed))
+        self._jobs.start(work, *ends, silent, DESCRIBING)
+
+    def cancel(self) -> None:
+        """Stop what goes on, and forget what waits."""
+        self._next = None
+        self._jobs.cancel()
+
+
 def _run(
     job: Job,
     work: Callable[[Progress], Any],
     done: Callable[[Any], None],
     failed: Callable[[Exception], None],
-    turn: Turn,
+    turns: Turns,
 ) -> None:
     try:
-        job.wait_for(turn)
+        job.wait_for(turns)
         try:
             result = work(job.progress)
         finally:
-            turn.release()
+            turns.give_back(job)
     except Cancelled:
         return
     except Exception as error:  # whatever it is, the page must hear of it

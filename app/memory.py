@@ -29,6 +29,12 @@ def let_go(page: object) -> None:
                 state.param.unwatch(watcher)
 
 
+def settle() -> None:
+    """Leave what lives as long as the server out of later collections: they stop all threads."""
+    gc.collect()
+    gc.freeze()
+
+
 def tidy_soon() -> None:
     """Collect what is no longer used, a moment from now, on a thread of its own."""
     with _LOCK:

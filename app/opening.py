@@ -2,25 +2,24 @@
 
 from __future__ import annotations
 
-import functools
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from param.parameterized import batch_call_watchers
 
-import cutcell
-from assets import DEMOS, demo_path
-from cutcell.apart import stoppable
-from cutcell.errors import CutcellError, FileError
+from assets import DEMOS
+from cutcell.errors import CutcellError
 from cutcell.progress import Progress
 from cutcell.rig import Rig
 from viewers.camera import Camera, framing
 
 from .actions import compare, learn
 from .choices import first_clip, from_query
+from .jobs import READING
 from .keep import KEEP, Group
 from .messages import shown
+from .reading import demo_rig, main_file, read
 from .scenes.common import bones_part, bounds_of, first_joint
 from .upload import Receiver
 from .view import camera_part
@@ -32,9 +31,6 @@ GONE = (
     "The character of this address was uploaded, and the server no longer has it; here is "
     "another. Drop the file again to go on with it."
 )
-
-COMPANIONS = {".txt", ".json", ".mtl", ".bin", ".png", ".jpg", ".jpeg"}
-"""Files that come along with the one that is opened."""
 
 
 class Opening:
@@ -77,7 +73,9 @@ class Opening:
         """
         self._session.state.demo = id
         title = next(demo.title for demo in DEMOS if demo.id == id)
-        self._open(lambda: demo_rig(id), f"opening {title}", lambda: self._keep(""), chosen, then)
+        self._open(
+            lambda wanted: demo_rig(id), f"opening {title}", lambda: self._keep(""), chosen, then
+        )
 
     def files(self, paths: list[Path], key: str = "") -> None:
         """Show the character in some files, and bind it.
@@ -96,7 +94,7 @@ class Opening:
             self._leave(key)
             return
         self._open(
-            lambda: cutcell.load(path),
+            lambda wanted: read(path, wanted),
             f"opening {path.name}",
             lambda: self._keep(key),
             failed=lambda: self._leave(key),
@@ -196,7 +194,7 @@ class Opening:
 
     def _open(
         self,
-        load: Callable[[], Rig],
+        load: Callable[[Callable[[], object]], Rig],
         stage: str,
         opened: Callable[[], None] = lambda: None,
         chosen: Callable[[], None] = lambda: None,
@@ -205,9 +203,8 @@ class Opening:
         **more: Any,
     ) -> None:
         def work(progress: Progress) -> Rig:
-            with stoppable(lambda: progress(stage, 0.0)):  # some are read by processes of their own
-                progress(stage, 0.0)
-                return load()
+            progress(stage, 0.0)
+            return load(lambda: progress(stage, 0.0))
 
         def done(rig: Rig) -> None:
             opened()
@@ -215,7 +212,7 @@ class Opening:
             self._stand(rig, chosen)
             then()
 
-        self._session.start(work, done, failed=failed)
+        self._session.start(work, done, READING, failed)
 
     def _stand(self, rig: Rig, chosen: Callable[[], None] = lambda: None) -> None:
         session = self._session
@@ -255,29 +252,3 @@ class Opening:
         if 0 <= arrival.get("vertex", -1) < len(rig.mesh.vertices):
             state.vertex = arrival["vertex"]
         self._told = arrival.get("told", "")
-
-
-@functools.cache
-def demo_rig(id: str) -> Rig:
-    """Return a demo character; it is read once, and nothing can write to it."""
-    return cutcell.load(demo_path(id))
-
-
-def main_file(paths: list[Path]) -> Path:
-    """Return the one file of a dropped group that is to be opened.
-
-    Raises
-    ------
-    FileError
-        There is none, or more than one.
-    """
-    found = [path for path in paths if path.suffix.lower() not in COMPANIONS]
-    names = ", ".join(path.name for path in paths)
-    if not found:
-        raise FileError(
-            f"no character among the dropped files ({names}); drop a GLB, glTF, VRM, FBX, USD, "
-            "OBJ, PLY, STL, OFF or NPZ file, and the files that belong to it together with it"
-        )
-    if len(found) > 1:
-        raise FileError(f"more than one character was dropped ({names}); drop one at a time")
-    return found[0]

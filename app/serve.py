@@ -19,9 +19,11 @@ from bokeh.util.browser import view
 from cutcell.console import print_warnings
 from cutcell.skinning import kernels_are_compiled, load_kernels
 
+from .apart import get_ready
 from .handlers import guard
 from .keep import KEEP
 from .log import log_to_terminal
+from .memory import settle
 from .page import page
 
 PORTS_TRIED = 20
@@ -72,15 +74,18 @@ def serve(
     chosen = free_port(port, address)
     if port and chosen != port:
         print(f"Port {port} is taken.", flush=True)
-    if kernels_are_compiled():
-        # While the browser starts. The first compile ever is left to the page, which tells of it.
-        threading.Thread(target=load_kernels, daemon=True).start()
     if threading.current_thread() is threading.main_thread():
         # An orderly end, so that what was uploaded is removed.
         signal.signal(signal.SIGTERM, lambda number, frame: sys.exit(0))
     log_to_terminal()
+    # Computing in Python gives way to the page's own thread sooner than after 5 ms.
+    sys.setswitchinterval(0.001)
     KEEP.sweep_by_the_clock()
+    threading.Thread(target=get_ready, daemon=True).start()
     server = begin(path, chosen, address)
+    if kernels_are_compiled():
+        # While the browser starts. The first compile ever is left to the page, which tells of it.
+        threading.Thread(target=_load_kernels, args=(server,), daemon=True).start()
     # It listens from here on; told sooner, the address could be asked for too soon.
     host = "localhost" if address in ("0.0.0.0", "::", *LOCAL) else in_brackets(address)
     url = f"http://{host}:{chosen}"
@@ -121,7 +126,18 @@ def begin(path: Path | None, port: int, address: str = "localhost", **more: Any)
     )
     text = guard(server._tornado, allowed_hosts(address, port))
     server.io_loop.add_callback(text.make)
+    server.io_loop.add_callback(_settle, server)
     return server
+
+
+def _load_kernels(server: Any) -> None:
+    load_kernels()
+    server.io_loop.add_callback(_settle, server)
+
+
+def _settle(server: Any) -> None:
+    if not server.get_sessions("/"):  # what they hold shall be collected
+        settle()
 
 
 def free_port(port: int, address: str = "localhost") -> int:

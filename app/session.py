@@ -15,14 +15,14 @@ from cutcell.progress import Progress
 from viewers.camera import Camera, framing
 
 from .actions import WATCHERS, weights
-from .jobs import COMPUTING, Jobs, Schedule, Turn
+from .jobs import COMPUTING, Jobs, Newest, Schedule, Turns
 from .keep import KEEP
 from .messages import told
 from .opening import Opening
 from .scenes import Memo, resolve
 from .scenes.common import bounds_of, theme_of
 from .state import UNSEEN, State
-from .state.method import GRAPH, method_of
+from .state.method import GRAPH, WEIGHTS, method_of
 from .view import SceneView, camera_part, theme_part
 
 logger = logging.getLogger("cutcell.app")
@@ -48,6 +48,7 @@ class Session:
         self._folder: Path | None = None
         self.view = SceneView(self.pick, self.opening.receiver(), sizing_mode="stretch_both")
         self._jobs: dict[str, Jobs] = {}
+        self._newest: dict[str, Newest] = {}
         self._closed = False
         self.falloffs: dict[str, tuple[Any, Any]] = {}
         self._bound_for: dict[str, Any] = {}
@@ -90,6 +91,12 @@ class Session:
                 self._jobs[name].close()
         return self._jobs[name]
 
+    def newest(self, name: str) -> Newest:
+        """Return the work of one name of which only the newest matters."""
+        if name not in self._newest:
+            self._newest[name] = Newest(self.jobs(name), self.fail)
+        return self._newest[name]
+
     @property
     def working(self) -> bool:
         """Whether there is work that was neither finished nor stopped, or is about to begin."""
@@ -115,20 +122,23 @@ class Session:
             return
         graph = self._bound_for = method_of(state, GRAPH)
 
-        def done(binding: Any) -> None:
+        few = weights.kept(state)
+
+        def work(progress: Progress) -> Any:
+            generous = cutcell.bind(rig, progress=progress, **method)
+            return generous, weights.pruned(generous, few)
+
+        def done(bindings: Any) -> None:
             self._held = graph
-            binding = weights.bound(self, binding, method)
+            generous, binding = bindings
+            self.falloffs = {method["falloff"]: (generous.distances, generous.weights)}
             note = self.opening.take_note()
             message = ("info", note) if note and told is None else told
             state.param.update(binding=binding, field=None, message=message)
-            if (state.falloff, state.alpha) != (method["falloff"], method["alpha"]):
-                weights.weigh(self)  # another falloff was chosen in the meantime
+            if method_of(state, WEIGHTS) != {**{name: method[name] for name in WEIGHTS}, **few}:
+                weights.weigh(self)  # others were chosen in the meantime
 
-        self.start(
-            lambda progress: cutcell.bind(rig, progress=progress, **method),
-            done,
-            failed=lambda: self._go_back(graph),
-        )
+        self.start(work, done, failed=lambda: self._go_back(graph))
 
     def _build(self, told: tuple[str, str] | None) -> None:
         """Build the graph of a mesh without a skeleton."""
@@ -176,7 +186,7 @@ class Session:
         self,
         work: Callable[[Progress], Any],
         done: Callable[[Any], None],
-        turn: Turn = COMPUTING,
+        turns: Turns = COMPUTING,
         failed: Callable[[], None] = lambda: None,
     ) -> None:
         """Do some work that the page shows progress of; it stops what went on before.
@@ -194,7 +204,7 @@ class Session:
             failed()
 
         self.state.param.update(busy=True, stage="", fraction=0.0)
-        self.jobs("main").start(work, finish, went_wrong, self._report, turn)
+        self.jobs("main").start(work, finish, went_wrong, self._report, turns)
 
     def _report(self, stage: str, fraction: float) -> None:
         self.state.param.update(stage=stage, fraction=fraction)
@@ -231,7 +241,13 @@ class Session:
         self.view.tell(camera=home)
 
     def _refresh(self, *events: Any) -> None:
-        self.view.present(resolve(self.state, self.memo))
+        scene = self.newest("scene")
+        if self.state.quick:
+            scene.cancel()
+            self.view.present(resolve(self.state, self.memo))
+        else:
+            now = self.state.still()
+            scene.do(lambda progress: resolve(now, self.memo), self.view.present)
 
     def _theme(self, *events: Any) -> None:
         self.view.tell(theme=theme_part(theme_of(self.state)))

@@ -20,6 +20,9 @@ CREASE = np.cos(np.radians(45))
 OUTLINE = 0.0009
 """Of a bone: in parts of the diagonal of the character's box."""
 
+MOST_AT_A_PLACE = 64
+"""Vertices that share a normal; a heap of more is no smooth surface, and would take for ever."""
+
 
 def to_scene(rig: Rig, points: ArrayLike) -> NDArray[np.float64]:
     """Take points (n, 3) from the rig's space to the scene's, where y is up."""
@@ -209,8 +212,8 @@ def is_closed(points: NDArray[np.float64], faces: NDArray) -> bool:
     points : array, shape (n, 3)
     faces : array, shape (m, 3)
     """
-    _, place = np.unique(points, axis=0, return_inverse=True)
-    corners = place.ravel()[faces]
+    place = _places(points)
+    corners = place[faces]
     whole = (corners != np.roll(corners, 1, axis=1)).all(axis=1)
     corners, count = corners[whole], int(place.max(initial=0)) + 1
     a, b = corners.ravel(), np.roll(corners, -1, axis=1).ravel()
@@ -222,6 +225,19 @@ def is_closed(points: NDArray[np.float64], faces: NDArray) -> bool:
     volume = np.einsum("fi,fi->f", three[:, 0], np.cross(three[:, 1], three[:, 2]))
     volumes = np.bincount(part[corners[:, 0]], volume)
     return bool((volumes[np.unique(part[corners])] > 0).all())
+
+
+def _places(points: NDArray[np.float64]) -> NDArray[np.intp]:
+    """Return the number of the place that each of the points (n, 3) is at."""
+    if not len(points):
+        return np.zeros(0, np.intp)
+    # Not by np.unique, which keeps Python's lock, and all other threads waiting, as it sorts rows.
+    order = np.lexsort(points.T)
+    ordered = points[order]
+    new = np.concatenate([[False], (ordered[1:] != ordered[:-1]).any(axis=1)])
+    place = np.empty(len(points), np.intp)
+    place[order] = np.cumsum(new)
+    return place
 
 
 def smooth_normals(points: NDArray[np.float64], faces: NDArray) -> NDArray[np.float64]:
@@ -236,11 +252,11 @@ def smooth_normals(points: NDArray[np.float64], faces: NDArray) -> NDArray[np.fl
     for k in range(3):
         np.add.at(own, faces[:, k], area)
     unit = own / np.maximum(np.linalg.norm(own, axis=1, keepdims=True), 1e-300)
-    _, group = np.unique(points, axis=0, return_inverse=True)
-    order = np.argsort(group.ravel(), kind="stable")
-    group = group.ravel()[order]
+    group = _places(points)
+    order = np.argsort(group, kind="stable")
+    group = group[order]
     total = own.copy()
-    for shift in range(1, int(np.bincount(group).max())):
+    for shift in range(1, min(int(np.bincount(group).max()), MOST_AT_A_PLACE)):
         a, b = order[:-shift], order[shift:]
         near = (group[:-shift] == group[shift:]) & ((unit[a] * unit[b]).sum(axis=1) > CREASE)
         np.add.at(total, a[near], own[b[near]])

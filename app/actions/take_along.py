@@ -129,7 +129,7 @@ def _draw(session: Session, order: Order, ending: str, done: Done) -> None:
         draw_apart(order, path, lambda _, fraction: progress(stage, fraction))
         return _taken(path)
 
-    session.start(work, lambda result: done(*result), turn=DRAWING)
+    session.start(work, lambda result: done(*result), turns=DRAWING)
 
 
 def _stem(session: Session) -> str:

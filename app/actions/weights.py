@@ -6,6 +6,7 @@ after.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
@@ -15,6 +16,7 @@ from numpy.typing import NDArray
 from cutcell.errors import CutcellError
 from cutcell.progress import Progress
 from cutcell.skinning import Binding, keep_strongest, skinning_weights
+from cutcell.skinning.weights import joints_needed
 
 from ..state.method import GRAPH, WEIGHTS, method_of
 from ..state.weights import MOST
@@ -37,11 +39,14 @@ def generous(session: Session) -> dict[str, Any]:
     return {**method, "max_influences": MOST, "threshold": 0.0}
 
 
-def bound(session: Session, binding: Binding, method: dict[str, Any]) -> Binding:
-    """Take in what was bound generously; return it with the weights that are chosen."""
-    session.falloffs = {method["falloff"]: (binding.distances, binding.weights)}
-    pruned = keep_strongest(binding.distances, binding.weights, **_kept(session))
-    return replace(binding, weights=pruned)
+def kept(state: Any) -> dict[str, Any]:
+    """Return which of many influences are chosen."""
+    return method_of(state, ("max_influences", "threshold"))
+
+
+def pruned(binding: Binding, kept: dict[str, Any]) -> Binding:
+    """Return what was bound generously with the weights that are chosen."""
+    return replace(binding, weights=keep_strongest(binding.distances, binding.weights, **kept))
 
 
 def weigh(session: Session) -> None:
@@ -49,18 +54,17 @@ def weigh(session: Session) -> None:
     state = session.state
     if state.binding is None:
         return
-    distances, falloff, kept = state.binding.distances, state.falloff, _kept(session)
+    distances, falloff, few = state.binding.distances, state.falloff, kept(state)
     make = partial(
         skinning_weights, distances, falloff=falloff, alpha=state.alpha, allowed=state.rig.allowed
     )
     known = session.falloffs.get(falloff)
-    if falloff in QUICK:
-        try:
-            _show(session, make(**kept))
-        except CutcellError as error:
-            session.fail(error)
+    if not _measured(distances, falloff, few["max_influences"]):
+        session.bind()
+    elif falloff in QUICK:
+        _soon(session, partial(make, **few))
     elif known is not None and known[0] is distances:
-        _show(session, keep_strongest(distances, known[1], **kept))
+        _soon(session, partial(keep_strongest, distances, known[1], **few))
     else:
 
         def work(progress: Progress) -> NDArray:
@@ -74,9 +78,26 @@ def weigh(session: Session) -> None:
         session.start(work, done)
 
 
-def _show(session: Session, weights: NDArray) -> None:
-    session.state.binding = replace(session.state.binding, weights=weights)
+def _measured(distances: Any, falloff: str, most: int) -> bool:
+    """Whether distances are known from as many joints as a falloff needs."""
+    known, needed = distances.nearest_joints, joints_needed(falloff, most)
+    return known is None or (needed is not None and needed <= known)
 
 
-def _kept(session: Session) -> dict[str, Any]:
-    return method_of(session.state, ("max_influences", "threshold"))
+def _soon(session: Session, make: Callable[[], NDArray]) -> None:
+    """Show weights that are made in a moment; those of a large character, when they are there."""
+    binding = session.state.binding
+
+    def show(weights: NDArray) -> None:
+        now = session.state.binding
+        if now is not None and now.distances is binding.distances:
+            session.state.binding = replace(now, weights=weights)
+
+    if not session.state.quick:
+        session.newest("weights").do(lambda progress: make(), show)
+        return
+    session.newest("weights").cancel()
+    try:
+        show(make())
+    except CutcellError as error:
+        session.fail(error)

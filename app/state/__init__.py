@@ -5,6 +5,9 @@ One object a browser session, made of one class a panel. It knows no widget and 
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+from typing import Any
+
 from .common import PANELS, UNSEEN, Common
 from .compare import CompareChoices
 from .geodesics import GeodesicsChoices
@@ -18,5 +21,31 @@ MAX_UPLOAD = 200 * 1024 * 1024
 """The largest file that the page takes, in bytes."""
 
 
+QUICK_MESH = 60_000
+QUICK_GRAPH = 400_000
+"""Vertices and faces, nodes and edges: what has no more is described in less than a tenth of a
+second, so that a page's own thread may do it."""
+
+
 class State(GraphChoices, GeodesicsChoices, WeightsChoices, PoseChoices, CompareChoices, Common):
     """What the page shows."""
+
+    @property
+    def quick(self) -> bool:
+        """Whether what stands there is small enough to be described at once."""
+        if self.rig is None:
+            return True
+        mesh, graph = self.rig.mesh, self.graph
+        size = 0 if graph is None else len(graph.nodes) + len(graph.edges)
+        return len(mesh.vertices) + len(mesh.faces) <= QUICK_MESH and size <= QUICK_GRAPH
+
+    def still(self) -> Any:
+        """Return all of it as it is now, for a thread that takes its time to look at it."""
+        ours = [kind for kind in type(self).__mro__ if kind.__module__.startswith(__name__)]
+        worked_out = {
+            name: getattr(self, name)
+            for kind in ours
+            for name, value in vars(kind).items()
+            if isinstance(value, property)
+        }
+        return SimpleNamespace(**{**self.param.values(), **worked_out})

@@ -5,11 +5,12 @@ import threading
 import pytest
 
 from app.actions import compare
-from app.jobs import COMPARING
+from app.jobs import COMPARING, Job
 from app.panels.compare import rows_of
 from app.session import Session
 from cutcell.apart import _WANTED
 from cutcell.baselines import METHODS, BaselineBinding
+from cutcell.progress import silent
 from tests.viewers.arm import arm_rig
 
 
@@ -64,15 +65,14 @@ def test_a_slow_method_of_one_session_does_not_hold_up_another(sessions, loop, s
 
 def test_who_waits_is_told_so_and_can_leave(sessions, loop):
     session = sessions[0]
-    places = COMPARING._initial_value
-    for _ in range(places):
-        COMPARING.acquire()
+    others = [Job(loop, silent) for _ in range(4)]
+    assert all(COMPARING.take(job, 1) for job in others)
     try:
         session.state.param.update(panel="compare", methods=["now", "euclidean"])
         loop.run_until(lambda: session.state.queued)
         assert note(session, "now") == "Waiting for what others compare"
     finally:
-        for _ in range(places):
-            COMPARING.release()
+        for job in others:
+            COMPARING.give_back(job)
     loop.run_until(lambda: len(session.state.compared) == 2, 60)
     assert not session.state.queued

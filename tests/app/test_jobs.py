@@ -1,11 +1,12 @@
 """Work off the event loop: results, progress, errors; stopped and superseded work."""
 
 import threading
+from functools import partial
 from types import SimpleNamespace
 
 import pytest
 
-from app.jobs import Gate, Jobs, on_its_thread
+from app.jobs import MOST_DEAF, PATIENCE, Gate, Jobs, Newest, on_its_thread
 
 
 @pytest.fixture
@@ -152,6 +153,92 @@ def test_waiting_for_a_turn_can_be_cancelled(loop):
     first.close()
     loop.run_for(0.3)
     assert told == []
+
+
+def deaf_work(go, started=None):
+    """Work that does not look whether it is still wanted."""
+
+    def work(progress):
+        if started is not None:
+            started.set()
+        assert go.wait(30)
+
+    return work
+
+
+def nothing(*given):
+    pass
+
+
+def test_stopped_work_that_does_not_look_holds_nobody_up_for_long(loop, told):
+    go, started = threading.Event(), threading.Event()
+    deaf, other = Jobs(loop), Jobs(loop)
+    deaf.start(deaf_work(go, started), nothing, nothing, nothing)
+    assert started.wait(10)
+    other.start(lambda progress: "done", told.append, told.append, nothing)
+    loop.run_for(PATIENCE + 0.3)
+    assert told == [], "it is wanted, and others wait for it"
+    deaf.cancel()
+    loop.run_until(lambda: told == ["done"], PATIENCE + 5)
+    go.set()
+
+
+def test_only_so_much_of_it_goes_on_beside_what_is_wanted(loop, told):
+    go, deaf = threading.Event(), Jobs(loop)
+    for _ in range(MOST_DEAF + 1):
+        started = threading.Event()
+        deaf.start(deaf_work(go, started), nothing, nothing, nothing)
+        assert started.wait(PATIENCE + 10)
+    deaf.cancel()
+    other = Jobs(loop)
+    other.start(lambda progress: "done", told.append, told.append, nothing)
+    loop.run_for(PATIENCE + 0.5)
+    assert told == []
+    go.set()
+    loop.run_until(lambda: told == ["done"])
+
+
+def test_of_what_a_slider_asks_for_only_the_newest_is_done(loop, told):
+    go, begun = threading.Event(), []
+    newest = Newest(Jobs(loop), told.append)
+
+    def work(number, progress):
+        begun.append(number)
+        assert go.wait(10)
+        return number
+
+    for number in range(5):
+        newest.do(partial(work, number), told.append)
+    loop.run_for(0.1)
+    go.set()
+    loop.run_until(lambda: told == [0, 4])
+    assert begun == [0, 4]
+
+
+def test_the_newest_is_done_after_a_failure_too(loop, told):
+    newest = Newest(Jobs(loop), told.append)
+    error, go = ValueError("no"), threading.Event()
+
+    def fails(progress):
+        assert go.wait(10)
+        raise error
+
+    newest.do(fails, told.append)
+    newest.do(lambda progress: "yes", told.append)
+    go.set()
+    loop.run_until(lambda: told == [error, "yes"])
+    newest.cancel()
+
+
+def test_running_out_of_memory_is_told_like_any_error(loop, told, start):
+    def work(progress):
+        raise MemoryError("Unable to allocate 44.0 GiB")
+
+    start(work)
+    loop.run_until(lambda: bool(told))
+    assert told[0][0] == "failed"
+    start(lambda progress: "next")
+    loop.run_until(lambda: told[-1][:2] == ("done", "next"))
 
 
 def test_a_gate_holds_actions_back_and_keeps_their_order(loop):

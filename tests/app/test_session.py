@@ -1,6 +1,8 @@
 """A session without a browser: opening, binding, failing, cancelling."""
 
+import os
 import shutil
+import threading
 from dataclasses import replace
 from pathlib import Path
 
@@ -8,6 +10,7 @@ import numpy as np
 import pytest
 
 import cutcell
+from app import scenes
 from app.session import Session
 from app.status import stage_text, summary, warning
 from cutcell.errors import MeshError
@@ -248,8 +251,9 @@ def test_methods_are_compared_one_after_the_other_and_one_that_fails_stops_none(
 @pytest.mark.parametrize("falloff", cutcell.skinning.FALLOFFS)
 def test_another_falloff_changes_weights_and_measures_nothing(bound, loop, falloff):
     state = bound.state
-    before = state.binding
     state.falloff = falloff
+    loop.run_until(lambda: not state.busy)  # the paper's asks for more joints at first
+    before = state.binding
     state.param.update(alpha=0.9, max_influences=2, threshold=0.1)
     loop.run_until(lambda: not state.busy)
     assert state.binding.distances is before.distances
@@ -307,3 +311,73 @@ def test_what_is_told_reads_well(session):
     assert stage_text("") == "Starting"
     assert summary(session.state) == ""
     assert warning(session.state) is None
+
+
+def test_a_large_character_is_described_beside_the_pages_own_thread(session, loop, monkeypatch):
+    monkeypatch.setattr("app.state.QUICK_MESH", 10)
+    threads, described = [], []
+    resolve = scenes.resolve
+
+    def noted(state, memo):
+        if state.rig is not None:
+            threads.append(threading.current_thread())
+        return resolve(state, memo)
+
+    monkeypatch.setattr("app.session.resolve", noted)
+    monkeypatch.setattr(session.view, "present", described.append)
+    session.state.resolution = 16
+    session.opening.rig(arm_rig())
+    loop.run_until(lambda: session.state.binding is not None)
+    for panel in ("graph", "pose", "weights"):
+        session.state.panel = panel
+    session.state.falloff = "paper"
+    loop.run_until(lambda: not session.working)
+    session.state.alpha = 0.25
+    loop.run_until(lambda: not session.working)
+    assert threading.current_thread() not in threads
+    assert described[-1].actors.keys() == resolve(session.state).actors.keys()
+    expected = resolve(session.state).actors["body"].colors
+    np.testing.assert_array_equal(described[-1].actors["body"].colors, expected)
+    paper = cutcell.bind(arm_rig(), 16, falloff="paper", alpha=0.25, leaf="fit")
+    np.testing.assert_allclose(session.state.binding.weights, paper.weights, atol=1e-6)
+
+
+def test_reading_that_does_not_come_to_an_end_is_cancelled(session, loop, tmp_path):
+    pipe = tmp_path / "pipe.glb"
+    os.mkfifo(pipe)  # whoever reads it waits for someone who writes
+    session.opening.files([pipe])
+    loop.run_until(lambda: session.state.stage == "opening pipe.glb")
+    loop.run_for(0.2)
+    session.cancel()
+    assert "Cancelled" in session.state.message[1]
+    session.state.resolution = 16
+    session.opening.rig(arm_rig())
+    loop.run_until(lambda: session.state.binding is not None)
+
+
+def test_running_out_of_memory_is_a_sentence_and_the_page_goes_on(bound, loop, monkeypatch):
+    before = bound.state.binding
+
+    def too_much(*args, **kwargs):
+        raise MemoryError("Unable to allocate 44.0 GiB for an array")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(cutcell, "bind", too_much)
+        bound.state.resolution = 24
+        loop.run_until(lambda: bound.state.message is not None)
+    assert "not enough memory" in bound.state.message[1]
+    assert bound.state.binding is before
+    bound.state.resolution = 20
+    loop.run_until(lambda: bound.state.binding is not before)
+
+
+def test_a_falloff_that_asks_for_more_joints_measures_them(bound, loop):
+    bound.state.falloff = "paper"
+    loop.run_until(lambda: not bound.working)
+    assert bound.state.message is None
+    expected = cutcell.bind(arm_rig(), 16, falloff="paper", leaf="fit").weights
+    np.testing.assert_allclose(bound.state.binding.weights, expected, atol=1e-6)
+    before = bound.state.binding.distances
+    bound.state.max_influences = 8
+    loop.run_until(lambda: not bound.working)
+    assert bound.state.binding.distances is before

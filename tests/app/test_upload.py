@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from app.keep import Keep
-from app.opening import main_file
+from app.reading import main_file
 from app.state import MAX_UPLOAD
 from app.storage import Storage
 from app.upload import NAME_BYTES, Receiver, safe_name

@@ -1,9 +1,11 @@
 """Whether a surface has an inside that is not seen."""
 
+import time
+
 import numpy as np
 import trimesh
 
-from viewers.character import is_closed
+from viewers.character import is_closed, smooth_normals
 
 
 def box(**how):
@@ -34,3 +36,22 @@ def test_a_box_inside_out_is_not_even_beside_a_larger_one():
 def test_nothing_is_not():
     assert not is_closed(np.zeros((3, 3)), np.array([[0, 1, 2]]))
     assert not is_closed(np.zeros((0, 3)), np.zeros((0, 3), int))
+
+
+def test_a_heap_of_vertices_at_one_place_is_soon_done():
+    heap = np.zeros((40_000, 3))
+    points = np.concatenate([heap, np.eye(3)])
+    faces = np.arange(len(points) // 3 * 3).reshape(-1, 3)
+    began = time.monotonic()
+    normals = smooth_normals(points, faces)
+    assert time.monotonic() - began < 5, "it was quadratic, and took a minute"
+    np.testing.assert_allclose(np.linalg.norm(normals, axis=1), 1)
+
+
+def test_vertices_of_a_seam_share_their_normals():
+    points, faces = box()
+    split = points[faces].reshape(-1, 3)
+    normals = smooth_normals(split, np.arange(len(split)).reshape(-1, 3))
+    for point in points:
+        here = np.flatnonzero((split == point).all(axis=1))
+        assert len(np.unique(normals[here].round(6), axis=0)) == 3, "one for each side of the box"
