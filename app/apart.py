@@ -39,7 +39,10 @@ def get_ready() -> None:
 
 
 def in_process(
-    work: Callable[..., Result], *given: Any, wanted: Callable[[], object] = lambda: None
+    work: Callable[..., Result],
+    *given: Any,
+    wanted: Callable[[], object] = lambda: None,
+    ended: str = "it came to a sudden end",
 ) -> Result:
     """Call a function in a process of its own; return its result.
 
@@ -52,6 +55,8 @@ def in_process(
     wanted : callable
         Asked again and again; raises `cutcell.Cancelled` for one, when the result is not wanted
         any more: the process, and those that it has started, are ended then.
+    ended : str
+        What to say if the process comes to an end by itself.
 
     Raises
     ------
@@ -63,18 +68,15 @@ def in_process(
     here, there = _CONTEXT.Pipe(duplex=False)
     process = _CONTEXT.Process(target=_run, args=(there, work, given), daemon=True)
     with here:
-        process.start()
-        there.close()
         try:
+            process.start()
+            there.close()
             while not here.poll(ASK_EVERY):
                 wanted()
             good, outcome = pickle.loads(here.recv_bytes())
-        except EOFError:
+        except (EOFError, BrokenPipeError):
             process.join()
-            raise FileError(
-                f"the process that read it came to an end ({_ending(process.exitcode)}): it is "
-                "damaged, or needs more memory than there is"
-            ) from None
+            raise FileError(f"{ended} ({_ending(process.exitcode)})") from None
         finally:
             _end(process)
     if not good:

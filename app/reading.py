@@ -20,6 +20,9 @@ COMPANIONS = {".txt", ".json", ".mtl", ".bin", ".png", ".jpg", ".jpeg"}
 """Files that come along with the one that is opened."""
 
 
+ENDED = "reading it came to a sudden end; the file is damaged, or needs more memory than there is"
+
+
 @functools.cache
 def demo_rig(id: str) -> Rig:
     """Return a demo character; it is read once, and nothing can write to it."""
@@ -29,7 +32,7 @@ def demo_rig(id: str) -> Rig:
 def read(path: Path, wanted: Callable[[], object] = lambda: None) -> Rig:
     """Load a character in a process of its own; see `apart.in_process`."""
     with naming(path):
-        return frozen(in_process(cutcell.load, path, wanted=wanted))
+        return frozen(in_process(cutcell.load, path, wanted=wanted, ended=ENDED))
 
 
 def frozen(rig: Rig) -> Rig:

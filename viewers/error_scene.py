@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from cutcell.metrics import DeformationError, deformation_error
 from cutcell.metrics.deformation import CM2
+from cutcell.progress import Progress, silent
 from cutcell.rig import Rig, Skeleton, TriangleMesh
 
 from .character import attachments, body, bones, pose_in_scene, to_scene
@@ -121,13 +122,15 @@ def squared_unit(rig: Rig) -> float:
     return CM2 / float(np.ptp(used, axis=0).max()) ** 2
 
 
-def scene_error(rig: Rig, weights: ArrayLike, reference: ArrayLike) -> DeformationError:
+def scene_error(
+    rig: Rig, weights: ArrayLike, reference: ArrayLike, progress: Progress = silent
+) -> DeformationError:
     """Return the deformation error with turns about the scene's axes, as the page turns joints."""
     mesh = TriangleMesh(to_scene(rig, rig.mesh.vertices), rig.mesh.faces)
     skeleton = rig.skeleton
     joints = to_scene(rig, skeleton.joints)
     parts = (mesh, Skeleton(joints, skeleton.parents, skeleton.names, skeleton.deform))
-    return deformation_error(parts, weights, reference)
+    return deformation_error(parts, weights, reference, progress=progress)
 
 
 def _with_rest(weights: NDArray[np.float32]) -> NDArray[np.float32]:

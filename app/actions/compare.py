@@ -150,7 +150,7 @@ def measured(rig: Rig, name: str, binding: Any, resolution: int, progress: Progr
     total, none = float(sum(seconds.values())), unweighted(weights, share)
     if rig.weights is None:
         return Compared(rig, weights, seconds=total, unweighted=none, source=source)
-    errors = deformation_error(rig, weights, rig.weights)
+    errors = deformation_error(rig, weights, rig.weights, progress=lambda *_: progress(name, 0.9))
     l1 = weight_l1(weights, rig.weights, share)
     return Compared(rig, weights, "", total, l1, errors.mean, none, errors, source)
 

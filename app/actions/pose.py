@@ -135,12 +135,13 @@ def find_errors(session: Session) -> None:
     state = session.state
     rig, binding = state.rig, state.binding
     if state.panel != "pose" or not has_rival(state):
+        session.jobs("errors").cancel()  # nobody looks at it: others may compute
         return
     if state.errors is not None and state.errors[0] is binding:
         return
 
     def work(progress: Progress) -> Any:
-        return scene_error(rig, binding.weights, rig.weights)
+        return scene_error(rig, binding.weights, rig.weights, progress)
 
     def done(errors: Any) -> None:
         if state.binding is binding:
@@ -154,6 +155,7 @@ def find_motion_error(session: Session) -> None:
     state = session.state
     clip, motion, binding, rig = clip_of(state), state.motion, state.binding, state.rig
     if state.panel != "pose" or clip is None or not state.heat or not has_rival(state):
+        session.jobs("motion error").cancel()
         return
     found = state.motion_error
     if found is not None and found[0] is binding and found[1] == motion:

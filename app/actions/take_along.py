@@ -3,22 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Any
 
 import cutcell
 from cutcell.io import binary_ending
 from cutcell.io.numbers import save_numbers
 from cutcell.progress import Progress
 from cutcell.rig import Clip
+from viewers.camera import Camera
 from viewers.description import Description
 from viewers.film import Order
 from viewers.pose_scene import clip_in_scene, pose_at, swing
 from viewers.worker import draw_apart
 
-from ..jobs import DRAWING
-from ..scenes import following, resolve
+from ..apart import in_process
+from ..jobs import COMPUTING, DRAWING, Turns
+from ..scenes import Memo, following, resolve
 from ..scenes.pose import SWING_DEGREES, clip_of
 from ..state import State
 from ..upload import safe_name
@@ -32,27 +36,63 @@ Done = Callable[[str, bytes], None]
 PICTURE_PIXELS = 2400 * 1800
 FILM_PIXELS = 960 * 720
 
+ENDED = "writing it came to a sudden end; there may be too little memory"
+
+
+@dataclass(frozen=True)
+class Seen:
+    """What a page shows at one moment, for a thread that draws it later."""
+
+    state: Any
+    memo: Memo
+    camera: Camera | None
+    aspect: float
+    time: float
+
+    @classmethod
+    def now(cls, session: Session) -> Seen:
+        """Return what a session's page shows."""
+        view = session.view
+        return cls(session.state.still(), session.memo, view.camera, view.aspect, view.time)
+
+    def posed(self) -> Description:
+        """Return the scene, in the pose that a motion has come to."""
+        description, clip = resolve(self.state, self.memo), clip_of(self.state)
+        if clip is None or not len(clip.times):
+            return description
+        return replace(description, pose=pose_at(self.state.rig, clip, self.time))
+
+    def order(self, pixels: int, description: Description) -> Order:
+        """Return what is to be drawn of a scene, from where it is looked at."""
+        theme = "dark" if self.state.dark else "light"
+        return Order(description, theme, picture_size(pixels, self.aspect), self.camera)
+
 
 def take_picture(session: Session, done: Done) -> None:
     """Draw what is seen, large and with its legend, and hand over the PNG."""
-    _draw(session, _order(session, PICTURE_PIXELS, snapshot(session)), "png", done)
+    _draw(session, "png", done, lambda seen: seen.order(PICTURE_PIXELS, seen.posed()))
 
 
 def take_turntable(session: Session, ending: str, done: Done) -> None:
     """Film what is seen while the camera goes around it once; "mp4" or "gif"."""
-    order = replace(_order(session, FILM_PIXELS, snapshot(session)), turntable=True)
-    _draw(session, order, ending, done)
+
+    def order(seen: Seen) -> Order:
+        return replace(seen.order(FILM_PIXELS, seen.posed()), turntable=True)
+
+    _draw(session, ending, done, order)
 
 
 def take_motion(session: Session, ending: str, done: Done) -> None:
     """Film the motion that is chosen, as what is seen now goes through it."""
-    state = session.state
-    if state.weights is None:
+    if session.state.weights is None:
         session.state.message = ("info", "There are no weights to move the skin by yet.")
         return
-    motion = clip_in_scene(state.rig, chosen_clip(state))
-    order = _order(session, FILM_PIXELS, following(state, session.memo))
-    _draw(session, replace(order, motion=motion), ending, done)
+
+    def order(seen: Seen) -> Order:
+        motion = clip_in_scene(seen.state.rig, chosen_clip(seen.state))
+        return replace(seen.order(FILM_PIXELS, following(seen.state, seen.memo)), motion=motion)
+
+    _draw(session, ending, done, order)
 
 
 def take_numbers(session: Session, what: str, ending: str, done: Done) -> None:
@@ -61,19 +101,19 @@ def take_numbers(session: Session, what: str, ending: str, done: Done) -> None:
     if binding is None:
         session.state.message = ("info", "There are no numbers to save yet.")
         return
-    path = session.folder / f"{_stem(session)}-{'numbers' if what == 'all' else what}.{ending}"
+    named = replace(rig, clips=(), attachments=(), source=None)
+    name = f"{_stem(session)}-{'numbers' if what == 'all' else what}.{ending}"
 
-    def work(progress: Progress) -> tuple[str, bytes]:
+    def write(path: Path, progress: Progress) -> None:
         tables = {}
         if what != "distances":
             tables["weights"] = binding.weights
         if what != "weights":
             tables["distances"] = binding.distances.all_joints(progress).T
-        progress("writing the numbers", 0.0)
-        save_numbers(path, rig, **tables)
-        return _taken(path)
+        wanted = partial(progress, "writing the numbers", 0.0)
+        in_process(partial(save_numbers, path, named, **tables), wanted=wanted, ended=ENDED)
 
-    session.start(work, lambda result: done(*result))
+    _hand_over(session, name, write, done)
 
 
 def bound_file(session: Session, done: Done) -> None:
@@ -83,14 +123,12 @@ def bound_file(session: Session, done: Done) -> None:
         state.message = ("info", "There are no weights to download yet.")
         return
     rig = state.rig.with_weights(state.binding.weights)
-    path = session.folder / f"{_stem(session)}-bound{binary_ending(rig)}"
 
-    def work(progress: Progress) -> tuple[str, bytes]:
-        progress("writing the file", 0.0)
-        cutcell.save(path, rig)
-        return _taken(path)
+    def write(path: Path, progress: Progress) -> None:
+        wanted = partial(progress, "writing the file", 0.0)
+        in_process(cutcell.save, path, rig, wanted=wanted, ended=ENDED)
 
-    session.start(work, lambda result: done(*result))
+    _hand_over(session, f"{_stem(session)}-bound{binary_ending(rig)}", write, done)
 
 
 def chosen_clip(state: State) -> Clip:
@@ -100,45 +138,45 @@ def chosen_clip(state: State) -> Clip:
     return swing(state.rig, state.joint, state.axis, SWING_DEGREES)
 
 
-def snapshot(session: Session) -> Description:
-    """Return what is seen, in the pose that a motion has come to."""
-    description = resolve(session.state, session.memo)
-    clip = clip_of(session.state)
-    if clip is None or not len(clip.times):
-        return description
-    return replace(description, pose=pose_at(session.state.rig, clip, session.view.time))
-
-
 def picture_size(pixels: int, aspect: float) -> tuple[int, int]:
     """Return width and height, even numbers, of about so many pixels in a given shape."""
     height = (pixels / aspect) ** 0.5
     return 2 * round(height * aspect / 2), 2 * round(height / 2)
 
 
-def _order(session: Session, pixels: int, description: Description) -> Order:
-    view = session.view
-    theme = "dark" if session.state.dark else "light"
-    return Order(description, theme, picture_size(pixels, view.aspect), view.camera)
-
-
-def _draw(session: Session, order: Order, ending: str, done: Done) -> None:
-    path = session.folder / f"{_stem(session)}-{session.state.panel}.{ending}"
+def _draw(session: Session, ending: str, done: Done, order: Callable[[Seen], Order]) -> None:
+    """Draw what is seen now; describing a large character takes a while, too."""
+    seen = Seen.now(session)
     stage = "drawing the picture" if ending == "png" else "drawing the film"
 
-    def work(progress: Progress) -> tuple[str, bytes]:
-        draw_apart(order, path, lambda _, fraction: progress(stage, fraction))
-        return _taken(path)
+    def write(path: Path, progress: Progress) -> None:
+        progress(stage, 0.0)
+        draw_apart(order(seen), path, lambda _, fraction: progress(stage, fraction))
 
-    session.start(work, lambda result: done(*result), turns=DRAWING)
+    _hand_over(session, f"{_stem(session)}-{seen.state.panel}.{ending}", write, done, DRAWING)
+
+
+def _hand_over(
+    session: Session,
+    name: str,
+    write: Callable[[Path, Progress], None],
+    done: Done,
+    turns: Turns = COMPUTING,
+) -> None:
+    """Let a file be written, and hand over its name and content; nothing of it stays."""
+    place = session.folder
+
+    def work(progress: Progress) -> bytes:
+        # One of its own: what was stopped may still write.
+        with TemporaryDirectory(dir=place, ignore_cleanup_errors=True) as folder:
+            path = Path(folder, name)
+            write(path, progress)
+            return path.read_bytes()
+
+    session.start(work, lambda content: done(name, content), turns)
 
 
 def _stem(session: Session) -> str:
     """Return what the files of a character are called; its own name may be no file's name."""
     rig = session.state.rig
     return safe_name(Path(rig.name).stem) if rig is not None and rig.name else "character"
-
-
-def _taken(path: Path) -> tuple[str, bytes]:
-    content = path.read_bytes()
-    path.unlink()
-    return path.name, content

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..checks import check_has_joints, check_number
 from ..errors import ParameterError, WeightsError
+from ..progress import Progress, silent
 from ..rig import Rig, Skeleton, TriangleMesh
 from .counting import vertex_shares
 from .weight_error import checked_pair
@@ -92,6 +93,7 @@ def deformation_error(
     *,
     joints: ArrayLike | None = None,
     count: str = "places",
+    progress: Progress = silent,
 ) -> DeformationError:
     """Turn every joint about x, y and z and compare where two sets of weights put the skin.
 
@@ -113,6 +115,8 @@ def deformation_error(
         The joints to turn; those that may carry weight (`Skeleton.deform`) when left out.
     count : {"places", "vertices"}
         See `vertex_shares`.
+    progress : callable
+        See `cutcell.progress`; the stage is called "deformation".
 
     Returns
     -------
@@ -148,6 +152,7 @@ def deformation_error(
     below = skeleton.subtree[turned].T.astype(np.float64)
     step = max(1, BLOCK // len(skeleton.joints))
     for first in range(0, len(ours), step):
+        progress("deformation", first / len(ours))
         part = slice(first, first + step)
         moved = (ours[part] - theirs[part]) @ below  # (block, turned): S - S'
         for k, j in enumerate(turned):
