@@ -10,10 +10,12 @@ import multiprocessing
 import os
 import pickle
 import signal
+import threading
 import traceback
 from collections.abc import Callable
 from contextlib import suppress
-from multiprocessing.connection import Connection
+from multiprocessing.connection import Connection, wait
+from pathlib import Path
 from typing import Any, TypeVar
 
 from cutcell.errors import FileError
@@ -24,10 +26,11 @@ ASK_EVERY = 0.05
 """Seconds between two questions whether the result is still wanted."""
 
 # A server of processes is started once, with what they need; each then takes some milliseconds.
+# What this process began with is imported by each, too: for the commands, that is `cutcell.cli`.
 _METHOD = "forkserver" if "forkserver" in multiprocessing.get_all_start_methods() else "spawn"
 _CONTEXT: Any = multiprocessing.get_context(_METHOD)
 if _METHOD == "forkserver":
-    _CONTEXT.set_forkserver_preload(["cutcell.io", __name__])
+    _CONTEXT.set_forkserver_preload(["cutcell.cli", "cutcell.io", __name__])
 
 
 def get_ready() -> None:
@@ -74,9 +77,8 @@ def in_process(
             while not here.poll(ASK_EVERY):
                 wanted()
             good, outcome = pickle.loads(here.recv_bytes())
-        except (EOFError, BrokenPipeError):
-            process.join()
-            raise FileError(f"{ended} ({_ending(process.exitcode)})") from None
+        except (EOFError, ConnectionError):
+            raise FileError(f"{ended} ({_ending(process)})") from None
         finally:
             _end(process)
     if not good:
@@ -88,12 +90,25 @@ def _run(pipe: Connection, work: Callable[..., Any], given: tuple[Any, ...]) -> 
     """Do the work, in the other process, and send what comes of it."""
     if hasattr(os, "setsid"):
         os.setsid()  # so that it can be ended together with what it starts
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+    with suppress(OSError):  # where memory runs out Linux ends this process, not the server
+        Path("/proc/self/oom_score_adj").write_text("1000")
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:
         outcome = pickle.dumps((True, work(*given)), 5)
     except Exception as error:
         outcome = _packed(error)
     pipe.send_bytes(outcome)
+
+
+def _end_with_parent() -> None:
+    """End, with all that was started, when whoever waits for the result was killed."""
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        wait([parent.sentinel])
+        if hasattr(os, "killpg"):
+            os.killpg(0, signal.SIGKILL)
+        os._exit(1)
 
 
 def _packed(error: Exception) -> bytes:
@@ -107,6 +122,8 @@ def _packed(error: Exception) -> bytes:
 
 
 def _end(process: Any) -> None:
+    if process.pid is None:
+        return
     if process.is_alive():
         with suppress(ProcessLookupError, PermissionError):
             if hasattr(os, "killpg"):
@@ -115,5 +132,9 @@ def _end(process: Any) -> None:
     process.join()
 
 
-def _ending(code: int | None) -> str:
+def _ending(process: Any) -> str:
+    if process.pid is None:
+        return "no process could begin"
+    process.join()
+    code = process.exitcode
     return f"signal {-code}" if code is not None and code < 0 else f"exit code {code}"

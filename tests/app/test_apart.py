@@ -5,6 +5,7 @@ import signal
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import numpy as np
 import psutil
@@ -15,6 +16,7 @@ from app.apart import in_process
 from app.reading import read
 from assets import demo_path
 from cutcell.errors import Cancelled, CutcellError, FileError, MeshError
+from tests.conftest import ROOT
 
 
 class OddError(Exception):
@@ -22,6 +24,13 @@ class OddError(Exception):
 
     def __init__(self, one, other):
         super().__init__(one)
+
+
+SERVER = """
+import subprocess, sys
+from app.apart import in_process
+in_process(subprocess.call, ["sh", "-c", 'echo $PPID $$ > "$0"; sleep 600', sys.argv[1]])
+"""
 
 
 def fails(error):
@@ -78,10 +87,25 @@ def test_running_out_of_memory_is_told():
         in_process(needs_too_much)
 
 
+@pytest.mark.skipif(sys.platform != "linux", reason="only Linux chooses whom to end so")
+def test_where_memory_runs_out_it_is_ended_before_the_server():
+    ours = int(Path("/proc/self/oom_score_adj").read_text())
+    assert int(in_process(Path.read_text, Path("/proc/self/oom_score_adj"))) == 1000 > ours
+
+
 def test_a_crash_is_told_and_harms_nobody():
     with pytest.raises(CutcellError, match=r"came to a sudden end \(signal 9\)"):
         in_process(killed)
     assert in_process(divmod, 7, 2) == (3, 1)
+
+
+def test_where_no_process_can_begin_it_is_told(monkeypatch):
+    def gone(self):
+        raise BrokenPipeError
+
+    monkeypatch.setattr("multiprocessing.process.BaseProcess.start", gone)
+    with pytest.raises(FileError, match=r"came to a sudden end \(no process could begin\)"):
+        in_process(divmod, 7, 2)
 
 
 def test_what_is_not_wanted_ends_with_all_that_it_started(tmp_path):
@@ -93,6 +117,16 @@ def test_what_is_not_wanted_ends_with_all_that_it_started(tmp_path):
 
     with pytest.raises(Cancelled):
         in_process(starts_another, path, wanted=wanted)
+    for pid in map(int, path.read_text().split()):
+        wait_until(lambda pid=pid: gone(pid))
+
+
+def test_it_ends_with_a_server_that_is_killed(tmp_path):
+    path = tmp_path / "pids"
+    server = subprocess.Popen([sys.executable, "-c", SERVER, str(path)], cwd=ROOT)
+    wait_until(lambda: path.exists() and len(path.read_text().split()) == 2)
+    server.kill()
+    server.wait()
     for pid in map(int, path.read_text().split()):
         wait_until(lambda pid=pid: gone(pid))
 

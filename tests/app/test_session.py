@@ -381,3 +381,21 @@ def test_a_falloff_that_asks_for_more_joints_measures_them(bound, loop):
     bound.state.max_influences = 8
     loop.run_until(lambda: not bound.working)
     assert bound.state.binding.distances is before
+
+
+def test_an_error_that_nobody_looks_at_is_measured_no_longer(session, loop, monkeypatch):
+    begun = threading.Event()
+
+    def measured(rig, ours, theirs, progress):
+        begun.set()
+        while True:
+            progress("deformation", 0.0)
+
+    monkeypatch.setattr("app.actions.pose.scene_error", measured)
+    session.state.param.update(resolution=16, panel="pose")
+    session.opening.rig(arm_rig())
+    loop.run_until(begun.is_set)
+    session.state.panel = "weights"
+    assert not session.jobs("errors").running
+    session.state.panel = "pose"
+    assert session.jobs("errors").running

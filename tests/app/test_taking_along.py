@@ -1,7 +1,11 @@
 """What a person takes along from a session: the bound character, pictures, films, numbers."""
 
 import io
+import os
+import signal
+import time
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -14,6 +18,8 @@ from app.actions.take_along import (
     take_picture,
     take_turntable,
 )
+from app.jobs import PATIENCE, Jobs
+from cutcell.progress import silent
 from tests.cutcell.io.gltf_builder import column
 
 
@@ -127,6 +133,45 @@ def test_drawing_leaves_the_page_free_and_can_be_cancelled(bound, loop, small):
     assert not bound.state.busy
     loop.run_for(0.5)
     assert got == []
+
+
+def never_ends(*given):
+    time.sleep(600)
+
+
+def killed(*given):
+    os.kill(os.getpid(), signal.SIGKILL)
+
+
+WRITERS = {
+    "file": ("cutcell.save", bound_file),
+    "numbers": ("app.actions.take_along.save_numbers", partial(take_numbers, what="all")),
+}
+
+
+@pytest.mark.parametrize("what", WRITERS)
+def test_writing_can_be_cancelled_and_others_compute_then(bound, loop, monkeypatch, what):
+    writer, act = WRITERS[what]
+    monkeypatch.setattr(writer, never_ends)
+    more = {"ending": "csv"} if what == "numbers" else {}
+    act(bound, done=lambda name, content: pytest.fail("it never ends"), **more)
+    loop.run_until(lambda: bound.state.stage.startswith("writing"))
+    loop.run_for(0.2)
+    bound.cancel()
+    assert not bound.state.busy
+    began, got = time.monotonic(), []
+    Jobs(loop).start(lambda progress: "computed", got.append, got.append, silent)
+    loop.run_until(lambda: got == ["computed"])
+    assert time.monotonic() - began < PATIENCE, "it was not only passed by: it has ended"
+    assert list(bound.folder.iterdir()) == []
+
+
+def test_a_writer_that_crashes_is_told_in_a_sentence(bound, loop, monkeypatch):
+    monkeypatch.setattr("cutcell.save", killed)
+    bound_file(bound, lambda name, content: pytest.fail("it crashed"))
+    loop.run_until(lambda: not bound.state.busy)
+    assert "Writing it came to a sudden end" in bound.state.message[1]
+    assert bound.state.binding is not None
 
 
 def test_numbers_are_those_that_were_computed(bound, loop):

@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 
 import cutcell
 from cutcell import ParameterError, Rig, Skeleton, TriangleMesh, WeightsError
+from cutcell.errors import Cancelled
 from cutcell.metrics import (
     clip_error,
     crosstalk,
@@ -125,6 +126,22 @@ def test_blocks_change_nothing(monkeypatch):
     parts = deformation_error(rig, ours, theirs)
     np.testing.assert_array_equal(whole.vertex, parts.vertex)
     np.testing.assert_allclose(whole.turn_mean, parts.turn_mean)
+
+
+def test_measuring_can_be_stopped_between_blocks(monkeypatch):
+    rig, told = chain(), []
+    ours, theirs = random_weights(rig, 1), random_weights(rig, 2)
+    monkeypatch.setattr("cutcell.metrics.deformation.BLOCK", 20)
+
+    def stop(stage, fraction):
+        told.append((stage, fraction))
+        if fraction > 0.2:
+            raise Cancelled
+
+    with pytest.raises(Cancelled):
+        deformation_error(rig, ours, theirs, progress=stop)
+    assert told[0] == ("deformation", 0.0)
+    assert 0.2 < told[-1][1] < 0.5
 
 
 def test_a_bar_by_hand():
