@@ -44,20 +44,17 @@ _PLACE = """
   max-height: calc(100% - 76px); pointer-events: none; }
 @media (max-width: 700px) { :host { top: auto; bottom: 8px; right: 8px; left: 8px; width: auto;
   max-height: 52%; } }
+@media (min-width: 701px) { :host(.beside-tour) { right: auto; left: 14px; } }
 """
-
-_LEFT = """
-@media (min-width: 701px) { :host { right: auto; left: 14px; } }
-"""
-"""Where the card of the tour stands at the right."""
 
 
 def inspector(session: Session) -> Inspector:
     """Return the card of a session, in its place over the canvas."""
-    card = Inspector(session, margin=0)
+    card = Inspector(session, stylesheets=[_PLACE], margin=0)
 
     def place(*events: Any) -> None:
-        card.stylesheets = [_PLACE, _LEFT] if session.state.tour >= 0 else [_PLACE]
+        # Not by other stylesheets: Panel then asks for its own at a server far away.
+        card.css_classes = ["beside-tour"] if session.state.tour >= 0 else []
 
     session.state.param.watch(place, "tour")
     place()
