@@ -37,7 +37,8 @@ def read(path: Path, wanted: Callable[[], object] = lambda: None) -> Rig:
 
 def frozen(rig: Rig) -> Rig:
     """Let nothing write to a rig that was copied, as to one that was made."""
-    for part in (rig, rig.mesh, rig.skeleton, *rig.clips, *(one.mesh for one in rig.attachments)):
+    meshes, motions = [one.mesh for one in rig.attachments], [clip.motion for clip in rig.clips]
+    for part in (rig, rig.mesh, rig.skeleton, *meshes, *motions):
         for value in vars(part).values():
             if isinstance(value, np.ndarray):
                 value.flags.writeable = False
