@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..compiled import compiled
+from ..progress import Tell
 from ..sorting import sort_into
 from ..threads import in_threads
 from .rays import column_span, height_between
@@ -34,6 +35,7 @@ def exposure(
     faces: NDArray[np.int32],
     patch: NDArray[np.int32],
     asked: NDArray[np.bool_],
+    tell: Tell = lambda done: None,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Measure how much of the outside patches see from their front and from their back.
 
@@ -46,6 +48,8 @@ def exposure(
         Of each face.
     asked : array, shape (p,), bool
         Which patches to measure.
+    tell : callable
+        See `progress.Tell`.
 
     Returns
     -------
@@ -64,19 +68,32 @@ def exposure(
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     normals /= np.maximum(np.linalg.norm(normals, axis=1), 1e-300)[:, None]
     of = patch[face]
+    single, own = _each_once(faces)
+    own = own[face]
 
     def along(turn: NDArray[np.float64]) -> NDArray[np.float64]:
         seen = [np.ascontiguousarray((x - 0.5) @ turn.T / SHRINK + 0.5) for x in (vertices, points)]
-        is_free = _look(seen[1], face, seen[0], faces)
+        is_free = _look(seen[1], own, seen[0], single)
         cosine = normals @ turn[2]
         weight, is_up = np.abs(cosine), cosine > 0
         front = weight * np.where(is_up, is_free[:, 0], is_free[:, 1])
         back = weight * np.where(is_up, is_free[:, 1], is_free[:, 0])
         return np.stack([np.bincount(of, x, count) for x in (front, back, weight)])
 
-    front, back, every = np.sum(in_threads(along, _turns()), axis=0)
+    front, back, every = np.sum(in_threads(along, _turns(), tell), axis=0)
     every = np.maximum(every, 1e-300)
     return front / every, back / every
+
+
+def _each_once(faces: NDArray[np.int32]) -> tuple[NDArray[np.int32], NDArray[np.intp]]:
+    """Return faces without repeated ones, which hide nothing more, and where each is in them."""
+    corners = np.sort(faces, axis=1)
+    order = np.lexsort(corners.T)
+    is_new = np.ones(len(faces), np.bool_)
+    is_new[1:] = (corners[order[1:]] != corners[order[:-1]]).any(axis=1)
+    place = np.empty(len(faces), np.intp)
+    place[order] = np.cumsum(is_new) - 1
+    return faces[order[is_new]], place
 
 
 def _turns() -> list[NDArray[np.float64]]:
@@ -130,7 +147,13 @@ def _look(points, own, vertices, faces):
         column[q] = int(points[q, 0] * COLUMNS) * COLUMNS + int(points[q, 1] * COLUMNS)
     start, order = sort_into(column, COLUMNS * COLUMNS)
     is_free = np.ones((len(points), 2), np.bool_)
+    hidden = 0
     for f in range(len(faces)):
+        if 2 * hidden > len(order):  # in a soup nearly all points are, after a few faces
+            for q in order:
+                column[q] = column[q] if is_free[q, 0] or is_free[q, 1] else -1
+            start, order = sort_into(column, COLUMNS * COLUMNS)
+            hidden = 0
         a, b, c = faces[f, 0], faces[f, 1], faces[f, 2]
         low_u = min(vertices[a, 0], vertices[b, 0], vertices[c, 0])
         high_u = max(vertices[a, 0], vertices[b, 0], vertices[c, 0])
@@ -150,4 +173,5 @@ def _look(points, own, vertices, faces):
                     away = height_between(span_low, low, span_high, high, pv) - points[q, 2]
                     if abs(away) > COINCIDENT:
                         is_free[q, 0 if away > 0 else 1] = False
+                        hidden += not (is_free[q, 0] or is_free[q, 1])
     return is_free

@@ -12,6 +12,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ..progress import Tell
 from ..rig import TriangleMesh
 from .boundary import boundary_of
 from .caps import fans
@@ -66,7 +67,10 @@ def oriented(mesh: TriangleMesh) -> TriangleMesh:
 
 
 def find_inverted(
-    vertices: NDArray[np.float64], faces: NDArray[np.int32], partner: NDArray[np.int32]
+    vertices: NDArray[np.float64],
+    faces: NDArray[np.int32],
+    partner: NDArray[np.int32],
+    tell: Tell = lambda done: None,
 ) -> NDArray[np.bool_]:
     """Tell which welded faces are turned inside out.
 
@@ -77,6 +81,8 @@ def find_inverted(
     faces : array, shape (m, 3), int32
     partner : array, shape (3 m,), int32
         See `mesh_edges.MeshEdges`.
+    tell : callable
+        See `progress.Tell`.
 
     Returns
     -------
@@ -85,16 +91,19 @@ def find_inverted(
     a, b, c = faces.T
     proper = (a != b) & (b != c) & (c != a)
     if proper.all():
-        return _find_inverted(vertices, faces, partner)
+        return _find_inverted(vertices, faces, partner, tell)
     inverted = np.zeros(len(faces), np.bool_)
     if proper.any():
         faces = faces[proper]
-        inverted[proper] = _find_inverted(vertices, faces, find_edges(faces).partner)
+        inverted[proper] = _find_inverted(vertices, faces, find_edges(faces).partner, tell)
     return inverted
 
 
 def _find_inverted(
-    vertices: NDArray[np.float64], faces: NDArray[np.int32], partner: NDArray[np.int32]
+    vertices: NDArray[np.float64],
+    faces: NDArray[np.int32],
+    partner: NDArray[np.int32],
+    tell: Tell,
 ) -> NDArray[np.bool_]:
     areas, volumes = measure_faces(vertices, faces)
     turned, patch, rims, of_rim = find_patches(vertices, faces, partner, areas)
@@ -107,7 +116,7 @@ def _find_inverted(
         doubtful |= is_sheet  # in a soup nothing else tells
     if not doubtful.any():
         return turned
-    front, back = exposure(vertices, faces, patch, doubtful)
+    front, back = exposure(vertices, faces, patch, doubtful, tell)
     wrong = (back >= SEEN) & (back >= CLEARLY * front)
     right = (front >= SEEN) & (front >= CLEARLY * back) | ~(doubtful | is_sheet)
     if wrong.any() and area[wrong].sum() >= MOSTLY * area[wrong | right].sum():

@@ -1,5 +1,7 @@
 """Faces that are inside out are found, and only they; the graph takes them as turned round."""
 
+import time
+
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
@@ -8,6 +10,7 @@ import cutcell
 from assets import demo_path
 from cutcell import TriangleMesh, build_graph
 from cutcell.graph import INTERIOR, inverted_faces, slice_rays
+from cutcell.graph.exposure import exposure
 from tests import meshes
 from tests.conftest import SHARED_RIGS
 
@@ -117,6 +120,15 @@ def test_faces_that_are_there_twice_are_left_alone():
     square = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], float)
     quads = np.array([[0, 1, 2], [0, 2, 3], [0, 1, 3], [1, 2, 3]])
     assert not inverted(*joined((vertices + 2, faces), (square, quads))[:2]).any()
+
+
+def test_many_copies_of_faces_take_no_more_time():
+    points, faces = moved(sheet(2), 0.5, (0.2, 0.2, 0.2))
+    faces = np.concatenate([faces, np.tile(faces[:3], (3000, 1))])
+    begin, told = time.process_time(), []
+    exposure(points, faces, np.arange(len(faces)), np.ones(len(faces), bool), told.append)
+    assert time.process_time() - begin < 5  # it was a minute
+    assert told[-1] == 1
 
 
 def test_faces_that_have_collapsed_part_nothing():
