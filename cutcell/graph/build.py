@@ -90,7 +90,7 @@ def build_graph(
     mesh_edges, balance, partner = find_edges(faces)
     inverted = np.zeros(len(faces), np.bool_)
     if orient:
-        inverted = find_inverted(vertices, faces, partner)
+        inverted = find_inverted(vertices, faces, partner, share_of(tell, 0, 0.03))
     if inverted.any():
         faces = flipped(faces, inverted)
         mesh_edges, balance, _ = find_edges(faces)
