@@ -5,6 +5,7 @@ All are frozen and checked when they are made, so that no later stage meets a ba
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import pairwise
@@ -13,6 +14,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from .arrays import as_array
+from .checks import shown
 from .errors import MeshError, SkeletonError, WeightsError
 from .memory import check_matrix
 from .motion import Clip
@@ -45,8 +48,8 @@ class TriangleMesh:
     faces: NDArray[np.int32]
 
     def __post_init__(self) -> None:
-        vertices = _array(self.vertices, np.float64, (None, 3), "vertices", MeshError)
-        faces = _array(self.faces, np.int64, (None, 3), "faces", MeshError)
+        vertices = as_array(self.vertices, np.float64, (None, 3), "vertices", MeshError)
+        faces = as_array(self.faces, np.int64, (None, 3), "faces", MeshError)
         if len(faces) == 0:
             raise MeshError("the mesh has no faces; it needs at least one triangle")
         _check_finite(vertices, "vertex", MeshError)
@@ -103,12 +106,10 @@ class Skeleton:
     orientations: NDArray[np.float64] | None = None
 
     def __post_init__(self) -> None:
-        joints = _array(self.joints, np.float64, (None, 3), "joints", SkeletonError)
+        joints = as_array(self.joints, np.float64, (None, 3), "joints", SkeletonError)
         count = len(joints)
-        parents = _array(self.parents, np.int64, (count,), "parents", SkeletonError)
-        names = tuple(self.names) or tuple(f"joint {i}" for i in range(count))
-        if len(names) != count:
-            raise SkeletonError(f"the skeleton has {count} joints but {len(names)} names")
+        parents = as_array(self.parents, np.int64, (count,), "parents", SkeletonError)
+        names = _joint_names(self.names, count)
         _check_finite(joints, "joint", SkeletonError, names)
         bad = np.flatnonzero((parents < -1) | (parents >= count))
         if len(bad):
@@ -117,14 +118,14 @@ class Skeleton:
                 f"-1 (a root) to {count - 1}"
             )
         deform = np.ones(count, bool) if self.deform is None else self.deform
-        deform = _array(deform, np.bool_, (count,), "deform", SkeletonError)
+        deform = as_array(deform, np.bool_, (count,), "deform", SkeletonError)
         if count and not deform.any():
             raise SkeletonError("no joint of the skeleton may carry weight (deform is all False)")
         if count:
             _check_acyclic(parents, names)
         if self.orientations is not None:
             shape = (count, 3, 3)
-            axes = _array(self.orientations, np.float64, shape, "orientations", SkeletonError)
+            axes = as_array(self.orientations, np.float64, shape, "orientations", SkeletonError)
             if not np.isfinite(axes).all():
                 raise SkeletonError("an orientation holds a number that is not finite")
             object.__setattr__(self, "orientations", _frozen(axes))
@@ -250,7 +251,7 @@ class Rig:
         shape = (len(self.mesh.vertices), len(self.skeleton.joints))
         if self.weights is not None:
             check_matrix(*shape)
-            weights = _array(self.weights, np.float64, shape, "weights", WeightsError)
+            weights = as_array(self.weights, np.float64, shape, "weights", WeightsError)
             bad = np.flatnonzero(~(np.isfinite(weights) & (weights >= 0)).all(axis=1))
             if len(bad):
                 raise WeightsError(
@@ -259,7 +260,7 @@ class Rig:
                 )
             object.__setattr__(self, "weights", _frozen(weights))
         if self.allowed is not None:
-            allowed = _array(self.allowed, np.bool_, shape, "allowed", WeightsError)
+            allowed = as_array(self.allowed, np.bool_, shape, "allowed", WeightsError)
             object.__setattr__(self, "allowed", _frozen(allowed))
         if not self.parts or self.parts[-1].vertices.stop != shape[0]:  # of another mesh
             object.__setattr__(self, "parts", (Part(self.name, slice(0, shape[0])),))
@@ -288,32 +289,22 @@ class Rig:
             )
 
 
-def _array(value: Any, dtype: Any, shape: tuple, name: str, error: type) -> NDArray:
-    try:
-        array = np.asarray(value)
-        if array.size == 0:
-            array = np.zeros([0 if s is None else s for s in shape] if None in shape else shape)
-        if array.dtype.kind not in "biufO":  # complex ones would lose a part, words become numbers
-            raise error(f"{name} must be an array of real numbers, not of {array.dtype}")
-        fractions = np.issubdtype(dtype, np.integer) and np.issubdtype(array.dtype, np.floating)
-        if fractions and not np.array_equal(array, np.round(array)):
-            raise error(f"{name} must be whole numbers")
-        array = np.array(array, dtype=dtype)
-    except (TypeError, ValueError) as e:
-        if isinstance(e, error):
-            raise
-        raise error(f"{name} must be an array of numbers: {e}") from None
-    expected = tuple("any" if s is None else s for s in shape)
-    if array.ndim != len(shape) or any(
-        s is not None and s != a for s, a in zip(shape, array.shape, strict=True)
-    ):
-        raise error(f"{name} has the shape {array.shape}, expected {expected}".replace("'", ""))
-    return array
-
-
 def _frozen(array: NDArray) -> NDArray:
     array.flags.writeable = False
     return array
+
+
+def _joint_names(names: Any, count: int) -> tuple[str, ...]:
+    if isinstance(names, str) or not isinstance(names, Sequence | np.ndarray):
+        raise SkeletonError(f"the names of joints must be a list of them, not {shown(names)}")
+    if len(names) == 0:
+        return tuple(f"joint {i}" for i in range(count))
+    if len(names) != count:
+        raise SkeletonError(f"the skeleton has {count} joints but {len(names)} names")
+    for joint, name in enumerate(names):
+        if not isinstance(name, str):
+            raise SkeletonError(f"the name of joint {joint} must be a text, not {shown(name)}")
+    return tuple(names)
 
 
 def _check_finite(points: NDArray, what: str, error: type, names: Any = None) -> None:

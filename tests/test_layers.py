@@ -29,6 +29,7 @@ IMPORT_SECONDS = 0.3
 ORDER = [
     {
         "apart",
+        "arrays",
         "checks",
         "compiled",
         "display",

@@ -8,8 +8,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from ..checks import check_choice, check_has_joints, check_integer, check_number
-from ..errors import ParameterError, WeightsError
+from ..checks import check_choice, check_has_joints, check_integer, check_number, check_positions
+from ..errors import ParameterError, SkeletonError, WeightsError
 from ..graph import CutCellGraph
 from ..progress import Progress, silent
 from ..rig import Skeleton
@@ -18,6 +18,8 @@ from .bone_extents import REGION_TIPS, REGION_WITHIN, aim_tips, fit_bones
 from .bones import LEAVES, Bones, Sources, bone_segments, find_sources, node_grid
 from .fallback import NOT_ALLOWED, REACHED, UNREACHED, UNUSED, straight_to_nearest
 from .shortest_paths import shortest_paths
+
+MOST_SAMPLES = 1000
 
 
 @dataclass(frozen=True, eq=False)
@@ -168,7 +170,7 @@ def bone_distances(
     MeshError
         The mesh has collapsed into points.
     SkeletonError
-        No joints.
+        No joints, or one too far out to compute with.
     WeightsError
         `allowed` has the wrong shape or leaves a vertex without any joint.
 
@@ -176,16 +178,17 @@ def bone_distances(
     ----------
     Paper section 3.2, algorithm 2.
     """
-    samples = check_integer("samples", samples, 1, 1000)
+    samples = check_integer("samples", samples, 1, MOST_SAMPLES)
     nearest = check_integer("nearest", nearest, 1, 1_000_000)
     if nearest_joints is not None:
         nearest_joints = check_integer("nearest_joints", nearest_joints, 1, 1_000_000)
     within = check_number("within", within, 1, np.inf)
     check_has_joints(skeleton)
+    check_positions(skeleton.joints, "joint", SkeletonError)
     if graph.connectivity != "any" or allowed is not None:
         nearest_joints = None
     progress("distances", 0.0)
-    check_choice("leaf", leaf, LEAVES)
+    leaf = check_choice("leaf", leaf, LEAVES)
     if allowed is not None:
         _check_allowed(graph, skeleton, allowed)
     targets = _on_mesh(graph)

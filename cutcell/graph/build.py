@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..checks import check_choice, check_number
+from ..checks import check_choice, check_flag, check_number
 from ..progress import Progress, share_of, silent
 from ..rig import TriangleMesh
 from .assemble import assemble
@@ -65,6 +65,8 @@ def build_graph(
 
     Raises
     ------
+    MeshError
+        The mesh is too large or too small to compute with.
     ParameterError
         A parameter is out of its range, or the graph would not fit in memory.
     MissingLibraryError
@@ -77,7 +79,8 @@ def build_graph(
     lattice = Lattice.around(mesh, resolution)
     resolution = lattice.resolution
     winding_threshold = check_number("winding_threshold", winding_threshold, 0, 1)
-    check_choice("connectivity", connectivity, (6, 26, "any"))
+    connectivity = check_choice("connectivity", connectivity, (6, 26, "any"))
+    orient = check_flag("orient", orient)
     check_choice("rays", rays, ("raster", *CASTERS))
     check_choice("winding", winding, ("exact", "fast"))
 

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..checks import check_integer
+from ..checks import LARGEST, check_integer, check_positions
+from ..errors import MeshError
 from ..rig import TriangleMesh
 
 MIN_RESOLUTION = 2
@@ -46,6 +47,8 @@ class Lattice:
         ------
         ParameterError
             `resolution` is not a whole number from 2 to 1024.
+        MeshError
+            The mesh is too large or too small to compute with.
         """
         resolution = check_integer(
             "resolution",
@@ -54,8 +57,14 @@ class Lattice:
             MAX_RESOLUTION,
             "it counts the cells along the mesh's longest side, 64 suits most characters",
         )
+        check_positions(mesh.vertices, "vertex", MeshError)
         low, high = mesh.bounds
         size = float((high - low).max())
+        if size * LARGEST < 1:
+            raise MeshError(
+                f"the mesh is only {size:.3g} long, too small to compute with (the limit is "
+                f"{1 / LARGEST:g}); scale the whole character up"
+            )
         # Divide rather than multiply by 1 / size: then a mesh scaled by a power of two
         # lands on the very same numbers.
         extent = (high - low) / size

@@ -42,8 +42,8 @@ def weld(
     order = np.argsort(place)
     place, ordered = place[order], points[order]
     _sort_ties(place, ordered, order)
-    # Rounding moves a place by less than this.
-    slack = tolerance + 8 * np.finfo(float).eps * np.abs(points).max(initial=0)
+    # Rounding moves a place by less than this. One stray far away is no reason to compare all.
+    slack = tolerance + 8 * np.finfo(float).eps * np.abs(ordered).max(axis=1, initial=0)
     welded, group = _merge(place, ordered, tolerance, slack)
     index = np.empty(len(points), np.int32)
     index[order] = group
@@ -78,7 +78,7 @@ def _merge(place, points, tolerance, slack):
     first = np.arange(count)
     for i in range(count):
         j = i + 1
-        while j < count and place[j] - place[i] <= slack:
+        while j < count and place[j] - place[i] <= slack[i]:
             x = points[j, 0] - points[i, 0]
             y = points[j, 1] - points[i, 1]
             z = points[j, 2] - points[i, 2]

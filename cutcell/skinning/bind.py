@@ -9,9 +9,12 @@ from time import perf_counter
 import numpy as np
 from numpy.typing import NDArray
 
-from ..checks import check_choice, check_has_joints, check_integer
-from ..geodesics import FALLBACK_REASONS, BoneDistances, bone_distances
+from ..checks import check_choice, check_has_joints, check_integer, check_number, check_positions
+from ..errors import SkeletonError
+from ..geodesics import FALLBACK_REASONS, LEAVES, BoneDistances, bone_distances
+from ..geodesics.distances import MOST_SAMPLES
 from ..graph import CutCellGraph, build_graph
+from ..graph.lattice import Lattice
 from ..memory import check_matrix
 from ..progress import Progress, silent
 from ..rig import Rig
@@ -22,7 +25,7 @@ from .skin import Skin
 from .weights import (
     DEFAULT_LEAF,
     FALLOFFS,
-    MOST_INFLUENCES,
+    check_pruning,
     joints_needed,
     reach_needed,
     skinning_weights,
@@ -112,13 +115,17 @@ def bind(
     >>> binding = cutcell.bind(rig)  # doctest: +SKIP
     >>> cutcell.save("bound.glb", rig.with_weights(binding.weights))  # doctest: +SKIP
     """
-    if max_influences is not None:
-        max_influences = check_integer("max_influences", max_influences, 1, MOST_INFLUENCES)
-    check_choice("falloff", falloff, FALLOFFS)
+    # Each stage checks what it is given, but that would be late for the last.
+    Lattice.around(rig.mesh, resolution)
+    samples = check_integer("samples", samples, 1, MOST_SAMPLES)
+    falloff = check_choice("falloff", falloff, FALLOFFS)
+    leaf = DEFAULT_LEAF[falloff] if leaf is None else check_choice("leaf", leaf, LEAVES)
+    alpha = check_number("alpha", alpha, 0, 1)
+    max_influences, threshold = check_pruning(max_influences, threshold)
     check_has_joints(rig.skeleton)
+    check_positions(rig.skeleton.joints, "joint", SkeletonError)
     check_refinement(rig, smoothing, symmetric, locked)
     check_matrix(len(rig.mesh.vertices), len(rig.skeleton.joints), COPIES)
-    leaf = leaf or DEFAULT_LEAF[falloff]
     if not kernels_are_compiled():
         progress("compile", 0.0)
         load_kernels()

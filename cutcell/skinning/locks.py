@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from difflib import get_close_matches
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..checks import check_integer
+from ..checks import LONG, check_integer, one_line, shown
 from ..errors import ParameterError, WeightsError
 from ..rig import Rig, Skeleton
 
@@ -70,9 +70,9 @@ def locked_joints(rig: Rig, locked: Sequence[int | str]) -> NDArray[np.bool_]:
     WeightsError
         The rig has no weights to keep.
     """
-    if isinstance(locked, str) or not isinstance(locked, Iterable):
+    if isinstance(locked, str) or not isinstance(locked, Sequence | np.ndarray):
         raise ParameterError(
-            f"locked must be a list of joints, by index or by name, not {locked!r}"
+            f"locked must be a list of joints, by index or by name, not {shown(locked)}"
         )
     held = np.zeros(len(rig.skeleton.names), bool)
     for joint in locked:
@@ -98,8 +98,9 @@ def joint_index(skeleton: Skeleton, joint: int | str) -> int:
         if joint in names:
             return names.index(joint)
         close = get_close_matches(joint, names, n=3, cutoff=0.4) or names[:3]
+        asked = one_line(joint)[:LONG]
         raise ParameterError(
-            f'there is no joint "{joint}" among the {len(names)} of the skeleton; there is '
+            f'there is no joint "{asked}" among the {len(names)} of the skeleton; there is '
             + ", ".join(f'"{name}"' for name in close)
         )
     return check_integer("joint", joint, 0, len(names) - 1, "or the name of one")

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ..checks import check_integer
+from ..checks import check_flag, check_integer
 from ..rig import Rig
 from .locks import lock_joints, locked_joints
 from .prune import prune
@@ -51,6 +51,7 @@ def refine_weights(
     ParameterError, MeshError, WeightsError
         What is asked is out of range, or the rig is not made for it.
     """
+    symmetric = check_flag("symmetric", symmetric)
     if smoothing or symmetric:
         mirror = find_mirror(rig) if symmetric else None
         weights = smooth_weights(rig.mesh, weights, smoothing)
@@ -74,7 +75,7 @@ def check_refinement(
         What is asked is out of range, or the rig is not made for it.
     """
     check_integer("smoothing", smoothing, 0, MOST_PASSES)
-    if symmetric:
+    if check_flag("symmetric", symmetric):
         find_mirror(rig)
     locked_joints(rig, locked)
 

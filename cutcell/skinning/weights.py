@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -68,11 +70,9 @@ def skinning_weights(
     ----------
     Paper section 3.2, equation 1.
     """
-    check_choice("falloff", falloff, FALLOFFS)
+    falloff = check_choice("falloff", falloff, FALLOFFS)
     alpha = check_number("alpha", alpha, 0, 1)
-    threshold = check_number("threshold", threshold, 0, 1)
-    if max_influences is not None:
-        max_influences = check_integer("max_influences", max_influences, 1, MOST_INFLUENCES)
+    max_influences, threshold = check_pruning(max_influences, threshold)
     known, needed = distances.nearest_joints, joints_needed(falloff, max_influences)
     if known is not None and (needed is None or needed > known):
         raise ParameterError(
@@ -135,10 +135,22 @@ def keep_strongest(
     ParameterError
         A parameter is out of its range.
     """
+    max_influences, threshold = check_pruning(max_influences, threshold)
+    return prune(weights, max_influences, threshold, _by_position(distances))
+
+
+def check_pruning(max_influences: Any, threshold: Any) -> tuple[int | None, float]:
+    """Return which weights are kept, as numbers.
+
+    Raises
+    ------
+    ParameterError
+        One is out of its range.
+    """
     threshold = check_number("threshold", threshold, 0, 1)
     if max_influences is not None:
         max_influences = check_integer("max_influences", max_influences, 1, MOST_INFLUENCES)
-    return prune(weights, max_influences, threshold, _by_position(distances))
+    return max_influences, threshold
 
 
 def joints_needed(falloff: str, max_influences: int | None) -> int | None:

@@ -60,6 +60,7 @@ class TestMesh:
             (CORNERS, [[0, 1, 2, 3]], r"faces has the shape \(1, 4\)"),
             (CORNERS, [[0, 1, 2.5]], "faces must be whole numbers"),
             ([["a", "b", "c"]], TETRAHEDRON, "vertices must be an array of real numbers"),
+            (CORNERS + 1j, TETRAHEDRON, "vertices must be an array of real numbers, not of compl"),
             ([[0, 0, 0], [1, 0]], TETRAHEDRON, "vertices must be an array of numbers"),
         ],
     )
@@ -91,6 +92,11 @@ class TestSkeleton:
         [
             (np.zeros((2, 3)), [-1], {}, r"parents has the shape \(1,\), expected \(2,\)"),
             (np.zeros((2, 3)), [-1, 0], {"names": ("a",)}, "2 joints but 1 names"),
+            (np.zeros((2, 3)), [-1, 0], {"names": "ab"}, "must be a list of them, not 'ab'"),
+            (np.zeros((2, 3)), [-1, 0], {"names": 5}, "must be a list of them, not 5"),
+            (np.zeros((2, 3)), [-1, 0], {"names": ("a", 5)}, "name of joint 1 must be a text"),
+            (np.zeros((2, 3)), [], {}, r"parents has the shape \(0,\), expected \(2,\)"),
+            (np.zeros((1, 3)), [-1], {"deform": [np.nan]}, "deform must be True or False each"),
             ([[0, 0, np.nan]], [-1], {"names": ("hip",)}, 'joint "hip" has a coordinate'),
             (np.zeros((2, 3)), [-1, 2], {"names": ("hip", "leg")}, '"leg" has the parent 2'),
             (np.zeros((2, 3)), [-2, 0], {}, '"joint 0" has the parent -2'),

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from scipy.sparse.csgraph import connected_components
 
 from benchmarks.growth import run
-from cutcell import Cancelled, ParameterError, TriangleMesh, build_graph
+from cutcell import Cancelled, MeshError, ParameterError, TriangleMesh, build_graph
 from cutcell.graph import INTERIOR, MESH, SURFACE
 from cutcell.graph.memory import needed_memory
 from cutcell.graph.rays import cast_all_rays
@@ -217,6 +217,16 @@ def test_what_is_reckoned_for_a_graph_is_what_binding_takes(connectivity):
     assert taken <= needed_memory(*found["kinds"], connectivity) <= 2.5 * taken
 
 
+def test_meshes_of_absurd_sizes_are_refused():
+    vertices, faces = meshes.box()
+    for size in (1e-30, 1e30):
+        build_graph(TriangleMesh(vertices * size, faces), 4)
+    with pytest.raises(MeshError, match=r"vertex \d lies at .*, too far out to compute with"):
+        build_graph(TriangleMesh(vertices * 1e300, faces), 4)
+    with pytest.raises(MeshError, match=r"the mesh is only .* long, too small to compute with"):
+        build_graph(TriangleMesh(vertices * 1e-300, faces), 4)
+
+
 def test_other_parameters_are_checked():
     mesh = TriangleMesh(*meshes.box())
     with pytest.raises(ParameterError, match="winding_threshold must be a number from 0 to 1"):
@@ -225,6 +235,8 @@ def test_other_parameters_are_checked():
         build_graph(mesh, 8, connectivity=18)
     with pytest.raises(ParameterError, match="rays must be one of 'raster', 'open3d', 'embree'"):
         build_graph(mesh, 8, rays="x")
+    with pytest.raises(ParameterError, match="orient must be True or False, not 'no'"):
+        build_graph(mesh, 8, orient="no")
     with pytest.raises(ParameterError, match="winding must be one of 'exact', 'fast'"):
         build_graph(mesh, 8, winding="x")
 

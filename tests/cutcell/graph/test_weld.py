@@ -1,5 +1,6 @@
 """Equal points become one, whatever order they come in; edges are counted with their sense."""
 
+import time
 from collections import Counter
 
 import numpy as np
@@ -40,6 +41,15 @@ def test_a_pile_of_points_at_one_place_is_no_trouble():
     welded, index = weld(np.full((200_000, 3), 0.3))
     assert welded.tolist() == [[0.3, 0.3, 0.3]]
     assert not index.any()
+
+
+def test_a_stray_far_away_is_no_reason_to_compare_all_points():
+    points = np.random.default_rng(3).random((30_000, 3))
+    begin = time.process_time()
+    welded, index = weld(np.vstack([points, [[1e40, 0, 0]]]))
+    assert time.process_time() - begin < 2  # all pairs took five times as long
+    np.testing.assert_array_equal(np.sort(index[:-1]), np.sort(weld(points)[1]))
+    assert len(welded) == len(weld(points)[0]) + 1
 
 
 @pytest.mark.parametrize("name", meshes.ALL)

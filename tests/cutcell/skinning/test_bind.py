@@ -5,7 +5,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import cutcell
-from cutcell import Cancelled, Rig, Skeleton, TriangleMesh, bind
+from cutcell import Cancelled, ParameterError, Rig, Skeleton, SkeletonError, TriangleMesh, bind
 from tests import meshes
 
 
@@ -93,6 +93,33 @@ def test_every_stage_reports_and_each_can_be_cancelled():
 
         with pytest.raises(Cancelled):
             bind(figure(), 8, progress=cancel)
+
+
+@pytest.mark.parametrize(
+    ("options", "sentence"),
+    [
+        ({"resolution": 10**30}, "resolution must be a whole number from 2 to 1,024, not 10000000"),
+        ({"samples": "many"}, "samples must be a whole number from 1 to 1,000, not 'many'"),
+        ({"leaf": 0}, "leaf must be one of 'point', 'extend', 'fit', not 0"),
+        ({"falloff": []}, "falloff must be one of 'rig', 'paper', not \\[\\]"),
+        ({"alpha": 1j}, "alpha must be a number from 0 to 1, not 1j"),
+        ({"threshold": np.nan}, "threshold must be a number from 0 to 1, not nan"),
+        ({"max_influences": 0}, "max_influences must be a whole number from 1 to 1,024, not 0"),
+        ({"locked": 5}, "locked must be a list of joints"),
+    ],
+)
+def test_absurd_parameters_are_refused_before_anything_is_computed(options, sentence):
+    with pytest.raises(ParameterError, match=sentence):
+        bind(figure(), **options, progress=lambda stage, done: pytest.fail("it has begun"))
+
+
+def test_joints_too_far_out_are_refused():
+    joints, parents = [[0.5, 0.5, 0.5], [0, 1e200, 0]], [-1, 0]
+    rig = Rig(figure().mesh, Skeleton(joints, parents, deform=[True, False]))
+    with pytest.raises(SkeletonError, match=r"joint 1 lies at .*, too far out to compute with"):
+        bind(rig, 8)
+    with pytest.raises(SkeletonError, match="joint 1 lies at"):
+        cutcell.bone_distances(cutcell.build_graph(rig.mesh, 8), rig.skeleton)
 
 
 def test_warnings_say_what_happened():

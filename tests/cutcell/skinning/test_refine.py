@@ -243,7 +243,10 @@ def test_what_a_file_cannot_store_stays_away():
         ({"locked": "hip"}, "locked must be a list of joints, by index or by name, not 'hip'"),
         ({"locked": ["hop"]}, 'there is no joint "hop"'),
         ({"locked": ["hip"]}, "has no weights of its own"),
+        ({"locked": {"hip"}}, "locked must be a list of joints"),
+        ({"locked": [3j]}, "joint must be a whole number from 0 to 3"),
         ({"smoothing": -1}, "smoothing must be a whole number"),
+        ({"symmetric": "no"}, "symmetric must be True or False, not 'no'"),
     ],
 )
 def test_what_cannot_be_refined_is_refused_before_weights_are_computed(asked, sentence):

@@ -1,0 +1,62 @@
+"""What people give as an array, checked and copied."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .checks import one_line
+
+NUMBERS = "biufO"
+"""Kinds of arrays that may hold numbers: not complex ones, texts or dates."""
+EXACT = 2**53
+"""Whole numbers up to this are themselves as float64."""
+
+
+def as_array(
+    value: Any, dtype: Any, shape: tuple[int | None, ...], name: str, error: type[Exception]
+) -> NDArray:
+    """Copy what is given into an array.
+
+    Parameters
+    ----------
+    value : array_like
+    dtype : numpy type
+    shape : tuple
+        None where any size will do.
+    name : str
+        For the sentence.
+    error : type
+        What to raise.
+
+    Raises
+    ------
+    error
+        Not an array of numbers, or of another shape.
+    """
+    try:
+        array = np.asarray(value)
+        empty = [0 if size is None else size for size in shape]
+        if array.size == 0 and 0 in empty:  # whatever its own shape and type
+            array = np.zeros(empty)
+        if array.dtype.kind not in NUMBERS:
+            raise error(f"{name} must be an array of real numbers, not of {array.dtype}")
+        if np.issubdtype(dtype, np.integer) and array.dtype.kind == "f":
+            array = np.where(np.abs(array) <= EXACT, array, 0.5)
+            if not np.array_equal(array, np.round(array)):
+                raise error(f"{name} must be whole numbers")
+        if dtype is np.bool_ and not ((array == 0) | (array == 1)).all():
+            raise error(f"{name} must be True or False each")
+        array = np.array(array, dtype=dtype)
+    except (TypeError, ValueError, OverflowError) as e:
+        if isinstance(e, error):
+            raise
+        raise error(f"{name} must be an array of numbers: {one_line(e)}") from None
+    expected = tuple("any" if s is None else s for s in shape)
+    if array.ndim != len(shape) or any(
+        s is not None and s != a for s, a in zip(shape, array.shape, strict=True)
+    ):
+        raise error(f"{name} has the shape {array.shape}, expected {expected}".replace("'", ""))
+    return array
