@@ -142,6 +142,17 @@ class Skeleton:
         return tuple(ordered[a:b] for a, b in pairwise(starts))
 
     @cached_property
+    def depth(self) -> NDArray[np.int64]:
+        """How many joints are above each joint, shape (j,)."""
+        above = self.parents.copy()
+        depth = (above >= 0).astype(np.int64)
+        while (climbing := above >= 0).any():  # each time twice as far
+            further = above[climbing]
+            depth[climbing] += depth[further]
+            above[climbing] = above[further]
+        return _frozen(depth)
+
+    @cached_property
     def subtree(self) -> NDArray[np.bool_]:
         """Whether joint k moves along when joint j turns: shape (j, k); true for k = j."""
         inside = np.eye(len(self.parents), dtype=bool)

@@ -28,6 +28,9 @@ NOTHING_BEYOND = 0.15
 ENOUGH_NEAR = 0.5
 """Part of the joints that must be near the mesh for it to be a body, not a garment."""
 
+MOST_JOINTS = 2_000
+"""Of a body; where there are more, only names count, for places would take minutes."""
+
 BONE = "in or near the body"
 
 
@@ -83,14 +86,17 @@ class _Guess:
     def __init__(self, mesh: TriangleMesh, skeleton: Skeleton) -> None:
         self.names, self.parents = skeleton.names, skeleton.parents
         self.children = skeleton.children
-        self.leaves_first = np.argsort(-skeleton.subtree.sum(axis=0), kind="stable").tolist()
+        self.leaves_first = np.argsort(-skeleton.depth, kind="stable").tolist()
         self.body = Body(mesh)
         self.joints = self.body.to_unit(skeleton.joints)
         self.vertices = self.body.to_unit(mesh.vertices[np.unique(mesh.faces)])
-        self.distance = self.body.to_surface(self.joints)
-        deep = np.flatnonzero(self.distance > SPACING)
-        self.distance[deep[self.body.inside(self.joints[deep])]] = 0.0
-        self.is_body = (self.distance <= OUTSIDE).mean() >= ENOUGH_NEAR
+        self.distance = np.zeros(len(self.joints))
+        self.is_body = False
+        if len(self.joints) <= MOST_JOINTS:
+            self.distance = self.body.to_surface(self.joints)
+            deep = np.flatnonzero(self.distance > SPACING)
+            self.distance[deep[self.body.inside(self.joints[deep])]] = 0.0
+            self.is_body = bool((self.distance <= OUTSIDE).mean() >= ENOUGH_NEAR)
         self.deform = np.ones(len(self.joints), bool)
         self.reason = [BONE] * len(self.joints)
 

@@ -11,6 +11,7 @@ from ..writing import reason
 
 LONGEST = 200
 """Characters of what another library says."""
+LONGEST_SENTENCE = 1000
 
 
 @contextmanager
@@ -24,13 +25,25 @@ def naming(path: Path) -> Iterator[None]:
     except CutcellError as e:
         if "named" in vars(e):
             raise
-        named = e
-        if not str(e).startswith((f"{path}:", f"{path.name}:")):
-            named = type(e)(f"{path.name}: {e}")
+        named, sentence = e, str(e)
+        if not sentence.startswith((f"{path}:", f"{path.name}:")):
+            sentence = f"{path.name}: {sentence}"
+        sentence = _short(sentence)
+        if sentence != str(e):
+            named = type(e)(sentence)
         vars(named)["named"] = True
         if named is e:
             raise
         raise named from e
+
+
+def _short(sentence: str) -> str:
+    """Return a sentence on one line, cut in the middle: files hold words of any kind and length."""
+    sentence = " ".join(sentence.splitlines())
+    if len(sentence) <= LONGEST_SENTENCE:
+        return sentence
+    half = LONGEST_SENTENCE // 2
+    return f"{sentence[:half]} ... {sentence[-half:]}"
 
 
 def read_bytes(path: Path) -> bytes:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import logging
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +16,7 @@ from .files import one_line, read_bytes, read_text
 from .objects import parse_obj
 from .skeleton_json import read_skeleton_json, skeleton_file
 
+logging.getLogger("trimesh").addHandler(logging.NullHandler())  # it writes tracebacks to terminals
 MESHES = (".obj", ".ply", ".stl", ".off")
 
 

@@ -126,7 +126,9 @@ class TestSkeleton:
     @given(st.lists(st.integers(0, 1_000_000), min_size=1, max_size=12))
     def test_subtree_is_what_climbing_up_finds(self, draws):
         parents = [-1] + [d % (i + 1) for i, d in enumerate(draws)]
-        subtree = Skeleton(np.zeros((len(parents), 3)), parents).subtree
+        skeleton = Skeleton(np.zeros((len(parents), 3)), parents)
+        subtree = skeleton.subtree
+        np.testing.assert_array_equal(skeleton.depth, subtree.sum(axis=0) - 1)
         for joint in range(len(parents)):
             above = {joint}
             while parents[joint] >= 0:

@@ -3,6 +3,7 @@
 import io
 import json
 import struct
+import time
 import tracemalloc
 import zipfile
 
@@ -76,6 +77,31 @@ def test_a_skeleton_with_huge_numbers(tmp_path):
     path.write_text(json.dumps({"joints": [joint]}).replace('"many"', MANY))
     with pytest.raises(cutcell.FileError, match=r"^cube\.skeleton\.json: its JSON cannot be read"):
         cutcell.load(tmp_path / "cube.obj")
+
+
+def test_a_skeleton_of_thousands_of_joints_takes_seconds(tmp_path):
+    (tmp_path / "cube.obj").write_text(CUBE + SIDES)
+    names = [f"joint {k}" for k in range(8000)]
+    joints = [{"name": names[0], "position": [0.5, 0, 0.5]}]
+    for k in range(1, len(names)):
+        joints.append({"name": names[k], "position": [0.5, k / 1e4, 0.5], "parent": names[k - 1]})
+    (tmp_path / "cube.skeleton.json").write_text(json.dumps({"joints": joints}))
+    begin = time.process_time()
+    rig = cutcell.load(tmp_path / "cube.obj")
+    assert time.process_time() - begin < 6
+    assert len(rig.skeleton.joints) == rig.skeleton.deform.sum() == 8000
+
+
+def test_a_message_is_one_line_and_short(tmp_path):
+    builder = column()
+    builder.json["meshes"][0]["name"] = "a\nb" + "x" * 5000
+    del builder.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"]
+    path = builder.save(tmp_path / "rig.glb")
+    with pytest.raises(
+        cutcell.MeshError, match=r"^rig\.glb: mesh \"a bx+ \.\.\. x+\".*POSITION$"
+    ) as e:
+        cutcell.load(path)
+    assert len(str(e.value)) < 1100
 
 
 def test_a_gltf_with_huge_numbers(tmp_path):
