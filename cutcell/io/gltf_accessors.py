@@ -77,7 +77,8 @@ class Accessor:
             values[self.rows.array()[:, 0]] = self.replaced.array()
         values = values[at]
         if self.base.dtype.kind == "f":
-            return values.astype(np.float64)
+            with np.errstate(invalid="ignore"):  # a signalling NaN becomes a quiet one
+                return values.astype(np.float64)
         if self.normalized:
             return np.maximum(values.astype(np.float64) / np.iinfo(self.base.dtype).max, -1.0)
         return values
