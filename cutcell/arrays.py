@@ -44,12 +44,13 @@ def as_array(
         if array.dtype.kind not in NUMBERS:
             raise error(f"{name} must be an array of real numbers, not of {array.dtype}")
         if np.issubdtype(dtype, np.integer) and array.dtype.kind == "f":
+            array = _quietly(array, np.float64)  # half precision knows no such number
             array = np.where(np.abs(array) <= EXACT, array, 0.5)
             if not np.array_equal(array, np.round(array)):
                 raise error(f"{name} must be whole numbers")
         if dtype is np.bool_ and not ((array == 0) | (array == 1)).all():
             raise error(f"{name} must be True or False each")
-        array = np.array(array, dtype=dtype)
+        array = _quietly(array, dtype)
     except (TypeError, ValueError, OverflowError) as e:
         if isinstance(e, error):
             raise
@@ -60,3 +61,9 @@ def as_array(
     ):
         raise error(f"{name} has the shape {array.shape}, expected {expected}".replace("'", ""))
     return array
+
+
+def _quietly(array: NDArray, dtype: Any) -> NDArray:
+    """Return a copy of another type, in which a signalling NaN is a quiet one."""
+    with np.errstate(invalid="ignore"):
+        return np.array(array, dtype=dtype)

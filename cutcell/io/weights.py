@@ -52,7 +52,8 @@ def summed(
     owner : str
         Whose weights they are, for the warning.
     """
-    values = values.astype(np.float64)
+    with np.errstate(invalid="ignore"):  # a signalling NaN becomes a quiet one
+        values = values.astype(np.float64)
     good = np.isfinite(values) & (values >= 0)
     warnings: tuple[str, ...] = ()
     sums = np.zeros(shape[0])

@@ -199,3 +199,21 @@ def test_many_buffers_in_one_file_are_read_once(tmp_path):
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
     assert peak < 10e6
+
+
+@pytest.mark.parametrize("name", ["vertices", "joints", "skinning_weights_value"])
+def test_signalling_nans_are_nans(tmp_path, name):
+    values = np.array(arrays()[name], "f4")
+    values.view("u4").flat[0] = 0x7F800001
+    path = write(tmp_path, **{name: values})
+    if name == "skinning_weights_value":
+        assert "not a number" in cutcell.load(path).warnings[0]
+    else:
+        refused(path, "not a finite number")
+
+
+def test_faces_in_half_precision(tmp_path):
+    faces = arrays()["faces"].astype("f2")
+    assert_allclose(cutcell.load(write(tmp_path, faces=faces)).mesh.faces, faces)
+    faces[0, 0] = np.inf
+    refused(write(tmp_path, faces=faces), "faces must be whole numbers")
