@@ -16,6 +16,7 @@ _HOMES = {
     "LeftOut": "rig",
     "deform_joints": "deform",
     "DeformJoints": "deform",
+    "choose_deform": "deform",
     "load": "io",
     "save": "io",
     "build_graph": "graph",

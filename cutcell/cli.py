@@ -18,14 +18,19 @@ from .console import for_people, print_json, print_table, print_warnings, progre
 from .diagnose_command import EPILOG as DIAGNOSE_EPILOG
 from .diagnose_command import diagnose
 from .errors import MissingLibraryError, ParameterError
+from .joints_command import EPILOG as JOINTS_EPILOG
+from .joints_command import joints
 from .options import (
     Alpha,
     Connectivity,
+    Deform,
     Falloff,
+    Fresh,
     Json,
     Leaf,
     Lock,
     MaxInfluences,
+    NoDeform,
     Orient,
     Quiet,
     Resolution,
@@ -132,6 +137,8 @@ def open_page(
 
 - `cutcell bind character.glb bound.glb --lock Jaw --lock Eye.L --symmetric`  (keep these two)
 
+- `cutcell bind character.glb bound.glb --fresh --no-deform '*_IK' --deform Tail`  (other joints)
+
 - `cutcell bind body.obj bound.glb --skeleton body.json`  (a bare mesh)
 
 - `cutcell bind character.glb bound.glb --json | jq .seconds`  (for a script)"""
@@ -159,6 +166,9 @@ def bind(
     smoothing: Smoothing = 0,
     symmetric: Symmetric = False,
     lock: Lock = None,
+    deform: Deform = None,
+    no_deform: NoDeform = None,
+    fresh: Fresh = False,
     skeleton: SkeletonFile = None,
     json: Json = False,
     quiet: Quiet = False,
@@ -171,6 +181,7 @@ def bind(
     """
     from . import summary
     from .checks import check_has_joints
+    from .deform import choose_deform
     from .io import check_output, save
     from .io.files import naming
     from .skinning import DEFAULT_LEAF
@@ -195,6 +206,7 @@ def bind(
     loaded = _load(rig, skeleton)
     with naming(rig):
         check_has_joints(loaded.skeleton)
+        loaded = choose_deform(loaded, deform or (), no_deform or (), fresh=fresh)
     check_output(out, loaded)
     with progress_bars(quiet) as progress:
         binding = compute(loaded, **parameters, progress=progress)
@@ -240,6 +252,9 @@ def graph(
     orient: Orient = True,
     samples: Samples = 5,
     leaf: Leaf = None,
+    deform: Deform = None,
+    no_deform: NoDeform = None,
+    fresh: Fresh = False,
     skeleton: SkeletonFile = None,
     json: Json = False,
 ) -> None:
@@ -249,10 +264,14 @@ def graph(
     and the share of vertices that no bone reaches through the graph.
     """
     from . import summary
+    from .deform import choose_deform
     from .geodesics import bone_distances
     from .graph import build_graph
+    from .io.files import naming
 
     loaded = _load(rig, skeleton)
+    with naming(rig):
+        loaded = choose_deform(loaded, deform or (), no_deform or (), fresh=fresh)
     seconds: dict[str, float] = {}
     start = time.perf_counter()
     with progress_bars(quiet=json) as progress:
@@ -373,6 +392,7 @@ def compare(
 
 app.command(epilog=DIAGNOSE_EPILOG)(diagnose)
 app.command(epilog=EPILOG)(render)
+app.command(epilog=JOINTS_EPILOG)(joints)
 
 
 def main() -> None:

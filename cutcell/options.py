@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 METHOD = "The method"
+JOINTS = "Which joints carry weight"
 TOUCH = "Touching up"
 FILES = "Files and output"
 
@@ -131,6 +132,34 @@ Threshold = Annotated[
         metavar="W",
         help="Weights below this are dropped and the rest made to sum to 1 again.",
         rich_help_panel=METHOD,
+    ),
+]
+Deform = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--deform",
+        metavar="JOINT",
+        help="A joint that may carry weight though the file, or the guess, says no. * stands for"
+        " any letters. May be given several times.",
+        rich_help_panel=JOINTS,
+    ),
+]
+NoDeform = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--no-deform",
+        metavar="JOINT",
+        help="A joint that shall carry none, such as '*_IK'. May be given several times.",
+        rich_help_panel=JOINTS,
+    ),
+]
+Fresh = Annotated[
+    bool,
+    typer.Option(
+        "--fresh",
+        help="Forget the file's weights: guess from names and places which joints carry some."
+        " `cutcell joints` shows the guess.",
+        rich_help_panel=JOINTS,
     ),
 ]
 Smoothing = Annotated[

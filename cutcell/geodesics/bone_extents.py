@@ -16,6 +16,7 @@ from ..graph import CutCellGraph
 from ..rig import Skeleton
 from .bones import Bones
 from .chains import SAME_PLACE, find_chains
+from .last_bones import last_bone_lengths, moves_what_is_near
 from .nearest import NodeGrid
 from .probe import BodyProbe
 
@@ -51,8 +52,8 @@ def fit_bones(
     -------
     bones : Bones
         In the unit cube, ordered by joint.
-    tip : array, shape (b,), bool
-        Bones whose end no other joint tells; see `aim_tips`.
+    aimed : array, shape (b,), bool
+        Bones whose end neither another joint nor the rest orientation tells; see `aim_tips`.
     """
     probe = BodyProbe(graph, grid)
     chains = find_chains(skeleton, graph.lattice.to_unit(skeleton.joints), probe)
@@ -64,11 +65,18 @@ def fit_bones(
     joint = np.array(start, np.int32)
     tip = joint == end
     bones = Bones(chains.joints[joint], chains.joints[end], joint)
-    # A tip goes on the way its bone came until it leaves the body.
+    onward = chains.direction if chains.rest is None else chains.rest
     tips = bones.joint[tip]
-    way = probe.way_out(chains.joints[tips], chains.direction[tips])
-    bones.end[tip] += chains.direction[tips] * way[:, None]
-    return _share_with_tips(bones, tip, probe), tip & chains.near[bones.joint]
+    way = probe.way_out(chains.joints[tips], onward[tips])
+    bones.end[tip] += onward[tips] * way[:, None]
+    bones = _share_with_tips(bones, tip, probe)
+    way, told = last_bone_lengths(bones, tip, chains, way, probe)
+    under_skin = (skeleton.parents[tips] >= 0) & moves_what_is_near(chains.joints[tips], probe)
+    way[under_skin] = 0
+    bones.end[tip] = chains.joints[tips] + onward[tips] * way[:, None]
+    aimed = tip.copy()
+    aimed[tip] = ~told & ~under_skin & chains.near[tips]
+    return bones, aimed
 
 
 def _share_with_tips(bones: Bones, tip: NDArray[np.bool_], probe: BodyProbe) -> Bones:

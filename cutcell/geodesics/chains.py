@@ -16,11 +16,14 @@ from scipy.spatial.distance import cdist
 
 from ..rig import Skeleton
 from .probe import BodyProbe
+from .rest_axis import rest_directions
 
 SAME_PLACE = 1e-6
 """Of the longest side: joints as near as this are at one place."""
 ONWARD = 0.5
 """Cosine: a child within 60 degrees of the way its parent came goes on; others branch off."""
+ALONG_AXIS = 0.9
+"""Cosine: where the joints' rest axis tells the way of a bone, a child goes on within 25 degrees."""
 IN_BODY = 0.5
 """Part of a bone that must run through the body for it to be one."""
 BACKWARD = -0.2
@@ -48,6 +51,8 @@ class Chains:
         Joints in the body or right beside it.
     direction : array, shape (j, 3)
         Unit vector of the bone that ends at each joint; zero where none does.
+    rest : array, shape (j, 3), or None
+        Unit vector along which each joint's own bone points at rest; see `rest_directions`.
     length : array, shape (j,)
         Of that bone; zero where there is none.
     ends : tuple of lists
@@ -59,6 +64,7 @@ class Chains:
     joints: NDArray[np.float64]
     near: NDArray[np.bool_]
     direction: NDArray[np.float64]
+    rest: NDArray[np.float64] | None
     length: NDArray[np.float64]
     ends: tuple[list[int], ...]
     links: tuple[list[int], ...]
@@ -80,9 +86,10 @@ def find_chains(skeleton: Skeleton, joints: NDArray[np.float64], probe: BodyProb
         parents = _grown_tree(skeleton, joints, near, probe)
         skeleton = replace(skeleton, parents=parents)
     direction, length = _directions(skeleton, joints, near, same, probe)
-    ends = _ends(skeleton, joints, near, same, direction)
+    rest = rest_directions(skeleton, joints)
+    ends = _ends(skeleton, joints, near, same, direction, rest)
     links = _links(skeleton, joints, direction, length, ends, probe)
-    return Chains(joints, near, direction, length, ends, links)
+    return Chains(joints, near, direction, rest, length, ends, links)
 
 
 def _has_bones(skeleton: Skeleton) -> bool:
@@ -121,12 +128,15 @@ def _ends(
     near: NDArray[np.bool_],
     same: NDArray[np.bool_],
     direction: NDArray[np.float64],
+    rest: NDArray[np.float64] | None,
 ) -> tuple[list[int], ...]:
     """List where the bones of each joint end.
 
-    They run to its children, but where the body forks and no child goes on the way the bone
-    came: then, as with a head and its ears, the children are side branches and the joint's own
-    bone is not in the file. A joint outside the body has no bone at all.
+    They run to its children, but where the body forks and no child goes on: then, as with a
+    head and its ears, the children are side branches and the joint's own bone is not in the
+    file. A child goes on if it lies along the joint's rest axis, or, where that is not known or
+    points elsewhere than the bone before it, the way that bone came. A joint outside the body
+    has no bone at all.
     """
     ends: tuple[list[int], ...] = tuple([] for _ in joints)
     child, parent = np.arange(len(joints)), skeleton.parents
@@ -138,7 +148,10 @@ def _ends(
         if len(children) > 1 and direction[j].any():
             away = joints[children] - joints[j]
             away /= np.linalg.norm(away, axis=1, keepdims=True)
-            if (away @ direction[j]).max() < ONWARD:
+            way, least = direction[j], ONWARD
+            if rest is not None and rest[j] @ way >= ONWARD:
+                way, least = rest[j], ALONG_AXIS
+            if (away @ way).max() < least:
                 children.clear()
     return ends
 

@@ -16,6 +16,14 @@ ENTRY = 5
 """Steps within which a ray must have come inside; a joint may lie right under the skin."""
 ALONG = np.linspace(0, 1, 17)
 """Where a segment is looked at."""
+SEEN = 0.85
+"""Part of a segment that must run inside for its ends to see each other through the body."""
+NEARER = 0.999
+"""Of the way so far: not so far away is nearer, beyond rounding."""
+ALL_ROUND = np.array(
+    [*np.eye(3), *-np.eye(3), *(np.array(list(np.ndindex(2, 2, 2))) * 2 - 1) / np.sqrt(3)]
+)
+"""Directions to the faces and the corners of a cube."""
 
 
 class BodyProbe:
@@ -34,12 +42,12 @@ class BodyProbe:
     def __init__(self, graph: CutCellGraph, grid: NodeGrid) -> None:
         self._graph = graph
         self._grid = grid
-        self._resolution = graph.lattice.resolution
+        self.resolution = graph.lattice.resolution
 
     def inside(self, points: ArrayLike) -> NDArray[np.bool_]:
         """Tell for each point (..., 3) whether its lattice cell's centre is inside."""
         points = np.asarray(points, np.float64)
-        found = _inside(points.reshape(-1, 3), self._resolution, self._graph.interior.table)
+        found = _inside(points.reshape(-1, 3), self.resolution, self._graph.interior.table)
         return found.reshape(points.shape[:-1])
 
     def near(self, points: ArrayLike) -> NDArray[np.bool_]:
@@ -55,19 +63,56 @@ class BodyProbe:
         points = start[..., None, :] + ALONG[:, None] * (end - start)[..., None, :]
         return (self.inside if strictly else self.near)(points).mean(axis=-1)
 
-    def depth(self, points: ArrayLike) -> NDArray[np.float64]:
-        """Measure from each point (p, 3) to the nearest skin; zero outside."""
+    def to_skin(self, points: ArrayLike) -> NDArray[np.float64]:
+        """Measure from each point (p, 3) to the nearest skin."""
         points, graph = np.asarray(points, np.float64), self._graph
         skin = graph.nodes[: graph.first_point], graph.nodes[graph.first_crossing :]
-        away = np.minimum(*(_to_nearest(points, nodes) for nodes in skin))
-        return np.where(self.inside(points), away, 0.0)
+        return np.minimum(*(_to_nearest(points, nodes) for nodes in skin))
+
+    def depth(self, points: ArrayLike) -> NDArray[np.float64]:
+        """Measure from each point (p, 3) to the nearest skin; zero outside."""
+        return np.where(self.inside(points), self.to_skin(points), 0.0)
+
+    def room(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Measure how far one can go from points (p, 3), in the median over all directions."""
+        ways = [self.way_out(points, np.tile(d, (len(points), 1))) for d in ALL_ROUND]
+        return np.median(ways, axis=0)
 
     def way_out(
         self, start: NDArray[np.float64], direction: NDArray[np.float64]
     ) -> NDArray[np.float64]:
         """Measure how far one can go from points (p, 3) until outside; zero if never inside."""
-        table, step = self._graph.interior.table, STEP / self._resolution
-        return _ways_out(start, direction, step, self._resolution, table)
+        table, step = self._graph.interior.table, STEP / self.resolution
+        return _ways_out(start, direction, step, self.resolution, table)
+
+    def way_to_others(
+        self,
+        start: NDArray[np.float64],
+        direction: NDArray[np.float64],
+        way: NDArray[np.float64],
+        others: list[tuple[NDArray[np.float64], NDArray[np.float64]]],
+    ) -> NDArray[np.float64]:
+        """Measure how far one can go until nearer, through the body, to something else.
+
+        Parameters
+        ----------
+        start, direction : arrays, shape (p, 3)
+        way : array, shape (p,)
+            How far to go at most.
+        others : list of p pairs of arrays, shape (b, 3)
+            Start and end of the segments that each point may come nearer to.
+
+        Returns
+        -------
+        array, shape (p,)
+        """
+        table, step = self._graph.interior.table, 2 * STEP / self.resolution
+        return np.array(
+            [
+                _way_to_others(*ray, *segments, step, self.resolution, table)
+                for *ray, segments in zip(start, direction, way, others, strict=True)
+            ]
+        )
 
 
 @compiled
@@ -107,6 +152,26 @@ def _ways_out(start, direction, step, resolution, table):
                 break
             was_inside = is_inside
     return away
+
+
+@compiled
+def _way_to_others(point, direction, way, start, end, step, resolution, table):
+    for k in range(1, int(way / step) + 1):
+        here = point + k * step * direction
+        for b in range(len(start)):
+            along = end[b] - start[b]
+            squared = (along * along).sum()
+            t = ((here - start[b]) * along).sum() / squared if squared > 0 else 0.0
+            there = start[b] + min(max(t, 0.0), 1.0) * along - here
+            if (there * there).sum() > (NEARER * k * step) ** 2:
+                continue
+            inside = 0
+            for share in ALONG:
+                x, y, z = here + share * there
+                inside += _is_inside(resolution, table, x, y, z)
+            if inside >= SEEN * len(ALONG):
+                return k * step
+    return way
 
 
 @compiled

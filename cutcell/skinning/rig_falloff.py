@@ -12,7 +12,7 @@ from ..threads import together
 from .diffusion import Diffusion
 from .pieces import bones_held
 from .skin import Skin
-from .worn import dress, foreign_bones
+from .worn import dress, follow_lone_bones, foreign_bones
 
 POWER = 20
 """Skin belongs to its nearest joint; another that is 10 % farther counts a seventh."""
@@ -61,7 +61,10 @@ def rig_kernel(
         return Diffusion.over(skin, distance.min(axis=0), resolution, share_of(tell, 0, 0.5))
 
     held, diffusion = together(divide, prepare)
-    return dress(graph, skin, held, diffusion.spread(weights, share_of(tell, 0.5, 1)))
+    weights = diffusion.spread(weights, share_of(tell, 0.5, 1))
+    if len(held) > 1:
+        weights = follow_lone_bones(held, skin.piece, weights)
+    return dress(graph, skin, held, weights)
 
 
 @lean

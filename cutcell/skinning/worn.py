@@ -28,7 +28,8 @@ def foreign_bones(held: NDArray[np.float64]) -> NDArray[np.float64]:
     """Tell how many times farther each joint counts to be from each piece of the mesh.
 
     An arm whose mesh is a piece of its own reaches into the shoulder, and its bone with it; the
-    chest's skin there is not the arm's.
+    chest's skin there is not the arm's. A piece is home to a bone that is mostly in it, and to
+    the one that is most in it.
 
     Parameters
     ----------
@@ -40,11 +41,37 @@ def foreign_bones(held: NDArray[np.float64]) -> NDArray[np.float64]:
     array, shape (pieces, j)
         1 for pieces without bones.
     """
-    most = held.max(axis=0)
-    home = np.divide(held, most, out=np.ones_like(held), where=most > 0)
-    farther = 1 + FOREIGN * (1 - home)
-    farther[held.max(axis=1) == 0] = 1
+    of_joint, of_piece = held.max(axis=0), held.max(axis=1, keepdims=True)
+    home = np.divide(held, np.minimum(of_joint, of_piece), out=np.ones_like(held), where=held > 0)
+    home[(held == 0) & (of_joint > 0)] = 0
+    farther = 1 + FOREIGN * (1 - np.minimum(home, 1))
+    farther[of_piece[:, 0] == 0] = 1
     return farther
+
+
+def follow_lone_bones(
+    held: NDArray[np.float64], piece: NDArray[np.int32], weights: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Let pieces with bones of one joint alone follow that joint: armour plates, blocks, wheels.
+
+    Parameters
+    ----------
+    held : array, shape (pieces, j)
+        Which part of each joint's bones each piece holds.
+    piece : array, shape (k,)
+        Of each place.
+    weights : array, shape (k, j)
+
+    Returns
+    -------
+    array, shape (k, j)
+    """
+    alone = (np.count_nonzero(held, axis=1) == 1)[piece]
+    if not alone.any():
+        return weights
+    followed = weights.copy()
+    followed[alone] = np.eye(held.shape[1])[held.argmax(axis=1)[piece[alone]]]
+    return followed
 
 
 def dress(
