@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial.distance import cdist
 
 from ..compiled import lean
 from ..geodesics import BoneDistances, Bones
@@ -24,6 +25,17 @@ TOWARDS = 1 / 6
 away: skin covers the bones that it looks away from."""
 LEAST_CELLS = 0.01
 """Lattice cells: distances that are all shorter are equal."""
+COVER = 1.5
+"""Skin that is so many times as far from a bone as its median skin is not about that bone. The
+edges of a square bar are 1.41 times as far as the middle of its sides."""
+LEAST_COVER = 0.5
+"""Lattice cells: no bone's skin is nearer than this."""
+LEADS_ON = 0.02
+"""Of the longest side: as near to another joint's bone must a bone end to lead on to it."""
+SHARES = 1e-3
+"""Smaller shares do not count as a joint's skin."""
+TAIL = 0.05
+"""Of a vertex' largest weight: taken off all its weights, so that what is far gets nothing."""
 
 
 def rig_kernel(
@@ -51,10 +63,11 @@ def rig_kernel(
 
     def divide() -> NDArray[np.float64]:
         held = _held_by_joint(skin, bones, len(distance))
-        known = skin.points, skin.normals, distance, foreign_bones(held), skin.piece
         first_bone = np.searchsorted(bones.joint, np.arange(len(distance) + 1))
-        near = LEAST_CELLS / resolution
-        _put_shares(*known, first_bone, bones.start, bones.end, near, weights)
+        known = skin.points, skin.normals, distance, foreign_bones(held), skin.piece
+        known = *known, first_bone, bones.start, bones.end, LEAST_CELLS / resolution
+        _put_shares(*known, np.full(len(distance), np.inf), weights)
+        _put_shares(*known, _cover(weights, distance, skin.areas, bones, resolution), weights)
         return held
 
     def prepare() -> Diffusion:
@@ -64,21 +77,25 @@ def rig_kernel(
     weights = diffusion.spread(weights, share_of(tell, 0.5, 1))
     if len(held) > 1:
         weights = follow_lone_bones(held, skin.piece, weights)
-    return dress(graph, skin, held, weights)
+    weights = dress(graph, skin, held, weights)
+    weights = np.maximum(weights - TAIL * weights.max(axis=1, keepdims=True), 0)
+    return weights / weights.sum(axis=1, keepdims=True)
 
 
 @lean
-def _put_shares(points, normals, distance, foreign, piece, bone, start, end, near, weights):
+def _put_shares(points, normals, distance, foreign, piece, bone, start, end, near, cover, weights):
     """Divide places among joints by distance; `bone` tells where each joint's bones begin.
 
-    Distances up to `near` are equal; `weights` holds zeros.
+    Distances up to `near` are equal; beyond a joint's `cover` they grow by their square.
     """
     for v in range(len(points)):
         least = np.inf
         for j in range(len(distance)):
+            weights[v, j] = 0.0
             if distance[j, v] == np.inf:
                 continue
             away = foreign[piece[v], j] * max(distance[j, v], near)
+            away *= max(1.0, distance[j, v] / cover[j])
             away /= _facing(points[v], normals[v], start, end, bone[j], bone[j + 1])
             weights[v, j] = away
             least = min(least, away)
@@ -110,6 +127,41 @@ def _facing(point, normal, start, end, first, last):
             nearest = length
             cosine = out / np.sqrt(length) if length > 0 else 0.0
     return TOWARDS + (1 - TOWARDS) * (1 + cosine) / 2
+
+
+def _cover(
+    weights: NDArray[np.float64],
+    distance: NDArray[np.float64],
+    areas: NDArray[np.float64],
+    bones: Bones,
+    resolution: int,
+) -> NDArray[np.float64]:
+    """Measure up to which distance skin is about each joint's bones, shape (j,).
+
+    A neck's skin lies all around it at about one distance: what is much farther, such as a
+    chin, is not the neck's even if no other bone is nearer. Where a last bone ends is only a
+    guess: its skin may be at any distance, which is infinite here.
+    """
+    place, joint = np.nonzero(weights > SHARES)
+    away, part = distance[joint, place], weights[place, joint] * (areas[place] + 1e-12)
+    order = np.lexsort((away, joint))
+    joint, away, total = joint[order], away[order], np.cumsum(part[order])
+    first = np.searchsorted(joint, np.arange(len(distance) + 1))
+    before = np.concatenate([[0.0], total])[first]
+    middle = np.searchsorted(total, (before[:-1] + before[1:]) / 2)
+    cover = np.full(len(distance), np.inf)
+    known = _leads_on(bones, len(distance)) & (first[1:] > first[:-1])
+    cover[known] = COVER * np.maximum(away[middle[known]], LEAST_COVER / resolution)
+    return cover
+
+
+def _leads_on(bones: Bones, joints: int) -> NDArray[np.bool_]:
+    """Tell which joints have a bone that ends where another joint's begins."""
+    meets = cdist(bones.end, bones.start, "chebyshev") < LEADS_ON
+    meets &= bones.joint[:, None] != bones.joint
+    leads = np.zeros(joints, np.bool_)
+    leads[bones.joint[meets.any(axis=1)]] = True
+    return leads
 
 
 def _held_by_joint(skin: Skin, bones: Bones, joints: int) -> NDArray[np.float64]:

@@ -21,7 +21,8 @@ CONTACT = 1.0
 """Lattice cells: a worn piece touches its wearer wherever it is this much farther than at its
 nearest."""
 RIGID = 0.6
-"""A worn piece follows one joint alone if its wearer does by this much where they touch."""
+"""A worn piece follows one joint alone if its wearer does by this much where they touch, or if
+that joint leads at so much of what they touch."""
 
 
 def foreign_bones(held: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -97,7 +98,9 @@ def dress(
     array, shape (k, j)
     """
     points, piece, areas = skin.points, skin.piece, skin.areas
-    worn = (held.max(axis=1) == 0) & (_longest_sides(points, piece) <= SMALL)
+    # What has no area, such as a vertex without a face, touches nothing.
+    has_area = np.bincount(piece, areas, len(held)) > 0
+    worn = has_area & (held.max(axis=1) == 0) & (_longest_sides(points, piece) <= SMALL)
     if not worn.any():
         return weights
     wearer = ~worn[piece]
@@ -111,13 +114,16 @@ def dress(
     np.minimum.at(least, label, away)
     touching = np.flatnonzero(away <= least[label] + CONTACT / graph.lattice.resolution)
     share = areas[mine[touching]] + 1e-12
-    there = weights[corners[touching]].mean(axis=1) * share[:, None]
+    there = weights[corners[touching]].mean(axis=1)
     which = label[touching], np.arange(len(touching))
-    total = csr_array((np.ones(len(touching)), which), (len(held), len(touching))) @ there
-    mean = total / np.maximum(total.sum(axis=1, keepdims=True), 1e-300)
-    leading = mean.argmax(axis=1)
-    alone = mean.max(axis=1) > RIGID
-    mean[alone] = np.eye(weights.shape[1])[leading[alone]]
+    gather = csr_array((share, which), (len(held), len(touching)))
+    joints = np.eye(weights.shape[1])
+    mean, leads = gather @ there, gather @ joints[there.argmax(axis=1)]
+    whole = np.maximum(gather.sum(axis=1), 1e-300)[:, None]
+    mean, leads = mean / whole, leads / whole
+    for part in (leads, mean):
+        alone = part.max(axis=1) > RIGID
+        mean[alone] = joints[part[alone].argmax(axis=1)]
     dressed = weights.copy()
     dressed[mine] = mean[label]
     return dressed

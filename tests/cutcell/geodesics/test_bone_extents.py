@@ -1,5 +1,7 @@
 """Bones end where the body and the chain of joints say."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -7,6 +9,7 @@ from cutcell import Skeleton, TriangleMesh, bone_distances, build_graph
 from cutcell.geodesics.bone_extents import fit_bones
 from cutcell.geodesics.bones import node_grid
 from cutcell.geodesics.probe import BodyProbe
+from cutcell.geodesics.rest_axis import rest_directions
 from tests import meshes
 from tests.bars import grid_box
 
@@ -70,9 +73,9 @@ def test_a_foot_hung_on_the_root_continues_the_shin():
     np.testing.assert_allclose(ends(graph, skeleton, 2), on_axis(0.65))
     # The root itself is outside: it has no bone.
     np.testing.assert_allclose(ends(graph, skeleton, 0), [root])
-    # Of two that are about as near neither is right.
+    # Of two that are about as near neither is right: it ends where they are nearer.
     two = Skeleton([root, *on_axis(0.2, 0.5), [0.8, 0.05, 0.1], [0.8, 0.15, 0.1]], [-1, 0, 1, 0, 0])
-    np.testing.assert_allclose(ends(graph, two, 2), on_axis(1.0), atol=1 / 32)
+    np.testing.assert_allclose(ends(graph, two, 2), on_axis(0.65), atol=1 / 32)
 
 
 def test_a_tip_without_room_is_given_some():
@@ -109,3 +112,82 @@ def test_bones_can_be_fitted_to_anything(name):
     distances = bone_distances(graph, Skeleton(joints, [-1, 0, 1, 0, 0]), leaf="fit")
     assert np.isfinite(distances.bones.end).all()
     assert np.isfinite(distances.joint).any(axis=0).all()
+
+
+def oriented(joints, parents, along, axis=1):
+    """Make a skeleton whose joints' local axis (x, y or z) points along a way, for each."""
+    turned = np.array([np.linalg.qr(np.column_stack([way, np.eye(3)]))[0] for way in along])
+    for axes, way in zip(turned, along, strict=True):
+        axes *= np.sign(axes[:, 0] @ way)
+    order = [1, 2, 0] if axis == 2 else [2, 0, 1] if axis == 1 else [0, 1, 2]
+    return Skeleton(joints, parents, orientations=turned[:, :, order])
+
+
+@pytest.mark.parametrize("axis", range(3))
+def test_most_only_children_tell_the_rest_axis(axis):
+    x = [1.0, 0, 0]
+    joints = np.array([[0, 0, 0], [1, 0, 0], [2, 0, 0], [3, 0, 0], [3, 1, 0]]) / 4
+    up = [0, 1.0, 0]
+    skeleton = oriented(joints, [-1, 0, 1, 2, 3], [x, x, x, up, up], axis)
+    np.testing.assert_allclose(rest_directions(skeleton, joints), [x, x, x, up, up], atol=1e-12)
+    # Bones that run against the axis tell as much.
+    against = replace(skeleton, orientations=-skeleton.orientations)
+    np.testing.assert_allclose(rest_directions(against, joints)[0], x, atol=1e-12)
+
+
+def test_no_rest_axis_without_a_majority():
+    x, up = [1.0, 0, 0], [0, 1.0, 0]
+    joints = np.array([[0, 0, 0], [1, 0, 0], [2, 0, 0], [3, 0, 0], [3, 1, 0]]) / 4
+    split = oriented(joints, [-1, 0, 1, 2, 3], [x, up, x, [0, 0, 1.0], up])
+    assert rest_directions(split, joints) is None
+    few = oriented(joints[:3], [-1, 0, 1], [x, x, x])
+    assert rest_directions(few, joints[:3]) is None
+    assert rest_directions(Skeleton(joints, [-1, 0, 1, 2, 3]), joints) is None
+
+
+def test_a_last_bone_points_along_the_rest_axis():
+    graph, x, up = limb(), [1.0, 0, 0], [0, 0, 1.0]
+    joints = on_axis(0.1, 0.3, 0.5, 0.7)
+    straight = oriented(joints, [-1, 0, 1, 2], [x, x, x, x])
+    np.testing.assert_allclose(ends(graph, straight, 3), on_axis(0.85), atol=1 / 32)
+    # Across, there is little room: it is two cells long at least, then it is aimed no more.
+    across = oriented(joints, [-1, 0, 1, 2], [x, x, x, up])
+    np.testing.assert_allclose(ends(graph, across, 3), [[0.7, 0.1, 0.1 + 2 / 32]], atol=1 / 64)
+    assert not fit_bones(graph, across, node_grid(graph))[1].any()
+
+
+def test_the_child_along_the_rest_axis_goes_on():
+    graph = build_graph(TriangleMesh(*meshes.ball(3)), 32, connectivity="any")
+    low, mid, neck, head, jaw, cheek = (
+        [0.5, 0.5, 0.1],
+        [0.5, 0.5, 0.2],
+        [0.5, 0.5, 0.3],
+        [0.5, 0.5, 0.5],
+        [0.6, 0.5, 0.6],  # within 60 degrees of the way from the neck
+        [0.4, 0.5, 0.6],
+    )
+    joints, parents, up = [low, mid, neck, head, jaw, cheek], [-1, 0, 1, 2, 3, 3], [0, 0, 1.0]
+    assert len(ends(graph, Skeleton(joints, parents), 3)) == 2
+    assert len(ends(graph, oriented(joints, parents, [up] * 6), 3)) == 1
+
+
+def test_a_last_bone_ends_where_another_is_nearer():
+    graph = limb()
+    # The last joint points back along the bar at a bone that another chain has there.
+    joints = [*on_axis(0.9, 0.8), *on_axis(0.3, 0.25, 0.2)]
+    skeleton = Skeleton(joints, [-1, 0, -1, 2, 3])
+    np.testing.assert_allclose(ends(graph, skeleton, 1), on_axis(0.55), atol=1 / 32)
+
+
+def test_joints_close_under_the_skin_among_others_are_points():
+    graph = build_graph(TriangleMesh(*meshes.ball(3)), 32, connectivity="any")
+    neck, head = [0.5, 0.5, 0.2], [0.5, 0.5, 0.5]
+    left, right, deep = [0.42, 0.1, 0.55], [0.58, 0.1, 0.55], [0.5, 0.4, 0.6]
+    skeleton = Skeleton([neck, head, left, right, deep], [-1, 0, 1, 1, 1])
+    bones, aimed = fit_bones(graph, skeleton, node_grid(graph))
+    point = (bones.start == bones.end).all(axis=1)
+    assert set(bones.joint[point]) == {2, 3}
+    assert not aimed[point].any()
+    lone = Skeleton([neck, head, left], [-1, 0, 1])
+    bones, _ = fit_bones(graph, lone, node_grid(graph))
+    assert not (bones.start == bones.end).all(axis=1).any()

@@ -7,7 +7,7 @@ from cutcell import Rig, Skeleton, TriangleMesh, bind, build_graph, winding_numb
 from cutcell.geodesics import Bones
 from cutcell.skinning.pieces import POINTS, bones_held, find_pieces
 from cutcell.skinning.skin import Skin
-from cutcell.skinning.worn import dress, foreign_bones
+from cutcell.skinning.worn import dress, follow_lone_bones, foreign_bones
 from tests import meshes
 from tests.bars import grid_box
 
@@ -54,6 +54,9 @@ def test_a_bone_is_foreign_where_it_is_not_at_home():
     np.testing.assert_allclose(farther[0], [1, 2.5, 1])
     np.testing.assert_allclose(farther[1], [3, 1, 1])
     np.testing.assert_allclose(farther[2], 1)  # holds none: none is foreign
+    # Home is also where a bone is most of what a piece holds, as a piece within another.
+    half = np.array([[1.0, 0.5], [0.0, 0.25]])
+    np.testing.assert_allclose(foreign_bones(half), [[1, 1], [3, 1]])
     np.testing.assert_allclose(foreign_bones(held[:1]), 1)
 
 
@@ -89,3 +92,35 @@ def test_a_body_in_patches_wears_nothing():
 
 def test_to_a_lone_piece_no_bone_is_foreign():
     np.testing.assert_array_equal(foreign_bones(np.array([[0.2, 0.0, 1.0]])), 1.0)
+
+
+def test_a_piece_with_bones_of_one_joint_follows_it_alone():
+    held = np.array([[0.2, 0.0, 0.0], [0.8, 1.0, 0.0], [0.0, 0.0, 0.0]])
+    piece = np.array([0, 0, 1, 2])
+    weights = np.full((4, 3), 1 / 3)
+    followed = follow_lone_bones(held, piece, weights)
+    np.testing.assert_array_equal(followed[:2], [[1, 0, 0]] * 2)
+    np.testing.assert_array_equal(followed[2:], weights[2:])
+
+
+def test_an_armoured_limb_is_rigid():
+    lower, upper = grid_box(8), grid_box(8)
+    vertices, faces = joined((lower[0] * [0.5, 1, 1], lower[1]), (upper[0] * [0.5, 1, 1], upper[1]))
+    vertices[len(lower[0]) :, 0] += 0.51  # they touch nowhere, else they would be one piece
+    skeleton = Skeleton([[0.02, 0.1, 0.1], [0.52, 0.1, 0.1]], [-1, 0])
+    weights = bind(Rig(TriangleMesh(vertices, faces), skeleton), 32).weights
+    np.testing.assert_array_equal(weights[: len(lower[0]), 0], 1)
+    np.testing.assert_array_equal(weights[len(lower[0]) :, 1], 1)
+
+
+def test_what_has_no_area_is_not_worn():
+    vertices, faces = grid_box(8)
+    far = np.array([[1, 0, 0], [2, 0, 0], [3, 0, 0]])
+    lines = np.vstack([vertices, far * 1e5, -far * 1e5]), np.vstack(
+        [faces, np.arange(6).reshape(2, 3) + len(vertices)]
+    )
+    stray = np.vstack([vertices, [[1e20, 0, 0]]]), faces
+    skeleton = Skeleton([[0.1, 0.1, 0.1], [0.5, 0.1, 0.1]], [-1, 0])
+    for mesh in (lines, stray):
+        weights = bind(Rig(TriangleMesh(*mesh), skeleton), 16).weights
+        np.testing.assert_allclose(weights.sum(axis=1), 1)

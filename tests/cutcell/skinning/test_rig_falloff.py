@@ -7,6 +7,7 @@ import cutcell
 from cutcell import Rig, Skeleton, TriangleMesh, bind
 from cutcell.compare import compare
 from cutcell.metrics import deformation_error, vertex_shares, weight_l1
+from cutcell.skinning import rig_falloff
 from cutcell.skinning.diffusion import SHARPNESS, Diffusion
 from cutcell.skinning.laplacian import cotangent_laplacian, vertex_areas
 from cutcell.skinning.rig_falloff import TOWARDS, _facing
@@ -116,3 +117,27 @@ def test_touching_parts_do_not_share_weight(demo_paths):
         score = compare([rig], ["cutcell_rig"]).rigs[0].scores[0]
         assert score.crosstalk < 0.02, name
         assert score.unweighted == 0
+
+
+def test_weights_end():
+    """Of a vertex' joints those with next to nothing get nothing."""
+    weights = bind(limb(joints=(0.02, 0.25, 0.5, 0.75)), 48).weights
+    held = weights[weights > 0]
+    assert held.min() < 0.01  # they end without a step
+    assert np.count_nonzero(weights, axis=1).mean() < 2.2
+    np.testing.assert_allclose(weights.sum(axis=1), 1)
+
+
+def test_skin_far_from_a_bone_that_has_skin_of_its_own_is_the_next_ones(monkeypatch):
+    """A chin hangs beside the neck, as near to its bone as to the head's."""
+    vertices, faces = grid_box(40, 6)
+    head = vertices[:, 0] > 0.69
+    vertices[head, 1] *= 4
+    joints = [[x, 0.1, 0.1] for x in (0.02, 0.4, 0.76, 0.98)]
+    skeleton = Skeleton(joints, [-1, 0, 1, 2], deform=[True, True, True, False])
+    rig = Rig(TriangleMesh(vertices, faces), skeleton)
+    chin = head & (vertices[:, 0] < 0.8) & (vertices[:, 1] > 0.6)
+    with_rule = bind(rig, 48).weights[chin, 2]
+    monkeypatch.setattr(rig_falloff, "COVER", np.inf)
+    assert with_rule.mean() > bind(rig, 48).weights[chin, 2].mean() + 0.1
+    assert with_rule.min() > 0.6
