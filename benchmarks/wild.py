@@ -134,10 +134,7 @@ def summary(groups: dict[str, list[Result]]) -> Table:
     for group, found in groups.items():
         for mode in MODES:
             l1, deformation, influences = np.array(
-                [
-                    (s.l1, s.deformation, s.influences)
-                    for s in (one.scores[mode] for one in found)
-                ]
+                [(s.l1, s.deformation, s.influences) for s in (one.scores[mode] for one in found)]
             ).T
             table.add(
                 group,
@@ -162,9 +159,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     options = parser.parse_args(arguments)
     if unknown := [name for name in options.sets if name not in SETS]:
         parser.error(f"no set {unknown[0]}; there are {', '.join(SETS)}")
-    groups = {
-        group: list(results(group, options.resolution)) for group in options.sets or SETS
-    }
+    groups = {group: list(results(group, options.resolution)) for group in options.sets or SETS}
     groups = {group: found for group, found in groups.items() if found}
     if not groups:
         parser.error(f"no characters in {SHARED}")

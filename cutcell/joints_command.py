@@ -55,6 +55,6 @@ def joints(
     print_warnings(loaded.warnings)
     count = int(chosen.skeleton.deform.sum())
     print_table(
-        f"{rig.name}: {count} of {len(rows)} joints may carry weight",
+        f"{rig.name}: {count} of {len(rows)} joints deform",
         [(row["name"], f"{'yes' if row['deform'] else 'no'} · {row['reason']}") for row in rows],
     )

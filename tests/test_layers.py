@@ -54,7 +54,16 @@ ORDER = [
     {"workers"},
     {"baselines", "diagnosis", "dataset"},
     {"summary", "compare"},
-    {"options", "console", "report", "diagnose_command", "render_command", "joints_command", "cli", "__main__"},
+    {
+        "options",
+        "console",
+        "report",
+        "diagnose_command",
+        "render_command",
+        "joints_command",
+        "cli",
+        "__main__",
+    },
 ]
 RANK = {part: rank for rank, parts in enumerate(ORDER) for part in parts}
 

@@ -7,7 +7,6 @@ from dataclasses import replace
 from difflib import get_close_matches
 from fnmatch import fnmatchcase
 
-
 from ..errors import ParameterError
 from ..rig import Rig, Skeleton
 from .guess import deform_joints

@@ -70,12 +70,12 @@ def fit_bones(
     way = probe.way_out(chains.joints[tips], onward[tips])
     bones.end[tip] += onward[tips] * way[:, None]
     bones = _share_with_tips(bones, tip, probe)
-    way, told = last_bone_lengths(bones, tip, chains, way, probe)
+    way, pointed = last_bone_lengths(bones, tip, chains, way, probe)
     under_skin = (skeleton.parents[tips] >= 0) & moves_what_is_near(chains.joints[tips], probe)
     way[under_skin] = 0
     bones.end[tip] = chains.joints[tips] + onward[tips] * way[:, None]
     aimed = tip.copy()
-    aimed[tip] = ~told & ~under_skin & chains.near[tips]
+    aimed[tip] = ~pointed & ~under_skin & chains.near[tips]
     return bones, aimed
 
 

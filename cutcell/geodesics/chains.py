@@ -23,7 +23,7 @@ SAME_PLACE = 1e-6
 ONWARD = 0.5
 """Cosine: a child within 60 degrees of the way its parent came goes on; others branch off."""
 ALONG_AXIS = 0.9
-"""Cosine: where the joints' rest axis tells the way of a bone, a child goes on within 25 degrees."""
+"""Cosine: where the rest axis tells the way of a bone, a child within 25 degrees goes on."""
 IN_BODY = 0.5
 """Part of a bone that must run through the body for it to be one."""
 BACKWARD = -0.2

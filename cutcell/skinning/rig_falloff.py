@@ -65,9 +65,10 @@ def rig_kernel(
         held = _held_by_joint(skin, bones, len(distance))
         first_bone = np.searchsorted(bones.joint, np.arange(len(distance) + 1))
         known = skin.points, skin.normals, distance, foreign_bones(held), skin.piece
-        known = *known, first_bone, bones.start, bones.end, LEAST_CELLS / resolution
-        _put_shares(*known, np.full(len(distance), np.inf), weights)
-        _put_shares(*known, _cover(weights, distance, skin.areas, bones, resolution), weights)
+        ends = first_bone, bones.start, bones.end, LEAST_CELLS / resolution
+        _put_shares(*known, *ends, np.full(len(distance), np.inf), weights)
+        cover = _cover(weights, distance, skin.areas, bones, resolution)
+        _put_shares(*known, *ends, cover, weights)
         return held
 
     def prepare() -> Diffusion:

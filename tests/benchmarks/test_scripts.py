@@ -15,6 +15,7 @@ from benchmarks import (
     speed,
     tables,
     timing,
+    wild,
 )
 from benchmarks.rigs import ROOT, load_characters
 from tests.benchmarks.markdown import read_tables
@@ -166,3 +167,20 @@ def test_a_row_must_fit_its_table():
 def test_numbers_are_short():
     assert [tables.seconds(x) for x in (2e-5, 0.0123, 4.5)] == ["20 us", "12.3 ms", "4.5 s"]
     assert [tables.ratio(x) for x in (3.14, 31.4)] == ["3.1x", "31x"]
+
+
+def test_wild(capsys, tmp_path, monkeypatch):
+    folder = tmp_path / "data" / "rigs"
+    folder.mkdir(parents=True)
+    (folder / "robot.glb").write_bytes((ROOT / "assets" / "robot.glb").read_bytes())
+    monkeypatch.setattr(wild, "SHARED", tmp_path / "data")
+    document = tmp_path / "quality.md"
+    document.write_text("<!-- wild -->\n<!-- /wild -->\n")
+    wild.main(["--resolution", "8", "--out", str(document)])
+    overall, each = read_tables(document.read_text()).values()
+    assert [row["joints"] for row in overall] == ["known", "fresh"]
+    assert each[0]["character"] == "robot"
+    assert 0 < float(each[0]["known L1"]) < 2
+    with pytest.raises(SystemExit):
+        wild.main(["train"])
+    assert "no characters in" in capsys.readouterr().err

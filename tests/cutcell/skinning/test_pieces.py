@@ -116,8 +116,9 @@ def test_an_armoured_limb_is_rigid():
 def test_what_has_no_area_is_not_worn():
     vertices, faces = grid_box(8)
     far = np.array([[1, 0, 0], [2, 0, 0], [3, 0, 0]])
-    lines = np.vstack([vertices, far * 1e5, -far * 1e5]), np.vstack(
-        [faces, np.arange(6).reshape(2, 3) + len(vertices)]
+    lines = (
+        np.vstack([vertices, far * 1e5, -far * 1e5]),
+        np.vstack([faces, np.arange(6).reshape(2, 3) + len(vertices)]),
     )
     stray = np.vstack([vertices, [[1e20, 0, 0]]]), faces
     skeleton = Skeleton([[0.1, 0.1, 0.1], [0.5, 0.1, 0.1]], [-1, 0])
