@@ -84,7 +84,8 @@ def _along_body(graph: CutCellGraph) -> tuple[NDArray[np.int32], Adjacency]:
     have 16 bits, many to a lattice cell, because these are sorted in linear time.
     """
     side = np.argmax(np.ptp(graph.nodes[: graph.first_point], axis=0))
-    height = (graph.nodes[:, side] * np.iinfo(np.uint16).max).astype(np.uint16)
+    height = np.clip(graph.nodes[:, side], 0, 1)  # vertices of no face may lie anywhere
+    height = (height * np.iinfo(np.uint16).max).astype(np.uint16)
     order = np.argsort(height, kind="stable")
     place = np.empty(len(order), np.int32)
     place[order] = np.arange(len(order), dtype=np.int32)

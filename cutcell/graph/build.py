@@ -99,7 +99,15 @@ def build_graph(
         mesh_edges, balance, _ = find_edges(faces)
     boundary = boundary_of(mesh_edges, balance)
     tell(0.03)
-    check_estimate(vertices, faces, boundary, resolution, winding_threshold, connectivity)
+    check_estimate(
+        vertices,
+        faces,
+        boundary,
+        resolution,
+        winding_threshold,
+        connectivity,
+        share_of(tell, 0.03, 0.05),
+    )
     tell(0.05)
     if rays == "raster":
         crossings = cast_all_rays(vertices, faces, resolution, share_of(tell, 0.05, 0.2))

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from ..errors import ParameterError
 from ..memory import SHARE, available_memory, gigabytes
+from ..progress import Tell
 from .blocks import BLOCK_POINTS
 from .boundary import Boundary
 from .interior import interior_points
@@ -40,6 +41,7 @@ def check_estimate(
     resolution: int,
     winding_threshold: float,
     connectivity: int | str,
+    tell: Tell = lambda done: None,
 ) -> None:
     """Refuse a graph that would surely take more memory than is free, before rays are cast.
 
@@ -49,6 +51,8 @@ def check_estimate(
         Of the welded mesh, in the unit cube.
     resolution, winding_threshold, connectivity
         As of the graph.
+    tell : callable
+        See `progress.Tell`.
 
     Raises
     ------
@@ -57,12 +61,13 @@ def check_estimate(
     """
     crossings = expected_crossings(vertices, faces, resolution)
     _refuse_over(lambda scale: BYTES_PER_CROSSING * crossings * scale**2, resolution, CERTAIN)
-    points = resolution**3 * float(np.ptp(vertices, axis=0).prod())
+    sides = np.ptp(np.clip(vertices, 0, 1), axis=0)  # vertices of no face may lie anywhere
+    points = resolution**3 * float(sides.prod())
     most = needed_memory(len(vertices), points, crossings, connectivity)
     if resolution < FAR_FINER * COARSE or most <= available_memory(most / SHARE) * SHARE:
         return
     rays = cast_all_rays(vertices, faces, COARSE)
-    runs = find_runs(vertices, faces, rays, boundary, COARSE, winding_threshold)
+    runs = find_runs(vertices, faces, rays, boundary, COARSE, winding_threshold, tell)
     ends = sum(
         np.count_nonzero(run.low != NONE) + np.count_nonzero(run.high != NONE) for run in runs
     )

@@ -95,7 +95,14 @@ class Diffusion:
             shares.tell(group, 1.0)
 
         def normalise(part: slice) -> None:
-            spread[part] /= spread[part].sum(axis=1, keepdims=True)
+            total = spread[part].sum(axis=1, keepdims=True)
+            # Next to needles rounding leaves nothing: such places keep their own weights.
+            known = np.isfinite(total) & (total > 0)
+            if known.all():
+                spread[part] /= total
+            else:
+                own = weights[part].copy()
+                spread[part] = np.divide(spread[part], total, out=own, where=known)
 
         in_threads(solve, range(len(groups)))
         in_threads(normalise, parts(len(spread)), lambda done: tell(1.0))

@@ -72,6 +72,17 @@ def test_a_mesh_with_several_parts(connectivity):
     assert np.isfinite(found).any(axis=1).all()
 
 
+def test_a_vertex_of_no_face_may_lie_anywhere():
+    vertices, faces = meshes.box()
+    for far in (1e20, -1e20):
+        mesh = TriangleMesh(np.vstack([vertices, [[far, far, far]]]), faces)
+        graph = build_graph(mesh, 4)
+        sources = Sources(graph.vertex_node[:1], np.array([0]), np.zeros(1))
+        found = shortest_paths(graph, sources, 1, np.arange(len(graph.nodes), dtype=np.int32))
+        np.testing.assert_allclose(found, slow(graph, sources, 1), rtol=1e-12)
+        assert np.isfinite(found).sum() == len(graph.nodes) - 1
+
+
 def test_a_path_that_turns_back_and_forth():
     # Up and down along the body, each way a little longer than the last.
     rng = np.random.default_rng(0)

@@ -200,6 +200,27 @@ def test_a_graph_that_does_not_fit_by_far_is_refused_before_rays_are_cast(monkey
     build_graph(mesh, fits, connectivity=26)
 
 
+def test_a_stray_vertex_of_no_face_takes_no_memory(monkeypatch):
+    monkeypatch.setattr("cutcell.graph.memory.available_memory", lambda _: 10**9)
+    vertices, faces = meshes.box()
+    mesh = TriangleMesh(np.vstack([vertices * 1e-59, [[1e60, -1e60, 1e60]]]), faces)
+    assert (
+        len(build_graph(mesh, 8).nodes)
+        == len(build_graph(TriangleMesh(vertices, faces), 8).nodes) + 1
+    )
+
+
+def test_an_estimate_can_be_cancelled(monkeypatch):
+    monkeypatch.setattr("cutcell.graph.memory.available_memory", lambda _: 10**9)
+
+    def cancel(stage, done):
+        if done > 0.03:
+            raise Cancelled
+
+    with pytest.raises(Cancelled):
+        build_graph(TriangleMesh(*meshes.ball_with_holes()), 1000, progress=cancel)
+
+
 def test_rays_that_meet_too_many_triangles_are_refused_before_they_are_cast(monkeypatch):
     monkeypatch.delattr("cutcell.graph.build.cast_all_rays")
     monkeypatch.setattr("cutcell.graph.memory.available_memory", lambda _: 10**7)
