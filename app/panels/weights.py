@@ -11,6 +11,7 @@ from cutcell.skinning import FALLOFFS
 
 from ..session import Session
 from ..state import State
+from .deform import deforming
 from .parts import GAP, caption, choice, follow, lead, section, slider, when
 
 SHOWN = {
@@ -47,6 +48,7 @@ def weights(session: Session) -> pmui.Column:
         lead("How much each bone moves each point of the skin."),
         section("", shown, facts, margin=(8, 20, 4, 20)),
         section("Falloff with distance", *_falloff(state)),
+        deforming(session),
         margin=0,
         sizing_mode="stretch_width",
     )
