@@ -8,6 +8,7 @@ import numpy as np
 import panel_material_ui as pmui
 
 from cutcell.deform import DeformJoints
+from cutcell.rig import Rig
 
 from ..actions import deform
 from ..session import Session
@@ -41,8 +42,8 @@ def deforming(session: Session) -> pmui.Column:
     def show(found: DeformJoints) -> None:
         names = unique_names(state.rig.skeleton.names)
         listed[:] = [
-            name if deforms else f"{name} — {reason}"
-            for name, deforms, reason in zip(names, found.deform, found.reason, strict=True)
+            f"{name} — {reason}" if reason else name
+            for name, reason in zip(names, _reasons(state.rig, found), strict=True)
         ]
         boxes.param.update(options=listed[:], value=_chosen())
         place.objects = [boxes]
@@ -77,6 +78,17 @@ def deforming(session: Session) -> pmui.Column:
     state.param.watch(relisted, "rig")
     buttons = pmui.Row(opener, guesser, margin=0, sizing_mode="stretch_width")
     return section("Joints that deform", counts, buttons, place)
+
+
+def _reasons(rig: Rig, found: DeformJoints) -> list[str]:
+    """Say why joints carry no weight; nothing of those that do."""
+    reasons = [
+        "" if deforms else why for deforms, why in zip(found.deform, found.reason, strict=True)
+    ]
+    if rig.weights is not None:
+        for j in np.flatnonzero(found.deform & ~rig.weights.any(axis=0)):
+            reasons[j] = "no weight in the file"
+    return reasons
 
 
 def _counted(rig: Any) -> str:
