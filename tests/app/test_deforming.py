@@ -13,7 +13,7 @@ def parts(section):
 
 def test_a_joint_is_left_out_and_taken_back(bound, loop):
     state = bound.state
-    counts, opener, guesser, place = parts(deforming(bound))
+    _, opener, guesser, place = parts(deforming(bound))
     assert not place.visible
     opener.clicks += 1
     assert (place.visible, opener.label) == (True, SHOWN)
