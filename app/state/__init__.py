@@ -26,6 +26,9 @@ QUICK_GRAPH = 400_000
 """Vertices and faces, nodes and edges: what has no more is described in less than a tenth of a
 second, so that a page's own thread may do it."""
 
+A_JOINT = 10
+"""As many vertices take the time to describe that one joint takes."""
+
 
 class State(GraphChoices, GeodesicsChoices, WeightsChoices, PoseChoices, CompareChoices, Common):
     """What the page shows."""
@@ -35,9 +38,10 @@ class State(GraphChoices, GeodesicsChoices, WeightsChoices, PoseChoices, Compare
         """Whether what stands there is small enough to be described at once."""
         if self.rig is None:
             return True
-        mesh, graph = self.rig.mesh, self.graph
+        mesh, graph, joints = self.rig.mesh, self.graph, len(self.rig.skeleton.joints)
+        shown = len(mesh.vertices) + len(mesh.faces) + A_JOINT * joints
         size = 0 if graph is None else len(graph.nodes) + len(graph.edges)
-        return len(mesh.vertices) + len(mesh.faces) <= QUICK_MESH and size <= QUICK_GRAPH
+        return shown <= QUICK_MESH and size <= QUICK_GRAPH
 
     def still(self) -> Any:
         """Return all of it as it is now, for a thread that takes its time to look at it."""

@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import param
 import pytest
 
 import cutcell
@@ -340,6 +341,16 @@ def test_a_large_character_is_described_beside_the_pages_own_thread(session, loo
     np.testing.assert_array_equal(described[-1].actors["body"].colors, expected)
     paper = cutcell.bind(arm_rig(), 16, falloff="paper", alpha=0.25, leaf="fit")
     np.testing.assert_allclose(session.state.binding.weights, paper.weights, atol=1e-6)
+
+
+def test_a_character_of_many_joints_is_large(session):
+    mesh, state = arm_rig().mesh, session.state
+    for count, quick in ((3, True), (20_000, False)):
+        joints, parents = np.zeros((count, 3)), np.arange(-1, count - 1)
+        skeleton = cutcell.Skeleton(joints, parents, tuple(map(str, range(count))))
+        with param.parameterized.discard_events(state):
+            state.rig = cutcell.Rig(mesh, skeleton)
+        assert state.quick == quick
 
 
 def test_reading_that_does_not_come_to_an_end_is_cancelled(session, loop, tmp_path):
