@@ -192,6 +192,15 @@ class Opening:
         self._session.state.demo = ""
         self._stand(rig)
 
+    def swap(self, rig: Rig) -> None:
+        """Show the same character with other faces or weights, and bind it; all choices stay."""
+        session = self._session
+        session.jobs("field").cancel()
+        session.state.param.update(
+            rig=rig, binding=None, bare_graph=None, field=None, vertex=None, message=None
+        )
+        session.bind()
+
     def _open(
         self,
         load: Callable[[Callable[[], object]], Rig],

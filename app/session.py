@@ -50,6 +50,7 @@ class Session:
         self._jobs: dict[str, Jobs] = {}
         self._newest: dict[str, Newest] = {}
         self._closed = False
+        self.diagnosed: Any = None
         self.falloffs: dict[str, tuple[Any, Any]] = {}
         self._bound_for: dict[str, Any] = {}
         self._held: dict[str, Any] = {}

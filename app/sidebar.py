@@ -14,7 +14,7 @@ from .panels.take_along import take_along
 from .session import Session
 from .tabs import Tabs
 
-BARE = ("graph", "learn")
+BARE = ("graph", "diagnosis", "learn")
 """The panels for a mesh without a skeleton."""
 NO_SKELETON = (
     "This mesh has no skeleton, so it has no bones to measure from, to weigh or to move; its graph "

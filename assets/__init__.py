@@ -53,22 +53,22 @@ DEMOS: tuple[Demo, ...] = (
     Demo(
         "robot",
         "Robot",
-        "Separate rigid plates, and a ring that touches nothing and no bone can reach.",
+        "Separate rigid plates that overlap or float beside each other, and a ring around them.",
     ),
     Demo(
         "biped_soup",
         "Walker, unwelded and torn",
-        "Every triangle has its own corners and some are missing; the volume is still there.",
+        "The walker as a poor export leaves it; the volume is still there.",
     ),
     Demo(
         "biped_flipped_arm",
         "Walker, one arm inside out",
-        "The right arm's triangles face inwards; they are found, and count as turned round.",
+        "The walker as a careless export leaves it; it binds all the same.",
     ),
     Demo(
         "biped_cape",
         "Walker in a cape",
-        "The cape is one open sheet that touches nothing: it has no inside for a bone to reach.",
+        "A thin sheet hangs behind the walker, and has to move with it.",
     ),
 )
 """All demo characters in the order to show them; the first one greets the user."""

@@ -6,8 +6,9 @@ are what the panels call.
 
 from __future__ import annotations
 
-from . import compare, geodesics, habits, pose, rest, weights
+from . import compare, diagnosis, geodesics, habits, pose, rest, weights
 
 WATCHERS = (
     geodesics.watch, pose.watch, compare.watch, weights.watch, habits.watch, rest.watch,
+    diagnosis.watch,
 )  # fmt: skip

@@ -131,6 +131,17 @@ def bound_file(session: Session, done: Done) -> None:
     _hand_over(session, f"{_stem(session)}-bound{binary_ending(rig)}", write, done)
 
 
+def repaired_file(session: Session, done: Done) -> None:
+    """Write the repaired character with its own weights, and hand over its name and content."""
+    rig = session.state.rig
+
+    def write(path: Path, progress: Progress) -> None:
+        wanted = partial(progress, "writing the file", 0.0)
+        in_process(cutcell.save, path, rig, wanted=wanted, ended=ENDED)
+
+    _hand_over(session, f"{_stem(session)}-repaired{binary_ending(rig)}", write, done)
+
+
 def chosen_clip(state: State) -> Clip:
     """Return the motion that is chosen, whether or not it is on."""
     if 0 <= state.clip < len(state.rig.clips):

@@ -4,7 +4,7 @@ const TABS_STYLE = `
 :host { display: block; }
 .strip { display: flex; gap: 2px; padding: 3px; border-radius: 10px;
   background: color-mix(in srgb, var(--mui-palette-text-primary, #223) 6%, transparent); }
-button { all: unset; box-sizing: border-box; flex: 1 1 0; min-width: 0; padding: 6px 0 5px;
+button { all: unset; box-sizing: border-box; flex: 1 1 auto; min-width: 0; padding: 6px 0 5px;
   border-radius: 8px; cursor: pointer; text-align: center; transition: background .15s;
   font: 500 10.5px/1.2 Roboto, system-ui, sans-serif; letter-spacing: -.005em;
   color: var(--mui-palette-text-secondary, #667); }

@@ -8,6 +8,7 @@ from typing import Any
 
 from ..session import Session
 from .compare import compare
+from .diagnosis import diagnosis
 from .geodesics import geodesics
 from .graph import graph
 from .learn import learn
@@ -71,6 +72,12 @@ PANELS = (
         "Compare",
         '<path d="M4 5h6v14H4zM14 5h6v14h-6zM12 2.5v19"/>',
         compare,
+    ),
+    Panel(
+        "diagnosis",
+        "Check",
+        '<path d="M2.5 12.5h4l2.5-6 4 12 3-9 1.5 3h4"/>',
+        diagnosis,
     ),
     Panel(
         "learn",

@@ -9,10 +9,12 @@ import panel_material_ui as pmui
 from assets import DEMOS
 
 from ..session import Session
-from ..state import MAX_UPLOAD
+from ..state import MAX_UPLOAD, State
 from ..upload import FileDrop
 from .parts import GAP, as_text, caption, section
 
+MOST_FAULTS = 2
+"""The panel Check tells of all."""
 OWN = "Your own"
 HINT = f"GLB, glTF, VRM, FBX, USD, OBJ, … · up to {MAX_UPLOAD // 2**20} MB"
 
@@ -39,10 +41,19 @@ def character(session: Session) -> pmui.Column:
         own = {} if state.demo else {OWN: ""}
         select.param.update(options={**own, **demos}, value=state.demo)
         lessons = {demo.id: demo.lesson for demo in DEMOS}
-        lesson.object = as_text(lessons.get(state.demo) or (state.rig.name if state.rig else ""))
+        about = lessons.get(state.demo) or (state.rig.name if state.rig else "")
+        lesson.object = as_text(" ".join([about, *faults(state)]))
 
     select.param.watch(chosen, "value")
-    state.param.watch(shown, ["demo", "rig"])
+    state.param.watch(shown, ["demo", "rig", "diagnosis"])
     shown()
     drop = FileDrop(session.opening.receiver(), hint=HINT, sizing_mode="stretch_width", margin=GAP)
     return section("", select, lesson, drop, margin=(16, 20, 4, 20))
+
+
+def faults(state: State) -> list[str]:
+    """Return what the diagnosis says of the character, but for what is only good to know."""
+    if state.diagnosis is None:
+        return []
+    severe = [f for f in state.diagnosis.findings if f.severity != "note"]
+    return [finding.message for finding in severe[:MOST_FAULTS]]

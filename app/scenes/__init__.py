@@ -12,6 +12,7 @@ from viewers.skin import skin_of_weights
 from ..state import State
 from .common import POSED, plain
 from .compare import compare
+from .diagnosis import diagnosis
 from .geodesics import geodesics
 from .graph import graph
 from .memo import Memo
@@ -26,6 +27,7 @@ SCENES: dict[str, Callable[[State, Memo], Description]] = {
     "weights": weights,
     "pose": pose,
     "compare": compare,
+    "diagnosis": diagnosis,
     "learn": weights,
 }
 """The scene of each panel, for a state with a rig."""
@@ -45,7 +47,8 @@ def resolve(state: State, memo: Memo | None = None) -> Description:
     """
     if state.rig is None:
         return Description()
-    scene = SCENES["graph"] if state.bare else SCENES.get(state.panel, plain)
+    is_bare = state.bare and state.panel != "diagnosis"
+    scene = SCENES["graph"] if is_bare else SCENES.get(state.panel, plain)
     whole = scene(state, memo or Memo())
     if whole.legend is None or not (_coloured(whole.actors) and state.rig.attachments):
         return whole

@@ -10,6 +10,7 @@ from typing import Any
 
 from .common import PANELS, UNSEEN, Common
 from .compare import CompareChoices
+from .diagnosis import DiagnosisChoices
 from .geodesics import GeodesicsChoices
 from .graph import LAYERS, GraphChoices
 from .pose import PoseChoices
@@ -30,7 +31,15 @@ A_JOINT = 10
 """As many vertices take the time to describe that one joint takes."""
 
 
-class State(GraphChoices, GeodesicsChoices, WeightsChoices, PoseChoices, CompareChoices, Common):
+class State(
+    GraphChoices,
+    GeodesicsChoices,
+    WeightsChoices,
+    PoseChoices,
+    CompareChoices,
+    DiagnosisChoices,
+    Common,
+):
     """What the page shows."""
 
     @property

@@ -6,7 +6,7 @@ from typing import Any
 
 import param
 
-PANELS = ("graph", "geodesics", "weights", "pose", "compare", "learn")
+PANELS = ("graph", "geodesics", "weights", "pose", "compare", "diagnosis", "learn")
 """The ids of the panels, in the order in which they are offered."""
 
 

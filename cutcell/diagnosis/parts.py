@@ -25,7 +25,7 @@ DEPTHS = np.array([0.05, 0.1, 0.15, 0.2, 0.3, 0.45, 0.65, 0.9, 1.2])
 """Cells below the skin at which it is looked for the inside."""
 THIN, FEW = 0.005, 0.02
 """Of the surface, and of its vertices: less than both of these may be thin."""
-SAMPLES = 1500
+SAMPLES = 600
 """Vertices at which thickness is measured."""
 ENOUGH = 1.2
 """Cells that a part must be thick to hold lattice points nearly everywhere."""

@@ -153,3 +153,19 @@ def test_weights_in_many_ways(visit):
         visit.settle()
     visit.choose("Colours show", "All bones")
     assert changed(mixed, visit.look()) < 0.001
+
+
+def test_a_finding_is_shown_where_it_is(visit, robot):
+    visit.panel("Check")
+    lost = cutcell.diagnose(robot)["unreachable-vertices"]
+    visit.expect_text(lost.message)
+    visit.button(lost.title).click()
+    visit.expect_text(lost.advice)
+    visit.settle()
+    marks = visit.report()["actors"]
+    assert marks["finding faces"]["visible"]
+    far = visit.look()
+    visit.button(lost.title).click()
+    visit.settle()
+    assert "finding faces" not in visit.report()["actors"]
+    assert changed(far, visit.look()) > 0.005

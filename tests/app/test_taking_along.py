@@ -19,6 +19,7 @@ from app.actions.take_along import (
     take_turntable,
 )
 from app.jobs import PATIENCE, Jobs
+from app.state import PANELS
 from cutcell.progress import silent
 from tests.cutcell.io.gltf_builder import column
 
@@ -99,7 +100,7 @@ def test_pictures_show_what_is_seen_in_its_pose(bound, loop, small):
     assert list(bound.folder.iterdir()) == []
 
 
-@pytest.mark.parametrize("panel", ["graph", "geodesics", "weights", "pose", "compare", "learn"])
+@pytest.mark.parametrize("panel", PANELS)
 def test_the_body_goes_through_a_filmed_motion_on_every_panel(bound, loop, panel, monkeypatch):
     orders = []
 

@@ -1,0 +1,137 @@
+"""Diagnose: what is wrong with the character, where, and what to do about it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import panel_material_ui as pmui
+
+from cutcell.diagnosis import SEVERITIES, Finding
+
+from ..actions.diagnosis import look_at, repair, take_back
+from ..actions.take_along import repaired_file
+from ..session import Session
+from ..state import State
+from .parts import GAP, caption, lead, section, when, words
+
+COLORS = {"error": "error", "warning": "warning", "note": "info"}
+"""What the theme calls the colours of severities, and their icons."""
+MOST_DETAILS = 8
+
+
+def diagnosis(session: Session) -> pmui.Column:
+    """Return the controls of the panel Diagnose."""
+    state = session.state
+    place = pmui.Column(margin=0, sizing_mode="stretch_width")
+
+    def listed(*events: Any) -> None:
+        place.objects = [*_repairs(session), *_findings(session)]
+
+    state.param.watch(listed, ["diagnosis", "finding", "repair"])
+    listed()
+    return pmui.Column(
+        lead(when(lambda *_: told(state), state.param.diagnosis, state.param.rig)),
+        section("", place, margin=(6, 20, 4, 20)),
+        margin=0,
+        sizing_mode="stretch_width",
+    )
+
+
+def told(state: State) -> str:
+    """Say how much was found."""
+    if state.rig is None:
+        return ""
+    if state.diagnosis is None:
+        return "The mesh, the skeleton and the weights of the file are checked once it is bound."
+    if not state.diagnosis.findings:
+        return "Nothing is wrong with the mesh, the skeleton or the weights of the file."
+    return f"Found: {counted(state.diagnosis.counts)}. Choose one to see where it is."
+
+
+def counted(counts: dict[str, int]) -> str:
+    """Say how many findings there are of each severity."""
+    parts = [f"{counts[s]} {s}{'s' * (counts[s] != 1)}" for s in SEVERITIES if counts[s]]
+    return ", ".join(parts) or "nothing"
+
+
+def _findings(session: Session) -> list[Any]:
+    """Return the findings below a heading for each severity."""
+    diagnosis = session.state.diagnosis
+    if diagnosis is None:
+        return []
+    return [
+        section(
+            f"{severity}s", *(_entry(session, one) for one in diagnosis.of(severity)), margin=(8, 0)
+        )
+        for severity in SEVERITIES
+        if diagnosis.of(severity)
+    ]
+
+
+def _entry(session: Session, finding: Finding) -> pmui.Column:
+    """Return a finding as a line; with advice and repair if it is looked at."""
+    is_chosen = session.state.finding == finding.code
+    title = pmui.Button(
+        label=finding.title,
+        icon=COLORS[finding.severity],
+        variant="text",
+        color=COLORS[finding.severity],
+        size="small",
+        margin=0,
+        sizing_mode="stretch_width",
+        on_click=lambda event: look_at(session, finding.code),
+        sx={"justifyContent": "flex-start", "textAlign": "left"},
+    )
+    lines = [title, _line(finding.message)]
+    if is_chosen:
+        more = len(finding.details) - MOST_DETAILS
+        lines += [_line(text) for text in finding.details[:MOST_DETAILS]]
+        lines += [_line(f"and {more} more")] if more > 0 else []
+        lines.append(_line(finding.advice, "text.primary"))
+        if finding.repair:
+            lines.append(_line(f"Repair: {finding.repair}.", "text.primary"))
+            lines.append(_button("Repair it", "build", lambda: repair(session, [finding.code])))
+    return pmui.Column(*lines, margin=(0, 0, 6, 0), sizing_mode="stretch_width")
+
+
+def _repairs(session: Session) -> list[Any]:
+    """Return what can be repaired at once, and what was repaired: before and after."""
+    state = session.state
+    shown: list[Any] = []
+    able = [] if state.diagnosis is None else [f for f in state.diagnosis.findings if f.repair]
+    if len(able) > 1:
+        codes = [finding.code for finding in able]
+        shown.append(_button(f"Repair all {len(able)}", "build", lambda: repair(session, codes)))
+    if state.repair is None:
+        return shown
+    now = "" if state.diagnosis is None else f", now {counted(state.diagnosis.counts)}"
+    return [
+        *shown,
+        _line(f"Repaired. Before: {counted(state.repair.counts)}{now}.", "text.primary"),
+        *(_line(text) for text in state.repair.done),
+        _button(
+            "Download it with its own weights",
+            "download",
+            lambda: repaired_file(session, session.view.offer),
+        ),
+        _button("Take the repair back", "undo", lambda: take_back(session)),
+    ]
+
+
+def _button(label: str, icon: str, act: Any) -> pmui.Button:
+    return pmui.Button(
+        label=label,
+        icon=icon,
+        size="small",
+        variant="outlined",
+        margin=GAP,
+        sizing_mode="stretch_width",
+        on_click=lambda event: act(),
+    )
+
+
+def _line(text: str, color: str = "text.secondary") -> pmui.Typography:
+    if color == "text.secondary":
+        return caption(text, margin=(0, 0, 4, 6))
+    look = {"color": color, "lineHeight": 1.45, "display": "block", "letterSpacing": 0}
+    return words(text, variant="caption", sx=look, margin=(0, 0, 4, 6), sizing_mode="stretch_width")

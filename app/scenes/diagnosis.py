@@ -1,0 +1,35 @@
+"""The character with what a finding names marked on it."""
+
+from __future__ import annotations
+
+from cutcell.diagnosis import Finding
+from cutcell.diagnosis.finding import count
+from viewers.description import Description, Legend
+from viewers.finding_scene import finding_marks
+from viewers.palette import MARK
+
+from ..state import State
+from .common import character
+from .memo import Memo
+
+SEE_FINDING = 0.5
+"""How opaque the body is while a finding is marked: it may be behind or inside."""
+
+
+def named(finding: Finding) -> str:
+    """Say how many elements a finding names: "945 vertices"."""
+    kinds = {"face": finding.faces, "vertex": finding.vertices, "joint": finding.joints}
+    return ", ".join(count(len(which), kind) for kind, which in kinds.items() if len(which))
+
+
+def diagnosis(state: State, memo: Memo) -> Description:
+    """Return the scene of the panel Diagnose; plain while no finding is looked at."""
+    rig, finding = state.rig, state.found
+    if finding is None:
+        return Description(character(state, memo))
+    marks = memo("finding", (rig, finding), lambda: finding_marks(rig, finding))
+    if not marks:
+        return Description(character(state, memo))
+    actors = character(state, memo, opacity=SEE_FINDING, behind=True)
+    legend = Legend(finding.title, swatches=((MARK, named(finding)),))
+    return Description({**actors, **marks}, legend=legend)

@@ -1,0 +1,138 @@
+"""The panel Check without a browser: findings, where they are, repairs, captions."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import cutcell
+from app.actions.diagnosis import look_at, repair, repaired_file, take_back
+from app.panels.character import faults
+from app.panels.diagnosis import diagnosis, told
+from app.scenes import resolve
+from app.scenes.common import bounds_of
+from app.state import State
+from cutcell.rig import TriangleMesh
+from tests.app.test_bare import bare_arm
+from tests.viewers.arm import arm_rig
+from viewers.camera import sees
+from viewers.finding_scene import finding_marks
+
+FLIPPED = np.arange(0, 60)
+
+
+def spoiled_arm():
+    """Turn some faces, and let some vertices follow nothing."""
+    rig = arm_rig()
+    faces = rig.mesh.faces.copy()
+    faces[FLIPPED] = faces[FLIPPED, ::-1]
+    weights = rig.weights.copy()
+    weights[:3] = 0
+    return replace(rig, mesh=TriangleMesh(rig.mesh.vertices, faces), weights=weights)
+
+
+@pytest.fixture
+def spoiled(session, loop):
+    """Let the session show the spoiled arm, diagnosed, on the panel."""
+    session.state.param.update(resolution=16, panel="diagnosis")
+    session.opening.rig(spoiled_arm())
+    loop.run_until(lambda: session.state.diagnosis is not None)
+    return session
+
+
+def codes(session):
+    return [finding.code for finding in session.state.diagnosis.findings]
+
+
+def texts(session):
+    """Return all that the panel says."""
+    found, todo = [], [diagnosis(session)]
+    while todo:
+        one = todo.pop()
+        todo += list(getattr(one, "objects", []))
+        found += [text for text in (getattr(one, "object", None), getattr(one, "label", None))
+                  if isinstance(text, str)]  # fmt: skip
+    return "\n".join(found)
+
+
+def test_what_is_bound_is_diagnosed(spoiled):
+    assert codes(spoiled) == ["unweighted-vertices", "inverted-faces"]
+    assert told(spoiled.state) == "Found: 1 error, 1 warning. Choose one to see where it is."
+    assert "Vertices without weight" in texts(spoiled)
+    assert "Repair all 2" in texts(spoiled)
+    assert faults(spoiled.state) == [f.message for f in spoiled.state.diagnosis.findings]
+
+
+def test_a_sound_character_is_said_to_be_sound(bound, loop):
+    loop.run_until(lambda: bound.state.diagnosis is not None)
+    assert told(bound.state).startswith("Nothing is wrong")
+    assert faults(bound.state) == []
+
+
+def test_a_finding_is_marked_and_gone_to(spoiled):
+    before = resolve(spoiled.state)
+    assert not any(name.startswith("finding") for name in before.actors)
+    look_at(spoiled, "inverted-faces")
+    seen = resolve(spoiled.state)
+    marked = seen.actors["finding faces"]
+    assert len(marked.cells) == len(FLIPPED)
+    assert seen.actors["body"].opacity < 1
+    assert seen.legend.swatches[0][1] == "60 faces"
+    assert "Binding already treats them as flipped" in texts(spoiled)
+    assert sees(spoiled.view.camera, marked.points, 1.2)
+    look_at(spoiled, "inverted-faces")
+    assert spoiled.state.found is None
+
+
+def test_a_repair_is_bound_and_can_be_taken_back(spoiled, loop):
+    state, original = spoiled.state, spoiled.state.rig
+    look_at(spoiled, "inverted-faces")
+    repair(spoiled, ["inverted-faces"])
+    loop.run_until(lambda: state.repair is not None and state.diagnosis is not None)
+    assert codes(spoiled) == ["unweighted-vertices"]
+    assert state.binding is not None
+    repair(spoiled, ["unweighted-vertices"])
+    loop.run_until(lambda: state.diagnosis is not None and not state.diagnosis.findings)
+    assert len(state.repair.done) == 2
+    assert "Before: 1 error, 1 warning, now nothing" in texts(spoiled).replace("&#44;", ",")
+    take_back(spoiled)
+    loop.run_until(lambda: state.diagnosis is not None)
+    assert state.rig is original
+    assert state.repair is None
+    assert len(codes(spoiled)) == 2
+
+
+def test_the_repaired_file_is_handed_over(spoiled, loop, monkeypatch, tmp_path):
+    offered = []
+    monkeypatch.setattr(spoiled.view, "offer", lambda *args: offered.append(args))
+    repair(spoiled, ["inverted-faces", "unweighted-vertices"])
+    loop.run_until(lambda: spoiled.state.repair is not None and spoiled.state.binding is not None)
+    repaired_file(spoiled, "arm")
+    loop.run_until(lambda: offered)
+    name, content = offered[0]
+    assert name == "arm-repaired.glb"
+    (tmp_path / name).write_bytes(content)
+    again = cutcell.load(tmp_path / name)
+    assert cutcell.diagnose(again, 16).findings == ()
+
+
+def test_another_character_begins_anew(spoiled, loop):
+    look_at(spoiled, "inverted-faces")
+    spoiled.opening.rig(bare_arm())
+    assert (spoiled.state.diagnosis, spoiled.state.finding) == (None, "")
+    loop.run_until(lambda: spoiled.state.diagnosis is not None)
+    assert codes(spoiled) == []
+
+
+def test_joints_and_vertices_get_beads():
+    rig = arm_rig()
+    weights = rig.weights.copy()
+    weights[4] = 0
+    found = cutcell.diagnose(replace(rig, weights=weights), 16)["unweighted-vertices"]
+    marks = finding_marks(rig, replace(found, joints=np.array([1])))
+    assert set(marks) == {"finding vertices", "finding joints"}
+    for mark in marks.values():
+        middle = mark.points.mean(axis=0)
+        low, high = bounds_of(State(rig=rig))
+        assert (middle >= low - 0.1).all()
+        assert (middle <= high + 0.1).all()
