@@ -58,7 +58,9 @@ def _painted(rig: Rig, finding: Finding) -> tuple[NDArray[np.intp], NDArray[np.i
     return faces, np.flatnonzero(named)
 
 
-def camera_on(rig: Rig, finding: Finding, bounds: NDArray[np.float64]) -> Camera | None:
+def camera_on(
+    rig: Rig, finding: Finding, bounds: NDArray[np.float64], aspect: float = 1.2
+) -> Camera | None:
     """Return a camera that sees what a finding names; None if it names nothing.
 
     Parameters
@@ -67,6 +69,8 @@ def camera_on(rig: Rig, finding: Finding, bounds: NDArray[np.float64]) -> Camera
     finding : Finding
     bounds : array, shape (2, 3)
         Of the body, in the scene.
+    aspect : float
+        Width over height of the picture.
     """
     vertices, joints = rig.mesh.vertices, rig.skeleton.joints
     corners = rig.mesh.faces[finding.faces].ravel()
@@ -81,4 +85,4 @@ def camera_on(rig: Rig, finding: Finding, bounds: NDArray[np.float64]) -> Camera
     side = (low + high) / 2 - middle
     # From the side that they are on, and still from the front, and never straight from above.
     direction = np.array(FRONT) + 1.5 * side / max(float(np.ptp(bounds, axis=0).max()), 1e-300)
-    return framing(np.stack([low - more, high + more]), 1.2, tuple(direction.tolist()))
+    return framing(np.stack([low - more, high + more]), aspect, tuple(direction.tolist()))

@@ -66,7 +66,7 @@ def look_at(session: Session, code: str) -> None:
         code = ""
     state.finding = code
     if state.found is not None:
-        camera = camera_on(state.rig, state.found, bounds_of(state))
+        camera = camera_on(state.rig, state.found, bounds_of(state), session.view.aspect)
         if camera is not None:
             session.look(camera)
 

@@ -41,8 +41,9 @@ def character(session: Session) -> pmui.Column:
         own = {} if state.demo else {OWN: ""}
         select.param.update(options={**own, **demos}, value=state.demo)
         lessons = {demo.id: demo.lesson for demo in DEMOS}
-        about = lessons.get(state.demo) or (state.rig.name if state.rig else "")
-        lesson.object = as_text(" ".join([about, *faults(state)]))
+        found = faults(state)
+        name = state.rig.name + ":" * bool(found) if state.rig else ""
+        lesson.object = as_text(" ".join([lessons.get(state.demo) or name, *found]))
 
     select.param.watch(chosen, "value")
     state.param.watch(shown, ["demo", "rig", "diagnosis"])

@@ -14,8 +14,7 @@ from ..session import Session
 from ..state import State
 from .parts import GAP, caption, lead, section, when, words
 
-COLORS = {"error": "error", "warning": "warning", "note": "info"}
-"""What the theme calls the colours of severities, and their icons."""
+ICONS = {"error": "error", "warning": "warning", "note": "info"}
 MOST_DETAILS = 8
 
 
@@ -73,14 +72,13 @@ def _entry(session: Session, finding: Finding) -> pmui.Column:
     is_chosen = session.state.finding == finding.code
     title = pmui.Button(
         label=finding.title,
-        icon=COLORS[finding.severity],
+        icon=ICONS[finding.severity],
         variant="text",
-        color=COLORS[finding.severity],
         size="small",
         margin=0,
         sizing_mode="stretch_width",
         on_click=lambda event: look_at(session, finding.code),
-        sx={"justifyContent": "flex-start", "textAlign": "left"},
+        sx={"justifyContent": "flex-start", "textAlign": "left", "color": "text.primary"},
     )
     lines = [title, _line(finding.message)]
     if is_chosen:

@@ -79,7 +79,7 @@ def test_a_finding_is_marked_and_gone_to(spoiled):
     assert seen.actors["body"].opacity < 1
     assert seen.legend.swatches[0][1] == "60 faces"
     assert "Binding already treats them as flipped" in texts(spoiled)
-    assert sees(spoiled.view.camera, marked.points, 1.2)
+    assert sees(spoiled.view.camera, marked.points, spoiled.view.aspect)
     look_at(spoiled, "inverted-faces")
     assert spoiled.state.found is None
 
