@@ -22,9 +22,7 @@ STANDARD = ("connectivity", "orient", "winding_threshold", "leaf")
 def watch(session: Session) -> None:
     """Keep the diagnosis up to the character and its graph."""
     session.state.param.watch(lambda *events: _begin_anew(session), "rig")
-    session.state.param.watch(
-        lambda *events: examine(session), ["rig", "binding", "bare_graph", "panel"]
-    )
+    session.state.param.watch(lambda *events: examine(session), ["rig", "binding", "bare_graph"])
 
 
 def _begin_anew(session: Session) -> None:
