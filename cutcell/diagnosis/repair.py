@@ -108,7 +108,8 @@ def _together(rig: Rig, finding: Finding) -> NDArray[np.float64]:
     sums = np.zeros((len(places), weights.shape[1]))
     np.add.at(sums, which, weights[finding.vertices])
     weights[finding.vertices] = (sums / np.bincount(which)[:, None])[which]
-    return weights
+    most = max(INFLUENCES, int((_weights(rig) > 0).sum(axis=1).max()))
+    return prune(weights, most, 0.0, np.arange(weights.shape[1]))
 
 
 def _pruned(rig: Rig, finding: Finding) -> NDArray[np.float64]:
