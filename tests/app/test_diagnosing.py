@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 import cutcell
-from app.actions.diagnosis import look_at, repair, repaired_file, take_back
+from app.actions.diagnosis import look_at, repair, take_back
+from app.actions.take_along import repaired_file
 from app.panels.character import faults
 from app.panels.diagnosis import diagnosis, told
 from app.scenes import resolve
@@ -102,12 +103,11 @@ def test_a_repair_is_bound_and_can_be_taken_back(spoiled, loop):
     assert len(codes(spoiled)) == 2
 
 
-def test_the_repaired_file_is_handed_over(spoiled, loop, monkeypatch, tmp_path):
+def test_the_repaired_file_is_handed_over(spoiled, loop, tmp_path):
     offered = []
-    monkeypatch.setattr(spoiled.view, "offer", lambda *args: offered.append(args))
     repair(spoiled, ["inverted-faces", "unweighted-vertices"])
     loop.run_until(lambda: spoiled.state.repair is not None and spoiled.state.binding is not None)
-    repaired_file(spoiled, "arm")
+    repaired_file(spoiled, lambda *args: offered.append(args))
     loop.run_until(lambda: offered)
     name, content = offered[0]
     assert name == "arm-repaired.glb"
