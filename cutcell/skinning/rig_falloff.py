@@ -66,9 +66,11 @@ def rig_kernel(
         first_bone = np.searchsorted(bones.joint, np.arange(len(distance) + 1))
         known = skin.points, skin.normals, distance, foreign_bones(held), skin.piece
         ends = first_bone, bones.start, bones.end, LEAST_CELLS / resolution
-        _put_shares(*known, *ends, np.full(len(distance), np.inf), weights)
+        anywhere, chosen = np.full(len(distance), np.inf), np.ones(len(weights), np.bool_)
+        _put_shares(*known, *ends, anywhere, chosen, weights)
         cover = _cover(weights, distance, skin.areas, bones, resolution)
-        _put_shares(*known, *ends, cover, weights)
+        _mark_beyond(distance, weights, cover, chosen)
+        _put_shares(*known, *ends, cover, chosen, weights)
         return held
 
     def prepare() -> Diffusion:
@@ -79,17 +81,21 @@ def rig_kernel(
     if len(held) > 1:
         weights = follow_lone_bones(held, skin.piece, weights)
     weights = dress(graph, skin, held, weights)
-    weights = np.maximum(weights - TAIL * weights.max(axis=1, keepdims=True), 0)
-    return weights / weights.sum(axis=1, keepdims=True)
+    _end(weights)
+    return weights
 
 
 @lean
-def _put_shares(points, normals, distance, foreign, piece, bone, start, end, near, cover, weights):
-    """Divide places among joints by distance; `bone` tells where each joint's bones begin.
+def _put_shares(
+    points, normals, distance, foreign, piece, bone, start, end, near, cover, chosen, weights
+):
+    """Divide chosen places among joints by distance; `bone` tells where each joint's bones begin.
 
     Distances up to `near` are equal; beyond a joint's `cover` they grow by their square.
     """
     for v in range(len(points)):
+        if not chosen[v]:
+            continue
         least = np.inf
         for j in range(len(distance)):
             weights[v, j] = 0.0
@@ -106,6 +112,31 @@ def _put_shares(points, normals, distance, foreign, piece, bone, start, end, nea
                 weights[v, j] = (least / weights[v, j]) ** POWER
                 total += weights[v, j]
         for j in range(len(distance)):
+            weights[v, j] /= total
+
+
+@lean
+def _mark_beyond(distance, weights, cover, found):
+    """Mark the places, shape (k,), that have a share of a joint that does not cover them."""
+    for v in range(len(weights)):
+        found[v] = False
+        for j in range(len(distance)):
+            if weights[v, j] > SHARES and distance[j, v] > cover[j]:
+                found[v] = True
+
+
+@lean
+def _end(weights):
+    """Take a part of each place's largest weight off all of them, down to zero, in place."""
+    for v in range(len(weights)):
+        largest = 0.0
+        for j in range(weights.shape[1]):
+            largest = max(largest, weights[v, j])
+        total = 0.0
+        for j in range(weights.shape[1]):
+            weights[v, j] = max(weights[v, j] - TAIL * largest, 0.0)
+            total += weights[v, j]
+        for j in range(weights.shape[1]):
             weights[v, j] /= total
 
 
