@@ -1,4 +1,4 @@
-"""What the panel Diagnose shows: what is wrong with the character, and what was repaired."""
+"""What the panel Check shows: what is wrong with the character, and what was repaired."""
 
 from __future__ import annotations
 

@@ -65,15 +65,15 @@ def fit_bones(
     joint = np.array(start, np.int32)
     tip = joint == end
     bones = Bones(chains.joints[joint], chains.joints[end], joint)
-    onward = chains.direction if chains.rest is None else chains.rest
     tips = bones.joint[tip]
-    way = probe.way_out(chains.joints[tips], onward[tips])
-    bones.end[tip] += onward[tips] * way[:, None]
+    onward = chains.onward[tips]
+    way = probe.way_out(chains.joints[tips], onward)
+    bones.end[tip] += onward * way[:, None]
     bones = _share_with_tips(bones, tip, probe)
     way, pointed = last_bone_lengths(bones, tip, chains, way, probe)
     under_skin = (skeleton.parents[tips] >= 0) & moves_what_is_near(chains.joints[tips], probe)
     way[under_skin] = 0
-    bones.end[tip] = chains.joints[tips] + onward[tips] * way[:, None]
+    bones.end[tip] = chains.joints[tips] + onward * way[:, None]
     aimed = tip.copy()
     aimed[tip] = ~pointed & ~under_skin & chains.near[tips]
     return bones, aimed

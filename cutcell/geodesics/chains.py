@@ -69,6 +69,11 @@ class Chains:
     ends: tuple[list[int], ...]
     links: tuple[list[int], ...]
 
+    @property
+    def onward(self) -> NDArray[np.float64]:
+        """Where the bone of a last joint goes, shape (j, 3): along its rest axis, if that is known."""
+        return self.direction if self.rest is None else self.rest
+
 
 def find_chains(skeleton: Skeleton, joints: NDArray[np.float64], probe: BodyProbe) -> Chains:
     """Find out which joints continue which.

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.distance import cdist
@@ -47,22 +49,25 @@ def last_bone_lengths(
         Those that point along the joints' rest axis.
     """
     joint = bones.joint[tip]
-    place = chains.joints[joint]
-    onward = (chains.direction if chains.rest is None else chains.rest)[joint]
-    # Of the other tips, only where they begin is known.
-    end = np.where(tip[:, None], bones.start, bones.end)
-    others = []
-    for j, at in zip(joint, place, strict=True):
-        leads_here = np.abs(bones.end - at).max(axis=1) < SAME_PLACE
-        other = (bones.joint != j) & ~leads_here
-        others.append((bones.start[other], end[other]))
-    length = probe.way_to_others(place, onward, way, others)
+    place, onward = chains.joints[joint], chains.onward[joint]
+    length = probe.way_to_others(place, onward, way, _others(bones, tip, joint, place))
     if chains.rest is None:
         return length, np.zeros(len(joint), np.bool_)
     length *= PART_OF_WAY
     least = LEAST_CELLS / probe.resolution
     told = probe.near(place + onward * least) | (length > least)
     return np.where(told, np.maximum(length, least), length), told
+
+
+def _others(
+    bones: Bones, tip: NDArray[np.bool_], joints: NDArray[np.int32], places: NDArray[np.float64]
+) -> Iterator[tuple[NDArray[np.float64], NDArray[np.float64]]]:
+    """Give for each joint the bones of others that do not lead to it; of tips, their start."""
+    end = np.where(tip[:, None], bones.start, bones.end)
+    for joint, place in zip(joints, places, strict=True):
+        leads_here = np.abs(bones.end - place).max(axis=1) < SAME_PLACE
+        other = (bones.joint != joint) & ~leads_here
+        yield bones.start[other], end[other]
 
 
 def moves_what_is_near(places: NDArray[np.float64], probe: BodyProbe) -> NDArray[np.bool_]:

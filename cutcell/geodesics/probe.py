@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -90,7 +92,7 @@ class BodyProbe:
         start: NDArray[np.float64],
         direction: NDArray[np.float64],
         way: NDArray[np.float64],
-        others: list[tuple[NDArray[np.float64], NDArray[np.float64]]],
+        others: Iterable[tuple[NDArray[np.float64], NDArray[np.float64]]],
     ) -> NDArray[np.float64]:
         """Measure how far one can go until nearer, through the body, to something else.
 
@@ -99,7 +101,7 @@ class BodyProbe:
         start, direction : arrays, shape (p, 3)
         way : array, shape (p,)
             How far to go at most.
-        others : list of p pairs of arrays, shape (b, 3)
+        others : p pairs of arrays, shape (b, 3)
             Start and end of the segments that each point may come nearer to.
 
         Returns

@@ -61,11 +61,6 @@ class Accessor:
     def __len__(self) -> int:
         return self.base.count
 
-    @property
-    def is_float(self) -> bool:
-        """Whether decoded elements are floats."""
-        return self.normalized or self.base.dtype.kind == "f"
-
     def decoded(self, at: NDArray[np.intp] | slice = slice(None)) -> NDArray:
         """Return some elements, shape (k, width).
 

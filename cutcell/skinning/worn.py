@@ -121,9 +121,9 @@ def dress(
     mean, leads = gather @ there, gather @ joints[there.argmax(axis=1)]
     whole = np.maximum(gather.sum(axis=1), 1e-300)[:, None]
     mean, leads = mean / whole, leads / whole
-    for part in (leads, mean):
-        alone = part.max(axis=1) > RIGID
-        mean[alone] = joints[part[alone].argmax(axis=1)]
+    likely = np.where(leads.max(axis=1, keepdims=True) > RIGID, leads, mean)
+    alone = likely.max(axis=1) > RIGID
+    mean[alone] = joints[likely[alone].argmax(axis=1)]
     dressed = weights.copy()
     dressed[mine] = mean[label]
     return dressed
