@@ -71,7 +71,7 @@ class Chains:
 
     @property
     def onward(self) -> NDArray[np.float64]:
-        """Where the bone of a last joint goes, shape (j, 3): along its rest axis, if that is known."""
+        """Where last joints' bones go, shape (j, 3): along the rest axis, if that is known."""
         return self.direction if self.rest is None else self.rest
 
 
