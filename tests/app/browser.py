@@ -61,6 +61,20 @@ IN_SIGHT = """(code) => {
   }
 }"""
 
+AT_FIRST_SIGHT = """(button, limit) => new Promise((seen, missed) => {
+  const end = performance.now() + limit
+  const look = () => {
+    if (button.getClientRects().length && getComputedStyle(button).visibility === "visible") {
+      seen(button.click())
+    } else if (performance.now() > end) {
+      missed(new Error("the button never shows"))
+    } else {
+      requestAnimationFrame(look)
+    }
+  }
+  look()
+})"""
+
 # What a browser says of its own software rendering, never of the page.
 OF_THE_BROWSER = re.compile(r"GL Driver Message|GroupMarkerNotSet|software WebGL|SwiftShader")
 
@@ -216,6 +230,10 @@ class Visit:
     def button(self, name: str, exact: bool = True) -> Locator:
         """Return a button."""
         return self.page.get_by_role("button", name=name, exact=exact)
+
+    def click_when_seen(self, name: str) -> None:
+        """Press a button in the first frame that shows it: it may be there for a moment only."""
+        self.button(name).evaluate(AT_FIRST_SIGHT, LOAD_MS)
 
     def panel(self, title: str) -> None:
         """Choose a panel."""

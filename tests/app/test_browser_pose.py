@@ -38,14 +38,21 @@ def drag_ring(visit, axis, dx, dy):
     visit.page.mouse.down()
     visit.page.mouse.move(x + dx, y + dy, steps=6)
     local = visit.points()
-    expect(visit.page.locator(".angle")).to_contain_text("°")
+    told = visit.page.locator(".angle")
+    expect(told).to_contain_text(f"{'XYZ'[axis]} ")
+    degrees = told.inner_text().split()[1].rstrip("°")
     visit.page.mouse.up()
+    expect(slider(visit, "XYZ"[axis])).to_have_value(degrees)
     visit.settle()
     return local
 
 
+def slider(visit, axis):
+    return visit.page.get_by_role("slider", name=f"About {axis}")
+
+
 def angle(visit, axis):
-    return float(visit.page.get_by_role("slider", name=f"About {axis}").input_value())
+    return float(slider(visit, axis).input_value())
 
 
 def rest(visit):
