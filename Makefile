@@ -50,8 +50,8 @@ $(VENV)/.app: $(SETUP)
 $(VENV)/.test: $(SETUP)
 	@scripts/setup.sh test
 
-# What the tests need beside Python: a browser, and OpenGL to render off-screen.
-$(VENV)/.tools: $(VENV)/.test scripts/get_chromium.py scripts/get_opengl.py scripts/debian.py
-	@$(PYTHON) scripts/get_opengl.py
+# What the tests need beside Python: a browser, OpenGL to render off-screen, and what Open3D loads.
+$(VENV)/.tools: $(VENV)/.test scripts/get_chromium.py scripts/get_system_libraries.py scripts/debian.py
+	@$(PYTHON) scripts/get_system_libraries.py
 	@$(PYTHON) scripts/get_chromium.py
 	@touch $@

@@ -5,16 +5,17 @@ from pathlib import PurePosixPath
 import pytest
 from xdist.remote import Producer
 from xdist.scheduler import LoadScopeScheduling
+from xdist.workermanage import WorkerController
 
 BROWSER = "test_browser"
-"""How the names of files begin whose tests share one browser and one server."""
+"""How the names of files begin whose tests need a browser and a server."""
 
 
 class Dealing(LoadScopeScheduling):
-    """Deals tests file by file, in their order, and those in the browser as if of one file.
+    """Deals tests file by file: those in the browser to one worker, all others to the rest.
 
-    The browser's come early (`tests/app` is the first folder) and take about as long as all others
-    on a machine with two cores.
+    Who has done all of his own takes the others': a second browser and server cost half a minute,
+    and that only at the end.
     """
 
     def __init__(self, config: pytest.Config, log: Producer | None = None) -> None:
@@ -22,5 +23,12 @@ class Dealing(LoadScopeScheduling):
         super().__init__(config, log)
 
     def _split_scope(self, nodeid: str) -> str:
-        path = nodeid.partition("::")[0]
-        return BROWSER if PurePosixPath(path).name.startswith(BROWSER) else path
+        return nodeid.partition("::")[0]
+
+    def _assign_work_unit(self, node: WorkerController) -> None:
+        own = node is self.nodes[0]
+        for path in self.workqueue:
+            if PurePosixPath(path).name.startswith(BROWSER) == own:
+                self.workqueue.move_to_end(path, last=False)
+                break
+        super()._assign_work_unit(node)

@@ -17,12 +17,7 @@ FLOAT32 = 2e-6
 """Rays within this distance of an edge may miss or double it in float32."""
 
 
-def open3d_rays(*arguments):
-    pytest.importorskip("open3d", reason="Open3D is not installed", exc_type=ImportError)
-    return backends.cast_rays_open3d(*arguments)
-
-
-CASTERS = {"open3d": open3d_rays, "embree": backends.cast_rays_embree}
+CASTERS = {"open3d": backends.cast_rays_open3d, "embree": backends.cast_rays_embree}
 
 
 def turned(vertices, faces):
