@@ -3,7 +3,7 @@
 
 VENV := .venv
 PYTHON := $(VENV)/bin/python
-SETUP := pyproject.toml requirements.lock scripts/setup.sh
+SETUP := pyproject.toml setup.py requirements.lock scripts/setup.sh
 
 # As many as there are cores; tests/dealing.py says which tests go together to one of them.
 WORKERS := --numprocesses logical --maxprocesses 4

@@ -38,6 +38,8 @@ def get_ready() -> None:
     if _METHOD == "forkserver":
         from multiprocessing.forkserver import ensure_running
 
+        # Nothing in the folder that the page is started in takes the place of a library.
+        os.environ["PYTHONSAFEPATH"] = "1"
         ensure_running()
 
 

@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cutcell.display import printable, shown_name
-from viewers.description import Actor, Apart, Description, Legend, Reading
-from viewers.palette import colormap, to_hex
-from viewers.scene import AMBIENT
-from viewers.skin import Skin
+from cutcell_viewers.description import Actor, Apart, Description, Legend, Reading
+from cutcell_viewers.palette import colormap, to_hex
+from cutcell_viewers.scene import AMBIENT
+from cutcell_viewers.skin import Skin
 
 
 def changes(old: Description, new: Description, sent: set[str]) -> dict[str, Any]:

@@ -12,7 +12,7 @@ from scipy.sparse.csgraph import connected_components
 from cutcell.display import shown_name
 from cutcell.geodesics import FALLBACK_REASONS
 from cutcell.graph import MESH, CutCellGraph
-from viewers.palette import joint_colors, to_hex
+from cutcell_viewers.palette import joint_colors, to_hex
 
 from .scenes.memo import Memo
 from .state import State

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 from param.parameterized import batch_call_watchers
 
-from assets import DEMOS
 from cutcell.errors import CutcellError
 from cutcell.progress import Progress
 from cutcell.rig import Rig
-from viewers.camera import Camera, framing
+from cutcell_assets import DEMOS
+from cutcell_viewers.camera import Camera, framing
 
 from .actions import compare, learn
 from .choices import first_clip, from_query

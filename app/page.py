@@ -14,7 +14,7 @@ import panel_material_ui as pmui
 from panel.io.resources import LOCAL_DIST
 from tornado.ioloop import IOLoop
 
-from assets import DEMOS
+from cutcell_assets import DEMOS
 
 from .favicon import FAVICON
 from .inspector import inspector

@@ -9,10 +9,10 @@ from pathlib import Path
 import numpy as np
 
 import cutcell
-from assets import demo_path
 from cutcell.errors import FileError
 from cutcell.io.files import naming
 from cutcell.rig import Rig
+from cutcell_assets import demo_path
 
 from .apart import in_process
 

@@ -12,7 +12,7 @@ from typing import Any
 import cutcell
 from cutcell.errors import CutcellError
 from cutcell.progress import Progress
-from viewers.camera import Camera, framing
+from cutcell_viewers.camera import Camera, framing
 
 from .actions import WATCHERS, weights
 from .jobs import COMPUTING, Jobs, Newest, Schedule, Turns

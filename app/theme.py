@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from viewers.palette import DARK, INTERIOR, LIGHT, SURFACE, to_hex
+from cutcell_viewers.palette import DARK, INTERIOR, LIGHT, SURFACE, to_hex
 
 _SHAPE = {
     "shape": {"borderRadius": 8},

@@ -9,10 +9,10 @@ import param
 from panel.custom import JSComponent
 from panel.models.vtk import VTK_VERSION
 
-from viewers.camera import Camera
-from viewers.description import Description
-from viewers.palette import Theme, to_hex
-from viewers.scene import LIGHTS
+from cutcell_viewers.camera import Camera
+from cutcell_viewers.description import Description
+from cutcell_viewers.palette import Theme, to_hex
+from cutcell_viewers.scene import LIGHTS
 
 from .changes import changes
 from .scripts import script

@@ -85,11 +85,11 @@ def picture(rig: Rig, found: dict[str, NDArray[np.float64]], path: Path) -> None
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    from viewers.camera import Camera, framing
-    from viewers.distance_scene import distance_scene
-    from viewers.palette import LIGHT
-    from viewers.scene import render_png
-    from viewers.weights_scene import weights_scene
+    from cutcell_viewers.camera import Camera, framing
+    from cutcell_viewers.distance_scene import distance_scene
+    from cutcell_viewers.palette import LIGHT
+    from cutcell_viewers.scene import render_png
+    from cutcell_viewers.weights_scene import weights_scene
 
     joint = rig.skeleton.names.index(ARM[1])
     longest = max(float(found[name].max()) for name in found if "distance" in name)

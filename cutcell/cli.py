@@ -1,4 +1,6 @@
-"""The `cutcell` command: app, bind, graph, compare; diagnose and render have files of their own.
+"""The `cutcell` command: bind, graph, compare; others have files of their own.
+
+Packages above this one add theirs by the entry point `cutcell.commands`.
 
 Nothing heavy is imported before a command runs, so that `--help` answers at once.
 """
@@ -7,7 +9,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator
-from importlib import import_module
+from importlib.metadata import entry_points
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -17,7 +19,6 @@ from . import __version__
 from .console import for_people, print_json, print_table, print_warnings, progress_bars
 from .diagnose_command import EPILOG as DIAGNOSE_EPILOG
 from .diagnose_command import diagnose
-from .errors import MissingLibraryError, ParameterError
 from .joints_command import EPILOG as JOINTS_EPILOG
 from .joints_command import joints
 from .options import (
@@ -42,7 +43,6 @@ from .options import (
     Threshold,
     WindingThreshold,
 )
-from .render_command import EPILOG, render
 from .report import report_rows
 
 if TYPE_CHECKING:
@@ -81,49 +81,6 @@ def cutcell(
     A mesh and its skeleton go in, weights come out: how much each vertex follows each joint.
     The mesh may be open, in many pieces, or intersect itself.
     """
-
-
-@app.command(name="app", epilog="Example: `cutcell app character.glb --port 5010`")
-@for_people
-def open_page(
-    rig: Annotated[
-        Path | None,
-        typer.Argument(metavar="[RIG]", help="What to open; a demo character when left out."),
-    ] = None,
-    port: Annotated[
-        int,
-        typer.Option(
-            "--port",
-            help="Where the page is served; the next free one if taken, any free one if 0.",
-        ),
-    ] = 5006,
-    address: Annotated[
-        str,
-        typer.Option(
-            "--address",
-            help="What to listen on. localhost: this machine only. 0.0.0.0, or the address of one"
-            " network: everyone there can use the page, without a password or encryption.",
-        ),
-    ] = "localhost",
-    show: Annotated[
-        bool, typer.Option("--show/--no-show", help="Open a browser on the page.")
-    ] = True,
-) -> None:
-    """Open the page: look at a character, its graph, distances and weights, and move it."""
-    if not 0 <= port <= 65535:
-        raise ParameterError(f"port must be a whole number from 0 to 65,535, not {port}")
-    serve = _page()
-    if rig is not None:
-        from .io import load
-
-        load(rig)  # a wrong file is told here, not by an empty page
-    try:
-        serve(rig, port=port, address=address, show=show)
-    except OSError as error:
-        raise ParameterError(
-            f"the page cannot be served at {address}, port {port} ({error.strerror or error}); "
-            "choose another --address or --port"
-        ) from None
 
 
 @app.command(
@@ -391,24 +348,16 @@ def compare(
 
 
 app.command(epilog=DIAGNOSE_EPILOG)(diagnose)
-app.command(epilog=EPILOG)(render)
 app.command(epilog=JOINTS_EPILOG)(joints)
+
+
+for above in entry_points(group="cutcell.commands"):
+    above.load()(app)
 
 
 def main() -> None:
     """Run the command line."""
     app()
-
-
-def _page() -> Any:
-    """Fetch the page, or say how to install what it needs."""
-    try:
-        return import_module("app.serve").serve
-    except ModuleNotFoundError as error:
-        raise MissingLibraryError(
-            f"the page needs libraries that are not installed ({error.name} is missing); "
-            "install them by: pip install 'cutcell[app]'"
-        ) from None
 
 
 def _neighbours(text: str) -> int | str:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from cutcell.diagnosis import Diagnosis, Repaired, diagnose
 from cutcell.progress import Progress
-from viewers.finding_scene import camera_on
+from cutcell_viewers.finding_scene import camera_on
 
 from ..scenes.common import bounds_of
 from ..state.diagnosis import Repair

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from cutcell.progress import Progress
-from viewers.distance_scene import distance_limits
+from cutcell_viewers.distance_scene import distance_limits
 
 from ..scenes.geodesics import field_of, wants_field
 

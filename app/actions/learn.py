@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from cutcell.rig import Rig
-from viewers.camera import Camera, framing
-from viewers.character import to_scene
+from cutcell_viewers.camera import Camera, framing
+from cutcell_viewers.character import to_scene
 
 from ..choices import defaults
 from ..scenes.common import bounds_of

@@ -9,8 +9,8 @@ import numpy as np
 from cutcell.errors import CutcellError
 from cutcell.progress import Progress, silent
 from cutcell.rig import Clip, Rig
-from viewers.error_scene import WHOLE, Gap, scene_error
-from viewers.pose_scene import pose_at, turn
+from cutcell_viewers.error_scene import WHOLE, Gap, scene_error
+from cutcell_viewers.pose_scene import pose_at, turn
 
 from ..scenes.pose import (
     angles_of,

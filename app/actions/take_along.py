@@ -14,11 +14,11 @@ from cutcell.io import binary_ending
 from cutcell.io.numbers import save_numbers
 from cutcell.progress import Progress
 from cutcell.rig import Clip
-from viewers.camera import Camera
-from viewers.description import Description
-from viewers.film import Order
-from viewers.pose_scene import clip_in_scene, pose_at, swing
-from viewers.worker import draw_apart
+from cutcell_viewers.camera import Camera
+from cutcell_viewers.description import Description
+from cutcell_viewers.film import Order
+from cutcell_viewers.pose_scene import clip_in_scene, pose_at, swing
+from cutcell_viewers.worker import draw_apart
 
 from ..apart import in_process
 from ..jobs import COMPUTING, DRAWING, Turns

@@ -6,7 +6,7 @@ from typing import Any
 
 import panel_material_ui as pmui
 
-from assets import DEMOS
+from cutcell_assets import DEMOS
 
 from ..session import Session
 from ..state import MAX_UPLOAD, State

@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 
 from cutcell.display import shown_name
 from cutcell.rig import Rig
-from viewers.character import attachments, body, bones, drawn_segments
-from viewers.description import Actor, Cut, Description
-from viewers.graph_scene import cut_at
-from viewers.marks import vertex_mark
-from viewers.palette import THEMES, Theme, joint_colors
-from viewers.skin import skin_of_weights
+from cutcell_viewers.character import attachments, body, bones, drawn_segments
+from cutcell_viewers.description import Actor, Cut, Description
+from cutcell_viewers.graph_scene import cut_at
+from cutcell_viewers.marks import vertex_mark
+from cutcell_viewers.palette import THEMES, Theme, joint_colors
+from cutcell_viewers.skin import skin_of_weights
 
 from ..state import State
 from .memo import Memo

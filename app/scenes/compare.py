@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from viewers.description import Actor, Description, Legend
-from viewers.error_scene import error_limits
-from viewers.skin import skin_of_weights
-from viewers.weights_scene import weight_colors
+from cutcell_viewers.description import Actor, Description, Legend
+from cutcell_viewers.error_scene import error_limits
+from cutcell_viewers.skin import skin_of_weights
+from cutcell_viewers.weights_scene import weight_colors
 
 from ..state import State
 from ..state.compare import NOW

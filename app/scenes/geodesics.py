@@ -8,14 +8,14 @@ from typing import Any
 import numpy as np
 
 from cutcell.geodesics import path_length, shortest_path
-from viewers.character import to_scene
-from viewers.description import Actor, Cut, Description, Legend
-from viewers.distance_scene import distance_colors, distance_limits
-from viewers.marks import path_tube
-from viewers.palette import BODY, MARK, SOURCE
-from viewers.section_scene import section, section_rays, section_resolution
-from viewers.slice_scene import slice_place
-from viewers.start_scene import first_distances, start_scene
+from cutcell_viewers.character import to_scene
+from cutcell_viewers.description import Actor, Cut, Description, Legend
+from cutcell_viewers.distance_scene import distance_colors, distance_limits
+from cutcell_viewers.marks import path_tube
+from cutcell_viewers.palette import BODY, MARK, SOURCE
+from cutcell_viewers.section_scene import section, section_rays, section_resolution
+from cutcell_viewers.slice_scene import slice_place
+from cutcell_viewers.start_scene import first_distances, start_scene
 
 from ..state import State
 from .common import character, theme_of

@@ -6,9 +6,9 @@ import pytest
 from playwright.sync_api import Browser, sync_playwright
 
 import cutcell
-from app.session import Session
-from assets import demo_path
 from cutcell.rig import Rig
+from cutcell_app.session import Session
+from cutcell_assets import demo_path
 from scripts.get_chromium import FLAGS
 from tests.app.browser import Visit, served
 from tests.app.loop import Loop

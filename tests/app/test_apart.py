@@ -12,10 +12,10 @@ import psutil
 import pytest
 
 import cutcell
-from app.apart import in_process
-from app.reading import read
-from assets import demo_path
 from cutcell.errors import Cancelled, CutcellError, FileError, MeshError
+from cutcell_app.apart import in_process
+from cutcell_app.reading import read
+from cutcell_assets import demo_path
 from tests.conftest import ROOT
 
 
@@ -28,7 +28,7 @@ class OddError(Exception):
 
 SERVER = """
 import subprocess, sys
-from app.apart import in_process
+from cutcell_app.apart import in_process
 in_process(subprocess.call, ["sh", "-c", 'echo $PPID $$ > "$0"; sleep 600', sys.argv[1]])
 """
 

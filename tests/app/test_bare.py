@@ -3,16 +3,16 @@
 import numpy as np
 import pytest
 
-from app.choices import to_query
-from app.panels import PANELS
-from app.panels.bone import bone
-from app.panels.take_along import take_along
-from app.render import Choices, describe
-from app.scenes import resolve
-from app.sidebar import NO_SKELETON, panels
-from app.status import messages, summary
 from cutcell.errors import SkeletonError
 from cutcell.rig import Rig, Skeleton
+from cutcell_app.choices import to_query
+from cutcell_app.panels import PANELS
+from cutcell_app.panels.bone import bone
+from cutcell_app.panels.take_along import take_along
+from cutcell_app.render import Choices, describe
+from cutcell_app.scenes import resolve
+from cutcell_app.sidebar import NO_SKELETON, panels
+from cutcell_app.status import messages, summary
 from tests.viewers.arm import arm_rig
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from playwright.sync_api import expect
 
-from assets import demo_path
+from cutcell_assets import demo_path
 from tests.app.browser import Visit, changed
 from tests.conftest import SHARED_RIGS
 

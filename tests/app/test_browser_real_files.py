@@ -10,11 +10,11 @@ import pytest
 from playwright.sync_api import expect
 
 import cutcell
-from assets import demo_path
+from cutcell_assets import demo_path
+from cutcell_viewers.character import pose_in_scene
+from cutcell_viewers.pose_scene import joint_turns, turn
 from tests.app.browser import Visit, changed
 from tests.conftest import SHARED_RIGS
-from viewers.character import pose_in_scene
-from viewers.pose_scene import joint_turns, turn
 
 RESOLUTION = 24
 FILES = {

@@ -4,13 +4,13 @@ import threading
 
 import pytest
 
-from app.actions import compare
-from app.jobs import COMPARING, Job
-from app.panels.compare import rows_of
-from app.session import Session
 from cutcell.apart import _WANTED
 from cutcell.baselines import METHODS, BaselineBinding
 from cutcell.progress import silent
+from cutcell_app.actions import compare
+from cutcell_app.jobs import COMPARING, Job
+from cutcell_app.panels.compare import rows_of
+from cutcell_app.session import Session
 from tests.viewers.arm import arm_rig
 
 

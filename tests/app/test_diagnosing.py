@@ -6,18 +6,18 @@ import numpy as np
 import pytest
 
 import cutcell
-from app.actions.diagnosis import look_at, repair, take_back
-from app.actions.take_along import repaired_file
-from app.panels.character import faults
-from app.panels.diagnosis import diagnosis, told
-from app.scenes import resolve
-from app.scenes.common import bounds_of
-from app.state import State
 from cutcell.rig import TriangleMesh
+from cutcell_app.actions.diagnosis import look_at, repair, take_back
+from cutcell_app.actions.take_along import repaired_file
+from cutcell_app.panels.character import faults
+from cutcell_app.panels.diagnosis import diagnosis, told
+from cutcell_app.scenes import resolve
+from cutcell_app.scenes.common import bounds_of
+from cutcell_app.state import State
+from cutcell_viewers.camera import sees
+from cutcell_viewers.finding_scene import finding_marks
 from tests.app.test_bare import bare_arm
 from tests.viewers.arm import arm_rig
-from viewers.camera import sees
-from viewers.finding_scene import finding_marks
 
 FLIPPED = np.arange(0, 60)
 

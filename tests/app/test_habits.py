@@ -3,16 +3,16 @@
 import pytest
 
 import cutcell
-from app.actions.compare import choose
-from app.choices import first_clip, from_query, to_query
-from app.history import TOGETHER, History
-from app.jobs import Gate
-from app.opening import GONE
-from app.scenes.common import first_joint
-from app.session import Session
-from app.state import State
-from app.state.compare import standard
-from assets import demo_path
+from cutcell_app.actions.compare import choose
+from cutcell_app.choices import first_clip, from_query, to_query
+from cutcell_app.history import TOGETHER, History
+from cutcell_app.jobs import Gate
+from cutcell_app.opening import GONE
+from cutcell_app.scenes.common import first_joint
+from cutcell_app.session import Session
+from cutcell_app.state import State
+from cutcell_app.state.compare import standard
+from cutcell_assets import demo_path
 from tests.viewers.arm import arm_rig
 
 

@@ -9,9 +9,9 @@ import psutil
 import pytest
 from bokeh.util.token import generate_jwt_token, generate_session_id
 
-from app import handlers
-from app.session import Session
 from benchmarks.visitors import Visitor
+from cutcell_app import handlers
+from cutcell_app.session import Session
 from tests.app.serving import serving
 
 

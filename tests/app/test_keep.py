@@ -9,10 +9,10 @@ from pathlib import Path
 
 import pytest
 
-from app import keep as kept
-from app.keep import MB, Keep
-from app.storage import LOCK, NEW_SECONDS, UNKNOWN_SECONDS, Storage
 from cutcell.errors import FileError
+from cutcell_app import keep as kept
+from cutcell_app.keep import MB, Keep
+from cutcell_app.storage import LOCK, NEW_SECONDS, UNKNOWN_SECONDS, Storage
 from tests.conftest import ROOT
 
 

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from app.actions.learn import camera_of, go
-from app.scenes import resolve
-from app.session import Session
-from app.state import PANELS, State
-from app.tour import TOUR
-from assets import DEMOS
+from cutcell_app.actions.learn import camera_of, go
+from cutcell_app.scenes import resolve
+from cutcell_app.session import Session
+from cutcell_app.state import PANELS, State
+from cutcell_app.tour import TOUR
+from cutcell_assets import DEMOS
 
 
 def test_every_step_can_be_told():

@@ -11,10 +11,10 @@ import param
 import pytest
 
 import cutcell
-from app import scenes
-from app.session import Session
-from app.status import stage_text, summary, warning
 from cutcell.errors import MeshError
+from cutcell_app import scenes
+from cutcell_app.session import Session
+from cutcell_app.status import stage_text, summary, warning
 from tests.viewers.arm import arm_rig
 
 
@@ -219,8 +219,8 @@ def test_what_was_odd_about_the_file_is_told(bound):
 def test_methods_are_compared_one_after_the_other_and_one_that_fails_stops_none(
     bound, loop, monkeypatch
 ):
-    from app.actions.compare import cancel
     from cutcell.baselines import METHODS, BaselineBinding
+    from cutcell_app.actions.compare import cancel
 
     def fails(rig):
         return BaselineBinding(None, failed="it cannot")
@@ -315,7 +315,7 @@ def test_what_is_told_reads_well(session):
 
 
 def test_a_large_character_is_described_beside_the_pages_own_thread(session, loop, monkeypatch):
-    monkeypatch.setattr("app.state.QUICK_MESH", 10)
+    monkeypatch.setattr("cutcell_app.state.QUICK_MESH", 10)
     threads, described = [], []
     resolve = scenes.resolve
 
@@ -324,7 +324,7 @@ def test_a_large_character_is_described_beside_the_pages_own_thread(session, loo
             threads.append(threading.current_thread())
         return resolve(state, memo)
 
-    monkeypatch.setattr("app.session.resolve", noted)
+    monkeypatch.setattr("cutcell_app.session.resolve", noted)
     monkeypatch.setattr(session.view, "present", described.append)
     session.state.resolution = 16
     session.opening.rig(arm_rig())
@@ -402,7 +402,7 @@ def test_an_error_that_nobody_looks_at_is_measured_no_longer(session, loop, monk
         while True:
             progress("deformation", 0.0)
 
-    monkeypatch.setattr("app.actions.pose.scene_error", measured)
+    monkeypatch.setattr("cutcell_app.actions.pose.scene_error", measured)
     session.state.param.update(resolution=16, panel="pose")
     session.opening.rig(arm_rig())
     loop.run_until(begun.is_set)

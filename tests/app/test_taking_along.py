@@ -11,16 +11,16 @@ import numpy as np
 import pytest
 
 import cutcell
-from app.actions.take_along import (
+from cutcell.progress import silent
+from cutcell_app.actions.take_along import (
     bound_file,
     take_motion,
     take_numbers,
     take_picture,
     take_turntable,
 )
-from app.jobs import PATIENCE, Jobs
-from app.state import PANELS
-from cutcell.progress import silent
+from cutcell_app.jobs import PATIENCE, Jobs
+from cutcell_app.state import PANELS
 from tests.cutcell.io.gltf_builder import column
 
 
@@ -82,8 +82,8 @@ def taken(loop, act, *arguments):
 
 @pytest.fixture
 def small(monkeypatch):
-    monkeypatch.setattr("app.actions.take_along.PICTURE_PIXELS", 160 * 120)
-    monkeypatch.setattr("app.actions.take_along.FILM_PIXELS", 64 * 48)
+    monkeypatch.setattr("cutcell_app.actions.take_along.PICTURE_PIXELS", 160 * 120)
+    monkeypatch.setattr("cutcell_app.actions.take_along.FILM_PIXELS", 64 * 48)
 
 
 def test_pictures_show_what_is_seen_in_its_pose(bound, loop, small):
@@ -108,7 +108,7 @@ def test_the_body_goes_through_a_filmed_motion_on_every_panel(bound, loop, panel
         orders.append(order)
         path.write_bytes(b"drawn")
 
-    monkeypatch.setattr("app.actions.take_along.draw_apart", remember)
+    monkeypatch.setattr("cutcell_app.actions.take_along.draw_apart", remember)
     bound.state.param.update(panel=panel, cut_axis="z")
     taken(loop, take_motion, bound, "gif")
     shown = orders[0].description
@@ -146,7 +146,7 @@ def killed(*given):
 
 WRITERS = {
     "file": ("cutcell.save", bound_file),
-    "numbers": ("app.actions.take_along.save_numbers", partial(take_numbers, what="all")),
+    "numbers": ("cutcell_app.actions.take_along.save_numbers", partial(take_numbers, what="all")),
 }
 
 
@@ -194,8 +194,8 @@ def test_numbers_that_are_not_there_yet_are_told(session):
 
 def test_a_machine_that_cannot_draw_is_told_so(bound, loop, small, monkeypatch):
     got = []
-    monkeypatch.setattr("viewers.worker.sys.executable", "false")
-    monkeypatch.setattr("viewers.opengl._can_draw", lambda: False)
+    monkeypatch.setattr("cutcell_viewers.worker.sys.executable", "false")
+    monkeypatch.setattr("cutcell_viewers.opengl._can_draw", lambda: False)
     take_picture(bound, lambda name, content: got.append(name))
     loop.run_until(lambda: bound.state.message is not None)
     assert "no OpenGL" in bound.state.message[1]

@@ -6,12 +6,12 @@ from pathlib import Path
 
 import pytest
 
-from app.keep import Keep
-from app.reading import main_file
-from app.state import MAX_UPLOAD
-from app.storage import Storage
-from app.upload import NAME_BYTES, Receiver, safe_name
 from cutcell.errors import FileError
+from cutcell_app.keep import Keep
+from cutcell_app.reading import main_file
+from cutcell_app.state import MAX_UPLOAD
+from cutcell_app.storage import Storage
+from cutcell_app.upload import NAME_BYTES, Receiver, safe_name
 
 
 @pytest.fixture

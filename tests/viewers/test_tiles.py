@@ -10,8 +10,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from viewers.camera import FRONT
-from viewers.tiles import shape_of, tiles
+from cutcell_viewers.camera import FRONT
+from cutcell_viewers.tiles import shape_of, tiles
 
 STAGE = Path(__file__).resolve().parents[2] / "app" / "js" / "stage.js"
 

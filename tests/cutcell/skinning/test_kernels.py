@@ -23,7 +23,7 @@ SCRIPT = textwrap.dedent(
     import sys
     from numba.core.dispatcher import Dispatcher
     import cutcell
-    from assets import demo_path
+    from cutcell_assets import demo_path
     from cutcell.skinning import kernels_are_compiled, load_kernels
 
     def versions():

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import re
-from importlib import import_module
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
-from .console import for_people, print_line, print_warnings, progress_bars
-from .errors import MissingLibraryError, ParameterError
-from .options import FILES, Resolution, RigFile, SkeletonFile
+from cutcell.console import for_people, print_line, print_warnings, progress_bars
+from cutcell.errors import MissingLibraryError, ParameterError
+from cutcell.options import FILES, Resolution, RigFile, SkeletonFile
 
 WHAT = "What is seen"
 HOW = "How it is seen"
@@ -171,8 +170,8 @@ def render(
     moves = turntable or (clip is not None and time is None)
     film.check_picture_file(out, moves=moves)
     pixels = _size(size) if size else FILM_SIZE if moves else PICTURE_SIZE
-    from .io import load
-    from .io.files import naming
+    from cutcell.io import load
+    from cutcell.io.files import naming
 
     loaded = load(rig, skeleton=skeleton_file)
     choices = scenes.Choices(
@@ -191,7 +190,7 @@ def render(
     # A wrong name is told before anything long begins.
     with naming(rig):
         scenes.check(loaded, choices, view)
-    from .skinning import bind
+    from cutcell.skinning import bind
 
     bare = not len(loaded.skeleton.joints)
     with progress_bars(quiet) as progress:
@@ -210,14 +209,15 @@ def render(
 
 def _libraries() -> tuple[Any, Any, Any]:
     try:
-        return tuple(
-            import_module(name) for name in ("app.render", "viewers.film", "viewers.worker")
-        )  # type: ignore[return-value]
+        from cutcell_viewers import film, worker
+
+        from . import render as scenes
     except ModuleNotFoundError as error:
         raise MissingLibraryError(
             f"pictures need libraries that are not installed ({error.name} is missing); "
             "install them by: pip install 'cutcell[app]'"
         ) from None
+    return scenes, film, worker
 
 
 def _size(text: str) -> tuple[int, int]:
