@@ -17,7 +17,7 @@ from bokeh.settings import settings
 from bokeh.util.browser import view
 
 from cutcell.console import print_warnings
-from cutcell.skinning import kernels_are_compiled, load_kernels
+from cutcell.skinning import is_compiled, warm_up
 
 from .apart import get_ready
 from .handlers import guard
@@ -83,7 +83,7 @@ def serve(
     KEEP.sweep_by_the_clock()
     threading.Thread(target=get_ready, daemon=True).start()
     server = begin(path, chosen, address)
-    if kernels_are_compiled():
+    if is_compiled():
         # While the browser starts. The first compile ever is left to the page, which tells of it.
         threading.Thread(target=_load_kernels, args=(server,), daemon=True).start()
     # It listens from here on; told sooner, the address could be asked for too soon.
@@ -131,7 +131,7 @@ def begin(path: Path | None, port: int, address: str = "localhost", **more: Any)
 
 
 def _load_kernels(server: Any) -> None:
-    load_kernels()
+    warm_up()
     server.io_loop.add_callback(_settle, server)
 
 

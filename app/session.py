@@ -22,7 +22,7 @@ from .opening import Opening
 from .scenes import Memo, resolve
 from .scenes.common import bounds_of, theme_of
 from .state import UNSEEN, State
-from .state.method import GRAPH, WEIGHTS, method_of
+from .state.method import GRAPH, WEIGHTS, effective, method_of
 from .view import SceneView, camera_part, theme_part
 
 logger = logging.getLogger("cutcell.app")
@@ -126,7 +126,7 @@ class Session:
         few = weights.kept(state)
 
         def work(progress: Progress) -> Any:
-            generous = cutcell.bind(rig, progress=progress, **method)
+            generous = cutcell.bind(rig, progress=progress, **effective(method))
             return generous, weights.pruned(generous, few)
 
         def done(bindings: Any) -> None:

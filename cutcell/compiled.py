@@ -6,11 +6,11 @@ from typing import Any
 from numba import njit
 from numba.core.dispatcher import Dispatcher
 
-from .kernel_cache import KernelCache
+from .compile_cache import CompileCache
 
 
 def compiled(kernel: Callable | None = None, **options: Any) -> Any:
-    """Compile a kernel that runs without Python's lock, and keep it (`kernel_cache`).
+    """Compile a kernel that runs without Python's lock, and keep it (`compile_cache`).
 
     Parameters
     ----------
@@ -23,7 +23,7 @@ def compiled(kernel: Callable | None = None, **options: Any) -> Any:
         return lambda kernel: compiled(kernel, **options)
     dispatcher = njit(nogil=True, **options)(kernel)
     if isinstance(dispatcher, Dispatcher):  # it is a plain function under NUMBA_DISABLE_JIT
-        dispatcher._cache = KernelCache(kernel)  # type: ignore[attr-defined]
+        dispatcher._cache = CompileCache(kernel)  # type: ignore[attr-defined]
     return dispatcher
 
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from numpy.typing import NDArray
 
 from cutcell.apart import stoppable
-from cutcell.baselines import METHODS, Method
+from cutcell.baselines import METHODS, Baseline
 from cutcell.errors import CutcellError
 from cutcell.metrics import (
     DeformationError,
@@ -155,7 +155,7 @@ def measured(rig: Rig, name: str, binding: Any, resolution: int, progress: Progr
     return Compared(rig, weights, "", total, l1, errors.mean, none, errors, source)
 
 
-def options_of(method: Method, **options: Any) -> Mapping[str, Any]:
+def options_of(method: Baseline, **options: Any) -> Mapping[str, Any]:
     """Return those options that a method knows."""
     known = signature(method).parameters
     every = any(one.kind is one.VAR_KEYWORD for one in known.values())

@@ -14,11 +14,11 @@ from typing import TYPE_CHECKING, Any
 from numpy.typing import NDArray
 
 from cutcell.errors import CutcellError
+from cutcell.method import joints_needed
 from cutcell.progress import Progress
 from cutcell.skinning import Binding, keep_strongest, skinning_weights
-from cutcell.skinning.weights import joints_needed
 
-from ..state.method import GRAPH, WEIGHTS, method_of
+from ..state.method import GRAPH, WEIGHTS, effective, method_of
 from ..state.weights import MOST
 
 if TYPE_CHECKING:
@@ -55,9 +55,8 @@ def weigh(session: Session) -> None:
     if state.binding is None:
         return
     distances, falloff, few = state.binding.distances, state.falloff, kept(state)
-    make = partial(
-        skinning_weights, distances, falloff=falloff, alpha=state.alpha, allowed=state.rig.allowed
-    )
+    chosen = effective({"falloff": falloff, "alpha": state.alpha})
+    make = partial(skinning_weights, distances, **chosen, allowed=state.rig.allowed)
     known = session.falloffs.get(falloff)
     if not _measured(distances, falloff, few["max_influences"]):
         session.bind()
@@ -78,7 +77,7 @@ def weigh(session: Session) -> None:
         session.start(work, done)
 
 
-def _measured(distances: Any, falloff: str, most: int) -> bool:
+def _measured(distances: Any, falloff: Any, most: int) -> bool:
     """Whether distances are known from as many joints as a falloff needs."""
     known, needed = distances.nearest_joints, joints_needed(falloff, most)
     return known is None or (needed is not None and needed <= known)

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import panel_material_ui as pmui
 
-from cutcell.skinning import FALLOFFS
+from cutcell.method import FALLOFFS
 
 from ..session import Session
 from ..state import State

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from time import perf_counter
-
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_array, diags_array
@@ -11,10 +9,11 @@ from scipy.sparse.csgraph import connected_components
 from scipy.sparse.linalg import splu
 
 from ..checks import check_number
+from ..method import PAPER, Leaf
 from ..rig import Rig
 from ..skinning.laplacian import cotangent_laplacian, vertex_areas, vertex_normals
 from .body import Body
-from .result import BaselineBinding, finish
+from .frame import BaselineBinding, Run, bind_by
 from .visibility import Blockers
 
 TIE = 1e-4
@@ -32,7 +31,7 @@ def bone_heat(
     rig: Rig,
     *,
     heat: float = 1.0,
-    leaf: str = "extend",
+    leaf: Leaf = "extend",
     max_influences: int | None = None,
     threshold: float = 0.0,
 ) -> BaselineBinding:
@@ -70,21 +69,20 @@ def bone_heat(
     measure of nearness by normals is that of Blender's automatic weights.
     """
     heat = check_number("heat", heat, 1e-6, 1e6)
-    begin = perf_counter()
-    body = Body.of(rig, leaf)
-    distance, share, unseen = _warmth(body)
-    middle = perf_counter()
-    weights = _equilibrium(body, heat / np.maximum(distance, LEAST_DISTANCE) ** 2, share)
-    weights, warnings = finish(
-        rig, body, _faded(weights), max_influences=max_influences, threshold=threshold
-    )
-    if unseen:
-        warnings += (
-            f"{unseen} of {len(body.points)} places lie on pieces of the mesh that no bone "
-            "sees; their nearest bones warm them through the surface",
-        )
-    seconds = {"heat": middle - begin, "weights": perf_counter() - middle}
-    return BaselineBinding(weights, seconds, warnings)
+    method = PAPER.with_options(leaf=leaf, max_influences=max_influences, threshold=threshold)
+
+    def solve(body: Body, run: Run) -> NDArray[np.float64]:
+        distance, share, unseen = _warmth(body)
+        if unseen:
+            run.warnings.append(
+                f"{unseen} of {len(body.points)} welded vertices lie on components that no bone "
+                "sees; their nearest bones warm them through the surface"
+            )
+        run.end("heat")
+        screening = heat / np.maximum(distance, LEAST_DISTANCE) ** 2
+        return _faded(_equilibrium(body, screening, share))
+
+    return bind_by(solve, rig, method)
 
 
 def _warmth(body: Body) -> tuple[NDArray[np.float64], NDArray[np.float64], int]:

@@ -15,7 +15,7 @@ from ..graph.boundary import Boundary, boundary_of
 from ..graph.mesh_edges import MeshEdges, find_edges
 from ..progress import Progress, silent
 from ..rig import Rig, TriangleMesh
-from ..skinning.pieces import find_pieces
+from ..skinning.components import label_components
 
 
 class Subject:
@@ -58,6 +58,7 @@ class Subject:
             self.rig.skeleton,
             leaf="fit",
             nearest_joints=3,
+            within=np.inf,
             allowed=self.rig.allowed,
             progress=self.progress,
         )
@@ -116,7 +117,7 @@ class Subject:
     @cached_property
     def component(self) -> NDArray[np.int32]:
         """The connected component of each welded vertex, shape (k,)."""
-        return find_pieces(self.graph.faces, len(self.points))
+        return label_components(self.graph.faces, len(self.points))
 
     @cached_property
     def body(self) -> Body:

@@ -11,10 +11,10 @@ from ..checks import check_choice, check_has_joints
 from ..compiled import lean
 from ..errors import MeshError
 from ..graph import CutCellGraph
+from ..method import LEAVES
 from ..rig import Skeleton
 from .nearest import NodeGrid
 
-LEAVES = ("point", "extend", "fit")
 TIE = 1e-9
 """Relative: nodes this nearly as near as the nearest are sources as well. The middle of a
 lattice cell has eight nearest nodes, and none of them may win by rounding."""

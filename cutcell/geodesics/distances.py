@@ -4,22 +4,22 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Unpack
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..checks import check_choice, check_has_joints, check_integer, check_number, check_positions
+from ..checks import check_has_joints, check_integer, check_number, check_positions
 from ..errors import ParameterError, SkeletonError, WeightsError
 from ..graph import CutCellGraph
+from ..method import ANIMATION, DistanceOptions, Method, MethodName, method_of
 from ..progress import Progress, silent
 from ..rig import Skeleton
 from .any_angle import any_angle_paths, least_distances
 from .bone_extents import REGION_TIPS, REGION_WITHIN, aim_tips, fit_bones
-from .bones import LEAVES, Bones, Sources, bone_segments, find_sources, node_grid
+from .bones import Bones, Sources, bone_segments, find_sources, node_grid
 from .fallback import NOT_ALLOWED, REACHED, UNREACHED, UNUSED, straight_to_nearest
 from .shortest_paths import shortest_paths
-
-MOST_SAMPLES = 1000
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,13 +125,13 @@ def bone_distances(
     graph: CutCellGraph,
     skeleton: Skeleton,
     *,
-    samples: int = 5,
-    leaf: str = "point",
+    method: Method | MethodName = ANIMATION,
     nearest: int = 3,
     nearest_joints: int | None = None,
-    within: float = np.inf,
+    within: float | None = None,
     allowed: NDArray[np.bool_] | None = None,
     progress: Progress = silent,
+    **options: Unpack[DistanceOptions],
 ) -> BoneDistances:
     """Measure how far each bone is from each vertex along the graph.
 
@@ -140,24 +140,26 @@ def bone_distances(
     graph : CutCellGraph
     skeleton : Skeleton
         In the units of the graph's mesh.
-    samples : int
-        N, points on each bone that look for their nearest node, 1 to 1000.
-    leaf : {"point", "extend", "fit"}
-        The first two: see `bone_segments`. "fit": all bones end where the body says, see
-        `geodesics.bone_extents`.
+    method : Method, "animation" or "paper"
+        Its samples and leaf bones count here, and of how many joints its falloff needs
+        distances. Paths run as the graph was built for.
     nearest : int
         k, how many bones a vertex follows that none reaches, 1 or more.
     nearest_joints : int, optional
         Measure from so many of each vertex' nearest joints, 1 or more, and from at most as
-        many others; from all when left out. Fewer take less time with connectivity "any";
-        with others they do not, and neither where `allowed` is given: then all are measured.
-    within : float
-        Leave out joints that are so many times as far as the nearest, 1 or more. Only where
-        `nearest_joints` are measured, and to about half a lattice cell.
+        many others; from as many as the method needs when left out, which are all for
+        `cutcell.PAPER`. Fewer take less time with connectivity "any"; with others they do not,
+        and neither where `allowed` is given: then all are measured.
+    within : float, optional
+        Leave out joints that are so many times as far as the nearest, 1 or more; as the method
+        needs when left out. Only where `nearest_joints` are measured, and to about half a
+        lattice cell.
     allowed : array, shape (n, j), bool, optional
         Which joints each vertex may follow; see `Rig.allowed`.
     progress : callable
         See `cutcell.progress`; the stage is called "distances".
+    **options
+        Single options of the method: `samples`, `leaf`.
 
     Returns
     -------
@@ -178,17 +180,19 @@ def bone_distances(
     ----------
     Paper section 3.2, algorithm 2.
     """
-    samples = check_integer("samples", samples, 1, MOST_SAMPLES)
+    method = method_of(method, **options)
+    samples, leaf = method.samples, method.leaf
     nearest = check_integer("nearest", nearest, 1, 1_000_000)
-    if nearest_joints is not None:
+    if nearest_joints is None:
+        nearest_joints = method.joints_needed
+    else:
         nearest_joints = check_integer("nearest_joints", nearest_joints, 1, 1_000_000)
-    within = check_number("within", within, 1, np.inf)
+    within = check_number("within", method.reach_needed if within is None else within, 1, np.inf)
     check_has_joints(skeleton)
     check_positions(skeleton.joints, "joint", SkeletonError)
     if graph.connectivity != "any" or allowed is not None:
         nearest_joints = None
     progress("distances", 0.0)
-    leaf = check_choice("leaf", leaf, LEAVES)
     if allowed is not None:
         _check_allowed(graph, skeleton, allowed)
     targets = _on_mesh(graph)

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Unpack
+
 import numpy as np
 
-from ..checks import check_choice, check_flag, check_number
+from ..checks import check_choice
+from ..inputs import MeshLike, as_mesh
+from ..method import ANIMATION, GraphOptions, Method, MethodName, method_of
 from ..progress import Progress, share_of, silent
-from ..rig import TriangleMesh
 from .assemble import assemble
 from .backends import cast_rays_embree, cast_rays_open3d, find_runs_fast
 from .boundary import boundary_of
@@ -23,41 +26,36 @@ CASTERS = {"open3d": cast_rays_open3d, "embree": cast_rays_embree}
 
 
 def build_graph(
-    mesh: TriangleMesh,
-    resolution: int = 64,
+    mesh: MeshLike,
+    resolution: int | None = None,
     *,
-    winding_threshold: float = 0.5,
-    connectivity: int | str = 6,
+    method: Method | MethodName = ANIMATION,
     rays: str = "raster",
     winding: str = "exact",
-    orient: bool = True,
     progress: Progress = silent,
+    **options: Unpack[GraphOptions],
 ) -> CutCellGraph:
     """Cut a lattice with a mesh and connect what lies inside.
 
     Parameters
     ----------
-    mesh : TriangleMesh
+    mesh : TriangleMesh, (vertices, faces), trimesh.Trimesh or pyvista.PolyData
         Closed or open, any number of components; vertices at one place are welded.
-    resolution : int
-        R, rays along each side of the unit cube, 2 to 1024.
-    winding_threshold : float
-        tau: pieces of rays with at least this winding number count as inside, 0 to 1.
-    connectivity : {6, 26, "any"}
-        6 is the paper's graph, whose paths inside run along the axes. 26 adds the
-        diagonals of lattice cells that lie inside altogether: straighter, shorter paths.
-        "any" has the edges of 6, but lets paths leave them where they see far: distances
-        then converge to the geodesic ones, see `geodesics.any_angle`.
+    resolution : int, optional
+        R, rays along each side of the unit cube, 2 to 1024; the method's when left out.
+    method : Method, "animation" or "paper"
+        Its resolution, connectivity, winding threshold and orientation count here.
     rays : {"raster", "open3d", "embree"}
         What casts the rays: our own kernel in double precision, or a ray tracer in single.
     winding : {"exact", "fast"}
         What decides which pieces are inside: exact winding numbers, or libigl's
         approximation at every midpoint. This and `rays` are for comparing.
-    orient : bool
-        Whether faces that are inside out count as turned round, see `inverted_faces`. The
-        mesh itself stays as it is.
     progress : callable
         See `cutcell.progress`; the stage is called "graph".
+    **options
+        Single options of the method: `connectivity`, `winding_threshold`, `orient`. With
+        connectivity 26 there are diagonals of lattice cells that lie inside altogether; with
+        "any" there are the edges of 6, which paths may leave, see `geodesics.any_angle`.
 
     Returns
     -------
@@ -76,11 +74,11 @@ def build_graph(
     ----------
     Paper section 3.1 "Graph construction".
     """
+    mesh = as_mesh(mesh)
+    method = method_of(method, resolution, **options)
+    resolution, connectivity = method.resolution, method.connectivity
+    winding_threshold, orient = method.winding_threshold, method.orient
     lattice = Lattice.around(mesh, resolution)
-    resolution = lattice.resolution
-    winding_threshold = check_number("winding_threshold", winding_threshold, 0, 1)
-    connectivity = check_choice("connectivity", connectivity, (6, 26, "any"))
-    orient = check_flag("orient", orient)
     check_choice("rays", rays, ("raster", *CASTERS))
     check_choice("winding", winding, ("exact", "fast"))
 

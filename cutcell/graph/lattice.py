@@ -7,12 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..checks import LARGEST, check_integer, check_positions
+from ..checks import LARGEST, check_positions
 from ..errors import MeshError
+from ..method import check_resolution
 from ..rig import TriangleMesh
-
-MIN_RESOLUTION = 2
-MAX_RESOLUTION = 1024
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,13 +48,7 @@ class Lattice:
         MeshError
             The mesh is too large or too small to compute with.
         """
-        resolution = check_integer(
-            "resolution",
-            resolution,
-            MIN_RESOLUTION,
-            MAX_RESOLUTION,
-            "it counts the cells along the mesh's longest side, 64 suits most characters",
-        )
+        resolution = check_resolution(resolution)
         check_positions(mesh.vertices, "vertex", MeshError)
         low, high = mesh.bounds
         size = float((high - low).max())

@@ -7,13 +7,14 @@ import pytest
 import trimesh
 
 from assets import demo_path
-from cutcell import ParameterError, Skeleton, TriangleMesh, bone_distances, build_graph, load
+from cutcell import ParameterError, Skeleton, TriangleMesh, load
 from cutcell.geodesics import distance_to_segment
 from cutcell.geodesics.any_angle import SPAN, any_angle_paths, least_distances
 from cutcell.geodesics.bones import find_sources, node_grid
 from cutcell.geodesics.front import in_halves
 from tests import meshes
 from tests.bars import fork
+from tests.paper import bone_distances, build_graph
 
 
 def l_bar():

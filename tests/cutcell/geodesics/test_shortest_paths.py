@@ -8,11 +8,12 @@ from numba import njit
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 
-from cutcell import TriangleMesh, build_graph
+from cutcell import TriangleMesh
 from cutcell.geodesics.bones import Sources
 from cutcell.geodesics.lanes import LANES, lower
 from cutcell.geodesics.shortest_paths import shortest_paths
 from tests import meshes, naive
+from tests.paper import build_graph
 
 
 def any_graph(nodes, edges, lengths):

@@ -48,7 +48,7 @@ def split(rig):
 
 
 def slow_deformation_error(rig, ours, theirs, degrees):
-    """Move the whole mesh for each joint and axis, and compare (paper section 4.1.1)."""
+    """Move the whole mesh for each joint and axis, and compare (paper section 4.3.1)."""
     scale = 100 / np.ptp(rig.mesh.vertices, axis=0).max()
     errors = []
     for joint in np.flatnonzero(rig.skeleton.deform):

@@ -5,8 +5,8 @@ import pytest
 from scipy.sparse import coo_array, csr_array, eye_array, random_array
 from scipy.sparse.linalg import splu
 
-from cutcell.skinning.elimination import LANES, factorise, order_of_elimination, substitute
 from cutcell.skinning.laplacian import cotangent_laplacian
+from cutcell.skinning.ldl import RIGHT_SIDES, factorise, fill_reducing_ordering, substitute
 from tests import meshes
 
 
@@ -26,7 +26,7 @@ MATRICES = {
     "mesh": lambda: of_mesh(*meshes.torus()),
     "random": random_matrix,
     "nearly full": lambda: random_matrix(30, 0.9),
-    "many pieces": lambda: random_matrix(80, 0.008),
+    "many components": lambda: random_matrix(80, 0.008),
     "nothing but the diagonal": lambda: csr_array(2.0 * eye_array(5)),
     "a single unknown": lambda: csr_array([[3.0]]),
     "a star": lambda: positive(coo_array((-np.ones(18), star()), shape=(10, 10))),
@@ -47,7 +47,7 @@ def of_mesh(vertices, faces):
 
 def factorised(matrix):
     start, column = matrix.indptr.astype(np.int32), matrix.indices.astype(np.int32)
-    order = order_of_elimination(start, column)
+    order = fill_reducing_ordering(start, column)
     return order, factorise(start, column, matrix.data, matrix.diagonal(), order, PACE)
 
 
@@ -69,7 +69,7 @@ def test_the_factors_make_up_the_matrix(name):
 def test_many_right_sides_are_solved_at_once(name):
     matrix = MATRICES[name]()
     order, factors = factorised(matrix)
-    right = np.random.default_rng(1).random((len(order), LANES))
+    right = np.random.default_rng(1).random((len(order), RIGHT_SIDES))
     right[:, 3] = 0
     found = right[order]
     substitute(*factors, found, PACE)
@@ -86,7 +86,7 @@ def test_the_order_fills_no_more_than_minimum_degree_does(mesh):
     assert len(values) <= 1.1 * (peer.L.nnz - matrix.shape[0])
 
 
-def test_both_kernels_can_be_stopped():
+def test_both_steps_can_be_stopped():
     matrix = random_matrix()
     order, factors = factorised(matrix)
     start, column = matrix.indptr.astype(np.int32), matrix.indices.astype(np.int32)
@@ -94,7 +94,7 @@ def test_both_kernels_can_be_stopped():
     stopped = factorise(start, column, matrix.data, matrix.diagonal(), order, stop)
     assert stop[0] == 0
     assert not np.array_equal(stopped[2], factors[2])
-    right = np.ones((len(order), LANES))
+    right = np.ones((len(order), RIGHT_SIDES))
     substitute(*factors, right, stop)
     assert (right == 1).all()
     assert ([2 * len(order), 0] == PACE).all() or PACE[0] == len(order) - 1

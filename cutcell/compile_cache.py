@@ -36,7 +36,7 @@ from numba.misc.appdirs import AppDirs
 PACKAGE = Path(__file__).resolve().parent
 SOURCES = (
     "compiled.py",
-    "kernel_cache.py",
+    "compile_cache.py",
     "sorting.py",
     "unions.py",
     "graph/*.py",
@@ -53,7 +53,7 @@ refusals: list[str] = []
 """Why this process could not keep what it compiled, once for each file."""
 
 
-class KernelCache(NullCache):
+class CompileCache(NullCache):
     """The cache of one kernel, for numba's dispatcher.
 
     Parameters

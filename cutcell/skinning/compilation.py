@@ -1,4 +1,4 @@
-"""All kernels of a binding at once, so that no character waits for one of them."""
+"""Compile all functions of a binding at once, so that no character waits for one of them."""
 
 import logging
 import os
@@ -10,37 +10,38 @@ from pathlib import Path
 
 import numpy as np
 
-from .. import kernel_cache
+from .. import compile_cache
 from ..geodesics import bone_distances
 from ..graph import CutCellGraph, build_graph
+from ..method import ANIMATION, RIG_REACH
 from ..threads import threads
-from .specimens import block_graph, chain, tube
-from .weights import DEFAULT_LEAF, joints_needed, reach_needed, skinning_weights
+from .warm_up_inputs import block_graph, chain, tube
+from .weights import skinning_weights
 
-_loaded = False
+_is_warm = False
 
 
-def load_kernels() -> None:
-    """Bind a small tube with holes, and a stud, in every way that has kernels of its own.
+def warm_up() -> None:
+    """Bind a small mesh in every way that has compiled functions of its own.
 
-    Kernels are compiled once on a machine (about a minute, in two processes) and kept on disk, see
-    `kernel_cache`; from there a process loads them in about a second. Where they cannot be kept,
+    They are compiled once on a machine (about a minute, in two processes) and kept on disk, see
+    `compile_cache`; from there a process loads them in about a second. Where they cannot be kept,
     each process compiles them in memory, and one sentence is logged.
     """
-    global _loaded
-    is_complete = kernel_cache.is_complete()
+    global _is_warm
+    is_complete = compile_cache.is_complete()
     with nullcontext() if is_complete else _beside("compile_after_graph"):
         graphs = [build_graph(tube(), 8, connectivity=kind) for kind in ("any", 26)]
     for graph in graphs:
         _compile_after(graph)
-    _loaded = True
+    _is_warm = True
     if not is_complete:
-        kernel_cache.mark_complete()
-        if kernel_cache.refusals:
+        compile_cache.mark_complete()
+        if compile_cache.refusals:
             logging.getLogger("cutcell").warning(
-                "the compiled kernels cannot be kept (%s), so that each start takes a minute or "
+                "the compiled functions cannot be kept (%s), so that each start takes a minute or "
                 "two; set NUMBA_CACHE_DIR to a folder that can be written to",
-                kernel_cache.refusals[-1],
+                compile_cache.refusals[-1],
             )
 
 
@@ -50,18 +51,13 @@ def compile_after_graph() -> None:
 
 
 def _compile_after(graph: CutCellGraph) -> None:
-    for nearest in {joints_needed("paper", 4), joints_needed("rig", 4)}:
-        distances = bone_distances(
-            graph,
-            chain(),
-            leaf=DEFAULT_LEAF["rig"],
-            nearest_joints=nearest,
-            within=reach_needed("rig"),
-        )
-    for falloff in ("rig", "paper"):
-        skinning_weights(distances, falloff=falloff, max_influences=4)
+    methods = ANIMATION, ANIMATION.with_options(falloff="paper")
+    for method in methods:  # which measure from different numbers of joints
+        distances = bone_distances(graph, chain(), method=method, leaf="fit", within=RIG_REACH)
+    for method in methods:
+        skinning_weights(distances, method=method)
     every = np.ones(distances.joint.shape[::-1], bool)
-    skinning_weights(distances, falloff="paper", max_influences=4, allowed=every)
+    skinning_weights(distances, method=method, allowed=every)
 
 
 @contextmanager
@@ -95,9 +91,9 @@ def _can_be_helped() -> bool:
     """Tell whether another process can start, and hand over what it compiles."""
     # A program that Python is built into could start itself once more.
     is_python = Path(sys.executable or "").stem.lower().startswith("python")
-    return is_python and threads() > 1 and kernel_cache.write("begun", b"") is not None
+    return is_python and threads() > 1 and compile_cache.write("begun", b"") is not None
 
 
-def kernels_are_compiled() -> bool:
-    """Tell whether the kernels, as they now are, are in memory or kept on this machine."""
-    return _loaded or kernel_cache.is_complete()
+def is_compiled() -> bool:
+    """Tell whether all functions, as they now are, are compiled: in memory or on this machine."""
+    return _is_warm or compile_cache.is_complete()

@@ -1,4 +1,4 @@
-"""What `load_kernels` has loaded, no binding has to compile; what is stale is announced."""
+"""After `warm_up` no binding has to compile anything; what is stale is announced."""
 
 import subprocess
 import sys
@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 
 import cutcell
-from cutcell import kernel_cache
+from cutcell import compile_cache
 from cutcell.graph import build_graph
-from cutcell.skinning import kernels, kernels_are_compiled, load_kernels
-from cutcell.skinning.specimens import block_graph, chain, tube
+from cutcell.skinning import compilation, is_compiled, warm_up
+from cutcell.skinning.warm_up_inputs import block_graph, chain, tube
 from tests.bars import bar
 from tests.conftest import ROOT
 
@@ -24,7 +24,7 @@ SCRIPT = textwrap.dedent(
     from numba.core.dispatcher import Dispatcher
     import cutcell
     from assets import demo_path
-    from cutcell.skinning import kernels_are_compiled, load_kernels
+    from cutcell.skinning import is_compiled, warm_up
 
     def versions():
         return {
@@ -42,8 +42,8 @@ SCRIPT = textwrap.dedent(
         {"connectivity": 6, "falloff": "paper"},
         {"connectivity": 26},
     )
-    load_kernels()
-    assert kernels_are_compiled()
+    warm_up()
+    assert is_compiled()
     loaded = versions()
     assert loaded
     for demo in ("robot", "biped_cape", "biped_soup", "biped_flipped_arm"):
@@ -67,18 +67,18 @@ def test_nothing_is_compiled_after_the_first_time():
 @pytest.fixture
 def another_machine(tmp_path, monkeypatch):
     """Begin with nothing compiled on disk, and as if nothing were compiled in this process."""
-    monkeypatch.setattr(kernel_cache, "folders", lambda: (tmp_path / "kernels-new",))
-    monkeypatch.setattr(kernels, "_loaded", False)
-    monkeypatch.setattr(kernels, "_beside", lambda function: nullcontext())
+    monkeypatch.setattr(compile_cache, "folders", lambda: (tmp_path / "kernels-new",))
+    monkeypatch.setattr(compilation, "_is_warm", False)
+    monkeypatch.setattr(compilation, "_beside", lambda function: nullcontext())
     return tmp_path
 
 
-def test_kernels_are_compiled_once_they_were_loaded(another_machine, monkeypatch):
-    assert not kernels_are_compiled()
-    load_kernels()
-    assert kernels_are_compiled()
-    monkeypatch.setattr(kernels, "_loaded", False)  # as a process started later
-    assert kernels_are_compiled()
+def test_all_is_compiled_once_it_was_warmed_up(another_machine, monkeypatch):
+    assert not is_compiled()
+    warm_up()
+    assert is_compiled()
+    monkeypatch.setattr(compilation, "_is_warm", False)  # as a process started later
+    assert is_compiled()
 
 
 def test_a_compile_is_announced_once(another_machine):
@@ -92,17 +92,17 @@ def test_a_compile_is_announced_once(another_machine):
 
 def test_where_nothing_can_be_kept_one_sentence_says_so(another_machine, monkeypatch, caplog):
     (another_machine / "kernels-new").write_text("not a folder")
-    monkeypatch.setattr(kernel_cache, "refusals", [])
-    load_kernels()
+    monkeypatch.setattr(compile_cache, "refusals", [])
+    warm_up()
     assert [record.name for record in caplog.records] == ["cutcell"]
     assert "cannot be kept" in caplog.text
     assert "NUMBA_CACHE_DIR" in caplog.text
-    assert kernels_are_compiled()  # in this process
-    assert not kernel_cache.is_complete()
+    assert is_compiled()  # in this process
+    assert not compile_cache.is_complete()
 
 
 def kinds(thing):
-    """List the types of an object's arrays, for which kernels are compiled."""
+    """List the types of an object's arrays, for which functions are compiled."""
     arrays = {field.name: getattr(thing, field.name) for field in fields(thing)}
     found = {k: (v.dtype, v.ndim) for k, v in arrays.items() if isinstance(v, np.ndarray)}
     assert all(arrays[name].flags.c_contiguous for name in found)
@@ -120,17 +120,17 @@ def test_the_graph_made_by_hand_is_of_the_types_that_are_built():
 
 def test_another_process_compiles_meanwhile(tmp_path, monkeypatch):
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
-    with kernels._beside("kernel_cache.mark_complete"):
+    with compilation._beside("compile_cache.mark_complete"):
         assert not list(tmp_path.rglob("complete"))  # it takes a second to start
     assert len(list(tmp_path.rglob("complete"))) == 1
 
 
 def test_no_other_process_is_started_where_it_could_hand_nothing_over(monkeypatch):
-    monkeypatch.setattr(kernel_cache, "folders", tuple)
-    monkeypatch.setattr(kernel_cache, "refusals", [])
+    monkeypatch.setattr(compile_cache, "folders", tuple)
+    monkeypatch.setattr(compile_cache, "refusals", [])
     monkeypatch.delattr(subprocess, "Popen")
     done = []
-    with kernels._beside("compile_after_graph"):
+    with compilation._beside("compile_after_graph"):
         done.append(True)
     assert done
 
@@ -141,7 +141,7 @@ def test_it_ends_with_what_is_done_meanwhile(tmp_path, monkeypatch):
     monkeypatch.setattr(
         subprocess, "Popen", lambda *a, **k: started.append(popen(*a, **k)) or started[0]
     )
-    with pytest.raises(KeyboardInterrupt), kernels._beside("compile_after_graph"):
+    with pytest.raises(KeyboardInterrupt), compilation._beside("compile_after_graph"):
         raise KeyboardInterrupt
     assert started[0].returncode not in (0, None)
 
@@ -150,7 +150,7 @@ def test_it_ends_with_what_is_done_meanwhile(tmp_path, monkeypatch):
 def test_without_another_process_this_one_goes_on(executable, monkeypatch):
     monkeypatch.setattr(sys, "executable", executable)
     done = []
-    with kernels._beside("compile_after_graph"):
+    with compilation._beside("compile_after_graph"):
         done.append(True)
     assert done
 
@@ -161,5 +161,5 @@ def test_a_program_that_python_is_built_into_is_not_started(monkeypatch):
 
     monkeypatch.setattr(subprocess, "Popen", refuse)
     monkeypatch.setattr(sys, "executable", "/opt/maya/bin/maya.bin")
-    with kernels._beside("compile_after_graph"):
+    with compilation._beside("compile_after_graph"):
         pass

@@ -1,8 +1,8 @@
-"""Symmetric equations of a mesh: in which order to eliminate, L D Lᵀ, and solving with them.
+"""Sparse L D Lᵀ factorisation of a symmetric matrix: ordering, factors, substitution.
 
-A matrix is given by rows as in `scipy.sparse.csr_array`: (start, column, value). Its pattern alone
-says in which order to eliminate, so that this can be found before the values are known. There is
-less around the work than in a general factorisation, which is most of it for small meshes.
+A matrix is given by rows as in `scipy.sparse.csr_array`: (start, column, value). The fill-reducing
+ordering follows from its pattern alone, so that it is found before the values are known. There is
+less overhead than in a general factorisation, which for small meshes is most of the time.
 """
 
 from __future__ import annotations
@@ -14,22 +14,22 @@ from ..compiled import compiled, lean, put
 from ..geodesics.queue import END, join, leave
 
 LINKS = np.dtype([("after", np.int32), ("before", np.int32)], align=True)
-"""Neighbours among the unknowns of one degree, see `geodesics.queue`."""
+"""Neighbours in the list of the unknowns of one degree, see `geodesics.queue`."""
 
-LANES = 8
-"""Right sides that are solved for side by side."""
-NOTHING = (0.0,) * LANES
+RIGHT_SIDES = 8
+"""Right sides that are solved for at once, one in each lane of the SIMD registers."""
+NOTHING = (0.0,) * RIGHT_SIDES
 
 Factors = tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.float64], NDArray[np.float64]]
 """L below its diagonal of ones, by columns: starts, rows, values; and D."""
 
 
 @compiled
-def order_of_elimination(start, column):
-    """Put the unknowns in an order that fills little: next is what touches the fewest others.
+def fill_reducing_ordering(start, column):
+    """Order the unknowns by approximate minimum degree, so that the factors have few entries.
 
-    Who touches whom is kept as cliques. At first these are the edges; to eliminate an unknown
-    unites its cliques into one. How many others an unknown touches is bounded from above.
+    Adjacency is kept as cliques. At first these are the edges; to eliminate an unknown unites its
+    cliques into one. An unknown's degree is bounded from above.
 
     Parameters
     ----------
@@ -45,14 +45,14 @@ def order_of_elimination(start, column):
     Amestoy, Davis & Duff 1996, "An approximate minimum degree ordering algorithm".
     """
     count = len(start) - 1
-    begin, member, held, holds = _edges_as_cliques(start, column)
+    begin, member, member_of, memberships = _edges_as_cliques(start, column)
     edges = len(member) // 2
     size = np.full(len(begin), 2, np.int32)
     outside = np.empty(len(begin), np.int32)
     last_met = np.full(len(begin), -1, np.int32)  # the step that met a clique
     last_seen = np.full(count, -1, np.int32)  # and an unknown
 
-    degree = holds.copy()
+    degree = memberships.copy()
     head, links = np.full(count, END, np.int32), np.empty(count, LINKS)
     for v in range(count - 1, -1, -1):
         join(head, links, degree[v], v)
@@ -69,13 +69,13 @@ def order_of_elimination(start, column):
             put(member, larger)
             member = larger
         begin[clique] = used
-        mine = held[start[pivot] : start[pivot] + holds[pivot]]
+        mine = member_of[start[pivot] : start[pivot] + memberships[pivot]]
         used = _unite(mine, begin, size, member, used, last_seen, step)
         size[clique] = used - begin[clique]
         others = member[begin[clique] : used]
-        _count_outside(others, start, held, holds, size, outside, last_met, step)
+        _count_outside(others, start, member_of, memberships, size, outside, last_met, step)
         for v in others:
-            found = _relist(v, clique, start, held, holds, size, outside)
+            found = _relist(v, clique, start, member_of, memberships, size, outside)
             found = min(found, count - step - 2)
             if found != degree[v]:
                 leave(head, links, v)
@@ -89,29 +89,29 @@ def order_of_elimination(start, column):
 def _edges_as_cliques(start, column):
     """Return where cliques begin, their members, and the cliques of each unknown.
 
-    Those of v are held[start[v] : start[v] + holds[v]]: never more than its edges, as what comes
-    takes the place of at least one.
+    Those of v are member_of[start[v] : start[v] + memberships[v]]: never more than its edges, as a
+    new clique replaces at least one.
     """
     count, edges = len(start) - 1, 0
-    held, holds = np.empty(len(column), np.int32), np.zeros(count, np.int32)
+    member_of, memberships = np.empty(len(column), np.int32), np.zeros(count, np.int32)
     member = np.empty(len(column), np.int32)
     for v in range(count):
         for e in range(start[v], start[v + 1]):
             if column[e] < v:
                 member[2 * edges], member[2 * edges + 1] = v, column[e]
                 for end in member[2 * edges : 2 * edges + 2]:
-                    held[start[end] + holds[end]] = edges
-                    holds[end] += 1
+                    member_of[start[end] + memberships[end]] = edges
+                    memberships[end] += 1
                 edges += 1
     begin = np.empty(edges + count, np.int32)
     for c in range(edges):
         begin[c] = 2 * c
-    return begin, member[: 2 * edges].copy(), held, holds
+    return begin, member[: 2 * edges].copy(), member_of, memberships
 
 
 @lean
 def _unite(cliques, begin, size, member, used, last_seen, step):
-    """Append what is in any of some cliques, which end thereby; return where it ends."""
+    """Append the union of some cliques, which become empty; return where it ends."""
     for c in cliques:
         for m in range(begin[c], begin[c] + size[c]):
             v = member[m]
@@ -124,30 +124,30 @@ def _unite(cliques, begin, size, member, used, last_seen, step):
 
 
 @lean
-def _count_outside(others, start, held, holds, size, outside, last_met, step):
+def _count_outside(others, start, member_of, memberships, size, outside, last_met, step):
     """Count how many members of each clique are not in the new one."""
     for v in others:
-        for k in range(start[v], start[v] + holds[v]):
-            c = held[k]
+        for k in range(start[v], start[v] + memberships[v]):
+            c = member_of[k]
             if last_met[c] != step:
                 last_met[c], outside[c] = step, size[c]
             outside[c] -= 1
 
 
 @lean
-def _relist(v, clique, start, held, holds, size, outside):
-    """List the cliques of v anew, with the new one; return how many others it touches at most."""
+def _relist(v, clique, start, member_of, memberships, size, outside):
+    """List the cliques of v again, with the new one; return a bound on its degree."""
     touched, kept = size[clique] - 1, start[v]
-    for k in range(start[v], start[v] + holds[v]):
-        c = held[k]
+    for k in range(start[v], start[v] + memberships[v]):
+        c = member_of[k]
         if size[c] > 0 and outside[c] > 0:
-            held[kept] = c
+            member_of[kept] = c
             kept += 1
             touched += outside[c]
         else:  # all of it is in the new one
             size[c] = 0
-    held[kept] = clique
-    holds[v] = kept + 1 - start[v]
+    member_of[kept] = clique
+    memberships[v] = kept + 1 - start[v]
     return touched
 
 
@@ -161,7 +161,7 @@ def factorise(start, column, value, diagonal, order, pace):
         Of a symmetric matrix; its diagonal is not looked at.
     diagonal : array, shape (k,)
     order : array, shape (k,), int32
-        See `order_of_elimination`.
+        See `fill_reducing_ordering`.
     pace : array, shape (2,), int64
         See `threads.watched`: a row is a step.
 
@@ -200,7 +200,7 @@ def factorise(start, column, value, diagonal, order, pace):
         if pace[1] != 0:
             break
         v = order[k]
-        # What row k has entries in: all on the ways up the tree from those of the matrix.
+        # The entries of row k: all on the paths up the elimination tree from those of the matrix.
         first = count
         for e in range(start[v], start[v + 1]):
             i = rank[column[e]]
@@ -229,7 +229,7 @@ def factorise(start, column, value, diagonal, order, pace):
 
 @lean
 def substitute(begin, rows, values, pivots, right, pace):
-    """Solve L D Lᵀ x = b for `LANES` of b side by side, shape (k, LANES), in place.
+    """Solve L D Lᵀ x = b for several b at once, shape (k, RIGHT_SIDES), in place.
 
     `pace`: see `threads.watched`; there are 2 k steps.
     """
@@ -238,23 +238,23 @@ def substitute(begin, rows, values, pivots, right, pace):
         pace[0] = c
         if pace[1] != 0:
             return
-        here = _lanes(right, c)
+        here = _row(right, c)
         if here != NOTHING:
             for p in range(begin[c], begin[c + 1]):
-                _put(right, rows[p], _less(_lanes(right, rows[p]), values[p], here))
+                _set_row(right, rows[p], _minus(_row(right, rows[p]), values[p], here))
     for c in range(count - 1, -1, -1):
         pace[0] = 2 * count - c
         if pace[1] != 0:
             return
-        here = _less(NOTHING, -1 / pivots[c], _lanes(right, c))
+        here = _minus(NOTHING, -1 / pivots[c], _row(right, c))
         for p in range(begin[c], begin[c + 1]):
-            here = _less(here, values[p], _lanes(right, rows[p]))
-        _put(right, c, here)
+            here = _minus(here, values[p], _row(right, rows[p]))
+        _set_row(right, c, here)
 
 
-# One by one, lanes stay in registers: in a loop each would be written before the next is read.
+# Written out, all right sides stay in registers; a loop would write each before the next is read.
 @compiled(inline="always")
-def _lanes(right, k):
+def _row(right, k):
     return (
         right[k, 0],
         right[k, 1],
@@ -268,13 +268,13 @@ def _lanes(right, k):
 
 
 @compiled(inline="always")
-def _put(right, k, here):
+def _set_row(right, k, here):
     right[k, 0], right[k, 1], right[k, 2], right[k, 3] = here[0], here[1], here[2], here[3]
     right[k, 4], right[k, 5], right[k, 6], right[k, 7] = here[4], here[5], here[6], here[7]
 
 
 @compiled(inline="always")
-def _less(here, times, there):
+def _minus(here, times, there):
     return (
         here[0] - times * there[0],
         here[1] - times * there[1],

@@ -1,4 +1,4 @@
-"""The pieces that a mesh falls into, and the bones that each holds."""
+"""The connected components of a mesh, and which bones lie inside each of them."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ from ..threads import in_threads
 from ..unions import join, numbered
 
 POINTS = 9
-"""Looked at along each bone."""
+"""Samples along each bone."""
 CELLS = 64
-"""Along each side of the grid in which the samples are found that a face may lie above."""
+"""Along each side of the grid that sorts the samples, so that a face visits those under it only."""
 INSIDE = 0.5
-"""A point is inside a piece if this part of six rays from it leave the piece."""
+"""A point is inside a component if this part of six rays from it leave the component."""
 
 
 @compiled
-def find_pieces(faces, count):
-    """Return for each of `count` places the number of its piece: what edges join is one."""
+def label_components(faces, count):
+    """Return the connected component of each of `count` welded vertices, numbered from 0."""
     first = np.arange(count)
     for f in range(len(faces)):
         low = join(first, faces[f, 0], faces[f, 1])
@@ -29,46 +29,54 @@ def find_pieces(faces, count):
     return numbered(first)[0]
 
 
-def bones_held(
-    points: NDArray[np.float64], faces: NDArray[np.int32], piece: NDArray[np.int32], bones: Bones
+def bone_containment(
+    points: NDArray[np.float64],
+    faces: NDArray[np.int32],
+    component: NDArray[np.int32],
+    bones: Bones,
 ) -> NDArray[np.float64]:
-    """Measure which part of each bone lies inside each piece, shape (pieces, b).
+    """Measure which part of each bone lies inside each component.
 
     Parameters
     ----------
     points : array, shape (k, 3)
     faces : array, shape (m, 3)
-    piece : array, shape (k,)
-        Of each place; see `find_pieces`.
+    component : array, shape (k,)
+        Of each welded vertex; see `label_components`.
     bones : Bones
+
+    Returns
+    -------
+    array, shape (components, b)
+        0 to 1.
     """
     along = (np.arange(POINTS) + 0.5) / POINTS
     samples = bones.start[:, None] + along[:, None] * (bones.end - bones.start)[:, None]
     samples = samples.reshape(-1, 3)
-    count = int(piece.max()) + 1
-    of_face = piece[faces[:, 0]]
+    count = int(component.max()) + 1
+    of_face = component[faces[:, 0]]
 
     def along_axis(axis: int) -> tuple[NDArray, NDArray, NDArray]:
         turn = [(axis + 1) % 3, (axis + 2) % 3, axis]
         seen = np.ascontiguousarray(points[:, turn]), np.ascontiguousarray(samples[:, turn])
-        face, sample, sign = _crossed(*seen, faces)
+        face, sample, sign = _intersect(*seen, faces)
         return of_face[face], sample, sign
 
     hits = in_threads(along_axis, range(3))
     which, sample, sign = (np.concatenate(parts) for parts in zip(*hits, strict=True))
-    key, place = np.unique(which.astype(np.int64) * len(samples) + sample, return_inverse=True)
-    # Each hit counts for the ray up that meets it, or for the ray down: +-1 of six.
-    inside = np.bincount(place, sign / 6, minlength=len(key)) > INSIDE - 1e-9
-    held = np.zeros((count, len(bones.joint)))
-    hit_piece, hit_bone = key[inside] // len(samples), key[inside] % len(samples) // POINTS
-    np.add.at(held, (hit_piece, hit_bone), 1 / POINTS)
-    return held
+    key, number = np.unique(which.astype(np.int64) * len(samples) + sample, return_inverse=True)
+    # Each hit belongs to the ray up or to the ray down, one of six.
+    inside = np.bincount(number, sign / 6, minlength=len(key)) > INSIDE - 1e-9
+    containment = np.zeros((count, len(bones.joint)))
+    inside_of, bone = key[inside] // len(samples), key[inside] % len(samples) // POINTS
+    np.add.at(containment, (inside_of, bone), 1 / POINTS)
+    return containment
 
 
-def _crossed(
+def _intersect(
     points: NDArray[np.float64], samples: NDArray[np.float64], faces: NDArray[np.int32]
 ) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int8]]:
-    """List the crossings of all lines through samples along the third axis.
+    """Intersect all lines through samples along the third axis with the faces.
 
     Returns the face, the sample, and +1 where a ray from the sample leaves through the face,
     -1 where it enters.
@@ -82,7 +90,7 @@ def _crossed(
             np.empty(room, np.int64),
             np.empty(room, np.int8),
         )
-        count = _list_crossings(points, faces, samples, start, face, sample, sign)
+        count = _list_hits(points, faces, samples, start, face, sample, sign)
         if count <= room:
             return face[:count], order[sample[:count]], sign[:count]
         room = count
@@ -98,8 +106,8 @@ def _sort_into_columns(samples):
 
 
 @lean
-def _list_crossings(points, faces, samples, start, face, sample, sign):
-    """Return how many crossings there are, also beyond the room for them.
+def _list_hits(points, faces, samples, start, face, sample, sign):
+    """Return how many ray hits there are, also beyond the room for them.
 
     Samples in column i * CELLS + j of the grid are those from start[i * CELLS + j] on.
     """
@@ -116,7 +124,7 @@ def _list_crossings(points, faces, samples, start, face, sample, sign):
                 u, v = samples[s, 0], samples[s, 1]
                 if not (low_u <= u < high_u and low_v <= v <= high_v):
                     continue
-                facing = _passed(points, faces[f], u, v)
+                facing = _crosses(points, faces[f], u, v)
                 if facing == 0:
                     continue
                 if count < len(face):
@@ -128,7 +136,7 @@ def _list_crossings(points, faces, samples, start, face, sample, sign):
 
 
 @lean
-def _passed(points, corners, u, v):
+def _crosses(points, corners, u, v):
     """Tell whether a line passes through a face: +1 where that faces up, -1 down, 0 if not."""
     # On the line u = const, how many edges of the face lie on the side of larger v.
     above, turn = 0, 0

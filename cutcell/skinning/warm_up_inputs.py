@@ -1,4 +1,4 @@
-"""Small subjects that take every way through a binding, so that all of it is compiled."""
+"""Small inputs that take every path through a binding, so that all of it is compiled."""
 
 from __future__ import annotations
 
@@ -12,16 +12,18 @@ AROUND = 16
 """Vertices around the tube: its open ends are holes too wide for a few triangles."""
 MISSING = 5, 25, 45, 65, 85
 """Faces of the tube that leave small holes: enough holes for a tree of them."""
-STUD = np.array([[0.3, 0, 0.5], [0.35, 0, 0.5], [0.3, 0.05, 0.5], [0.3, 0, 0.55]])
-"""Beside the tube: pieces of a mesh are looked at where there are several. It is inside out."""
-BAND = np.array([[0.3, 0, 0.1], [0.3, 0, 0.2], [0.4, 0, 0.15], [0.4, 0.1, 0.1], [0.3, 0.1, 0.15]])
-"""A Moebius band of five faces: it has no inside and no outside."""
+TETRAHEDRON = np.array([[0.3, 0, 0.5], [0.35, 0, 0.5], [0.3, 0.05, 0.5], [0.3, 0, 0.55]])
+"""Beside the tube: there is work for several components only. It is inside out."""
+MOEBIUS_BAND = np.array(
+    [[0.3, 0, 0.1], [0.3, 0, 0.2], [0.4, 0, 0.15], [0.4, 0.1, 0.1], [0.3, 0.1, 0.15]]
+)
+"""Five faces that cannot be oriented consistently."""
 SIDE = 8
 """Lattice points along each side of the block."""
 
 
 def tube() -> TriangleMesh:
-    """Return a tube with holes, and beside it a stud and a band."""
+    """Return a tube with holes, and beside it a tetrahedron and a Moebius band."""
     turn = np.linspace(0, 2 * np.pi, AROUND, endpoint=False)
     heights = np.linspace(0, 1, 5)
     rings = [np.stack([np.cos(turn) / 5, np.sin(turn) / 5, np.full(AROUND, z)], 1) for z in heights]
@@ -31,10 +33,10 @@ def tube() -> TriangleMesh:
     whole = np.concatenate([np.stack(face, axis=1) for face in faces])
     cut = np.delete(whole, MISSING, axis=0)
     count = len(rings) * AROUND
-    stud = np.array([[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]]) + count
-    band = (np.arange(5)[:, None] + np.arange(3)) % 5 + count + len(STUD)
-    vertices = np.concatenate([*rings, STUD, BAND])
-    return TriangleMesh(vertices, np.concatenate([cut, stud, band]))
+    tetrahedron = np.array([[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]]) + count
+    band = (np.arange(5)[:, None] + np.arange(3)) % 5 + count + len(TETRAHEDRON)
+    vertices = np.concatenate([*rings, TETRAHEDRON, MOEBIUS_BAND])
+    return TriangleMesh(vertices, np.concatenate([cut, tetrahedron, band]))
 
 
 def chain() -> Skeleton:
@@ -49,10 +51,10 @@ def chain() -> Skeleton:
 
 
 def block_graph() -> CutCellGraph:
-    """Make by hand a graph of the tube for which nothing has to be compiled.
+    """Make a graph of the tube without `build_graph`, so that nothing has to be compiled for it.
 
-    All lattice points of the cube are taken to lie inside, and no ray to cross the surface: each
-    vertex is tied to the lattice point that is nearest.
+    All lattice points of the cube are taken to lie inside, and no ray to hit the surface: each
+    vertex has an edge to the lattice point that is nearest.
     """
     mesh = tube()
     lattice = Lattice.around(mesh, SIDE)
