@@ -44,7 +44,7 @@ EPILOG = """Examples:
 
 - `cutcell bind character.glb bound.glb`
 
-- `cutcell bind character.glb bound.glb -r 128`  (a finer lattice: close parts are told apart)
+- `cutcell bind character.glb bound.glb -r 128`  (a finer lattice keeps close parts apart)
 
 - `cutcell bind character.glb bound.npz --method paper`  (just as in the paper, every influence)
 
@@ -175,9 +175,9 @@ def _limited(
     weights = skinning_weights(binding.distances, method=method, allowed=rig.allowed)
     weights = refine_weights(rig, weights, method=method, **touches)
     dropped = every.sum(axis=1, where=weights == 0)
-    told = (
+    sentence = (
         f"of up to {most} influences a vertex the {method.max_influences} largest are saved, as "
         f"glTF files are read; that drops {dropped.mean():.1%} of the weight on average and "
         f"{dropped.max():.1%} at most. --max-influences says how many, or all"
     )
-    return replace(binding, weights=weights), [told]
+    return replace(binding, weights=weights), [sentence]

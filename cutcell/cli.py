@@ -61,7 +61,7 @@ def cutcell(
     """Skinning weights for any triangle mesh, from geodesic cut-cell graphs.
 
     A mesh and its skeleton go in, weights come out: how much each vertex follows each joint.
-    The mesh may be open, in many pieces, or intersect itself.
+    The mesh may be open, of many components, or intersect itself.
     """
 
 
@@ -98,7 +98,7 @@ def open_page(
     if rig is not None:
         from .io import load
 
-        load(rig)  # a wrong file is told here, not by an empty page
+        load(rig)  # a wrong file is refused here, not by an empty page
     try:
         serve(rig, port=port, address=address, show=show)
     except OSError as error:

@@ -1,11 +1,11 @@
-"""Where compiled kernels are kept, so that a machine compiles them once.
+"""Where compiled functions are kept, so that a machine compiles them once.
 
 numba's own cache raises an exception where no folder can be written to, where the disk is full, and
 where one of its files is empty or cut short; a file with a damaged middle ends the process ("LLVM
-ERROR"). It sees no change in another file than the kernel's own, and two processes that compile one
-kernel for different arguments can swap their files.
+ERROR"). It sees changes in the function's own file only, and two processes that compile a function
+for different arguments can swap their files.
 
-Here each compiled kernel is a file of its own that begins with a checksum. It is named by a hash of
+Here each compiled function is a file of its own that begins with a checksum. Its name is a hash of
 all that it depends on. What cannot be read is compiled again; what cannot be written stays in
 memory.
 """
@@ -43,41 +43,41 @@ SOURCES = (
     "geodesics/*.py",
     "skinning/*.py",
 )
-"""Files of the kernels of a binding: a change of any one makes all compiled kernels stale."""
+"""Files of the functions of a binding: a change of any one makes all compiled functions stale."""
 KEPT = 3
-"""How many older sets of kernels are left in a folder, for other versions that use it, too."""
+"""How many older sets of functions are left in a folder, for other versions that use it, too."""
 COMPLETE = "complete"
-"""Name of the file that says that all kernels of a binding are there."""
+"""Name of the file that says that all functions of a binding are there."""
 
 refusals: list[str] = []
 """Why this process could not keep what it compiled, once for each file."""
 
 
 class CompileCache(NullCache):
-    """The cache of one kernel, for numba's dispatcher.
+    """The cache of one function, for numba's dispatcher.
 
     Parameters
     ----------
-    kernel : callable
+    function : callable
         Not compiled yet.
     """
 
-    def __init__(self, kernel: Callable) -> None:
-        code = kernel.__code__
-        self._kernel = code.co_filename, kernel.__qualname__, code.co_firstlineno
+    def __init__(self, function: Callable) -> None:
+        code = function.__code__
+        self._function = code.co_filename, function.__qualname__, code.co_firstlineno
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """Return what was compiled for some types of arguments, None if that is not to be had."""
         target_context.refresh()
         name = self._file_name(sig, target_context)
         for folder in folders() if name else ():
-            with suppress(Exception):  # whatever is wrong with a file, the kernel can be compiled
+            with suppress(Exception):  # whatever is wrong with a file, the function can be compiled
                 payload = _checked(Path(folder, name).read_bytes())
                 return CompileResult._rebuild(target_context, *pickle.loads(payload))
         return None
 
     def save_overload(self, sig: Any, data: Any) -> None:
-        """Keep a compiled kernel, where that is possible."""
+        """Keep a compiled function, where that is possible."""
         can_be_kept = not data.library.has_dynamic_globals and all(x.can_cache for x in data.lifted)
         name = self._file_name(sig, data.target_context)
         if can_be_kept and name:
@@ -85,8 +85,8 @@ class CompileCache(NullCache):
             write(name, hashlib.sha256(payload).digest() + payload)
 
     def _file_name(self, sig: Any, target_context: Any) -> str:
-        """Name a version of the kernel; empty where its source cannot be read, as in an archive."""
-        source, name, line = self._kernel
+        """Name a version of the function; empty if its source cannot be read, as in an archive."""
+        source, name, line = self._function
         try:
             parts = _digest(source), name, line, sig, target_context.codegen().magic_tuple()
         except OSError:
@@ -95,14 +95,14 @@ class CompileCache(NullCache):
 
 
 def is_complete() -> bool:
-    """Tell whether all kernels of a binding, as they now are, have been compiled and kept."""
+    """Tell whether all functions of a binding, as they now are, have been compiled and kept."""
     return any(os.path.exists(folder / COMPLETE) for folder in folders())
 
 
 def mark_complete() -> None:
-    """Note that all kernels of a binding are kept, unless one could not be.
+    """Note that all functions of a binding are kept, unless one could not be.
 
-    Older sets of kernels are removed, but for a few.
+    Older sets of functions are removed, but for a few.
     """
     folder = None if refusals else write(COMPLETE, b"")
     if folder is None:
@@ -140,19 +140,19 @@ def _write(folder: Path, name: str, content: bytes) -> None:
 
 @cache
 def folders() -> tuple[Path, ...]:
-    """List where compiled kernels may be: beside the sources, or in the user's cache."""
+    """List where compiled functions may be: beside the sources, or in the user's cache."""
     chosen: str = vars(config)["CACHE_DIR"]  # what NUMBA_CACHE_DIR says
     bases = [os.path.abspath(chosen)] if chosen else []
     bases.append(str(PACKAGE / "__pycache__"))
     users = AppDirs(appname="cutcell", appauthor=False).user_cache_dir
-    if os.path.isabs(users):  # it is not where there is no home
+    if os.path.isabs(users):  # it is not without a home folder
         bases.append(users)
     return tuple(Path(base, _set_name()) for base in bases)
 
 
 @cache
 def _set_name() -> str:
-    """Name the kernels that this compiler makes of these sources for this processor."""
+    """Name the functions that this compiler makes of these sources for this processor."""
     files = sorted(path for pattern in SOURCES for path in PACKAGE.glob(pattern))
     compiler = sys.implementation.cache_tag, numba.__version__, binding.llvm_version_info
     processor = sys.platform, binding.get_host_cpu_name(), get_host_cpu_features()

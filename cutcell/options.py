@@ -56,7 +56,7 @@ Resolution = Annotated[
         "--resolution",
         "-r",
         metavar="R",
-        help="Rays along the longest side of the mesh. More: finer parts are told apart, more"
+        help="Rays along the longest side of the mesh. More: close parts are kept apart, more"
         " time and memory.",
         rich_help_panel=METHOD,
     ),

@@ -188,7 +188,7 @@ def render(
         skeleton=skeleton,
         dark=dark,
     )
-    # A wrong name is told before anything long begins.
+    # A wrong name is refused before anything long begins.
     with naming(rig):
         scenes.check(loaded, choices, view)
     from .skinning import bind

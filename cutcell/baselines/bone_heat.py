@@ -1,4 +1,4 @@
-"""Bone heat: bones warm the skin that sees them, and the skin conducts (Baran & Popović 2007)."""
+"""Bone heat: bones warm the surface that sees them, and it conducts (Baran & Popović 2007)."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from .frame import BaselineBinding, Run, bind_by
 from .visibility import Blockers
 
 TIE = 1e-4
-"""Relative: bones this nearly as near as the nearest warm a place as well."""
+"""Relative: bones this nearly as near as the nearest warm a vertex as well."""
 LEAST_DISTANCE = 1e-4
-"""Of the longest side; a place on a bone itself would be infinitely warm."""
+"""Of the longest side; a vertex on a bone itself would be infinitely warm."""
 FACING = 1.001
-"""Distance is divided by half of this plus the cosine between normal and bone: skin that
-looks away from a bone, as it does around a limb, is nearer than skin that looks at it."""
+"""Distance is divided by half of this plus the cosine between normal and bone: surface that
+looks away from a bone, as it does around a limb, counts as nearer than surface that looks at it."""
 FADE = (0.025, 0.05)
-"""Weights fade out between these, as in Blender; each place keeps its largest."""
+"""Weights fade out between these, as in Blender; each vertex keeps its largest."""
 
 
 def bone_heat(
@@ -40,8 +40,8 @@ def bone_heat(
         (M⁻¹ L + H) w_i = H p_i
 
     L is the cotangent Laplacian, M the area of each vertex; H = c / d² of the nearest bone
-    that a place sees, and p_i is 1 where that is bone i. A piece of the mesh that no bone
-    sees is warmed by its nearest bones straight through the surface.
+    in the line of sight of a vertex, and p_i is 1 where that is bone i. A component of the mesh
+    that no bone sees is warmed by its nearest bones straight through the surface.
 
     Parameters
     ----------
@@ -86,10 +86,10 @@ def bone_heat(
 
 
 def _warmth(body: Body) -> tuple[NDArray[np.float64], NDArray[np.float64], int]:
-    """Find the bones that warm each place.
+    """Find the bones that warm each welded vertex.
 
     Returns the distance (k,) to them, infinite where there is none, the share of each joint
-    (k, j), and how many places lie on pieces that no bone sees.
+    (k, j), and how many vertices lie on components that no bone sees.
     """
     nearness, closest = _nearness(body)
     order = np.argsort(nearness, axis=0, kind="stable")
@@ -110,7 +110,7 @@ def _warmth(body: Body) -> tuple[NDArray[np.float64], NDArray[np.float64], int]:
         distance[looking[free]] = np.minimum(
             distance[looking[free]], nearness[bone[free], looking[free]]
         )
-    dark = _dark_pieces(body, np.isfinite(distance))
+    dark = _dark_components(body, np.isfinite(distance))
     distance[dark] = nearness[:, dark].min(axis=0)
     sees[:, dark] = nearness[:, dark] <= distance[dark] * (1 + TIE)
     share = np.zeros((count, body.joints))
@@ -121,7 +121,7 @@ def _warmth(body: Body) -> tuple[NDArray[np.float64], NDArray[np.float64], int]:
 
 
 def _nearness(body: Body) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return how near each bone is to each place, (b, k), and its closest point, (b, k, 3)."""
+    """Return how near each bone is to each vertex, (b, k), and its closest point, (b, k, 3)."""
     normals = vertex_normals(body.points, body.faces)
     nearness = np.empty((len(body.bones.joint), len(body.points)))
     closest = np.empty((*nearness.shape, 3))
@@ -137,13 +137,13 @@ def _nearness(body: Body) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     return nearness, closest
 
 
-def _dark_pieces(body: Body, warm: NDArray[np.bool_]) -> NDArray[np.intp]:
-    """List the places on pieces of the mesh without any warm place."""
+def _dark_components(body: Body, warm: NDArray[np.bool_]) -> NDArray[np.intp]:
+    """List the vertices on components of the mesh without any warm vertex."""
     count = len(body.points)
     links = np.concatenate([body.faces[:, [0, 1]], body.faces[:, [1, 2]]])
     matrix = coo_array((np.ones(len(links)), links.T), shape=(count, count))
-    piece = connected_components(matrix, directed=False)[1]
-    return np.flatnonzero(~(np.bincount(piece, warm) > 0)[piece])
+    component = connected_components(matrix, directed=False)[1]
+    return np.flatnonzero(~(np.bincount(component, warm) > 0)[component])
 
 
 def _equilibrium(
@@ -151,7 +151,7 @@ def _equilibrium(
 ) -> NDArray[np.float64]:
     """Solve for all joints at once: (L + M H) w = M H p."""
     areas = vertex_areas(body.points, body.faces)
-    # A place without area conducts nothing; any positive number lets it keep its own heat.
+    # A vertex without area conducts nothing; any positive number lets it keep its own heat.
     warming = np.where(areas > 0, areas, 1e-12) * heat
     system = cotangent_laplacian(body.points, body.faces) + diags_array(warming)
     return splu(system.tocsc()).solve(warming[:, None] * share)

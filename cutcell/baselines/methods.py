@@ -46,7 +46,7 @@ def artist(rig: Rig) -> BaselineBinding:
     """Return the weights that the file came with."""
     begin = perf_counter()
     if rig.weights is None:
-        return BaselineBinding(None, failed="the file holds no weights")
+        return BaselineBinding(None, failed="the file has no weights")
     return BaselineBinding(rig.weights, {"weights": perf_counter() - begin})
 
 

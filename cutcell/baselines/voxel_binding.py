@@ -37,7 +37,7 @@ def voxel(
     """Bind by distances along solid voxels.
 
     Voxels that a bone runs through are at distance 0; from there paths lead through the
-    26 neighbours of each voxel. A vertex adds the way from the centre of its own voxel.
+    26 neighbours of each voxel. A vertex adds the distance to the centre of its own voxel.
 
     Parameters
     ----------
@@ -188,7 +188,7 @@ def _voxels_of_bone(voxels: Voxels, start: NDArray, end: NDArray) -> NDArray[np.
 
 
 def _follow_nearest(body: Body, distance: NDArray[np.float64]) -> tuple[str, ...]:
-    """Give places that no path reaches straight distances to their nearest bones."""
+    """Give vertices that no path reaches straight distances to their nearest bones."""
     lost = np.flatnonzero(~np.isfinite(distance).any(axis=0))
     if len(lost) == 0:
         return ()
@@ -211,8 +211,8 @@ def _follow_nearest_joints(
 
 def _unreached(lost: NDArray[np.intp], body: Body) -> str:
     return (
-        f"{len(lost)} of {len(body.points)} places follow their nearest bones in a straight "
-        "line: no path along solid voxels leads from a bone to them"
+        f"{len(lost)} of {len(body.points)} welded vertices follow their nearest bones in a "
+        "straight line: no path along solid voxels leads from a bone to them"
     )
 
 

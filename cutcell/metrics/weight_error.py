@@ -31,7 +31,7 @@ def weight_l1(predicted: ArrayLike, reference: ArrayLike, shares: ArrayLike | No
     Raises
     ------
     WeightsError
-        The two do not fit each other, or hold numbers that are no weights.
+        The two do not fit each other, or contain numbers that are no weights.
     ParameterError
         Shares that do not fit.
 

@@ -1,4 +1,4 @@
-"""Weights from distances, and the whole way from a rig to its weights."""
+"""Weights from distances, and all stages from a rig to its weights."""
 
 from .bind import Binding, bind
 from .compilation import is_compiled, warm_up

@@ -22,7 +22,7 @@ _is_warm = False
 
 
 def warm_up() -> None:
-    """Bind a small mesh in every way that has compiled functions of its own.
+    """Bind small meshes, so that every compiled function is called with the types it meets.
 
     They are compiled once on a machine (about a minute, in two processes) and kept on disk, see
     `compile_cache`; from there a process loads them in about a second. Where they cannot be kept,

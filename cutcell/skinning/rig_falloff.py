@@ -37,7 +37,7 @@ TAIL = 0.05
 """Of a vertex' largest weight: subtracted from all its weights, so that they end somewhere."""
 
 
-def rig_kernel(
+def rig_weights(
     distances: BoneDistances, surface: SurfaceOperators, tell: Tell = lambda done: None
 ) -> NDArray[np.float64]:
     """Turn distances into weights for animation.

@@ -14,7 +14,7 @@ from ..progress import Progress, share_of, silent
 from ..threads import in_threads, parts, threads
 from .kernel import paper_kernel, pruned_paper_kernel
 from .prune import A_PART, prune
-from .rig_falloff import permitted, rig_kernel
+from .rig_falloff import permitted, rig_weights
 from .surface_operators import SurfaceOperators
 
 
@@ -50,7 +50,7 @@ def skinning_weights(
     Raises
     ------
     ParameterError
-        A parameter is out of its range, or the distances hold too few joints.
+        A parameter is out of its range, or the distances are of too few joints.
 
     References
     ----------
@@ -73,12 +73,12 @@ def skinning_weights(
         if alpha is not None:
             weights = paper_kernel(distances.joint, graph.lattice.diagonal, alpha)
         else:
-            weights = rig_kernel(distances, SurfaceOperators.of(graph), tell)[graph.vertex_node]
+            weights = rig_weights(distances, SurfaceOperators.of(graph), tell)[graph.vertex_node]
         return prune(permitted(weights, distances.joint, allowed), *kept)
     if alpha is not None:
         welded = pruned_paper_kernel(distances.at_places, graph.lattice.diagonal, alpha, *kept)
     else:
-        welded = rig_kernel(distances, SurfaceOperators.of(graph), share_of(tell, 0, 0.8))
+        welded = rig_weights(distances, SurfaceOperators.of(graph), share_of(tell, 0, 0.8))
         welded = prune(welded, *kept, share_of(tell, 0.8, 0.9))
     weights = np.empty((len(graph.vertex_node), welded.shape[1]))
     in_threads(
@@ -97,7 +97,7 @@ def keep_strongest(
 ) -> NDArray[np.float64]:
     """Keep the largest weights of each vertex: the last step of `skinning_weights`.
 
-    Weights that were kept generously once can be pruned in many ways after.
+    Weights of many influences can be kept, and pruned again as often as that is changed.
 
     Parameters
     ----------
