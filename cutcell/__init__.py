@@ -21,7 +21,7 @@ _HOMES = {
     "save": "io",
     "build_graph": "graph",
     "CutCellGraph": "graph",
-    "winding_number": "graph",
+    "winding_number": "winding",
     "bone_distances": "geodesics",
     "BoneDistances": "geodesics",
     "bone_segments": "geodesics",

@@ -11,11 +11,12 @@ from scipy.spatial import cKDTree
 from ..display import shown_name
 from ..geodesics import BoneDistances
 from ..geodesics.fallback import NOT_ALLOWED, UNREACHED
-from ..graph import INTERIOR, winding_number
+from ..graph import INTERIOR
 from ..rig import TriangleMesh
 from ..skinning.laplacian import vertex_areas, vertex_normals
 from ..skinning.pieces import bones_held
 from ..skinning.worn import SMALL
+from ..winding import winding_number
 from .finding import Finding, count, share
 from .subject import Subject
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from ..checks import check_integer
 from ..errors import CutcellError
 from ..geodesics import BoneDistances
-from ..graph.lattice import MAX_RESOLUTION, MIN_RESOLUTION
 from ..progress import Progress, silent
 from ..rig import Rig
+from ..surface.lattice import MAX_RESOLUTION, MIN_RESOLUTION
 from .finding import Diagnosis, Finding, by_gravity
 from .joints import check_joints
 from .mesh import check_mesh

@@ -1,4 +1,4 @@
-"""The error that is seen when joints turn (paper section 4.1.1, "Rest-Pose Deformation Error")."""
+"""The error that is seen when joints turn (paper section 4.3.1, "Rest-Pose Deformation Error")."""
 
 from __future__ import annotations
 
@@ -133,7 +133,7 @@ def deformation_error(
 
     References
     ----------
-    Paper section 4.1.1.
+    Paper section 4.3.1.
     """
     mesh, skeleton = parts_of(rig)
     check_has_joints(skeleton)

@@ -14,11 +14,11 @@ from ..errors import SkeletonError
 from ..geodesics import FALLBACK_REASONS, LEAVES, BoneDistances, bone_distances
 from ..geodesics.distances import MOST_SAMPLES
 from ..graph import CutCellGraph, build_graph
-from ..graph.lattice import Lattice
 from ..memory import check_matrix
 from ..progress import Progress, silent
 from ..rig import Rig
-from ..threads import meanwhile
+from ..surface.lattice import Lattice
+from ..threads import submit
 from .kernels import kernels_are_compiled, load_kernels
 from .refine import check_refinement, refine_weights
 from .skin import Skin
@@ -140,9 +140,7 @@ def bind(
         progress=progress,
     )
     ticks.append(perf_counter())
-    if connectivity == "any":
-        graph.begin_contracting()
-    skin = meanwhile(lambda: Skin.of(graph)) if falloff == "rig" else None
+    skin = submit(lambda: Skin.of(graph)) if falloff == "rig" else None
     distances = bone_distances(
         graph,
         rig.skeleton,

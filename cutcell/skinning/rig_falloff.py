@@ -9,7 +9,7 @@ from scipy.spatial.distance import cdist
 from ..compiled import lean
 from ..geodesics import BoneDistances, Bones
 from ..progress import Tell, share_of
-from ..threads import together
+from ..threads import run_parallel
 from .diffusion import Diffusion
 from .pieces import bones_held
 from .skin import Skin
@@ -76,7 +76,7 @@ def rig_kernel(
     def prepare() -> Diffusion:
         return Diffusion.over(skin, distance.min(axis=0), resolution, share_of(tell, 0, 0.5))
 
-    held, diffusion = together(divide, prepare)
+    held, diffusion = run_parallel(divide, prepare)
     weights = diffusion.spread(weights, share_of(tell, 0.5, 1))
     if len(held) > 1:
         weights = follow_lone_bones(held, skin.piece, weights)
