@@ -79,7 +79,7 @@ def test_expansion_is_right_within_its_error(name):
     fields, ways, places = [], [], []  # evaluated at once by the slow oracle
     for reach in (0.003, 0.02, 0.1):
         for tolerance in (1e-2, 1e-4):
-            for place in rng.uniform(0, 1, (30, 3)):
+            for place in rng.uniform(0, 1, (40, 3)):
                 field = expand(clusters, place, reach, tolerance)
                 if field[ERROR] <= 0.5:
                     way = rng.normal(size=(20, 3))
