@@ -12,6 +12,8 @@ from . import metrics as metrics
 from . import pose as pose
 from . import progress as progress
 from . import skinning as skinning
+from . import surface as surface
+from . import winding as winding
 from .deform import DeformJoints as DeformJoints
 from .deform import choose_deform as choose_deform
 from .deform import deform_joints as deform_joints
@@ -32,7 +34,6 @@ from .geodesics import bone_distances as bone_distances
 from .geodesics import bone_segments as bone_segments
 from .graph import CutCellGraph as CutCellGraph
 from .graph import build_graph as build_graph
-from .graph import winding_number as winding_number
 from .io import load as load
 from .io import save as save
 from .method import ANIMATION as ANIMATION
@@ -51,5 +52,6 @@ from .skinning import Binding as Binding
 from .skinning import bind as bind
 from .skinning import refine_weights as refine_weights
 from .skinning import skinning_weights as skinning_weights
+from .winding import winding_number as winding_number
 
 __version__: str

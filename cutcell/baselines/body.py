@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from ..geodesics import Bones, bone_segments, distance_to_segment
 from ..graph import Lattice
-from ..graph.weld import weld
 from ..method import Leaf
 from ..rig import Rig
+from ..surface.weld import weld
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,11 +11,12 @@ from scipy.spatial import cKDTree
 from ..display import shown_name
 from ..geodesics import BoneDistances
 from ..geodesics.fallback import NOT_ALLOWED, UNREACHED
-from ..graph import INTERIOR, winding_number
+from ..graph import INTERIOR
 from ..rig import TriangleMesh
 from ..skinning.components import bone_containment
 from ..skinning.laplacian import vertex_areas, vertex_normals
 from ..skinning.rigid_accessories import SMALL
+from ..winding import winding_number
 from .finding import Finding, count, share
 from .subject import Subject
 

@@ -7,8 +7,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..checks import check_choice
 from ..errors import ParameterError
-from ..graph.weld import WELD_TOLERANCE, weld
 from ..rig import TriangleMesh
+from ..surface.weld import WELD_TOLERANCE, weld
 
 COUNTS = ("welded", "vertices")
 

@@ -15,12 +15,12 @@ from ..checks import check_has_joints, check_positions
 from ..errors import SkeletonError
 from ..geodesics import FALLBACK_REASONS, BoneDistances, bone_distances
 from ..graph import CutCellGraph, build_graph
-from ..graph.lattice import Lattice
 from ..inputs import RigLike, as_rig
 from ..memory import check_matrix
 from ..method import ANIMATION, Method, MethodName, Options, method_of
 from ..progress import Progress, silent
 from ..rig import Rig
+from ..surface.lattice import Lattice
 from .compilation import is_compiled, warm_up
 from .refine import Touches, check_refinement, refine_weights
 from .surface_operators import SurfaceOperators
@@ -133,8 +133,6 @@ def bind(
 
 def _begin_what_follows(graph: CutCellGraph, method: Method) -> None:
     """Let other cores begin what later stages will ask of the graph."""
-    if method.connectivity == "any":
-        graph.begin_contracting()
     if method.falloff == "rig":
         SurfaceOperators.begin(graph)
 

@@ -10,7 +10,7 @@ from ..compiled import lean
 from ..geodesics import BoneDistances, Bones
 from ..method import RIG_REACH
 from ..progress import Tell, share_of
-from ..threads import together
+from ..threads import run_parallel
 from .containment import cross_component_penalty, joint_containment, make_rigid
 from .diffusion import Diffusion
 from .rigid_accessories import attach_accessories
@@ -77,7 +77,7 @@ def rig_weights(
     def prepare() -> Diffusion:
         return Diffusion.over(surface, distance.min(axis=0), resolution, share_of(tell, 0, 0.5))
 
-    containment, diffusion = together(divide, prepare)
+    containment, diffusion = run_parallel(divide, prepare)
     weights = diffusion.spread(weights, share_of(tell, 0.5, 1))
     if len(containment) > 1:
         weights = make_rigid(containment, surface.component, weights)

@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from ..checks import check_integer
-from ..graph.weld import WELD_TOLERANCE, weld
 from ..rig import TriangleMesh
+from ..surface.weld import WELD_TOLERANCE, weld
 
 MOST_PASSES = 1000
 STEP = 0.5

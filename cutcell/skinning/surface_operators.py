@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ..compiled import compiled
 from ..graph import CutCellGraph
-from ..threads import meanwhile
+from ..threads import submit
 from .components import label_components
 from .laplacian import stiffness, vertex_areas, vertex_normals
 from .ldl import fill_reducing_ordering
@@ -58,7 +58,7 @@ class SurfaceOperators:
         """Let another core compute them while this one does something else."""
         if graph not in _of_graph:
             points, faces = graph.nodes[: graph.first_point], graph.faces
-            _of_graph[graph] = meanwhile(lambda: cls.over(points, faces))
+            _of_graph[graph] = submit(lambda: cls.over(points, faces))
 
     @classmethod
     def over(cls, points: NDArray[np.float64], faces: NDArray[np.int32]) -> SurfaceOperators:

@@ -11,8 +11,8 @@ from scipy.spatial import cKDTree
 from scipy.spatial.distance import cdist
 
 from ..errors import MeshError
-from ..graph.weld import WELD_TOLERANCE, weld
 from ..rig import Rig, Skeleton
+from ..surface.weld import WELD_TOLERANCE, weld
 
 VERTEX_TOLERANCE = 1e-3
 """Of the bounding box's diagonal: how far from its mirror image a vertex's partner may lie."""
