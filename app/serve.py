@@ -19,12 +19,12 @@ from bokeh.util.browser import view
 from cutcell.console import print_warnings
 from cutcell.skinning import kernels_are_compiled, load_kernels
 
-from .apart import get_ready
-from .handlers import guard
-from .keep import KEEP
-from .log import log_to_terminal
-from .memory import settle
-from .page import page
+from .files.upload_cache import UPLOADS
+from .layout.page import page
+from .server.handlers import guard
+from .server.log import log_to_terminal
+from .server.memory import settle
+from .work.processes import get_ready
 
 PORTS_TRIED = 20
 MAX_MESSAGE = 32 * 1024 * 1024
@@ -80,7 +80,7 @@ def serve(
     log_to_terminal()
     # Computing in Python gives way to the page's own thread sooner than after 5 ms.
     sys.setswitchinterval(0.001)
-    KEEP.sweep_by_the_clock()
+    UPLOADS.sweep_by_the_clock()
     threading.Thread(target=get_ready, daemon=True).start()
     server = begin(path, chosen, address)
     if kernels_are_compiled():

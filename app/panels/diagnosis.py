@@ -8,9 +8,9 @@ import panel_material_ui as pmui
 
 from cutcell.diagnosis import SEVERITIES, Finding
 
-from ..actions.diagnosis import look_at, repair, take_back
-from ..actions.take_along import repaired_file
-from ..session import Session
+from ..commands.diagnosis import look_at, repair, take_back
+from ..commands.export import repaired_file
+from ..commands.session import Session
 from ..state import State
 from .parts import GAP, caption, lead, section, when, words
 

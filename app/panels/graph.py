@@ -9,13 +9,21 @@ import panel_material_ui as pmui
 
 from cutcell.geodesics import LEAVES
 from cutcell.graph import INTERIOR, MESH, SURFACE
+from viewers import palette
+from viewers.palette import to_hex
 
-from ..session import Session
+from ..commands.binding import bind
+from ..commands.session import Session
 from ..state import LAYERS, State
-from ..theme import LAYER_COLORS
 from .parts import GAP, caption, choice, cutting, lead, section, slider, weightless, when, words
 
 KINDS = {"mesh_edges": MESH, "interior_edges": INTERIOR, "surface_edges": SURFACE}
+LAYER_COLORS = {
+    "mesh_edges": "#3a96c0",
+    "interior_edges": to_hex(palette.INTERIOR),
+    "surface_edges": to_hex(palette.SURFACE),
+}
+"""What marks each layer's switch, in the paper's colours."""
 LEAF_TITLES = {"point": "A point", "extend": "Extended", "fit": "Fitted"}
 AXES = {"X": "x", "Y": "y", "Z": "z"}
 
@@ -163,7 +171,7 @@ def _build(session: Session) -> list[Any]:
         variant="outlined",
         margin=GAP,
         sizing_mode="stretch_width",
-        on_click=lambda event: session.bind(),
+        on_click=lambda event: bind(session),
         visible=when(
             lambda rig, binding, bare, busy: rig is not None and not (binding or bare or busy),
             state.param.rig,

@@ -9,7 +9,7 @@ import panel_material_ui as pmui
 
 from cutcell.skinning import FALLOFFS
 
-from ..session import Session
+from ..commands.session import Session
 from ..state import State
 from .deform import deforming
 from .parts import GAP, caption, choice, follow, lead, section, slider, when
@@ -43,7 +43,7 @@ def weights(session: Session) -> pmui.Column:
         facts.object = told(state)
 
     # The colours go first.
-    state.param.watch(lambda *events: session.later(tell), ["binding", "rig"])
+    state.param.watch(lambda *events: session.tasks.later(tell), ["binding", "rig"])
     return pmui.Column(
         lead("How much each bone moves each point of the skin."),
         section("", shown, facts, margin=(8, 20, 4, 20)),

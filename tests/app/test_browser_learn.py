@@ -4,7 +4,7 @@ import re
 
 from playwright.sync_api import expect
 
-from app.tour import TOUR
+from app.state.tour import TOUR
 from tests.app.browser import LOAD_MS, Visit
 
 

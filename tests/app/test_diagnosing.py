@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 import cutcell
-from app.actions.diagnosis import look_at, repair, take_back
-from app.actions.take_along import repaired_file
+from app.commands import loading
+from app.commands.diagnosis import look_at, repair, take_back
+from app.commands.export import repaired_file
 from app.panels.character import faults
 from app.panels.diagnosis import diagnosis, told
 from app.scenes import resolve
@@ -36,7 +37,7 @@ def spoiled_arm():
 def spoiled(session, loop):
     """Let the session show the spoiled arm, diagnosed, on the panel."""
     session.state.param.update(resolution=16, panel="diagnosis")
-    session.opening.rig(spoiled_arm())
+    loading.show_rig(session, spoiled_arm())
     loop.run_until(lambda: session.state.diagnosis is not None)
     return session
 
@@ -118,7 +119,7 @@ def test_the_repaired_file_is_handed_over(spoiled, loop, tmp_path):
 
 def test_another_character_begins_anew(spoiled, loop):
     look_at(spoiled, "inverted-faces")
-    spoiled.opening.rig(bare_arm())
+    loading.show_rig(spoiled, bare_arm())
     assert (spoiled.state.diagnosis, spoiled.state.finding) == (None, "")
     loop.run_until(lambda: spoiled.state.diagnosis is not None)
     assert codes(spoiled) == []

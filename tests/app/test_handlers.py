@@ -9,8 +9,8 @@ import psutil
 import pytest
 from bokeh.util.token import generate_jwt_token, generate_session_id
 
-from app import handlers
-from app.session import Session
+from app.commands.session import Session
+from app.server import handlers
 from benchmarks.visitors import Visitor
 from tests.app.serving import serving
 
@@ -155,7 +155,7 @@ def test_nothing_is_computed_before_a_browser_has_the_view(here, begun, monkeypa
     wait_until(lambda: begun)
     session = begun[-1]
     time.sleep(0.5)
-    assert not session.working
+    assert not session.tasks.running
     assert session.state.rig is None
     assert session.state.panel == "graph", "what the address says is chosen"
     monkeypatch.undo()

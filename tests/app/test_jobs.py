@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from app.jobs import MOST_DEAF, PATIENCE, Gate, Jobs, Newest, on_its_thread
+from app.work.jobs import MOST_DEAF, PATIENCE, Gate, Jobs, Newest, on_its_thread
 
 
 @pytest.fixture

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from viewers.camera import FRONT
 from viewers.tiles import shape_of, tiles
 
-STAGE = Path(__file__).resolve().parents[2] / "app" / "js" / "stage.js"
+STAGE = Path(__file__).resolve().parents[2] / "app" / "scripts" / "stage.js"
 
 
 @given(st.integers(1, 6), st.integers(50, 3000), st.integers(50, 3000), st.floats(0.4, 2.5))
