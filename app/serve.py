@@ -24,6 +24,7 @@ from .layout.page import page
 from .server.handlers import guard
 from .server.log import log_to_terminal
 from .server.memory import settle
+from .widgets.modules import STATIC
 from .work.processes import get_ready
 
 PORTS_TRIED = 20
@@ -115,6 +116,7 @@ def begin(path: Path | None, port: int, address: str = "localhost", **more: Any)
         {"/": lambda: page(path)},
         port=port,
         address="127.0.0.1" if address == "localhost" else address,
+        static_dirs=STATIC,
         websocket_max_message_size=MAX_MESSAGE,
         http_server_kwargs={"max_body_size": MAX_BODY},
         title="cutcell",

@@ -34,9 +34,9 @@ def run_wave(session: Session) -> None:
     state = session.state
     field = field_of(state)
     runs = state.panel == "geodesics" and state.wave and state.filming and field is not None
-    film = {"end": distance_limits(field)[1], "seconds": WAVE_SECONDS} if runs else None
-    if session.view.told("film") != film:
-        session.view.tell(film=film)
+    animation = {"end": distance_limits(field)[1], "seconds": WAVE_SECONDS} if runs else None
+    if session.view.told("animation") != animation:
+        session.view.tell(animation=animation)
 
 
 def find_field(session: Session) -> None:

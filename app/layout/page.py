@@ -22,13 +22,14 @@ from ..commands.session import Session
 from ..panels.parts import words
 from ..server.memory import let_go, tidy_soon
 from ..widgets.inspector import inspector
+from ..widgets.modules import style
 from ..widgets.tour_card import tour_card
 from ..work.jobs import Gate, on_its_thread
 from .favicon import FAVICON
 from .session import begin
 from .sidebar import sidebar
 from .status import messages, status_line
-from .theme import LOADER_STYLE, PAGE_STYLE, THEME
+from .theme import PAGE_STYLE, THEME
 
 NARROW = 600
 """Windows that are less wide than this, in pixels, show the sidebar on demand only."""
@@ -119,7 +120,7 @@ def layout(session: Session) -> pmui.Page:
         sidebar_open="Mobi" not in (pn.state.headers or {}).get("User-Agent", ""),
         main=[main],
         busy_indicator=None,
-        raw_css=[LOADER_STYLE],
+        raw_css=[style("loader")],
         theme_config=THEME,
         sx=PAGE_STYLE,
         favicon=FAVICON,

@@ -13,6 +13,7 @@ from ..commands.binding import cancel
 from ..commands.session import Session
 from ..panels.parts import when, words
 from ..state import State
+from ..widgets.modules import style
 from ..work.messages import sentence, shown
 
 TITLES = {
@@ -109,16 +110,9 @@ def messages(session: Session) -> pmui.Column:
 
     state.param.watch(told, ["message", "binding", "bare_graph"])
     alert.param.watch(closed, "closed")
-    return pmui.Column(alert, margin=0, sizing_mode="stretch_width", stylesheets=[_PLACE])
-
-
-# Over the canvas, so that the character stays where it is; at its top, beside the tools.
-_PLACE = """
-:host { position: absolute; z-index: 5; top: 12px; left: 12px !important; width: auto !important;
-  max-width: min(760px, calc(100% - 190px)) !important; }
-@media (max-width: 700px) { :host { top: 60px; left: 8px !important;
-  max-width: calc(100% - 16px) !important; } }
-"""
+    return pmui.Column(
+        alert, margin=0, sizing_mode="stretch_width", stylesheets=[style("messages_place")]
+    )
 
 
 def only_weights(event: Any) -> bool:

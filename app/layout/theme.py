@@ -63,9 +63,3 @@ PAGE_STYLE: dict[str, Any] = {
     "& .MuiToolbar-root": {"minHeight": "52px"},
     "& .sidebar": {"backgroundImage": "none", "borderColor": "divider"},
 }
-
-# While the page loads: a quiet ring, no curtain.
-LOADER_STYLE = """
-#loader { background: none !important; pointer-events: none; }
-#loader .spinner { width: 28px; height: 28px; border: 3px solid #8885; border-top-color: #ff6c0c; }
-"""

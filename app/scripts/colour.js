@@ -1,13 +1,13 @@
-// Colours of a figure's points on the graphics card: a value or a colour of each point stands in
+// Colours of an actor's points on the graphics card: a value or a colour of each point stands in
 // a texture. New ones are an upload of just these numbers; no buffer is built again.
 
 const TABLE_UNIT = 13  // vtk.js takes the first units
 const POINT_UNIT = 14
 const POINTS_WIDE = 2048
 const QUIET = [201, 206, 214]  // the body's own grey
-const ALL = 1e38
+export const ALL = 1e38
 
-class Colours {
+export class Colours {
   constructor(gl) {
     this.gl = gl
     this.by = ""  // "values", "colors", or nothing
@@ -51,7 +51,7 @@ class Colours {
     this.table.put(0, width, 1, gl.RGB, gl.UNSIGNED_BYTE, table)
   }
 
-  // Called before the figure is drawn.
+  // Called before the actor is drawn.
   use(program) {
     // Values that are worked out from the pose are read from no texture.
     if (program.isUniformUsed("points")) {
@@ -111,12 +111,12 @@ class DataTexture {
 }
 
 // Which point a corner is, for the card: vtk.js draws corners, not points.
-function pointIds(count) {
+export function pointIds(count) {
   return Float32Array.from({length: count}, (_, i) => i)
 }
 
 // What is added to vtk.js' shaders. `apart`: the values are worked out from the pose, see skin.js.
-function colourShader(by, apart) {
+export function colourShader(by, apart) {
   if (!by) { return {declared: "", main: "", fragment: []} }
   const fetched = "texelFetch(points, ivec2(place % width, place / width), 0)"
   const given = by === "colors" ? `shownColor = ${fetched}.rgb;` : `shownValue = ${fetched}.r;`

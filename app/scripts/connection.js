@@ -1,20 +1,19 @@
 // When the server is gone: says so, tries again, and comes back with what the address holds.
 
+import {stylesheet} from "./styles.js"
+
+const styled = await stylesheet("connection.css")
+
 const RETRY_MS = 2000
 
-class Connection {
+export class Connection {
   constructor(overlay) {
     this.overlay = overlay
     this.note = document.createElement("div")
     this.note.className = "card lost"
     this.note.setAttribute("role", "alert")
     this.note.hidden = true
-    const style = document.createElement("style")
-    style.textContent = `.lost { inset: 12px 12px auto; margin: auto; width: max-content;
-      max-width: calc(100% - 48px); padding: 10px 16px; font-size: 14px; z-index: 6;
-      background: var(--paper); border: 1px solid #e05a00; }
-    .without-server .tools { visibility: hidden; }`
-    overlay.root.append(style, this.note)
+    overlay.root.append(styled(), this.note)
     const documents = window.Bokeh?.documents || []
     this.document = documents[documents.length - 1]
     this.lost = () => this.retry()

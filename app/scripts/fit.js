@@ -1,20 +1,23 @@
 // How far away the eye must be for the character to be seen whole in what cards leave free, and
 // where on the canvas each point of it is then seen.
 
-const FITTED = 20000  // points of a figure that are looked at to see all of it
+import {isCharacter} from "./actor.js"
+import {VIEW_ANGLE} from "./orbit.js"
+
+const FITTED = 20000  // points of an actor that are looked at to see all of it
 const AIR = 1.05  // a little more is seen than must be
 const SLOPE = Math.tan(VIEW_ANGLE * Math.PI / 360)
 
-class Fit {
-  constructor(stage) {
-    this.stage = stage
+export class Fit {
+  constructor(renderer) {
+    this.renderer = renderer
   }
 
   // How far the eye must be from the target, along a direction.
-  distance(direction, target, room) {
-    const {stage} = this
-    const [, , w, h] = stage.tilesIn(room).reduce((a, b) => a[2] / a[3] < b[2] / b[3] ? a : b)
-    const taken = stage.taken(room, w)
+  distance(direction, target, insets) {
+    const {renderer} = this
+    const [, , w, h] = renderer.tilesIn(insets).reduce((a, b) => a[2] / a[3] < b[2] / b[3] ? a : b)
+    const taken = renderer.taken(insets, w)
     const high = Math.max(h - taken.top - taken.bottom, h / 4, 1)
     const wide = Math.max(w - taken.left - taken.right, w / 4, 1)
     let distance = 0
@@ -27,7 +30,7 @@ class Fit {
 
   // Pixels to the right of the target and above it, in a single view from this far away.
   eachPixel(direction, target, distance, see) {
-    const scale = this.stage.element.clientHeight / (2 * SLOPE)
+    const scale = this.renderer.element.clientHeight / (2 * SLOPE)
     this.eachPoint(direction, target, (aside, up, near) => {
       const pixels = scale / Math.max(distance - near, 1e-9)
       see(aside * pixels, up * pixels)
@@ -48,8 +51,8 @@ class Fit {
 
   // What a first look must see: the character.
   rests() {
-    const seen = (figure) => figure.kind === "surface" && figure.rest?.length && isCharacter(figure)
-    return [...this.stage.figures.values()].filter(seen).map(({rest}) => rest)
+    const seen = (actor) => actor.kind === "surface" && actor.rest?.length && isCharacter(actor)
+    return [...this.renderer.actors.values()].filter(seen).map(({rest}) => rest)
   }
 }
 

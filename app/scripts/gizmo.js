@@ -1,14 +1,18 @@
 // Three rings on the chosen joint: dragging one turns the joint about its own axis.
 
+import {plainList} from "./arrays.js"
+import {VIEW_ANGLE} from "./orbit.js"
+import {transformed} from "./skin.js"
+
 const RING_COLORS = ["#e5484d", "#30a46c", "#3e83f8"]
 const RING_RADIUS = 62
 const RING_STEPS = 64
 const TELL_EVERY = 70
 
-class Gizmo {
+export class Gizmo {
   // `turned(pose)` hears of each pose while a ring is dragged; `tell` sends to the server.
-  constructor(overlay, stage, {turned, tell, poseNow}) {
-    Object.assign(this, {overlay, stage, turned, tell, poseNow})
+  constructor(overlay, renderer, {turned, tell, poseNow}) {
+    Object.assign(this, {overlay, renderer, turned, tell, poseNow})
     this.svg = overlay.gizmo
     this.part = null
     this.rings = RING_COLORS.map((color, axis) => this.makeRing(color, axis))
@@ -63,12 +67,12 @@ class Gizmo {
   draw() {
     if (!this.part) { return }
     const {centre, axes} = this.frame(this.poseNow())
-    const middle = this.stage.project(centre)
+    const middle = this.renderer.project(centre)
     this.svg.style.visibility = middle ? "" : "hidden"
     if (!middle) { return }
-    const eye = this.stage.camera.getPosition()
+    const eye = this.renderer.camera.getPosition()
     const toEye = eye.map((x, i) => x - centre[i])
-    const [, , , height] = this.stage.tiles[0]
+    const [, , , height] = this.renderer.tiles[0]
     const world = RING_RADIUS * 2 * middle[2] * Math.tan(VIEW_ANGLE * Math.PI / 360) / height
     this.rings.forEach(({paths, dot, letter}, k) => {
       const [u, v] = [axes[(k + 1) % 3], axes[(k + 2) % 3]]
@@ -76,7 +80,7 @@ class Gizmo {
       for (let i = 0; i <= RING_STEPS; i++) {
         const angle = 2 * Math.PI * i / RING_STEPS
         const spoke = u.map((x, j) => Math.cos(angle) * x + Math.sin(angle) * v[j])
-        const at = this.stage.project(centre.map((x, j) => x + world * spoke[j]))
+        const at = this.renderer.project(centre.map((x, j) => x + world * spoke[j]))
         if (!at) { continue }
         points.push({at, near: spoke.reduce((sum, x, j) => sum + x * toEye[j], 0) >= -1e-6})
       }
@@ -134,10 +138,10 @@ class Gizmo {
   // How far the ring's point under the pointer moves on the screen for one radian.
   wayAt(centre, axes, axis, x, y) {
     const [u, v] = [axes[(axis + 1) % 3], axes[(axis + 2) % 3]]
-    const middle = this.stage.project(centre)
-    const [, , , height] = this.stage.tiles[0]
+    const middle = this.renderer.project(centre)
+    const [, , , height] = this.renderer.tiles[0]
     const world = RING_RADIUS * 2 * middle[2] * Math.tan(VIEW_ANGLE * Math.PI / 360) / height
-    const at = (angle) => this.stage.project(centre.map((c, j) =>
+    const at = (angle) => this.renderer.project(centre.map((c, j) =>
       c + world * (Math.cos(angle) * u[j] + Math.sin(angle) * v[j])))
     let best = null
     for (let i = 0; i < RING_STEPS; i++) {

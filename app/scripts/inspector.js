@@ -1,37 +1,8 @@
 // The card of one vertex: its weights as bars, its nearest bones, where it belongs.
 
-const CARD_STYLE = `
-.vertex-card { pointer-events: auto; box-sizing: border-box; width: 100%; max-height: inherit;
-  overflow: auto; padding: 12px 14px 13px; border-radius: 12px; font: 12.5px/1.4 Roboto,
-  system-ui, sans-serif; color: var(--mui-palette-text-primary, #223);
-  background: color-mix(in srgb, var(--mui-palette-background-paper, #fff) 92%, transparent);
-  border: 1px solid var(--mui-palette-divider, #dde); backdrop-filter: blur(10px);
-  box-shadow: 0 6px 24px rgba(10, 20, 40, .14); }
-.vertex-card header { display: flex; align-items: baseline; gap: 8px; }
-.vertex-card h2 { font-size: 14px; font-weight: 600; margin: 0; flex: 1; }
-.vertex-card h3 { font-size: 11px; font-weight: 600; letter-spacing: .04em; margin: 13px 0 5px;
-  color: var(--mui-palette-text-secondary, #667); display: flex; justify-content: space-between; }
-.vertex-card h3 small { font-weight: 400; letter-spacing: 0; font-size: 11px; }
-.vertex-card .quiet { color: var(--mui-palette-text-secondary, #667); font-size: 12px; }
-.vertex-card .close { all: unset; cursor: pointer; width: 26px; height: 26px; margin: -4px -6px 0 0;
-  border-radius: 6px; display: grid; place-items: center; font-size: 17px; line-height: 1;
-  color: var(--mui-palette-text-secondary, #667); }
-.vertex-card .close:hover { background: color-mix(in srgb, currentColor 12%, transparent); }
-.vertex-card button:focus-visible { outline: 2px solid var(--mui-palette-primary-main, #147); }
-.vertex-card .row { all: unset; box-sizing: border-box; display: grid; width: 100%; cursor: pointer;
-  grid-template-columns: 92px 1fr 36px; gap: 8px; align-items: center; padding: 2px 4px;
-  margin: 0 -4px; border-radius: 5px; }
-.vertex-card .row:hover { background: color-mix(in srgb, currentColor 7%, transparent); }
-.vertex-card .name { overflow: hidden; text-overflow: ellipsis; white-space: nowrap; }
-.vertex-card .bars { display: block; }
-.vertex-card .bar { display: block; height: 8px; border-radius: 4px; min-width: 2px; }
-.vertex-card .bar + .bar { margin-top: 2px; height: 4px; background: none !important;
-  box-shadow: inset 0 0 0 1.2px currentColor; opacity: .62; }
-.vertex-card .dot { width: 8px; height: 8px; border-radius: 50%; flex: none; display: inline-block;
-  margin-right: 7px; }
-.vertex-card .value { text-align: right; font-variant-numeric: tabular-nums; }
-.vertex-card .state { display: flex; align-items: baseline; margin: 12px 0 0; }
-`
+import {stylesheet} from "./styles.js"
+
+const styled = await stylesheet("inspector.css")
 
 function element(tag, className, text) {
   const made = document.createElement(tag)
@@ -47,7 +18,7 @@ function bar(color, part) {
   return made
 }
 
-function row(model, {joint, name, color}, bars, value, spoken) {
+function row(model, {joint, name}, bars, value, spoken) {
   const made = element("button", "row")
   made.type = "button"
   made.title = `Choose ${name}`
@@ -116,9 +87,7 @@ function card(model, facts) {
 export function render({model}) {
   const root = document.createElement("div")
   root.style.maxHeight = "inherit"
-  const style = document.createElement("style")
-  style.textContent = CARD_STYLE
-  const show = () => root.replaceChildren(style, ...(model.facts ? [card(model, model.facts)] : []))
+  const show = () => root.replaceChildren(styled(), ...(model.facts ? [card(model, model.facts)] : []))
   const escape = (e) => {
     if (e.key === "Escape" && model.facts) { model.send_msg({type: "close"}) }
   }

@@ -1,5 +1,7 @@
 // What the keys do anywhere on the page, the buttons for it, and the card that lists them.
 
+import {stylesheet} from "./styles.js"
+
 const KEYS = [
   ["Space", "play the motion, or halt it"],
   ["← →", "the bone before, the next bone"],
@@ -24,33 +26,7 @@ const POINTER = [
   ["double click", "the view one begins with", "double tap"],
 ]
 
-const KEYS_STYLE = `
-.tools { position: absolute; top: 12px; right: 12px; display: flex; gap: 2px; padding: 3px;
-  border-radius: 10px; color: var(--ink); background: var(--card); backdrop-filter: blur(6px); }
-.tools button { all: unset; display: grid; place-items: center; width: 32px; height: 32px;
-  border-radius: 7px; cursor: pointer; }
-.tools button:hover:not(:disabled) { background: color-mix(in srgb, var(--ink) 9%, transparent); }
-.tools button:focus-visible, dialog button:focus-visible { outline: 2px solid #e05a00; }
-.tools button:disabled { opacity: .32; cursor: default; }
-.tools svg { width: 18px; height: 18px; fill: none; stroke: currentColor; stroke-width: 1.8;
-  stroke-linecap: round; stroke-linejoin: round; }
-dialog.keys { color: var(--ink); background: var(--paper); border: 0; border-radius: 14px;
-  padding: 22px 26px 20px; width: min(720px, calc(100vw - 32px)); max-height: calc(100vh - 32px); box-sizing: border-box;
-  box-shadow: 0 18px 60px rgba(8, 14, 28, .35); font: 14px/1.45 Roboto, system-ui, sans-serif; }
-dialog.keys::backdrop { background: rgba(8, 12, 20, .38); }
-dialog.keys h2 { font-size: 17px; font-weight: 600; margin: 0 0 12px; }
-dialog.keys h3 { font-size: 12px; font-weight: 600; margin: 0 0 7px; opacity: .75; }
-dialog.keys > div { columns: 2 270px; column-gap: 34px; }
-dialog.keys section { break-inside: avoid; padding-bottom: 16px; }
-dialog.keys dl { display: grid; grid-template-columns: max-content 1fr; gap: 7px 16px; margin: 0; }
-dialog.keys dt { display: flex; gap: 4px; align-items: center; }
-dialog.keys dd { margin: 0; align-self: center; }
-kbd { font: 500 12px/1 Roboto, system-ui, sans-serif; padding: 5px 7px; border-radius: 6px;
-  border: 1px solid color-mix(in srgb, var(--ink) 25%, transparent); border-bottom-width: 2px; }
-dialog.keys button { font: 500 14px Roboto, system-ui, sans-serif; margin: 18px 0 0; padding: 7px 18px;
-  border-radius: 8px; border: 1px solid color-mix(in srgb, var(--ink) 30%, transparent);
-  color: inherit; background: none; cursor: pointer; float: right; }
-`
+const styled = await stylesheet("keys.css")
 
 const TOOLS = [
   ["undo", "Undo", '<path d="M9 14L4 9l5-5M4 9h10a6 6 0 0 1 0 12h-3"/>'],
@@ -66,14 +42,12 @@ const TYPED = "input, textarea, select, [contenteditable], [role=combobox], [rol
 const BOX = "input[type=text]:not([role])"
 const PRESSED = "button, a, summary, [role=button], [role=switch], [role=checkbox]"
 
-class Keys {
+export class Keys {
   constructor(overlay, {act, turnable}) {
     this.overlay = overlay
     this.act = act
     this.turnable = turnable
-    const style = document.createElement("style")
-    style.textContent = KEYS_STYLE
-    overlay.root.append(style, this.makeTools(), this.makeCard())
+      overlay.root.append(styled(), this.makeTools(), this.makeCard())
     this.listener = (e) => this.pressed(e)
     document.addEventListener("keydown", this.listener)
   }

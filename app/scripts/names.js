@@ -21,7 +21,7 @@ const UNNAMED = [
   }],
 ]
 
-class Names {
+export class Names {
   constructor(element) {
     this.seen = new WeakSet()
     this.observers = []

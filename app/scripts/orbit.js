@@ -1,10 +1,10 @@
 // The camera: a turntable that keeps the character upright. Drag turns, right drag or
 // Shift moves, the wheel or two fingers zoom, a double click goes back to the start.
 
-const VIEW_ANGLE = 30
+export const VIEW_ANGLE = 30
 const MAX_PITCH = 1.5
 
-class Orbit {
+export class Orbit {
   constructor(element, {changed, rested, clicked, hovered}) {
     this.element = element
     this.changed = changed

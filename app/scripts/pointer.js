@@ -1,6 +1,9 @@
 // What lies under the pointer: told while it rests there, chosen with a click.
 
-class Pointer {
+import {pickBone, REACH, TOUCH} from "./pick.js"
+import {hitLine, hitSurface, told} from "./surface.js"
+
+export class Pointer {
   constructor(view) {
     this.view = view
   }
@@ -12,9 +15,9 @@ class Pointer {
 
   // What lies under the pointer: a bone if it is met well or nothing else is, else a vertex.
   under(x, y) {
-    const {stage, bones: all} = this.view
-    const bones = stage.figures.get("bones")?.visible ? all : null
-    const pick = (reach) => pickBone(stage, bones, this.view.currentPose, x, y, reach)
+    const {renderer, bones: all} = this.view
+    const bones = renderer.actors.get("bones")?.visible ? all : null
+    const pick = (reach) => pickBone(renderer, bones, this.view.currentPose, x, y, reach)
     const touched = pick(TOUCH)
     if (touched !== null) { return {joint: touched} }
     const hit = this.bodyAt(x, y)
@@ -25,11 +28,11 @@ class Pointer {
 
   bodyAt(x, y, those = (name) => name.startsWith("body")) {
     let best = null
-    const view = this.view.stage.viewAt(x, y)
-    for (const [name, figure] of this.view.stage.figures) {
-      if (!those(name, figure) || !figure.standsIn(view)) { continue }
-      const hit = hitSurface(this.view.stage, figure, x, y, this.view.cut)
-      if (hit && (!best || hit.far < best.far)) { best = {...hit, vertex: hit.point, figure} }
+    const view = this.view.renderer.viewAt(x, y)
+    for (const [name, actor] of this.view.renderer.actors) {
+      if (!those(name, actor) || !actor.standsIn(view)) { continue }
+      const hit = hitSurface(this.view.renderer, actor, x, y, this.view.cut)
+      if (hit && (!best || hit.far < best.far)) { best = {...hit, vertex: hit.point, actor} }
     }
     return best
   }
@@ -56,15 +59,15 @@ class Pointer {
   }
 
   surfaceReading(x, y) {
-    const hit = this.bodyAt(x, y, (name, figure) => figure.reading)
-    return hit && told(hit.figure, hit.point)
+    const hit = this.bodyAt(x, y, (name, actor) => actor.reading)
+    return hit && told(hit.actor, hit.point)
   }
 
   lineReading(x, y) {
-    for (const figure of this.view.stage.figures.values()) {
-      if (figure.kind !== "lines" || !figure.reading) { continue }
-      const cell = hitLine(this.view.stage, figure, x, y, TOUCH)
-      if (cell !== null) { return told(figure, cell) }
+    for (const actor of this.view.renderer.actors.values()) {
+      if (actor.kind !== "lines" || !actor.reading) { continue }
+      const cell = hitLine(this.view.renderer, actor, x, y, TOUCH)
+      if (cell !== null) { return told(actor, cell) }
     }
     return null
   }

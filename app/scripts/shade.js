@@ -1,8 +1,11 @@
-// vtk.js' own shaders, changed where a figure needs it: joints move its points (skin.js), and
+// vtk.js' own shaders, changed where an actor needs it: joints move its points (skin.js), and
 // textures colour them (colour.js).
 
+import {colourShader} from "./colour.js"
+import {skinVertex} from "./skin.js"
+
 // `needs`: how many sets of four influences, how many of a second skin, and what colours it.
-function shaderSwaps({sets, otherSets, by}) {
+export function shaderSwaps({sets, otherSets, by}) {
   const skin = skinVertex(sets, otherSets)
   const colour = colourShader(by, otherSets > 0)
   const swap = (shaderType) => ([originalValue, replacementValue]) =>

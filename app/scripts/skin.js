@@ -1,9 +1,11 @@
 // Linear blend skinning on the graphics card: influences are sent to it once, and after that
-// twelve numbers a joint for each pose, kept in a texture that all figures read.
+// twelve numbers a joint for each pose, kept in a texture that all actors read.
+
+import {plain} from "./arrays.js"
 
 const POSE_UNIT = 15  // the last texture unit that every WebGL 2 has; vtk.js takes the first ones
 
-class PoseTexture {
+export class PoseTexture {
   constructor(gl) {
     this.gl = gl
     this.texture = gl.createTexture()
@@ -36,7 +38,7 @@ class PoseTexture {
     gl.bindTexture(gl.TEXTURE_2D, this.texture)
   }
 
-  // Called by vtk.js before it draws a figure.
+  // Called by vtk.js before it draws an actor.
   use(program, buffer, unit) {
     if (!program.isUniformUsed("poseOn")) { return }
     this.bind()
@@ -56,7 +58,7 @@ class PoseTexture {
 }
 
 // The arrays that carry a skin to the card, by the name of their attribute: four influences each.
-function skinArrays(name, {joints, weights, count}) {
+export function skinArrays(name, {joints, weights, count}) {
   const arrays = []
   const n = joints.length / count
   for (let first = 0; first < count; first += 4) {
@@ -74,7 +76,7 @@ function skinArrays(name, {joints, weights, count}) {
 
 // What is added to vtk.js' vertex shader. `otherSets`: of a second skin; how far it takes a point
 // from where the first one does is the point's value.
-function skinVertex(sets, otherSets) {
+export function skinVertex(sets, otherSets) {
   if (!sets) { return {declared: "", main: "", swaps: []} }
   const attributes = (name, count) => Array.from({length: count}, (_, s) =>
     `attribute vec4 ${name}Joints${s}MC; attribute vec4 ${name}Weights${s}MC;`).join("\n")
@@ -128,7 +130,7 @@ function skinVertex(sets, otherSets) {
 }
 
 // The same sum for all points, on the processor: to know where they are, not to draw them.
-function skinned(skin, rest, pose) {
+export function skinned(skin, rest, pose) {
   const {joints, weights, count} = skin
   const out = new Float32Array(rest.length)
   for (let i = 0, n = rest.length / 3; i < n; i++) {
@@ -148,7 +150,7 @@ function skinned(skin, rest, pose) {
   return out
 }
 
-function transformed(point, pose, joint) {
+export function transformed(point, pose, joint) {
   if (!pose) { return point }
   const m = pose.subarray(joint * 16, joint * 16 + 12)
   const [x, y, z] = point
@@ -156,7 +158,7 @@ function transformed(point, pose, joint) {
 }
 
 // A motion that came as frames, read at any time.
-class Clip {
+export class Clip {
   constructor({times, matrices}) {
     this.times = plain(times)
     this.matrices = plain(matrices)

@@ -5,7 +5,7 @@ const SAMPLES = 4
 const SLOW = 30  // milliseconds; a machine that needs less draws every frame in full
 const SLOWER = 60
 
-class Smooth {
+export class Smooth {
   constructor(gl) {
     this.gl = gl
     this.cost = {rough: 0, full: Infinity}

@@ -1,11 +1,13 @@
 // Where a ray from the eye meets a surface, and what the scene tells of that place.
 
-// The triangle of a figure that is first met under a place of the canvas; null beside it.
-function hitSurface(stage, figure, x, y, cut) {
-  if (!figure.visible || figure.kind !== "surface" || !figure.triangles) { return null }
-  const {origin, direction} = stage.ray(x, y)
-  const p = figure.posed()
-  const t = figure.triangles
+import {toSegment} from "./pick.js"
+
+// The triangle of an actor that is first met under a place of the canvas; null beside it.
+export function hitSurface(renderer, actor, x, y, cut) {
+  if (!actor.visible || actor.kind !== "surface" || !actor.triangles) { return null }
+  const {origin, direction} = renderer.ray(x, y)
+  const p = actor.posed()
+  const t = actor.triangles
   const [ox, oy, oz] = origin
   const [dx, dy, dz] = direction
   let best = null
@@ -25,7 +27,7 @@ function hitSurface(stage, figure, x, y, cut) {
     const far = (vx * rx + vy * ry + vz * rz) / det
     if (far <= 0 || (best && far >= best.far)) { continue }
     const at = [ox + far * dx, oy + far * dy, oz + far * dz]
-    if (cut && figure.clipped && !keeps(cut, figure.slab, at)) { continue }
+    if (cut && actor.clipped && !keeps(cut, actor.slab, at)) { continue }
     const share = [1 - g - h, g, h]
     best = {far, at, point: t[i + share.indexOf(Math.max(...share))]}
   }
@@ -38,15 +40,15 @@ function keeps({origin, normal}, slab, at) {
   return before <= 0 && !(slab > 0 && before < -slab)
 }
 
-// The line of a figure nearest to a place of the canvas, within reach.
-function hitLine(stage, figure, x, y, reach) {
-  if (!figure.visible || figure.kind !== "lines" || !figure.pairs) { return null }
-  const p = figure.rest
-  const view = stage.viewAt(x, y)
-  const at = (i) => stage.project([p[3 * i], p[3 * i + 1], p[3 * i + 2]], view)
+// The line of an actor nearest to a place of the canvas, within reach.
+export function hitLine(renderer, actor, x, y, reach) {
+  if (!actor.visible || actor.kind !== "lines" || !actor.pairs) { return null }
+  const p = actor.rest
+  const view = renderer.viewAt(x, y)
+  const at = (i) => renderer.project([p[3 * i], p[3 * i + 1], p[3 * i + 2]], view)
   let best = null
-  for (let i = 0; i < figure.pairs.length; i += 2) {
-    const a = at(figure.pairs[i]), b = at(figure.pairs[i + 1])
+  for (let i = 0; i < actor.pairs.length; i += 2) {
+    const a = at(actor.pairs[i]), b = at(actor.pairs[i + 1])
     if (!a || !b) { continue }
     const [distance] = toSegment(x, y, a, b)
     if (distance <= reach && (!best || distance < best.distance)) { best = {distance, cell: i / 2} }
@@ -54,9 +56,9 @@ function hitLine(stage, figure, x, y, reach) {
   return best && best.cell
 }
 
-function told(figure, index) {
-  const {text, values, names} = figure.reading
-  const value = (values || figure.values)?.[index]
+export function told(actor, index) {
+  const {text, values, names} = actor.reading
+  const value = (values || actor.values)?.[index]
   if (value === undefined || Number.isNaN(value)) { return null }
   if (names?.length) { return text + names[value] }
   return text + (Number.isInteger(value) ? value : value.toFixed(3))

@@ -5,7 +5,7 @@ const PLAY_ICON = '<svg viewBox="0 0 24 24" aria-hidden="true"><path d="M8 5v14l
 const PAUSE_ICON =
   '<svg viewBox="0 0 24 24" aria-hidden="true"><path d="M6 5h4v14H6zM14 5h4v14h-4z"/></svg>'
 
-class Transport {
+export class Transport {
   // `play(on)` and `seek(seconds)` hear what a person does.
   constructor(overlay, {play, seek}) {
     this.overlay = overlay

@@ -3,7 +3,7 @@
 
 const PIECE = 2 * 1024 * 1024
 
-class Uploader {
+export class Uploader {
   constructor(model, {started, moved, ended, refused}) {
     Object.assign(this, {model, started, moved, ended, refused})
     this.answers = []
@@ -47,7 +47,7 @@ class Uploader {
         answer = await this.ask({type: this.stopped ? "upload-cancel" : "upload-end"})
       }
       if (!answer.ok) { this.refused?.(answer.message) }
-    } catch (error) {
+    } catch {
       await this.ask({type: "upload-cancel", unreadable: true})  // moved or changed on its disk
     } finally {
       this.busy = false
@@ -57,7 +57,7 @@ class Uploader {
 }
 
 // Lets files be dropped on an element; `over` hears whether some hang above it.
-function acceptDrops(element, over, drop) {
+export function acceptDrops(element, over, drop) {
   let depth = 0
   const carries = (e) => [...(e.dataTransfer?.types || [])].includes("Files")
   const on = (type, act) => element.addEventListener(type, (e) => {

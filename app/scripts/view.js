@@ -1,13 +1,30 @@
 // The page's 3D view. The server says what stands in the scene; turning it, picking bones
 // and playing motions happen here.
 
+import {Actor} from "./actor.js"
+import {Animation} from "./animation.js"
+import {plain, plainList} from "./arrays.js"
+import {Connection} from "./connection.js"
+import {Gizmo} from "./gizmo.js"
+import {Insets} from "./insets.js"
+import {Keys} from "./keys.js"
+import {Names} from "./names.js"
+import {Orbit} from "./orbit.js"
+import {Overlay} from "./overlay.js"
+import {Pointer} from "./pointer.js"
+import {probe} from "./probe.js"
+import {loadVtk, Renderer} from "./renderer.js"
+import {Clip} from "./skin.js"
+import {Transport} from "./transport.js"
+import {acceptDrops, Uploader} from "./upload.js"
+
 const CALM = 150  // milliseconds without a change, after which a slow machine draws in full
 
 class View {
   constructor(model, vtk, overlay) {
     this.model = model
     this.overlay = overlay
-    this.stage = new Stage(vtk, overlay.canvas)
+    this.renderer = new Renderer(vtk, overlay.canvas)
     this.orbit = new Orbit(overlay.canvas, {
       changed: () => this.changed(),
       rested: () => this.rested(),
@@ -15,8 +32,8 @@ class View {
       hovered: (e) => this.pointer.hovered(e),
     })
     this.pointer = new Pointer(this)
-    this.film = new Film(this)
-    this.gizmo = new Gizmo(overlay, this.stage, {
+    this.animation = new Animation(this)
+    this.gizmo = new Gizmo(overlay, this.renderer, {
       turned: (pose) => { this.pose = pose; this.applyPose(); this.changed() },
       tell: (message) => model.send_msg(message),
       poseNow: () => this.currentPose,
@@ -40,41 +57,41 @@ class View {
     this.names = new Names(overlay.root)
     this.messages = 0
     this.posed = 0
-    this.room = new Room({
-      overlay, stage: this.stage, orbit: this.orbit,
+    this.insets = new Insets({
+      overlay, renderer: this.renderer, orbit: this.orbit,
       changed: () => this.changed(), rested: () => this.rested(),
     })
   }
 
   receive(message) {
-    const {stage} = this
+    const {renderer} = this
     if (message.download) { save(message.download) }
     if ("rests" in message) { this.answered?.(message.rests) }
     if (!message.id) { return }
     for (const name of message.remove || []) {
-      stage.figures.get(name)?.remove()
-      stage.figures.delete(name)
+      renderer.actors.get(name)?.remove()
+      renderer.actors.delete(name)
     }
-    if (message.lights) { stage.light(message.lights) }
+    if (message.lights) { renderer.light(message.lights) }
     if (message.theme) { this.overlay.theme(message.theme) }
     if ("dark" in message) { localStorage.setItem("cutcell dark", message.dark ? "1" : "0") }
     if ("legend" in message) { this.overlay.showLegend(message.legend) }
     if ("cut" in message) {
       this.cut = message.cut
-      for (const figure of stage.figures.values()) { figure.cut(this.cut) }
+      for (const actor of renderer.actors.values()) { actor.cut(this.cut) }
     }
     if (message.views) {
       this.views = message.views
-      stage.divide(this.views)
+      renderer.divide(this.views)
     }
     if (message.actors) { this.overlay.waiting.hidden = true }
     for (const [name, part] of entries(message.actors)) {
-      if (!stage.figures.has(name)) {
-        stage.figures.set(name, new Figure(stage))
+      if (!renderer.actors.has(name)) {
+        renderer.actors.set(name, new Actor(renderer))
       }
-      const figure = stage.figures.get(name)
-      figure.update(part, this.cut)
-      if ("film" in part) { figure.setFront(this.film.front) }
+      const actor = renderer.actors.get(name)
+      actor.update(part, this.cut)
+      if ("animation" in part) { actor.setFront(this.animation.front) }
     }
     if (message.bones) {
       const {start, end, joint, names} = message.bones
@@ -92,10 +109,10 @@ class View {
       if (this.clip) { this.transport.tick(this.clip, this.time || 0) }
     }
     if ("pose" in message || "clip" in message) { this.applyPose() }
-    if ("front" in message && !this.film.playing) { this.film.set(message.front) }
-    if ("film" in message) { this.film.play(message.film) }
-    this.room.make()
-    if (message.camera) { this.room.frame(message.camera); this.rested() }
+    if ("front" in message && !this.animation.playing) { this.animation.set(message.front) }
+    if ("animation" in message) { this.animation.play(message.animation) }
+    this.insets.make()
+    if (message.camera) { this.insets.frame(message.camera); this.rested() }
     if (message.home) { this.orbit.reset(); this.rested() }
     if (message.address) {
       this.address = message.address
@@ -110,7 +127,7 @@ class View {
   }
 
   applyPose() {
-    this.stage.setPose(this.currentPose)
+    this.renderer.setPose(this.currentPose)
     if (this.clip) { this.transport.tick(this.clip, this.time || 0) }
     this.posed += 1
   }
@@ -151,16 +168,16 @@ class View {
     if (this.gone || !this.overlay.canvas.clientWidth) { return }
     clearTimeout(this.calming)
     const moving = this.orbit.moving || Boolean(this.playing)
-    this.stage.look(this.orbit)
-    const tiles = this.views?.length ? this.stage.tiles : []
+    this.renderer.look(this.orbit)
+    const tiles = this.views?.length ? this.renderer.tiles : []
     if (String(tiles) !== this.divided || this.captioned !== this.views) {
       [this.divided, this.captioned] = [String(tiles), this.views]
       this.overlay.showViews(this.views || [], tiles)
     }
-    this.stage.draw(moving, resting)
+    this.renderer.draw(moving, resting)
     this.gizmo.draw()
     if (this.address) { setTimeout(() => this.putAddress()) }
-    if (this.stage.rough && !moving) { this.calming = setTimeout(() => this.draw(true), CALM) }
+    if (this.renderer.rough && !moving) { this.calming = setTimeout(() => this.draw(true), CALM) }
   }
 
   // The address waits for the picture: to change it takes some browsers longer than to draw.
@@ -172,7 +189,7 @@ class View {
   rested() {
     this.changed()
     this.model.send_msg({
-      type: "camera", home: this.orbit.atHome, position: this.room.position, focal_point: this.orbit.target,
+      type: "camera", home: this.orbit.atHome, position: this.insets.position, focal_point: this.orbit.target,
       aspect: this.overlay.canvas.clientWidth / Math.max(this.overlay.canvas.clientHeight, 1),
     })
   }
@@ -183,12 +200,12 @@ class View {
     this.keys.remove()
     this.connection.remove()
     this.names.remove()
-    this.room.remove()
+    this.insets.remove()
     clearTimeout(this.calming)
     cancelAnimationFrame(this.waiting)
     cancelAnimationFrame(this.ticking)
-    this.film.remove()
-    this.stage.remove()
+    this.animation.remove()
+    this.renderer.remove()
   }
 }
 

@@ -67,7 +67,7 @@ def _part(old: Actor | None, new: Actor) -> dict[str, Any]:
         part["apart"] = _apart(new.apart)
     part.update(_colouring(old, new))
     if (old is not None and old.film) != new.film:
-        part["film"] = new.film
+        part["animation"] = new.film
     if not _same_reading(None if old is None else old.reading, new.reading):
         part["reading"] = _reading(new.reading)
     for name, value in _settings(new).items():

@@ -17,7 +17,7 @@ class FileDrop(JSComponent):
     label = param.String("Drop a character here, or choose")
     hint = param.String("")
 
-    _esm = script("upload", "drop")
+    _esm = script("file_drop")
 
     def __init__(self, receiver: Receiver, **params: Any) -> None:
         super().__init__(**params)

@@ -11,7 +11,7 @@ from ..commands.look import pick, pick_vertex
 from ..commands.session import Session
 from ..commands.tour import points_out
 from ..scenes.facts import vertex_facts
-from .modules import script
+from .modules import script, style
 
 
 class Inspector(JSComponent):
@@ -40,18 +40,9 @@ class Inspector(JSComponent):
             pick(self._session, int(data["joint"]))
 
 
-_PLACE = """
-:host { position: absolute; z-index: 6; top: 62px; right: 14px; width: 268px;
-  max-height: calc(100% - 76px); pointer-events: none; }
-@media (max-width: 700px) { :host { top: auto; bottom: 8px; right: 8px; left: 8px; width: auto;
-  max-height: 52%; } }
-@media (min-width: 701px) { :host(.beside-tour) { right: auto; left: 14px; } }
-"""
-
-
 def inspector(session: Session) -> Inspector:
     """Return the card of a session, in its place over the canvas."""
-    card = Inspector(session, stylesheets=[_PLACE], margin=0)
+    card = Inspector(session, stylesheets=[style("inspector_place")], margin=0)
 
     def place(*events: Any) -> None:
         # Not by other stylesheets: Panel then asks for its own at a server far away.

@@ -11,7 +11,7 @@ from panel.models.katex import KATEX_VERSION
 from ..commands.session import Session
 from ..commands.tour import go
 from ..state.tour import TOUR
-from .modules import script
+from .modules import script, style
 
 
 class TourCard(JSComponent):
@@ -25,7 +25,7 @@ class TourCard(JSComponent):
         doc="Where Panel's own server keeps KaTeX.",
     )
 
-    _esm = script("tour")
+    _esm = script("tour_card")
 
     def __init__(self, session: Session, **params: Any) -> None:
         super().__init__(**params)
@@ -39,19 +39,16 @@ class TourCard(JSComponent):
 def tour_card(session: Session) -> TourCard:
     """Return the card of a session's tour."""
     steps = [{"title": s.title, "text": s.text, "formula": s.formula, "task": s.task} for s in TOUR]
-    card = TourCard(session, step=session.state.tour, steps=steps, stylesheets=[_PLACE], margin=0)
+    card = TourCard(
+        session,
+        step=session.state.tour,
+        steps=steps,
+        stylesheets=[style("tour_card_place")],
+        margin=0,
+    )
 
     def told(*events: Any) -> None:
         card.step = session.state.tour
 
     session.state.param.watch(told, "tour")
     return card
-
-
-_PLACE = """
-:host { position: absolute; z-index: 4; right: 12px; top: 62px; left: auto !important;
-  width: min(360px, calc(100% - 24px)) !important; height: auto !important;
-  max-height: calc(100% - 74px); display: flex; }
-@media (max-width: 1180px) { :host { top: auto; bottom: 8px; right: 8px;
-  width: calc(100% - 16px) !important; max-height: 50%; } }
-"""

@@ -36,9 +36,7 @@ class SceneView(JSComponent):
     window_width = param.Integer(0, doc="Width of the browser's window, once it is known.")
 
     _rename = {"window_width": None, "dark": None}  # noqa: RUF012
-    _esm = script("orbit", "skin", "colour", "shade", "figure", "smooth", "stage", "fit", "room",
-                  "pick", "surface", "gizmo", "transport", "upload", "keys", "connection", "names",
-                  "overlay", "pointer", "film", "probe", "view")  # fmt: skip
+    _esm = script("view")
 
     def __init__(self, **params: Any) -> None:
         super().__init__(**params)

@@ -65,9 +65,9 @@ def test_a_slab_and_a_slice_with_its_rays(visit):
     told = visit.page.evaluate(
         """() => {
           const view = window.__cutcell
-          const figure = view.stage.figures.get("slice rays")
-          for (let i = 0; i < figure.rest.length / 3; i += 8) {
-            const [x, y] = view.stage.project([...figure.rest.slice(3 * i, 3 * i + 3)])
+          const actor = view.renderer.actors.get("slice rays")
+          for (let i = 0; i < actor.rest.length / 3; i += 8) {
+            const [x, y] = view.renderer.project([...actor.rest.slice(3 * i, 3 * i + 3)])
             const text = view.pointer.surfaceReading(x, y)
             if (text && text.startsWith("winding number 1")) { return text }
           }
@@ -98,7 +98,7 @@ def test_the_field_its_starts_and_the_way_back(visit):
     visit.expect_text(re.compile(r"\d+ sources, up to 0\.\d+ from the bone"))
     assert visit.report()["actors"]["sources"]["points"] > 0
     visit.switch("Where distances begin")
-    visit.click_vertex("__cutcell.stage.figures.get('body').values[vertex] < 0.04")
+    visit.click_vertex("__cutcell.renderer.actors.get('body').values[vertex] < 0.04")
     visit.expect_text(re.compile(r"way back, \d\.\d+ long"))
     assert visit.report()["actors"]["path"]["points"] > 0
     visit.close_card()

@@ -83,7 +83,7 @@ def follows_the_distance(visit, rig, binding):
     visit.panel("Distance")
     name = visit.bone.inner_text()
     visit.expect_text(f"Distance from {name}")
-    shown = "Array.from(__cutcell.stage.figures.get('body').values)"
+    shown = "Array.from(__cutcell.renderer.actors.get('body').values)"
     visit.settle()
     values = np.array(visit.page.evaluate(shown))
     field = binding.distances.on_mesh(rig.skeleton.names.index(name))

@@ -300,11 +300,11 @@ def test_the_wave_is_told_once_and_not_frame_by_frame(bound, loop):
     bound.state.panel = "geodesics"
     loop.run_until(lambda: bound.state.field is not None)
     bound.state.param.update(wave=True, filming=True)
-    films = [parts["film"] for parts in told if "film" in parts]
+    films = [parts["animation"] for parts in told if "animation" in parts]
     assert len(films) == 1
     assert films[0]["end"] > 0
     bound.state.front = 0.5
-    assert [parts for parts in told if "film" in parts] == [{"film": films[0]}]
+    assert [parts for parts in told if "animation" in parts] == [{"animation": films[0]}]
 
 
 def test_what_is_told_reads_well(session):

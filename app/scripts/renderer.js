@@ -1,12 +1,18 @@
 // The vtk.js window: two layers (the scene, and what is drawn over it), lights, frames.
 
-function loadVtk(url) {
+import {isCharacter} from "./actor.js"
+import {VIEW_ANGLE} from "./orbit.js"
+import {PoseTexture} from "./skin.js"
+import {Smooth} from "./smooth.js"
+import {noCards, shapeOf, tiles} from "./tiles.js"
+
+export function loadVtk(url) {
   window.__cutcellVtk ??= new Promise((resolve, reject) => {
     if (window.vtk) { resolve(window.vtk); return }
     const script = document.createElement("script")
     script.src = new URL(url, document.baseURI).href
-    script.onload = () => resolve(window.vtk)
-    script.onerror = () => reject(new Error("the 3D library could not be loaded"))
+    script.addEventListener("load", () => resolve(window.vtk))
+    script.addEventListener("error", () => reject(new Error("the 3D library could not be loaded")))
     document.head.append(script)
   })
   return window.__cutcellVtk
@@ -17,9 +23,7 @@ const CAPTIONED = {left: 0, right: 0, top: 46, bottom: 16}
 const NARROW_CAPTIONED = {...CAPTIONED, top: 60}
 const NARROW_CAPTION = 260
 
-const FRONT = [0.42, 0.16, 1]  // where one looks from at first, as in viewers/camera.py
-
-class Stage {
+export class Renderer {
   constructor(vtk, element) {
     this.vtk = vtk
     this.element = element
@@ -32,7 +36,7 @@ class Stage {
     this.camera.setViewAngle(VIEW_ANGLE)
     this.lights = []
     this.views = []
-    this.figures = new Map()
+    this.actors = new Map()
     this.gl = vtk.Rendering.OpenGL.vtkRenderWindow.newInstance()
     // Made before vtk.js asks for it: what smooths edges is chosen for each frame (smooth.js).
     this.context = this.gl.getCanvas().getContext("webgl2", {
@@ -42,7 +46,7 @@ class Stage {
     this.gl.setContainer(element)
     this.window.addView(this.gl)
     this.pose = null
-    this.room = noCards(false)
+    this.insets = noCards(false)
     this.divide([])
     this.frames = 0
   }
@@ -66,12 +70,12 @@ class Stage {
       for (const renderer of [base, over]) { this.window.removeRenderer(renderer) }
     }
     this.light(this.lights)
-    for (const figure of this.figures.values()) { figure.place() }
+    for (const actor of this.actors.values()) { actor.place() }
   }
 
   // Where each view lies, in the canvas' own pixels.
   get tiles() {
-    return this.tilesIn(this.room)
+    return this.tilesIn(this.insets)
   }
 
   // One view has the whole canvas, with cards over it; several divide what cards leave free, as
@@ -137,7 +141,7 @@ class Stage {
       for (const renderer of [base, over]) { renderer.setViewport(...part) }
     })
     const outside = this.isOutside()
-    for (const figure of this.figures.values()) { figure.show(moving, outside) }
+    for (const actor of this.actors.values()) { actor.show(moving, outside) }
     this.camera.setClippingRange(...this.depthRange())
     smooth.draw(this.size, this.rough, () => { this.clear(); this.gl.traverseAllPasses() })
     this.frames += 1
@@ -155,8 +159,8 @@ class Stage {
   isOutside() {
     const b = this.bounds()
     const eye = this.camera.getPosition()
-    const room = Math.max(...[0, 1, 2].map((i) => b[2 * i + 1] - b[2 * i])) / 2
-    return eye.some((x, i) => x < b[2 * i] - room || x > b[2 * i + 1] + room)
+    const margin = Math.max(...[0, 1, 2].map((i) => b[2 * i + 1] - b[2 * i])) / 2
+    return eye.some((x, i) => x < b[2 * i] - margin || x > b[2 * i + 1] + margin)
   }
 
   depthRange() {
@@ -171,26 +175,26 @@ class Stage {
 
   bounds(those = () => true) {
     const b = [Infinity, -Infinity, Infinity, -Infinity, Infinity, -Infinity]
-    for (const figure of this.figures.values()) {
-      if (!figure.bounds || !figure.rest?.length || !those(figure)) { continue }
+    for (const actor of this.actors.values()) {
+      if (!actor.bounds || !actor.rest?.length || !those(actor)) { continue }
       for (let i = 0; i < 6; i += 2) {
-        b[i] = Math.min(b[i], figure.bounds[i])
-        b[i + 1] = Math.max(b[i + 1], figure.bounds[i + 1])
+        b[i] = Math.min(b[i], actor.bounds[i])
+        b[i + 1] = Math.max(b[i + 1], actor.bounds[i + 1])
       }
     }
     return Number.isFinite(b[0]) ? b : [-1, 1, -1, 1, -1, 1]
   }
 
   // What is not for the character, of a view of some width.
-  taken(room, width) {
-    if (this.views.length < 2) { return room }
+  taken(insets, width) {
+    if (this.views.length < 2) { return insets }
     return width < NARROW_CAPTION ? NARROW_CAPTIONED : CAPTIONED
   }
 
   // Where the middle of what is free in a view lies, in halves of the view from its own middle.
   get middle() {
     const [, , w, h] = this.tiles[0]
-    const {left, right, top, bottom} = this.taken(this.room, w)
+    const {left, right, top, bottom} = this.taken(this.insets, w)
     return [(left - right) / Math.max(w, 1), (bottom - top) / Math.max(h, 1)]
   }
 
@@ -235,43 +239,11 @@ class Stage {
   }
 
   remove() {
-    for (const figure of this.figures.values()) { figure.remove() }
+    for (const actor of this.actors.values()) { actor.remove() }
     this.texture?.remove()
     this.smooth.remove()
     this.gl.setContainer(null)
     this.gl.delete()
     this.window.delete()
   }
-}
-
-// What is to be seen whole; bones may reach far out of it, those above all that move nothing.
-function isCharacter(figure) {
-  return !figure.overlay
-}
-
-// Width over height of a box as it is seen at first.
-function shapeOf(bounds) {
-  const [aside, above, ahead] = FRONT
-  const size = [0, 1, 2].map((i) => Math.max(bounds[2 * i + 1] - bounds[2 * i], 1e-9))
-  const flat = Math.hypot(aside, ahead)
-  const right = [ahead / flat, 0, aside / flat]
-  const up = [aside * above / flat, flat, above * ahead / flat].map((x) => x / Math.hypot(...FRONT))
-  const seen = (axis) => axis[0] * size[0] + axis[1] * size[1] + axis[2] * size[2]
-  return Math.min(Math.max(seen(right) / seen(up), 0.4), 2.5)
-}
-
-// Divides a canvas among views so that what stands in each, below its caption, is seen as large as
-// can be.
-function tiles(count, width, height, shape, captions = 0) {
-  let [best, columns] = [0, 1]
-  for (let c = 1; c <= count; c++) {
-    const seen = Math.min(width / c / shape, height / Math.ceil(count / c) - captions)
-    if (seen > best) { [best, columns] = [seen, c] }
-  }
-  const rows = Math.ceil(count / columns)
-  return Array.from({length: count}, (_, k) => {
-    const [c, r] = [k % columns, Math.floor(k / columns)]
-    const along = Math.min(columns, count - r * columns)  // the last row shares what it has
-    return [width * c / along, height * r / rows, width / along, height / rows]
-  })
 }

@@ -1,14 +1,11 @@
 // One actor of the scene, drawn by vtk.js; changed in place by what the server sends.
 
-const MANY_LINES = 40000
+import {plain, plainList} from "./arrays.js"
+import {ALL, Colours, pointIds} from "./colour.js"
+import {shaderSwaps} from "./shade.js"
+import {skinArrays, skinned} from "./skin.js"
 
-// Arrays arrive as Bokeh's own subclasses, whose names vtk.js does not know.
-function plain(array) {
-  const base = Object.getPrototypeOf(array.constructor)
-  const Type = base.name && base.name !== "TypedArray" && base !== Function.prototype
-    ? base : array.constructor
-  return new Type(array.buffer, array.byteOffset, array.length)
-}
+const MANY_LINES = 40000
 
 function withCounts(cells, corners, stride = 1) {
   const total = Math.ceil(cells.length / corners / stride)
@@ -22,14 +19,14 @@ function withCounts(cells, corners, stride = 1) {
   return out
 }
 
-class Figure {
-  constructor(stage) {
-    const {vtk} = stage
+export class Actor {
+  constructor(renderer) {
+    const {vtk} = renderer
     this.vtk = vtk
-    this.stage = stage
+    this.renderer = renderer
     this.data = vtk.Common.DataModel.vtkPolyData.newInstance()
     this.made = [this.make(this.data)]
-    this.colours = new Colours(stage.context)
+    this.colours = new Colours(renderer.context)
     this.visible = true
   }
 
@@ -63,7 +60,7 @@ class Figure {
       const {reading} = part
       this.reading = reading && {...reading, values: reading.values && plain(reading.values)}
     }
-    if ("film" in part) { this.film = part.film }
+    if ("animation" in part) { this.animation = part.animation }
     if ("clipped" in part) { [this.clipped, this.slab] = [part.clipped, part.slab] }
     if ("visible" in part) { this.visible = part.visible }
     this.cut(cut)
@@ -152,13 +149,13 @@ class Figure {
   // Called by vtk.js before it draws.
   use(primitive) {
     const program = primitive.getProgram()
-    this.stage.poses.use(program, primitive.getCABO(), this.apart?.unit)
+    this.renderer.poses.use(program, primitive.getCABO(), this.apart?.unit)
     this.colours.use(program)
   }
 
   // Values beyond the front are left grey.
   setFront(front) {
-    this.colours.front = this.film ? front ?? ALL : ALL
+    this.colours.front = this.animation ? front ?? ALL : ALL
   }
 
   paint({color, opacity, width, ambient, coloured, behind, closed, hull}) {
@@ -184,8 +181,8 @@ class Figure {
   // Stands in the view that it belongs to, or in every one.
   place() {
     this.leave()
-    const own = typeof this.view === "number" ? this.stage.views[this.view] : null
-    const views = own ? [own] : this.stage.views
+    const own = typeof this.view === "number" ? this.renderer.views[this.view] : null
+    const views = own ? [own] : this.renderer.views
     this.layers = views.map((view) => this.overlay ? view.over : view.base)
     for (const {actor} of this.made) {
       for (const layer of this.layers) { layer.addActor(actor) }
@@ -230,7 +227,7 @@ class Figure {
 
   // Where the points are now; the card alone knows as long as nobody asks.
   posed() {
-    const {pose} = this.stage
+    const {pose} = this.renderer
     return this.skin && pose ? skinned(this.skin, this.rest, pose) : this.rest
   }
 
@@ -245,6 +242,7 @@ class Figure {
   }
 }
 
-function plainList(values) {
-  return Array.from(values)
+// What is to be seen whole; bones may reach far out of it, those above all that move nothing.
+export function isCharacter(actor) {
+  return !actor.overlay
 }

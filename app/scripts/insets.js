@@ -1,6 +1,9 @@
 // How much of the canvas the cards over it leave free, and how far away the eye must be for the
 // character to be seen whole in it.
 
+import {Fit} from "./fit.js"
+import {noCards} from "./tiles.js"
+
 const SLIM = 700  // a canvas less wide than this has no room beside its cards
 const NARROW_VIEW = 330  // a view less wide than this has none beside the tools
 const UNDER_TOOLS = 56
@@ -8,10 +11,10 @@ const NARROW_FEET = 600  // in a view less wide than this the legend would cover
 const LARGE = 300  // a card this wide has a part of the canvas for itself, whatever its width
 const GAP = 6
 
-class Room {
-  constructor({overlay, stage, orbit, changed, rested}) {
-    Object.assign(this, {overlay, stage, orbit, changed, rested})
-    this.fitting = new Fit(stage)
+export class Insets {
+  constructor({overlay, renderer, orbit, changed, rested}) {
+    Object.assign(this, {overlay, renderer, orbit, changed, rested})
+    this.fitting = new Fit(renderer)
     this.factor = 1  // how many times as far away as without cards
     this.observer = new ResizeObserver(() => this.make())
     for (const part of [overlay.canvas, overlay.legend, overlay.transport]) { this.observer.observe(part) }
@@ -30,13 +33,13 @@ class Room {
     if (!box.height) { return }
     const {cards} = this
     for (const card of cards) { this.observer.observe(card) }
-    const room = this.free(box, cards)
-    const seen = JSON.stringify([room, box.width, box.height, this.stage.views.length])
+    const insets = this.free(box, cards)
+    const seen = JSON.stringify([insets, box.width, box.height, this.renderer.views.length])
     if (seen === this.seen) { return }
     this.seen = seen
-    this.stage.room = room
+    this.renderer.insets = insets
     this.overlay.showBone(null)  // something else is now where the pointer rests
-    const fitted = this.fit(room)
+    const fitted = this.fit(insets)
     // A few pixels change nothing.
     if (this.fitted && Math.abs(fitted / this.fitted - 1) > 0.03) {
       this.orbit.scale(fitted / this.fitted)
@@ -48,12 +51,12 @@ class Room {
 
   // What cards take, from each edge.
   free(box, cards) {
-    const several = this.stage.views.length > 1
-    const room = noCards(several)
+    const several = this.renderer.views.length > 1
+    const insets = noCards(several)
     const slim = box.width < SLIM
-    if (slim || (several && this.stage.tilesIn(room)[0][2] < NARROW_VIEW)) { room.top = UNDER_TOOLS }
+    if (slim || (several && this.renderer.tilesIn(insets)[0][2] < NARROW_VIEW)) { insets.top = UNDER_TOOLS }
     const {legend, transport} = this.overlay
-    const take = (edge, pixels, of = room) => { of[edge] = Math.max(of[edge], pixels + GAP) }
+    const take = (edge, pixels, of = insets) => { of[edge] = Math.max(of[edge], pixels + GAP) }
     const beside = {left: 0, right: 0}
     const edges = [legend, transport, this.overlay.hint, this.overlay.root.querySelector(".tools")]
     for (const card of cards) {
@@ -65,44 +68,44 @@ class Room {
         else if (slim || several) { take("top", bottom - box.top) }
         else { edges.push(card) }
       } else {
-        const of = slim || several || width > LARGE ? room : beside
+        const of = slim || several || width > LARGE ? insets : beside
         const after = left + right > box.left + box.right
         if (after) { take("right", box.right - left, of) } else { take("left", right - box.left, of) }
       }
     }
-    if (!slim && !several) { return this.clear(room, box, beside, edges) }
-    const narrow = several && this.stage.tilesIn(room)[0][2] < NARROW_FEET
+    if (!slim && !several) { return this.clear(insets, box, beside, edges) }
+    const narrow = several && this.renderer.tilesIn(insets)[0][2] < NARROW_FEET
     // There they take room whatever stands behind them, and whichever way it is turned.
     for (const part of slim || narrow ? [legend, transport] : []) {
       if (!part.hidden) { take("bottom", box.bottom - part.getBoundingClientRect().top) }
     }
-    return room
+    return insets
   }
 
   // A wide canvas has room around one character, which then makes no more room than it must.
-  clear(room, box, beside, edges) {
-    let cleared = this.stepAside(room, beside)
+  clear(insets, box, beside, edges) {
+    let cleared = this.stepAside(insets, beside)
     for (let times = 0; times < 2; times++) {  // where it goes something else may be
       cleared = this.stepAside(this.rise(cleared, box, edges), beside)
     }
     return cleared
   }
 
-  stepAside(room, beside) {
-    const {clientWidth: width} = this.stage.element
-    const [left, right] = ["left", "right"].map((edge) => Math.max(room[edge], beside[edge]))
+  stepAside(insets, beside) {
+    const {clientWidth: width} = this.renderer.element
+    const [left, right] = ["left", "right"].map((edge) => Math.max(insets[edge], beside[edge]))
     let half = GAP
-    this.eachPixel(room, (aside) => { half = Math.max(half, Math.abs(aside) + GAP) })
-    if (left + 2 * half + right > width) { return {...room, left, right} }
-    const middle = (room.left + width - room.right) / 2
+    this.eachPixel(insets, (aside) => { half = Math.max(half, Math.abs(aside) + GAP) })
+    if (left + 2 * half + right > width) { return {...insets, left, right} }
+    const middle = (insets.left + width - insets.right) / 2
     const shift = 2 * (Math.min(Math.max(middle, left + half), width - right - half) - middle)
-    return {...room, left: room.left + Math.max(shift, 0), right: room.right + Math.max(-shift, 0)}
+    return {...insets, left: insets.left + Math.max(shift, 0), right: insets.right + Math.max(-shift, 0)}
   }
 
   // What is at an edge takes room only where the character would be behind it.
-  rise(room, box, edges) {
-    const x = (box.width + room.left - room.right) / 2
-    const y = (box.height + room.top - room.bottom) / 2
+  rise(insets, box, edges) {
+    const x = (box.width + insets.left - insets.right) / 2
+    const y = (box.height + insets.top - insets.bottom) / 2
     const parts = edges.map((part) => part.getBoundingClientRect()).filter(({width}) => width)
       .map(({left, right, top, bottom}) => ({
         left: left - box.left - GAP - x, right: right - box.left + GAP - x,
@@ -110,8 +113,8 @@ class Room {
           ? {edge: "top", way: -1, above: y, pixels: bottom - box.top + GAP}
           : {edge: "bottom", way: 1, above: box.height - y, pixels: box.bottom - top + GAP},
       }))
-    const risen = {...room}
-    this.eachPixel(room, (aside, up) => {
+    const risen = {...insets}
+    this.eachPixel(insets, (aside, up) => {
       for (const {left, right, edge, way, above, pixels} of parts) {
         if (above + way * up < pixels && aside > left && aside < right && pixels > risen[edge]) {
           risen[edge] = pixels
@@ -122,8 +125,8 @@ class Room {
   }
 
   // Where the points of the character are seen by whoever begins to look.
-  eachPixel(room, see) {
-    this.fitting.eachPixel(this.way, this.orbit.home.target, this.fit(room), see)
+  eachPixel(insets, see) {
+    this.fitting.eachPixel(this.way, this.orbit.home.target, this.fit(insets), see)
   }
 
   // Where one looks from at the beginning.
@@ -133,13 +136,13 @@ class Room {
   }
 
   // How far away the view that one begins with must be.
-  fit(room) {
-    return this.fitting.distance(this.way, this.orbit.home.target, room)
+  fit(insets) {
+    return this.fitting.distance(this.way, this.orbit.home.target, insets)
   }
 
   fits(fitted) {
     this.fitted = fitted
-    this.factor = fitted / this.fit(noCards(this.stage.views.length > 1))
+    this.factor = fitted / this.fit(noCards(this.renderer.views.length > 1))
   }
 
   // Begins to look from where the server says, from as far as this window needs; or, for now, from
@@ -148,7 +151,7 @@ class Room {
     this.orbit.setHome(position, target)
     this.fitted = null
     this.make()
-    const distance = this.fit(this.stage.room)
+    const distance = this.fit(this.renderer.insets)
     this.orbit.setHome(this.way.map((x, i) => target[i] + distance * x), target)
     this.fits(distance)
     if (now) {
@@ -167,9 +170,4 @@ class Room {
   remove() {
     this.observer.disconnect()
   }
-}
-
-// Views that stand side by side fill the canvas, and have captions of their own.
-function noCards(several) {
-  return several ? {left: 0, right: 0, top: 0, bottom: 0} : {left: 0, right: 0, top: 20, bottom: 20}
 }
