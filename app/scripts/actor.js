@@ -4,6 +4,7 @@ import {plain, plainList} from "./arrays.js"
 import {ALL, Colours, pointIds} from "./colour.js"
 import {shaderSwaps} from "./shade.js"
 import {skinArrays, skinned} from "./skin.js"
+import {TriangleTree} from "./triangle_tree.js"
 
 const MANY_LINES = 40000
 
@@ -227,8 +228,23 @@ export class Actor {
 
   // Where the points are now; the card alone knows as long as nobody asks.
   posed() {
-    const {pose} = this.renderer
-    return this.skin && pose ? skinned(this.skin, this.rest, pose) : this.rest
+    const {pose, poseCount} = this.renderer
+    if (!this.skin || !pose) { return this.rest }
+    const known = this.known
+    if (known?.poseCount !== poseCount || known.skin !== this.skin || known.rest !== this.rest) {
+      const {skin, rest} = this
+      this.known = {poseCount, skin, rest, points: skinned(skin, rest, pose)}
+    }
+    return this.known.points
+  }
+
+  // For rays: grown when first asked for, and fitted to where the points are now.
+  get tree() {
+    if (this.grown?.triangles !== this.triangles) {
+      this.grown = new TriangleTree(this.rest, this.triangles)
+    }
+    this.grown.fit(this.posed())
+    return this.grown
   }
 
   remove() {

@@ -46,6 +46,7 @@ export class Renderer {
     this.gl.setContainer(element)
     this.window.addView(this.gl)
     this.pose = null
+    this.poseCount = 0
     this.insets = noCards(false)
     this.divide([])
     this.frames = 0
@@ -109,6 +110,7 @@ export class Renderer {
 
   setPose(pose) {
     this.pose = pose
+    this.poseCount += 1  // the array may be the one of before, with other numbers
     this.poses.set(pose)
   }
 

@@ -6,32 +6,8 @@ import {toSegment} from "./pick.js"
 export function hitSurface(renderer, actor, x, y, cut) {
   if (!actor.visible || actor.kind !== "surface" || !actor.triangles) { return null }
   const {origin, direction} = renderer.ray(x, y)
-  const p = actor.posed()
-  const t = actor.triangles
-  const [ox, oy, oz] = origin
-  const [dx, dy, dz] = direction
-  let best = null
-  for (let i = 0; i < t.length; i += 3) {
-    const a = 3 * t[i], b = 3 * t[i + 1], c = 3 * t[i + 2]
-    const ux = p[b] - p[a], uy = p[b + 1] - p[a + 1], uz = p[b + 2] - p[a + 2]
-    const vx = p[c] - p[a], vy = p[c + 1] - p[a + 1], vz = p[c + 2] - p[a + 2]
-    const qx = dy * vz - dz * vy, qy = dz * vx - dx * vz, qz = dx * vy - dy * vx
-    const det = ux * qx + uy * qy + uz * qz
-    if (det === 0) { continue }
-    const sx = ox - p[a], sy = oy - p[a + 1], sz = oz - p[a + 2]
-    const g = (sx * qx + sy * qy + sz * qz) / det
-    if (g < 0 || g > 1) { continue }
-    const rx = sy * uz - sz * uy, ry = sz * ux - sx * uz, rz = sx * uy - sy * ux
-    const h = (dx * rx + dy * ry + dz * rz) / det
-    if (h < 0 || g + h > 1) { continue }
-    const far = (vx * rx + vy * ry + vz * rz) / det
-    if (far <= 0 || (best && far >= best.far)) { continue }
-    const at = [ox + far * dx, oy + far * dy, oz + far * dz]
-    if (cut && actor.clipped && !keeps(cut, actor.slab, at)) { continue }
-    const share = [1 - g - h, g, h]
-    best = {far, at, point: t[i + share.indexOf(Math.max(...share))]}
-  }
-  return best
+  const kept = cut && actor.clipped ? (at) => keeps(cut, actor.slab, at) : undefined
+  return actor.tree.firstHit(origin, direction, kept)
 }
 
 function keeps({origin, normal}, slab, at) {
