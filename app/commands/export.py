@@ -1,4 +1,4 @@
-"""What a person takes along: the bound character, pictures, films, numbers."""
+"""Export the bound character, pictures, films, numbers."""
 
 from __future__ import annotations
 
@@ -66,12 +66,12 @@ class Seen:
         return Order(description, theme, picture_size(pixels, self.aspect), self.camera)
 
 
-def take_picture(session: Session, done: Done) -> None:
+def export_picture(session: Session, done: Done) -> None:
     """Draw what is seen, large and with its legend, and hand over the PNG."""
     _draw(session, "png", done, lambda seen: seen.order(PICTURE_PIXELS, seen.posed()))
 
 
-def take_turntable(session: Session, ending: str, done: Done) -> None:
+def export_turntable(session: Session, ending: str, done: Done) -> None:
     """Film what is seen while the camera goes around it once; "mp4" or "gif"."""
 
     def order(seen: Seen) -> Order:
@@ -80,7 +80,7 @@ def take_turntable(session: Session, ending: str, done: Done) -> None:
     _draw(session, ending, done, order)
 
 
-def take_motion(session: Session, ending: str, done: Done) -> None:
+def export_motion(session: Session, ending: str, done: Done) -> None:
     """Film the motion that is chosen, as what is seen now goes through it."""
     if session.state.weights is None:
         session.state.message = ("info", "There are no weights to move the skin by yet.")
@@ -93,7 +93,7 @@ def take_motion(session: Session, ending: str, done: Done) -> None:
     _draw(session, ending, done, order)
 
 
-def take_numbers(session: Session, what: str, ending: str, done: Done) -> None:
+def export_numbers(session: Session, what: str, ending: str, done: Done) -> None:
     """Hand over "weights", "distances" or "all" as numbers, in a "csv" or "npz"."""
     binding, rig = session.state.binding, session.state.rig
     if binding is None:
@@ -114,7 +114,7 @@ def take_numbers(session: Session, what: str, ending: str, done: Done) -> None:
     _hand_over(session, name, write, done)
 
 
-def bound_file(session: Session, done: Done) -> None:
+def export_bound(session: Session, done: Done) -> None:
     """Write the character with its new weights, and hand over its name and content."""
     state = session.state
     if state.binding is None:
@@ -129,7 +129,7 @@ def bound_file(session: Session, done: Done) -> None:
     _hand_over(session, f"{_stem(session)}-bound{binary_ending(rig)}", write, done)
 
 
-def repaired_file(session: Session, done: Done) -> None:
+def export_repaired(session: Session, done: Done) -> None:
     """Write the repaired character with its own weights, and hand over its name and content."""
     rig = session.state.rig
 

@@ -49,7 +49,7 @@ def load_demo(
     _load(
         session,
         lambda wanted: demo_rig(id),
-        f"opening {title}",
+        f"loading {title}",
         lambda: session.uploads.stay(""),
         chosen,
         then,
@@ -77,7 +77,7 @@ def load_files(session: Session, paths: list[Path], key: str = "") -> None:
     _load(
         session,
         lambda wanted: read(path, wanted),
-        f"opening {path.name}",
+        f"loading {path.name}",
         lambda: uploads.stay(key),
         failed=lambda: uploads.leave(key),
         demo="",

@@ -1,4 +1,4 @@
-"""The sidebar: character and bone, the tabs, the chosen panel's controls, take along."""
+"""The sidebar: character and bone, the tabs, the chosen panel's controls, export."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from ..commands.session import Session
 from ..panels import PANELS
 from ..panels.bone import bone
 from ..panels.character import character
-from ..panels.export import take_along
+from ..panels.export import export
 from ..panels.parts import lead
 from ..widgets.tabs import Tabs
 
@@ -25,7 +25,7 @@ NO_SKELETON = (
 
 def sidebar(session: Session) -> list[Any]:
     """Return what stands in the sidebar, from top to bottom."""
-    return [character(session), bone(session), *panels(session), take_along(session)]
+    return [character(session), bone(session), *panels(session), export(session)]
 
 
 def panels(session: Session) -> tuple[Tabs, pmui.Column]:

@@ -1,4 +1,4 @@
-"""Take the result along: the character with its new weights, pictures, films, numbers."""
+"""Export: the character with its new weights, pictures, films, numbers."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from ..commands.session import Session
 from .parts import GAP, caption, section, when
 
 
-def take_along(session: Session) -> pmui.Column:
+def export(session: Session) -> pmui.Column:
     """Return the section of the downloads."""
     state, offer = session.state, session.view.offer
     bound = pmui.Button(
@@ -21,23 +21,23 @@ def take_along(session: Session) -> pmui.Column:
         size="small",
         margin=GAP,
         sizing_mode="stretch_width",
-        on_click=lambda event: actions.bound_file(session, offer),
+        on_click=lambda event: actions.export_bound(session, offer),
         disabled=when(lambda value: value is None, state.param.binding),
     )
     films: dict[str, Callable[[], None]] = {
-        "Picture (PNG)": lambda: actions.take_picture(session, offer),
-        "Turntable (MP4)": lambda: actions.take_turntable(session, "mp4", offer),
-        "Turntable (GIF)": lambda: actions.take_turntable(session, "gif", offer),
-        "Motion (MP4)": lambda: actions.take_motion(session, "mp4", offer),
-        "Motion (GIF)": lambda: actions.take_motion(session, "gif", offer),
+        "Picture (PNG)": lambda: actions.export_picture(session, offer),
+        "Turntable (MP4)": lambda: actions.export_turntable(session, "mp4", offer),
+        "Turntable (GIF)": lambda: actions.export_turntable(session, "gif", offer),
+        "Motion (MP4)": lambda: actions.export_motion(session, "mp4", offer),
+        "Motion (GIF)": lambda: actions.export_motion(session, "gif", offer),
     }
     numbers: dict[str, Callable[[], None]] = {
-        "Weights (CSV)": lambda: actions.take_numbers(session, "weights", "csv", offer),
-        "Distances (CSV)": lambda: actions.take_numbers(session, "distances", "csv", offer),
-        "Both, with names (NPZ)": lambda: actions.take_numbers(session, "all", "npz", offer),
+        "Weights (CSV)": lambda: actions.export_numbers(session, "weights", "csv", offer),
+        "Distances (CSV)": lambda: actions.export_numbers(session, "distances", "csv", offer),
+        "Both, with names (NPZ)": lambda: actions.export_numbers(session, "all", "npz", offer),
     }
     return section(
-        "Take along",
+        "Export",
         bound,
         pmui.Row(
             _menu("Picture, film", "movie", films, state.param.rig, (4, 8, 4, 0)),

@@ -23,7 +23,7 @@ def geodesics(session: Session) -> pmui.Column:
         ),
     )
     return pmui.Column(
-        lead("How far it is from the chosen bone, by the shortest way through the body."),
+        lead("How far it is from the chosen bone, along the shortest path through the body."),
         section("", idle, *cutting(state), margin=(8, 20, 4, 20)),
         section("Shown with it", *_more(state)),
         section("Wavefront", *_wave(state)),
@@ -34,7 +34,7 @@ def geodesics(session: Session) -> pmui.Column:
 
 def _more(state: State) -> list[Any]:
     hint = caption(
-        "Click the body: the shortest way from there back to the bone is drawn.",
+        "Click the body: the shortest path from there to the bone is drawn.",
         visible=when(
             lambda vertex, path: path and vertex is None, state.param.vertex, state.param.path
         ),

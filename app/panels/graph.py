@@ -24,7 +24,7 @@ LAYER_COLORS = {
     "surface_edges": to_hex(palette.SURFACE),
 }
 """What marks each layer's switch, in the paper's colours."""
-LEAF_TITLES = {"point": "A point", "extend": "Extended", "fit": "Fitted"}
+LEAF_TITLES = {"point": "Points", "extend": "Extended", "fit": "Fitted"}
 AXES = {"X": "x", "Y": "y", "Z": "z"}
 
 
@@ -164,7 +164,7 @@ def _build(session: Session) -> list[Any]:
 
     resolution.param.watch(chosen, "value_throttled")
     state.param.watch(shown, "resolution")
-    threshold = slider(state.param.winding_threshold, "Counts as inside from τ", step=0.01)
+    threshold = slider(state.param.winding_threshold, "Winding threshold τ", step=0.01)
     again = pmui.Button(
         label="Compute again",
         size="small",
@@ -199,7 +199,7 @@ def _build(session: Session) -> list[Any]:
         orient,
         caption("Paths inside run along", margin=(4, 0, 0, 0)),
         choice(state.param.connectivity, {"6 axes": 6, "26 diagonals": 26, "Any angle": "any"}),
-        caption("The last bone of a chain is", margin=(4, 0, 0, 0)),
+        caption("Leaf bones are", margin=(4, 0, 0, 0)),
         choice(state.param.leaf, {LEAF_TITLES.get(leaf, leaf): leaf for leaf in LEAVES}),
         again,
     ]

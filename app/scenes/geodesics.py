@@ -1,4 +1,4 @@
-"""The distance from the chosen bone: the field, where it begins, and the way back."""
+"""The distance from the chosen bone: the field, where it begins, and the shortest path to it."""
 
 from __future__ import annotations
 
@@ -45,11 +45,11 @@ def geodesics(state: State, memo: Memo) -> Description:
         actors |= parts
         swatches += (swatch,)
     if way is not None and not len(way):
-        swatches += ((MARK, "no way leads from the vertex to the bone"),)
+        swatches += ((MARK, "no path leads from the vertex to the bone"),)
     elif way is not None:
         rig = state.rig
         actors["path"] = memo("tube", (rig, way), lambda: path_tube(rig, _in_scene(state, way)))
-        swatches += ((MARK, f"way back, {path_length(way):.3f} long"),)
+        swatches += ((MARK, f"shortest path, {path_length(way):.3f} long"),)
     if state.wave:
         swatches += ((BODY, "not reached yet"),)
     front = state.front * limits[1] if state.wave else None

@@ -33,9 +33,10 @@ export function hitLine(renderer, actor, x, y, reach) {
 }
 
 export function told(actor, index) {
-  const {text, values, names} = actor.reading
+  const {text, values, names, percent} = actor.reading
   const value = (values || actor.values)?.[index]
   if (value === undefined || Number.isNaN(value)) { return null }
   if (names?.length) { return text + names[value] }
+  if (percent) { return `${text}${Math.round(100 * value)}\u00a0%` }
   return text + (Number.isInteger(value) ? value : value.toFixed(3))
 }

@@ -126,7 +126,8 @@ def _reading(reading: Reading | None) -> dict[str, Any] | None:
         return None
     values = None if reading.values is None else _flat(reading.values, np.float32)
     names = [shown_name(name) for name in reading.names]
-    return {"text": printable(reading.text), "values": values, "names": names}
+    text = printable(reading.text)
+    return {"text": text, "values": values, "names": names, "percent": reading.percent}
 
 
 def _legend(legend: Legend | None) -> dict[str, Any] | None:
@@ -151,7 +152,7 @@ def _same(a: NDArray | None, b: NDArray | None) -> bool:
 def _same_reading(old: Reading | None, new: Reading | None) -> bool:
     if old is None or new is None:
         return old is new
-    same = (old.text, old.names) == (new.text, new.names)
+    same = (old.text, old.names, old.percent) == (new.text, new.names, new.percent)
     return same and _same(old.values, new.values)
 
 

@@ -8,7 +8,7 @@ from app.layout.sidebar import NO_SKELETON, panels
 from app.layout.status import messages, summary
 from app.panels import PANELS
 from app.panels.bone import bone
-from app.panels.export import take_along
+from app.panels.export import export
 from app.render import Choices, describe
 from app.scenes import resolve
 from app.state.url import to_query
@@ -28,7 +28,7 @@ def bare(session, loop):
     session.state.resolution = 16
     loading.show_rig(session, arm_rig())
     loop.run_until(lambda: session.state.binding is not None)
-    session.built = [panels(session), bone(session), take_along(session), messages(session)]
+    session.built = [panels(session), bone(session), export(session), messages(session)]
     for panel in PANELS:
         session.state.panel = panel.id
     loading.show_rig(session, bare_arm())

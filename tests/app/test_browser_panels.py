@@ -99,7 +99,7 @@ def test_the_field_its_starts_and_the_way_back(visit):
     assert visit.report()["actors"]["sources"]["points"] > 0
     visit.switch("Where distances begin")
     visit.click_vertex("__cutcell.renderer.actors.get('body').values[vertex] < 0.04")
-    visit.expect_text(re.compile(r"way back, \d\.\d+ long"))
+    visit.expect_text(re.compile(r"shortest path, \d\.\d+ long"))
     assert visit.report()["actors"]["path"]["points"] > 0
     visit.close_card()
     assert changed(whole, visit.look()) < 0.02  # the canvas has the focus, and shows it
@@ -137,7 +137,7 @@ def test_weights_in_many_ways(visit):
     for option, legend in (
         ("The strongest bone", None),
         ("The chosen bone", "Weight of"),
-        ("How many bones hold a point", "Joints that a vertex follows"),
+        ("Influences per vertex", "Joints that a vertex follows"),
     ):
         before = visit.look()
         visit.choose("Colours show", option)
@@ -145,11 +145,11 @@ def test_weights_in_many_ways(visit):
             visit.expect_text(legend)
         assert changed(before, visit.look()) > 0.001, option
     one = visit.look()
-    visit.slide("Bones a vertex, at most", "Home")
-    visit.expect_text("1.0 bones a vertex")
+    visit.slide("Influences per vertex, at most", "Home")
+    visit.expect_text("1.0 influences per vertex")
     assert changed(one, visit.look()) > 0.0005
     for _ in range(3):
-        visit.slide("Bones a vertex, at most", "ArrowRight")
+        visit.slide("Influences per vertex, at most", "ArrowRight")
         visit.settle()
     visit.choose("Colours show", "All bones")
     assert changed(mixed, visit.look()) < 0.001

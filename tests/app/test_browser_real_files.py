@@ -64,7 +64,7 @@ def looks_at_weights(visit, rig, binding):
     assert changed(mixed, visit.look()) > 0.002
     visit.close_card()
     visit.choose("Colours show", "Difference to the file's own")
-    visit.expect_text("Weight that sits on other joints")
+    visit.expect_text("Difference to the file's weights")
 
 
 def looks_at_the_graph(visit, binding):

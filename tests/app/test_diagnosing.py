@@ -8,7 +8,7 @@ import pytest
 import cutcell
 from app.commands import loading
 from app.commands.diagnosis import look_at, repair, take_back
-from app.commands.export import repaired_file
+from app.commands.export import export_repaired
 from app.panels.character import faults
 from app.panels.diagnosis import diagnosis, told
 from app.scenes import resolve
@@ -108,7 +108,7 @@ def test_the_repaired_file_is_handed_over(spoiled, loop, tmp_path):
     offered = []
     repair(spoiled, ["inverted-faces", "unweighted-vertices"])
     loop.run_until(lambda: spoiled.state.repair is not None and spoiled.state.binding is not None)
-    repaired_file(spoiled, lambda *args: offered.append(args))
+    export_repaired(spoiled, lambda *args: offered.append(args))
     loop.run_until(lambda: offered)
     name, content = offered[0]
     assert name == "arm-repaired.glb"

@@ -13,11 +13,11 @@ import pytest
 import cutcell
 from app.commands import binding, loading
 from app.commands.export import (
-    bound_file,
-    take_motion,
-    take_numbers,
-    take_picture,
-    take_turntable,
+    export_bound,
+    export_motion,
+    export_numbers,
+    export_picture,
+    export_turntable,
 )
 from app.state import PANELS
 from app.work.jobs import PATIENCE, Jobs
@@ -27,7 +27,7 @@ from tests.cutcell.io.gltf_builder import column
 
 def test_the_bound_character_can_be_taken_along(bound, loop, tmp_path):
     got = []
-    bound_file(bound, lambda name, content: got.append((name, content)))
+    export_bound(bound, lambda name, content: got.append((name, content)))
     loop.run_until(lambda: bool(got))
     name, content = got[0]
     assert name == "arm-bound.glb"
@@ -51,7 +51,7 @@ def test_the_bound_character_can_be_taken_along(bound, loop, tmp_path):
 def test_a_name_that_no_file_can_have_is_no_hindrance(bound, loop, name, taken_as):
     bound.state.rig = replace(bound.state.rig, name=name)
     got = []
-    bound_file(bound, lambda *file: got.append(file))
+    export_bound(bound, lambda *file: got.append(file))
     loop.run_until(lambda: bool(got))
     assert got[0][0] == taken_as
     assert got[0][1].startswith(b"glTF")
@@ -63,14 +63,14 @@ def test_an_avatar_keeps_its_ending(session, loop, tmp_path):
     loading.show_rig(session, cutcell.load(path))
     loop.run_until(lambda: session.state.binding is not None)
     got = []
-    bound_file(session, lambda *file: got.append(file))
+    export_bound(session, lambda *file: got.append(file))
     loop.run_until(lambda: bool(got))
     assert got[0][0] == "avatar-bound.vrm"
     assert got[0][1].startswith(b"glTF")
 
 
-def test_nothing_to_take_along_is_told(session):
-    bound_file(session, lambda name, content: None)
+def test_nothing_to_export_is_told(session):
+    export_bound(session, lambda name, content: None)
     assert session.state.message[0] == "info"
 
 
@@ -89,13 +89,13 @@ def small(monkeypatch):
 
 def test_pictures_show_what_is_seen_in_its_pose(bound, loop, small):
     bound.state.panel = "pose"
-    name, rest = taken(loop, take_picture, bound)
+    name, rest = taken(loop, export_picture, bound)
     assert name == "arm-pose.png"
     bound.state.turns = {1: (0, 0, 60)}
-    _, turned = taken(loop, take_picture, bound)
+    _, turned = taken(loop, export_picture, bound)
     bound.state.param.update(moving=True, clip=0)
     bound.view.time = 0.5
-    _, halfway = taken(loop, take_picture, bound)
+    _, halfway = taken(loop, export_picture, bound)
     assert len({rest, turned, halfway}) == 3
     assert all(content.startswith(b"\x89PNG") for content in (rest, turned, halfway))
     assert list(bound.folder.iterdir()) == []
@@ -111,7 +111,7 @@ def test_the_body_goes_through_a_filmed_motion_on_every_panel(bound, loop, panel
 
     monkeypatch.setattr("app.commands.export.draw_apart", remember)
     bound.state.param.update(panel=panel, cut_axis="z")
-    taken(loop, take_motion, bound, "gif")
+    taken(loop, export_motion, bound, "gif")
     shown = orders[0].description
     assert any("body" in name for name in shown.actors)
     assert all(actor.skin is not None for actor in shown.actors.values())
@@ -120,13 +120,13 @@ def test_the_body_goes_through_a_filmed_motion_on_every_panel(bound, loop, panel
 
 
 def test_no_motion_is_filmed_before_there_are_weights(session):
-    take_motion(session, "gif", lambda name, content: None)
+    export_motion(session, "gif", lambda name, content: None)
     assert session.state.message[0] == "info"
 
 
 def test_drawing_leaves_the_page_free_and_can_be_cancelled(bound, loop, small):
     got = []
-    take_turntable(bound, "gif", lambda name, content: got.append(name))
+    export_turntable(bound, "gif", lambda name, content: got.append(name))
     stages = []
     bound.state.param.watch(lambda event: stages.append(event.new), "stage")
     loop.run_until(lambda: "drawing the film" in stages)
@@ -146,8 +146,8 @@ def killed(*given):
 
 
 WRITERS = {
-    "file": ("cutcell.save", bound_file),
-    "numbers": ("app.commands.export.save_numbers", partial(take_numbers, what="all")),
+    "file": ("cutcell.save", export_bound),
+    "numbers": ("app.commands.export.save_numbers", partial(export_numbers, what="all")),
 }
 
 
@@ -170,26 +170,26 @@ def test_writing_can_be_cancelled_and_others_compute_then(bound, loop, monkeypat
 
 def test_a_writer_that_crashes_is_told_in_a_sentence(bound, loop, monkeypatch):
     monkeypatch.setattr("cutcell.save", killed)
-    bound_file(bound, lambda name, content: pytest.fail("it crashed"))
+    export_bound(bound, lambda name, content: pytest.fail("it crashed"))
     loop.run_until(lambda: not bound.state.busy)
     assert "Writing it came to a sudden end" in bound.state.message[1]
     assert bound.state.binding is not None
 
 
 def test_numbers_are_those_that_were_computed(bound, loop):
-    name, content = taken(loop, take_numbers, bound, "all", "npz")
+    name, content = taken(loop, export_numbers, bound, "all", "npz")
     assert name == "arm-numbers.npz"
     with np.load(io.BytesIO(content)) as numbers:
         np.testing.assert_array_equal(numbers["weights"], bound.state.binding.weights)
         np.testing.assert_array_equal(numbers["distances"].T, bound.state.binding.distances.joint)
         assert numbers["joint_names"].tolist() == ["shoulder", "elbow", "wrist"]
-    name, content = taken(loop, take_numbers, bound, "weights", "csv")
+    name, content = taken(loop, export_numbers, bound, "weights", "csv")
     assert name == "arm-weights.csv"
     assert content.decode().splitlines()[0] == "vertex,shoulder,elbow,wrist"
 
 
 def test_numbers_that_are_not_there_yet_are_told(session):
-    take_numbers(session, "all", "npz", lambda name, content: None)
+    export_numbers(session, "all", "npz", lambda name, content: None)
     assert session.state.message[0] == "info"
 
 
@@ -197,7 +197,7 @@ def test_a_machine_that_cannot_draw_is_told_so(bound, loop, small, monkeypatch):
     got = []
     monkeypatch.setattr("viewers.worker.sys.executable", "false")
     monkeypatch.setattr("viewers.opengl._can_draw", lambda: False)
-    take_picture(bound, lambda name, content: got.append(name))
+    export_picture(bound, lambda name, content: got.append(name))
     loop.run_until(lambda: bound.state.message is not None)
     assert "no OpenGL" in bound.state.message[1]
     assert got == []

@@ -1,4 +1,4 @@
-"""A session without a browser: opening, binding, failing, cancelling."""
+"""A session without a browser: loading, binding, failing, cancelling."""
 
 import os
 import shutil
@@ -309,7 +309,7 @@ def test_the_wave_is_told_once_and_not_frame_by_frame(bound, loop):
 
 def test_what_is_told_reads_well(session):
     assert stage_text("graph") == "Building the graph"
-    assert stage_text("opening a.glb") == "Opening a.glb"
+    assert stage_text("loading a.glb") == "Loading a.glb"
     assert stage_text("") == "Starting"
     assert summary(session.state) == ""
     assert warning(session.state) is None
@@ -358,7 +358,7 @@ def test_reading_that_does_not_come_to_an_end_is_cancelled(session, loop, tmp_pa
     pipe = tmp_path / "pipe.glb"
     os.mkfifo(pipe)  # whoever reads it waits for someone who writes
     loading.load_files(session, [pipe])
-    loop.run_until(lambda: session.state.stage == "opening pipe.glb")
+    loop.run_until(lambda: session.state.stage == "loading pipe.glb")
     loop.run_for(0.2)
     binding.cancel(session)
     assert "Cancelled" in session.state.message[1]

@@ -2,7 +2,7 @@ import assert from "node:assert/strict"
 import {test} from "node:test"
 
 import {pickBone, REACH, toSegment, TOUCH} from "../../../app/scripts/pick.js"
-import {hitLine} from "../../../app/scripts/surface.js"
+import {hitLine, told} from "../../../app/scripts/surface.js"
 
 // A renderer whose canvas has the scene's own x and y as pixels; what is behind z = 0 is not seen.
 const renderer = {
@@ -49,4 +49,13 @@ test("the nearest line is found", () => {
   assert.equal(hitLine(renderer, rays, 4, 4, TOUCH), 1)
   assert.equal(hitLine(renderer, rays, 4, 40, TOUCH), null)
   assert.equal(hitLine(renderer, {...rays, visible: false}, 4, 4, TOUCH), null)
+})
+
+test("what is read under the pointer is a name, a number or a part", () => {
+  const at = (reading, values) => told({reading: {text: "it is ", ...reading}, values}, 1)
+  assert.equal(at({}, [0, 0.25]), "it is 0.250")
+  assert.equal(at({}, [0, 3]), "it is 3")
+  assert.equal(at({names: ["arm", "leg"]}, [0, 1]), "it is leg")
+  assert.equal(at({percent: true}, [0, 0.5]), "it is 50\u00a0%")
+  assert.equal(at({}, [0, NaN]), null)
 })
