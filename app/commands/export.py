@@ -24,7 +24,7 @@ from ..files.receive import safe_name
 from ..scenes import Memo, following, resolve
 from ..scenes.pose import SWING_DEGREES, clip_of
 from ..state import State
-from ..work.jobs import COMPUTING, DRAWING, Turns
+from ..work.jobs import COMPUTING, DRAWING, Slots
 from ..work.processes import in_process
 from .session import Session
 
@@ -170,7 +170,7 @@ def _hand_over(
     name: str,
     write: Callable[[Path, Progress], None],
     done: Done,
-    turns: Turns = COMPUTING,
+    slots: Slots = COMPUTING,
 ) -> None:
     """Let a file be written, and hand over its name and content; nothing of it stays."""
     place = session.folder
@@ -182,7 +182,7 @@ def _hand_over(
             write(path, progress)
             return path.read_bytes()
 
-    session.start(work, lambda content: done(name, content), turns)
+    session.start(work, lambda content: done(name, content), slots)
 
 
 def _stem(session: Session) -> str:

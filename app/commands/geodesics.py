@@ -20,12 +20,12 @@ def watch(session: Session) -> None:
     )
     session.view.listen("front", lambda message: halt_wave(session, message["front"]))
     session.state.param.watch(
-        lambda *events: run_wave(session), ["panel", "wave", "filming", "field", "joint", "rig"]
+        lambda *events: run_wave(session), ["panel", "wave", "animating", "field", "joint", "rig"]
     )
 
 
 def halt_wave(session: Session, front: float | None) -> None:
-    """Take over where the wave halted in the browser, as a part of the whole way."""
+    """Take over where the wave halted in the browser, as a part of the greatest distance."""
     session.state.front = min(max(front or 0.0, 0.0), 1.0)
 
 
@@ -33,7 +33,7 @@ def run_wave(session: Session) -> None:
     """Let the wavefront run in the browser, or halt it; told only when it is another one."""
     state = session.state
     field = field_of(state)
-    runs = state.panel == "geodesics" and state.wave and state.filming and field is not None
+    runs = state.panel == "geodesics" and state.wave and state.animating and field is not None
     animation = {"end": distance_limits(field)[1], "seconds": WAVE_SECONDS} if runs else None
     if session.view.told("animation") != animation:
         session.view.tell(animation=animation)

@@ -66,7 +66,7 @@ def tell_gizmo(session: Session) -> None:
 
 
 class Hand:
-    """Turns joints as the rings on the canvas are dragged.
+    """Slots joints as the rings on the canvas are dragged.
 
     Parameters
     ----------

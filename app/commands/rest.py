@@ -1,4 +1,4 @@
-"""Tells who asks whether anything is still under way: tests, before they look."""
+"""Answers whether any work is still running: for tests, before they look."""
 
 from __future__ import annotations
 

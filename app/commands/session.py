@@ -21,7 +21,7 @@ from ..files.upload_cache import UPLOADS, PageUploads
 from ..scenes import Memo
 from ..state import State
 from ..state.history import History
-from ..work.jobs import COMPUTING, Schedule, Tasks, Turns
+from ..work.jobs import COMPUTING, Schedule, Slots, Tasks
 from ..work.messages import told
 
 logger = logging.getLogger("cutcell.app")
@@ -105,7 +105,7 @@ class Session:
         self,
         work: Callable[[Progress], Any],
         done: Callable[[Any], None],
-        turns: Turns = COMPUTING,
+        slots: Slots = COMPUTING,
         failed: Callable[[], None] = lambda: None,
     ) -> None:
         """Do some work that the page shows progress of; it stops what went on before.
@@ -127,7 +127,7 @@ class Session:
             state.param.update(stage=stage, fraction=fraction)
 
         state.param.update(busy=True, stage="", fraction=0.0)
-        jobs.start(work, finish, went_wrong, report, turns)
+        jobs.start(work, finish, went_wrong, report, slots)
 
     def fail(self, error: Exception) -> None:
         """Tell what went wrong; the page keeps what it had."""

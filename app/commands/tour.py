@@ -112,8 +112,10 @@ def camera_of(session: Session, look: Look) -> Camera:
     if look.focus:
         joint = rig.skeleton.joints[rig.skeleton.names.index(look.focus)]
         target = to_scene(rig, joint[None])[0]
-    way = np.array([np.cos(above) * np.sin(around), np.sin(above), np.cos(above) * np.cos(around)])
-    eye = target + distance * way
+    direction = np.array(
+        [np.cos(above) * np.sin(around), np.sin(above), np.cos(above) * np.cos(around)]
+    )
+    eye = target + distance * direction
     return Camera(tuple(eye.tolist()), tuple(target.tolist()))
 
 

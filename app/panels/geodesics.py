@@ -49,11 +49,11 @@ def _more(state: State) -> list[Any]:
 
 def _wave(state: State) -> list[Any]:
     def play(event: Any) -> None:
-        state.param.update(wave=True, filming=not state.filming)
+        state.param.update(wave=True, animating=not state.animating)
 
     button = pmui.Button(
-        label=when(lambda on: "Halt the wave" if on else "Let it run", state.param.filming),
-        icon=when(lambda on: "pause" if on else "play_arrow", state.param.filming),
+        label=when(lambda on: "Halt the wave" if on else "Let it run", state.param.animating),
+        icon=when(lambda on: "pause" if on else "play_arrow", state.param.animating),
         size="small",
         variant="outlined",
         on_click=play,
@@ -64,7 +64,7 @@ def _wave(state: State) -> list[Any]:
         state.param.front,
         "How far it came",
         step=0.005,
-        visible=when(lambda on, runs: on and not runs, state.param.wave, state.param.filming),
+        visible=when(lambda on, runs: on and not runs, state.param.wave, state.param.animating),
     )
     return [
         switch(state.param.wave),

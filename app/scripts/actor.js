@@ -102,7 +102,7 @@ export class Actor {
     }
   }
 
-  // How the points follow the joints, and a second way whose distance from it colours them.
+  // How the points follow the joints, and a second skin, the distance to which colours them.
   setSkins({skin, apart}) {
     const plainSkin = ({joints, weights, count}) =>
       ({joints: plain(joints), weights: plain(weights), count})

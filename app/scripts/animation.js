@@ -15,7 +15,7 @@ export class Animation {
     this.view.changed()
   }
 
-  // As a part of the whole way.
+  // As a part of the greatest distance.
   tell() {
     this.view.model.send_msg({type: "front", front: this.front / this.playing.end})
   }

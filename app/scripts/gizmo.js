@@ -127,7 +127,7 @@ export class Gizmo {
     const [x, y] = [e.clientX - box.left, e.clientY - box.top]
     this.held = {
       axis, group, base, centre, turnAxis: axes[axis], joint: this.part.joint, start,
-      way: this.wayAt(centre, axes, axis, x, y), degrees: 0, told: 0, target: e.target,
+      motion: this.motionAt(centre, axes, axis, x, y), degrees: 0, told: 0, target: e.target,
       pointer: e.pointerId,
     }
     group.classList.add("held")
@@ -136,7 +136,7 @@ export class Gizmo {
   }
 
   // How far the ring's point under the pointer moves on the screen for one radian.
-  wayAt(centre, axes, axis, x, y) {
+  motionAt(centre, axes, axis, x, y) {
     const [u, v] = [axes[(axis + 1) % 3], axes[(axis + 2) % 3]]
     const middle = this.renderer.project(centre)
     const [, , , height] = this.renderer.tiles[0]
@@ -152,11 +152,11 @@ export class Gizmo {
       if (!best || away < best.away - 0.5) { best = {away, angle} }
     }
     const [a, b] = [at(best.angle - 0.02), at(best.angle + 0.02)]
-    const way = [(b[0] - a[0]) / 0.04, (b[1] - a[1]) / 0.04]
-    const length = Math.hypot(...way)
+    const motion = [(b[0] - a[0]) / 0.04, (b[1] - a[1]) / 0.04]
+    const length = Math.hypot(...motion)
     // Where a ring is seen from its edge, its point hardly moves: let the hand do, still.
     const least = RING_RADIUS * 0.5
-    return length < 1e-6 ? [least, 0] : way.map((d) => d * Math.max(least, length) / length)
+    return length < 1e-6 ? [least, 0] : motion.map((d) => d * Math.max(least, length) / length)
   }
 
   drag(e) {
@@ -164,7 +164,7 @@ export class Gizmo {
     if (!held || e.pointerId !== held.pointer) { return }
     e.preventDefault()
     const [dx, dy] = [e.clientX - held.start[0], e.clientY - held.start[1]]
-    const [wx, wy] = held.way
+    const [wx, wy] = held.motion
     const radians = (dx * wx + dy * wy) / (wx * wx + wy * wy)
     held.degrees = Math.round(radians * 180 / Math.PI * (e.shiftKey ? 1 / 15 : 1))
       * (e.shiftKey ? 15 : 1)

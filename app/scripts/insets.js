@@ -110,13 +110,13 @@ export class Insets {
       .map(({left, right, top, bottom}) => ({
         left: left - box.left - GAP - x, right: right - box.left + GAP - x,
         ...top + bottom < box.top + box.bottom
-          ? {edge: "top", way: -1, above: y, pixels: bottom - box.top + GAP}
-          : {edge: "bottom", way: 1, above: box.height - y, pixels: box.bottom - top + GAP},
+          ? {edge: "top", sign: -1, above: y, pixels: bottom - box.top + GAP}
+          : {edge: "bottom", sign: 1, above: box.height - y, pixels: box.bottom - top + GAP},
       }))
     const risen = {...insets}
     this.eachPixel(insets, (aside, up) => {
-      for (const {left, right, edge, way, above, pixels} of parts) {
-        if (above + way * up < pixels && aside > left && aside < right && pixels > risen[edge]) {
+      for (const {left, right, edge, sign, above, pixels} of parts) {
+        if (above + sign * up < pixels && aside > left && aside < right && pixels > risen[edge]) {
           risen[edge] = pixels
         }
       }
@@ -126,18 +126,18 @@ export class Insets {
 
   // Where the points of the character are seen by whoever begins to look.
   eachPixel(insets, see) {
-    this.fitting.eachPixel(this.way, this.orbit.home.target, this.fit(insets), see)
+    this.fitting.eachPixel(this.direction, this.orbit.home.target, this.fit(insets), see)
   }
 
   // Where one looks from at the beginning.
-  get way() {
+  get direction() {
     const {yaw, pitch} = this.orbit.home
     return [Math.cos(pitch) * Math.sin(yaw), Math.sin(pitch), Math.cos(pitch) * Math.cos(yaw)]
   }
 
   // How far away the view that one begins with must be.
   fit(insets) {
-    return this.fitting.distance(this.way, this.orbit.home.target, insets)
+    return this.fitting.distance(this.direction, this.orbit.home.target, insets)
   }
 
   fits(fitted) {
@@ -152,7 +152,7 @@ export class Insets {
     this.fitted = null
     this.make()
     const distance = this.fit(this.renderer.insets)
-    this.orbit.setHome(this.way.map((x, i) => target[i] + distance * x), target)
+    this.orbit.setHome(this.direction.map((x, i) => target[i] + distance * x), target)
     this.fits(distance)
     if (now) {
       this.orbit.look(now.position, now.focal_point)

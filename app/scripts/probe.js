@@ -42,7 +42,7 @@ export function probe(view) {
         ])),
         bones: view.bones ? view.bones.joint.length : 0,
         camera: view.orbit.position, front: view.animation.front ?? null,
-        filming: Boolean(view.animation.playing),
+        animating: Boolean(view.animation.playing),
       }
     },
   }

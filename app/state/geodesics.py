@@ -17,4 +17,4 @@ class GeodesicsChoices(param.Parameterized):
     wave: Any = param.Boolean(
         False, label="Wavefront", doc="Whether `front` hides what is farther."
     )
-    filming: Any = param.Boolean(False, doc="Whether the wave runs.")
+    animating: Any = param.Boolean(False, doc="Whether the wave runs.")

@@ -13,7 +13,8 @@ from .compare import FEWEST_VIEWS, MOST_VIEWS, offered, standard
 from .tour import TOUR
 
 OWN = frozenset({"name", "demo", "queued", "joint", "dark", "moving", "playing", "clip", "skipped",
-                 "busy", "stage", "fraction", "message", "tour", "vertex", "filming"})  # fmt: skip
+                 "busy", "stage", "fraction", "message", "tour", "vertex",
+                 "animating"})  # fmt: skip
 """What goes with one person or one moment, or has a word of its own in the address."""
 
 NOTED = ("joint", "turns", "clip", "methods", "minus")

@@ -18,12 +18,12 @@ Schedule = Callable[[Callable[[], Any]], Any]
 PATIENCE = 1.0
 """Seconds that others wait for work that was stopped, and goes on because it does not look."""
 
-MOST_DEAF = 3
-"""How much such work goes on beside what is wanted; then others wait all the same."""
+MOST_UNRESPONSIVE = 3
+"""How many such jobs may go on beside those that are wanted; then others wait all the same."""
 
 
-class Turns:
-    """What work waits for: so many do work of a kind at a time.
+class Slots:
+    """Slots for work of a kind: what finds none free waits.
 
     Parameters
     ----------
@@ -37,7 +37,7 @@ class Turns:
         self._held: set[Job] = set()
 
     def take(self, job: Job, seconds: float) -> bool:
-        """Take a turn, or tell after some seconds that there was none."""
+        """Take a slot; False where none became free within some seconds."""
         with self._change:
             free = self._change.wait_for(self._free, seconds)
             if free:
@@ -45,31 +45,31 @@ class Turns:
             return free
 
     def give_back(self, job: Job) -> None:
-        """Let another one work."""
+        """Free the slot of a job."""
         with self._change:
             self._held.discard(job)
             self._change.notify_all()
 
     def _free(self) -> bool:
         now = time.monotonic()
-        deaf = sum(now - job.stopped > PATIENCE for job in self._held)
-        return len(self._held) - min(deaf, MOST_DEAF) < self._places
+        unresponsive = sum(now - job.stopped > PATIENCE for job in self._held)
+        return len(self._held) - min(unresponsive, MOST_UNRESPONSIVE) < self._places
 
 
-COMPUTING = Turns()
+COMPUTING = Slots()
 """Binding takes all cores and much memory: sessions compute in turn."""
 
-COMPARING = Turns(4)
+COMPARING = Slots(4)
 """Methods that are compared may take minutes, most of them in processes of their own: some
 sessions do so at once, so that none waits for another's slow method."""
 
-DRAWING = Turns()
+DRAWING = Slots()
 """Pictures and films are drawn in turn, while others compute."""
 
-DESCRIBING = Turns(4)
+DESCRIBING = Slots(4)
 """Scenes of large characters are described while others compute."""
 
-READING = Turns(4)
+READING = Slots(4)
 """Files are read in processes of their own, while others compute."""
 
 WAITING = "waiting for another computation"
@@ -163,9 +163,9 @@ class Job:
         """Run an action on the page's own thread, unless the job is stopped till then."""
         self._schedule(lambda: None if self.cancelled.is_set() else action())
 
-    def wait_for(self, turns: Turns) -> None:
+    def wait_for(self, slots: Slots) -> None:
         """Wait until no other session, or few enough of them, do work of the kind."""
-        while not turns.take(self, 0.05):
+        while not slots.take(self, 0.05):
             self.progress(WAITING, 0.0)
 
 
@@ -194,11 +194,11 @@ class Jobs:
         done: Callable[[Any], None],
         failed: Callable[[Exception], None],
         report: Progress,
-        turns: Turns = COMPUTING,
+        slots: Slots = COMPUTING,
     ) -> Job | None:
         """Do some work in a thread; `done`, `failed` and `report` run on the page's thread.
 
-        It waits until no other session, or few enough of them, do work that takes the same turns.
+        It waits until no other session, or few enough of them, do work of the same kind.
         Whatever ran before is stopped, and none of its results arrive any more.
         """
         self.cancel()
@@ -206,7 +206,7 @@ class Jobs:
             return None
         job = self._current = Job(self._schedule, report)
         ends = (self._finishing(job, done), self._finishing(job, failed))
-        arguments = (job, work, *ends, turns)
+        arguments = (job, work, *ends, slots)
         threading.Thread(target=_run, args=arguments, daemon=True, name="cutcell job").start()
         return job
 
@@ -344,14 +344,14 @@ def _run(
     work: Callable[[Progress], Any],
     done: Callable[[Any], None],
     failed: Callable[[Exception], None],
-    turns: Turns,
+    slots: Slots,
 ) -> None:
     try:
-        job.wait_for(turns)
+        job.wait_for(slots)
         try:
             result = work(job.progress)
         finally:
-            turns.give_back(job)
+            slots.give_back(job)
     except Cancelled:
         return
     except Exception as error:  # whatever it is, the page must hear of it

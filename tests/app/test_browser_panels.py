@@ -119,13 +119,13 @@ def test_the_wave_runs_and_halts(visit):
     visit.slide("How far it came", "ArrowRight", 8)
     visit.page.wait_for_function("f => __cutcell.report().front > f", arg=front)
     visit.button("Let it run").click()
-    visit.page.wait_for_function("__cutcell.report().filming")
+    visit.page.wait_for_function("__cutcell.report().animating")
     messages = visit.report()["messages"]
     first = visit.report()["front"]
     visit.page.wait_for_function("f => __cutcell.report().front !== f", arg=first)
     assert visit.report()["messages"] == messages  # nothing is streamed
     visit.button("Halt the wave").click()
-    visit.page.wait_for_function("!__cutcell.report().filming")
+    visit.page.wait_for_function("!__cutcell.report().animating")
     visit.settle()
     visit.switch("Wavefront")
     assert changed(whole, visit.look()) < 0.002

@@ -299,7 +299,7 @@ def test_the_wave_is_told_once_and_not_frame_by_frame(bound, loop):
     bound.view.tell = lambda **parts: told.append(parts)
     bound.state.panel = "geodesics"
     loop.run_until(lambda: bound.state.field is not None)
-    bound.state.param.update(wave=True, filming=True)
+    bound.state.param.update(wave=True, animating=True)
     films = [parts["animation"] for parts in told if "animation" in parts]
     assert len(films) == 1
     assert films[0]["end"] > 0
