@@ -21,8 +21,9 @@ from ..files.upload_cache import UPLOADS, PageUploads
 from ..scenes import Memo
 from ..state import State
 from ..state.history import History
-from ..work.jobs import COMPUTING, Schedule, Slots, Tasks
+from ..work.jobs import COMPUTING, Schedule, Slots
 from ..work.messages import told
+from ..work.tasks import Tasks
 
 logger = logging.getLogger("cutcell.app")
 

@@ -75,9 +75,6 @@ READING = Slots(4)
 WAITING = "waiting for another computation"
 """The stage of work that waits for its turn."""
 
-PAUSE = 0.2
-"""Seconds without a change after which a person is taken to have chosen."""
-
 REPORT_EVERY = 0.08
 """Seconds between two reports of progress; more would only keep the page busy."""
 
@@ -270,73 +267,6 @@ class Newest:
         """Stop what goes on, and forget what waits."""
         self._next = None
         self._jobs.cancel()
-
-
-class Tasks:
-    """All work of one page, by name.
-
-    Parameters
-    ----------
-    schedule : callable
-        Runs a function on the page's own thread, soon. Called from any thread.
-    failed : callable
-        Called on that thread with what goes wrong.
-    """
-
-    def __init__(self, schedule: Schedule, failed: Callable[[Exception], None]) -> None:
-        self._schedule = schedule
-        self._failed = failed
-        self._jobs: dict[str, Jobs] = {}
-        self._newest: dict[str, Newest] = {}
-        self._timer: threading.Timer | None = None
-        self._closed = False
-
-    def later(self, action: Callable[[], Any]) -> None:
-        """Run an action on the page's own thread; what goes wrong in it is told."""
-
-        def guarded() -> None:
-            try:
-                action()
-            except Exception as error:
-                self._failed(error)
-
-        self._schedule(guarded)
-
-    def after_a_pause(self, action: Callable[[], Any]) -> None:
-        """Run an action when a person has paused for a moment; a newer one takes its place."""
-        if self._timer is not None:
-            self._timer.cancel()
-        self._timer = threading.Timer(PAUSE, lambda: self.later(action))
-        self._timer.daemon = True
-        self._timer.start()
-
-    def jobs(self, name: str) -> Jobs:
-        """Return the work of one name: a newer piece of it stops the one before."""
-        if name not in self._jobs:
-            self._jobs[name] = Jobs(self.later)
-            if self._closed:
-                self._jobs[name].close()
-        return self._jobs[name]
-
-    def newest(self, name: str) -> Newest:
-        """Return the work of one name of which only the newest matters."""
-        if name not in self._newest:
-            self._newest[name] = Newest(self.jobs(name), self._failed)
-        return self._newest[name]
-
-    @property
-    def running(self) -> bool:
-        """Whether there is work that was neither finished nor stopped, or is about to begin."""
-        waiting = self._timer is not None and self._timer.is_alive()
-        return waiting or any(jobs.running for jobs in self._jobs.values())
-
-    def close(self) -> None:
-        """Stop all work, and start nothing any more."""
-        self._closed = True
-        if self._timer is not None:
-            self._timer.cancel()
-        for jobs in self._jobs.values():
-            jobs.close()
 
 
 def _run(
