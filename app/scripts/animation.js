@@ -1,4 +1,4 @@
-// The film of a field: all up to the front is coloured, and the front moves on.
+// The animation of a wavefront: all up to the front is coloured, and the front moves on.
 
 export class Animation {
   constructor(view) {

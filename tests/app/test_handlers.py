@@ -11,6 +11,7 @@ from bokeh.util.token import generate_jwt_token, generate_session_id
 
 from app.commands.session import Session
 from app.server import handlers
+from app.widgets.modules import ADDRESS, FOLDER
 from benchmarks.visitors import Visitor
 from tests.app.serving import serving
 
@@ -114,6 +115,16 @@ def test_a_host_that_this_server_is_not_is_refused(here, begun):
     assert get(here, "/static/js/bokeh.min.js", Host=host).status == 421
     assert get(here, Host=f"127.0.0.1:{here.port}").status == 200
     assert not begun
+
+
+def test_scripts_are_served_and_nothing_beside_them(here):
+    answer = get(here, f"/{ADDRESS}/view.js")
+    assert answer.status == 200
+    assert "javascript" in answer.getheader("Content-Type")
+    assert answer.text == (FOLDER / "view.js").read_text(encoding="utf-8")
+    assert get(here, f"/{ADDRESS}/view.js", Host=f"rebound.example:{here.port}").status == 421
+    for path in ("/../serve.py", "/..%2fserve.py", "/", "/none.js", f"/{FOLDER.parent}/serve.py"):
+        assert get(here, f"/{ADDRESS}{path}").status in (403, 404)
 
 
 def test_a_strange_host_is_told_as_text(here):
