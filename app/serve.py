@@ -19,12 +19,13 @@ from bokeh.util.browser import view
 from cutcell.console import print_warnings
 from cutcell.skinning import is_compiled, warm_up
 
-from .apart import get_ready
-from .handlers import guard
-from .keep import KEEP
-from .log import log_to_terminal
-from .memory import settle
-from .page import page
+from .files.upload_cache import UPLOADS
+from .layout.page import page
+from .server.handlers import guard
+from .server.log import log_to_terminal
+from .server.memory import settle
+from .widgets.modules import STATIC
+from .work.processes import get_ready
 
 PORTS_TRIED = 20
 MAX_MESSAGE = 32 * 1024 * 1024
@@ -80,7 +81,7 @@ def serve(
     log_to_terminal()
     # Computing in Python gives way to the page's own thread sooner than after 5 ms.
     sys.setswitchinterval(0.001)
-    KEEP.sweep_by_the_clock()
+    UPLOADS.sweep_by_the_clock()
     threading.Thread(target=get_ready, daemon=True).start()
     server = begin(path, chosen, address)
     if is_compiled():
@@ -115,6 +116,7 @@ def begin(path: Path | None, port: int, address: str = "localhost", **more: Any)
         {"/": lambda: page(path)},
         port=port,
         address="127.0.0.1" if address == "localhost" else address,
+        static_dirs=STATIC,
         websocket_max_message_size=MAX_MESSAGE,
         http_server_kwargs={"max_body_size": MAX_BODY},
         title="cutcell",

@@ -12,9 +12,10 @@ import pyvista as pv
 import trimesh
 
 import cutcell
+from app.scenes.common import camera_part
 from app.scenes.pose import clip_part
 from app.state import State
-from app.view import SceneView, camera_part
+from app.widgets.view import SceneView
 from cutcell import Rig, TriangleMesh
 from cutcell.rig import Clip
 from viewers.camera import framing

@@ -4,7 +4,7 @@ import re
 
 from playwright.sync_api import expect
 
-from app.state import MAX_UPLOAD
+from app.files.receive import MAX_UPLOAD
 from assets import demo_path
 from tests.app.browser import Visit, changed
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import cutcell
-from app.facts import NO_WEIGHT, components, vertex_facts
 from app.scenes import Memo
+from app.scenes.facts import NO_WEIGHT, components, vertex_facts
 from app.state import State
 from cutcell.rig import TriangleMesh
 from tests.viewers.arm import arm_rig

@@ -7,7 +7,7 @@ import weakref
 
 import pytest
 
-from app.session import Session
+from app.commands.session import Session
 from assets import demo_path
 from benchmarks.visitors import BOUND, Visitor
 from tests.app.serving import serving

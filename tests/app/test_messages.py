@@ -8,9 +8,9 @@ from html import unescape
 import panel_material_ui as pmui
 import pytest
 
-from app.log import Printable
-from app.messages import sentence, told
 from app.panels.parts import as_text, unique_names
+from app.server.log import Printable
+from app.work.messages import sentence, told
 from cutcell.display import printable
 from cutcell.errors import FileError
 

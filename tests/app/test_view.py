@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 import cutcell
-from app.changes import changes
-from app.view import SceneView, camera_part, theme_part
+from app.scenes.common import camera_part, theme_part
+from app.widgets.changes import changes
+from app.widgets.view import SceneView
 from tests.viewers.arm import arm_rig
 from viewers.camera import framing
 from viewers.description import Cut, Description
@@ -28,11 +29,11 @@ def scene(rig):
 
 @pytest.fixture
 def view():
-    picked = []
-    view = SceneView(picked.append)
+    view = SceneView()
+    view.picked = []
+    view.listen("pick", lambda message: view.picked.append(message["joint"]))
     view.sent = []
     view._send_msg = view.sent.append
-    view.picked = picked
     return view
 
 

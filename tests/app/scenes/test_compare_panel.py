@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import cutcell
-from app.actions.compare import Compared, choose, measured, options_of, wanted
+from app.commands.compare import Compared, choose, measured, options_of, wanted
 from app.panels.compare import _field, about, rows_of
 from app.scenes import Memo, resolve
 from app.scenes.compare import WAITING, caption_of, field_shown, title_of
