@@ -86,7 +86,7 @@ def serve(
     server = begin(path, chosen, address)
     if is_compiled():
         # While the browser starts. The first compile ever is left to the page, which tells of it.
-        threading.Thread(target=_load_kernels, args=(server,), daemon=True).start()
+        threading.Thread(target=_warm_up, args=(server,), daemon=True).start()
     # It listens from here on; told sooner, the address could be asked for too soon.
     host = "localhost" if address in ("0.0.0.0", "::", *LOCAL) else in_brackets(address)
     url = f"http://{host}:{chosen}"
@@ -132,7 +132,7 @@ def begin(path: Path | None, port: int, address: str = "localhost", **more: Any)
     return server
 
 
-def _load_kernels(server: Any) -> None:
+def _warm_up(server: Any) -> None:
     warm_up()
     server.io_loop.add_callback(_settle, server)
 
