@@ -106,4 +106,6 @@ MODULES = (
     cutcell.graph,
     cutcell.io,
     cutcell.skinning,
+    cutcell.surface,
+    cutcell.winding,
 )
