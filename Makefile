@@ -5,6 +5,8 @@ VENV := .venv
 PYTHON := $(VENV)/bin/python
 SETUP := pyproject.toml setup.py requirements.lock scripts/setup.sh
 
+SCRIPTS := app/scripts tests/app/scripts
+
 # As many as there are cores; tests/dealing.py says which tests go together to one of them.
 WORKERS := --numprocesses logical --maxprocesses 4
 
@@ -22,12 +24,14 @@ test: $(VENV)/.tools ## Check style and types, run all tests; ARGS='tests/cutcel
 	@$(PYTHON) -m ruff check .
 	@$(PYTHON) -m ruff format --check .
 	@$(PYTHON) -m mypy
+	@$(VENV)/bin/oxlint --quiet $(SCRIPTS)
 	@$(PYTHON) -m pytest $(WORKERS) $(ARGS)
 
 lint: $(VENV)/.test ## Check style and types only
 	@$(PYTHON) -m ruff check .
 	@$(PYTHON) -m ruff format --check .
 	@$(PYTHON) -m mypy
+	@$(VENV)/bin/oxlint --quiet $(SCRIPTS)
 
 format: $(VENV)/.test ## Format the code and mend what ruff can mend
 	@$(PYTHON) -m ruff format .

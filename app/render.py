@@ -17,8 +17,8 @@ from cutcell_viewers.error_scene import Gap
 from cutcell_viewers.film import Order
 from cutcell_viewers.pose_scene import clip_in_scene, pose_at
 
-from .actions.compare import measured
-from .actions.pose import motion_error
+from .commands.compare import measured
+from .commands.pose import motion_error
 from .scenes import following, resolve
 from .scenes.common import first_joint
 from .scenes.geodesics import wants_field

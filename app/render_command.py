@@ -187,7 +187,7 @@ def render(
         skeleton=skeleton,
         dark=dark,
     )
-    # A wrong name is told before anything long begins.
+    # A wrong name is refused before anything long begins.
     with naming(rig):
         scenes.check(loaded, choices, view)
     from cutcell.skinning import bind

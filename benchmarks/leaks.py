@@ -38,7 +38,7 @@ def fields(rig: Rig, resolution: int) -> dict[str, NDArray[np.float64]]:
     """Compute both distances from the arm, and both weights of it; one value for each vertex."""
     arm = [rig.skeleton.names.index(name) for name in ARM]
     body = Body.of(rig, resolution=resolution)
-    voxels = body.joint_minimum(voxel_distances(body)[0])[arm].min(axis=0)[body.index]
+    voxels = body.joint_minimum(voxel_distances(body))[arm].min(axis=0)[body.index]
     binding = cutcell.bind(rig, resolution, max_influences=None)
     caged = harmonic(rig, resolution)
     if caged.weights is None:

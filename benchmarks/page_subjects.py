@@ -14,9 +14,10 @@ import trimesh
 import cutcell
 from cutcell import Rig, TriangleMesh
 from cutcell.rig import Clip
+from cutcell_app.scenes.common import camera_part
 from cutcell_app.scenes.pose import clip_part
 from cutcell_app.state import State
-from cutcell_app.view import SceneView, camera_part
+from cutcell_app.widgets.view import SceneView
 from cutcell_viewers.camera import framing
 from cutcell_viewers.character import body, bones, pose_in_scene
 from cutcell_viewers.description import Actor, Description

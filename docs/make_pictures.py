@@ -75,7 +75,7 @@ def cutaway(rig: Rig, resolution: int) -> Description:
     slab = 2.5 * float(np.ptp(bounds, axis=0).max()) / resolution
     graph = graph_scene(
         rig,
-        cutcell.build_graph(rig.mesh, resolution),
+        cutcell.build_graph(rig.mesh, resolution, connectivity=6),
         cut=cut_at(bounds, "z", 0.6),
         slab=slab,
         theme=DARK,

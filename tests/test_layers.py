@@ -25,6 +25,8 @@ FOLDERS = {"cutcell": "cutcell", "cutcell_viewers": "viewers", "cutcell_app": "a
 PAGE = {"bokeh", "cutcell_app", "panel", "panel_material_ui"}
 PICTURES = {"cutcell_viewers", "pyvista", "vtk", "vtkmodules"}
 IMPORT_SECONDS = 0.3
+SHORT_CHAINS = ("surface", "winding", "graph", "geodesics")
+LONGEST_CHAIN = 6
 
 # Each part of the core may use itself and those on lines above it.
 ORDER = [
@@ -35,8 +37,10 @@ ORDER = [
         "compiled",
         "display",
         "errors",
-        "kernel_cache",
+        "inputs",
+        "compile_cache",
         "memory",
+        "method",
         "motion",
         "progress",
         "rig",
@@ -48,6 +52,8 @@ ORDER = [
     },
     {"deform"},
     {"io"},
+    {"surface"},
+    {"winding"},
     {"graph"},
     {"geodesics"},
     {"skinning"},
@@ -60,7 +66,10 @@ ORDER = [
         "options",
         "console",
         "report",
+        "bind_command",
         "diagnose_command",
+        "graph_command",
+        "render_command",
         "joints_command",
         "cli",
         "__main__",
@@ -152,6 +161,24 @@ def test_parts_of_the_core_use_only_those_before_them():
             if RANK.get(used, -1) > RANK[part]:
                 wrong.append(f"{path.relative_to(ROOT)}:{line} imports {name}")
     assert wrong == []
+
+
+@pytest.mark.parametrize("package", SHORT_CHAINS)
+def test_chains_of_imports_inside_a_package_are_short(package):
+    files = {path.stem: path for path in (ROOT / "cutcell" / package).glob("*.py")}
+    del files["__init__"]
+    used = {}
+    for module, path in files.items():
+        names = (name.removeprefix(f"cutcell.{package}.") for name, _ in imports_of(path))
+        used[module] = {name for name in names if name in files}
+
+    def longest(module: str, above: tuple[str, ...] = ()) -> tuple[str, ...]:
+        assert module not in above, f"a circle: {' -> '.join([*above, module])}"
+        chains = [longest(name, (*above, module)) for name in used[module]]
+        return (module, *max(chains, key=len, default=()))
+
+    chain = max((longest(module) for module in files), key=len)
+    assert len(chain) <= LONGEST_CHAIN, " -> ".join(chain)
 
 
 def imports_of(path: Path) -> list[tuple[str, int]]:

@@ -121,7 +121,7 @@ def looks_of(
             name: memo(f"apart {name}", (table, base), partial(_sum_of_differences, table, base))
             for name, table in known.items()
         }
-        return looks, Legend("Weight that lies elsewhere", "error", "0", "all")
+        return looks, Legend("Difference of the weights", "error", "0 %", "100 %")
     which = joint if shown == "bone" else None
     looks, legend = {}, None
     for name, table in known.items():

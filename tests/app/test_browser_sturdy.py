@@ -4,7 +4,7 @@ import re
 
 from playwright.sync_api import expect
 
-from cutcell_app.state import MAX_UPLOAD
+from cutcell_app.files.receive import MAX_UPLOAD
 from cutcell_assets import demo_path
 from tests.app.browser import Visit, changed
 

@@ -7,8 +7,8 @@ import pytest
 
 import cutcell
 from cutcell.rig import TriangleMesh
-from cutcell_app.facts import NO_WEIGHT, components, vertex_facts
 from cutcell_app.scenes import Memo
+from cutcell_app.scenes.facts import NO_WEIGHT, components, vertex_facts
 from cutcell_app.state import State
 from tests.viewers.arm import arm_rig
 

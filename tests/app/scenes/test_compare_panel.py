@@ -9,7 +9,7 @@ import cutcell
 from cutcell.baselines import METHODS, BaselineBinding
 from cutcell.metrics import deformation_error, weight_l1
 from cutcell.progress import silent
-from cutcell_app.actions.compare import Compared, choose, measured, options_of, wanted
+from cutcell_app.commands.compare import Compared, choose, measured, options_of, wanted
 from cutcell_app.panels.compare import _field, about, rows_of
 from cutcell_app.scenes import Memo, resolve
 from cutcell_app.scenes.compare import WAITING, caption_of, field_shown, title_of

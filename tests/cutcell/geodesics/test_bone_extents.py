@@ -5,13 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from cutcell import Skeleton, TriangleMesh, bone_distances, build_graph
+from cutcell import Skeleton, TriangleMesh
 from cutcell.geodesics.bone_extents import fit_bones
 from cutcell.geodesics.bones import node_grid
 from cutcell.geodesics.probe import BodyProbe
 from cutcell.geodesics.rest_axis import rest_directions
 from tests import meshes
 from tests.bars import grid_box
+from tests.paper import bone_distances, build_graph
 
 
 def limb():

@@ -1,0 +1,151 @@
+"""Errors of the treecode stay within the proven bounds, by brute force."""
+
+import numpy as np
+import pytest
+
+from cutcell.winding.boundary import find_boundary
+from cutcell.winding.caps import cap_holes
+from cutcell.winding.clusters import ROOT, build_tree
+from cutcell.winding.expansion import (
+    ERROR,
+    SIZE,
+    add_clusters,
+    add_far_clusters,
+    evaluate,
+    translate,
+    variation,
+)
+from cutcell.winding.solid_angles import (
+    BATCH,
+    CLEAR,
+    SIMD_WIDTH,
+    VALUE,
+    WORKSPACE,
+    caps_winding_numbers,
+)
+from tests import meshes, naive
+
+
+def confetti():
+    """Small triangles that have nothing in common."""
+    rng = np.random.default_rng(0)
+    vertices = rng.uniform(0.2, 0.5, (300, 1, 3)) + rng.normal(0, 0.01, (300, 3, 3))
+    return vertices.reshape(-1, 3), np.arange(900, dtype=np.int32).reshape(-1, 3)
+
+
+def expand(clusters, place, reach, tolerance):
+    """Return the local expansion of all caps in a ball; far clusters are added first."""
+    far, near = np.zeros(SIZE), np.empty(len(clusters.start) - 1, np.int32)
+    ball = tuple(place), reach
+    count = add_far_clusters(clusters, np.array([ROOT], np.int32), far, near, *ball)
+    add_clusters(clusters, near[:count], far, *ball, tolerance)
+    return far
+
+
+def winding_of_caps(clusters, places, tolerance):
+    """Return the caps' winding number at places in a ball, and a bound of the error."""
+    count = -(-len(places) // SIMD_WIDTH) * SIMD_WIDTH
+    points = np.empty(WORKSPACE)
+    points.reshape(-1, BATCH)[:3, :count] = places[np.minimum(np.arange(count), len(places) - 1)].T
+    centre = places.mean(axis=0)
+    reach = np.linalg.norm(places - centre, axis=1).max()
+    ball = tuple(centre), reach
+    every = np.array([ROOT], np.int32)
+    error = caps_winding_numbers(clusters, every, *ball, tolerance, points, count)
+    value, clear = (points[row : row + len(places)] for row in (VALUE, CLEAR))
+    return value, np.where(clear > 0, error, np.inf)
+
+
+SHAPES = meshes.OPEN | {"confetti": confetti}
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_caps_close_the_mesh(name):
+    vertices, faces = SHAPES[name]()
+    caps = cap_holes(vertices, find_boundary(faces))
+    assert len(find_boundary(np.concatenate([faces, caps.faces])).loop) == 0
+    assert all(
+        len(set(caps.loop[a:b])) == b - a >= 3
+        for a, b in zip(caps.start[:-1], caps.start[1:], strict=True)
+    )
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_expansion_is_right_within_its_error(name):
+    vertices, faces = SHAPES[name]()
+    caps = cap_holes(vertices, find_boundary(faces))
+    clusters = build_tree(caps)
+    rng = np.random.default_rng(1)
+    fields, ways, places = [], [], []  # evaluated at once by the slow oracle
+    for reach in (0.003, 0.02, 0.1):
+        for tolerance in (1e-2, 1e-4):
+            for place in rng.uniform(0, 1, (40, 3)):
+                field = expand(clusters, place, reach, tolerance)
+                if field[ERROR] <= 0.5:
+                    way = rng.normal(size=(20, 3))
+                    way *= reach / np.linalg.norm(way, axis=1, keepdims=True)
+                    fields.append(field)
+                    ways.append(way)
+                    places.append(place + way)
+    assert len(fields) > 100
+    expected = naive.winding_number(caps.vertices, caps.faces, np.concatenate(places))
+    for field, way, known in zip(fields, ways, expected.reshape(-1, 20), strict=True):
+        off = known - evaluate(field, *way.T)
+        assert np.abs(off).max() <= field[ERROR] + 1e-9
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_winding_number_of_caps_is_right_within_its_error(name):
+    vertices, faces = SHAPES[name]()
+    caps = cap_holes(vertices, find_boundary(faces))
+    clusters = build_tree(caps)
+    rng = np.random.default_rng(2)
+    for count, size in ((1, 0.0), (5, 0.02), (16, 0.2)):
+        balls = rng.uniform(0, 1, (60 // count, 1, 3)) + rng.normal(
+            0, size, (60 // count, count, 3)
+        )
+        expected = naive.winding_number(caps.vertices, caps.faces, balls.reshape(-1, 3))
+        for tolerance in (1e-1, 1e-3, 1e-6, 0.0):
+            seen = [winding_of_caps(clusters, places, tolerance) for places in balls]
+            value, error = np.concatenate(seen, axis=1)
+            is_clear = np.isfinite(error)
+            assert is_clear.mean() > 0.8
+            assert (np.abs(value - expected) <= error + 1e-9)[is_clear].all()
+
+
+def test_the_bound_is_no_more_than_it_must_be():
+    """Far from many small triangles, it is loose by what they could do at worst, not by more."""
+    vertices, faces = confetti()
+    caps = cap_holes(vertices, find_boundary(faces))
+    place = np.array([0.9, 0.9, 0.95])
+    value, error = (x[0] for x in winding_of_caps(build_tree(caps), place[None], 1e-3))
+    expected = naive.winding_number(caps.vertices, caps.faces, place[None])[0]
+    assert 0 < error < 0.004
+    assert abs(value - expected) < error
+
+
+def test_a_translated_expansion_is_the_same_function():
+    rng = np.random.default_rng(3)
+    field, way, half = rng.normal(size=SIZE), rng.normal(size=3), 0.3
+    expected = evaluate(field, *np.add(way, [0.1, -0.2, 0.3]))
+    bound = variation(field, half)
+    inside = rng.uniform(-half, half, (200, 3))
+    assert (np.abs(evaluate(field, *inside.T) - field[0]) <= bound).all()
+    translate(field, *way)
+    np.testing.assert_allclose(evaluate(field, 0.1, -0.2, 0.3), expected)
+
+
+def test_a_ball_that_a_cap_crosses_has_no_expansion():
+    vertices, faces = meshes.open_box()
+    caps = cap_holes(vertices, find_boundary(faces))
+    clusters = build_tree(caps)
+    middle = caps.vertices[caps.faces[0]].mean(axis=0)
+    assert expand(clusters, middle + 1e-3, 0.01, 1e-2)[ERROR] == np.inf
+    assert expand(clusters, middle + 0.1, 0.01, 1e-2)[ERROR] < 0.5
+
+
+def test_a_point_on_a_cap_is_not_decided_by_rounding():
+    vertices, faces = meshes.open_box()
+    caps = cap_holes(vertices, find_boundary(faces))
+    spot = np.array([0.4, 0.35, 0.25]) @ caps.vertices[caps.faces[0]]
+    assert winding_of_caps(build_tree(caps), spot[None], 1e-6)[1] == np.inf
