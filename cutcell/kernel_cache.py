@@ -39,6 +39,8 @@ SOURCES = (
     "kernel_cache.py",
     "sorting.py",
     "unions.py",
+    "surface/*.py",
+    "winding/*.py",
     "graph/*.py",
     "geodesics/*.py",
     "skinning/*.py",
