@@ -39,6 +39,8 @@ SOURCES = (
     "compile_cache.py",
     "sorting.py",
     "unions.py",
+    "surface/*.py",
+    "winding/*.py",
     "graph/*.py",
     "geodesics/*.py",
     "skinning/*.py",

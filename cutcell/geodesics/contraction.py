@@ -18,7 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..compiled import compiled
-from ..graph import CutCellGraph
+from ..graph import INTERIOR, SURFACE, CutCellGraph
+from ..graph.inside_edges import lattice_steps
 from ..graph.interior import OUTSIDE
 from ..graph.neighbours import count_ends, list_ends
 from ..sorting import sort_into
@@ -36,6 +37,8 @@ class Contraction:
 
     Parameters
     ----------
+    steps : array, shape (p, 6), int32
+        Neighbours of the lattice points inside, see `lattice_steps`.
     indptr, indices : arrays, shapes (K + 1,) and (2E,), int32
         Neighbours of each kept node.
     places : array, shape (K, 3), float64
@@ -49,6 +52,7 @@ class Contraction:
         The number of the first surface node.
     """
 
+    steps: NDArray[np.int32]
     indptr: NDArray[np.int32]
     indices: NDArray[np.int32]
     places: NDArray[np.float64]
@@ -63,22 +67,35 @@ class Contraction:
 
 def contract(graph: CutCellGraph) -> Contraction:
     """Contract blocks of lattice points, and surface nodes at the end of a single segment."""
-    return Contraction(*_contract(graph.nodes, graph.edges, find_blocks(graph), graph.first_point))
+    first, last = graph.first_point, graph.first_crossing
+    inside = np.searchsorted(graph.edge_kind, np.array([INTERIOR, SURFACE], np.uint8))
+    steps = lattice_steps(graph.nodes, graph.edges[slice(*inside)], first, last)
+    block = find_blocks(graph.nodes[first:last], graph.lattice.resolution, steps)
+    return Contraction(steps, *_contract(graph.nodes, graph.edges, block, first))
 
 
-def find_blocks(graph: CutCellGraph) -> NDArray[np.int32]:
+def find_blocks(
+    places: NDArray[np.float64], resolution: int, steps: NDArray[np.int32]
+) -> NDArray[np.int32]:
     """Find blocks of two lattice points each way whose neighbours are all inside.
 
     They are laid out from the middle of the cube, alike on both sides, so that a mirror-symmetric
     body gets mirror-symmetric blocks.
+
+    Parameters
+    ----------
+    places : array, shape (p, 3)
+        The lattice points inside, in the unit cube.
+    resolution : int
+    steps : array, shape (p, 6), int32
+        See `lattice_steps`.
 
     Returns
     -------
     array, shape (p,), int32
         The innermost point of the block of each lattice point inside; -1 for points in none.
     """
-    points = graph.nodes[graph.first_point : graph.first_crossing]
-    return _find_blocks(points, graph.lattice.resolution, graph.steps)
+    return _find_blocks(places, resolution, steps)
 
 
 @compiled

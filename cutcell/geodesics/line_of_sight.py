@@ -20,10 +20,10 @@ def body_of(graph: CutCellGraph, contraction: Contraction) -> tuple:
     """Return what kernels need of a contracted graph.
 
     These are the resolution; the first lattice point and surface node that are kept; the positions
-    of kept nodes; and, to step between lattice points, `CutCellGraph.steps` with the `node` and
+    of kept nodes; and, to step between lattice points, `steps` with the `node` and
     `number` of the contraction.
     """
-    steps = graph.steps, contraction.node, contraction.number
+    steps = contraction.steps, contraction.node, contraction.number
     first = graph.first_point, contraction.first_crossing
     return graph.lattice.resolution, *first, contraction.places, steps
 

@@ -13,8 +13,8 @@ from ..surface.rays import AXES, RayHits
 from ..threads import in_threads
 from ..winding.intervals import NONE, InsideIntervals
 from .cutcell_graph import INTERIOR, MESH, SURFACE, CutCellGraph
-from .inside_edges import diagonal_edges, edge_starts, fill_edges
-from .interior import OUTSIDE, interior_points
+from .inside_edges import diagonal_edges, edge_starts, fill_edges, lattice_steps
+from .interior import interior_points
 from .memory import check_memory
 
 
@@ -67,13 +67,11 @@ def assemble(
 
     nodes, triangle = np.empty((node, 3)), np.full(node, -1, np.int32)
     edges, lengths = np.empty((sum(edge_kinds), 2), np.int32), np.empty(sum(edge_kinds))
-    steps = np.full((len(points) if connectivity != 6 else 0, 6), OUTSIDE, np.int32)
 
     def fill_inside(axis: int) -> None:
         ends = hits[axis].position, numbers[axis]
-        fill_edges(
-            inside[axis], starts[axis], axis, points, len(vertices), ends, edges, lengths, steps
-        )
+        own = inside[axis], starts[axis]
+        fill_edges(*own, axis, points, len(vertices), ends, edges, lengths)
 
     def fill_surface(axis: int) -> None:
         found = hits[axis].start, hits[axis].position, hits[axis].triangle, numbers[axis]
@@ -88,6 +86,8 @@ def assemble(
     jobs = [(job, axis) for job in (fill_inside, fill_surface) for axis in range(3)]
     in_threads(lambda job: job[0](job[1]), [*jobs, (fill_rest, 0)])
     if connectivity == 26:
+        kept = edges[len(mesh_edges) : edge]
+        steps = lattice_steps(nodes, kept, len(vertices), first_crossing)
         diagonals = diagonal_edges(steps, len(vertices))
         edges = np.concatenate([edges[:edge], diagonals, edges[edge:]])
         ends = nodes[diagonals]
@@ -107,7 +107,6 @@ def assemble(
         is_closed=is_closed,
         connectivity=connectivity,
         interior=points,
-        steps=steps,
         inverted=inverted,
     )
 

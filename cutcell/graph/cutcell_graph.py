@@ -50,10 +50,6 @@ class CutCellGraph:
         See `build_graph`.
     interior : InteriorPoints
         The lattice points inside, in the order of their nodes.
-    steps : array, shape (p, 6) or (0, 6), int32
-        Neighbours of each interior lattice point upward along x, y, z and downward along x, y, z,
-        if the segment between is kept and not cut by the surface; else -1. No rows with
-        connectivity 6, where they are not needed.
     inverted : array, shape (m,), bool
         Which faces of the mesh are inside out, see `inverted_faces`.
     """
@@ -70,7 +66,6 @@ class CutCellGraph:
     is_closed: bool
     connectivity: int | str
     interior: InteriorPoints
-    steps: NDArray[np.int32]
     inverted: NDArray[np.bool_]
 
     @property

@@ -24,7 +24,6 @@ def fill_edges(
     ends: tuple[NDArray[np.float64], NDArray[np.int32]],
     edges: NDArray[np.int32],
     lengths: NDArray[np.float64],
-    steps: NDArray[np.int32],
 ) -> None:
     """List the kept segments along one axis as edges.
 
@@ -41,13 +40,10 @@ def fill_edges(
         Positions of the axis' hits, and their nodes.
     edges, lengths : arrays, shapes (e, 2) and (e,)
         Written to.
-    steps : array, shape (p, 6) or (0, 6), int32
-        Gets the neighbours of each interior point along the axis to which the whole segment is
-        kept and not cut by the surface: upward, and 3 columns further downward.
     """
     intervals = inside.ray, inside.first, inside.last, inside.low, inside.high, start
     where = points.resolution, axis, first_point
-    _fill_edges(where, intervals, points.table, ends, edges, lengths, steps)
+    _fill_edges(where, intervals, points.table, ends, edges, lengths)
 
 
 @compiled
@@ -61,28 +57,63 @@ def _edge_starts(first, last, low, high, start):
 
 
 @compiled
-def _fill_edges(where, intervals, table, ends, edges, lengths, steps):
+def _fill_edges(where, intervals, table, ends, edges, lengths):
     resolution, axis, first_point = where
     ray, first, last, low, high, start = intervals
     position, surface_node = ends
     for r in range(len(ray)):
         e = start[r]
-        here, before, at = NONE, OUTSIDE, 0.0  # node, interior point and position so far
+        here, at = NONE, 0.0  # the previous node and its position
         if low[r] != NONE:
             here, at = surface_node[low[r]], position[low[r]]
         for k in range(first[r], last[r] + 1):
             column, z = point_on_ray(axis, ray[r], k, resolution)
             point = point_number(table[0], table[1], table[2], table[3], column, z)
-            if before != OUTSIDE and len(steps):
-                steps[before, axis], steps[point, 3 + axis] = point, before
             if here != NONE:
                 edges[e, 0], edges[e, 1] = here, first_point + point
                 lengths[e] = (k + 0.5) / resolution - at
                 e += 1
-            here, before, at = first_point + point, point, (k + 0.5) / resolution
+            here, at = first_point + point, (k + 0.5) / resolution
         if high[r] != NONE:
             edges[e, 0], edges[e, 1] = here, surface_node[high[r]]
             lengths[e] = position[high[r]] - at
+
+
+def lattice_steps(
+    nodes: NDArray[np.float64], edges: NDArray[np.int32], first: int, last: int
+) -> NDArray[np.int32]:
+    """List the neighbours of interior points along the axes.
+
+    Parameters
+    ----------
+    nodes : array, shape (N, 3)
+    edges : array, shape (e, 2), int32
+        Kept segments; those that end on the surface are left out.
+    first, last : int
+        The interior points are the nodes from `first` to before `last`.
+
+    Returns
+    -------
+    array, shape (last - first, 6), int32
+        The neighbour of each point upward along x, y, z and downward along x, y, z, if the whole
+        segment between is kept and not cut by the surface; else -1.
+    """
+    return _lattice_steps(nodes, edges, first, last)
+
+
+@compiled
+def _lattice_steps(nodes, edges, first, last):
+    steps = np.full((last - first, 6), OUTSIDE, np.int32)
+    for e in range(len(edges)):
+        low, high = edges[e, 0], edges[e, 1]
+        if min(low, high) >= first and max(low, high) < last:
+            for axis in range(3):
+                if nodes[low, axis] < nodes[high, axis]:
+                    steps[low - first, axis], steps[high - first, 3 + axis] = (
+                        high - first,
+                        low - first,
+                    )
+    return steps
 
 
 def diagonal_edges(steps: NDArray[np.int32], first_point: int) -> NDArray[np.int32]:
@@ -91,7 +122,7 @@ def diagonal_edges(steps: NDArray[np.int32], first_point: int) -> NDArray[np.int
     Parameters
     ----------
     steps : array, shape (p, 6), int32
-        See `fill_edges`, for x, y and z.
+        See `lattice_steps`.
     first_point : int
         The node of the first interior point.
 

@@ -70,7 +70,6 @@ def block_graph() -> CutCellGraph:
     of_mesh = np.unique(sides, axis=0)
     around = np.pad(number, 1, constant_values=-1)
     up = [np.roll(around, -1, axis)[1:-1, 1:-1, 1:-1].ravel() for axis in range(3)]
-    down = [np.roll(around, 1, axis)[1:-1, 1:-1, 1:-1].ravel() for axis in range(3)]
     inside = [first + np.stack([number.ravel(), to], axis=1)[to >= 0] for to in up]
     cell = np.clip((vertices * SIDE).astype(int), 0, SIDE - 1)
     ties = np.stack([np.arange(first), first + number[tuple(cell.T)]], axis=1)
@@ -90,6 +89,5 @@ def block_graph() -> CutCellGraph:
         is_closed=False,
         connectivity="any",
         interior=stretches,
-        steps=np.stack([*up, *down], axis=1),
         inverted=np.zeros(len(mesh.faces), bool),
     )

@@ -26,7 +26,6 @@ from ..surface.rays import (
     RayHits,
     cast_all_rays,
     first_at_least,
-    grown,
     in_space,
     strip_bounds,
 )
@@ -106,8 +105,20 @@ def inside_intervals(
     work = [(rays, i * resolution, j * resolution) for rays in families for i, j in strips]
     listed: list[int] = []
 
-    def list_queries(part):
-        found = _keep_in_strip(shared, *part, NO_RESULTS)
+    def keep(rays, ray, last_ray, results=NO_RESULTS):
+        start = rays[3][0]
+        most = 2 * int(start[last_ray] - start[ray] + resolution + 1)
+        rows = np.empty((most, 5), np.int32)
+        row, queries = np.empty(256, np.int32), np.empty((256, SLACK + 1))
+        given, filled = (shared, rays, last_ray, results), (0, 0)
+        while ray < last_ray:
+            ray, filled = _keep_segments(*given, ray, filled, rows, row, queries)
+            if ray < last_ray:
+                rows, row, queries = _doubled(rows), _doubled(row), _doubled(queries)
+        return rows[: filled[0]], row[: filled[1]], queries[: filled[1]]
+
+    def list_queries(strip):
+        found = keep(*strip)
         listed.append(len(found[1]))
         check_room(
             sum(listed) * BYTES_PER_QUERY,
@@ -117,23 +128,28 @@ def inside_intervals(
         return found
 
     first = in_threads(list_queries, work, share_of(tell, 0.3, 0.5))
-    rows = [kept for kept, *_ in first]
+    kept = [found[0] for found in first]
     again = [k for k, (_, row, _) in enumerate(first) if len(row)]
     if again:
         row, queries = (np.concatenate([first[k][column] for k in again]) for column in (1, 2))
         ends = np.cumsum([len(first[k][1]) for k in again])
         telling = share_of(tell, 0.5, 0.9)
         results = query_points(classes.expansions, clusters, row, queries, telling)
-        kept = in_threads(
-            lambda part: _keep_in_strip(shared, *work[part[0]], part[1])[0],
+        decided = in_threads(
+            lambda part: keep(*work[part[0]], part[1])[0],
             zip(again, np.split(results, ends[:-1]), strict=True),
             share_of(tell, 0.9, 1),
         )
-        for k, intervals in zip(again, kept, strict=True):
-            rows[k] = intervals
+        for k, intervals in zip(again, decided, strict=True):
+            kept[k] = intervals
     count = len(strips)
-    of_axes = [np.concatenate(rows[count * k : count * (k + 1)]) for k in range(3)]
+    of_axes = [np.concatenate(kept[count * k : count * (k + 1)]) for k in range(3)]
     return [InsideIntervals(*np.ascontiguousarray(of_axis.T)) for of_axis in of_axes]
+
+
+def _doubled(array: NDArray) -> NDArray:
+    """Return a copy with twice the capacity."""
+    return np.concatenate([array, np.empty_like(array)])
 
 
 def _constant_columns(coarse: NDArray[np.int32], along: int) -> NDArray[np.int32]:
@@ -143,33 +159,23 @@ def _constant_columns(coarse: NDArray[np.int32], along: int) -> NDArray[np.int32
     return np.where(is_constant, least - CONSTANT, AMBIGUOUS).astype(np.int32)
 
 
-@compiled
-def _keep_in_strip(shared, rays, first_ray, last_ray, results):
-    """Find the intervals of a strip of rays; without `results`, also list the queries.
-
-    Returns the intervals as rows (ray, first, last, low, high), and of each query the row of the
-    expansions and what `query_points` takes.
-    """
-    rows = np.empty((256, 5), np.int32)
-    row, queries = np.empty(256, np.int32), np.empty((256, SLACK + 1))
-    filled = 0, 0
-    while first_ray < last_ray:
-        ray, filled = _keep_segments(
-            shared, rays, first_ray, last_ray, results, filled, rows, row, queries
-        )
-        if ray < last_ray:
-            rows, row, queries = grown(rows), grown(row), grown(queries)
-        first_ray = ray
-    return rows[: filled[0]], row[: filled[1]], queries[: filled[1]]
-
-
 @lean
-def _keep_segments(shared, rays, first_ray, last_ray, results, filled, rows, row, queries):
-    """Run algorithm 1 on rays while there is room; return the next ray, and what is filled."""
+def _keep_segments(shared, rays, last_ray, results, first_ray, filled, rows, row, queries):
+    """Run algorithm 1 on rays while there is room.
+
+    Writes the intervals as `rows` (ray, first, last, low, high). Without `results` it also lists
+    the queries: the row of the expansions, and what `query_points` takes.
+
+    Returns
+    -------
+    next_ray : int
+    filled : tuple of 2 ints
+        Number of intervals, and of queries.
+    """
     resolution, tau, classes, boundary = shared
     axis, vertices, constant, (start, position, sign), (cap_start, cap_position, cap_sign) = rays
     sense = -1.0 if axis == 1 else 1.0  # (x, z, y) is left-handed
-    count, asked = filled
+    count, query = filled
     listing = len(results) == 0
     for r in range(first_ray, last_ray):
         begin, end, cap, last_cap = start[r], start[r + 1], cap_start[r], cap_start[r + 1]
@@ -180,8 +186,8 @@ def _keep_segments(shared, rays, first_ray, last_ray, results, filled, rows, row
             continue  # the ray misses the body
         segments = resolution + end - begin + 1
         is_full = count + 2 * segments > len(rows)
-        if is_full or (listing and asked + segments > len(row)):
-            return r, (count, asked)
+        if is_full or (listing and query + segments > len(row)):
+            return r, (count, query)
         crossings = _signed_count(sign, begin, end)
         cap_crossings = _signed_count(cap_sign, cap, last_cap)
         k = 0
@@ -215,18 +221,18 @@ def _keep_segments(shared, rays, first_ray, last_ray, results, filled, rows, row
                     if cell_class < 0:  # holds for all segments of this class up to the next hit
                         kept = crossings + cap_crossings >= cell_class - CONSTANT
                     elif listing:
-                        row[asked] = cell_class
+                        row[query] = cell_class
                         point = in_space(axis, pu, pv, middle)
-                        queries[asked, 0], queries[asked, 1], queries[asked, 2] = point
-                        queries[asked, SLACK] = crossings + cap_crossings - tau
-                        kept, until, asked = False, cell + 1, asked + 1
+                        queries[query, 0], queries[query, 1], queries[query, 2] = point
+                        queries[query, SLACK] = crossings + cap_crossings - tau
+                        kept, until, query = False, cell + 1, query + 1
                     else:
-                        kept = results[asked] == INSIDE
-                        if results[asked] == UNDECIDED:
+                        kept = results[query] == INSIDE
+                        if results[query] == UNDECIDED:
                             angle = boundary_angle(vertices, boundary, pu, pv, middle)
                             winding_number = crossings + sense * angle
                             kept = winding_number >= tau
-                        until, asked = cell + 1, asked + 1
+                        until, query = cell + 1, query + 1
                     until = max(s + 1, min(until, beyond + (c < end)))
                 if kept and not is_open:
                     rows[count, 0] = r
@@ -243,7 +249,7 @@ def _keep_segments(shared, rays, first_ray, last_ray, results, filled, rows, row
                 rows[count, 4] = c if c < end else NONE
                 count += 1
             k = beyond
-    return last_ray, (count, asked)
+    return last_ray, (count, query)
 
 
 @compiled(inline="always")

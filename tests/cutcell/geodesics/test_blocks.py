@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from cutcell import TriangleMesh
-from cutcell.geodesics.contraction import find_blocks
+from cutcell.geodesics.contraction import contract, find_blocks
 from cutcell.graph import build_graph
 from tests import meshes
 
@@ -14,8 +14,8 @@ def blocks_of(mesh, resolution):
     graph = build_graph(TriangleMesh(*mesh), resolution, connectivity="any")
     nodes = graph.nodes[graph.first_point : graph.first_crossing]
     place = (nodes * resolution).astype(int)
-    deep = (graph.steps >= 0).all(axis=1)
-    return place, deep, find_blocks(graph)
+    steps = contract(graph).steps
+    return place, (steps >= 0).all(axis=1), find_blocks(nodes, resolution, steps)
 
 
 @pytest.mark.parametrize("resolution", [28, 29, 30, 31])
@@ -42,8 +42,3 @@ def test_a_body_as_its_own_mirror_image_has_mirrored_blocks():
     innermost = {tuple(place[p]) for p in np.unique(block[block >= 0])}
     assert len(innermost) > 50
     assert innermost == {(23 - x, y, z) for x, y, z in innermost}
-
-
-def test_without_steps_there_are_no_blocks():
-    graph = build_graph(TriangleMesh(*meshes.ball(2)), 16)
-    assert (find_blocks(graph) == -1).all()
