@@ -24,7 +24,7 @@ from .layout.page import page
 from .server.handlers import guard
 from .server.log import log_to_terminal
 from .server.memory import settle
-from .widgets.modules import STATIC
+from .widgets.modules import STATIC, preloads
 from .work.processes import get_ready
 
 PORTS_TRIED = 20
@@ -116,7 +116,6 @@ def begin(path: Path | None, port: int, address: str = "localhost", **more: Any)
         {"/": lambda: page(path)},
         port=port,
         address="127.0.0.1" if address == "localhost" else address,
-        static_dirs=STATIC,
         websocket_max_message_size=MAX_MESSAGE,
         http_server_kwargs={"max_body_size": MAX_BODY},
         title="cutcell",
@@ -126,7 +125,7 @@ def begin(path: Path | None, port: int, address: str = "localhost", **more: Any)
         threaded=False,
         **{**ENDINGS, **more},
     )
-    text = guard(server._tornado, allowed_hosts(address, port))
+    text = guard(server._tornado, allowed_hosts(address, port), STATIC, preloads())
     server.io_loop.add_callback(text.make)
     server.io_loop.add_callback(_settle, server)
     return server

@@ -7,7 +7,7 @@ that know this machine by a name that is not its own (DNS rebinding).
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from html import escape
 from typing import Any
 from urllib.parse import urlparse
@@ -23,7 +23,7 @@ from panel.io.session import generate_session
 from panel.io.state import set_curdoc
 from tornado.httputil import HTTPServerRequest
 from tornado.routing import Matcher, Rule
-from tornado.web import RequestHandler
+from tornado.web import RequestHandler, StaticFileHandler
 
 MOST_SESSIONS = 64
 """Pages that are open at once; each holds some 30 MB, and its character."""
@@ -32,6 +32,9 @@ FULL = (
     f"As many pages of this server are open as it holds ({MOST_SESSIONS}). Close one, or come back "
     "later."
 )
+
+KEPT_SECONDS = 365 * 24 * 3600
+"""How long browsers keep files whose address tells their version."""
 
 TOKEN = "token-of-the-session"
 """Stands in the page's text for what each visitor gets of their own."""
@@ -42,7 +45,12 @@ PLAIN = """<!DOCTYPE html><html lang="en"><meta charset="utf-8"><title>cutcell</
 p {{ max-width: 36em; margin: 20vh auto 0; padding: 0 24px }}</style><p>{}</p>"""
 
 
-def guard(tornado: BokehTornado, hosts: Collection[str]) -> PageText:
+def guard(
+    tornado: BokehTornado,
+    hosts: Collection[str],
+    static: Mapping[str, str] | None = None,
+    head: str = "",
+) -> PageText:
     """Let a server answer only whom it should; return the text that it answers with.
 
     Parameters
@@ -51,9 +59,13 @@ def guard(tornado: BokehTornado, hosts: Collection[str]) -> PageText:
         With one application, at "/".
     hosts : collection of str
         The hosts, with their port, under which browsers know this server.
+    static : mapping, optional
+        Folders by their addresses; what is in them never changes under the same address.
+    head : str
+        What is added to the head of the page.
     """
     context = tornado.applications["/"]
-    text = PageText(tornado, context)
+    text = PageText(tornado, context, head)
     websocket = {
         "application_context": context,
         "bokeh_websocket_path": "/ws",
@@ -65,6 +77,10 @@ def guard(tornado: BokehTornado, hosts: Collection[str]) -> PageText:
         # These would begin sessions, too.
         (r"/autoload\.js", Absent),
         (r"/metadata", Absent),
+        *(
+            (rf"/{address}/(.*)", Lasting, {"path": path})
+            for address, path in (static or {}).items()
+        ),
     ]
     tornado.add_handlers(".*", ours)
     strange = Rule(Strange(hosts), Misdirected, {"hosts": hosts})
@@ -86,8 +102,9 @@ def full(context: ApplicationContext) -> bool:
 class PageText:
     """The page's HTML, made once: it is the same for all but for the token of the session."""
 
-    def __init__(self, tornado: BokehTornado, context: ApplicationContext) -> None:
+    def __init__(self, tornado: BokehTornado, context: ApplicationContext, head: str = "") -> None:
         self._tornado = tornado
+        self._head = head
         self._context = context
         self._text = ""
 
@@ -106,7 +123,7 @@ class PageText:
         try:
             with set_curdoc(document):
                 resources = Resources.from_bokeh(self._tornado.resources())
-            return server_html_page_for_session(
+            text = server_html_page_for_session(
                 session,
                 resources=resources,
                 title=document.title,
@@ -114,6 +131,7 @@ class PageText:
                 template=document.template,
                 template_variables=document.template_variables,
             )
+            return text.replace("</head>", f"{self._head}</head>", 1)
         finally:
             _cleanup_doc(document)
 
@@ -193,6 +211,14 @@ class SocketHandler(WSHandler):
     def _refuse(self, status: int, sentence: str) -> None:
         self.set_status(status)
         self.finish(sentence)
+
+
+class Lasting(StaticFileHandler):
+    """Answers with files that browsers may keep, since another version has another address."""
+
+    def get_cache_time(self, *given: Any) -> int:
+        """Return for how many seconds."""
+        return KEPT_SECONDS
 
 
 class Absent(RequestHandler):

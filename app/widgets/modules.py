@@ -22,7 +22,7 @@ ADDRESS = f"scripts-{_version()}"
 """Of the folder, relative to the page."""
 
 STATIC = {ADDRESS: str(FOLDER)}
-"""For `panel.serve(static_dirs=...)`."""
+"""For `guard`, or for `panel.serve(static_dirs=...)`."""
 
 
 def script(name: str) -> str:
@@ -33,6 +33,12 @@ export async function render(given) {{
   const module = await import(new URL("{ADDRESS}/{name}.js", document.baseURI).href)
   return module.render(given)
 }}"""
+
+
+def preloads() -> str:
+    """Return what lets a browser fetch all modules at once, while the page is still loading."""
+    names = sorted(path.name for path in FOLDER.glob("*.js"))
+    return "".join(f'<link rel="modulepreload" href="{ADDRESS}/{name}">' for name in names)
 
 
 def style(name: str) -> str:

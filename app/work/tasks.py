@@ -29,6 +29,7 @@ class Tasks:
         self._jobs: dict[str, Jobs] = {}
         self._newest: dict[str, Newest] = {}
         self._timer: threading.Timer | None = None
+        self._due = False
         self._closed = False
 
     def later(self, action: Callable[[], Any]) -> None:
@@ -46,7 +47,13 @@ class Tasks:
         """Run an action when a person has paused for a moment; a newer one takes its place."""
         if self._timer is not None:
             self._timer.cancel()
-        self._timer = threading.Timer(PAUSE, lambda: self.later(action))
+
+        def act() -> None:
+            self._due = False
+            action()
+
+        self._due = True
+        self._timer = threading.Timer(PAUSE, lambda: self.later(act))
         self._timer.daemon = True
         self._timer.start()
 
@@ -67,12 +74,14 @@ class Tasks:
     @property
     def running(self) -> bool:
         """Whether there is work that was neither finished nor stopped, or is about to begin."""
+        # The timer may have ended, and its action not have begun.
         waiting = self._timer is not None and self._timer.is_alive()
-        return waiting or any(jobs.running for jobs in self._jobs.values())
+        return waiting or self._due or any(jobs.running for jobs in self._jobs.values())
 
     def close(self) -> None:
         """Stop all work, and start nothing any more."""
         self._closed = True
+        self._due = False
         if self._timer is not None:
             self._timer.cancel()
         for jobs in self._jobs.values():
