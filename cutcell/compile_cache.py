@@ -44,8 +44,6 @@ SOURCES = (
     "graph/*.py",
     "geodesics/*.py",
     "skinning/*.py",
-    "surface/*.py",
-    "winding/*.py",
 )
 """Files of the functions of a binding: a change of any one makes all compiled functions stale."""
 KEPT = 3
