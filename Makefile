@@ -38,7 +38,7 @@ format: $(VENV)/.test ## Format the code and mend what ruff can mend
 	@$(PYTHON) -m ruff check --fix .
 
 assets: $(VENV)/.test ## Make the demo characters again
-	@$(PYTHON) -m assets
+	@$(PYTHON) -m cutcell_assets
 
 lock: $(VENV)/.test ## Choose the locked versions again
 	@scripts/lock.sh

@@ -94,5 +94,13 @@ def page(installed, folder) -> Iterator[str]:
 
 
 def test_it_serves_the_page_with_its_scripts(page):
-    with urlopen(Request(page + "/"), timeout=START_SECONDS) as answer:
-        assert "cutcell" in answer.read().decode()
+    html = read(page + "/")
+    assert "cutcell" in html
+    scripts = re.findall(r'href="([^"]*scripts-[^"]*\.js)"', html)
+    assert scripts
+    assert all("export" in read(f"{page}/{script.lstrip('./')}") for script in scripts)
+
+
+def read(address: str) -> str:
+    with urlopen(Request(address), timeout=START_SECONDS) as answer:
+        return answer.read().decode()
