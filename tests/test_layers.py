@@ -181,9 +181,16 @@ def test_chains_of_imports_inside_a_package_are_short(package):
     assert len(chain) <= LONGEST_CHAIN, " -> ".join(chain)
 
 
+def package_of(path: Path) -> tuple[str, ...]:
+    """Return the package that a file is in: its folders, by the names that they are imported by."""
+    names = {folder: name for name, folder in FOLDERS.items()}
+    folder, *below = path.relative_to(ROOT).parent.parts
+    return (names.get(folder, folder), *below)
+
+
 def imports_of(path: Path) -> list[tuple[str, int]]:
     """Absolute names of all that a file imports, with the lines."""
-    package = path.relative_to(ROOT).parent.parts
+    package = package_of(path)
     found = []
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.Import):

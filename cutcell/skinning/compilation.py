@@ -69,7 +69,8 @@ def _beside(function: str) -> Iterator[None]:
     if not _can_be_helped():
         yield
         return
-    command = [sys.executable, "-c", f"from {__name__} import {function}; {function}()"]
+    code = f"from cutcell.skinning import compilation; compilation.{function}()"
+    command = [sys.executable, "-c", code]
     nothing = subprocess.DEVNULL
     try:
         process = subprocess.Popen(
