@@ -7,10 +7,14 @@ ahead, a whole number. The open mesh's own number is less by that of the caps, w
 
 Away from the holes w_caps is small and smooth. Here it is bounded over whole blocks of cells, by
 the local expansions of `expansion.py`: in most blocks the required crossing count is constant.
-Blocks where it is not are halved, from the whole cube down to four cells, and what remains is
+Blocks where it is not are halved, from the whole cube down to two cells, and what remains is
 ambiguous: cells near the rims of holes, and near the surfaces w_caps = k - tau. Their midpoints are
 point queries, see `queries.py`. Clusters far from a block are far from its halves, too, and their
 expansion is translated from block to half; only near clusters are visited again.
+
+In a block that a cap crosses, w_caps jumps by one across the cap, and so does chi: chi - w_caps is
+smooth. The block's expansion still gives it, up to a whole number that is found once for each ray
+through the block, see `intervals.py`.
 
 Of a soup whose triangles are all apart, the caps are the triangles turned round: chi is 0
 everywhere, and the clusters decide all.
@@ -46,14 +50,15 @@ CONSTANT = -(1 << 20)
 """A negative class is CONSTANT + the required crossing count; others are rows of expansions."""
 AMBIGUOUS = 1 << 30
 """The class of blocks that are to be halved, or that have point queries."""
-SMALLEST = 4
+SMALLEST = 2
 """Cells along the side of blocks that are not halved: the queries are no dearer."""
 WORTH = 20
 """Ambiguous midpoints for which it pays to halve a block."""
 TOLERANCE = 5e-3
 """Clusters of a larger error in a block are split."""
-COUNT = SIZE + 3
-"""The column of an expansion's row, after coefficients and centre, that counts near clusters."""
+CROSSED, COUNT = SIZE + 3, SIZE + 4
+"""Columns of an expansion's row, after coefficients and centre: `LocalExpansions.is_crossed`, and
+the number of near clusters."""
 DEPTH = 12
 """More often blocks are never halved."""
 
@@ -114,8 +119,17 @@ def classify_cells(
         rows, count = rows + len(fine), count + len(expanded)
     _, fine, expanded, near = (np.concatenate(parts) for parts in zip(*found, strict=True))
     start = np.concatenate([[0], np.cumsum(expanded[:, COUNT], dtype=np.int64)])
-    local, centre = (np.ascontiguousarray(expanded[:, a:b]) for a, b in ((0, SIZE), (SIZE, COUNT)))
-    return CellClasses(coarse, fine, LocalExpansions(centre, local, start, near))
+    columns = (0, SIZE), (SIZE, CROSSED)
+    local, centre = (np.ascontiguousarray(expanded[:, a:b]) for a, b in columns)
+    is_crossed = expanded[:, CROSSED] > 0
+    return CellClasses(coarse, fine, LocalExpansions(centre, local, is_crossed, start, near))
+
+
+@compiled(inline="always")
+def required_crossings(total, error):
+    """Round a sum, tau plus the caps' winding number, up; AMBIGUOUS if the error does not tell."""
+    required = np.ceil(total - error)
+    return np.int64(required) if required == np.ceil(total + error) else AMBIGUOUS
 
 
 @compiled(inline="always")
@@ -146,7 +160,7 @@ def _classify(clusters, resolution, tau, corner, top, coarse):
     """Write the classes of the blocks in a cube of `top` cells into `coarse`.
 
     Returns which blocks are not constant, shape (u, 3); the classes of their cells; the rows of
-    expansions that these name: coefficients, centre, COUNT; and the near clusters.
+    expansions that these name: coefficients, centre, CROSSED, COUNT; and the near clusters.
     """
     blocks, fine = np.empty((16, 3), np.int32), np.empty((16, BLOCK, BLOCK, BLOCK), np.int32)
     expanded, all_near = np.empty((64, COUNT + 1)), np.empty(1024, np.int32)
@@ -174,8 +188,8 @@ def _classify(clusters, resolution, tau, corner, top, coarse):
         nears[depth] = add_far_clusters(clusters, among, far[depth], near[depth], q, reach)
         close = near[depth, : nears[depth]]
         put(far[depth], local)
-        add_clusters(clusters, close, local, q, reach, TOLERANCE)
-        found = _class_of(local, half, size, tau)
+        is_crossed = add_clusters(clusters, close, local, q, reach, TOLERANCE)
+        found = _class_of(local, is_crossed, half, size, tau)
         a, b, c, wide = x // BLOCK, y // BLOCK, z // BLOCK, size // BLOCK
         if size >= BLOCK and found < 0:
             coarse[a : a + wide, b : b + wide, c : c + wide] = found
@@ -195,7 +209,7 @@ def _classify(clusters, resolution, tau, corner, top, coarse):
             row = expanded[kept]
             put(far[depth] if found == AMBIGUOUS else local, row)
             row[SIZE], row[SIZE + 1], row[SIZE + 2] = q
-            row[COUNT] = 0
+            row[CROSSED], row[COUNT] = is_crossed and found != AMBIGUOUS, 0
             if found == AMBIGUOUS:
                 row[COUNT] = len(close)
                 while listed + len(close) > len(all_near):
@@ -229,15 +243,15 @@ def _halve(waiting, count):
 
 
 @compiled
-def _class_of(local, half, size, tau):
+def _class_of(local, is_crossed, half, size, tau):
     """Return the class of a constant block; AMBIGUOUS; or 0 if its expansion decides queries."""
     error = local[ERROR] + ROUNDING
     if error >= 0.5:
         return AMBIGUOUS
     slope = variation(local, half)
-    required = np.ceil(tau + local[0] - slope - error)
-    if required == np.ceil(tau + local[0] + slope + error):
-        return CONSTANT + np.int64(required)
+    required = required_crossings(tau + local[0], slope + error)
+    if required < AMBIGUOUS:
+        return 0 if is_crossed else CONSTANT + required
     # About error / slope of the midpoints on three axes are closer to the threshold than the error.
     if 3 * size**3 * min(error, slope) > WORTH * slope and size > SMALLEST:
         return AMBIGUOUS

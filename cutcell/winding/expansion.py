@@ -11,8 +11,9 @@ of F x dr around the loop, whichever surface spans it; its own derivatives are a
 
     s^2 / 2 sum over its edges of length / (2 pi d^3),
 
-with d the distance of an edge to the ball. A cap that crosses the ball makes the winding number
-jump there: the error is then infinite.
+with d the distance of an edge to the ball. Only the rim has to keep away from the ball. In a ball
+crossed by a cap the winding number jumps by one across it, but is smooth otherwise: the expansion
+is then valid up to whole numbers. Where a rim enters the ball, the error is infinite.
 """
 
 from __future__ import annotations
@@ -50,6 +51,9 @@ class LocalExpansions(NamedTuple):
     centre : array, shape (n, 3)
     local : array, shape (n, SIZE)
         Of all caps, or of all but those of the near clusters.
+    is_crossed : array, shape (n,), bool
+        Whether a cap crosses the ball around the block: then `local`, of all caps, is valid up to
+        whole numbers.
     start : array, shape (n + 1,), int64
         The near clusters are near[start[i]] to near[start[i + 1] - 1].
     near : array, int32
@@ -57,6 +61,7 @@ class LocalExpansions(NamedTuple):
 
     centre: NDArray[np.float64]
     local: NDArray[np.float64]
+    is_crossed: NDArray[np.bool_]
     start: NDArray[np.int64]
     near: NDArray[np.int32]
 
@@ -67,6 +72,14 @@ def evaluate(local, x, y, z):
     linear = local[1] * x + local[2] * y + local[3] * z
     square = local[4] * (x * x - z * z) + local[5] * (y * y - z * z)
     return local[0] + linear + square / 2 + local[6] * x * y + local[7] * x * z + local[8] * y * z
+
+
+@compiled(inline="always")
+def value_at(expansions, row, point):
+    """Return the caps' winding number at a point of a block, and a bound of the error."""
+    x, y, z = between(expansions.centre[row], point)
+    local = expansions.local[row]
+    return evaluate(local, x, y, z), local[ERROR] + ROUNDING
 
 
 @compiled(inline="always")
@@ -143,7 +156,13 @@ def add_clusters(clusters, among, local, q, reach, tolerance):
         Radius of the ball around q.
     tolerance : float
         Clusters of a larger error are split.
+
+    Returns
+    -------
+    is_crossed : bool
+        Whether a cap crosses the ball: then the expansion is valid up to whole numbers.
     """
+    is_crossed = False
     leaves = len(clusters.start) - 1
     for top in among:
         k, end = top, next_cluster(top)
@@ -157,21 +176,24 @@ def add_clusters(clusters, among, local, q, reach, tolerance):
                 k *= 2
                 continue
             else:
-                _add_caps(clusters, k - leaves, local, q, reach, error == np.inf)
+                is_crossed |= _add_caps(clusters, k - leaves, local, q, reach, error == np.inf)
             if local[ERROR] > USELESS:
-                return
+                return is_crossed
             k = next_cluster(k)
+    return is_crossed
 
 
 @lean
 def _add_caps(clusters, leaf, local, q, reach, may_cross):
-    """Add the caps of a leaf of the tree one by one."""
+    """Add the caps of a leaf of the tree one by one; tell whether one crosses the ball."""
+    is_crossed = False
     for loop in range(clusters.start[leaf], clusters.start[leaf + 1]):
         rim = clusters.rim[clusters.first[loop] : clusters.first[loop + 1]]
-        _add_gradient(local, rim, clusters.apex[loop], q, reach, may_cross)
+        is_crossed |= _add_gradient(local, rim, clusters.apex[loop], q, reach, may_cross)
         if local[ERROR] > USELESS:
-            return
+            break
         local[0] += _winding_number(rim, clusters.apex[loop], q)
+    return is_crossed
 
 
 @compiled(inline="always")
@@ -218,7 +240,8 @@ def _winding_number(rim, apex, q):
 
 @lean
 def _add_gradient(local, rim, apex, q, reach, may_cross):
-    """Add the gradient of a cap, and its error: infinite if the cap crosses the ball."""
+    """Add the gradient of a cap, and its error; tell whether the cap crosses the ball."""
+    is_crossed = False
     c = between(q, apex)
     b = between(q, rim[len(rim) - 1])
     lb = length(b)
@@ -231,16 +254,19 @@ def _add_gradient(local, rim, apex, q, reach, may_cross):
         gap = (la + lb - side) / 2 - reach
         if gap < side:
             gap = _distance_to_edge(a, b) - reach
-        if gap <= 0 or (may_cross and _is_within(b, a, c, reach)):
+        if gap <= 0:
             local[ERROR] = np.inf
-            return
+            return True
         local[ERROR] += reach * reach / 2 * side / (2 * np.pi * gap * gap * gap)
         if local[ERROR] > USELESS:
-            return
+            break
         g = _biot_savart(b, a, lb, la)
         local[1] += g[0]
         local[2] += g[1]
         local[3] += g[2]
+        if may_cross and not is_crossed:
+            is_crossed = _is_within(b, a, c, reach)
+    return is_crossed
 
 
 @compiled(inline="always")

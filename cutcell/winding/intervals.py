@@ -7,7 +7,7 @@ the surface, not with the volume.
 On a closed mesh the winding number is the signed count of crossings ahead. Holes are closed by
 caps, whose own winding number is subtracted: see `cells.py` for where that takes no query, and
 `queries.py` for where it does. Rays are traversed twice, to list the queries and with their
-results; strips of rays without queries once.
+results; strips of rays through constant cells only once.
 """
 
 from __future__ import annotations
@@ -31,11 +31,13 @@ from ..surface.rays import (
 )
 from ..threads import in_threads
 from .boundary import Boundary
-from .caps import cap_holes
-from .cells import AMBIGUOUS, BLOCK, CONSTANT, class_at, classify_cells
-from .clusters import build_tree
+from .caps import smallest_caps
+from .cells import AMBIGUOUS, BLOCK, CONSTANT, class_at, classify_cells, required_crossings
+from .clusters import ROOT, build_tree
 from .exact import boundary_angle
-from .queries import INSIDE, SLACK, UNDECIDED, query_points
+from .expansion import value_at
+from .queries import FIRST, INSIDE, SLACK, UNDECIDED, query_points
+from .solid_angles import CLEAR, VALUE, WORKSPACE, Y, Z, caps_winding_numbers
 
 NONE = -1
 BYTES_PER_QUERY = 80
@@ -89,12 +91,12 @@ def inside_intervals(
     tell : callable
         See `progress.Tell`.
     """
-    caps = cap_holes(vertices, boundary)
+    caps = smallest_caps(vertices, boundary)
     tell(0.05)
     cap_hits = cast_all_rays(caps.vertices, caps.faces, resolution, share_of(tell, 0.05, 0.15))
     clusters = build_tree(caps)
     classes = classify_cells(clusters, resolution, winding_threshold, share_of(tell, 0.15, 0.3))
-    shared = resolution, winding_threshold, classes, boundary
+    shared = resolution, winding_threshold, classes, boundary, clusters, np.array([ROOT], np.int32)
     families = []
     for axis, (u, v, along) in enumerate(AXES):
         projected = np.ascontiguousarray(vertices[:, [u, v, along]])
@@ -105,17 +107,19 @@ def inside_intervals(
     work = [(rays, i * resolution, j * resolution) for rays in families for i, j in strips]
     listed: list[int] = []
 
-    def keep(rays, ray, last_ray, results=NO_RESULTS):
+    def keep(rays, ray, last_ray, results=None):
         start = rays[3][0]
         most = 2 * int(start[last_ray] - start[ray] + resolution + 1)
         rows = np.empty((most, 5), np.int32)
         row, queries = np.empty(256, np.int32), np.empty((256, SLACK + 1))
-        given, filled = (shared, rays, last_ray, results), (0, 0)
+        points, filled = np.empty(WORKSPACE), (0, 0, 0)
+        listing = results is None
+        given = shared, rays, last_ray, NO_RESULTS if listing else results, listing
         while ray < last_ray:
-            ray, filled = _keep_segments(*given, ray, filled, rows, row, queries)
+            ray, filled = _keep_segments(*given, ray, filled, rows, row, queries, points)
             if ray < last_ray:
                 rows, row, queries = _doubled(rows), _doubled(row), _doubled(queries)
-        return rows[: filled[0]], row[: filled[1]], queries[: filled[1]]
+        return rows[: filled[0]], row[: filled[1]], queries[: filled[1]], filled[2] > 0
 
     def list_queries(strip):
         found = keep(*strip)
@@ -129,7 +133,7 @@ def inside_intervals(
 
     first = in_threads(list_queries, work, share_of(tell, 0.3, 0.5))
     kept = [found[0] for found in first]
-    again = [k for k, (_, row, _) in enumerate(first) if len(row)]
+    again = [k for k, (*_, is_undecided) in enumerate(first) if is_undecided]
     if again:
         row, queries = (np.concatenate([first[k][column] for k in again]) for column in (1, 2))
         ends = np.cumsum([len(first[k][1]) for k in again])
@@ -160,23 +164,25 @@ def _constant_columns(coarse: NDArray[np.int32], along: int) -> NDArray[np.int32
 
 
 @lean
-def _keep_segments(shared, rays, last_ray, results, first_ray, filled, rows, row, queries):
+def _keep_segments(
+    shared, rays, last_ray, results, listing, first_ray, filled, rows, row, queries, points
+):
     """Run algorithm 1 on rays while there is room.
 
-    Writes the intervals as `rows` (ray, first, last, low, high). Without `results` it also lists
-    the queries: the row of the expansions, and what `query_points` takes.
+    Writes the intervals as `rows` (ray, first, last, low, high). When `listing` it has no results
+    yet and lists the queries: the row of the expansions, and what `query_points` takes. `points`
+    is a workspace.
 
     Returns
     -------
     next_ray : int
-    filled : tuple of 2 ints
-        Number of intervals, and of queries.
+    filled : tuple of 3 ints
+        Number of intervals, of queries, and of segments that are undecided when listing.
     """
-    resolution, tau, classes, boundary = shared
-    axis, vertices, constant, (start, position, sign), (cap_start, cap_position, cap_sign) = rays
-    sense = -1.0 if axis == 1 else 1.0  # (x, z, y) is left-handed
-    count, query = filled
-    listing = len(results) == 0
+    resolution, tau, classes, boundary = shared[:4]
+    expansions = classes.expansions
+    axis, _, constant, (start, position, sign), (cap_start, cap_position, cap_sign) = rays
+    count, query, undecided = filled
     for r in range(first_ray, last_ray):
         begin, end, cap, last_cap = start[r], start[r + 1], cap_start[r], cap_start[r + 1]
         i, j = r // resolution, r % resolution
@@ -187,9 +193,11 @@ def _keep_segments(shared, rays, last_ray, results, first_ray, filled, rows, row
         segments = resolution + end - begin + 1
         is_full = count + 2 * segments > len(rows)
         if is_full or (listing and query + segments > len(row)):
-            return r, (count, query)
+            return r, (count, query, undecided)
         crossings = _signed_count(sign, begin, end)
         cap_crossings = _signed_count(cap_sign, cap, last_cap)
+        # The last block crossed by caps on this ray, and its whole number.
+        crossed, offset = np.int32(NONE), np.int64(0)
         k = 0
         # Between two hits, c - 1 (or the wall of the cube) and c, segments end at lattice points:
         # segment s at point s, the last one at hit c.
@@ -220,19 +228,34 @@ def _keep_segments(shared, rays, last_ray, results, first_ray, filled, rows, row
                     pu, pv = (i + 0.5) / resolution, (j + 0.5) / resolution
                     if cell_class < 0:  # holds for all segments of this class up to the next hit
                         kept = crossings + cap_crossings >= cell_class - CONSTANT
-                    elif listing:
-                        row[query] = cell_class
-                        point = in_space(axis, pu, pv, middle)
-                        queries[query, 0], queries[query, 1], queries[query, 2] = point
-                        queries[query, SLACK] = crossings + cap_crossings - tau
-                        kept, until, query = False, cell + 1, query + 1
                     else:
-                        kept = results[query] == INSIDE
-                        if results[query] == UNDECIDED:
-                            angle = boundary_angle(vertices, boundary, pu, pv, middle)
-                            winding_number = crossings + sense * angle
-                            kept = winding_number >= tau
-                        until, query = cell + 1, query + 1
+                        until = cell + 1
+                        undecided += listing
+                        point = in_space(axis, pu, pv, middle)
+                        needed = AMBIGUOUS
+                        if expansions.is_crossed[cell_class]:
+                            value, error = value_at(expansions, cell_class, point)
+                            needed = required_crossings(tau + value, error)
+                        if needed < AMBIGUOUS:
+                            if not listing and cell_class != crossed:
+                                where = pu, pv, middle
+                                offset = _crossed_offset(
+                                    shared, rays, where, point, cell_class, cap_crossings, points
+                                )
+                                crossed = cell_class
+                            kept = not listing and crossings + offset >= needed
+                        elif listing:
+                            row[query] = cell_class
+                            queries[query, 0], queries[query, 1], queries[query, 2] = point
+                            queries[query, SLACK] = crossings + cap_crossings - tau
+                            kept, query = False, query + 1
+                        else:
+                            kept = results[query] == INSIDE
+                            if results[query] == UNDECIDED:
+                                angle = _rest(boundary, rays, (pu, pv, middle))
+                                winding_number = crossings + angle
+                                kept = winding_number >= tau
+                            query += 1
                     until = max(s + 1, min(until, beyond + (c < end)))
                 if kept and not is_open:
                     rows[count, 0] = r
@@ -249,7 +272,34 @@ def _keep_segments(shared, rays, last_ray, results, first_ray, filled, rows, row
                 rows[count, 4] = c if c < end else NONE
                 count += 1
             k = beyond
-    return last_ray, (count, query)
+    return last_ray, (count, query, undecided)
+
+
+@lean
+def _crossed_offset(shared, rays, where, point, row, cap_crossings, points):
+    """Return the whole number n of a ray in a block crossed by caps: w = crossings + n - expansion.
+
+    Where the ray passes a cap, the cap crossing count and the caps' winding number jump alike. So
+    their difference is smooth, and n is the same all along the ray in this block: one evaluation,
+    at any point, gives it.
+    """
+    _, _, classes, boundary, clusters, every = shared
+    value, error = value_at(classes.expansions, row, point)
+    points[0], points[Y], points[Z] = point
+    alone = np.int64(1)  # a literal would be a type of its own, compiled anew
+    error += caps_winding_numbers(clusters, every, point, 0.0, FIRST, points, alone)
+    angle = cap_crossings - points[VALUE]
+    if error >= 0.5 or points[CLEAR] <= 0:
+        angle = _rest(boundary, rays, where)
+    return np.int64(np.round(angle + value))
+
+
+@lean
+def _rest(boundary, rays, where):
+    """Return the winding number less the crossings ahead, by the exact formula."""
+    axis, vertices = rays[:2]
+    sense = -1.0 if axis == 1 else 1.0  # (x, z, y) is left-handed
+    return sense * boundary_angle(vertices, boundary, where[0], where[1], where[2])
 
 
 @compiled(inline="always")

@@ -115,7 +115,7 @@ def _query_batch(expansions, clusters, queries, row, open_queries, every, points
     """Decide at most BATCH queries of one block."""
     centre, local = expansions.centre[row], expansions.local[row]
     near = expansions.near[expansions.start[row] : expansions.start[row + 1]]
-    use_local, tolerance = True, FIRST
+    use_local, tolerance = not expansions.is_crossed[row], FIRST
     while len(open_queries) and tolerance > LAST:
         count, middle, reach = _load(open_queries, queries, points)
         local_error = (local[ERROR] if use_local else 0.0) + ROUNDING
