@@ -17,15 +17,14 @@ from bokeh.settings import settings
 from bokeh.util.browser import view
 
 from cutcell.console import print_warnings
-from cutcell.skinning import is_compiled, warm_up
+from cutcell.skinning import kernels_are_compiled, load_kernels
 
-from .files.upload_cache import UPLOADS
-from .layout.page import page
-from .server.handlers import guard
-from .server.log import log_to_terminal
-from .server.memory import settle
-from .widgets.modules import STATIC, preloads
-from .work.processes import get_ready
+from .apart import get_ready
+from .handlers import guard
+from .keep import KEEP
+from .log import log_to_terminal
+from .memory import settle
+from .page import page
 
 PORTS_TRIED = 20
 MAX_MESSAGE = 32 * 1024 * 1024
@@ -81,12 +80,12 @@ def serve(
     log_to_terminal()
     # Computing in Python gives way to the page's own thread sooner than after 5 ms.
     sys.setswitchinterval(0.001)
-    UPLOADS.sweep_by_the_clock()
+    KEEP.sweep_by_the_clock()
     threading.Thread(target=get_ready, daemon=True).start()
     server = begin(path, chosen, address)
-    if is_compiled():
+    if kernels_are_compiled():
         # While the browser starts. The first compile ever is left to the page, which tells of it.
-        threading.Thread(target=_warm_up, args=(server,), daemon=True).start()
+        threading.Thread(target=_load_kernels, args=(server,), daemon=True).start()
     # It listens from here on; told sooner, the address could be asked for too soon.
     host = "localhost" if address in ("0.0.0.0", "::", *LOCAL) else in_brackets(address)
     url = f"http://{host}:{chosen}"
@@ -125,14 +124,14 @@ def begin(path: Path | None, port: int, address: str = "localhost", **more: Any)
         threaded=False,
         **{**ENDINGS, **more},
     )
-    text = guard(server._tornado, allowed_hosts(address, port), STATIC, preloads())
+    text = guard(server._tornado, allowed_hosts(address, port))
     server.io_loop.add_callback(text.make)
     server.io_loop.add_callback(_settle, server)
     return server
 
 
-def _warm_up(server: Any) -> None:
-    warm_up()
+def _load_kernels(server: Any) -> None:
+    load_kernels()
     server.io_loop.add_callback(_settle, server)
 
 

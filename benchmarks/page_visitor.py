@@ -11,8 +11,6 @@ from typing import Any
 import panel as pn
 from playwright.sync_api import Browser, Page
 
-from cutcell_app.widgets.modules import STATIC
-
 from .page_subjects import SIZE, Subject
 
 PATIENCE = 90.0
@@ -24,7 +22,7 @@ def served(subjects: Sequence[Subject], port: int) -> Iterator[str]:
     """Serve the subjects from a thread of this process; give the address."""
     server = pn.serve(
         {subject.path: subject.page for subject in subjects},
-        static_dirs=STATIC, port=port, threaded=True, show=False, verbose=False,
+        port=port, threaded=True, show=False, verbose=False,
         websocket_origin=f"localhost:{port}", websocket_max_message_size=2**28,
     )  # fmt: skip
     try:
@@ -141,28 +139,28 @@ class Visitor(Watched):
 
 
 TURNS = """async ([whole, steps]) => {
-  const {orbit, renderer} = __cutcell
-  const draw = renderer.draw
-  if (whole) { renderer.draw = function () { draw.call(this, false, true) } }
+  const {orbit, stage} = __cutcell
+  const draw = stage.draw
+  if (whole) { stage.draw = function () { draw.call(this, false, true) } }
   const spent = []
   for (let step = 0; step <= steps; step++) {
-    const [begin, frames] = [performance.now(), renderer.frames]
+    const [begin, frames] = [performance.now(), stage.frames]
     orbit.turn(0.03, 0.004)
-    while (renderer.frames === frames) { await new Promise(requestAnimationFrame) }
-    renderer.context.readPixels(0, 0, 1, 1, renderer.context.RGBA, renderer.context.UNSIGNED_BYTE,
+    while (stage.frames === frames) { await new Promise(requestAnimationFrame) }
+    stage.context.readPixels(0, 0, 1, 1, stage.context.RGBA, stage.context.UNSIGNED_BYTE,
       new Uint8Array(4))
     if (step > 0) { spent.push(performance.now() - begin) }  // the first makes buffers
   }
-  delete renderer.draw
+  delete stage.draw
   orbit.rest()
   return spent
 }"""
 
 POSED = """(repeats) => {
-  const actor = __cutcell.renderer.actors.get("body")
+  const figure = __cutcell.stage.figures.get("body")
   return Array.from({length: repeats}, () => {
     const begin = performance.now()
-    actor.posed()
+    figure.posed()
     return performance.now() - begin
   })
 }"""

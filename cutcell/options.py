@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated
 
 import typer
-
-if TYPE_CHECKING:
-    from .method import Method
 
 METHOD = "The method"
 JOINTS = "Which joints carry weight"
@@ -40,36 +37,24 @@ Quiet = Annotated[
     bool,
     typer.Option("--quiet", "-q", help="No bars, no table, no warnings.", rich_help_panel=FILES),
 ]
-How = Annotated[
-    str,
-    typer.Option(
-        "--method",
-        metavar="M",
-        help="What the options below are when left out. animation: made to animate with."
-        " paper: just as in the paper.",
-        rich_help_panel=METHOD,
-    ),
-]
 Resolution = Annotated[
     int,
     typer.Option(
         "--resolution",
         "-r",
         metavar="R",
-        help="Rays along the longest side of the mesh. More: close parts are kept apart, more"
+        help="Rays along the longest side of the mesh. More: finer parts are told apart, more"
         " time and memory.",
         rich_help_panel=METHOD,
     ),
 ]
 Connectivity = Annotated[
-    str | None,
+    str,
     typer.Option(
         "--connectivity",
-        metavar="C",
+        metavar="6|26|any",
         help="How paths run inside. 6: along the axes, as in the paper. 26: along diagonals too."
-        " any: at any angle, so that distances are geodesic. Left out: any; 6 by the method"
-        " paper.",
-        show_default=False,
+        " any: at any angle, so that distances are geodesic.",
         rich_help_panel=METHOD,
     ),
 ]
@@ -104,45 +89,39 @@ Leaf = Annotated[
     str | None,
     typer.Option(
         "--leaf",
-        metavar="L",
+        metavar="point|extend|fit",
         help="Where bones end. point, extend: at the child joints; a joint without children is a"
         " point, or goes on along its parent's direction. fit: where the body says. Left out:"
-        " fit; point with the falloff paper.",
+        " fit with the falloff rig, else point.",
         show_default=False,
         rich_help_panel=METHOD,
     ),
 ]
 Falloff = Annotated[
-    str | None,
+    str,
     typer.Option(
         "--falloff",
-        metavar="F",
+        metavar="rig|paper",
         help="How weight falls with distance. rig: made to animate with. paper: the paper's kernel"
-        " (its equation 1), a soft feature of the distance. Left out: rig; paper by the method"
-        " paper.",
-        show_default=False,
+        " (its equation 1), a soft feature of the distance.",
         rich_help_panel=METHOD,
     ),
 ]
 Alpha = Annotated[
-    float | None,
+    float,
     typer.Option(
         "--alpha",
         metavar="A",
-        help="Of the falloff paper alone, 0 to 1: 0 linear in the distance, 1 quadratic. Left"
-        " out: 0.5.",
-        show_default=False,
+        help="Of the paper's falloff, 0 to 1: 0 linear in the distance, 1 quadratic.",
         rich_help_panel=METHOD,
     ),
 ]
 MaxInfluences = Annotated[
-    str | None,
+    int,
     typer.Option(
         "--max-influences",
         metavar="K",
-        help="Most joints a vertex may follow: a number, or all. 4 is what game engines read."
-        " Left out: 4; all by the method paper, but 4 in glTF files.",
-        show_default=False,
+        help="Most joints a vertex may follow. 4 is what game engines read.",
         rich_help_panel=METHOD,
     ),
 ]
@@ -210,23 +189,3 @@ Lock = Annotated[
         rich_help_panel=TOUCH,
     ),
 ]
-
-
-def chosen_method(name: str, **options: Any) -> Method:
-    """Return the method of that name with the options that were given, as texts where they may be.
-
-    Raises
-    ------
-    ParameterError
-        There is no such method, or an option is out of its range or has no effect.
-    """
-    from .checks import check_choice
-    from .method import METHODS, method_of
-
-    given = {key: value for key, value in options.items() if value is not None}
-    for key in ("connectivity", "max_influences"):
-        if isinstance(text := given.get(key), str) and text.isdecimal():
-            given[key] = int(text)
-    if given.get("max_influences") == "all":
-        given["max_influences"] = None
-    return method_of(check_choice("method", name, METHODS), **given)

@@ -4,16 +4,16 @@ from pathlib import Path
 
 import pytest
 
-from cutcell.skinning import is_compiled, warm_up
+from cutcell.skinning import kernels_are_compiled, load_kernels
 
 ROOT = Path(__file__).resolve().parent.parent
 SHARED_RIGS = ROOT.parent / "shared" / "data" / "rigs"
 
 
 def pytest_sessionstart(session: pytest.Session) -> None:
-    """Compile all functions before there are workers: each of them would compile its own."""
-    if session.config.getoption("numprocesses", None) and not is_compiled():
-        warm_up()
+    """Compile the kernels before there are workers: each of them would compile its own."""
+    if session.config.getoption("numprocesses", None) and not kernels_are_compiled():
+        load_kernels()
 
 
 @pytest.hookimpl(optionalhook=True)

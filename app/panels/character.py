@@ -6,13 +6,11 @@ from typing import Any
 
 import panel_material_ui as pmui
 
-from cutcell_assets import DEMOS
+from assets import DEMOS
 
-from ..commands.loading import load_demo, receiver
-from ..commands.session import Session
-from ..files.receive import MAX_UPLOAD
-from ..state import State
-from ..widgets.file_drop import FileDrop
+from ..session import Session
+from ..state import MAX_UPLOAD, State
+from ..upload import FileDrop
 from .parts import GAP, as_text, caption, section
 
 MOST_FAULTS = 2
@@ -37,7 +35,7 @@ def character(session: Session) -> pmui.Column:
 
     def chosen(event: Any) -> None:
         if event.new and event.new != state.demo:
-            load_demo(session, event.new)
+            session.opening.demo(event.new)
 
     def shown(*events: Any) -> None:
         own = {} if state.demo else {OWN: ""}
@@ -50,7 +48,7 @@ def character(session: Session) -> pmui.Column:
     select.param.watch(chosen, "value")
     state.param.watch(shown, ["demo", "rig", "diagnosis"])
     shown()
-    drop = FileDrop(receiver(session), hint=HINT, sizing_mode="stretch_width", margin=GAP)
+    drop = FileDrop(session.opening.receiver(), hint=HINT, sizing_mode="stretch_width", margin=GAP)
     return section("", select, lesson, drop, margin=(16, 20, 4, 20))
 
 

@@ -1,6 +1,6 @@
-"""Other methods to bind a rig, all with one signature, to measure ours against."""
+"""Other ways to bind a rig, all with one signature, to measure ours against."""
 
-from .frame import BaselineBinding
-from .methods import METHODS, Baseline
+from .methods import METHODS, Method
+from .result import BaselineBinding
 
-__all__ = ["METHODS", "Baseline", "BaselineBinding"]
+__all__ = ["METHODS", "BaselineBinding", "Method"]

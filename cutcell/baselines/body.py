@@ -9,9 +9,8 @@ from numpy.typing import NDArray
 
 from ..geodesics import Bones, bone_segments, distance_to_segment
 from ..graph import Lattice
-from ..method import Leaf
+from ..graph.weld import weld
 from ..rig import Rig
-from ..surface.weld import weld
 
 
 @dataclass(frozen=True, eq=False)
@@ -21,16 +20,16 @@ class Body:
     Parameters
     ----------
     points : array, shape (k, 3), float64
-        Welded vertices, sorted by coordinates.
+        Places, sorted by coordinates.
     faces : array, shape (m, 3), int32
         Triangles with three different corners.
     index : array, shape (n,), int32
-        The welded vertex of each vertex of the file.
+        The place of each vertex of the file.
     bones : Bones
     joints : int
         j, the joints of the skeleton, with or without bones.
     lattice : Lattice
-        From the file's units into the unit cube and back.
+        The way from the file's units into the unit cube and back.
     """
 
     points: NDArray[np.float64]
@@ -41,7 +40,7 @@ class Body:
     lattice: Lattice
 
     @classmethod
-    def of(cls, rig: Rig, leaf: Leaf = "point", resolution: int = 64) -> Body:
+    def of(cls, rig: Rig, leaf: str = "point", resolution: int = 64) -> Body:
         """Prepare a rig; see `bone_segments` for `leaf`, `Lattice.around` for `resolution`.
 
         Raises
@@ -58,7 +57,7 @@ class Body:
         return cls(points, faces, index, bones, len(rig.skeleton.joints), lattice)
 
     def straight(self) -> NDArray[np.float64]:
-        """Measure from every bone straight to every welded vertex, shape (b, k)."""
+        """Measure from every bone straight to every place, shape (b, k)."""
         ends = zip(self.bones.start, self.bones.end, strict=True)
         return np.stack([distance_to_segment(self.points, start, end) for start, end in ends])
 

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from ..checks import check_integer
 from ..errors import CutcellError
 from ..geodesics import BoneDistances
-from ..method import check_resolution
+from ..graph.lattice import MAX_RESOLUTION, MIN_RESOLUTION
 from ..progress import Progress, silent
 from ..rig import Rig
 from .finding import Diagnosis, Finding, by_gravity
@@ -54,7 +55,7 @@ def diagnose(
     >>> for finding in cutcell.diagnose(rig).findings:  # doctest: +SKIP
     ...     print(finding.severity, finding.message)
     """
-    resolution = check_resolution(resolution)
+    resolution = check_integer("resolution", resolution, MIN_RESOLUTION, MAX_RESOLUTION)
     subject = Subject(rig, resolution, distances, progress=progress)
     found: list[Finding] = []
     _ = subject.graph

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from cutcell_viewers import palette
+from viewers import palette
 
 
 def test_the_papers_colours():

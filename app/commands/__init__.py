@@ -1,1 +1,0 @@
-"""What happens on the page: functions that are given a session, and change its state."""

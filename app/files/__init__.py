@@ -1,1 +1,0 @@
-"""Files of characters: received from browsers, kept for a while, and read."""

@@ -1,1 +1,0 @@
-"""The server: who is let in, what it logs, and memory that ended sessions held."""
