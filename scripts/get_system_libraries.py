@@ -33,7 +33,7 @@ def works(code: str) -> bool:
 def main() -> None:
     """Install what is missing, or stop and say what to install."""
     for code, what, packages in NEEDS:
-        if works(code) or debian.install(packages, what) and works(code):
+        if works(code) or (debian.install(packages, what) and works(code)):
             continue
         sys.exit(
             f"The tests need {what}, and this machine lacks it.\n"
