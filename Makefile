@@ -3,7 +3,9 @@
 
 VENV := .venv
 PYTHON := $(VENV)/bin/python
-SETUP := pyproject.toml requirements.lock scripts/setup.sh
+SETUP := pyproject.toml setup.py requirements.lock scripts/setup.sh
+
+SCRIPTS := app/scripts tests/app/scripts
 
 # As many as there are cores; tests/dealing.py says which tests go together to one of them.
 WORKERS := --numprocesses logical --maxprocesses 4
@@ -22,19 +24,21 @@ test: $(VENV)/.tools ## Check style and types, run all tests; ARGS='tests/cutcel
 	@$(PYTHON) -m ruff check .
 	@$(PYTHON) -m ruff format --check .
 	@$(PYTHON) -m mypy
+	@$(VENV)/bin/oxlint --quiet $(SCRIPTS)
 	@$(PYTHON) -m pytest $(WORKERS) $(ARGS)
 
 lint: $(VENV)/.test ## Check style and types only
 	@$(PYTHON) -m ruff check .
 	@$(PYTHON) -m ruff format --check .
 	@$(PYTHON) -m mypy
+	@$(VENV)/bin/oxlint --quiet $(SCRIPTS)
 
 format: $(VENV)/.test ## Format the code and mend what ruff can mend
 	@$(PYTHON) -m ruff format .
 	@$(PYTHON) -m ruff check --fix .
 
 assets: $(VENV)/.test ## Make the demo characters again
-	@$(PYTHON) -m assets
+	@$(PYTHON) -m cutcell_assets
 
 lock: $(VENV)/.test ## Choose the locked versions again
 	@scripts/lock.sh

@@ -12,13 +12,13 @@ from cutcell.checks import check_choice, check_has_joints
 from cutcell.errors import ParameterError
 from cutcell.progress import Progress, silent
 from cutcell.rig import Clip, Rig
-from viewers.description import Description
-from viewers.error_scene import Gap
-from viewers.film import Order
-from viewers.pose_scene import clip_in_scene, pose_at
+from cutcell_viewers.description import Description
+from cutcell_viewers.error_scene import Gap
+from cutcell_viewers.film import Order
+from cutcell_viewers.pose_scene import clip_in_scene, pose_at
 
-from .actions.compare import measured
-from .actions.pose import motion_error
+from .commands.compare import measured
+from .commands.pose import motion_error
 from .scenes import following, resolve
 from .scenes.common import first_joint
 from .scenes.geodesics import wants_field
@@ -112,7 +112,7 @@ def describe(
     Returns
     -------
     Description
-        For `viewers.show`.
+        For `cutcell_viewers.show`.
 
     Raises
     ------
@@ -124,7 +124,7 @@ def describe(
     Examples
     --------
     >>> scene = describe(rig, Choices("weights", bone="hand.L"))  # doctest: +SKIP
-    >>> viewers.show(scene)  # doctest: +SKIP
+    >>> cutcell_viewers.show(scene)  # doctest: +SKIP
     """
     choices = choices or Choices()
     state = _state(rig, choices)

@@ -17,14 +17,15 @@ from bokeh.settings import settings
 from bokeh.util.browser import view
 
 from cutcell.console import print_warnings
-from cutcell.skinning import kernels_are_compiled, load_kernels
+from cutcell.skinning import is_compiled, warm_up
 
-from .apart import get_ready
-from .handlers import guard
-from .keep import KEEP
-from .log import log_to_terminal
-from .memory import settle
-from .page import page
+from .files.upload_cache import UPLOADS
+from .layout.page import page
+from .server.handlers import guard
+from .server.log import log_to_terminal
+from .server.memory import settle
+from .widgets.modules import STATIC, preloads
+from .work.processes import get_ready
 
 PORTS_TRIED = 20
 MAX_MESSAGE = 32 * 1024 * 1024
@@ -80,12 +81,12 @@ def serve(
     log_to_terminal()
     # Computing in Python gives way to the page's own thread sooner than after 5 ms.
     sys.setswitchinterval(0.001)
-    KEEP.sweep_by_the_clock()
+    UPLOADS.sweep_by_the_clock()
     threading.Thread(target=get_ready, daemon=True).start()
     server = begin(path, chosen, address)
-    if kernels_are_compiled():
+    if is_compiled():
         # While the browser starts. The first compile ever is left to the page, which tells of it.
-        threading.Thread(target=_load_kernels, args=(server,), daemon=True).start()
+        threading.Thread(target=_warm_up, args=(server,), daemon=True).start()
     # It listens from here on; told sooner, the address could be asked for too soon.
     host = "localhost" if address in ("0.0.0.0", "::", *LOCAL) else in_brackets(address)
     url = f"http://{host}:{chosen}"
@@ -124,14 +125,14 @@ def begin(path: Path | None, port: int, address: str = "localhost", **more: Any)
         threaded=False,
         **{**ENDINGS, **more},
     )
-    text = guard(server._tornado, allowed_hosts(address, port))
+    text = guard(server._tornado, allowed_hosts(address, port), STATIC, preloads())
     server.io_loop.add_callback(text.make)
     server.io_loop.add_callback(_settle, server)
     return server
 
 
-def _load_kernels(server: Any) -> None:
-    load_kernels()
+def _warm_up(server: Any) -> None:
+    warm_up()
     server.io_loop.add_callback(_settle, server)
 
 

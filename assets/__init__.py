@@ -1,6 +1,6 @@
 """Demo characters, each with a skeleton, reference weights and a short clip.
 
-The GLB files beside this one are made by `python -m assets`; importing this module only
+The GLB files beside this one are made by `python -m cutcell_assets`; importing this module only
 names them.
 """
 

@@ -1,4 +1,4 @@
-"""Make all demo characters again: `python -m assets`, or only some: `... robot rabbit`."""
+"""Make all demo characters again: `python -m cutcell_assets`, or only some: `... robot rabbit`."""
 
 from __future__ import annotations
 

@@ -55,7 +55,7 @@ def measure(shape: Shape, resolution: int, connectivity: int | str, repeats: int
     for _ in range(repeats):
         begin = perf_counter()
         graph = build_graph(shape.mesh, resolution, connectivity=connectivity)  # type: ignore[arg-type]
-        distances = bone_distances(graph, skeleton)
+        distances = bone_distances(graph, skeleton, method="paper")
         spent.append(perf_counter() - begin)
     found = distances.joint[:, shape.targets] * graph.lattice.size
     cell = graph.lattice.size / resolution

@@ -14,7 +14,7 @@ from scipy.spatial import cKDTree
 import cutcell
 from cutcell import Rig, Skeleton, TriangleMesh
 from cutcell.graph import Lattice
-from cutcell.graph.weld import weld
+from cutcell.surface.weld import weld
 
 
 @dataclass(frozen=True, eq=False)

@@ -41,7 +41,7 @@ def construction_table(
         ours, theirs = [], {name: [] for name in meshers}
         for character in characters:
             mesh = character.rig.mesh
-            ways = {"graph": lambda m=mesh, r=resolution: build_graph(m, r)}
+            ways = {"graph": lambda m=mesh, r=resolution: build_graph(m, r, connectivity=6)}
             ours.append(min(in_turn(ways, options.repeats)["graph"].seconds))
             for name in meshers:
                 key = (name, character.name) if name == "tetgen" else None

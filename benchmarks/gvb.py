@@ -45,7 +45,7 @@ def graph_sizes(paths: Sequence[Path], resolution: int) -> dict[str, Size]:
     counts: dict[str, list[tuple[int, int]]] = {"cutcell": [], "voxel": []}
     for path in paths:
         rig = cutcell.load(path)
-        graph = build_graph(rig.mesh, resolution)
+        graph = build_graph(rig.mesh, resolution, connectivity=6)
         counts["cutcell"].append((len(graph.nodes), len(graph.edges)))
         voxels = voxelize(Body.of(rig, resolution=resolution))
         counts["voxel"].append((len(voxels.centres), len(voxels.links()[0])))

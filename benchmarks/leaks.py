@@ -38,7 +38,7 @@ def fields(rig: Rig, resolution: int) -> dict[str, NDArray[np.float64]]:
     """Compute both distances from the arm, and both weights of it; one value for each vertex."""
     arm = [rig.skeleton.names.index(name) for name in ARM]
     body = Body.of(rig, resolution=resolution)
-    voxels = body.joint_minimum(voxel_distances(body)[0])[arm].min(axis=0)[body.index]
+    voxels = body.joint_minimum(voxel_distances(body))[arm].min(axis=0)[body.index]
     binding = cutcell.bind(rig, resolution, max_influences=None)
     caged = harmonic(rig, resolution)
     if caged.weights is None:
@@ -85,11 +85,11 @@ def picture(rig: Rig, found: dict[str, NDArray[np.float64]], path: Path) -> None
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    from viewers.camera import Camera, framing
-    from viewers.distance_scene import distance_scene
-    from viewers.palette import LIGHT
-    from viewers.scene import render_png
-    from viewers.weights_scene import weights_scene
+    from cutcell_viewers.camera import Camera, framing
+    from cutcell_viewers.distance_scene import distance_scene
+    from cutcell_viewers.palette import LIGHT
+    from cutcell_viewers.scene import render_png
+    from cutcell_viewers.weights_scene import weights_scene
 
     joint = rig.skeleton.names.index(ARM[1])
     longest = max(float(found[name].max()) for name in found if "distance" in name)

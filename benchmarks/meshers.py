@@ -33,7 +33,9 @@ def meshers_table(characters: list[Character], options: argparse.Namespace) -> T
     )
     for character in characters:
         mesh = character.rig.mesh
-        ours = in_turn({"graph": lambda m=mesh: build_graph(m, 64)}, options.repeats)["graph"]
+        ours = in_turn(
+            {"graph": lambda m=mesh: build_graph(m, 64, connectivity=6)}, options.repeats
+        )["graph"]
         cells = [run_mesher(name, character, options) for name in MESHERS]
         table.add(character.name, ours, *cells)
         print(f"{table.title}: {character.name}", file=sys.stderr, flush=True)

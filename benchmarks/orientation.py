@@ -81,7 +81,11 @@ def measure(mesh: TriangleMesh, resolution: int) -> tuple[list[str], bool]:
     area = np.linalg.norm(sides, axis=1)
     missed = float(area[wrong].sum() / area.sum())
     counts = [
-        int((build_graph(one, resolution, orient=orient).node_kind == INTERIOR).sum())
+        int(
+            (
+                build_graph(one, resolution, connectivity=6, orient=orient).node_kind == INTERIOR
+            ).sum()
+        )
         for one, orient in ((mesh, True), (mesh, False), (whole, True), (damaged, True))
     ]
     cells = [str(int(turned.sum())), *(f"{count:,}" for count in counts), percent(missed)]

@@ -12,17 +12,18 @@ import pyvista as pv
 import trimesh
 
 import cutcell
-from app.scenes.pose import clip_part
-from app.state import State
-from app.view import SceneView, camera_part
 from cutcell import Rig, TriangleMesh
 from cutcell.rig import Clip
-from viewers.camera import framing
-from viewers.character import body, bones, pose_in_scene
-from viewers.description import Actor, Description
-from viewers.graph_scene import graph_scene
-from viewers.pose_scene import swing
-from viewers.skin import moved
+from cutcell_app.scenes.common import camera_part
+from cutcell_app.scenes.pose import clip_part
+from cutcell_app.state import State
+from cutcell_app.widgets.view import SceneView
+from cutcell_viewers.camera import framing
+from cutcell_viewers.character import body, bones, pose_in_scene
+from cutcell_viewers.description import Actor, Description
+from cutcell_viewers.graph_scene import graph_scene
+from cutcell_viewers.pose_scene import swing
+from cutcell_viewers.skin import moved
 
 from .shapes import chain
 

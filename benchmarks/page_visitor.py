@@ -11,6 +11,8 @@ from typing import Any
 import panel as pn
 from playwright.sync_api import Browser, Page
 
+from cutcell_app.widgets.modules import STATIC
+
 from .page_subjects import SIZE, Subject
 
 PATIENCE = 90.0
@@ -22,7 +24,7 @@ def served(subjects: Sequence[Subject], port: int) -> Iterator[str]:
     """Serve the subjects from a thread of this process; give the address."""
     server = pn.serve(
         {subject.path: subject.page for subject in subjects},
-        port=port, threaded=True, show=False, verbose=False,
+        static_dirs=STATIC, port=port, threaded=True, show=False, verbose=False,
         websocket_origin=f"localhost:{port}", websocket_max_message_size=2**28,
     )  # fmt: skip
     try:
@@ -139,28 +141,28 @@ class Visitor(Watched):
 
 
 TURNS = """async ([whole, steps]) => {
-  const {orbit, stage} = __cutcell
-  const draw = stage.draw
-  if (whole) { stage.draw = function () { draw.call(this, false, true) } }
+  const {orbit, renderer} = __cutcell
+  const draw = renderer.draw
+  if (whole) { renderer.draw = function () { draw.call(this, false, true) } }
   const spent = []
   for (let step = 0; step <= steps; step++) {
-    const [begin, frames] = [performance.now(), stage.frames]
+    const [begin, frames] = [performance.now(), renderer.frames]
     orbit.turn(0.03, 0.004)
-    while (stage.frames === frames) { await new Promise(requestAnimationFrame) }
-    stage.context.readPixels(0, 0, 1, 1, stage.context.RGBA, stage.context.UNSIGNED_BYTE,
+    while (renderer.frames === frames) { await new Promise(requestAnimationFrame) }
+    renderer.context.readPixels(0, 0, 1, 1, renderer.context.RGBA, renderer.context.UNSIGNED_BYTE,
       new Uint8Array(4))
     if (step > 0) { spent.push(performance.now() - begin) }  // the first makes buffers
   }
-  delete stage.draw
+  delete renderer.draw
   orbit.rest()
   return spent
 }"""
 
 POSED = """(repeats) => {
-  const figure = __cutcell.stage.figures.get("body")
+  const actor = __cutcell.renderer.actors.get("body")
   return Array.from({length: repeats}, () => {
     const begin = performance.now()
-    figure.posed()
+    actor.posed()
     return performance.now() - begin
   })
 }"""

@@ -17,7 +17,7 @@ from .timing import Times
 from .visitors import served
 
 START = "?panel=weights&falloff=paper&alpha=0.2"
-MOST = "Bones a vertex, at most"
+MOST = "Influences per vertex, at most"
 SLIDERS = {
     "smoothness α": ("Smoothness α", "mix"),
     "most influences": (MOST, "count"),

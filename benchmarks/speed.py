@@ -18,7 +18,7 @@ import cutcell
 from cutcell.geodesics import bone_distances, bone_segments
 from cutcell.geodesics.shortest_paths import shortest_paths
 from cutcell.graph import build_graph
-from cutcell.skinning.kernels import load_kernels
+from cutcell.skinning import warm_up
 
 from . import meshers, recipe, start_up
 from .rigs import Character, load_characters
@@ -92,10 +92,10 @@ def graph_table(characters: list[Character], options: argparse.Namespace) -> Tab
     )
     for character, resolution in _each([*characters, *_torn(characters[0])], options):
         mesh = character.rig.mesh
-        graph = build_graph(mesh, resolution)
+        graph = build_graph(mesh, resolution, connectivity=6)
         arrays = [graph.nodes, graph.edges, graph.lengths, graph.node_kind, graph.edge_kind]
         ways: dict[str, Callable[[], object]] = {
-            "cutcell": lambda m=mesh, r=resolution: build_graph(m, r),
+            "cutcell": lambda m=mesh, r=resolution: build_graph(m, r, connectivity=6),
             "recipe": lambda m=mesh, r=resolution: recipe.build_graph(m, r, _caster()),
             "copy of the result": lambda a=arrays: [x.copy() for x in a],
         }
@@ -169,7 +169,7 @@ def distances_table(
     for character, resolution in _each(characters, options):
         skeleton = character.rig.skeleton
         graph = build_graph(character.rig.mesh, resolution, connectivity=connectivity)
-        sources = bone_distances(graph, skeleton).sources
+        sources = bone_distances(graph, skeleton, method="paper").sources
         count = len(bone_segments(skeleton).joint)
         augmented = recipe.with_bones(
             graph.csr(), sources.bone, sources.node, sources.distance, count
@@ -178,7 +178,7 @@ def distances_table(
         problem = graph, sources, count, targets
         ways: dict[str, Callable[[], object]] = {
             "cutcell": lambda p=problem: shortest_paths(*p),
-            whole: lambda g=graph, s=skeleton: bone_distances(g, s),
+            whole: lambda g=graph, s=skeleton: bone_distances(g, s, method="paper"),
             "scipy Dijkstra": lambda a=augmented, b=count, t=targets: recipe.scipy_distances(
                 a, b, t
             ),
@@ -328,7 +328,7 @@ def arguments(given: Sequence[str] | None = None) -> argparse.Namespace:
 def tables(options: argparse.Namespace) -> list[Table]:
     """Measure what was asked for."""
     characters = load_characters(options.rigs)
-    load_kernels()  # a first run that compiles would be too long to be repeated
+    warm_up()  # a first run that compiles would be too long to be repeated
     return [TABLES[name](characters, options) for name in options.tables]
 
 

@@ -8,11 +8,11 @@ import numpy as np
 
 from cutcell import TriangleMesh
 from cutcell.graph import Lattice
-from cutcell.graph.boundary import find_boundary
-from cutcell.graph.midpoints import list_segments
-from cutcell.graph.rays import Crossings, cast_all_rays
-from cutcell.graph.segments import Runs, find_runs
-from cutcell.graph.weld import weld
+from cutcell.graph.fast_winding import list_segments
+from cutcell.surface.rays import RayHits, cast_all_rays
+from cutcell.surface.weld import weld
+from cutcell.winding.boundary import find_boundary
+from cutcell.winding.intervals import InsideIntervals, inside_intervals
 
 
 @dataclass(frozen=True)
@@ -31,20 +31,22 @@ def prepare(mesh: TriangleMesh, resolution: int) -> Prepared:
     return Prepared(vertices, index[mesh.faces], lattice.resolution)
 
 
-def cast(prepared: Prepared) -> list[Crossings]:
+def cast(prepared: Prepared) -> list[RayHits]:
     """Cast the rays of all three axes."""
     return cast_all_rays(prepared.vertices, prepared.faces, prepared.resolution)
 
 
-def decide(prepared: Prepared, crossings: list[Crossings], threshold: float = 0.5) -> list[Runs]:
+def decide(
+    prepared: Prepared, crossings: list[RayHits], threshold: float = 0.5
+) -> list[InsideIntervals]:
     """Decide which segments are inside, along all three axes."""
     boundary = find_boundary(prepared.faces)
-    return find_runs(
+    return inside_intervals(
         prepared.vertices, prepared.faces, crossings, boundary, prepared.resolution, threshold
     )
 
 
-def midpoints(prepared: Prepared, crossings: list[Crossings]) -> np.ndarray:
+def midpoints(prepared: Prepared, crossings: list[RayHits]) -> np.ndarray:
     """List the midpoints between the first and last crossing of each ray, shape (q, 3)."""
     points = []
     for axis, found in enumerate(crossings):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import subprocess
 import sys
 import tempfile
@@ -16,8 +15,8 @@ from typing import Any
 import numpy as np
 
 from .errors import CutcellError
+from .subprocesses import python_environment
 
-ROOT = Path(__file__).resolve().parents[1]
 COMMAND = (sys.executable, "-m", "cutcell.workers")
 LIMIT = 120.0
 """Seconds that any such process may take, unless told otherwise."""
@@ -81,8 +80,7 @@ def run_apart(
         job_path, result_path = Path(folder, "job.npz"), Path(folder, "result.npz")
         np.savez(job_path, **job)
         command = [*COMMAND, task, str(job_path), str(result_path), str(memory)]
-        path = os.pathsep.join(filter(None, [str(ROOT), os.environ.get("PYTHONPATH")]))
-        done = _done(command, folder, {**os.environ, "PYTHONPATH": path}, limit, who)
+        done = _done(command, folder, limit, who)
         if done.returncode != 0 or not result_path.exists():
             raise WorkFailedError(_last_words(done, who))
         with np.load(result_path) as result:
@@ -92,14 +90,12 @@ def run_apart(
     return found
 
 
-def _done(
-    command: list[str], folder: str, environment: dict[str, str], limit: float, who: str
-) -> subprocess.CompletedProcess:
+def _done(command: list[str], folder: str, limit: float, who: str) -> subprocess.CompletedProcess:
     wanted, end = _WANTED.get(), time.monotonic() + limit
     # Some leave files where they run.
     process = subprocess.Popen(
         command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=folder,
-        env=environment,
+        env=python_environment(),
     )  # fmt: skip
     with process:
         try:

@@ -18,7 +18,7 @@ EXACT = 2**53
 def as_array(
     value: Any, dtype: Any, shape: tuple[int | None, ...], name: str, error: type[Exception]
 ) -> NDArray:
-    """Copy what is given into an array.
+    """Return what is given as an array: a copy, unless nobody can write to what is given.
 
     Parameters
     ----------
@@ -50,7 +50,8 @@ def as_array(
                 raise error(f"{name} must be whole numbers")
         if dtype is np.bool_ and not ((array == 0) | (array == 1)).all():
             raise error(f"{name} must be True or False each")
-        array = _quietly(array, dtype)
+        if not _is_frozen(array, dtype):
+            array = _quietly(array, dtype)
     except (TypeError, ValueError, OverflowError) as e:
         if isinstance(e, error):
             raise
@@ -67,3 +68,9 @@ def _quietly(array: NDArray, dtype: Any) -> NDArray:
     """Return a copy of another type, in which a signalling NaN is a quiet one."""
     with np.errstate(invalid="ignore"):
         return np.array(array, dtype=dtype)
+
+
+def _is_frozen(array: NDArray, dtype: Any) -> bool:
+    """Tell whether an array can be used as it is: read-only, and as it would be copied."""
+    flags = array.flags
+    return array.dtype == dtype and not flags.writeable and flags.c_contiguous and flags.aligned

@@ -1,4 +1,4 @@
-"""How kernels are compiled."""
+"""How functions are compiled by numba, and kept."""
 
 from collections.abc import Callable
 from typing import Any
@@ -6,51 +6,51 @@ from typing import Any
 from numba import njit
 from numba.core.dispatcher import Dispatcher
 
-from .kernel_cache import KernelCache
+from .compile_cache import CompileCache
 
 
-def compiled(kernel: Callable | None = None, **options: Any) -> Any:
-    """Compile a kernel that runs without Python's lock, and keep it (`kernel_cache`).
+def compiled(function: Callable | None = None, **options: Any) -> Any:
+    """Compile a function that runs without Python's lock, and keep it (`compile_cache`).
 
     Parameters
     ----------
-    kernel : callable
+    function : callable
         Left out where the decorator is used with options.
     **options
         Of `numba.njit`.
     """
-    if kernel is None:
-        return lambda kernel: compiled(kernel, **options)
-    dispatcher = njit(nogil=True, **options)(kernel)
+    if function is None:
+        return lambda function: compiled(function, **options)
+    dispatcher = njit(nogil=True, **options)(function)
     if isinstance(dispatcher, Dispatcher):  # it is a plain function under NUMBA_DISABLE_JIT
-        dispatcher._cache = KernelCache(kernel)  # type: ignore[attr-defined]
+        dispatcher._cache = CompileCache(function)  # type: ignore[attr-defined]
     return dispatcher
 
 
-def lean(kernel: Callable) -> Callable:
-    """Compile a kernel that makes no array and returns none.
+def lean(function: Callable) -> Callable:
+    """Compile a function without reference counting: it makes no array and returns none.
 
-    numba counts who holds an array. To read one from a tuple or to take a row of one is then an
-    atomic addition, dearer than what is done with the row, and dearer still while another
-    thread counts, too. Whoever calls the kernel holds its arrays anyhow.
+    numba counts references to arrays. To read an array from a tuple, or a row of one, is then an
+    atomic addition, which costs more than the work on the row, and more still while another thread
+    counts, too. The caller keeps the arrays alive anyhow.
     """
-    return compiled(kernel, _nrt=False)
+    return compiled(function, _nrt=False)
 
 
 @compiled(inline="always")
-def put(values, place):
-    """Copy the entries of an array (n,) into one at least as long.
+def put(values, target):
+    """Copy the entries of an array (n,) to the start of one that is at least as long.
 
-    To assign to a slice, numba first compiles the words of an error for seconds.
+    For an assignment to a slice numba first compiles the text of an error, which takes seconds.
     """
     for i in range(len(values)):
-        place[i] = values[i]
+        target[i] = values[i]
 
 
-def side_by_side(kernel: Callable) -> Callable:
-    """Compile a lean kernel whose loop is to run in the lanes of vector instructions.
+def side_by_side(function: Callable) -> Callable:
+    """Compile a lean function whose loop is to be vectorised.
 
-    To divide by zero gives infinity there: to look out for it and raise an error takes a branch.
-    A product may be added without being rounded first.
+    A division by zero gives infinity: a check for it that raises an error would take a branch.
+    A product may be added without being rounded first (fused multiply-add).
     """
-    return compiled(kernel, _nrt=False, error_model="numpy", fastmath={"contract"})
+    return compiled(function, _nrt=False, error_model="numpy", fastmath={"contract"})

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+
+if TYPE_CHECKING:
+    from .method import Method
 
 METHOD = "The method"
 JOINTS = "Which joints carry weight"
@@ -37,24 +40,36 @@ Quiet = Annotated[
     bool,
     typer.Option("--quiet", "-q", help="No bars, no table, no warnings.", rich_help_panel=FILES),
 ]
+How = Annotated[
+    str,
+    typer.Option(
+        "--method",
+        metavar="M",
+        help="What the options below are when left out. animation: made to animate with."
+        " paper: just as in the paper.",
+        rich_help_panel=METHOD,
+    ),
+]
 Resolution = Annotated[
     int,
     typer.Option(
         "--resolution",
         "-r",
         metavar="R",
-        help="Rays along the longest side of the mesh. More: finer parts are told apart, more"
+        help="Rays along the longest side of the mesh. More: close parts are kept apart, more"
         " time and memory.",
         rich_help_panel=METHOD,
     ),
 ]
 Connectivity = Annotated[
-    str,
+    str | None,
     typer.Option(
         "--connectivity",
-        metavar="6|26|any",
+        metavar="C",
         help="How paths run inside. 6: along the axes, as in the paper. 26: along diagonals too."
-        " any: at any angle, so that distances are geodesic.",
+        " any: at any angle, so that distances are geodesic. Left out: any; 6 by the method"
+        " paper.",
+        show_default=False,
         rich_help_panel=METHOD,
     ),
 ]
@@ -89,39 +104,45 @@ Leaf = Annotated[
     str | None,
     typer.Option(
         "--leaf",
-        metavar="point|extend|fit",
+        metavar="L",
         help="Where bones end. point, extend: at the child joints; a joint without children is a"
         " point, or goes on along its parent's direction. fit: where the body says. Left out:"
-        " fit with the falloff rig, else point.",
+        " fit; point with the falloff paper.",
         show_default=False,
         rich_help_panel=METHOD,
     ),
 ]
 Falloff = Annotated[
-    str,
+    str | None,
     typer.Option(
         "--falloff",
-        metavar="rig|paper",
+        metavar="F",
         help="How weight falls with distance. rig: made to animate with. paper: the paper's kernel"
-        " (its equation 1), a soft feature of the distance.",
+        " (its equation 1), a soft feature of the distance. Left out: rig; paper by the method"
+        " paper.",
+        show_default=False,
         rich_help_panel=METHOD,
     ),
 ]
 Alpha = Annotated[
-    float,
+    float | None,
     typer.Option(
         "--alpha",
         metavar="A",
-        help="Of the paper's falloff, 0 to 1: 0 linear in the distance, 1 quadratic.",
+        help="Of the falloff paper alone, 0 to 1: 0 linear in the distance, 1 quadratic. Left"
+        " out: 0.5.",
+        show_default=False,
         rich_help_panel=METHOD,
     ),
 ]
 MaxInfluences = Annotated[
-    int,
+    str | None,
     typer.Option(
         "--max-influences",
         metavar="K",
-        help="Most joints a vertex may follow. 4 is what game engines read.",
+        help="Most joints a vertex may follow: a number, or all. 4 is what game engines read."
+        " Left out: 4; all by the method paper, but 4 in glTF files.",
+        show_default=False,
         rich_help_panel=METHOD,
     ),
 ]
@@ -189,3 +210,23 @@ Lock = Annotated[
         rich_help_panel=TOUCH,
     ),
 ]
+
+
+def chosen_method(name: str, **options: Any) -> Method:
+    """Return the method of that name with the options that were given, as texts where they may be.
+
+    Raises
+    ------
+    ParameterError
+        There is no such method, or an option is out of its range or has no effect.
+    """
+    from .checks import check_choice
+    from .method import METHODS, method_of
+
+    given = {key: value for key, value in options.items() if value is not None}
+    for key in ("connectivity", "max_influences"):
+        if isinstance(text := given.get(key), str) and text.isdecimal():
+            given[key] = int(text)
+    if given.get("max_influences") == "all":
+        given["max_influences"] = None
+    return method_of(check_choice("method", name, METHODS), **given)

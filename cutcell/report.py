@@ -21,7 +21,7 @@ def report_rows(document: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     mesh, graph, skeleton = document["mesh"], document["graph"], document["skeleton"]
     yield (
         "mesh",
-        f"{_count(mesh['vertices'], 'vertex')} ({mesh['welded_vertices']:,} places), "
+        f"{_count(mesh['vertices'], 'vertex')} ({mesh['welded_vertices']:,} welded), "
         f"{_count(mesh['triangles'], 'triangle')}, {_count(mesh['components'], 'component')}",
     )
     yield from _part_rows(document["meshes"])
@@ -43,9 +43,9 @@ def report_rows(document: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
         )
         yield what, f"{graph[what]['total']:,}: {kinds}"
     yield (
-        "in one piece",
+        "connected",
         f"{graph['largest_component']:.1%} of the nodes; "
-        f"{_count(graph['components'], 'piece')} in all",
+        f"{_count(graph['components'], 'component')} in all",
     )
     if document["fallback"]:
         yield "not reached", _fallback(document["fallback"])

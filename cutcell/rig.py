@@ -9,10 +9,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import pairwise
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from .arrays import as_array
 from .checks import shown
@@ -46,6 +46,10 @@ class TriangleMesh:
 
     vertices: NDArray[np.float64]
     faces: NDArray[np.int32]
+
+    if TYPE_CHECKING:  # what is given may be of other types than what is kept
+
+        def __init__(self, vertices: ArrayLike, faces: ArrayLike) -> None: ...
 
     def __post_init__(self) -> None:
         vertices = as_array(self.vertices, np.float64, (None, 3), "vertices", MeshError)
@@ -104,6 +108,17 @@ class Skeleton:
     names: tuple[str, ...] = ()
     deform: NDArray[np.bool_] = None  # type: ignore[assignment]
     orientations: NDArray[np.float64] | None = None
+
+    if TYPE_CHECKING:
+
+        def __init__(
+            self,
+            joints: ArrayLike,
+            parents: ArrayLike,
+            names: Sequence[str] = (),
+            deform: ArrayLike | None = None,
+            orientations: ArrayLike | None = None,
+        ) -> None: ...
 
     def __post_init__(self) -> None:
         joints = as_array(self.joints, np.float64, (None, 3), "joints", SkeletonError)
@@ -257,6 +272,25 @@ class Rig:
     warnings: tuple[str, ...] = ()
     weight_sums: NDArray[np.float64] | None = None
     source: Any = field(default=None, repr=False)
+
+    if TYPE_CHECKING:
+
+        def __init__(
+            self,
+            mesh: TriangleMesh,
+            skeleton: Skeleton,
+            weights: ArrayLike | None = None,
+            clips: tuple[Clip, ...] = (),
+            attachments: tuple[Attachment, ...] = (),
+            name: str = "rig",
+            world: ArrayLike = ...,
+            allowed: ArrayLike | None = None,
+            parts: tuple[Part, ...] = (),
+            left_out: tuple[LeftOut, ...] = (),
+            warnings: tuple[str, ...] = (),
+            weight_sums: NDArray[np.float64] | None = None,
+            source: Any = None,
+        ) -> None: ...
 
     def __post_init__(self) -> None:
         shape = (len(self.mesh.vertices), len(self.skeleton.joints))

@@ -1,4 +1,4 @@
-"""What a graph and its distances hold, in numbers: for the command line and for scripts."""
+"""A graph and its distances in numbers, for the command line and for scripts."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ KINDS = {"mesh": MESH, "interior": INTERIOR, "surface": SURFACE}
 
 
 def summarize_mesh(mesh: TriangleMesh, graph: CutCellGraph) -> dict[str, Any]:
-    """Count what a mesh holds once equal positions are welded.
+    """Count the elements of a mesh once equal positions are welded.
 
     Parameters
     ----------
@@ -94,7 +94,7 @@ def summarize_graph(graph: CutCellGraph) -> dict[str, Any]:
     -------
     dict
         `resolution`; `nodes` and `edges`, each with the counts of `mesh`, `interior`,
-        `surface` and their `total`; `components`, pieces that no edge ties together;
+        `surface` and their `total`; `components`, connected ones;
         `largest_component`, the share of all nodes in the largest of them, 0 to 1.
     """
     labels = connected_components(graph.csr(), directed=False)[1]
@@ -139,7 +139,7 @@ def _by_kind(kinds: NDArray[np.uint8]) -> dict[str, int]:
 
 
 def _components(ends: NDArray[np.int64], count: int) -> int:
-    """How many pieces the triangles' edges tie together; vertices without edges left out."""
+    """Count the connected components; vertices without edges are left out."""
     links = coo_array((np.ones(len(ends), bool), (ends[:, 0], ends[:, 1])), shape=(count, count))
     labels = connected_components(links, directed=False)[1]
     return len(np.unique(labels[ends]))

@@ -1,7 +1,7 @@
-"""Work on all cores, by threads that run kernels without Python's lock.
+"""Parallel work by threads that run kernels without Python's lock.
 
-numba's own parallel loops are not used: where its threading layer is the plain one, two
-threads that start such a loop at once, say two sessions of the page, end the process.
+numba's own parallel loops are not used: with its plain threading layer the process ends when two
+threads, say two sessions of the page, start such a loop at once.
 """
 
 import os
@@ -20,10 +20,10 @@ Item = TypeVar("Item")
 Result = TypeVar("Result")
 Second = TypeVar("Second")
 
-TELL_EVERY = 0.1
-"""Seconds between two looks at a long kernel."""
+POLL_EVERY = 0.1
+"""Seconds between two reports of a long kernel's progress."""
 MANY_STEPS = 50_000
-"""A kernel of fewer is done before it would be looked at."""
+"""Kernels of fewer steps end before the first report."""
 
 _here = threading.local()
 
@@ -38,18 +38,18 @@ def in_threads(
     items: Iterable[Item],
     tell: Callable[[float], None] = lambda done: None,
 ) -> list[Result]:
-    """Apply `work`, which should spend its time in nogil kernels, to each item.
+    """Apply `work`, which should spend its time in nogil kernels, to each item in parallel.
 
-    The calling thread works, too, and waits for no other that has not begun: small work is done
-    in less time than it takes to wake one. Work that calls for threads itself runs in its own.
+    The calling thread takes part, and does not wait for a thread that has not started: small work
+    takes less time than waking one. Nested calls run in the thread that makes them.
 
     Parameters
     ----------
     work : callable
     items : iterable
     tell : callable
-        Told the fraction that is done after each item, by one thread at a time. What it raises goes
-        through, and ends the work.
+        Called with the fraction done after each item, by one thread at a time. What it raises
+        is passed on, and ends the work.
     """
     items = list(items)
     results: dict[int, Result] = {}
@@ -57,42 +57,42 @@ def in_threads(
 
     def take() -> None:
         try:
-            for place, item in waiting:
-                results[place] = work(item)
+            for index, item in waiting:
+                results[index] = work(item)
                 with telling:
                     tell(len(results) / len(items))
         except BaseException:
-            for _ in waiting:  # nobody takes another
+            for _ in waiting:  # leave none to the others
                 pass
             raise
 
     if len(items) < 2 or threads() < 2 or getattr(_here, "is_worker", False):
         take()
-        return [results[place] for place in range(len(items))]
+        return [results[index] for index in range(len(items))]
     helpers = [_pool(threads() - 1).submit(take) for _ in range(min(threads(), len(items)) - 1)]
     _here.is_worker = True
     try:
         take()
     finally:
         _here.is_worker = False
-        begun = [helper for helper in helpers if not helper.cancel()]
-        for helper in begun:
+        started = [helper for helper in helpers if not helper.cancel()]
+        for helper in started:
             helper.exception()  # wait for all, whatever one of them raises
-    for helper in begun:
+    for helper in started:
         helper.result()
-    return [results[place] for place in range(len(items))]
+    return [results[index] for index in range(len(items))]
 
 
-def together(one: Callable[[], Result], other: Callable[[], Second]) -> tuple[Result, Second]:
-    """Do two things at the same time, each in a thread of its own; see `in_threads`."""
+def run_parallel(one: Callable[[], Result], other: Callable[[], Second]) -> tuple[Result, Second]:
+    """Run two functions in parallel, see `in_threads`; return both results."""
     results: list[Any] = in_threads(lambda task: task(), (one, other))
     return results[0], results[1]
 
 
-def meanwhile(work: Callable[[], Result]) -> Callable[[], Result]:
-    """Begin something on another core; return a function that waits for it and gives its result.
+def submit(work: Callable[[], Result]) -> Callable[[], Result]:
+    """Run a function in another thread; return a function that waits for its result.
 
-    What no core has begun by then is done by whoever asks.
+    If no thread has started it by then, it runs in the thread that waits.
     """
     if threads() < 2 or getattr(_here, "is_worker", False):
         return work
@@ -103,7 +103,7 @@ def meanwhile(work: Callable[[], Result]) -> Callable[[], Result]:
 def watched(
     work: Callable[[NDArray[np.int64]], Result], steps: int, tell: Callable[[float], None]
 ) -> Result:
-    """Tell how far a long kernel is, ten times a second, and let it be stopped.
+    """Report the progress of a long kernel ten times a second, and let it be stopped.
 
     Parameters
     ----------
@@ -113,7 +113,7 @@ def watched(
     steps : int
         How many there are.
     tell : callable
-        Told the fraction that is done. What it raises goes through, and stops the kernel.
+        Called with the fraction done. What it raises is passed on, and stops the kernel.
     """
     pace = np.zeros(2, np.int64)
     if steps < MANY_STEPS:
@@ -131,7 +131,7 @@ def watched(
     runner.start()
     try:
         while True:
-            if wait([result], TELL_EVERY).done:
+            if wait([result], POLL_EVERY).done:
                 return result.result()
             tell(pace[0] / steps)
     finally:
@@ -140,7 +140,7 @@ def watched(
 
 
 def parts(count: int, at_once: int = 0) -> list[slice]:
-    """Cut `count` items into slices, more than there are threads, so that none idles."""
+    """Divide `count` items into slices, more than there are threads, so that none idles."""
     pieces = max(1, min(count, at_once or 4 * threads()))
     bounds = [count * k // pieces for k in range(pieces + 1)]
     return [slice(a, b) for a, b in pairwise(bounds)]

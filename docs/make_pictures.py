@@ -17,20 +17,20 @@ ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT))
 
 import cutcell  # noqa: E402
-from assets import demo_path  # noqa: E402
 from cutcell.rig import Rig  # noqa: E402
+from cutcell_assets import demo_path  # noqa: E402
+from cutcell_viewers.camera import Camera, framing  # noqa: E402
+from cutcell_viewers.character import body  # noqa: E402
+from cutcell_viewers.description import Description  # noqa: E402
+from cutcell_viewers.distance_scene import distance_scene  # noqa: E402
+from cutcell_viewers.film import palette_of  # noqa: E402
+from cutcell_viewers.graph_scene import cut_at, graph_scene  # noqa: E402
+from cutcell_viewers.palette import DARK, LIGHT  # noqa: E402
+from cutcell_viewers.pose_scene import pose_scene  # noqa: E402
+from cutcell_viewers.scene import render_png  # noqa: E402
+from cutcell_viewers.weights_scene import weights_scene  # noqa: E402
 from scripts.get_chromium import FLAGS, find  # noqa: E402
 from tests.app.browser import Visit, served  # noqa: E402
-from viewers.camera import Camera, framing  # noqa: E402
-from viewers.character import body  # noqa: E402
-from viewers.description import Description  # noqa: E402
-from viewers.distance_scene import distance_scene  # noqa: E402
-from viewers.film import palette_of  # noqa: E402
-from viewers.graph_scene import cut_at, graph_scene  # noqa: E402
-from viewers.palette import DARK, LIGHT  # noqa: E402
-from viewers.pose_scene import pose_scene  # noqa: E402
-from viewers.scene import render_png  # noqa: E402
-from viewers.weights_scene import weights_scene  # noqa: E402
 
 PICTURES = ROOT / "docs" / "pictures"
 SIZE = (1080, 810)
@@ -75,7 +75,7 @@ def cutaway(rig: Rig, resolution: int) -> Description:
     slab = 2.5 * float(np.ptp(bounds, axis=0).max()) / resolution
     graph = graph_scene(
         rig,
-        cutcell.build_graph(rig.mesh, resolution),
+        cutcell.build_graph(rig.mesh, resolution, connectivity=6),
         cut=cut_at(bounds, "z", 0.6),
         slab=slab,
         theme=DARK,

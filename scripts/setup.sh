@@ -74,5 +74,8 @@ if ! supported "$venv/bin/python" || ! "$venv/bin/python" -c 'import pip' 2>/dev
 fi
 install || fail "pip could not install cutcell[$extra]; its own message is above.
 It needs a way to a Python package index; once that is there, run make again."
+# mypy does not follow the names that setup.py gives to folders.
+mkdir -p "$venv/types"
+for folder in app assets viewers; do ln -sfn "../../$folder" "$venv/types/cutcell_$folder"; done
 touch "$venv/.app"
 if [ "$extra" = test ]; then touch "$venv/.test"; fi

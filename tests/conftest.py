@@ -4,16 +4,16 @@ from pathlib import Path
 
 import pytest
 
-from cutcell.skinning import kernels_are_compiled, load_kernels
+from cutcell.skinning import is_compiled, warm_up
 
 ROOT = Path(__file__).resolve().parent.parent
 SHARED_RIGS = ROOT.parent / "shared" / "data" / "rigs"
 
 
 def pytest_sessionstart(session: pytest.Session) -> None:
-    """Compile the kernels before there are workers: each of them would compile its own."""
-    if session.config.getoption("numprocesses", None) and not kernels_are_compiled():
-        load_kernels()
+    """Compile all functions before there are workers: each of them would compile its own."""
+    if session.config.getoption("numprocesses", None) and not is_compiled():
+        warm_up()
 
 
 @pytest.hookimpl(optionalhook=True)

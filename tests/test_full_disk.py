@@ -25,8 +25,8 @@ from cutcell.compare.plot import plot_comparison
 from cutcell.io.numbers import save_numbers
 from tests.cutcell.compare.test_compare import character
 from tests.viewers.arm import arm_rig
-from viewers import film
-from viewers.weights_scene import weights_scene
+from cutcell_viewers import film
+from cutcell_viewers.weights_scene import weights_scene
 
 folder, names = Path(sys.argv[1]), sys.argv[2:]
 rig = arm_rig()

@@ -10,7 +10,6 @@ import pytest
 
 ROOT = Path(__file__).resolve().parent.parent
 HEAVY = {
-    "app",
     "matplotlib",
     "numba",
     "numpy",
@@ -21,9 +20,13 @@ HEAVY = {
     "trimesh",
     "vtk",
 }
-PAGE = {"app", "bokeh", "panel", "panel_material_ui"}
-PICTURES = {"pyvista", "viewers", "vtk", "vtkmodules"}
+FOLDERS = {"cutcell": "cutcell", "cutcell_viewers": "viewers", "cutcell_app": "app"}
+"""Where the packages lie."""
+PAGE = {"bokeh", "cutcell_app", "panel", "panel_material_ui"}
+PICTURES = {"cutcell_viewers", "pyvista", "vtk", "vtkmodules"}
 IMPORT_SECONDS = 0.3
+SHORT_CHAINS = ("surface", "winding", "graph", "geodesics")
+LONGEST_CHAIN = 6
 
 # Each part of the core may use itself and those on lines above it.
 ORDER = [
@@ -34,18 +37,23 @@ ORDER = [
         "compiled",
         "display",
         "errors",
-        "kernel_cache",
+        "inputs",
+        "compile_cache",
         "memory",
+        "method",
         "motion",
         "progress",
         "rig",
         "sorting",
+        "subprocesses",
         "threads",
         "unions",
         "writing",
     },
     {"deform"},
     {"io"},
+    {"surface"},
+    {"winding"},
     {"graph"},
     {"geodesics"},
     {"skinning"},
@@ -58,7 +66,9 @@ ORDER = [
         "options",
         "console",
         "report",
+        "bind_command",
         "diagnose_command",
+        "graph_command",
         "render_command",
         "joints_command",
         "cli",
@@ -71,8 +81,9 @@ RANK = {part: rank for rank, parts in enumerate(ORDER) for part in parts}
 def modules_of(package: str) -> list[str]:
     """Names of all modules of a package here, found by their files."""
     names = []
-    for path in sorted((ROOT / package).rglob("*.py")):
-        parts = path.relative_to(ROOT).with_suffix("").parts
+    folder = ROOT / FOLDERS[package]
+    for path in sorted(folder.rglob("*.py")):
+        parts = (package, *path.relative_to(folder).with_suffix("").parts)
         if parts[-1] != "__main__":  # importing it runs the command
             names.append(".".join(parts[:-1] if parts[-1] == "__init__" else parts))
     return names
@@ -107,21 +118,26 @@ def test_importing_the_core_is_quick():
 
 
 def test_the_core_knows_no_screen_and_no_server():
-    assert not loaded_by(modules_of("cutcell")) & (PAGE | PICTURES)
+    above = loaded_by(modules_of("cutcell")) & (PAGE | PICTURES)
+    assert above == {"cutcell_app"}, "its commands alone, which add themselves to the command line"
 
 
 def test_the_viewers_know_no_server():
-    assert not loaded_by(modules_of("viewers")) & PAGE
+    assert not loaded_by(modules_of("cutcell_viewers")) & PAGE
 
 
 @pytest.mark.parametrize(
-    ("package", "forbidden"), [("cutcell", {"viewers", "app", "assets"}), ("viewers", {"app"})]
+    ("package", "forbidden"),
+    [
+        ("cutcell", {"cutcell_viewers", "cutcell_app", "cutcell_assets"}),
+        ("cutcell_viewers", {"cutcell_app"}),
+    ],
 )
 def test_no_import_anywhere_points_upwards(package, forbidden):
-    """Imports inside functions count as well, except the command's door to the page."""
+    """Imports inside functions count as well."""
     wrong = [
         f"{path.relative_to(ROOT)}:{line} imports {name}"
-        for path in sorted((ROOT / package).rglob("*.py"))
+        for path in sorted((ROOT / FOLDERS[package]).rglob("*.py"))
         for name, line in imports_of(path)
         if name.partition(".")[0] in forbidden
     ]
@@ -147,9 +163,34 @@ def test_parts_of_the_core_use_only_those_before_them():
     assert wrong == []
 
 
+@pytest.mark.parametrize("package", SHORT_CHAINS)
+def test_chains_of_imports_inside_a_package_are_short(package):
+    files = {path.stem: path for path in (ROOT / "cutcell" / package).glob("*.py")}
+    del files["__init__"]
+    used = {}
+    for module, path in files.items():
+        names = (name.removeprefix(f"cutcell.{package}.") for name, _ in imports_of(path))
+        used[module] = {name for name in names if name in files}
+
+    def longest(module: str, above: tuple[str, ...] = ()) -> tuple[str, ...]:
+        assert module not in above, f"a circle: {' -> '.join([*above, module])}"
+        chains = [longest(name, (*above, module)) for name in used[module]]
+        return (module, *max(chains, key=len, default=()))
+
+    chain = max((longest(module) for module in files), key=len)
+    assert len(chain) <= LONGEST_CHAIN, " -> ".join(chain)
+
+
+def package_of(path: Path) -> tuple[str, ...]:
+    """Return the package that a file is in: its folders, by the names that they are imported by."""
+    names = {folder: name for name, folder in FOLDERS.items()}
+    folder, *below = path.relative_to(ROOT).parent.parts
+    return (names.get(folder, folder), *below)
+
+
 def imports_of(path: Path) -> list[tuple[str, int]]:
     """Absolute names of all that a file imports, with the lines."""
-    package = path.relative_to(ROOT).parent.parts
+    package = package_of(path)
     found = []
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.Import):

@@ -1,9 +1,12 @@
 """Every public name is there, and its docstring tells what a person needs (numpydoc)."""
 
+import ast
 import inspect
 import re
 from importlib import import_module
+from pathlib import Path
 
+import mypy.api
 import pytest
 
 import cutcell
@@ -50,7 +53,8 @@ def test_every_name_is_there_and_documented(name):
 
 def test_dir_lists_the_public_names_and_others_are_unknown():
     assert dir(cutcell) == cutcell.__all__
-    with pytest.raises(AttributeError, match="no attribute 'blind'"):
+    assert cutcell.metrics.weight_l1([[1.0]], [[1.0]]) == 0
+    with pytest.raises(AttributeError, match="No cutcell attribute blind"):
         cutcell.blind  # noqa: B018
 
 
@@ -92,6 +96,25 @@ def test_every_field_of_a_dataclass_is_described(name):
     fields = set(kind.__dataclass_fields__) - {"name"}  # says it all
     missing = [field for field in fields if not re.search(rf"\b{field}\b", text)]
     assert missing == []
+
+
+def test_the_stub_lists_what_the_modules_say_is_public():
+    """What `cutcell` has of a module is in that module's own list."""
+    stub = ast.parse(Path(cutcell.__file__).with_suffix(".pyi").read_text(encoding="utf-8"))
+    for node in stub.body:
+        if isinstance(node, ast.ImportFrom) and node.module:
+            module = import_module(f"cutcell.{node.module}")
+            listed = getattr(module, "__all__", vars(module))
+            assert {alias.name for alias in node.names} <= set(listed), node.module
+
+
+def test_a_script_that_uses_every_public_name_type_checks_strictly(tmp_path):
+    script = Path(__file__).with_name("typing_example.py")
+    used = set(re.findall(r"\bcutcell\.(\w+)", script.read_text(encoding="utf-8")))
+    assert set(cutcell.__all__) <= used
+    options = ["--strict", "--follow-imports=silent", "--no-error-summary", "--config-file="]
+    found, errors, _ = mypy.api.run([*options, f"--cache-dir={tmp_path}", str(script)])
+    assert (found, errors) == ("", "")
 
 
 def test_errors_have_one_base_that_is_a_value_error():

@@ -3,6 +3,7 @@
 import re
 from pathlib import Path
 
+import numpy as np
 import pytest
 from typer.testing import CliRunner
 
@@ -19,20 +20,23 @@ def in_a_folder_of_its_own(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
 
 
-def test_the_example_runs(tmp_path, monkeypatch, capsys):
+def test_the_examples_run(tmp_path, monkeypatch, capsys):
     in_a_folder_of_its_own(tmp_path, monkeypatch)
-    (example,) = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
+    example, stages = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
     names: dict = {}
     exec(example, names)
     assert "graph" in capsys.readouterr().out
     assert len(names["distances"]) == len(names["weights"])
     assert cutcell.load("bound.glb").weights is not None
+    exec(stages, names)
+    expected = cutcell.bind(names["rig"], method=names["method"]).weights
+    np.testing.assert_allclose(names["weights"], expected, atol=1e-12)
 
 
 def test_the_commands_run(tmp_path, monkeypatch):
     in_a_folder_of_its_own(tmp_path, monkeypatch)
     commands = re.findall(r"^cutcell (.*)$", README, re.MULTILINE)
-    assert len(commands) == 6
+    assert len(commands) == 7
     for command in commands:
         assert CliRunner().invoke(app, command.split()).exit_code == 0
 

@@ -2,12 +2,12 @@
 
 In a notebook::
 
-    import cutcell, viewers
-    from viewers.weights_scene import weights_scene
+    import cutcell, cutcell_viewers
+    from cutcell_viewers.weights_scene import weights_scene
 
     rig = cutcell.load("character.glb")
     binding = cutcell.bind(rig)
-    viewers.show(weights_scene(rig, binding.weights))
+    cutcell_viewers.show(weights_scene(rig, binding.weights))
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ def show(
     Parameters
     ----------
     description : Description
-        As `weights_scene` and its kin return, or `app.render.describe`.
+        As `weights_scene` and its kin return, or `cutcell_app.render.describe`.
     size : (int, int)
         Width and height in pixels.
     dark : bool

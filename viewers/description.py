@@ -40,11 +40,14 @@ class Reading:
         left out.
     names : tuple of str
         Where there are any, the value is an index into these.
+    percent : bool
+        Whether the value is a part of a whole, and told in percent.
     """
 
     text: str = ""
     values: NDArray[np.float32] | None = None
     names: tuple[str, ...] = ()
+    percent: bool = False
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,9 +7,10 @@ import sys
 from functools import cache
 
 from cutcell.errors import MissingLibraryError
+from cutcell.subprocesses import python_environment
 
 TRIAL = """
-import viewers.scene, pyvista
+import cutcell_viewers.scene, pyvista
 plotter = pyvista.Plotter(off_screen=True, window_size=(16, 16))
 plotter.add_mesh(pyvista.Sphere())
 plotter.screenshot(return_img=True)
@@ -35,4 +36,5 @@ def require_opengl() -> None:
 def _can_draw() -> bool:
     # Without OpenGL VTK does not raise, the process dies: so another one is asked, once.
     command = [sys.executable, "-c", TRIAL]
-    return subprocess.run(command, capture_output=True, timeout=120).returncode == 0
+    done = subprocess.run(command, capture_output=True, timeout=120, env=python_environment())
+    return done.returncode == 0

@@ -115,9 +115,9 @@ def difference_colors(
     See `weight_colors`.
     """
     moved = np.abs(np.asarray(weights, np.float32) - np.asarray(other, np.float32)).sum(axis=1) / 2
-    legend = Legend("Weight that sits on other joints", "error", "0", "1: all of it")
+    legend = Legend("Difference to the file's weights", "error", "0 %", "100 %")
     look = {"scalars": moved.astype(np.float32), "colormap": "error", "limits": (0.0, 1.0)}
-    return {**look, "reading": Reading("held otherwise: ")}, legend
+    return {**look, "reading": Reading("Weights differ from the file's by ", percent=True)}, legend
 
 
 def _strongest(rig: Rig, weights: ArrayLike) -> Reading:

@@ -1,4 +1,4 @@
-"""Draws in a process of its own: `python -m viewers.worker ORDER OUT`, started by `draw_apart`.
+"""Draws in a process of its own: `python -m cutcell_viewers.worker ORDER OUT`.
 
 Without OpenGL VTK ends its process, windows belong to one thread, and what is drawn takes
 long: none of this shall harm whoever wants a picture.
@@ -19,6 +19,7 @@ from typing import Any
 from cutcell import errors
 from cutcell.errors import CutcellError
 from cutcell.progress import Progress, silent
+from cutcell.subprocesses import python_environment
 from cutcell.writing import write_all
 
 from .film import Order, check_picture_file, draw
@@ -50,9 +51,12 @@ def draw_apart(order: Order, path: str | Path, progress: Progress = silent) -> N
         wanted, drawn = Path(folder) / "order", Path(folder) / f"drawn{path.suffix.lower()}"
         wanted.write_bytes(pickle.dumps(order))
         command = [sys.executable, "-m", __name__, str(wanted), str(drawn)]
-        root = Path(__file__).resolve().parent.parent
         with subprocess.Popen(
-            command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=root
+            command,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            env=python_environment(),
         ) as process:
             grumble = _watch(process, progress)
         if process.returncode or not drawn.exists():

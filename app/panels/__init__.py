@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from ..session import Session
+from ..commands.session import Session
 from .compare import compare
 from .diagnosis import diagnosis
 from .geodesics import geodesics

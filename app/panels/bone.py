@@ -6,7 +6,7 @@ from typing import Any
 
 import panel_material_ui as pmui
 
-from ..session import Session
+from ..commands.session import Session
 from .parts import GAP, offer, section, unique_names, when
 
 

@@ -6,11 +6,13 @@ from typing import Any
 
 import panel_material_ui as pmui
 
-from assets import DEMOS
+from cutcell_assets import DEMOS
 
-from ..session import Session
-from ..state import MAX_UPLOAD, State
-from ..upload import FileDrop
+from ..commands.loading import load_demo, receiver
+from ..commands.session import Session
+from ..files.receive import MAX_UPLOAD
+from ..state import State
+from ..widgets.file_drop import FileDrop
 from .parts import GAP, as_text, caption, section
 
 MOST_FAULTS = 2
@@ -35,7 +37,7 @@ def character(session: Session) -> pmui.Column:
 
     def chosen(event: Any) -> None:
         if event.new and event.new != state.demo:
-            session.opening.demo(event.new)
+            load_demo(session, event.new)
 
     def shown(*events: Any) -> None:
         own = {} if state.demo else {OWN: ""}
@@ -48,7 +50,7 @@ def character(session: Session) -> pmui.Column:
     select.param.watch(chosen, "value")
     state.param.watch(shown, ["demo", "rig", "diagnosis"])
     shown()
-    drop = FileDrop(session.opening.receiver(), hint=HINT, sizing_mode="stretch_width", margin=GAP)
+    drop = FileDrop(receiver(session), hint=HINT, sizing_mode="stretch_width", margin=GAP)
     return section("", select, lesson, drop, margin=(16, 20, 4, 20))
 
 

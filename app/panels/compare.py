@@ -8,13 +8,13 @@ import panel_material_ui as pmui
 
 from cutcell.rig import Rig
 
-from ..actions import compare as actions
-from ..actions import pose as moving
-from ..methods import Methods
+from ..commands import compare as actions
+from ..commands import pose as moving
+from ..commands.session import Session
 from ..scenes.compare import field_shown, found_of, title_of
-from ..session import Session
 from ..state import State
 from ..state.compare import FEWEST_VIEWS, MOST_VIEWS, offered
+from ..widgets.methods import Methods
 from .parts import BUTTONS, GAP, caption, follow, lead, section, when
 
 FIELDS = {"Chosen bone": "bone", "All bones": "all"}

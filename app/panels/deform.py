@@ -10,8 +10,8 @@ import panel_material_ui as pmui
 from cutcell.deform import DeformJoints
 from cutcell.rig import Rig
 
-from ..actions import deform
-from ..session import Session
+from ..commands import deform
+from ..commands.session import Session
 from .parts import GAP, caption, section, unique_names, when
 
 SHOWN = "Hide the list"

@@ -8,9 +8,9 @@ import panel_material_ui as pmui
 
 from cutcell.diagnosis import SEVERITIES, Finding
 
-from ..actions.diagnosis import look_at, repair, take_back
-from ..actions.take_along import repaired_file
-from ..session import Session
+from ..commands.diagnosis import look_at, repair, take_back
+from ..commands.export import export_repaired
+from ..commands.session import Session
 from ..state import State
 from .parts import GAP, caption, lead, section, when, words
 
@@ -110,7 +110,7 @@ def _repairs(session: Session) -> list[Any]:
         _button(
             "Download it with its own weights",
             "download",
-            lambda: repaired_file(session, session.view.offer),
+            lambda: export_repaired(session, session.view.offer),
         ),
         _button("Take the repair back", "undo", lambda: take_back(session)),
     ]

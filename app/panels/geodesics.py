@@ -6,7 +6,7 @@ from typing import Any
 
 import panel_material_ui as pmui
 
-from ..session import Session
+from ..commands.session import Session
 from ..state import State
 from .parts import GAP, caption, cutting, lead, section, slider, weightless, when
 
@@ -23,7 +23,7 @@ def geodesics(session: Session) -> pmui.Column:
         ),
     )
     return pmui.Column(
-        lead("How far it is from the chosen bone, by the shortest way through the body."),
+        lead("How far it is from the chosen bone, along the shortest path through the body."),
         section("", idle, *cutting(state), margin=(8, 20, 4, 20)),
         section("Shown with it", *_more(state)),
         section("Wavefront", *_wave(state)),
@@ -34,7 +34,7 @@ def geodesics(session: Session) -> pmui.Column:
 
 def _more(state: State) -> list[Any]:
     hint = caption(
-        "Click the body: the shortest way from there back to the bone is drawn.",
+        "Click the body: the shortest path from there to the bone is drawn.",
         visible=when(
             lambda vertex, path: path and vertex is None, state.param.vertex, state.param.path
         ),
@@ -49,11 +49,11 @@ def _more(state: State) -> list[Any]:
 
 def _wave(state: State) -> list[Any]:
     def play(event: Any) -> None:
-        state.param.update(wave=True, filming=not state.filming)
+        state.param.update(wave=True, animating=not state.animating)
 
     button = pmui.Button(
-        label=when(lambda on: "Halt the wave" if on else "Let it run", state.param.filming),
-        icon=when(lambda on: "pause" if on else "play_arrow", state.param.filming),
+        label=when(lambda on: "Halt the wave" if on else "Let it run", state.param.animating),
+        icon=when(lambda on: "pause" if on else "play_arrow", state.param.animating),
         size="small",
         variant="outlined",
         on_click=play,
@@ -64,7 +64,7 @@ def _wave(state: State) -> list[Any]:
         state.param.front,
         "How far it came",
         step=0.005,
-        visible=when(lambda on, runs: on and not runs, state.param.wave, state.param.filming),
+        visible=when(lambda on, runs: on and not runs, state.param.wave, state.param.animating),
     )
     return [
         switch(state.param.wave),

@@ -9,14 +9,22 @@ import panel_material_ui as pmui
 
 from cutcell.geodesics import LEAVES
 from cutcell.graph import INTERIOR, MESH, SURFACE
+from cutcell_viewers import palette
+from cutcell_viewers.palette import to_hex
 
-from ..session import Session
+from ..commands.binding import bind
+from ..commands.session import Session
 from ..state import LAYERS, State
-from ..theme import LAYER_COLORS
 from .parts import GAP, caption, choice, cutting, lead, section, slider, weightless, when, words
 
 KINDS = {"mesh_edges": MESH, "interior_edges": INTERIOR, "surface_edges": SURFACE}
-LEAF_TITLES = {"point": "A point", "extend": "Extended", "fit": "Fitted"}
+LAYER_COLORS = {
+    "mesh_edges": "#3a96c0",
+    "interior_edges": to_hex(palette.INTERIOR),
+    "surface_edges": to_hex(palette.SURFACE),
+}
+"""What marks each layer's switch, in the paper's colours."""
+LEAF_TITLES = {"point": "Points", "extend": "Extended", "fit": "Fitted"}
 AXES = {"X": "x", "Y": "y", "Z": "z"}
 
 
@@ -156,14 +164,14 @@ def _build(session: Session) -> list[Any]:
 
     resolution.param.watch(chosen, "value_throttled")
     state.param.watch(shown, "resolution")
-    threshold = slider(state.param.winding_threshold, "Counts as inside from τ", step=0.01)
+    threshold = slider(state.param.winding_threshold, "Winding threshold τ", step=0.01)
     again = pmui.Button(
         label="Compute again",
         size="small",
         variant="outlined",
         margin=GAP,
         sizing_mode="stretch_width",
-        on_click=lambda event: session.bind(),
+        on_click=lambda event: bind(session),
         visible=when(
             lambda rig, binding, bare, busy: rig is not None and not (binding or bare or busy),
             state.param.rig,
@@ -191,7 +199,7 @@ def _build(session: Session) -> list[Any]:
         orient,
         caption("Paths inside run along", margin=(4, 0, 0, 0)),
         choice(state.param.connectivity, {"6 axes": 6, "26 diagonals": 26, "Any angle": "any"}),
-        caption("The last bone of a chain is", margin=(4, 0, 0, 0)),
+        caption("Leaf bones are", margin=(4, 0, 0, 0)),
         choice(state.param.leaf, {LEAF_TITLES.get(leaf, leaf): leaf for leaf in LEAVES}),
         again,
     ]

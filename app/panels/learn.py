@@ -6,9 +6,9 @@ from typing import Any
 
 import panel_material_ui as pmui
 
-from ..actions.learn import go
-from ..session import Session
-from ..tour import TOUR
+from ..commands.session import Session
+from ..commands.tour import go
+from ..state.tour import TOUR
 from .parts import GAP, caption, lead, section, when
 
 

@@ -9,11 +9,11 @@ from bokeh.models import PrintfTickFormatter
 
 from cutcell.display import shown_name
 
-from ..actions import pose as actions
-from ..rows import Rows
+from ..commands import pose as actions
+from ..commands.session import Session
 from ..scenes.pose import error_of, has_rival
-from ..session import Session
 from ..state import State
+from ..widgets.rows import Rows
 from .parts import GAP, as_text, caption, choice, lead, offer, section, unique_names, when
 
 AXES = ("x", "y", "z")

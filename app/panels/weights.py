@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 import panel_material_ui as pmui
 
-from cutcell.skinning import FALLOFFS
+from cutcell.method import FALLOFFS
 
-from ..session import Session
+from ..commands.session import Session
 from ..state import State
 from .deform import deforming
 from .parts import GAP, caption, choice, follow, lead, section, slider, when
@@ -18,7 +18,7 @@ SHOWN = {
     "All bones": "mix",
     "The strongest bone": "dominant",
     "The chosen bone": "bone",
-    "How many bones hold a point": "count",
+    "Influences per vertex": "count",
 }
 DIFFERENCE = {"Difference to the file's own": "difference"}
 FALLOFF_TITLES = {"rig": "To animate with", "paper": "The paper's"}
@@ -43,7 +43,7 @@ def weights(session: Session) -> pmui.Column:
         facts.object = told(state)
 
     # The colours go first.
-    state.param.watch(lambda *events: session.later(tell), ["binding", "rig"])
+    state.param.watch(lambda *events: session.tasks.later(tell), ["binding", "rig"])
     return pmui.Column(
         lead("How much each bone moves each point of the skin."),
         section("", shown, facts, margin=(8, 20, 4, 20)),
@@ -65,7 +65,7 @@ def _falloff(state: State) -> list[Any]:
     return [
         *([choice(state.param.falloff, kernels)] if len(kernels) > 1 else []),
         alpha,
-        slider(state.param.max_influences, "Bones a vertex, at most", whole=True),
+        slider(state.param.max_influences, "Influences per vertex, at most", whole=True),
         slider(state.param.threshold, "Drop weights below", step=0.005, end=0.3),
     ]
 
@@ -76,11 +76,11 @@ def told(state: State) -> str:
         return ""
     held = state.binding.weights
     some = np.flatnonzero(held > 0)
-    text = f"{len(some) / max(len(held), 1):.1f} bones a vertex"
+    text = f"{len(some) / max(len(held), 1):.1f} influences per vertex"
     own = state.rig.weights
     if own is not None and own.shape == held.shape:
         # Of |a - b| = a + b - 2 min(a, b) the last is zero where ours is: nearly everywhere.
         both = np.minimum(held.ravel()[some], own.ravel()[some]).sum()
         apart = ((len(held) + own.sum()) / 2 - both) / max(len(held), 1)
-        text += f"; {apart:.0%} of the weight is held by other bones than in the file"
+        text += f"; they differ from the file's by {apart:.0%}"
     return text + "."

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
-from viewers.description import Actor, Description, Legend
-from viewers.palette import ATTACHMENT, MARK, SOURCE
-from viewers.skin import skin_of_weights
+from cutcell_viewers.description import Actor, Description, Legend
+from cutcell_viewers.palette import ATTACHMENT, MARK, SOURCE
+from cutcell_viewers.skin import skin_of_weights
 
 from ..state import State
 from .common import POSED, plain

@@ -11,12 +11,13 @@ from numpy.typing import NDArray
 
 from cutcell.display import shown_name
 from cutcell.rig import Rig
-from viewers.character import attachments, body, bones, drawn_segments
-from viewers.description import Actor, Cut, Description
-from viewers.graph_scene import cut_at
-from viewers.marks import vertex_mark
-from viewers.palette import THEMES, Theme, joint_colors
-from viewers.skin import skin_of_weights
+from cutcell_viewers.camera import Camera
+from cutcell_viewers.character import attachments, body, bones, drawn_segments
+from cutcell_viewers.description import Actor, Cut, Description
+from cutcell_viewers.graph_scene import cut_at
+from cutcell_viewers.marks import vertex_mark
+from cutcell_viewers.palette import THEMES, Theme, joint_colors, to_hex
+from cutcell_viewers.skin import skin_of_weights
 
 from ..state import State
 from .memo import Memo
@@ -133,6 +134,19 @@ def bones_part(state: State) -> dict[str, Any]:
         "joint": joint.astype(np.int32),
         "names": [shown_name(name) for name in state.rig.skeleton.names],
     }
+
+
+def theme_part(theme: Theme) -> dict[str, str]:
+    """Return how a theme is told to the view."""
+    card = "rgba(255,255,255,.72)" if theme.name == "light" else "rgba(24,28,36,.72)"
+    top, bottom, ink = to_hex(theme.top), to_hex(theme.bottom), to_hex(theme.ink)
+    paper = "#ffffff" if theme.name == "light" else "#1b2028"
+    return {"top": top, "bottom": bottom, "ink": ink, "card": card, "paper": paper}
+
+
+def camera_part(camera: Camera) -> dict[str, Any]:
+    """Return how a camera is told to the view."""
+    return {"position": list(camera.position), "focal_point": list(camera.focal_point)}
 
 
 def first_joint(rig: Rig) -> int:

@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from viewers.description import Actor, Description, Legend
-from viewers.error_scene import error_limits
-from viewers.skin import skin_of_weights
-from viewers.weights_scene import weight_colors
+from cutcell_viewers.description import Actor, Description, Legend
+from cutcell_viewers.error_scene import error_limits
+from cutcell_viewers.skin import skin_of_weights
+from cutcell_viewers.weights_scene import weight_colors
 
 from ..state import State
 from ..state.compare import NOW
@@ -121,7 +121,7 @@ def looks_of(
             name: memo(f"apart {name}", (table, base), partial(_sum_of_differences, table, base))
             for name, table in known.items()
         }
-        return looks, Legend("Weight that lies elsewhere", "error", "0", "all")
+        return looks, Legend("Difference of the weights", "error", "0 %", "100 %")
     which = joint if shown == "bone" else None
     looks, legend = {}, None
     for name, table in known.items():

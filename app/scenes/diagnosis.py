@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from cutcell.diagnosis import Finding
 from cutcell.diagnosis.finding import count
-from viewers.description import Description, Legend
-from viewers.finding_scene import finding_marks
-from viewers.palette import MARK
+from cutcell_viewers.description import Description, Legend
+from cutcell_viewers.finding_scene import finding_marks
+from cutcell_viewers.palette import MARK
 
 from ..state import State
 from .common import character

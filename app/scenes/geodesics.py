@@ -1,4 +1,4 @@
-"""The distance from the chosen bone: the field, where it begins, and the way back."""
+"""The distance from the chosen bone: the field, where it begins, and the shortest path to it."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from typing import Any
 import numpy as np
 
 from cutcell.geodesics import path_length, shortest_path
-from viewers.character import to_scene
-from viewers.description import Actor, Cut, Description, Legend
-from viewers.distance_scene import distance_colors, distance_limits
-from viewers.marks import path_tube
-from viewers.palette import BODY, MARK, SOURCE
-from viewers.section_scene import section, section_rays, section_resolution
-from viewers.slice_scene import slice_place
-from viewers.start_scene import first_distances, start_scene
+from cutcell_viewers.character import to_scene
+from cutcell_viewers.description import Actor, Cut, Description, Legend
+from cutcell_viewers.distance_scene import distance_colors, distance_limits
+from cutcell_viewers.marks import path_tube
+from cutcell_viewers.palette import BODY, MARK, SOURCE
+from cutcell_viewers.section_scene import section, section_rays, section_resolution
+from cutcell_viewers.slice_scene import slice_place
+from cutcell_viewers.start_scene import first_distances, start_scene
 
 from ..state import State
 from .common import character, theme_of
@@ -33,8 +33,8 @@ def geodesics(state: State, memo: Memo) -> Description:
     if not has_field(state):
         return Description(character(state, memo), cut=cut)
     colors, legend, limits = _surface(state, memo)
-    way = way_of(state, memo)
-    inside = (way is not None and len(way) > 0) or state.starts
+    path = path_of(state, memo)
+    inside = (path is not None and len(path) > 0) or state.starts
     see = SEE_PATH if inside and cut is None else 1.0
     actors = character(state, memo, **colors, film=state.wave, opacity=see)
     swatches = legend.swatches
@@ -44,12 +44,12 @@ def geodesics(state: State, memo: Memo) -> Description:
         parts, swatch = _starts(state, memo)
         actors |= parts
         swatches += (swatch,)
-    if way is not None and not len(way):
-        swatches += ((MARK, "no way leads from the vertex to the bone"),)
-    elif way is not None:
+    if path is not None and not len(path):
+        swatches += ((MARK, "no path leads from the vertex to the bone"),)
+    elif path is not None:
         rig = state.rig
-        actors["path"] = memo("tube", (rig, way), lambda: path_tube(rig, _in_scene(state, way)))
-        swatches += ((MARK, f"way back, {path_length(way):.3f} long"),)
+        actors["path"] = memo("tube", (rig, path), lambda: path_tube(rig, _in_scene(state, path)))
+        swatches += ((MARK, f"shortest path, {path_length(path):.3f} long"),)
     if state.wave:
         swatches += ((BODY, "not reached yet"),)
     front = state.front * limits[1] if state.wave else None
@@ -113,21 +113,21 @@ def _starts(state: State, memo: Memo) -> tuple[dict[str, Actor], tuple[Any, str]
     return parts, (SOURCE, f"{len(first)} sources, up to {most:.3f} from the bone")
 
 
-def way_of(state: State, memo: Memo) -> Any:
-    """Return the way from the clicked vertex to the bone, shape (p, 3); None if none is asked."""
+def path_of(state: State, memo: Memo) -> Any:
+    """Return the shortest path from the clicked vertex to the bone (p, 3), or None."""
     field = field_of(state)
     if not state.path or state.vertex is None or field is None:
         return None
     distances, joint, vertex = state.binding.distances, state.joint, state.vertex
     return memo(
-        "way",
+        "path",
         (distances, joint, vertex, field),
         lambda: shortest_path(distances, joint, vertex, field),
     )
 
 
-def _in_scene(state: State, way: np.ndarray) -> np.ndarray:
-    return to_scene(state.rig, state.binding.graph.lattice.to_file(way))
+def _in_scene(state: State, path: np.ndarray) -> np.ndarray:
+    return to_scene(state.rig, state.binding.graph.lattice.to_file(path))
 
 
 def has_field(state: State) -> bool:

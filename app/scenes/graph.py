@@ -6,12 +6,12 @@ from dataclasses import replace
 from typing import Any
 
 from cutcell.graph import INTERIOR, MESH, SURFACE, slice_rays
-from viewers.description import Actor, Cut, Description, Legend
-from viewers.distance_scene import distance_legend, distance_limits
-from viewers.graph_scene import depth_field, graph_scene
-from viewers.palette import INTERIOR as INTERIOR_COLOR
-from viewers.palette import SURFACE as SURFACE_COLOR
-from viewers.slice_scene import file_axis, slice_place, slice_scene
+from cutcell_viewers.description import Actor, Cut, Description, Legend
+from cutcell_viewers.distance_scene import distance_legend, distance_limits
+from cutcell_viewers.graph_scene import depth_field, graph_scene
+from cutcell_viewers.palette import INTERIOR as INTERIOR_COLOR
+from cutcell_viewers.palette import SURFACE as SURFACE_COLOR
+from cutcell_viewers.slice_scene import file_axis, slice_place, slice_scene
 
 from ..state import LAYERS, State
 from .common import SEE_THROUGH, cells_of, character, cut_of, theme_of

@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 
 from cutcell.rig import Clip
-from viewers.character import body, pose_in_scene
-from viewers.description import Actor, Apart, Description
-from viewers.error_scene import Gap, error_legend, error_limits, error_look, squared_unit
-from viewers.palette import GHOST
-from viewers.pose_scene import joint_turns, swing, turn
-from viewers.skin import skin_of_weights
+from cutcell_viewers.character import body, pose_in_scene
+from cutcell_viewers.description import Actor, Apart, Description
+from cutcell_viewers.error_scene import Gap, error_legend, error_limits, error_look, squared_unit
+from cutcell_viewers.palette import GHOST
+from cutcell_viewers.pose_scene import joint_turns, swing, turn
+from cutcell_viewers.skin import skin_of_weights
 
 from ..state import State
 from .common import POSED, character

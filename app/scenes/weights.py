@@ -5,9 +5,14 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from viewers.description import Description, Legend
-from viewers.palette import joint_colors
-from viewers.weights_scene import count_colors, difference_colors, dominant_colors, weight_colors
+from cutcell_viewers.description import Description, Legend
+from cutcell_viewers.palette import joint_colors
+from cutcell_viewers.weights_scene import (
+    count_colors,
+    difference_colors,
+    dominant_colors,
+    weight_colors,
+)
 
 from ..state import State
 from .common import character

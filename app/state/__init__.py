@@ -16,11 +16,7 @@ from .graph import LAYERS, GraphChoices
 from .pose import PoseChoices
 from .weights import WeightsChoices
 
-__all__ = ["LAYERS", "MAX_UPLOAD", "PANELS", "UNSEEN", "State"]
-
-MAX_UPLOAD = 200 * 1024 * 1024
-"""The largest file that the page takes, in bytes."""
-
+__all__ = ["LAYERS", "PANELS", "UNSEEN", "State"]
 
 QUICK_MESH = 60_000
 QUICK_GRAPH = 400_000

@@ -12,9 +12,9 @@ class GeodesicsChoices(param.Parameterized):
 
     field: Any = param.Parameter(None, doc="(distances, joint, distance at every graph node).")
     starts: Any = param.Boolean(False, label="Where distances begin")
-    path: Any = param.Boolean(True, label="Way back from the clicked vertex")
+    path: Any = param.Boolean(True, label="Shortest path from the clicked vertex")
     front: Any = param.Number(0.35, bounds=(0, 1), doc="How far the wave came, of all the way.")
     wave: Any = param.Boolean(
         False, label="Wavefront", doc="Whether `front` hides what is farther."
     )
-    filming: Any = param.Boolean(False, doc="Whether the wave runs.")
+    animating: Any = param.Boolean(False, doc="Whether the wave runs.")

@@ -7,7 +7,6 @@ from typing import Any
 import param
 
 from cutcell.geodesics import LEAVES
-from cutcell.skinning import DEFAULT_LEAF
 
 from .method import default
 
@@ -29,7 +28,7 @@ class GraphChoices(param.Parameterized):
     connectivity: Any = param.Selector(default=default("connectivity"), objects=[6, 26, "any"])
     winding_threshold: Any = param.Number(default("winding_threshold"), bounds=(0, 1))
     orient: Any = param.Boolean(default("orient"), label="Turn inverted faces")
-    leaf: Any = param.Selector(default=DEFAULT_LEAF[default("falloff")], objects=list(LEAVES))
+    leaf: Any = param.Selector(default=default("leaf"), objects=list(LEAVES))
 
     body: Any = param.Boolean(True, label="Surface")
     mesh_edges: Any = param.Boolean(False, label="Mesh edges")

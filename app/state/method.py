@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import inspect
 from typing import Any
 
 import cutcell
@@ -16,7 +15,13 @@ WEIGHTS = ("falloff", "alpha", "max_influences", "threshold")
 
 def default(name: str) -> Any:
     """Return what `cutcell.bind` takes when it is not told."""
-    return inspect.signature(cutcell.bind).parameters[name].default
+    value = getattr(cutcell.ANIMATION, name)
+    return cutcell.PAPER.alpha if name == "alpha" else value
+
+
+def effective(options: dict[str, Any]) -> dict[str, Any]:
+    """Leave out what the falloff does not ask for, which the core refuses: alpha is the paper's."""
+    return {n: v for n, v in options.items() if n != "alpha" or options["falloff"] == "paper"}
 
 
 def method_of(state: Any, names: tuple[str, ...] = (*GRAPH, *WEIGHTS)) -> dict[str, Any]:

@@ -6,7 +6,7 @@ from typing import Any
 
 import param
 
-from cutcell.skinning import FALLOFFS
+from cutcell.method import FALLOFFS
 
 from .method import default
 

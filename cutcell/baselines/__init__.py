@@ -1,6 +1,6 @@
-"""Other ways to bind a rig, all with one signature, to measure ours against."""
+"""Other methods to bind a rig, all with one signature, to measure ours against."""
 
-from .methods import METHODS, Method
-from .result import BaselineBinding
+from .frame import BaselineBinding
+from .methods import METHODS, Baseline
 
-__all__ = ["METHODS", "BaselineBinding", "Method"]
+__all__ = ["METHODS", "Baseline", "BaselineBinding"]

@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 
 from ..geodesics import Bones, bone_segments, distance_to_segment
 from ..graph import Lattice
-from ..graph.weld import weld
+from ..method import Leaf
 from ..rig import Rig
+from ..surface.weld import weld
 
 
 @dataclass(frozen=True, eq=False)
@@ -20,16 +21,16 @@ class Body:
     Parameters
     ----------
     points : array, shape (k, 3), float64
-        Places, sorted by coordinates.
+        Welded vertices, sorted by coordinates.
     faces : array, shape (m, 3), int32
         Triangles with three different corners.
     index : array, shape (n,), int32
-        The place of each vertex of the file.
+        The welded vertex of each vertex of the file.
     bones : Bones
     joints : int
         j, the joints of the skeleton, with or without bones.
     lattice : Lattice
-        The way from the file's units into the unit cube and back.
+        From the file's units into the unit cube and back.
     """
 
     points: NDArray[np.float64]
@@ -40,7 +41,7 @@ class Body:
     lattice: Lattice
 
     @classmethod
-    def of(cls, rig: Rig, leaf: str = "point", resolution: int = 64) -> Body:
+    def of(cls, rig: Rig, leaf: Leaf = "point", resolution: int = 64) -> Body:
         """Prepare a rig; see `bone_segments` for `leaf`, `Lattice.around` for `resolution`.
 
         Raises
@@ -57,7 +58,7 @@ class Body:
         return cls(points, faces, index, bones, len(rig.skeleton.joints), lattice)
 
     def straight(self) -> NDArray[np.float64]:
-        """Measure from every bone straight to every place, shape (b, k)."""
+        """Measure from every bone straight to every welded vertex, shape (b, k)."""
         ends = zip(self.bones.start, self.bones.end, strict=True)
         return np.stack([distance_to_segment(self.points, start, end) for start, end in ends])
 

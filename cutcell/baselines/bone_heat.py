@@ -1,8 +1,6 @@
-"""Bone heat: bones warm the skin that sees them, and the skin conducts (Baran & Popović 2007)."""
+"""Bone heat: bones warm the surface that sees them, and it conducts (Baran & Popović 2007)."""
 
 from __future__ import annotations
-
-from time import perf_counter
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,28 +9,29 @@ from scipy.sparse.csgraph import connected_components
 from scipy.sparse.linalg import splu
 
 from ..checks import check_number
+from ..method import PAPER, Leaf
 from ..rig import Rig
 from ..skinning.laplacian import cotangent_laplacian, vertex_areas, vertex_normals
 from .body import Body
-from .result import BaselineBinding, finish
+from .frame import BaselineBinding, Run, bind_by
 from .visibility import Blockers
 
 TIE = 1e-4
-"""Relative: bones this nearly as near as the nearest warm a place as well."""
+"""Relative: bones this nearly as near as the nearest warm a vertex as well."""
 LEAST_DISTANCE = 1e-4
-"""Of the longest side; a place on a bone itself would be infinitely warm."""
+"""Of the longest side; a vertex on a bone itself would be infinitely warm."""
 FACING = 1.001
-"""Distance is divided by half of this plus the cosine between normal and bone: skin that
-looks away from a bone, as it does around a limb, is nearer than skin that looks at it."""
+"""Distance is divided by half of this plus the cosine between normal and bone: surface that
+looks away from a bone, as it does around a limb, counts as nearer than surface that looks at it."""
 FADE = (0.025, 0.05)
-"""Weights fade out between these, as in Blender; each place keeps its largest."""
+"""Weights fade out between these, as in Blender; each vertex keeps its largest."""
 
 
 def bone_heat(
     rig: Rig,
     *,
     heat: float = 1.0,
-    leaf: str = "extend",
+    leaf: Leaf = "extend",
     max_influences: int | None = None,
     threshold: float = 0.0,
 ) -> BaselineBinding:
@@ -41,8 +40,8 @@ def bone_heat(
         (M⁻¹ L + H) w_i = H p_i
 
     L is the cotangent Laplacian, M the area of each vertex; H = c / d² of the nearest bone
-    that a place sees, and p_i is 1 where that is bone i. A piece of the mesh that no bone
-    sees is warmed by its nearest bones straight through the surface.
+    in the line of sight of a vertex, and p_i is 1 where that is bone i. A component of the mesh
+    that no bone sees is warmed by its nearest bones straight through the surface.
 
     Parameters
     ----------
@@ -70,28 +69,27 @@ def bone_heat(
     measure of nearness by normals is that of Blender's automatic weights.
     """
     heat = check_number("heat", heat, 1e-6, 1e6)
-    begin = perf_counter()
-    body = Body.of(rig, leaf)
-    distance, share, unseen = _warmth(body)
-    middle = perf_counter()
-    weights = _equilibrium(body, heat / np.maximum(distance, LEAST_DISTANCE) ** 2, share)
-    weights, warnings = finish(
-        rig, body, _faded(weights), max_influences=max_influences, threshold=threshold
-    )
-    if unseen:
-        warnings += (
-            f"{unseen} of {len(body.points)} places lie on pieces of the mesh that no bone "
-            "sees; their nearest bones warm them through the surface",
-        )
-    seconds = {"heat": middle - begin, "weights": perf_counter() - middle}
-    return BaselineBinding(weights, seconds, warnings)
+    method = PAPER.with_options(leaf=leaf, max_influences=max_influences, threshold=threshold)
+
+    def solve(body: Body, run: Run) -> NDArray[np.float64]:
+        distance, share, unseen = _warmth(body)
+        if unseen:
+            run.warnings.append(
+                f"{unseen} of {len(body.points)} welded vertices lie on components that no bone "
+                "sees; their nearest bones warm them through the surface"
+            )
+        run.end("heat")
+        screening = heat / np.maximum(distance, LEAST_DISTANCE) ** 2
+        return _faded(_equilibrium(body, screening, share))
+
+    return bind_by(solve, rig, method)
 
 
 def _warmth(body: Body) -> tuple[NDArray[np.float64], NDArray[np.float64], int]:
-    """Find the bones that warm each place.
+    """Find the bones that warm each welded vertex.
 
     Returns the distance (k,) to them, infinite where there is none, the share of each joint
-    (k, j), and how many places lie on pieces that no bone sees.
+    (k, j), and how many vertices lie on components that no bone sees.
     """
     nearness, closest = _nearness(body)
     order = np.argsort(nearness, axis=0, kind="stable")
@@ -112,7 +110,7 @@ def _warmth(body: Body) -> tuple[NDArray[np.float64], NDArray[np.float64], int]:
         distance[looking[free]] = np.minimum(
             distance[looking[free]], nearness[bone[free], looking[free]]
         )
-    dark = _dark_pieces(body, np.isfinite(distance))
+    dark = _dark_components(body, np.isfinite(distance))
     distance[dark] = nearness[:, dark].min(axis=0)
     sees[:, dark] = nearness[:, dark] <= distance[dark] * (1 + TIE)
     share = np.zeros((count, body.joints))
@@ -123,7 +121,7 @@ def _warmth(body: Body) -> tuple[NDArray[np.float64], NDArray[np.float64], int]:
 
 
 def _nearness(body: Body) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return how near each bone is to each place, (b, k), and its closest point, (b, k, 3)."""
+    """Return how near each bone is to each vertex, (b, k), and its closest point, (b, k, 3)."""
     normals = vertex_normals(body.points, body.faces)
     nearness = np.empty((len(body.bones.joint), len(body.points)))
     closest = np.empty((*nearness.shape, 3))
@@ -139,13 +137,13 @@ def _nearness(body: Body) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     return nearness, closest
 
 
-def _dark_pieces(body: Body, warm: NDArray[np.bool_]) -> NDArray[np.intp]:
-    """List the places on pieces of the mesh without any warm place."""
+def _dark_components(body: Body, warm: NDArray[np.bool_]) -> NDArray[np.intp]:
+    """List the vertices on components of the mesh without any warm vertex."""
     count = len(body.points)
     links = np.concatenate([body.faces[:, [0, 1]], body.faces[:, [1, 2]]])
     matrix = coo_array((np.ones(len(links)), links.T), shape=(count, count))
-    piece = connected_components(matrix, directed=False)[1]
-    return np.flatnonzero(~(np.bincount(piece, warm) > 0)[piece])
+    component = connected_components(matrix, directed=False)[1]
+    return np.flatnonzero(~(np.bincount(component, warm) > 0)[component])
 
 
 def _equilibrium(
@@ -153,7 +151,7 @@ def _equilibrium(
 ) -> NDArray[np.float64]:
     """Solve for all joints at once: (L + M H) w = M H p."""
     areas = vertex_areas(body.points, body.faces)
-    # A place without area conducts nothing; any positive number lets it keep its own heat.
+    # A vertex without area conducts nothing; any positive number lets it keep its own heat.
     warming = np.where(areas > 0, areas, 1e-12) * heat
     system = cotangent_laplacian(body.points, body.faces) + diags_array(warming)
     return splu(system.tocsc()).solve(warming[:, None] * share)

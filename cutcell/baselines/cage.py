@@ -15,12 +15,12 @@ from .body import Body, Same
 from .voxels import PAD, voxelize
 
 FACES = 400
-"""Triangles that a cage should have; as many as it takes to hold the whole mesh."""
+"""Triangles that a cage should have; as many as it takes to contain the whole mesh."""
 
 
 @dataclass(frozen=True, eq=False)
 class Cage:
-    """A closed surface that holds a body.
+    """A closed surface around a body.
 
     Parameters
     ----------

@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from time import perf_counter
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..apart import WorkFailedError
 from ..checks import check_integer
+from ..method import PAPER, Leaf, check_resolution
 from ..rig import Rig
 from .body import Body
 from .cage import Cage, make_cage
+from .frame import BaselineBinding, Run, bind_by
 from .harmonic import harmonic_values
 from .mean_value import mean_values
-from .result import BaselineBinding, finish
 
 CAGE_RESOLUTION = 32
 """Voxels along the longest side whose hull the cage is."""
@@ -25,7 +25,7 @@ def harmonic(
     rig: Rig,
     resolution: int = 64,
     *,
-    leaf: str = "extend",
+    leaf: Leaf = "extend",
     cage_resolution: int = CAGE_RESOLUTION,
     max_influences: int | None = None,
     threshold: float = 0.0,
@@ -58,7 +58,7 @@ def harmonic(
     ----------
     Joshi et al. 2007, "Harmonic coordinates for character articulation".
     """
-    resolution = check_integer("resolution", resolution, 2, 1024)
+    resolution = check_resolution(resolution)
 
     def carry(cage: Cage, body: Body) -> NDArray[np.float64]:
         values = cage.weights(body.joints)
@@ -70,7 +70,7 @@ def harmonic(
 def mean_value(
     rig: Rig,
     *,
-    leaf: str = "extend",
+    leaf: Leaf = "extend",
     cage_resolution: int = CAGE_RESOLUTION,
     max_influences: int | None = None,
     threshold: float = 0.0,
@@ -107,25 +107,25 @@ def mean_value(
 def _bind(
     rig: Rig,
     carry: Callable[[Cage, Body], NDArray[np.float64]],
-    leaf: str,
+    leaf: Leaf,
     cage_resolution: int,
     max_influences: int | None,
     threshold: float,
 ) -> BaselineBinding:
     cage_resolution = check_integer("cage_resolution", cage_resolution, 2, 1024)
-    body = Body.of(rig, leaf, cage_resolution)
-    cage, failed, making = make_cage(body)
-    seconds = {"cage": making}
-    if cage is None:
-        return BaselineBinding(None, seconds, failed=failed)
-    begin = perf_counter()
-    try:
-        weights = carry(cage, body)
-    except WorkFailedError as error:
-        seconds["weights"] = perf_counter() - begin
-        return BaselineBinding(None, seconds, failed=str(error))
-    weights, warnings = finish(
-        rig, body, weights, max_influences=max_influences, threshold=threshold
+    method = PAPER.with_options(
+        resolution=cage_resolution, leaf=leaf, max_influences=max_influences, threshold=threshold
     )
-    seconds["weights"] = perf_counter() - begin
-    return BaselineBinding(weights, seconds, warnings)
+
+    def solve(body: Body, run: Run) -> NDArray[np.float64]:
+        cage, failed, seconds = make_cage(body)
+        run.end("cage", seconds)
+        if cage is None:
+            raise WorkFailedError(failed)
+        try:
+            return carry(cage, body)
+        except WorkFailedError:
+            run.end("weights")
+            raise
+
+    return bind_by(solve, rig, method)

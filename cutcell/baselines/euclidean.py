@@ -1,21 +1,22 @@
-"""Weights from straight distances, as if nothing lay between bone and skin."""
+"""Weights from straight distances, whatever lies between bone and surface."""
 
 from __future__ import annotations
 
-from time import perf_counter
+import numpy as np
+from numpy.typing import NDArray
 
-from ..checks import check_number
+from ..method import PAPER, Leaf
 from ..rig import Rig
 from ..skinning.kernel import paper_kernel
 from .body import Body
-from .result import BaselineBinding, finish
+from .frame import BaselineBinding, Run, bind_by
 
 
 def euclidean(
     rig: Rig,
     *,
     alpha: float = 0.5,
-    leaf: str = "point",
+    leaf: Leaf = "point",
     max_influences: int | None = None,
     threshold: float = 0.0,
 ) -> BaselineBinding:
@@ -41,14 +42,13 @@ def euclidean(
     ParameterError
         A parameter is out of its range.
     """
-    alpha = check_number("alpha", alpha, 0, 1)
-    begin = perf_counter()
-    body = Body.of(rig, leaf)
-    distance = body.joint_minimum(body.straight())
-    middle = perf_counter()
-    weights = paper_kernel(distance, body.lattice.diagonal, alpha)
-    weights, warnings = finish(
-        rig, body, weights, max_influences=max_influences, threshold=threshold
+    method = PAPER.with_options(
+        alpha=alpha, leaf=leaf, max_influences=max_influences, threshold=threshold
     )
-    seconds = {"distances": middle - begin, "weights": perf_counter() - middle}
-    return BaselineBinding(weights, seconds, warnings)
+
+    def solve(body: Body, run: Run) -> NDArray[np.float64]:
+        distance = body.joint_minimum(body.straight())
+        run.end("distances")
+        return paper_kernel(distance, body.lattice.diagonal, alpha)
+
+    return bind_by(solve, rig, method)

@@ -55,8 +55,8 @@ def harmonic_values(
     shape = np.ceil((vertices.max(axis=0) - origin) * resolution).astype(int) + MARGIN
     border = np.zeros((int(shape.max()),) * 3, bool)
     mark_triangles((vertices[faces] - origin) * resolution, border)
-    pieces = label(~border)[0]
-    inside = ~border & (pieces != pieces[0, 0, 0])
+    region = label(~border)[0]
+    inside = ~border & (region != region[0, 0, 0])
     cells = np.argwhere(border)
     where, at_border = _sampled(vertices, faces, values, 0.5 / resolution)
     nearest = cKDTree(where).query(origin + (cells + 0.5) / resolution)[1]

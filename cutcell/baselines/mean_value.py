@@ -24,7 +24,7 @@ def mean_values(
     ----------
     vertices : array, shape (c, 3)
     faces : array, shape (m, 3)
-        Closed, and turned the same way all over.
+        Closed and consistently oriented.
     points : array, shape (n, 3)
         Inside or outside.
     values : array, shape (c, j)

@@ -6,48 +6,51 @@ from collections.abc import Callable
 from time import perf_counter
 from typing import Any
 
+from ..method import ANIMATION, PAPER, Method
 from ..rig import Rig
 from ..skinning import bind
 from .bone_heat import bone_heat
 from .cage_methods import harmonic, mean_value
 from .euclidean import euclidean
-from .result import BaselineBinding
+from .frame import BaselineBinding
 from .volume import bbw, biharmonic, quasi_harmonic
 from .voxel_binding import voxel, voxel_unirig
 
-Method = Callable[..., BaselineBinding]
+Baseline = Callable[..., BaselineBinding]
 
 
 def cutcell(rig: Rig, resolution: int = 64, **options: Any) -> BaselineBinding:
-    """Bind by the paper's method; `options` are those of `cutcell.bind`.
-
-    Unless asked for otherwise, paths inside run along the axes as the paper's do, and
-    nothing limits the influences, as for all methods here.
-    """
-    paper = {"connectivity": 6, "falloff": "paper", "max_influences": None}
-    binding = bind(rig, resolution, **{**paper, **options})
-    return BaselineBinding(binding.weights, binding.seconds, binding.warnings)
+    """Bind by the paper's method; `options` are those of `cutcell.bind`."""
+    return _bind(rig, PAPER, resolution, options)
 
 
 def cutcell_any(rig: Rig, resolution: int = 64, **options: Any) -> BaselineBinding:
     """Bind by the paper's falloff on true distances: paths inside may run at any angle."""
-    return cutcell(rig, resolution, **{"connectivity": "any", **options})
+    return _bind(rig, PAPER.with_options(connectivity="any"), resolution, options)
 
 
 def cutcell_rig(rig: Rig, resolution: int = 64, **options: Any) -> BaselineBinding:
-    """Bind by the falloff for rigs, with bones fitted to the body: what `cutcell.bind` does."""
-    return cutcell(rig, resolution, **{"connectivity": "any", "falloff": "rig", **options})
+    """Bind by the falloff for rigs, with bones fitted to the body: what `cutcell.bind` does.
+
+    As for all methods here, nothing limits the influences unless it is asked for.
+    """
+    return _bind(rig, ANIMATION.with_options(max_influences=None), resolution, options)
+
+
+def _bind(rig: Rig, method: Method, resolution: int, options: dict[str, Any]) -> BaselineBinding:
+    binding = bind(rig, resolution, **{"method": method, **options})
+    return BaselineBinding(binding.weights, binding.seconds, binding.warnings)
 
 
 def artist(rig: Rig) -> BaselineBinding:
     """Return the weights that the file came with."""
     begin = perf_counter()
     if rig.weights is None:
-        return BaselineBinding(None, failed="the file holds no weights")
+        return BaselineBinding(None, failed="the file has no weights")
     return BaselineBinding(rig.weights, {"weights": perf_counter() - begin})
 
 
-METHODS: dict[str, Method] = {
+METHODS: dict[str, Baseline] = {
     "artist": artist,
     "bbw": bbw,
     "biharmonic": biharmonic,

@@ -15,7 +15,7 @@ from .body import Body, Same
 HANDLES = 5
 """Points on each bone that the weights are tied to: the middles of its fifths."""
 SAME = 1e-6
-"""Of the longest side: handles this near to each other or to the surface are one place."""
+"""Of the longest side: handles this near to each other or to the surface are one point."""
 EDGE = 0.05
 """Of the diagonal: edges that fTetWild aims at, its own default."""
 
@@ -28,9 +28,9 @@ class Tetrahedra:
     ----------
     nodes, tets : arrays, shapes (n, 3), (t, 4)
     corners, shares : arrays, shape (k, 4)
-        Each place that faces use is the mean of the nodes `corners`, weighted by `shares`.
+        Each welded vertex that faces use is the mean of the nodes `corners`, weighted by `shares`.
     used : array, shape (k,)
-        These places in the body.
+        These vertices in the body.
     handles, joint : arrays, shapes (h, 3), (h,)
         Points on the bones, and whose they are.
     warnings : tuple of str
@@ -99,7 +99,7 @@ def _fill(given: Same) -> tuple[Tetrahedra | None, str, float]:
 
 
 def _handles(body: Body) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
-    """Spread points over the bones, each place once: positions (h, 3), joints (h,)."""
+    """Spread points over the bones, none of them twice: positions (h, 3), joints (h,)."""
     spots = (np.arange(HANDLES) + 0.5) / HANDLES
     along = (body.bones.end - body.bones.start)[:, None]
     points = (body.bones.start[:, None] + spots[:, None] * along).reshape(-1, 3)

@@ -1,4 +1,4 @@
-"""Whether the surface blocks the way from a place on it to a point."""
+"""Whether the surface blocks the line of sight from a vertex on it to a point."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Blockers:
         Parameters
         ----------
         vertex : array, shape (q,), int
-            The places where the segments begin.
+            The welded vertices where the segments begin.
         target : array, shape (q, 3), float64
             Where they end; a triangle right there does not block.
 
@@ -93,13 +93,13 @@ def _blocked(points, faces, low, high, child, first, vertex, target):
     result = np.zeros(len(vertex), np.bool_)
     for q in range(len(vertex)):
         start = points[vertex[q]]
-        way = target[q] - start
+        direction = target[q] - start
         stack = np.empty(DEPTH, np.int64)
         stack[0], size = 0, 1
         while size > 0 and not result[q]:
             size -= 1
             node = stack[size]
-            if not _meets_box(start, way, low[node], high[node]):
+            if not _meets_box(start, direction, low[node], high[node]):
                 continue
             if child[node, 0] >= 0:
                 stack[size], stack[size + 1] = child[node, 0], child[node, 1]
@@ -109,35 +109,38 @@ def _blocked(points, faces, low, high, child, first, vertex, target):
                 a, b, c = faces[f]
                 if vertex[q] in (a, b, c):
                     continue
-                if _meets_triangle(start, way, points[a], points[b], points[c]):
+                if _meets_triangle(start, direction, points[a], points[b], points[c]):
                     result[q] = True
                     break
     return result
 
 
 @compiled
-def _meets_box(start, way, low, high):
+def _meets_box(start, direction, low, high):
     enter, leave = 0.0, 1.0
     for axis in range(3):
-        if way[axis] == 0:
+        if direction[axis] == 0:
             if start[axis] < low[axis] or start[axis] > high[axis]:
                 return False
             continue
-        a, b = (low[axis] - start[axis]) / way[axis], (high[axis] - start[axis]) / way[axis]
+        a, b = (
+            (low[axis] - start[axis]) / direction[axis],
+            (high[axis] - start[axis]) / direction[axis],
+        )
         enter, leave = max(enter, min(a, b) - 1e-12), min(leave, max(a, b) + 1e-12)
     return enter <= leave
 
 
 @compiled
-def _meets_triangle(start, way, a, b, c):
+def _meets_triangle(start, direction, a, b, c):
     """Whether the segment meets the triangle strictly between its ends (Möller & Trumbore)."""
     side, other, away = b - a, c - a, start - a
-    p = np.cross(way, other)
+    p = np.cross(direction, other)
     volume = np.dot(side, p)
     if volume == 0:
         return False
     u = np.dot(away, p) / volume
     q = np.cross(away, side)
-    v = np.dot(way, q) / volume
+    v = np.dot(direction, q) / volume
     t = np.dot(other, q) / volume
     return u >= 0 and v >= 0 and u + v <= 1 and 1e-9 < t < 1 - 1e-9

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from time import perf_counter
-
 import numpy as np
+from numpy.typing import NDArray
 
 from ..apart import LIMIT, WorkFailedError, run_apart
 from ..checks import check_integer, check_number
+from ..method import PAPER, Leaf
 from ..rig import Rig
 from .body import Body
-from .result import BaselineBinding, finish
+from .frame import BaselineBinding, Run, bind_by
 from .tetrahedra import tetrahedra
 
 SOLVERS = {
@@ -23,7 +23,7 @@ SOLVERS = {
 def bbw(
     rig: Rig,
     *,
-    leaf: str = "point",
+    leaf: Leaf = "point",
     iterations: int = 8,
     limit: float = LIMIT,
     max_influences: int | None = None,
@@ -70,7 +70,7 @@ def bbw(
 def biharmonic(
     rig: Rig,
     *,
-    leaf: str = "point",
+    leaf: Leaf = "point",
     limit: float = LIMIT,
     max_influences: int | None = None,
     threshold: float = 0.0,
@@ -102,7 +102,7 @@ def biharmonic(
 def quasi_harmonic(
     rig: Rig,
     *,
-    leaf: str = "point",
+    leaf: Leaf = "point",
     iterations: int = 4,
     limit: float = LIMIT,
     max_influences: int | None = None,
@@ -140,39 +140,39 @@ def quasi_harmonic(
 
 def _bind(
     rig: Rig,
-    method: str,
-    leaf: str,
+    solver: str,
+    leaf: Leaf,
     iterations: int,
     limit: float,
     max_influences: int | None,
     threshold: float,
 ) -> BaselineBinding:
     limit = check_number("limit", limit, 0, 1e9)
-    body = Body.of(rig, leaf)
-    filled, failed, meshing = tetrahedra(body, limit)
-    seconds = {"tetrahedra": meshing}
-    if filled is None:
-        return BaselineBinding(None, seconds, failed=failed)
-    begin = perf_counter()
-    names, column = np.unique(filled.joint, return_inverse=True)
-    job = {
-        "nodes": filled.nodes,
-        "tets": filled.tets,
-        "handles": filled.handles,
-        "column": column,
-        "iterations": iterations,
-    }
-    try:
-        result = run_apart(method, job, limit, SOLVERS[method])
-    except WorkFailedError as error:
-        seconds["weights"] = perf_counter() - begin
-        return BaselineBinding(None, seconds, filled.warnings, failed=str(error))
-    begin, found = perf_counter() - float(result["seconds"]), result["weights"]
-    weights = np.zeros((len(body.points), body.joints))
-    at_places = np.einsum("kc,kcj->kj", filled.shares, found[filled.corners])
-    weights[np.ix_(filled.used, names)] = at_places
-    weights, warnings = finish(
-        rig, body, weights, max_influences=max_influences, threshold=threshold
-    )
-    seconds["weights"] = perf_counter() - begin
-    return BaselineBinding(weights, seconds, filled.warnings + warnings)
+    method = PAPER.with_options(leaf=leaf, max_influences=max_influences, threshold=threshold)
+
+    def solve(body: Body, run: Run) -> NDArray[np.float64]:
+        filled, failed, seconds = tetrahedra(body, limit)
+        run.end("tetrahedra", seconds)
+        if filled is None:
+            raise WorkFailedError(failed)
+        run.warnings += filled.warnings
+        names, column = np.unique(filled.joint, return_inverse=True)
+        job = {
+            "nodes": filled.nodes,
+            "tets": filled.tets,
+            "handles": filled.handles,
+            "column": column,
+            "iterations": iterations,
+        }
+        try:
+            result = run_apart(solver, job, limit, SOLVERS[solver])
+        except WorkFailedError:
+            run.end("weights")
+            raise
+        run.end("weights", float(result["seconds"]))  # the start of its process does not count
+        weights = np.zeros((len(body.points), body.joints))
+        on_surface = np.einsum("kc,kcj->kj", filled.shares, result["weights"][filled.corners])
+        weights[np.ix_(filled.used, names)] = on_surface
+        return weights
+
+    return bind_by(solve, rig, method)

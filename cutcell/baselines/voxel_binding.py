@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-from time import perf_counter
-
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from ..checks import check_number
 from ..geodesics.fallback import straight_to_nearest
+from ..method import PAPER, Leaf
 from ..rig import Rig
 from ..skinning.kernel import paper_kernel
 from .body import Body
+from .frame import BaselineBinding, Run, bind_by
 from .paths import path_lengths
-from .result import BaselineBinding, finish
 from .voxels import Voxels, voxelize
 
 NEAREST = 3
@@ -32,14 +30,14 @@ def voxel(
     resolution: int = 64,
     *,
     alpha: float = 0.5,
-    leaf: str = "point",
+    leaf: Leaf = "point",
     max_influences: int | None = None,
     threshold: float = 0.0,
 ) -> BaselineBinding:
     """Bind by distances along solid voxels.
 
     Voxels that a bone runs through are at distance 0; from there paths lead through the
-    26 neighbours of each voxel. A vertex adds the way from the centre of its own voxel.
+    26 neighbours of each voxel. A vertex adds the distance to the centre of its own voxel.
 
     Parameters
     ----------
@@ -67,46 +65,51 @@ def voxel(
     ----------
     Dionne & de Lasa 2013, "Geodesic voxel binding for production character meshes".
     """
-    alpha = check_number("alpha", alpha, 0, 1)
-    begin = perf_counter()
-    body = Body.of(rig, leaf, resolution)
-    distance, built = voxel_distances(body)
-    warnings = _follow_nearest(body, distance)
-    found = perf_counter()
-    weights = paper_kernel(body.joint_minimum(distance), body.lattice.diagonal, alpha)
-    weights, more = finish(rig, body, weights, max_influences=max_influences, threshold=threshold)
-    ticks = np.diff([begin, built, found, perf_counter()]).tolist()
-    seconds = dict(zip(("graph", "distances", "weights"), ticks, strict=True))
-    return BaselineBinding(weights, seconds, warnings + more)
+    method = PAPER.with_options(
+        resolution=resolution,
+        alpha=alpha,
+        leaf=leaf,
+        max_influences=max_influences,
+        threshold=threshold,
+    )
+
+    def solve(body: Body, run: Run) -> NDArray[np.float64]:
+        distance = voxel_distances(body, run)
+        run.warnings += _follow_nearest(body, distance)
+        run.end("distances")
+        return paper_kernel(body.joint_minimum(distance), body.lattice.diagonal, alpha)
+
+    return bind_by(solve, rig, method)
 
 
-def voxel_distances(body: Body) -> tuple[NDArray[np.float64], float]:
-    """Measure how far every place is from every bone along solid voxels.
+def voxel_distances(body: Body, run: Run | None = None) -> NDArray[np.float64]:
+    """Measure how far every welded vertex is from every bone along solid voxels.
 
     Parameters
     ----------
     body : Body
         Its lattice says how many voxels.
+    run : Run, optional
+        Is told when the voxels and their links are there: the stage "graph".
 
     Returns
     -------
-    distance : array, shape (b, k)
+    array, shape (b, k)
         In the unit cube; infinite where no path leads.
-    built : float
-        The time, by `perf_counter`, when the voxels and their links were there.
     """
     voxels = voxelize(body)
     links, lengths = voxels.links()
-    built = perf_counter()
+    if run is not None:
+        run.end("graph")
     sources = [
         _voxels_of_bone(voxels, start, end)
         for start, end in zip(body.bones.start, body.bones.end, strict=True)
     ]
     starts = [np.zeros(len(nodes)) for nodes in sources]
     by_voxel = path_lengths(len(voxels.centres), links, lengths, sources, starts)
-    home = voxels.at(body.points)
-    inside = np.linalg.norm(body.points - voxels.centres[home], axis=1)
-    return by_voxel[:, home] + inside, built
+    own = voxels.at(body.points)
+    inside = np.linalg.norm(body.points - voxels.centres[own], axis=1)
+    return by_voxel[:, own] + inside
 
 
 def voxel_unirig(
@@ -147,33 +150,29 @@ def voxel_unirig(
     ----------
     Zhang et al. 2025 (UniRig).
     """
-    alpha = check_number("alpha", alpha, 0, 1)
-    begin = perf_counter()
-    body = Body.of(rig, "point", resolution)
-    voxels = voxelize(body)
-    links, lengths = _unirig_links(body, voxels)
-    built = perf_counter()
-    nodes = np.concatenate([body.points, voxels.centres])
-    deform = np.flatnonzero(rig.skeleton.deform)
-    at = body.lattice.to_unit(rig.skeleton.joints[deform])
-    nearest = cKDTree(nodes).query(at)[1]
-    sources, starts = [np.array([n]) for n in nearest], [np.zeros(1)] * len(nearest)
-    distance = path_lengths(len(nodes), links, lengths, sources, starts)[:, : len(body.points)]
-    warnings = _follow_nearest_joints(body, at, distance)
-    distance[~np.isfinite(distance)] = distance[np.isfinite(distance)].max()
-    found = perf_counter()
-    full = np.full((body.joints, len(body.points)), np.inf)
-    full[deform] = np.maximum(UNIRIG_SIDE * distance, 1e-6)
-    weights, more = finish(
-        rig,
-        body,
-        paper_kernel(full, 1.0, alpha),
-        max_influences=max_influences,
-        threshold=threshold,
+    method = PAPER.with_options(
+        resolution=resolution, alpha=alpha, max_influences=max_influences, threshold=threshold
     )
-    ticks = np.diff([begin, built, found, perf_counter()]).tolist()
-    seconds = dict(zip(("graph", "distances", "weights"), ticks, strict=True))
-    return BaselineBinding(weights, seconds, warnings + more)
+
+    def solve(body: Body, run: Run) -> NDArray[np.float64]:
+        voxels = voxelize(body)
+        links, lengths = _unirig_links(body, voxels)
+        run.end("graph")
+        nodes = np.concatenate([body.points, voxels.centres])
+        deform = np.flatnonzero(rig.skeleton.deform)
+        at = body.lattice.to_unit(rig.skeleton.joints[deform])
+        nearest = cKDTree(nodes).query(at)[1]
+        sources, starts = [np.array([n]) for n in nearest], [np.zeros(1)] * len(nearest)
+        lengths = path_lengths(len(nodes), links, lengths, sources, starts)
+        distance = lengths[:, : len(body.points)]
+        run.warnings += _follow_nearest_joints(body, at, distance)
+        distance[~np.isfinite(distance)] = distance[np.isfinite(distance)].max()
+        run.end("distances")
+        full = np.full((body.joints, len(body.points)), np.inf)
+        full[deform] = np.maximum(UNIRIG_SIDE * distance, 1e-6)
+        return paper_kernel(full, 1.0, alpha)
+
+    return bind_by(solve, rig, method)
 
 
 def _voxels_of_bone(voxels: Voxels, start: NDArray, end: NDArray) -> NDArray[np.intp]:
@@ -189,7 +188,7 @@ def _voxels_of_bone(voxels: Voxels, start: NDArray, end: NDArray) -> NDArray[np.
 
 
 def _follow_nearest(body: Body, distance: NDArray[np.float64]) -> tuple[str, ...]:
-    """Give places that no path reaches straight distances to their nearest bones."""
+    """Give vertices that no path reaches straight distances to their nearest bones."""
     lost = np.flatnonzero(~np.isfinite(distance).any(axis=0))
     if len(lost) == 0:
         return ()
@@ -212,8 +211,8 @@ def _follow_nearest_joints(
 
 def _unreached(lost: NDArray[np.intp], body: Body) -> str:
     return (
-        f"{len(lost)} of {len(body.points)} places follow their nearest bones in a straight "
-        "line: no path along solid voxels leads from a bone to them"
+        f"{len(lost)} of {len(body.points)} welded vertices follow their nearest bones in a "
+        "straight line: no path along solid voxels leads from a bone to them"
     )
 
 

@@ -45,7 +45,7 @@ class Voxels:
     resolution: int
 
     def at(self, points: NDArray[np.float64]) -> NDArray[np.int32]:
-        """Return the number of the solid voxel that holds each point (..., 3), or -1."""
+        """Return the number of the solid voxel that contains each point (..., 3), or -1."""
         cell = np.floor(points * self.resolution).astype(np.int64) + PAD
         # The far side of the unit cube belongs to the last voxel inside.
         cell -= (points == 1).astype(np.int64)

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..baselines import METHODS, BaselineBinding, Method
+from ..baselines import METHODS, Baseline, BaselineBinding
 from ..checks import check_choice, check_has_joints
 from ..errors import Cancelled, CutcellError, ParameterError, WeightsError
 from ..graph import build_graph
@@ -34,7 +34,7 @@ GAP_RESOLUTION = 64
 
 def compare(
     rigs: Iterable[Rig],
-    methods: Sequence[str] | Mapping[str, Method] | None = None,
+    methods: Sequence[str] | Mapping[str, Baseline] | None = None,
     *,
     resolution: int = 64,
     max_influences: int | None = None,
@@ -75,8 +75,8 @@ def compare(
 
 
 def _chosen(
-    methods: Sequence[str] | Mapping[str, Method] | None, options: Mapping[str, Any]
-) -> dict[str, Method]:
+    methods: Sequence[str] | Mapping[str, Baseline] | None, options: Mapping[str, Any]
+) -> dict[str, Baseline]:
     """Look methods up, and give each those options that it knows."""
     if methods is None:
         methods = METHODS
@@ -84,7 +84,7 @@ def _chosen(
         methods = {name: METHODS[check_choice("method", name, METHODS)] for name in methods}
     if not methods:
         raise ParameterError("there are no methods to compare")
-    chosen: dict[str, Method] = {}
+    chosen: dict[str, Baseline] = {}
     for name, method in methods.items():
         known = signature(method).parameters
         every = any(p.kind is p.VAR_KEYWORD for p in known.values())
@@ -94,12 +94,12 @@ def _chosen(
     return chosen
 
 
-def _compare_rig(rig: Rig, methods: Mapping[str, Method], progress: Progress) -> RigScore:
+def _compare_rig(rig: Rig, methods: Mapping[str, Baseline], progress: Progress) -> RigScore:
     check_has_joints(rig.skeleton)
     if rig.weights is None:
         raise WeightsError(f'rig "{rig.name}" has no weights of its own to compare with')
     progress(rig.name, 0.0)
-    gaps = find_gaps(build_graph(rig.mesh, GAP_RESOLUTION))
+    gaps = find_gaps(build_graph(rig.mesh, GAP_RESOLUTION, connectivity=6))
     share = vertex_shares(rig.mesh)
     scores = []
     for done, (name, method) in enumerate(methods.items()):
@@ -112,7 +112,7 @@ def _compare_rig(rig: Rig, methods: Mapping[str, Method], progress: Progress) ->
     return RigScore(rig.name, *counts, tuple(scores))
 
 
-def _attempt(method: Method, rig: Rig) -> BaselineBinding:
+def _attempt(method: Baseline, rig: Rig) -> BaselineBinding:
     """Bind by one method; whatever it dies of, the others go on."""
     try:
         return method(rig)

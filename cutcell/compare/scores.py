@@ -27,7 +27,7 @@ class MethodScore:
     clips : float
         The same over the file's own clips, their mean.
     unweighted : float
-        Share of the surface's places without weight.
+        Share of the welded vertices without weight.
     crosstalk : float
         Weight shared across gaps.
     seconds : float

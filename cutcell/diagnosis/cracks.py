@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from ..graph.weld import WELD_TOLERANCE, weld
+from ..surface.weld import WELD_TOLERANCE, weld
 from .finding import Finding, count
 from .subject import Subject
 

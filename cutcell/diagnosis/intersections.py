@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..compiled import compiled
-from ..graph.solid_angle import between, cross, dot
+from ..surface.vectors import between, cross, dot
 from .finding import Finding, count, share
 from .subject import Subject
 

@@ -11,11 +11,12 @@ from scipy.spatial import cKDTree
 from ..display import shown_name
 from ..geodesics import BoneDistances
 from ..geodesics.fallback import NOT_ALLOWED, UNREACHED
-from ..graph import INTERIOR, winding_number
+from ..graph import INTERIOR
 from ..rig import TriangleMesh
+from ..skinning.components import bone_containment
 from ..skinning.laplacian import vertex_areas, vertex_normals
-from ..skinning.pieces import bones_held
-from ..skinning.worn import SMALL
+from ..skinning.rigid_accessories import SMALL
+from ..winding import winding_number
 from .finding import Finding, count, share
 from .subject import Subject
 
@@ -156,8 +157,8 @@ def _loose(subject: Subject, distances: BoneDistances) -> Iterator[Finding]:
     if len(used) < 2:
         return
     faces = subject.graph.faces[subject.whole]
-    held = bones_held(subject.points, faces, subject.component, distances.bones)
-    loose = np.setdiff1d(used, np.flatnonzero(held.max(axis=1, initial=0) > 0))
+    containment = bone_containment(subject.points, faces, subject.component, distances.bones)
+    loose = np.setdiff1d(used, np.flatnonzero(containment.max(axis=1, initial=0) > 0))
     if not len(loose):
         return
     mask = np.zeros(total, bool)

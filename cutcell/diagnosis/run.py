@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from ..checks import check_integer
 from ..errors import CutcellError
 from ..geodesics import BoneDistances
-from ..graph.lattice import MAX_RESOLUTION, MIN_RESOLUTION
+from ..method import check_resolution
 from ..progress import Progress, silent
 from ..rig import Rig
 from .finding import Diagnosis, Finding, by_gravity
@@ -55,7 +54,7 @@ def diagnose(
     >>> for finding in cutcell.diagnose(rig).findings:  # doctest: +SKIP
     ...     print(finding.severity, finding.message)
     """
-    resolution = check_integer("resolution", resolution, MIN_RESOLUTION, MAX_RESOLUTION)
+    resolution = check_resolution(resolution)
     subject = Subject(rig, resolution, distances, progress=progress)
     found: list[Finding] = []
     _ = subject.graph

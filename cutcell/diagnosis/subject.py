@@ -11,11 +11,11 @@ from ..deform import DeformJoints, deform_joints
 from ..deform.body import SPACING, Body
 from ..geodesics import BoneDistances, bone_distances
 from ..graph import CutCellGraph, build_graph
-from ..graph.boundary import Boundary, boundary_of
-from ..graph.mesh_edges import MeshEdges, find_edges
 from ..progress import Progress, silent
 from ..rig import Rig, TriangleMesh
-from ..skinning.pieces import find_pieces
+from ..skinning.components import label_components
+from ..surface.edges import MeshEdges, find_edges
+from ..winding.boundary import Boundary, boundary_of
 
 
 class Subject:
@@ -58,6 +58,7 @@ class Subject:
             self.rig.skeleton,
             leaf="fit",
             nearest_joints=3,
+            within=np.inf,
             allowed=self.rig.allowed,
             progress=self.progress,
         )
@@ -104,7 +105,7 @@ class Subject:
     @cached_property
     def boundary(self) -> Boundary:
         """Loops of edges that the faces leave open."""
-        return boundary_of(self.edges.edges, self.edges.balance)
+        return boundary_of(self.edges.edges, self.edges.incidence)
 
     @cached_property
     def areas(self) -> NDArray[np.float64]:
@@ -116,7 +117,7 @@ class Subject:
     @cached_property
     def component(self) -> NDArray[np.int32]:
         """The connected component of each welded vertex, shape (k,)."""
-        return find_pieces(self.graph.faces, len(self.points))
+        return label_components(self.graph.faces, len(self.points))
 
     @cached_property
     def body(self) -> Body:

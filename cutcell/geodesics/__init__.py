@@ -1,6 +1,7 @@
 """Bones, their distances through the body, and what to do where there are none."""
 
-from .bones import LEAVES, Bones, Sources, bone_samples, bone_segments, distance_to_segment
+from ..method import LEAVES
+from .bones import Bones, Sources, bone_samples, bone_segments, distance_to_segment
 from .distances import BoneDistances, bone_distances
 from .fallback import FALLBACK_REASONS
 from .paths import path_length, shortest_path

@@ -11,13 +11,14 @@ from ..checks import check_choice, check_has_joints
 from ..compiled import lean
 from ..errors import MeshError
 from ..graph import CutCellGraph
+from ..method import LEAVES
 from ..rig import Skeleton
+from .contraction import Contraction
 from .nearest import NodeGrid
 
-LEAVES = ("point", "extend", "fit")
 TIE = 1e-9
-"""Relative: nodes this nearly as near as the nearest are sources as well. The middle of a
-lattice cell has eight nearest nodes, and none of them may win by rounding."""
+"""Relative: nodes farther than the nearest by no more than this are sources as well. The middle of
+a lattice cell has eight nearest nodes, and rounding must not choose among them."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,9 +28,9 @@ class Bones:
     Parameters
     ----------
     start, end : arrays, shape (b, 3)
-        Ends of each bone; equal for a bone that is a point.
+        Ends of each bone; equal if the bone is a point.
     joint : array, shape (b,), int32
-        The joint that moves the bone: its parent end. Ascending.
+        The joint at the parent end of the bone, which moves it. Ascending.
     """
 
     start: NDArray[np.float64]
@@ -50,8 +51,8 @@ def bone_segments(skeleton: Skeleton, leaf: str = "point") -> Bones:
     ----------
     skeleton : Skeleton
     leaf : {"point", "extend"}
-        A joint without children is a point, or is extended along its parent's direction by
-        half its parent's length. A lone joint is a point either way.
+        The bone of a joint without children is a point, or extends its parent's bone by half
+        of that bone's length. The bone of a single joint is a point either way.
 
     Returns
     -------
@@ -114,13 +115,13 @@ class Sources:
     distance: NDArray[np.float64]
 
     def some(self, which: NDArray[np.bool_]) -> Sources:
-        """Return those of the bones for which `which`, shape (b,), is true, numbered anew."""
+        """Return those of the bones for which `which`, shape (b,), is true, renumbered."""
         mine = which[self.bone]
         number = np.cumsum(which, dtype=np.int32) - 1
         return Sources(self.node[mine], number[self.bone[mine]], self.distance[mine])
 
     def replaced(self, which: NDArray[np.bool_], other: Sources) -> Sources:
-        """Return these sources, but for some of the bones `other`, which numbers those alone."""
+        """Return these sources with those of some bones replaced; `other` numbers only these."""
         kept = ~which[self.bone]
         bone = np.concatenate([self.bone[kept], np.flatnonzero(which)[other.bone]])
         order = np.argsort(bone, kind="stable")
@@ -149,11 +150,11 @@ def bone_samples(
     points : array, shape (p, 3), float64
         In the unit cube, bone by bone.
     bone : array, shape (p,)
-        The bone of each.
+        The bone of each point.
     """
     counts = np.full(len(bones.joint), samples)
     if graph.connectivity == "any":
-        # Every lattice point along the bone is to see it.
+        # Every lattice point along the bone must have line of sight to it.
         length = np.linalg.norm(bones.end - bones.start, axis=1)
         counts = np.maximum(counts, np.ceil(length * graph.lattice.resolution).astype(int) + 1)
     points, bone = np.empty((counts.sum(), 3)), np.empty(counts.sum(), np.intp)
@@ -163,7 +164,7 @@ def bone_samples(
 
 @lean
 def _put_samples(start, end, counts, points, bone):
-    """Put so many points on each bone, both ends included; a single one in the middle."""
+    """Place counts[b] points on bone b, both ends included; a single one in the middle."""
     p = 0
     for b in range(len(start)):
         for k in range(counts[b]):
@@ -175,7 +176,7 @@ def _put_samples(start, end, counts, points, bone):
 
 
 def node_grid(graph: CutCellGraph) -> NodeGrid:
-    """Sort the nodes that paths can reach into a grid.
+    """Sort the nodes that have edges into a grid.
 
     Raises
     ------
@@ -187,7 +188,13 @@ def node_grid(graph: CutCellGraph) -> NodeGrid:
     return NodeGrid(graph.nodes, graph.connected, graph.lattice.resolution)
 
 
-def find_sources(graph: CutCellGraph, bones: Bones, samples: int, grid: NodeGrid) -> Sources:
+def find_sources(
+    graph: CutCellGraph,
+    bones: Bones,
+    samples: int,
+    grid: NodeGrid,
+    contraction: Contraction | None = None,
+) -> Sources:
     """Find the graph nodes nearest to evenly spaced points on each bone.
 
     Parameters
@@ -196,20 +203,21 @@ def find_sources(graph: CutCellGraph, bones: Bones, samples: int, grid: NodeGrid
     bones : Bones
         In the unit cube.
     samples : int
-        N, points a bone, both ends included; a single one lies in the middle. With
-        connectivity "any" at least one a lattice cell.
+        N, points on each bone, both ends included; a single one lies in the middle. With
+        connectivity "any" at least one for each lattice cell.
     grid : NodeGrid
         Of the graph's nodes.
+    contraction : Contraction, optional
+        If given, sources are the representatives of the nearest nodes.
+
+    References
+    ----------
+    Paper section 3.2, algorithm 2.
     """
     points, bone = bone_samples(graph, bones, samples)
     point, nearest = grid.nearest(points, TIE)
-    node = _left_of(graph, nearest) if graph.connectivity == "any" else nearest
+    node = nearest if contraction is None else contraction.representative(nearest)
     pairs = np.unique(bone[point] * len(graph.nodes) + node)
     own, where = (x.astype(np.int32) for x in np.divmod(pairs, len(graph.nodes)))
     straight = distance_to_segment(graph.nodes[where], bones.start[own], bones.end[own])
     return Sources(where, own, straight)
-
-
-def _left_of(graph: CutCellGraph, nodes: NDArray[np.int64]) -> NDArray[np.int32]:
-    """Return what stands for nodes that paths pass over; the others themselves."""
-    return graph.contracted.node[graph.contracted.number[nodes]]

@@ -1,25 +1,27 @@
-"""How far every bone is from every vertex, through the body (paper section 3.2)."""
+"""Distances from every bone to every vertex through the body (paper section 3.2)."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Unpack
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..checks import check_choice, check_has_joints, check_integer, check_number, check_positions
+from ..checks import check_has_joints, check_integer, check_number, check_positions
 from ..errors import ParameterError, SkeletonError, WeightsError
 from ..graph import CutCellGraph
+from ..method import ANIMATION, DistanceOptions, Method, MethodName, method_of
 from ..progress import Progress, silent
 from ..rig import Skeleton
+from ..threads import submit
 from .any_angle import any_angle_paths, least_distances
-from .bone_extents import REGION_TIPS, REGION_WITHIN, aim_tips, fit_bones
-from .bones import LEAVES, Bones, Sources, bone_segments, find_sources, node_grid
+from .bone_extents import REGION_LEAVES, REGION_WITHIN, aim_leaf_bones, fit_bones
+from .bones import Bones, Sources, bone_segments, find_sources, node_grid
+from .contraction import Contraction, contract
 from .fallback import NOT_ALLOWED, REACHED, UNREACHED, UNUSED, straight_to_nearest
 from .shortest_paths import shortest_paths
-
-MOST_SAMPLES = 1000
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,20 +31,22 @@ class BoneDistances:
     Parameters
     ----------
     at_places : array, shape (j, k), float64
-        What `joint` holds of the first vertex at each of the k places of the mesh, which are the
-        first nodes of the graph.
+        `joint` per welded vertex: the k first nodes of the graph. Where vertices at one place
+        may follow different joints, that of the first one.
     of_vertices : array, shape (j, n), or None
-        What `joint` holds, if vertices at one place may follow different joints.
+        `joint`, if vertices at one place may follow different joints.
     nearest_joints : int or None
-        How many of its nearest joints each vertex has distances of, at least; None for all.
+        Each vertex has the distances of at least this many of its nearest joints; None: of all.
     bones : Bones
         In the unit cube.
     sources : Sources
         The nodes where paths begin.
     fallback : array, shape (n,), uint8
-        0 for vertices reached through the body, else why not: an index into
-        `geodesics.FALLBACK_REASONS`. These hold straight distances to a few bones.
+        0 for vertices reached through the body, else the reason why not, an index into
+        `geodesics.FALLBACK_REASONS`. These have straight distances to a few bones.
     graph : CutCellGraph
+    contraction : Contraction or None
+        Of the graph, with connectivity "any".
     """
 
     at_places: NDArray[np.float64]
@@ -52,14 +56,15 @@ class BoneDistances:
     sources: Sources
     fallback: NDArray[np.uint8]
     graph: CutCellGraph
+    contraction: Contraction | None
 
     @cached_property
     def joint(self) -> NDArray[np.float64]:
         """Distances from joints to vertices, shape (j, n), float64.
 
-        The least over the bones of each joint; infinite where no path leads, for joints
-        that may not carry weight, and for joints that are not among a vertex' nearest.
-        n counts the vertices of the mesh as it was given.
+        The minimum over the bones of each joint; infinite where no path leads, for joints that
+        may not carry weight, and for joints that are not among a vertex' nearest. n is the
+        number of vertices of the mesh as given.
         """
         if self.of_vertices is not None:
             return self.of_vertices
@@ -93,12 +98,12 @@ class BoneDistances:
         mine = self.bones.joint == joint
         bones, sources = self.bones.some(mine), self.sources.some(mine)
         everywhere = np.arange(len(self.graph.nodes), dtype=np.int32)
-        return _paths(self.graph, sources, bones, everywhere)[0]
+        return _paths(self.graph, self.contraction, sources, bones, everywhere)[0]
 
     def on_mesh(self, joint: int) -> NDArray[np.float64]:
         """Compute a joint's distance at every vertex, nearest joint or not, shape (n,).
 
-        Vertices that fell back have what `joint` holds.
+        Vertices not reached through the body have their value in `joint`.
 
         Raises
         ------
@@ -113,11 +118,13 @@ class BoneDistances:
         if self.nearest_joints is None:
             return self.joint
         on_mesh = _on_mesh(self.graph)
-        by_node = _paths(self.graph, self.sources, self.bones, on_mesh, progress=progress)
+        known = self.graph, self.contraction, self.sources, self.bones
+        by_node = _paths(*known, on_mesh, progress=progress)
         joint = self.joint.copy()
         reached = np.flatnonzero(self.fallback == REACHED)
-        place = np.ix_(np.unique(self.bones.joint), reached)
-        joint[place] = by_node[:, self.graph.vertex_node[reached]]
+        joint[np.ix_(np.unique(self.bones.joint), reached)] = by_node[
+            :, self.graph.vertex_node[reached]
+        ]
         return joint
 
 
@@ -125,39 +132,41 @@ def bone_distances(
     graph: CutCellGraph,
     skeleton: Skeleton,
     *,
-    samples: int = 5,
-    leaf: str = "point",
+    method: Method | MethodName = ANIMATION,
     nearest: int = 3,
     nearest_joints: int | None = None,
-    within: float = np.inf,
+    within: float | None = None,
     allowed: NDArray[np.bool_] | None = None,
     progress: Progress = silent,
+    **options: Unpack[DistanceOptions],
 ) -> BoneDistances:
-    """Measure how far each bone is from each vertex along the graph.
+    """Compute the distance of each bone to each vertex along the graph.
 
     Parameters
     ----------
     graph : CutCellGraph
     skeleton : Skeleton
         In the units of the graph's mesh.
-    samples : int
-        N, points on each bone that look for their nearest node, 1 to 1000.
-    leaf : {"point", "extend", "fit"}
-        The first two: see `bone_segments`. "fit": all bones end where the body says, see
-        `geodesics.bone_extents`.
+    method : Method, "animation" or "paper"
+        Its samples and leaf bones count here, and of how many joints its falloff needs
+        distances. Paths run as the graph was built for.
     nearest : int
-        k, how many bones a vertex follows that none reaches, 1 or more.
+        How many bones a vertex follows that no path reaches, 1 or more.
     nearest_joints : int, optional
         Measure from so many of each vertex' nearest joints, 1 or more, and from at most as
-        many others; from all when left out. Fewer take less time with connectivity "any";
-        with others they do not, and neither where `allowed` is given: then all are measured.
-    within : float
-        Leave out joints that are so many times as far as the nearest, 1 or more. Only where
-        `nearest_joints` are measured, and to about half a lattice cell.
+        many others; from as many as the method needs when left out, which are all for
+        `cutcell.PAPER`. Fewer take less time with connectivity "any"; with others they do not,
+        and neither where `allowed` is given: then all are measured.
+    within : float, optional
+        Leave out joints that are so many times as far as the nearest, 1 or more; as the method
+        needs when left out. Only where `nearest_joints` are measured, and to about half a
+        lattice cell.
     allowed : array, shape (n, j), bool, optional
         Which joints each vertex may follow; see `Rig.allowed`.
     progress : callable
         See `cutcell.progress`; the stage is called "distances".
+    **options
+        Single options of the method: `samples`, `leaf`.
 
     Returns
     -------
@@ -178,28 +187,39 @@ def bone_distances(
     ----------
     Paper section 3.2, algorithm 2.
     """
-    samples = check_integer("samples", samples, 1, MOST_SAMPLES)
+    method = method_of(method, **options)
+    samples, leaf = method.samples, method.leaf
     nearest = check_integer("nearest", nearest, 1, 1_000_000)
-    if nearest_joints is not None:
+    if nearest_joints is None:
+        nearest_joints = method.joints_needed
+    else:
         nearest_joints = check_integer("nearest_joints", nearest_joints, 1, 1_000_000)
-    within = check_number("within", within, 1, np.inf)
+    within = check_number("within", method.reach_needed if within is None else within, 1, np.inf)
     check_has_joints(skeleton)
     check_positions(skeleton.joints, "joint", SkeletonError)
     if graph.connectivity != "any" or allowed is not None:
         nearest_joints = None
     progress("distances", 0.0)
-    leaf = check_choice("leaf", leaf, LEAVES)
     if allowed is not None:
         _check_allowed(graph, skeleton, allowed)
     targets = _on_mesh(graph)
+    contracted = submit(lambda: contract(graph)) if graph.connectivity == "any" else None
+    grid = node_grid(graph)
     if leaf == "fit":
-        bones, sources = _fitted(graph, skeleton, samples, progress)
+        bones, aimed = fit_bones(graph, skeleton, grid)
     else:
         bones = bone_segments(skeleton, leaf)
         ends = graph.lattice.to_unit(bones.start), graph.lattice.to_unit(bones.end)
-        bones = Bones(*ends, bones.joint)
-        sources = find_sources(graph, bones, samples, node_grid(graph))
-    by_node = _paths(graph, sources, bones, targets, nearest_joints, within, progress)
+        bones, aimed = Bones(*ends, bones.joint), np.zeros(len(bones.joint), np.bool_)
+    contraction = contracted() if contracted else None
+    sources = find_sources(graph, bones, samples, grid, contraction)
+    if aimed.any():
+        reach = _reach_of_leaves(graph, contraction, sources, bones, aimed, progress)
+        bones = aim_leaf_bones(graph, bones, aimed, *reach)
+        of_aimed = find_sources(graph, bones.some(aimed), samples, grid, contraction)
+        sources = sources.replaced(aimed, of_aimed)
+    given = graph, contraction, sources, bones
+    by_node = _paths(*given, targets, nearest_joints, within, progress)
     measured, at_places = np.unique(bones.joint), by_node
     if len(measured) < len(skeleton.joints):
         at_places = np.full((len(skeleton.joints), len(targets)), np.inf)
@@ -209,7 +229,7 @@ def bone_distances(
     fallback[~graph.connected[targets]] = UNUSED
 
     joint, node = at_places, targets
-    if allowed is not None:  # what sets vertices at one place apart
+    if allowed is not None:  # per vertex, as those at one place may differ
         node = graph.vertex_node
         joint, fallback = at_places.take(node, axis=1), fallback[node]
         joint[~allowed.T] = np.inf
@@ -221,18 +241,19 @@ def bone_distances(
         joint[np.ix_(measured, lost)] = _least(straight, bones)
     known = nearest_joints, bones, sources
     if allowed is None:
-        return BoneDistances(joint, None, *known, fallback[graph.vertex_node], graph)
+        return BoneDistances(joint, None, *known, fallback[graph.vertex_node], graph, contraction)
     first = np.unique(node, return_index=True)[1]
-    return BoneDistances(joint[:, first], joint, *known, fallback, graph)
+    return BoneDistances(joint[:, first], joint, *known, fallback, graph, contraction)
 
 
 def _on_mesh(graph: CutCellGraph) -> NDArray[np.int32]:
-    """List the nodes of the mesh: the graph's first ones, shared by the file's vertices."""
+    """List the welded vertices: the first nodes of the graph."""
     return np.arange(graph.first_point, dtype=np.int32)
 
 
 def _paths(
     graph: CutCellGraph,
+    contraction: Contraction | None,
     sources: Sources,
     bones: Bones,
     targets: NDArray[np.int32],
@@ -240,13 +261,13 @@ def _paths(
     within: float = np.inf,
     progress: Progress = silent,
 ) -> NDArray[np.float64]:
-    """Measure from each joint that has bones, in ascending order, to the target nodes."""
-    if graph.connectivity == "any":
-        kept = nearest_joints, within
-        return any_angle_paths(graph, sources, bones, targets, *kept, progress=progress)
-    joints, place = np.unique(bones.joint, return_inverse=True)
-    owner = place[sources.bone].astype(np.int32)
-    # A joint's paths begin on all of its bones; where they share a node, on the nearest.
+    """Compute distances of the joints that have bones, in ascending order, to target nodes."""
+    if contraction is not None:
+        known = graph, contraction, sources, bones, targets, nearest_joints, within
+        return any_angle_paths(*known, progress=progress)
+    joints, rank = np.unique(bones.joint, return_inverse=True)
+    owner = rank[sources.bone].astype(np.int32)
+    # Sources of a joint are those of all its bones; if bones share a node, of the nearest one.
     order = np.lexsort((sources.distance, sources.node, owner))
     pairs = np.stack([owner, sources.node])[:, order]
     first = order[np.diff(pairs, prepend=-1).any(axis=0)]
@@ -254,35 +275,23 @@ def _paths(
     return shortest_paths(graph, begin, len(joints), targets, progress)
 
 
-def _fitted(
-    graph: CutCellGraph, skeleton: Skeleton, samples: int, progress: Progress
-) -> tuple[Bones, Sources]:
-    """Fit bones to the body, and find where their distances begin."""
-    grid = node_grid(graph)
-    bones, tip = fit_bones(graph, skeleton, grid)
-    sources = find_sources(graph, bones, samples, grid)
-    if tip.any():
-        bones = aim_tips(graph, bones, tip, *_reach_of_tips(graph, sources, bones, tip, progress))
-        sources = sources.replaced(tip, find_sources(graph, bones.some(tip), samples, grid))
-    return bones, sources
-
-
-def _reach_of_tips(
+def _reach_of_leaves(
     graph: CutCellGraph,
+    contraction: Contraction | None,
     sources: Sources,
     bones: Bones,
-    tip: NDArray[np.bool_],
+    aimed: NDArray[np.bool_],
     progress: Progress,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Measure what `aim_tips` asks for: from each tip, and from the nearest joint of all."""
+    """Compute the distances that `aim_leaf_bones` takes."""
     targets = _on_mesh(graph)
-    if graph.connectivity != "any":
-        every = _paths(graph, sources, bones, targets, progress=progress)
-        return every[np.isin(np.unique(bones.joint), bones.joint[tip])], every.min(axis=0)
-    # Most of the body is nobody's tip: there the nearest joint is all that has to be known.
-    least = least_distances(graph, sources, bones, progress)
-    tips = sources.some(tip), bones.some(tip), targets, REGION_TIPS, REGION_WITHIN
-    return any_angle_paths(graph, *tips, least, progress), least[targets]
+    if contraction is None:
+        every = _paths(graph, None, sources, bones, targets, progress=progress)
+        return every[np.isin(np.unique(bones.joint), bones.joint[aimed])], every.min(axis=0)
+    # Most of the body is in no leaf bone's region: there only the nearest joint matters.
+    least = least_distances(graph, contraction, sources, bones, progress)
+    leaves = sources.some(aimed), bones.some(aimed), targets, REGION_LEAVES, REGION_WITHIN
+    return any_angle_paths(graph, contraction, *leaves, least, progress), least[targets]
 
 
 def _least(distance: NDArray[np.float64], bones: Bones) -> NDArray[np.float64]:

@@ -1,4 +1,4 @@
-"""Distances for vertices that no path from any bone reaches (paper, "Unreachable vertices")."""
+"""Distances for vertices that no path reaches (paper section 3.2, "Unreachable vertices")."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def straight_to_nearest(
     nearest: int,
     allowed: NDArray[np.bool_] | None = None,
 ) -> NDArray[np.float64]:
-    """Measure straight distances to the nearest bones of each point; infinity to all others.
+    """Compute straight distances to the nearest bones of each point; infinity to all others.
 
     Parameters
     ----------

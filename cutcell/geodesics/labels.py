@@ -1,7 +1,7 @@
-"""What a node knows of its nearest joints: a few labels, each a joint, a distance and a bend.
+"""Labels of nodes: for each of a node's nearest joints the distance and the path's parent vertex.
 
-Label s of node v is number v * k + s where a node has room for k. Anchors are looked at far more
-often than the rest, and stand by themselves: those of a node fit into one line of memory.
+With k labels a node, label s of node v has the index v * k + s. Parents are read far more often
+than the rest and have an array of their own: those of a node fit into one cache line.
 """
 
 from __future__ import annotations
@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from ..compiled import compiled
 from .queue import LOOSE
 
-NOBODY, NOTHING = -1, -(2**31)
-"""The joint and the anchor of a label that is not there."""
+NO_JOINT, NO_PARENT = -1, -(2**31)
+"""The joint and the parent of an unused label."""
 
 LABEL = np.dtype(
     [
@@ -28,26 +28,26 @@ LABEL = np.dtype(
 
 
 def no_labels(nodes: int, each: int) -> tuple[NDArray[np.void], NDArray[np.int32]]:
-    """Make room for `each` labels a node; return them, and their anchors.
+    """Return `each` unused labels a node, and their parents.
 
-    An anchor is the label of the node where the path bends last, or ~bone.
+    A parent is the label of the node where the path bends last (Theta*), or ~bone.
     """
     labels = np.empty(nodes * each, LABEL)
     _empty(labels)
-    return labels, np.full(nodes * each, NOTHING, np.int32)
+    return labels, np.full(nodes * each, NO_PARENT, np.int32)
 
 
 @compiled
 def _empty(labels):
     for label in range(len(labels)):
-        labels[label].distance, labels[label].joint = np.inf, NOBODY
+        labels[label].distance, labels[label].joint = np.inf, NO_JOINT
         labels[label].after = LOOSE
         labels[label].before = 0
 
 
 @compiled(inline="always")
 def find_room(labels, each, v, joint):
-    """Return the label of a joint at node v or, if it has none, its farthest."""
+    """Return the label of a joint at node v or, if there is none, the farthest label."""
     own, farthest, most = -1, v * each, 0.0
     for label in range(v * each, v * each + each):
         own = label if labels[label].joint == joint else own
@@ -58,9 +58,9 @@ def find_room(labels, each, v, joint):
 
 
 @compiled(inline="always")
-def follows_anchor(anchors, each, v, anchor):
-    """Tell whether any label of node v has an anchor."""
+def has_parent(parents, each, v, parent):
+    """Tell whether any label of node v has this parent."""
     found = False
     for label in range(v * each, v * each + each):
-        found |= anchors[label] == anchor
+        found |= parents[label] == parent
     return found

@@ -1,7 +1,7 @@
-"""The nodes near points in space, by a grid over the unit cube.
+"""Nearest nodes of points, by a grid over the unit cube.
 
-There are a few hundred points and many nodes: sorting the nodes into a coarse grid, which
-takes one pass, is far quicker than growing a tree over them.
+There are a few hundred points and many nodes: sorting the nodes into a coarse grid, in one pass, is
+far faster than building a tree over them.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from ..sorting import sort_into
 IN_A_CELL = 4
 """Lattice cells along each side of a cell of the grid."""
 MOST_CELLS = 64
-"""Along each side of the grid, so that it never takes more memory than the nodes."""
+"""Along each side of the grid: limits its memory to that of the nodes."""
 
 
 class NodeGrid:
@@ -41,7 +41,7 @@ class NodeGrid:
     def nearest(
         self, points: NDArray[np.float64], tie: float
     ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """Find the nodes nearest to each point, and all that are as near but for rounding.
+        """Find the nearest nodes of each point: all that are equally near up to rounding.
 
         Parameters
         ----------
@@ -53,9 +53,9 @@ class NodeGrid:
         Returns
         -------
         point, node : arrays, shape (f,), int64
-            What was found, ascending by point.
+            Pairs, ascending by point.
         """
-        room = 8 * len(points)  # the middle of a lattice cell is as near to all its corners
+        room = 8 * len(points)  # the middle of a lattice cell is equally near to all corners
         while True:
             found = np.empty((2, room), np.int64)
             grid = self._nodes, self._start, self._order, self._side
@@ -66,7 +66,7 @@ class NodeGrid:
 
     def beside(self, points: NDArray[np.float64]) -> NDArray[np.bool_]:
         """Tell for each point (p, 3) whether a node is in its lattice cell or next to it."""
-        # What is far outside goes where no neighbour is in the cube.
+        # Points far outside are moved to where they still have no neighbour in the cube.
         grid = self._nodes, self._start, self._order, self._side
         return _beside(grid, self._resolution, np.clip(points, -1, 2))
 
@@ -90,7 +90,7 @@ def _sort_into_cells(nodes, chosen, side):
 
 @compiled
 def _find_nearest(grid, points, slack, found):
-    """List nodes for each point; return how many there are, also beyond the room for them."""
+    """List nodes for each point; return their number, even if there is no room for all."""
     nodes, start, order, side = grid
     count = 0
     for p in range(len(points)):

@@ -1,4 +1,4 @@
-"""The way from a vertex back to a bone, read off the bone's distance field."""
+"""The shortest path from a vertex back to a bone, traced through the bone's distance field."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from .bones import Bones, distance_to_segment
 from .distances import BoneDistances
 
 STRAIGHT = 1.005
-"""A way that is longer than the straight one by no more than this counts as straight."""
+"""A path counts as straight if it is at most this factor longer than the straight line."""
 SLACK = 0.9
-"""How much of a straight piece's length the field must fall by along it."""
+"""The share of a straight segment's length by which the field must fall along it."""
 
 
 def shortest_path(
@@ -27,16 +27,16 @@ def shortest_path(
     distances : BoneDistances
     joint : int
     vertex : int
-        Of the mesh as it was given.
+        Of the mesh as given.
     field : array_like, shape (N,), optional
         What `distances.field(joint)` returns; computed when left out.
 
     Returns
     -------
     array, shape (p, 3), float64
-        From the vertex to a point of the bone, in the unit cube; no point where no path
-        leads. With connectivity 6 and 26 it runs along the graph's edges and is as long as
-        the field says; with "any" it is pulled straight, and is within a tenth of it.
+        From the vertex to a point of the bone, in the unit cube; no points if there is no path.
+        With connectivity 6 and 26 it runs along the graph's edges, and its length is the value
+        of the field; with "any" it is straightened, and its length is within a tenth of that.
 
     Raises
     ------
@@ -58,7 +58,7 @@ def shortest_path(
     bones = Bones(distances.bones.start[own], distances.bones.end[own], distances.bones.joint[own])
     chain, foot = _descend(graph, field, bones, node)
     if graph.connectivity == "any":
-        chain = _pulled(graph.nodes, field, chain)
+        chain = _straightened(graph.nodes, field, chain)
     return np.concatenate([graph.nodes[chain], foot[None]])
 
 
@@ -70,7 +70,7 @@ def path_length(path: ArrayLike) -> float:
 def _descend(
     graph: CutCellGraph, field: NDArray[np.float64], bones: Bones, node: int
 ) -> tuple[list[int], NDArray[np.float64]]:
-    """Follow the neighbours that lead down, until the bone lies straight ahead."""
+    """Descend the field from neighbour to neighbour, until the bone is straight ahead."""
     indptr, indices, lengths = graph.adjacency
     chain = [node]
     while True:
@@ -80,11 +80,11 @@ def _descend(
             return chain, foot
         around = slice(indptr[here], indptr[here + 1])
         near = indices[around]
-        # An edge may have no length, and at any angle a node may lie lower than all around it.
-        way = np.where(np.isin(near, chain), np.inf, field[near] + lengths[around])
-        if not np.isfinite(way).any():
+        # Edges may have zero length, and an any-angle field may have local minima.
+        total = np.where(np.isin(near, chain), np.inf, field[near] + lengths[around])
+        if not np.isfinite(total).any():
             return chain, foot
-        chain.append(int(near[np.argmin(way)]))
+        chain.append(int(near[np.argmin(total)]))
 
 
 def _to_bone(point: NDArray[np.float64], bones: Bones) -> tuple[float, NDArray[np.float64]]:
@@ -97,11 +97,13 @@ def _to_bone(point: NDArray[np.float64], bones: Bones) -> tuple[float, NDArray[n
     return float(distance[k]), start + fraction * along
 
 
-def _pulled(nodes: NDArray[np.float64], field: NDArray[np.float64], chain: list[int]) -> list[int]:
-    """Leave out nodes between two that see each other, so that the way is shortest.
+def _straightened(
+    nodes: NDArray[np.float64], field: NDArray[np.float64], chain: list[int]
+) -> list[int]:
+    """Leave out nodes between two with line of sight, so that the path is shortest.
 
-    Along a straight piece of a shortest path the field falls by its length; where it falls
-    by more, the straight way leads through the air.
+    Along a straight segment of a shortest path the field falls by the segment's length; where it
+    falls by more, the straight line leaves the body.
     """
     points, height = nodes[chain], field[chain]
     last = len(chain) - 1

@@ -1,4 +1,4 @@
-"""Questions about the body that a point in space can ask of the graph."""
+"""Point and ray queries on the body: inside, depth, thickness, exit."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from ..graph.interior import OUTSIDE, point_number
 from .nearest import NodeGrid
 
 STEP = 0.25
-"""Lattice cells between the points at which a ray is looked at."""
+"""Lattice cells between sample points on a ray."""
 ENTRY = 5
-"""Steps within which a ray must have come inside; a joint may lie right under the skin."""
+"""Steps within which a ray must enter the body: a joint may lie slightly outside the skin."""
 ALONG = np.linspace(0, 1, 17)
-"""Where a segment is looked at."""
+"""Sample points on a segment."""
 SEEN = 0.85
-"""Part of a segment that must run inside for its ends to see each other through the body."""
+"""The part of a segment that must run inside for line of sight between its ends."""
 NEARER = 0.999
-"""Of the way so far: not so far away is nearer, beyond rounding."""
+"""A bone is nearer than the ray's start if its distance is below this factor of the start's."""
 ALL_ROUND = np.array(
     [*np.eye(3), *-np.eye(3), *(np.array(list(np.ndindex(2, 2, 2))) * 2 - 1) / np.sqrt(3)]
 )
@@ -29,9 +29,7 @@ ALL_ROUND = np.array(
 
 
 class BodyProbe:
-    """Tells what is inside the body, how thick it is, and where a ray leaves it.
-
-    All is known to about a lattice cell: enough to say where a bone ends.
+    """Answers point and ray queries on the body, accurate to about a lattice cell.
 
     Parameters
     ----------
@@ -60,59 +58,60 @@ class BodyProbe:
     def inner_part(
         self, start: ArrayLike, end: ArrayLike, *, strictly: bool = False
     ) -> NDArray[np.float64]:
-        """Return which part of each segment (..., 3) runs near the body, or strictly inside."""
+        """Return the part of each segment (..., 3) that runs near the body, or strictly inside."""
         start, end = np.broadcast_arrays(np.asarray(start, float), np.asarray(end, float))
         points = start[..., None, :] + ALONG[:, None] * (end - start)[..., None, :]
         return (self.inside if strictly else self.near)(points).mean(axis=-1)
 
     def to_skin(self, points: ArrayLike) -> NDArray[np.float64]:
-        """Measure from each point (p, 3) to the nearest skin."""
+        """Compute the distance of points (p, 3) to the nearest skin."""
         points, graph = np.asarray(points, np.float64), self._graph
         skin = graph.nodes[: graph.first_point], graph.nodes[graph.first_crossing :]
         return np.minimum(*(_to_nearest(points, nodes) for nodes in skin))
 
     def depth(self, points: ArrayLike) -> NDArray[np.float64]:
-        """Measure from each point (p, 3) to the nearest skin; zero outside."""
+        """Compute the distance of points (p, 3) to the nearest skin; zero outside."""
         return np.where(self.inside(points), self.to_skin(points), 0.0)
 
     def room(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Measure how far one can go from points (p, 3), in the median over all directions."""
-        ways = [self.way_out(points, np.tile(d, (len(points), 1))) for d in ALL_ROUND]
-        return np.median(ways, axis=0)
+        """Compute the median over all directions of the exit distance of points (p, 3)."""
+        exits = [self.exit_distance(points, np.tile(d, (len(points), 1))) for d in ALL_ROUND]
+        return np.median(exits, axis=0)
 
-    def way_out(
+    def exit_distance(
         self, start: NDArray[np.float64], direction: NDArray[np.float64]
     ) -> NDArray[np.float64]:
-        """Measure how far one can go from points (p, 3) until outside; zero if never inside."""
+        """Compute where rays from points (p, 3) leave the body; zero if they never enter it."""
         table, step = self._graph.interior.table, STEP / self.resolution
-        return _ways_out(start, direction, step, self.resolution, table)
+        return _exit_distances(start, direction, step, self.resolution, table)
 
-    def way_to_others(
+    def distance_to_others(
         self,
         start: NDArray[np.float64],
         direction: NDArray[np.float64],
-        way: NDArray[np.float64],
+        limit: NDArray[np.float64],
         others: Iterable[tuple[NDArray[np.float64], NDArray[np.float64]]],
     ) -> NDArray[np.float64]:
-        """Measure how far one can go until nearer, through the body, to something else.
+        """Compute where rays come nearer, through the body, to other segments than to their start.
 
         Parameters
         ----------
         start, direction : arrays, shape (p, 3)
-        way : array, shape (p,)
-            How far to go at most.
+        limit : array, shape (p,)
+            The length of each ray.
         others : p pairs of arrays, shape (b, 3)
-            Start and end of the segments that each point may come nearer to.
+            Start and end of the segments for each ray.
 
         Returns
         -------
         array, shape (p,)
+            At most `limit`.
         """
         table, step = self._graph.interior.table, 2 * STEP / self.resolution
         return np.array(
             [
-                _way_to_others(*ray, *segments, step, self.resolution, table)
-                for *ray, segments in zip(start, direction, way, others, strict=True)
+                _distance_to_others(*ray, *segments, step, self.resolution, table)
+                for *ray, segments in zip(start, direction, limit, others, strict=True)
             ]
         )
 
@@ -136,11 +135,11 @@ def _is_inside(resolution, table, x, y, z):
 
 
 @compiled
-def _ways_out(start, direction, step, resolution, table):
+def _exit_distances(start, direction, step, resolution, table):
     away = np.zeros(len(start))
     for p in range(len(start)):
         was_inside = False
-        for k in range(int(2 / step)):  # across the cube, whichever way
+        for k in range(int(2 / step)):  # at most across the cube
             x, y, z = (
                 start[p, 0] + k * step * direction[p, 0],
                 start[p, 1] + k * step * direction[p, 1],
@@ -157,8 +156,8 @@ def _ways_out(start, direction, step, resolution, table):
 
 
 @compiled
-def _way_to_others(point, direction, way, start, end, step, resolution, table):
-    for k in range(1, int(way / step) + 1):
+def _distance_to_others(point, direction, limit, start, end, step, resolution, table):
+    for k in range(1, int(limit / step) + 1):
         here = point + k * step * direction
         for b in range(len(start)):
             along = end[b] - start[b]
@@ -173,7 +172,7 @@ def _way_to_others(point, direction, way, start, end, step, resolution, table):
                 inside += _is_inside(resolution, table, x, y, z)
             if inside >= SEEN * len(ALONG):
                 return k * step
-    return way
+    return limit
 
 
 @compiled

@@ -1,11 +1,11 @@
-"""Labels that wait for their turn, sorted into buckets by distance (Dial 1969).
+"""A bucket queue of labels, by distance (Dial 1969).
 
-A bucket is a doubly linked list through the labels themselves: joining and leaving take no
-search, and no memory is needed beyond two integers a label. Buckets are served in order and
-are so narrow that the order within one does not matter.
+A bucket is a doubly linked list through the labels themselves: a label is inserted and removed
+without a search, and with two integers of memory. Buckets are served in order, and are so narrow
+that the order within one does not matter.
 
 The first label of each bucket is in an array `head`, shape (buckets,), int32; `scale` is the
-number of buckets a unit of distance. The last bucket holds everything that lies beyond, until
+number of buckets a unit of distance. The last bucket holds everything beyond, until
 `move_on`. A label's field `after` is the next of the same bucket, `before` the one before, or
 ~bucket for its first.
 """
@@ -15,7 +15,7 @@ import numpy as np
 from ..compiled import compiled
 
 END, LOOSE, SETTLED = -1, -2, -3
-"""What `after` holds instead of another label: last of its bucket, in no bucket, or done."""
+"""Values of `after` other than a label: last of its bucket, in no bucket, settled."""
 
 
 @compiled(inline="always")
@@ -26,7 +26,7 @@ def bucket_of(head, scale, distance):
 
 @compiled(inline="always")
 def join(head, labels, bucket, label):
-    """Put a label that is in no bucket into one."""
+    """Insert a label that is in no bucket."""
     follower = head[bucket]
     head[bucket], labels[label].after, labels[label].before = label, follower, ~bucket
     if follower != END:
@@ -35,7 +35,7 @@ def join(head, labels, bucket, label):
 
 @compiled(inline="always")
 def leave(head, labels, label):
-    """Take a label out of its bucket, if it is in one."""
+    """Remove a label from its bucket, if it is in one."""
     after, before = labels[label].after, labels[label].before
     if after < END:
         return
@@ -50,7 +50,7 @@ def leave(head, labels, label):
 
 @compiled
 def move_on(head, scale, labels):
-    """Spread what lies beyond the last bucket over all; return the distance they begin at."""
+    """Redistribute the last bucket over all; return the distance at which they begin."""
     label, origin = head[-1], np.inf
     while label != END:
         origin = min(origin, labels[label].distance)

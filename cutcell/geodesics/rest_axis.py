@@ -1,4 +1,4 @@
-"""Which local axis of the joints points along their bones: what a rig's own habit tells."""
+"""The rest axis: which local axis of the joints points along their bones."""
 
 from __future__ import annotations
 
@@ -10,18 +10,18 @@ from ..rig import Skeleton
 ALONG = np.cos(np.radians(10))
 """An axis points along a bone if it is within 10 degrees of it."""
 MOST = 0.6
-"""Of the bones that have no choice but to run to an only child: so many must agree."""
+"""Share of the bones to an only child that must agree on the axis."""
 LEAST_BONES = 3
-"""Fewer say nothing."""
+"""Fewer bones are no evidence."""
 SHORTEST = 1e-3
-"""Of the longest side: shorter bones point nowhere in particular."""
+"""Of the longest side: shorter bones have no direction."""
 
 
 def rest_directions(skeleton: Skeleton, joints: NDArray[np.float64]) -> NDArray[np.float64] | None:
-    """Find the local axis along which the joints' bones point, and where it points at each.
+    """Find the local axis along which the joints' bones point, and its direction at each joint.
 
-    A modelling program builds joints so that one local axis, nearly always +Y, runs along the
-    bone. The joints with one child show which; the last joints, which have none, have it too.
+    Modelling programs orient joints so that one local axis, nearly always +Y, runs along the bone.
+    Joints with one child show which axis it is; leaf joints have it, too.
 
     Parameters
     ----------

@@ -1,16 +1,15 @@
 """Shortest paths along the graph's edges from all bones (paper section 3.2, algorithm 2).
 
-Nodes are numbered anew along the body's longest side and swept, forth and back in turn. A
-node whose distances fell since its last visit lowers its neighbours'; a path that keeps
-its direction is found in one sweep, and most follow a limb out. When no node waits for a
-visit, every distance is at most its neighbours' plus the edge, which is what Dijkstra's
-algorithm arrives at, too.
+Nodes are renumbered along the body's longest side and swept forth and back. A visit to a node whose
+distances fell since the last one relaxes its edges. A path that keeps its direction is found in one
+sweep, and most paths follow a limb outward. When no node is waiting for a visit, every distance is
+at most that of any neighbour plus the edge: the fixed point is that of Dijkstra's algorithm.
 
-A sweep does not leave a slice of the body before nothing waits in it, and so within that slice:
-what it passes on is rarely mended later.
+The body is divided into slices, and these again. A sweep leaves a slice only when no node of it is
+waiting, so the distances that it passes on rarely fall again later.
 
-LANES bones share each visit and each edge read from memory, and one vector instruction
-lowers the distances of all.
+SIMD_WIDTH bones share each visit and each edge read from memory, and one vector instruction relaxes
+the edge for all of them.
 """
 
 from __future__ import annotations
@@ -24,10 +23,10 @@ from ..graph.neighbours import Adjacency, list_neighbours
 from ..progress import Progress, Shares, Tell, silent
 from ..threads import in_threads, parts, threads
 from .bones import Sources
-from .lanes import LANES, lower
+from .simd import SIMD_WIDTH, lower
 
 SLICES = 8
-"""The body is cut into so many, and each of them again."""
+"""Slices that the body is divided into, and slices of each of these."""
 
 
 def shortest_paths(
@@ -56,49 +55,49 @@ def shortest_paths(
     array, shape (b, t), float64
         Infinite where no path leads.
     """
-    place, adjacency = _along_body(graph)
-    groups = -(-bones // LANES)
-    result = np.empty((groups * LANES, len(targets)))
-    begin, end = place[sources.node], place[targets]
+    rank, adjacency = _sort_along_body(graph)
+    groups = -(-bones // SIMD_WIDTH)
+    result = np.empty((groups * SIMD_WIDTH, len(targets)))
+    begin, end = rank[sources.node], rank[targets]
 
     shares = Shares(progress, "distances", groups)
 
     def one_group(group: int) -> None:
-        lane = sources.bone - group * LANES
-        mine = (lane >= 0) & (lane < LANES)
-        distance, waiting = np.full((len(place), LANES), np.inf), np.zeros(len(place), np.bool_)
+        lane = sources.bone - group * SIMD_WIDTH
+        mine = (lane >= 0) & (lane < SIMD_WIDTH)
+        distance, waiting = np.full((len(rank), SIMD_WIDTH), np.inf), np.zeros(len(rank), np.bool_)
         np.minimum.at(distance, (begin[mine], lane[mine]), sources.distance[mine])
         waiting[begin[mine]] = True
         _sweep_body(adjacency, waiting, distance, lambda done: shares.tell(group, done))
-        result[group * LANES : (group + 1) * LANES] = distance[end].T
+        result[group * SIMD_WIDTH : (group + 1) * SIMD_WIDTH] = distance[end].T
         shares.tell(group, 1.0)
 
     in_threads(one_group, range(groups))
     return result[:bones]
 
 
-def _along_body(graph: CutCellGraph) -> tuple[NDArray[np.int32], Adjacency]:
-    """Sort the nodes along the longest side: return the place of each, and their neighbours.
+def _sort_along_body(graph: CutCellGraph) -> tuple[NDArray[np.int32], Adjacency]:
+    """Sort the nodes along the longest side; return the rank of each, and the adjacency by rank.
 
-    Nodes at one height keep their order, which is ascending for lattice points. Heights
-    have 16 bits, many to a lattice cell, because these are sorted in linear time.
+    Nodes of equal height keep their order, which is ascending for lattice points. Heights are
+    rounded to 16 bits, much finer than a lattice cell, as these sort in linear time.
     """
     side = np.argmax(np.ptp(graph.nodes[: graph.first_point], axis=0))
-    height = np.clip(graph.nodes[:, side], 0, 1)  # vertices of no face may lie anywhere
+    height = np.clip(graph.nodes[:, side], 0, 1)  # vertices without faces may lie anywhere
     height = (height * np.iinfo(np.uint16).max).astype(np.uint16)
     order = np.argsort(height, kind="stable")
-    place = np.empty(len(order), np.int32)
-    place[order] = np.arange(len(order), dtype=np.int32)
+    rank = np.empty(len(order), np.int32)
+    rank[order] = np.arange(len(order), dtype=np.int32)
     edges = np.empty_like(graph.edges)
     shares = parts(len(edges), threads())
-    in_threads(lambda own: _renumber(graph.edges[own], place, edges[own]), shares)
-    return place, list_neighbours(edges, graph.lengths, len(place))
+    in_threads(lambda own: _renumber(graph.edges[own], rank, edges[own]), shares)
+    return rank, list_neighbours(edges, graph.lengths, len(rank))
 
 
 @lean
-def _renumber(edges, place, renumbered):
+def _renumber(edges, rank, renumbered):
     for e in range(len(edges)):
-        renumbered[e, 0], renumbered[e, 1] = place[edges[e, 0]], place[edges[e, 1]]
+        renumbered[e, 0], renumbered[e, 1] = rank[edges[e, 0]], rank[edges[e, 1]]
 
 
 def _sweep_body(
@@ -107,9 +106,9 @@ def _sweep_body(
     distance: NDArray[np.float64],
     tell: Tell,
 ) -> None:
-    """Sweep thick slices, forth and back, until no node waits.
+    """Sweep the slices forth and back until no node is waiting.
 
-    Nobody knows how many sweeps are left: of what is, each is told as a half.
+    How many sweeps are left is unknown: for the progress each counts as half of the rest.
     """
     forth, waited, left = True, True, 1.0
     while waited:
@@ -123,7 +122,7 @@ def _sweep_body(
 
 @lean
 def _sweep_slice(indptr, indices, lengths, waiting, distance, first, last, forth):
-    """Sweep thin slices of a thick one until no node waits in it; tell whether any did."""
+    """Sweep the slices of a slice until no node of it is waiting; tell whether any was."""
     adjacency = indptr, indices, lengths
     any_waited, waited = False, True
     while waited:
@@ -138,7 +137,7 @@ def _sweep_slice(indptr, indices, lengths, waiting, distance, first, last, forth
 
 @lean
 def _sweep_nodes(adjacency, waiting, distance, first, last, forth):
-    """Visit the nodes of a thin slice until none of them waits; tell whether any did."""
+    """Visit the nodes of the smallest slices until none is waiting; tell whether any was."""
     indptr, indices, lengths = adjacency
     any_waited, waited = False, True
     while waited:
@@ -149,7 +148,7 @@ def _sweep_nodes(adjacency, waiting, distance, first, last, forth):
                 waited, waiting[v] = True, False
                 for e in range(indptr[v], indptr[v + 1]):
                     u = indices[e]
-                    # Told without a branch, which the processor would have to guess.
+                    # Without a branch, which would be mispredicted.
                     waiting[u] |= lower(distance, u, v, lengths[e])  # type: ignore[call-arg]
         any_waited |= waited
         forth = not forth

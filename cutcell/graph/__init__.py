@@ -1,11 +1,10 @@
-"""The lattice, its rays, the winding number, and the graph made of them."""
+"""The cut-cell graph of a mesh (paper section 3.1)."""
 
+from ..surface.lattice import Lattice
 from .build import build_graph
 from .cutcell_graph import INTERIOR, MESH, SURFACE, CutCellGraph
-from .lattice import Lattice
 from .orientation import inverted_faces
 from .slice import RaySlice, slice_rays
-from .winding import winding_number
 
 __all__ = [
     "INTERIOR",
@@ -17,5 +16,4 @@ __all__ = [
     "build_graph",
     "inverted_faces",
     "slice_rays",
-    "winding_number",
 ]

@@ -1,4 +1,4 @@
-"""Number the nodes of a graph and list its edges, straight into the arrays to be kept."""
+"""Number the nodes of a graph and list its edges, directly in their final arrays."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..compiled import compiled, put
+from ..surface.lattice import Lattice
+from ..surface.rays import AXES, RayHits
 from ..threads import in_threads
+from ..winding.intervals import NONE, InsideIntervals
 from .cutcell_graph import INTERIOR, MESH, SURFACE, CutCellGraph
-from .inside_edges import diagonal_edges, edge_starts, fill_edges
-from .interior import OUTSIDE, interior_points
-from .lattice import Lattice
+from .inside_edges import diagonal_edges, edge_starts, fill_edges, lattice_steps
+from .interior import interior_points
 from .memory import check_memory
-from .rays import AXES, Crossings
-from .segments import NONE, Runs
 
 
 def assemble(
@@ -24,28 +24,28 @@ def assemble(
     faces: NDArray[np.int32],
     mesh_edges: NDArray[np.int32],
     is_closed: bool,
-    crossings: Sequence[Crossings],
-    runs: Sequence[Runs],
+    hits: Sequence[RayHits],
+    inside: Sequence[InsideIntervals],
     lattice: Lattice,
     connectivity: int | str,
     inverted: NDArray[np.bool_],
 ) -> CutCellGraph:
-    """Build the graph from what the rays found.
+    """Build the graph from the hits of the rays and their intervals inside.
 
     Parameters
     ----------
     vertices : array, shape (n, 3), float64
         Of the welded mesh, in the unit cube.
     vertex_node : array, int32
-        Which of them each vertex of the mesh became.
+        The welded vertex of each vertex of the mesh.
     faces, mesh_edges : arrays, shapes (m, 3) and (e, 2), int32
         Of the welded mesh.
     is_closed : bool
-    crossings, runs : of the rays along x, y and z
+    hits, inside : of the rays along x, y and z
     lattice : Lattice
     connectivity : {6, 26, "any"}
     inverted : array, shape (m,), bool
-        Which of the faces were turned round.
+        Which of the faces were flipped.
 
     Raises
     ------
@@ -53,13 +53,13 @@ def assemble(
         The graph would not fit in memory.
     """
     resolution = lattice.resolution
-    points = interior_points(runs, resolution)
+    points = interior_points(inside, resolution)
     first_crossing = len(vertices) + len(points)
     numbers, starts = [], []
     node, edge = first_crossing, len(mesh_edges)
-    for run, found in zip(runs, crossings, strict=True):
-        numbers.append(_number_used(run.low, run.high, len(found.position), node))
-        starts.append(edge_starts(run, edge))
+    for intervals, found in zip(inside, hits, strict=True):
+        numbers.append(_number_ends(intervals, len(found.position), node))
+        starts.append(edge_starts(intervals, edge))
         node, edge = max(node, int(numbers[-1].max(initial=0)) + 1), int(starts[-1][-1])
     node_kinds = [len(vertices), len(points), node - first_crossing]
     edge_kinds = [len(mesh_edges), edge - len(mesh_edges), 3 * node_kinds[SURFACE]]
@@ -67,20 +67,17 @@ def assemble(
 
     nodes, triangle = np.empty((node, 3)), np.full(node, -1, np.int32)
     edges, lengths = np.empty((sum(edge_kinds), 2), np.int32), np.empty(sum(edge_kinds))
-    steps = np.full((len(points) if connectivity != 6 else 0, 6), OUTSIDE, np.int32)
 
     def fill_inside(axis: int) -> None:
-        ends = crossings[axis].position, numbers[axis]
-        fill_edges(
-            runs[axis], starts[axis], axis, points, len(vertices), ends, edges, lengths, steps
-        )
+        ends = hits[axis].position, numbers[axis]
+        own = inside[axis], starts[axis]
+        fill_edges(*own, axis, points, len(vertices), ends, edges, lengths)
 
     def fill_surface(axis: int) -> None:
-        found = crossings[axis]
-        hits = found.start, found.position, found.triangle, numbers[axis]
+        found = hits[axis].start, hits[axis].position, hits[axis].triangle, numbers[axis]
         mesh = vertices, faces
         first = first_crossing, edge
-        _fill_crossings(resolution, AXES[axis], hits, mesh, first, nodes, triangle, edges, lengths)
+        _fill_surface(resolution, AXES[axis], found, mesh, first, nodes, triangle, edges, lengths)
 
     def fill_rest(_: int) -> None:
         _fill_mesh(vertices, mesh_edges, nodes, edges, lengths)
@@ -89,6 +86,8 @@ def assemble(
     jobs = [(job, axis) for job in (fill_inside, fill_surface) for axis in range(3)]
     in_threads(lambda job: job[0](job[1]), [*jobs, (fill_rest, 0)])
     if connectivity == 26:
+        kept = edges[len(mesh_edges) : edge]
+        steps = lattice_steps(nodes, kept, len(vertices), first_crossing)
         diagonals = diagonal_edges(steps, len(vertices))
         edges = np.concatenate([edges[:edge], diagonals, edges[edge:]])
         ends = nodes[diagonals]
@@ -108,7 +107,6 @@ def assemble(
         is_closed=is_closed,
         connectivity=connectivity,
         interior=points,
-        steps=steps,
         inverted=inverted,
     )
 
@@ -117,16 +115,20 @@ def _kinds(counts: list[int]) -> NDArray[np.uint8]:
     return np.repeat(np.array([MESH, INTERIOR, SURFACE], np.uint8), counts)
 
 
+def _number_ends(intervals: InsideIntervals, hits: int, first: int) -> NDArray[np.int32]:
+    """Give numbers to the hits at the ends of intervals from `first` on; the others get NONE."""
+    return _number_used(intervals.low, intervals.high, hits, first)
+
+
 @compiled
-def _number_used(low, high, crossings, first):
-    """Give the crossings at the ends of runs numbers from `first` on, and the others NONE."""
-    node = np.full(crossings, NONE, np.int32)
+def _number_used(low, high, hits, first):
+    node = np.full(hits, NONE, np.int32)
     for r in range(len(low)):
         if low[r] != NONE:
             node[low[r]] = 0
         if high[r] != NONE:
             node[high[r]] = 0
-    for c in range(crossings):
+    for c in range(hits):
         if node[c] != NONE:
             node[c] = first
             first += 1
@@ -143,8 +145,8 @@ def _fill_mesh(vertices, mesh_edges, nodes, edges, lengths):
 
 
 @compiled
-def _fill_crossings(resolution, axes, hits, mesh, first, nodes, triangle, edges, lengths):
-    """Place the crossings along one axis that have nodes, and tie them to their corners."""
+def _fill_surface(resolution, axes, hits, mesh, first, nodes, triangle, edges, lengths):
+    """Fill in the surface nodes along one axis, and their edges to the corners of triangles."""
     u, v, along = axes
     start, position, of_triangle, node = hits
     vertices, faces = mesh

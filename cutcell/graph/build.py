@@ -2,62 +2,61 @@
 
 from __future__ import annotations
 
+from typing import Unpack
+
 import numpy as np
 
-from ..checks import check_choice, check_flag, check_number
+from ..checks import check_choice
+from ..inputs import MeshLike, as_mesh
+from ..method import ANIMATION, GraphOptions, Method, MethodName, method_of
 from ..progress import Progress, share_of, silent
-from ..rig import TriangleMesh
+from ..surface.edges import find_edges
+from ..surface.lattice import Lattice
+from ..surface.ray_tracers import cast_rays_embree, cast_rays_open3d
+from ..surface.rays import cast_all_rays
+from ..surface.weld import weld
+from ..winding import inside_intervals
+from ..winding.boundary import boundary_of
 from .assemble import assemble
-from .backends import cast_rays_embree, cast_rays_open3d, find_runs_fast
-from .boundary import boundary_of
 from .cutcell_graph import CutCellGraph
-from .lattice import Lattice
+from .fast_winding import fast_intervals
 from .memory import check_estimate
-from .mesh_edges import find_edges
 from .orientation import find_inverted, flipped
-from .rays import cast_all_rays
-from .segments import find_runs
-from .weld import weld
 
 CASTERS = {"open3d": cast_rays_open3d, "embree": cast_rays_embree}
 
 
 def build_graph(
-    mesh: TriangleMesh,
-    resolution: int = 64,
+    mesh: MeshLike,
+    resolution: int | None = None,
     *,
-    winding_threshold: float = 0.5,
-    connectivity: int | str = 6,
+    method: Method | MethodName = ANIMATION,
     rays: str = "raster",
     winding: str = "exact",
-    orient: bool = True,
     progress: Progress = silent,
+    **options: Unpack[GraphOptions],
 ) -> CutCellGraph:
-    """Cut a lattice with a mesh and connect what lies inside.
+    """Build the cut-cell graph of a mesh.
 
     Parameters
     ----------
-    mesh : TriangleMesh
+    mesh : TriangleMesh, (vertices, faces), trimesh.Trimesh or pyvista.PolyData
         Closed or open, any number of components; vertices at one place are welded.
-    resolution : int
-        R, rays along each side of the unit cube, 2 to 1024.
-    winding_threshold : float
-        tau: pieces of rays with at least this winding number count as inside, 0 to 1.
-    connectivity : {6, 26, "any"}
-        6 is the paper's graph, whose paths inside run along the axes. 26 adds the
-        diagonals of lattice cells that lie inside altogether: straighter, shorter paths.
-        "any" has the edges of 6, but lets paths leave them where they see far: distances
-        then converge to the geodesic ones, see `geodesics.any_angle`.
+    resolution : int, optional
+        R, rays along each side of the unit cube, 2 to 1024; the method's when left out.
+    method : Method, "animation" or "paper"
+        Its resolution, connectivity, winding threshold and orientation count here.
     rays : {"raster", "open3d", "embree"}
-        What casts the rays: our own kernel in double precision, or a ray tracer in single.
+        The ray caster: our own kernel in double precision, or a ray tracer in single.
     winding : {"exact", "fast"}
-        What decides which pieces are inside: exact winding numbers, or libigl's
-        approximation at every midpoint. This and `rays` are for comparing.
-    orient : bool
-        Whether faces that are inside out count as turned round, see `inverted_faces`. The
-        mesh itself stays as it is.
+        Exact winding numbers, or libigl's approximation at every midpoint. This and `rays`
+        are for comparison.
     progress : callable
         See `cutcell.progress`; the stage is called "graph".
+    **options
+        Single options of the method: `connectivity`, `winding_threshold`, `orient`. With
+        connectivity 26 there are diagonals of lattice cells that lie inside altogether; with
+        "any" there are the edges of 6, which paths may leave, see `geodesics.any_angle`.
 
     Returns
     -------
@@ -74,13 +73,13 @@ def build_graph(
 
     References
     ----------
-    Paper section 3.1 "Graph construction".
+    Paper section 3.1 "Graph construction", algorithm 1.
     """
+    mesh = as_mesh(mesh)
+    method = method_of(method, resolution, **options)
+    resolution, connectivity = method.resolution, method.connectivity
+    winding_threshold, orient = method.winding_threshold, method.orient
     lattice = Lattice.around(mesh, resolution)
-    resolution = lattice.resolution
-    winding_threshold = check_number("winding_threshold", winding_threshold, 0, 1)
-    connectivity = check_choice("connectivity", connectivity, (6, 26, "any"))
-    orient = check_flag("orient", orient)
     check_choice("rays", rays, ("raster", *CASTERS))
     check_choice("winding", winding, ("exact", "fast"))
 
@@ -90,14 +89,14 @@ def build_graph(
     tell(0.0)
     vertices, vertex_node = weld(lattice.to_unit(mesh.vertices))
     faces = vertex_node[mesh.faces]
-    mesh_edges, balance, partner = find_edges(faces)
+    mesh_edges, incidence, partner = find_edges(faces)
     inverted = np.zeros(len(faces), np.bool_)
     if orient:
         inverted = find_inverted(vertices, faces, partner, share_of(tell, 0, 0.03))
     if inverted.any():
         faces = flipped(faces, inverted)
-        mesh_edges, balance, _ = find_edges(faces)
-    boundary = boundary_of(mesh_edges, balance)
+        mesh_edges, incidence, _ = find_edges(faces)
+    boundary = boundary_of(mesh_edges, incidence)
     tell(0.03)
     check_estimate(
         vertices,
@@ -110,28 +109,29 @@ def build_graph(
     )
     tell(0.05)
     if rays == "raster":
-        crossings = cast_all_rays(vertices, faces, resolution, share_of(tell, 0.05, 0.2))
+        hits = cast_all_rays(vertices, faces, resolution, share_of(tell, 0.05, 0.2))
     else:
-        crossings = [CASTERS[rays](vertices, faces, resolution, axis) for axis in range(3)]
+        hits = [CASTERS[rays](vertices, faces, resolution, axis) for axis in range(3)]
     tell(0.2)
+    # Algorithm 1: segments of the rays whose midpoint has a winding number of at least tau.
     if winding == "exact":
-        runs = find_runs(
+        inside = inside_intervals(
             vertices,
             faces,
-            crossings,
+            hits,
             boundary,
             resolution,
             winding_threshold,
             share_of(tell, 0.2, 0.9),
         )
     else:
-        runs = [
-            find_runs_fast(vertices, faces, found, resolution, axis, winding_threshold)
-            for axis, found in enumerate(crossings)
+        inside = [
+            fast_intervals(vertices, faces, found, resolution, axis, winding_threshold)
+            for axis, found in enumerate(hits)
         ]
     tell(0.9)
     is_closed = len(boundary.loop) == 0
-    found = vertices, vertex_node, faces, mesh_edges, is_closed, crossings, runs
+    found = vertices, vertex_node, faces, mesh_edges, is_closed, hits, inside
     graph = assemble(*found, lattice, connectivity, inverted)
     tell(1.0)
     return graph

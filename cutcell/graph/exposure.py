@@ -1,9 +1,9 @@
-"""Which side of a surface sees the outside, by rays (Takayama et al. 2014).
+"""Which side of a surface sees the outside, by ray casting (Takayama et al. 2014).
 
-Points on the surface look along both directions of lines spread evenly over the sphere. A ray
-that meets no other face sees the outside. Lines are looked along as in `rays.py`: the mesh is
-turned until they are vertical, and crossings are decided without tolerances, so no ray slips
-between two faces.
+From points on the surface, rays are cast in both directions of lines spread evenly over the sphere.
+A ray that hits no other face sees the outside. Rays are cast as in `surface/rays.py`: the mesh is
+rotated until the lines are vertical, and hits are decided without tolerances, so no ray passes
+between two adjacent faces.
 """
 
 from __future__ import annotations
@@ -14,30 +14,30 @@ from numpy.typing import NDArray
 from ..compiled import compiled
 from ..progress import Tell
 from ..sorting import sort_into
+from ..surface.rays import column_span, height_between
 from ..threads import in_threads
-from .rays import column_span, height_between
 
 LINES = 12
 SAMPLES = 2, 32
-"""On each patch, at least and at most."""
+"""Points on each patch, at least and at most."""
 MOST_SAMPLES = 4096
-"""On all patches together, unless these are more than half of it."""
+"""On all patches together, unless there are more than half as many patches."""
 COINCIDENT = 1e-9
-"""A face this near to a point lies on it: the other side of a sheet that is there twice."""
+"""A face this close to a point does not hide it: it is the other side of a doubled sheet."""
 COLUMNS = 128
-"""Along each side of the grid in which the points are found that a face may lie above."""
+"""Cells along each side of the grid that finds the points above and below a face."""
 SHRINK = 1.75
-"""The unit cube, turned about its middle, fits into itself if it is this many times smaller."""
+"""The unit cube, rotated about its middle, fits into itself if scaled down by this."""
 
 
 def exposure(
     vertices: NDArray[np.float64],
     faces: NDArray[np.int32],
     patch: NDArray[np.int32],
-    asked: NDArray[np.bool_],
+    wanted: NDArray[np.bool_],
     tell: Tell = lambda done: None,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Measure how much of the outside patches see from their front and from their back.
+    """Measure how much of the outside is seen from the front and from the back of patches.
 
     Parameters
     ----------
@@ -46,7 +46,7 @@ def exposure(
     faces : array, shape (m, 3), int32
     patch : array, shape (m,), int32
         Of each face.
-    asked : array, shape (p,), bool
+    wanted : array, shape (p,), bool
         Which patches to measure.
     tell : callable
         See `progress.Tell`.
@@ -54,16 +54,16 @@ def exposure(
     Returns
     -------
     front, back : arrays, shape (p,)
-        Share of rays that get away, weighted by the cosine to the face's normal; zero for
-        patches that were not asked about.
+        Share of rays that escape, weighted by the cosine to the face's normal; zero for patches
+        that were not to be measured.
 
     References
     ----------
     Takayama, Jacobson, Kavan & Sorkine-Hornung, "A simple method for correcting facet
     orientations in polygon meshes based on ray casting", 2014.
     """
-    count = len(asked)
-    face, points = _samples(vertices, faces, patch, asked)
+    count = len(wanted)
+    face, points = _samples(vertices, faces, patch, wanted)
     corners = vertices[faces[face]]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     normals /= np.maximum(np.linalg.norm(normals, axis=1), 1e-300)[:, None]
@@ -73,7 +73,7 @@ def exposure(
 
     def along(turn: NDArray[np.float64]) -> NDArray[np.float64]:
         seen = [np.ascontiguousarray((x - 0.5) @ turn.T / SHRINK + 0.5) for x in (vertices, points)]
-        is_free = _look(seen[1], own, seen[0], single)
+        is_free = _escape(seen[1], own, seen[0], single)
         cosine = normals @ turn[2]
         weight, is_up = np.abs(cosine), cosine > 0
         front = weight * np.where(is_up, is_free[:, 0], is_free[:, 1])
@@ -86,18 +86,18 @@ def exposure(
 
 
 def _each_once(faces: NDArray[np.int32]) -> tuple[NDArray[np.int32], NDArray[np.intp]]:
-    """Return faces without repeated ones, which hide nothing more, and where each is in them."""
+    """Return the distinct faces, which hide as much, and the index of each face in them."""
     corners = np.sort(faces, axis=1)
     order = np.lexsort(corners.T)
     is_new = np.ones(len(faces), np.bool_)
     is_new[1:] = (corners[order[1:]] != corners[order[:-1]]).any(axis=1)
-    place = np.empty(len(faces), np.intp)
-    place[order] = np.cumsum(is_new) - 1
-    return faces[order[is_new]], place
+    index = np.empty(len(faces), np.intp)
+    index[order] = np.cumsum(is_new) - 1
+    return faces[order[is_new]], index
 
 
 def _turns() -> list[NDArray[np.float64]]:
-    """Return rotations (3, 3) that take lines spread over the sphere (a spiral) to the vertical."""
+    """Return rotations (3, 3) that map lines spread over the sphere (a spiral) to the vertical."""
     k = np.arange(LINES) + 0.5
     height, turn = k / LINES, k * np.pi * (3 - np.sqrt(5))
     out = np.sqrt(1 - height**2)
@@ -114,11 +114,11 @@ def _samples(
     vertices: NDArray[np.float64],
     faces: NDArray[np.int32],
     patch: NDArray[np.int32],
-    asked: NDArray[np.bool_],
+    wanted: NDArray[np.bool_],
 ) -> tuple[NDArray[np.intp], NDArray[np.float64]]:
-    """Place points evenly by area on patches; return the face of each, and where it is."""
-    mine = np.flatnonzero(asked[patch])
-    # By corners, lowest first: neither the order of the faces nor their winding matters.
+    """Place points evenly by area on patches; return the face and the position of each."""
+    mine = np.flatnonzero(wanted[patch])
+    # Sorted by corners: the result depends neither on the order of faces nor on their winding.
     corners = np.sort(faces[mine], axis=1)
     order = np.lexsort((*corners.T[::-1], patch[mine]))
     mine, (a, b, c) = mine[order], vertices[corners[order]].transpose(1, 0, 2)
@@ -140,8 +140,8 @@ def _samples(
 
 
 @compiled
-def _look(points, own, vertices, faces):
-    """Tell for each point whether nothing lies above it, and nothing below, shape (p, 2)."""
+def _escape(points, own, vertices, faces):
+    """Tell for each point whether the rays upward and downward escape, shape (p, 2)."""
     column = np.empty(len(points), np.int64)
     for q in range(len(points)):
         column[q] = int(points[q, 0] * COLUMNS) * COLUMNS + int(points[q, 1] * COLUMNS)
@@ -149,7 +149,7 @@ def _look(points, own, vertices, faces):
     is_free = np.ones((len(points), 2), np.bool_)
     hidden = 0
     for f in range(len(faces)):
-        if 2 * hidden > len(order):  # in a soup nearly all points are, after a few faces
+        if 2 * hidden > len(order):  # in a soup a few faces hide nearly all points
             for q in order:
                 column[q] = column[q] if is_free[q, 0] or is_free[q, 1] else -1
             start, order = sort_into(column, COLUMNS * COLUMNS)

@@ -1,4 +1,4 @@
-"""Edges inside the body: kept segments, and diagonals of cells that lie inside altogether."""
+"""Edges inside the body: kept segments, and the diagonals of cells that lie entirely inside."""
 
 from __future__ import annotations
 
@@ -6,48 +6,44 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..compiled import compiled
-from .interior import OUTSIDE, InteriorPoints, place_on_ray, point_number
-from .segments import NONE, Runs
+from ..winding.intervals import NONE, InsideIntervals
+from .interior import OUTSIDE, InteriorPoints, point_number, point_on_ray
 
 
-def edge_starts(runs: Runs, first: int) -> NDArray[np.int64]:
-    """Return where the edges of each run begin, and of all end, shape (r + 1,)."""
-    return _edge_starts(runs.first, runs.last, runs.low, runs.high, first)
+def edge_starts(inside: InsideIntervals, first: int) -> NDArray[np.int64]:
+    """Return the first edge of each interval, counted from `first`, and the end, shape (r + 1,)."""
+    return _edge_starts(inside.first, inside.last, inside.low, inside.high, first)
 
 
 def fill_edges(
-    runs: Runs,
-    run_start: NDArray[np.int64],
+    inside: InsideIntervals,
+    start: NDArray[np.int64],
     axis: int,
     points: InteriorPoints,
     first_point: int,
     ends: tuple[NDArray[np.float64], NDArray[np.int32]],
     edges: NDArray[np.int32],
     lengths: NDArray[np.float64],
-    steps: NDArray[np.int32],
 ) -> None:
     """List the kept segments along one axis as edges.
 
     Parameters
     ----------
-    runs : Runs
-    run_start : array, shape (r + 1,)
+    inside : InsideIntervals
+    start : array, shape (r + 1,)
         See `edge_starts`.
     axis : int
     points : InteriorPoints
     first_point : int
         The node of the first interior point.
     ends : tuple of two arrays, shape (c,)
-        Positions of the axis' crossings, and their nodes.
+        Positions of the axis' hits, and their nodes.
     edges, lengths : arrays, shapes (e, 2) and (e,)
         Written to.
-    steps : array, shape (p, 6) or (0, 6), int32
-        Gets the interior points next to each where the segment between is kept and not
-        crossed: upward along the axis, and 3 columns further downward.
     """
-    run = runs.ray, runs.first, runs.last, runs.low, runs.high, run_start
-    place = points.resolution, axis, first_point
-    _fill_edges(place, run, points.table, ends, edges, lengths, steps)
+    intervals = inside.ray, inside.first, inside.last, inside.low, inside.high, start
+    where = points.resolution, axis, first_point
+    _fill_edges(where, intervals, points.table, ends, edges, lengths)
 
 
 @compiled
@@ -61,37 +57,72 @@ def _edge_starts(first, last, low, high, start):
 
 
 @compiled
-def _fill_edges(place, runs, table, ends, edges, lengths, steps):
-    resolution, axis, first_point = place
-    ray, first, last, low, high, start = runs
-    position, crossing_node = ends
+def _fill_edges(where, intervals, table, ends, edges, lengths):
+    resolution, axis, first_point = where
+    ray, first, last, low, high, start = intervals
+    position, surface_node = ends
     for r in range(len(ray)):
         e = start[r]
-        here, before, at = NONE, OUTSIDE, 0.0  # the last stop: its node, its point, its place
+        here, at = NONE, 0.0  # the previous node and its position
         if low[r] != NONE:
-            here, at = crossing_node[low[r]], position[low[r]]
+            here, at = surface_node[low[r]], position[low[r]]
         for k in range(first[r], last[r] + 1):
-            column, z = place_on_ray(axis, ray[r], k, resolution)
+            column, z = point_on_ray(axis, ray[r], k, resolution)
             point = point_number(table[0], table[1], table[2], table[3], column, z)
-            if before != OUTSIDE and len(steps):
-                steps[before, axis], steps[point, 3 + axis] = point, before
             if here != NONE:
                 edges[e, 0], edges[e, 1] = here, first_point + point
                 lengths[e] = (k + 0.5) / resolution - at
                 e += 1
-            here, before, at = first_point + point, point, (k + 0.5) / resolution
+            here, at = first_point + point, (k + 0.5) / resolution
         if high[r] != NONE:
-            edges[e, 0], edges[e, 1] = here, crossing_node[high[r]]
+            edges[e, 0], edges[e, 1] = here, surface_node[high[r]]
             lengths[e] = position[high[r]] - at
 
 
+def lattice_steps(
+    nodes: NDArray[np.float64], edges: NDArray[np.int32], first: int, last: int
+) -> NDArray[np.int32]:
+    """List the neighbours of interior points along the axes.
+
+    Parameters
+    ----------
+    nodes : array, shape (N, 3)
+    edges : array, shape (e, 2), int32
+        Kept segments; those that end on the surface are left out.
+    first, last : int
+        The interior points are the nodes from `first` to before `last`.
+
+    Returns
+    -------
+    array, shape (last - first, 6), int32
+        The neighbour of each point upward along x, y, z and downward along x, y, z, if the whole
+        segment between is kept and not cut by the surface; else -1.
+    """
+    return _lattice_steps(nodes, edges, first, last)
+
+
+@compiled
+def _lattice_steps(nodes, edges, first, last):
+    steps = np.full((last - first, 6), OUTSIDE, np.int32)
+    for e in range(len(edges)):
+        low, high = edges[e, 0], edges[e, 1]
+        if min(low, high) >= first and max(low, high) < last:
+            for axis in range(3):
+                if nodes[low, axis] < nodes[high, axis]:
+                    steps[low - first, axis], steps[high - first, 3 + axis] = (
+                        high - first,
+                        low - first,
+                    )
+    return steps
+
+
 def diagonal_edges(steps: NDArray[np.int32], first_point: int) -> NDArray[np.int32]:
-    """List the face and body diagonals of cells all of whose twelve edges lie inside.
+    """List the face and body diagonals of cells whose twelve edges all lie inside.
 
     Parameters
     ----------
     steps : array, shape (p, 6), int32
-        See `fill_edges`, for x, y and z.
+        See `lattice_steps`.
     first_point : int
         The node of the first interior point.
 
@@ -109,13 +140,13 @@ def diagonal_edges(steps: NDArray[np.int32], first_point: int) -> NDArray[np.int
 
 @compiled(inline="always")
 def _step(steps, point, column):
-    """Return the next point, OUTSIDE if there is none or the point is none."""
+    """Return the neighbour of a point, OUTSIDE if it has none or is itself outside."""
     return steps[point, column] if point != OUTSIDE else OUTSIDE
 
 
 @compiled
 def _mark_cells(steps):
-    """Mark the points that are the lowest corner of a cell inside."""
+    """Mark the points that are the lowest corner of a cell that lies inside."""
     cell = np.empty(len(steps), np.bool_)
     for p in range(len(steps)):
         x, y, z = steps[p, 0], steps[p, 1], steps[p, 2]
@@ -129,11 +160,11 @@ def _mark_cells(steps):
 
 @compiled
 def _list_diagonals(steps, cell, first_point, edges):
-    """Count the diagonals; and list them where there is room."""
+    """Count the diagonals; list them if `edges` has rows."""
     count = 0
     for p in range(len(steps)):
         for axis in range(3):
-            # The square from p across this axis borders the cells at p and below.
+            # The square at p across this axis is a face of the cells at p and below.
             below = steps[p, 3 + axis]
             if cell[p] or (below != OUTSIDE and cell[below]):
                 u, v = steps[p, 0 if axis else 1], steps[p, 1 if axis == 2 else 2]

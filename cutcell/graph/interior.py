@@ -1,7 +1,7 @@
 """The lattice points inside the body, numbered column by column without an R^3 table.
 
-The runs along z already list them: a column of the lattice holds few runs, so the number
-of a point is that of its run's first point plus the way to it.
+The intervals along z list them already: a column of the lattice has few intervals, so the number of
+a point is that of the first point of its interval plus the offset.
 """
 
 from __future__ import annotations
@@ -13,9 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..compiled import compiled
+from ..surface.rays import in_space
 from ..threads import in_threads
-from .rays import in_space
-from .segments import Runs
+from ..winding import InsideIntervals
 
 OUTSIDE = -1
 
@@ -29,11 +29,11 @@ class InteriorPoints:
     resolution : int
         R.
     start : array, shape (R * R + 1,), int64
-        Column x * R + y holds the stretches from start[x * R + y] on.
+        The stretches of column x * R + y are those from start[x * R + y] on.
     first, last : arrays, shape (s,), int32
-        Lowest and highest z of each stretch of points that follow one another.
+        Lowest and highest z of each stretch of consecutive points.
     number : array, shape (s + 1,), int64
-        How many points come before each stretch.
+        The number of points before each stretch.
     """
 
     resolution: int
@@ -47,21 +47,21 @@ class InteriorPoints:
 
     @property
     def table(self) -> tuple[NDArray, NDArray, NDArray, NDArray]:
-        """What `point_number` looks a point up in."""
+        """The arrays that `point_number` takes."""
         return self.start, self.first, self.last, self.number
 
     def put_positions(self, out: NDArray[np.float64]) -> None:
-        """Write where the points are in the unit cube into an array (len, 3)."""
+        """Write the positions of the points in the unit cube into an array (len, 3)."""
         _put_positions(self.resolution, *self.table, out)
 
 
-def interior_points(runs: Sequence[Runs], resolution: int) -> InteriorPoints:
-    """Collect the lattice points of the runs along x, y and z."""
-    along_z = runs[2]
+def interior_points(inside: Sequence[InsideIntervals], resolution: int) -> InteriorPoints:
+    """Collect the lattice points of the intervals along x, y and z."""
+    along_z = inside[2]
     points = _number_stretches(along_z.ray, along_z.first, along_z.last, resolution)
-    # Where the surface runs through a lattice point, or an open mesh's winding number is
-    # close to the threshold, a point may have kept segments along x or y alone.
-    missed = in_threads(lambda axis: _missed_points(runs[axis], axis, points), (0, 1))
+    # Where the surface passes through a lattice point, or an open mesh's winding number is close
+    # to the threshold, a point may have kept segments along x or y only.
+    missed = in_threads(lambda axis: _missed_points(inside[axis], axis, points), (0, 1))
     extra = np.unique(np.concatenate(missed))
     if len(extra) == 0:
         return points
@@ -80,7 +80,7 @@ def _number_stretches(
 
 @compiled
 def _count_stretches(column, first, last, resolution):
-    """Drop empty stretches, and count stretches and points up to each column and stretch."""
+    """Drop empty stretches; count the stretches up to each column, and the points up to each."""
     filled = 0
     for s in range(len(first)):
         filled += first[s] <= last[s]
@@ -97,10 +97,10 @@ def _count_stretches(column, first, last, resolution):
     return np.cumsum(start), low, high, number
 
 
-def _missed_points(runs: Runs, axis: int, points: InteriorPoints) -> NDArray[np.int64]:
-    """List the lattice numbers of a family's points that `points` does not hold."""
+def _missed_points(inside: InsideIntervals, axis: int, points: InteriorPoints) -> NDArray[np.int64]:
+    """List the lattice numbers of the points along one axis that `points` lacks."""
     resolution = points.resolution
-    arguments = (runs.ray, runs.first, runs.last, axis, resolution, *points.table)
+    arguments = (inside.ray, inside.first, inside.last, axis, resolution, *points.table)
     missed = np.empty(_find_missed(*arguments, np.empty(0, np.int64)), np.int64)
     if len(missed):
         _find_missed(*arguments, missed)
@@ -117,7 +117,7 @@ def point_number(start, first, last, number, column, z):
 
 
 @compiled(inline="always")
-def place_on_ray(axis, ray, k, resolution):
+def point_on_ray(axis, ray, k, resolution):
     """Return column and z of the lattice point k on a ray."""
     x, y, z = in_space(axis, ray // resolution, ray % resolution, k)
     return x * resolution + y, z
@@ -128,7 +128,7 @@ def _find_missed(ray, first_k, last_k, axis, resolution, start, first, last, num
     count = 0
     for r in range(len(ray)):
         for k in range(first_k[r], last_k[r] + 1):
-            column, z = place_on_ray(axis, ray[r], k, resolution)
+            column, z = point_on_ray(axis, ray[r], k, resolution)
             if point_number(start, first, last, number, column, z) == OUTSIDE:
                 if len(missed):
                     missed[count] = column * resolution + z

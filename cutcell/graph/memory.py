@@ -10,28 +10,30 @@ from numpy.typing import NDArray
 from ..errors import ParameterError
 from ..memory import SHARE, available_memory, gigabytes
 from ..progress import Tell
-from .blocks import BLOCK_POINTS
-from .boundary import Boundary
+from ..surface.rays import cast_all_rays, expected_hits
+from ..winding import inside_intervals
+from ..winding.boundary import Boundary
+from ..winding.intervals import NONE
 from .interior import interior_points
-from .rays import cast_all_rays, expected_crossings
-from .segments import NONE, find_runs
 
 BYTES_PER_NODE = {6: 345, 26: 950, "any": 150}
 """Peak of a graph and its distances, by connectivity; measured by benchmarks/memory.py."""
 BYTES_PER_LABELLED = 210
-"""More, with "any", for each node that is not passed over (`contracted.py`)."""
+"""With "any", in addition, for each node that is not contracted (`geodesics/contraction.py`)."""
+BLOCK_POINTS = 8
+"""Lattice points deep inside that have one representative."""
 SHALLOW = 1.5
-"""Lattice points in no block, a crossing, at most; measured were 1.2."""
-BYTES_BESIDES = 64 << 20
-"""What does not grow with the nodes: the mesh, its holes and its weights, at most."""
-BYTES_PER_CROSSING = 80
-"""Peak of casting rays, at the mesh and at the caps of its holes, whatever is inside."""
+"""Lattice points outside such blocks for each surface node, at most; 1.2 was measured."""
+FIXED_BYTES = 64 << 20
+"""Memory that does not grow with the nodes: the mesh, its holes and its weights, at most."""
+BYTES_PER_HIT = 80
+"""Peak of casting rays at the mesh and at the caps of its holes, whatever is inside."""
 COARSE = 64
 """Resolution at which nodes are counted to estimate those of a far finer lattice."""
 FAR_FINER = 2
-"""Times that resolution: below, the graph itself is soon there."""
+"""Times that resolution: below, the graph is built in the time that the estimate takes."""
 CERTAIN = 1.1
-"""Times the free memory that an estimate must exceed to be relied on."""
+"""An estimate must exceed the free memory by this factor to be relied on."""
 
 
 def check_estimate(
@@ -59,27 +61,28 @@ def check_estimate(
     ParameterError
         It would not fit; the sentence says which resolution would.
     """
-    crossings = expected_crossings(vertices, faces, resolution)
-    _refuse_over(lambda scale: BYTES_PER_CROSSING * crossings * scale**2, resolution, CERTAIN)
-    sides = np.ptp(np.clip(vertices, 0, 1), axis=0)  # vertices of no face may lie anywhere
+    hits = expected_hits(vertices, faces, resolution)
+    _refuse_over(lambda scale: BYTES_PER_HIT * hits * scale**2, resolution, CERTAIN)
+    sides = np.ptp(np.clip(vertices, 0, 1), axis=0)  # vertices without faces may lie anywhere
     points = resolution**3 * float(sides.prod())
-    most = needed_memory(len(vertices), points, crossings, connectivity)
+    most = needed_memory(len(vertices), points, hits, connectivity)
     if resolution < FAR_FINER * COARSE or most <= available_memory(most / SHARE) * SHARE:
         return
-    rays = cast_all_rays(vertices, faces, COARSE)
-    runs = find_runs(vertices, faces, rays, boundary, COARSE, winding_threshold, tell)
+    coarse = cast_all_rays(vertices, faces, COARSE)
+    inside = inside_intervals(vertices, faces, coarse, boundary, COARSE, winding_threshold, tell)
     ends = sum(
-        np.count_nonzero(run.low != NONE) + np.count_nonzero(run.high != NONE) for run in runs
+        np.count_nonzero(along.low != NONE) + np.count_nonzero(along.high != NONE)
+        for along in inside
     )
     finer = resolution / COARSE
-    nodes = len(vertices), len(interior_points(runs, COARSE)) * finer**3, ends * finer**2
+    nodes = len(vertices), len(interior_points(inside, COARSE)) * finer**3, ends * finer**2
     check_memory(*nodes, resolution, connectivity, CERTAIN)
 
 
 def check_memory(
     vertices: float,
     points: float,
-    crossings: float,
+    surface: float,
     resolution: int,
     connectivity: int | str,
     certain: float = 1,
@@ -88,7 +91,7 @@ def check_memory(
 
     Parameters
     ----------
-    vertices, points, crossings : float
+    vertices, points, surface : float
         How many nodes of each kind the graph will have.
     resolution : int
     connectivity : {6, 26, "any"}
@@ -102,14 +105,14 @@ def check_memory(
     """
 
     def needed(scale: float) -> float:
-        # Points fill the volume, crossings the surface, and vertices stay as they are.
-        return needed_memory(vertices, points * scale**3, crossings * scale**2, connectivity)
+        # Points fill the volume, surface nodes the surface, and vertices stay as they are.
+        return needed_memory(vertices, points * scale**3, surface * scale**2, connectivity)
 
     _refuse_over(needed, resolution, certain)
 
 
 def _refuse_over(needed: Callable[[float], float], resolution: int, certain: float) -> None:
-    """Refuse what needs more than is free; `needed` tells it for multiples of the resolution."""
+    """Refuse what needs more memory than is free; `needed` takes a factor of the resolution."""
     free = available_memory(needed(1) / SHARE) * SHARE
     if needed(1) <= certain * free:
         return
@@ -121,13 +124,11 @@ def _refuse_over(needed: Callable[[float], float], resolution: int, certain: flo
     )
 
 
-def needed_memory(
-    vertices: float, points: float, crossings: float, connectivity: int | str
-) -> float:
+def needed_memory(vertices: float, points: float, surface: float, connectivity: int | str) -> float:
     """Return how many bytes a graph of so many nodes and its distances take at their peak."""
-    bytes_ = (vertices + points + crossings) * BYTES_PER_NODE[connectivity] + BYTES_BESIDES
+    bytes_ = (vertices + points + surface) * BYTES_PER_NODE[connectivity] + FIXED_BYTES
     if connectivity != "any":
         return bytes_
-    shallow = min(points, SHALLOW * crossings)
-    labelled = vertices + crossings + shallow + (points - shallow) / BLOCK_POINTS
+    shallow = min(points, SHALLOW * surface)
+    labelled = vertices + surface + shallow + (points - shallow) / BLOCK_POINTS
     return bytes_ + labelled * BYTES_PER_LABELLED

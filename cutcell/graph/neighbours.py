@@ -1,4 +1,4 @@
-"""Edges as lists of neighbours."""
+"""Edges as adjacency lists."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def list_neighbours(
     edges: NDArray[np.int32], lengths: NDArray[np.float64], count: int
 ) -> Adjacency:
     """List the neighbours of each of `count` nodes: indptr (N + 1,), indices and lengths (2E,)."""
-    # Each thread reads all edges, and writes what is said of its own nodes.
+    # Each thread reads all edges, and writes the neighbours of its own nodes.
     shares = parts(count, threads())
     indptr = np.zeros(count + 1, np.int32)
     in_threads(lambda own: count_ends(edges, own.start, own.stop, indptr[1:]), shares)
@@ -38,16 +38,16 @@ def count_ends(edges, first, last, ends):
 
 
 @compiled
-def list_ends(edges, lengths, first, last, place, indices, both_ways):
-    """List the neighbours of some nodes, and how far they are where lengths are given.
+def list_ends(edges, lengths, first, last, cursor, indices, both_ways):
+    """List the neighbours of some nodes, and their distances if lengths are given.
 
-    `place` tells where the next one of each node goes.
+    `cursor` holds the next free index of each node.
     """
     for e in range(len(edges)):
         for side in range(2):
             node = edges[e, side]
             if first <= node < last:
-                indices[place[node]] = edges[e, 1 - side]
+                indices[cursor[node]] = edges[e, 1 - side]
                 if len(lengths):
-                    both_ways[place[node]] = lengths[e]
-                place[node] += 1
+                    both_ways[cursor[node]] = lengths[e]
+                cursor[node] += 1

@@ -1,10 +1,10 @@
-"""Faces of a mesh that are turned inside out, and what the graph takes as their outside.
+"""Faces that are inside out: which side of a surface is the outer one.
 
-Faces that hang together are made to run alike (`patches.py`). What is left to decide is which
-side of each patch is the outer one. A patch that encloses a volume (closed, or with small holes)
-should enclose a positive one. If it does not, rays tell whether its back is what is seen from
-outside (`exposure.py`). So an inverted arm is turned; a cavity in a body, which nobody sees, is
-not; nor is a sheet that is seen from both sides, and has no inside to be found.
+Connected faces are first oriented consistently (`patches.py`). Then it remains to decide which side
+of each patch is the outer one. A patch that encloses a volume (closed, or with small holes) should
+enclose a positive one. If the volume is negative, rays decide whether the outside sees its back
+(`exposure.py`). So an inverted arm is flipped; a cavity in a body, which nobody sees, is not; nor
+is a sheet, which is seen from both sides and encloses nothing.
 """
 
 from __future__ import annotations
@@ -14,28 +14,28 @@ from numpy.typing import NDArray
 
 from ..progress import Tell
 from ..rig import TriangleMesh
-from .boundary import boundary_of
-from .caps import fans
+from ..surface.edges import find_edges
+from ..surface.lattice import Lattice
+from ..surface.weld import weld
+from ..winding.boundary import boundary_of
+from ..winding.caps import cap_holes
 from .exposure import exposure
-from .lattice import Lattice
-from .mesh_edges import find_edges
 from .patches import find_patches, measure_faces
-from .weld import weld
 
 OPEN = 0.5
-"""A patch whose holes have this much of its own area is a sheet: it encloses nothing."""
+"""A patch is a sheet, which encloses nothing, if its holes have this share of its own area."""
 FLAT = 1e-6
-"""Times area to the power of 3/2: a smaller volume is none. A sphere encloses 0.09 times it."""
+"""Volumes below this, relative to area^(3/2), count as zero. For a sphere the ratio is 0.09."""
 SEEN = 0.02
-"""Of the rays from a side that is seen from outside, what share gets away at least."""
+"""The least share of rays that escape from a side that is seen from outside."""
 CLEARLY = 3.0
-"""How many times more of the outside one side must see than the other, to be the outer one."""
+"""The outer side must see the outside by this factor more than the other."""
 MOSTLY = 0.75
-"""A mesh is inverted as a whole if this much of the area that can be judged is."""
+"""A mesh is inverted as a whole if this share of the decidable area is."""
 
 
 def inverted_faces(mesh: TriangleMesh) -> NDArray[np.bool_]:
-    """Tell which faces of a mesh are turned inside out.
+    """Tell which faces of a mesh are inside out.
 
     Parameters
     ----------
@@ -45,8 +45,8 @@ def inverted_faces(mesh: TriangleMesh) -> NDArray[np.bool_]:
     Returns
     -------
     array, shape (m,), bool
-        Faces to turn round. Where nothing tells which side is the outer one, as on a sheet
-        seen from both sides, faces stay as the file has them.
+        Faces to flip. Where the outer side is undecidable, as on a sheet seen from both sides,
+        faces stay as the file has them.
 
     References
     ----------
@@ -59,7 +59,7 @@ def inverted_faces(mesh: TriangleMesh) -> NDArray[np.bool_]:
 
 
 def oriented(mesh: TriangleMesh) -> TriangleMesh:
-    """Return a mesh with its inverted faces turned round; the mesh itself if there are none."""
+    """Return a mesh with its inverted faces flipped; the mesh itself if there are none."""
     inverted = inverted_faces(mesh)
     if not inverted.any():
         return mesh
@@ -72,7 +72,7 @@ def find_inverted(
     partner: NDArray[np.int32],
     tell: Tell = lambda done: None,
 ) -> NDArray[np.bool_]:
-    """Tell which welded faces are turned inside out.
+    """Tell which welded faces are inside out.
 
     Parameters
     ----------
@@ -80,7 +80,7 @@ def find_inverted(
         In the unit cube.
     faces : array, shape (m, 3), int32
     partner : array, shape (3 m,), int32
-        See `mesh_edges.MeshEdges`.
+        See `surface.edges.MeshEdges`.
     tell : callable
         See `progress.Tell`.
 
@@ -106,22 +106,22 @@ def _find_inverted(
     tell: Tell,
 ) -> NDArray[np.bool_]:
     areas, volumes = measure_faces(vertices, faces)
-    turned, patch, rims, of_rim = find_patches(vertices, faces, partner, areas)
-    faces, volumes = flipped(faces, turned), np.where(turned, -volumes, volumes)
+    flips, patch, rims, of_rim = find_patches(vertices, faces, partner, areas)
+    faces, volumes = flipped(faces, flips), np.where(flips, -volumes, volumes)
     area, volume = np.bincount(patch, areas), np.bincount(patch, volumes)
     holes, missing = _cap(vertices, rims, of_rim, len(area))
     is_sheet = holes >= OPEN * area
     doubtful = ~is_sheet & (volume + missing < -FLAT * area**1.5)
     if area[is_sheet].sum() > area.sum() / 2:
-        doubtful |= is_sheet  # in a soup nothing else tells
+        doubtful |= is_sheet  # in a soup nothing else decides
     if not doubtful.any():
-        return turned
+        return flips
     front, back = exposure(vertices, faces, patch, doubtful, tell)
     wrong = (back >= SEEN) & (back >= CLEARLY * front)
     right = (front >= SEEN) & (front >= CLEARLY * back) | ~(doubtful | is_sheet)
     if wrong.any() and area[wrong].sum() >= MOSTLY * area[wrong | right].sum():
-        wrong = ~right  # what cannot be told was inverted with the rest
-    return turned ^ wrong[patch]
+        wrong = ~right  # what is undecidable was inverted with the rest
+    return flips ^ wrong[patch]
 
 
 def _cap(
@@ -130,23 +130,23 @@ def _cap(
     of_rim: NDArray[np.int32],
     count: int,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Close the holes of each patch; return the area of its caps, and the volume before them."""
+    """Cap the holes of each patch; return the area of the caps, and their signed volume."""
     if len(rims) == 0:
         return np.zeros(count), np.zeros(count)
-    # Two patches may share vertices, but no holes.
+    # Patches may share vertices, but not holes.
     key, ends = np.unique(of_rim[:, None] * np.int64(len(vertices)) + rims, return_inverse=True)
     a, b = ends.reshape(-1, 2).T
     side, index = np.unique(np.minimum(a, b) * len(key) + np.maximum(a, b), return_inverse=True)
-    balance = np.bincount(index, np.sign(b - a)).astype(np.int32)
+    incidence = np.bincount(index, np.sign(b - a)).astype(np.int32)
     edges = np.stack(np.divmod(side, len(key)), axis=1).astype(np.int32)
-    points = vertices[key % len(vertices)]
-    _, middles, caps = fans(points, *boundary_of(edges, balance))
-    areas, volumes = measure_faces(np.concatenate([points, middles]), caps)
-    of_cap = key[np.where(caps < len(key), caps, 0).max(axis=1)] // len(vertices)
-    lids, missing = (np.bincount(of_cap, x, count).astype(float) for x in (areas, volumes))
-    return lids, missing
+    caps = cap_holes(vertices[key % len(vertices)], boundary_of(edges, incidence))
+    areas, volumes = measure_faces(caps.vertices, caps.faces)
+    corner = np.where(caps.faces < len(key), caps.faces, 0).max(axis=1)
+    of_cap = key[corner] // len(vertices)
+    holes, missing = (np.bincount(of_cap, x, count).astype(float) for x in (areas, volumes))
+    return holes, missing
 
 
 def flipped(faces: NDArray[np.int32], which: NDArray[np.bool_]) -> NDArray[np.int32]:
-    """Return faces, shape (m, 3), of which some, (m,), are turned round."""
+    """Return faces, shape (m, 3), with some of them, (m,), flipped."""
     return np.where(which[:, None], faces[:, [0, 2, 1]], faces) if which.any() else faces

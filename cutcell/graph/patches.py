@@ -1,4 +1,4 @@
-"""Patches of a mesh whose faces are consistently oriented: neighbours run alike."""
+"""Consistently oriented patches of a mesh."""
 
 from __future__ import annotations
 
@@ -8,31 +8,30 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..compiled import compiled
+from ..surface.vectors import between, cross, dot, length
 from ..unions import join, numbered
-from .mesh_edges import find_edges
-from .solid_angle import between, cross, dot, length
 
 NONE = -1
 SAME = 0.99
-"""Cosine between normals: faces on each other, or nearly so."""
+"""Cosine between the normals of duplicate faces, at least."""
 
 
 class Patches(NamedTuple):
-    """Faces that hang together across manifold edges, and how to make them consistent.
+    """Faces connected across manifold edges, and which to flip to make them consistent.
 
     Parameters
     ----------
-    turned : array, shape (m,), bool
-        Faces to turn round so that all of a patch run alike.
+    flips : array, shape (m,), bool
+        Inconsistently oriented faces: to be flipped.
     patch : array, shape (m,), int32
         The patch of each face, numbered from 0.
     rims : array, shape (s, 2), int32
-        Sides that leave patches open, as the faces run once some are turned.
+        Boundary edges of the patches, in the direction of the flipped faces.
     of_rim : array, shape (s,), int32
         The patch of each.
     """
 
-    turned: NDArray[np.bool_]
+    flips: NDArray[np.bool_]
     patch: NDArray[np.int32]
     rims: NDArray[np.int32]
     of_rim: NDArray[np.int32]
@@ -46,9 +45,9 @@ def find_patches(
 ) -> Patches:
     """Orient faces consistently, component by component.
 
-    Two faces that alone share an edge are consistent if they use it in opposite directions. Of
-    the two ways to orient a component, the one stays that turns less area. A component that
-    cannot be oriented (a Moebius strip) is left as it is, and falls into several patches.
+    Two faces at a manifold edge are consistent if they traverse it in opposite directions. Of
+    the two orientations of a component, the one that flips less area is taken. A component that
+    is not orientable (a Moebius strip) is left as it is, and divided into several patches.
 
     Parameters
     ----------
@@ -56,50 +55,42 @@ def find_patches(
     faces : array, shape (m, 3), int32
         Welded.
     partner : array, shape (3 m,), int32
-        See `mesh_edges.MeshEdges`.
+        See `surface.edges.MeshEdges`.
     areas : array, shape (m,)
     """
-    turned, patch, is_plain, is_orientable = _flood(faces, partner, areas)
+    flips, patch, is_plain, is_orientable = _flood(faces, partner, areas)
     if is_plain:
-        return Patches(turned, patch, np.empty((0, 2), np.int32), np.empty(0, np.int32))
-    if turned.any() or not is_orientable:
-        partner = _part_doubled(vertices, faces, partner)
-        turned, patch, _, is_orientable = _flood(faces, partner, areas)
+        return Patches(flips, patch, np.empty((0, 2), np.int32), np.empty(0, np.int32))
+    if flips.any() or not is_orientable:
+        partner = _without_duplicates(vertices, faces, partner)
+        flips, patch, _, is_orientable = _flood(faces, partner, areas)
     if not is_orientable:
-        patch = _split(faces, partner, turned)
-    return Patches(turned, patch, *_rims(faces, partner, turned, patch))
+        patch = _split(faces, partner, flips)
+    return Patches(flips, patch, *_rims(faces, partner, flips, patch))
 
 
-def _part_doubled(
+def _without_duplicates(
     vertices: NDArray[np.float64], faces: NDArray[np.int32], partner: NDArray[np.int32]
 ) -> NDArray[np.int32]:
-    """Return the partners without those that lie on each other and look the same way.
+    """Return the partners without pairs of duplicate faces, which have the same normal.
 
-    Such faces are there twice. To turn one of them would make a body without volume.
+    To flip one of them would enclose a body without volume.
     """
-    side = np.flatnonzero(partner >= 0)
+    half_edge = np.flatnonzero(partner >= 0)
     start = faces.ravel()
-    side = side[start[side] == start[partner[side]]]
-    corners = vertices[faces[np.stack([side, partner[side]]) // 3]]
+    half_edge = half_edge[start[half_edge] == start[partner[half_edge]]]
+    corners = vertices[faces[np.stack([half_edge, partner[half_edge]]) // 3]]
     normals = np.cross(corners[:, :, 1] - corners[:, :, 0], corners[:, :, 2] - corners[:, :, 0])
     sizes = np.linalg.norm(normals, axis=2).prod(axis=0)
     same = np.einsum("ij,ij->i", *normals) > SAME * sizes
     partner = partner.copy()
-    partner[side[same]] = NONE
+    partner[half_edge[same]] = NONE
     return partner
-
-
-def inconsistent_faces(
-    vertices: NDArray[np.float64], faces: NDArray[np.int32]
-) -> NDArray[np.bool_]:
-    """Tell which welded faces run against most of those they hang together with, shape (m,)."""
-    areas, _ = measure_faces(vertices, faces)
-    return find_patches(vertices, faces, find_edges(faces).partner, areas).turned
 
 
 @compiled
 def measure_faces(vertices, faces):
-    """Return each face's area, and the signed volume between it and the middle of the unit cube."""
+    """Return the area of each face, and its signed volume with the middle of the unit cube."""
     areas, volumes = np.empty(len(faces)), np.empty(len(faces))
     middle = 0.5, 0.5, 0.5
     for f in range(len(faces)):
@@ -111,83 +102,83 @@ def measure_faces(vertices, faces):
 
 @compiled
 def _flood(faces, partner, areas):
-    """Spread the orientation of one face over each component.
+    """Propagate the orientation of one face over each component.
 
-    Returns which faces to turn, and their components; whether all of these are closed and
-    consistent as they are, and whether all can be oriented.
+    Returns which faces to flip, and their components; whether all components are closed and
+    consistent as they are; and whether all are orientable.
     """
-    turned, patch = np.zeros(len(faces), np.bool_), np.full(len(faces), NONE, np.int32)
+    flips, patch = np.zeros(len(faces), np.bool_), np.full(len(faces), NONE, np.int32)
     found = np.empty(len(faces), np.int32)  # faces in the order in which they are reached
     count, reached, is_plain, is_orientable = 0, 0, True, True
     for seed in range(len(faces)):
         if patch[seed] != NONE:
             continue
-        begin, is_consistent, as_is, balance = reached, True, True, 0.0
+        begin, is_consistent, as_is, kept_area = reached, True, True, 0.0
         found[reached], patch[seed] = seed, count
         reached += 1
         done = begin
         while done < reached:
             f = found[done]
             done += 1
-            balance += -areas[f] if turned[f] else areas[f]
-            for side in range(3 * f, 3 * f + 3):
-                other = partner[side]
+            kept_area += -areas[f] if flips[f] else areas[f]
+            for half_edge in range(3 * f, 3 * f + 3):
+                other = partner[half_edge]
                 if other == NONE:
                     is_plain = False
                     continue
                 g = other // 3
-                # Consistent neighbours start the shared edge at its two different ends.
-                against = faces[f, side % 3] == faces[g, other % 3]
+                # Consistent neighbours traverse the shared edge in opposite directions.
+                against = faces[f, half_edge % 3] == faces[g, other % 3]
                 if patch[g] == NONE:
-                    patch[g], turned[g] = count, turned[f] != against
-                    as_is &= not turned[g]
+                    patch[g], flips[g] = count, flips[f] != against
+                    as_is &= not flips[g]
                     found[reached] = g
                     reached += 1
-                elif turned[g] != (turned[f] != against):
+                elif flips[g] != (flips[f] != against):
                     is_consistent = False
         if not is_consistent:
             is_orientable = False
         is_plain &= as_is
         for k in range(begin, begin if as_is else reached):
             f = found[k]
-            turned[f] = is_consistent and turned[f] == (balance >= 0)
+            flips[f] = is_consistent and flips[f] == (kept_area >= 0)
         count += 1
-    return turned, patch, is_plain and is_orientable, is_orientable
+    return flips, patch, is_plain and is_orientable, is_orientable
 
 
 @compiled
-def _split(faces, partner, turned):
-    """Give each patch of consistent faces a number."""
+def _split(faces, partner, flips):
+    """Return the patch of each face: faces connected across consistent edges."""
     first = np.arange(len(faces))
-    for side in range(len(partner)):
-        other = partner[side]
-        if other < side:
+    for half_edge in range(len(partner)):
+        other = partner[half_edge]
+        if other < half_edge:
             continue
-        if _is_consistent(faces, turned, side, other):
-            join(first, side // 3, other // 3)
+        if _is_consistent(faces, flips, half_edge, other):
+            join(first, half_edge // 3, other // 3)
     return numbered(first)[0]
 
 
 @compiled
-def _rims(faces, partner, turned, patch):
-    """List the sides that no consistent face adjoins, and the patches that they bound."""
+def _rims(faces, partner, flips, patch):
+    """List the boundary edges of the patches, and the patch of each."""
     is_open = np.zeros(len(partner), np.bool_)
-    for side in range(len(partner)):
-        other = partner[side]
-        is_open[side] = other == NONE or not _is_consistent(faces, turned, side, other)
+    for half_edge in range(len(partner)):
+        other = partner[half_edge]
+        is_open[half_edge] = other == NONE or not _is_consistent(faces, flips, half_edge, other)
     found = np.flatnonzero(is_open)
     rims, of_rim = np.empty((len(found), 2), np.int32), np.empty(len(found), np.int32)
     for s in range(len(found)):
         f, k = found[s] // 3, found[s] % 3
         start, end = faces[f, k], faces[f, (k + 1) % 3]
-        rims[s, 0], rims[s, 1] = (end, start) if turned[f] else (start, end)
+        rims[s, 0], rims[s, 1] = (end, start) if flips[f] else (start, end)
         of_rim[s] = patch[f]
     return rims, of_rim
 
 
 @compiled(inline="always")
-def _is_consistent(faces, turned, side, other):
-    """Tell whether two faces that share an edge use it in opposite directions, once turned."""
-    f, g = side // 3, other // 3
-    against = faces[f, side % 3] == faces[g, other % 3]
-    return against == (turned[f] != turned[g])
+def _is_consistent(faces, flips, half_edge, other):
+    """Tell whether two faces traverse their shared edge in opposite directions, once flipped."""
+    f, g = half_edge // 3, other // 3
+    against = faces[f, half_edge % 3] == faces[g, other % 3]
+    return against == (flips[f] != flips[g])

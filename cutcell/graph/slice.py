@@ -1,7 +1,7 @@
-"""One slice of the lattice and what its rays meet (paper section 3.1, figure "ray segments").
+"""One slice of the lattice and its ray segments (paper section 3.1, figure "ray segments").
 
-The graph is built from all rays at once and forgets the pieces that it drops. Here the rays
-of one slice are diced again, to be looked at.
+`build_graph` handles all rays at once and does not store the segments that it drops. Here the rays
+of one slice are divided again, for display.
 """
 
 from __future__ import annotations
@@ -14,30 +14,30 @@ from numpy.typing import NDArray
 from ..checks import check_choice, check_integer, check_number
 from ..errors import ParameterError
 from ..rig import TriangleMesh
-from .lattice import Lattice
+from ..surface.lattice import Lattice
+from ..surface.rays import AXES, RayHits, cast_rays
+from ..surface.weld import weld
+from ..winding import winding_number
 from .orientation import oriented
-from .rays import AXES, Crossings, cast_rays
-from .weld import weld
-from .winding import winding_number
 
 
 @dataclass(frozen=True, eq=False)
 class RaySlice:
-    """Parallel rays in one plane of the lattice, diced by crossings and lattice points.
+    """Parallel rays in one plane of the lattice, divided at ray hits and lattice points.
 
     Positions are in the unit cube.
 
     Parameters
     ----------
     low, high : arrays, shape (s, 3), float64
-        The ends of each segment, ray by ray, upward; those that reach the cube's wall lack
-        an end and are left out.
+        The ends of each segment, ray by ray, upward, without those at the wall of the cube,
+        which lack an end.
     winding : array, shape (s,), float64
         The winding number at each segment's midpoint.
     kept : array, shape (s,), bool
         Whether it is at least tau.
     crossing : array, shape (c, 3), float64
-        Where the rays meet triangles.
+        Ray hits.
     sign : array, shape (c,), int8
         +1 where a ray leaves through a triangle's back, -1 where it enters.
     triangle : array, shape (c,), int32
@@ -64,7 +64,7 @@ def slice_rays(
     winding_threshold: float = 0.5,
     orient: bool = True,
 ) -> RaySlice:
-    """Dice the rays of one slice of the lattice.
+    """Divide the rays of one slice of the lattice into segments.
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ def slice_rays(
     axis : int
         Which way the rays run: 0, 1, 2 for x, y, z.
     normal : int
-        What the slice is perpendicular to; another axis.
+        The axis perpendicular to the slice; not the same as `axis`.
     index : int
         Which slice, from 0 to R - 1: the one at (index + 1/2) / R.
     winding_threshold : float
@@ -107,47 +107,47 @@ def slice_rays(
     if orient:
         mesh = oriented(mesh)
     vertices, vertex_node = weld(lattice.to_unit(mesh.vertices))
-    crossings = cast_rays(vertices, vertex_node[mesh.faces], resolution, axis)
+    hits = cast_rays(vertices, vertex_node[mesh.faces], resolution, axis)
     u, v, along = AXES[axis]
     across = v if normal == u else u
     every = np.arange(resolution)
     rays = index * resolution + every if normal == u else every * resolution + index
 
-    place, number = _segments(crossings, rays, resolution)
+    ends, number = _segments(hits, rays, resolution)
     low, high = (np.empty((len(number), 3)) for _ in range(2))
-    for ends, at in zip((low, high), place.T, strict=True):
-        ends[:, normal] = (index + 0.5) / resolution
-        ends[:, across] = (number + 0.5) / resolution
-        ends[:, along] = at
+    for points, position in zip((low, high), ends.T, strict=True):
+        points[:, normal] = (index + 0.5) / resolution
+        points[:, across] = (number + 0.5) / resolution
+        points[:, along] = position
     winding = winding_number(mesh, lattice.to_file((low + high) / 2))
 
-    count = np.diff(crossings.start)[rays]
-    hit = np.concatenate([np.arange(*crossings.start[[ray, ray + 1]]) for ray in rays])
+    count = np.diff(hits.start)[rays]
+    hit = np.concatenate([np.arange(*hits.start[[ray, ray + 1]]) for ray in rays])
     crossing = np.empty((len(hit), 3))
     crossing[:, normal] = (index + 0.5) / resolution
     crossing[:, across] = (np.repeat(every, count) + 0.5) / resolution
-    crossing[:, along] = crossings.position[hit]
+    crossing[:, along] = hits.position[hit]
     return RaySlice(
         low,
         high,
         winding,
         winding >= threshold,
         crossing,
-        crossings.sign[hit],
-        crossings.triangle[hit],
+        hits.sign[hit],
+        hits.triangle[hit],
         lattice,
     )
 
 
 def _segments(
-    crossings: Crossings, rays: NDArray[np.intp], resolution: int
+    hits: RayHits, rays: NDArray[np.intp], resolution: int
 ) -> tuple[NDArray[np.float64], NDArray[np.intp]]:
-    """Return where each segment begins and ends, shape (s, 2), and the place of its ray."""
+    """Return both ends of each segment, shape (s, 2), and the index of its ray in the slice."""
     lattice = (np.arange(resolution) + 0.5) / resolution
-    place, number = [], []
+    found, number = [], []
     for k, ray in enumerate(rays):
-        met = crossings.position[crossings.start[ray] : crossings.start[ray + 1]]
-        ends = np.unique(np.concatenate([met, lattice]))
-        place.append(np.stack([ends[:-1], ends[1:]], axis=1))
+        position = hits.position[hits.start[ray] : hits.start[ray + 1]]
+        ends = np.unique(np.concatenate([position, lattice]))
+        found.append(np.stack([ends[:-1], ends[1:]], axis=1))
         number.append(np.full(len(ends) - 1, k))
-    return np.concatenate(place), np.concatenate(number)
+    return np.concatenate(found), np.concatenate(number)

@@ -44,9 +44,9 @@ def clip_error(
     reference: ArrayLike,
     *,
     frames: int = 24,
-    count: str = "places",
+    count: str = "welded",
 ) -> tuple[ClipError, ...]:
-    """Play every clip of a rig with both weights and compare where the skin goes.
+    """Play every clip of a rig with both weights and compare where the surface goes.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ def clip_error(
         Rows sum to one, or to zero: such vertices stay at their rest position.
     frames : int
         Frames compared of each clip, evenly spread, at most.
-    count : {"places", "vertices"}
+    count : {"welded", "vertices"}
         See `vertex_shares`.
 
     Returns

@@ -7,13 +7,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..checks import check_choice
 from ..errors import ParameterError
-from ..graph.weld import WELD_TOLERANCE, weld
 from ..rig import TriangleMesh
+from ..surface.weld import WELD_TOLERANCE, weld
 
-COUNTS = ("places", "vertices")
+COUNTS = ("welded", "vertices")
 
 
-def vertex_shares(mesh: TriangleMesh, count: str = "places") -> NDArray[np.float64]:
+def vertex_shares(mesh: TriangleMesh, count: str = "welded") -> NDArray[np.float64]:
     """Return each vertex's share of a mean over the mesh.
 
     Exporters split a vertex at every texture seam. Counted as they are in the file, seams
@@ -22,9 +22,10 @@ def vertex_shares(mesh: TriangleMesh, count: str = "places") -> NDArray[np.float
     Parameters
     ----------
     mesh : TriangleMesh
-    count : {"places", "vertices"}
-        "places": every place counts once, its vertices share it evenly. "vertices": every
-        vertex of the file counts the same. Vertices that no face uses count nothing.
+    count : {"welded", "vertices"}
+        "welded": every welded vertex counts once, the file's vertices share it evenly.
+        "vertices": every vertex of the file counts the same. Vertices that no face uses count
+        nothing.
 
     Returns
     -------
@@ -40,10 +41,10 @@ def vertex_shares(mesh: TriangleMesh, count: str = "places") -> NDArray[np.float
     share = np.zeros(len(mesh.vertices))
     used = np.unique(mesh.faces)
     share[used] = 1.0
-    if count == "places":
+    if count == "welded":
         low, high = mesh.bounds
-        place = weld(mesh.vertices[used], WELD_TOLERANCE * float((high - low).max()))[1]
-        share[used] = 1.0 / np.bincount(place)[place]
+        welded = weld(mesh.vertices[used], WELD_TOLERANCE * float((high - low).max()))[1]
+        share[used] = 1.0 / np.bincount(welded)[welded]
     return share / share.sum()
 
 

@@ -17,10 +17,10 @@ from .weight_error import checked_weights
 NEAR = 0.05
 """Of the longest side: vertices within it face each other across a gap."""
 FAR = 0.25
-"""Of the longest side: a way through the body at least this long makes it a gap."""
+"""Of the longest side: a path through the body at least this long makes it a gap."""
 SEED = 0
 BLOCK = 64
-"""Searches at once; each holds a distance for every node."""
+"""Searches at once; each keeps a distance for every node."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,7 +50,7 @@ def find_gaps(
     Parameters
     ----------
     graph : CutCellGraph
-        Of the mesh; its paths are the ways through the body.
+        Of the mesh; its paths run through the body.
     near, far : float
         In unit-cube lengths, the longest side of the mesh being 1.
     searches : int
@@ -59,7 +59,7 @@ def find_gaps(
     Returns
     -------
     array, shape (p, 2), int32
-        Vertices of the file, one for each place. Parts that hang together nowhere are
+        Vertices of the file, one for each welded vertex. Components that no edge joins are
         no pair: a sleeve should follow its arm.
 
     Raises
@@ -78,7 +78,7 @@ def find_gaps(
         neighbours = neighbours[np.isin(neighbours[:, 0], starts)]
     neighbours = neighbours[np.lexsort(neighbours.T[::-1])]
     matrix = graph.csr()
-    piece = connected_components(matrix, directed=False)[1]
+    component = connected_components(matrix, directed=False)[1]
     found = [np.empty((0, 2), np.intp)]
     for first in range(0, len(starts), BLOCK):
         part = starts[first : first + BLOCK]
@@ -86,7 +86,7 @@ def find_gaps(
         begin, end = np.searchsorted(neighbours[:, 0], [part[0], part[-1] + 1])
         a, b = neighbours[begin:end].T
         beyond = ~np.isfinite(reach[np.searchsorted(part, a), nodes[b]])
-        together = piece[nodes[a]] == piece[nodes[b]]
+        together = component[nodes[a]] == component[nodes[b]]
         found.append(neighbours[begin:end][beyond & together])
     return vertex[np.concatenate(found)].astype(np.int32)
 

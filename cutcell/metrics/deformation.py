@@ -1,4 +1,4 @@
-"""The error that is seen when joints turn (paper section 4.1.1, "Rest-Pose Deformation Error")."""
+"""The error that is seen when joints turn (paper section 4.3.1, "Rest-Pose Deformation Error")."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from .weight_error import checked_pair
 AXES = ("x", "y", "z")
 CM2 = 1e4
 """Square centimetres in a square metre: the longest side of a mesh counts as 1 m."""
-BLOCK = 1 << 20
-"""Numbers held at once for each array of a block of vertices: 8 MB."""
+BLOCK_NUMBERS = 1 << 20
+"""Numbers of each array of a block of vertices: 8 MB."""
 
 
 @dataclass(frozen=True)
@@ -92,10 +92,10 @@ def deformation_error(
     degrees: float = 30.0,
     *,
     joints: ArrayLike | None = None,
-    count: str = "places",
+    count: str = "welded",
     progress: Progress = silent,
 ) -> DeformationError:
-    """Turn every joint about x, y and z and compare where two sets of weights put the skin.
+    """Turn every joint about x, y and z and compare where two sets of weights put the surface.
 
     Turning joint j moves a vertex v by (R - I)(v - p_j) times the weight S_j that it gives
     to j and all joints below. About the x axis that difference has the squared length
@@ -113,7 +113,7 @@ def deformation_error(
         θ, how far each joint turns, 0 to 180.
     joints : array_like of int, optional
         The joints to turn; those that may carry weight (`Skeleton.deform`) when left out.
-    count : {"places", "vertices"}
+    count : {"welded", "vertices"}
         See `vertex_shares`.
     progress : callable
         See `cutcell.progress`; the stage is called "deformation".
@@ -133,7 +133,7 @@ def deformation_error(
 
     References
     ----------
-    Paper section 4.1.1.
+    Paper section 4.3.1.
     """
     mesh, skeleton = parts_of(rig)
     check_has_joints(skeleton)
@@ -150,7 +150,7 @@ def deformation_error(
     turn_mean = np.zeros((len(skeleton.joints), 3))
     turn_largest = np.zeros((len(skeleton.joints), 3))
     below = skeleton.subtree[turned].T.astype(np.float64)
-    step = max(1, BLOCK // len(skeleton.joints))
+    step = max(1, BLOCK_NUMBERS // len(skeleton.joints))
     for first in range(0, len(ours), step):
         progress("deformation", first / len(ours))
         part = slice(first, first + step)

@@ -49,7 +49,7 @@ def joint_table(
     reference: ArrayLike,
     *,
     degrees: float = 30.0,
-    count: str = "places",
+    count: str = "welded",
 ) -> tuple[JointRow, ...]:
     """List what each joint that may carry weight contributes, the greatest error first.
 
@@ -74,13 +74,13 @@ def joint_table(
     ours, theirs = checked_pair(predicted, reference)
     share = vertex_shares(mesh, count)
     more, less = share @ np.maximum(ours - theirs, 0), share @ np.maximum(theirs - ours, 0)
-    held, wanted = share @ ours, share @ theirs
+    given, wanted = share @ ours, share @ theirs
     axis = error.turn_mean.argmax(axis=1)
     rows = [
         JointRow(
             int(j),
             skeleton.names[j],
-            float(held[j]),
+            float(given[j]),
             float(wanted[j]),
             float(less[j]),
             float(more[j]),

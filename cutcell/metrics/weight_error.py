@@ -1,4 +1,4 @@
-"""Errors of the weights themselves (paper section 4.1)."""
+"""Errors of the weights themselves (paper section 4.3)."""
 
 from __future__ import annotations
 
@@ -31,13 +31,13 @@ def weight_l1(predicted: ArrayLike, reference: ArrayLike, shares: ArrayLike | No
     Raises
     ------
     WeightsError
-        The two do not fit each other, or hold numbers that are no weights.
+        The two do not fit each other, or contain numbers that are no weights.
     ParameterError
         Shares that do not fit.
 
     References
     ----------
-    Paper section 4.1; Xu et al. 2020 (RigNet).
+    Paper section 4.3; Xu et al. 2020 (RigNet).
     """
     ours, theirs = checked_pair(predicted, reference)
     share = checked_shares(shares, len(ours))
@@ -75,7 +75,7 @@ def precision_recall(
 
     References
     ----------
-    Paper section 4.1, with its threshold.
+    Paper section 4.3, with its threshold.
     """
     threshold = check_number("threshold", threshold, 0, 1)
     ours, theirs = checked_pair(predicted, reference)

@@ -2,34 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from time import perf_counter
+from typing import Unpack
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..checks import check_choice, check_has_joints, check_integer, check_number, check_positions
+from ..checks import check_has_joints, check_positions
 from ..errors import SkeletonError
-from ..geodesics import FALLBACK_REASONS, LEAVES, BoneDistances, bone_distances
-from ..geodesics.distances import MOST_SAMPLES
+from ..geodesics import FALLBACK_REASONS, BoneDistances, bone_distances
 from ..graph import CutCellGraph, build_graph
-from ..graph.lattice import Lattice
+from ..inputs import RigLike, as_rig
 from ..memory import check_matrix
+from ..method import ANIMATION, Method, MethodName, Options, method_of
 from ..progress import Progress, silent
 from ..rig import Rig
-from ..threads import meanwhile
-from .kernels import kernels_are_compiled, load_kernels
-from .refine import check_refinement, refine_weights
-from .skin import Skin
-from .weights import (
-    DEFAULT_LEAF,
-    FALLOFFS,
-    check_pruning,
-    joints_needed,
-    reach_needed,
-    skinning_weights,
-)
+from ..surface.lattice import Lattice
+from .compilation import is_compiled, warm_up
+from .refine import Touches, check_refinement, refine_weights
+from .surface_operators import SurfaceOperators
+from .weights import skinning_weights
 
 COPIES = 4
 """Matrices of vertices and joints that there are at a time, distances and weights, at most."""
@@ -60,43 +55,39 @@ class Binding:
 
 
 def bind(
-    rig: Rig,
-    resolution: int = 64,
+    rig: RigLike,
+    resolution: int | None = None,
     *,
-    connectivity: int | str = "any",
-    winding_threshold: float = 0.5,
-    orient: bool = True,
-    samples: int = 5,
-    leaf: str | None = None,
-    falloff: str = "rig",
-    alpha: float = 0.5,
-    max_influences: int | None = 4,
-    threshold: float = 0.0,
+    method: Method | MethodName = ANIMATION,
     smoothing: int = 0,
     symmetric: bool = False,
     locked: Sequence[int | str] = (),
     progress: Progress = silent,
+    **options: Unpack[Options],
 ) -> Binding:
     """Compute skinning weights for a rig.
 
+    It is the stages one after the other, each with the same method: `build_graph`,
+    `bone_distances`, `skinning_weights`, and last what touches weights up, `refine_weights`.
+
     Parameters
     ----------
-    rig : Rig
-        Its own weights are not used, except that joints without any stay without
-        (`Skeleton.deform`).
-    resolution, connectivity, winding_threshold, orient
-        See `build_graph`. The default measures geodesic distances; connectivity 6 is the
-        paper's, whose paths inside follow the axes.
-    samples, leaf
-        See `bone_distances`. Left out, `leaf` is what the falloff is made for: "fit" for
-        "rig", "point" for "paper".
-    falloff, alpha, max_influences, threshold
-        See `skinning_weights`.
+    rig : Rig, (mesh, skeleton) or (vertices, faces, joints, parents)
+        The mesh may be of any kind that `build_graph` takes. A rig's own weights are not used,
+        except that joints without any stay without (`Skeleton.deform`).
+    resolution : int, optional
+        R, 2 to 1024; the method's when left out.
+    method : Method, "animation" or "paper"
+        How weights are computed. `cutcell.ANIMATION` is made to animate with, `cutcell.PAPER` is
+        the paper's method.
     smoothing, symmetric, locked
         See `refine_weights`.
     progress : callable
         See `cutcell.progress`; stages are "graph", "distances", "weights", and
         before them "compile" the very first time on a machine, and after a change of the code.
+    **options
+        Single options on top of the method, see `Method`: `connectivity`, `winding_threshold`,
+        `orient`, `samples`, `leaf`, `falloff`, `alpha`, `max_influences`, `threshold`.
 
     Returns
     -------
@@ -105,7 +96,7 @@ def bind(
     Raises
     ------
     ParameterError
-        A parameter is out of its range.
+        A parameter is out of its range, or has no effect.
     MeshError, SkeletonError, WeightsError
         The rig cannot be bound; the sentence says why.
 
@@ -114,70 +105,52 @@ def bind(
     >>> rig = cutcell.load("character.glb")  # doctest: +SKIP
     >>> binding = cutcell.bind(rig)  # doctest: +SKIP
     >>> cutcell.save("bound.glb", rig.with_weights(binding.weights))  # doctest: +SKIP
+    >>> cutcell.bind((vertices, faces, joints, parents), method="paper")  # doctest: +SKIP
     """
-    # Each stage checks what it is given, but that would be late for the last.
-    Lattice.around(rig.mesh, resolution)
-    samples = check_integer("samples", samples, 1, MOST_SAMPLES)
-    falloff = check_choice("falloff", falloff, FALLOFFS)
-    leaf = DEFAULT_LEAF[falloff] if leaf is None else check_choice("leaf", leaf, LEAVES)
-    alpha = check_number("alpha", alpha, 0, 1)
-    max_influences, threshold = check_pruning(max_influences, threshold)
+    rig = as_rig(rig)
+    method = method_of(method, resolution, **options)
+    touches: Touches = {"smoothing": smoothing, "symmetric": symmetric, "locked": locked}
+    _check(rig, method, touches)
+    if not is_compiled():
+        progress("compile", 0.0)
+        warm_up()
+        progress("compile", 1.0)
+    seconds: dict[str, float] = {}
+    with _timed("graph", seconds):
+        graph = build_graph(rig.mesh, method=method, progress=progress)
+    with _timed("distances", seconds):
+        _begin_what_follows(graph, method)
+        distances = bone_distances(
+            graph, rig.skeleton, method=method, allowed=rig.allowed, progress=progress
+        )
+    with _timed("weights", seconds):
+        progress("weights", 0.0)
+        weights = skinning_weights(distances, method=method, allowed=rig.allowed, progress=progress)
+        weights = refine_weights(rig, weights, method=method, **touches)
+        progress("weights", 1.0)
+    return Binding(weights, graph, distances, seconds, _warnings(graph, distances))
+
+
+def _begin_what_follows(graph: CutCellGraph, method: Method) -> None:
+    """Let other cores begin what later stages will ask of the graph."""
+    if method.falloff == "rig":
+        SurfaceOperators.begin(graph)
+
+
+def _check(rig: Rig, method: Method, touches: Touches) -> None:
+    """Refuse what a stage would refuse, before the first one has begun."""
+    Lattice.around(rig.mesh, method.resolution)
     check_has_joints(rig.skeleton)
     check_positions(rig.skeleton.joints, "joint", SkeletonError)
-    check_refinement(rig, smoothing, symmetric, locked)
+    check_refinement(rig, **touches)
     check_matrix(len(rig.mesh.vertices), len(rig.skeleton.joints), COPIES)
-    if not kernels_are_compiled():
-        progress("compile", 0.0)
-        load_kernels()
-        progress("compile", 1.0)
-    ticks = [perf_counter()]
-    graph = build_graph(
-        rig.mesh,
-        resolution,
-        winding_threshold=winding_threshold,
-        connectivity=connectivity,
-        orient=orient,
-        progress=progress,
-    )
-    ticks.append(perf_counter())
-    if connectivity == "any":
-        graph.begin_contracting()
-    skin = meanwhile(lambda: Skin.of(graph)) if falloff == "rig" else None
-    distances = bone_distances(
-        graph,
-        rig.skeleton,
-        samples=samples,
-        leaf=leaf,
-        nearest_joints=joints_needed(falloff, max_influences),
-        within=reach_needed(falloff),
-        allowed=rig.allowed,
-        progress=progress,
-    )
-    ticks.append(perf_counter())
-    progress("weights", 0.0)
-    weights = skinning_weights(
-        distances,
-        falloff=falloff,
-        alpha=alpha,
-        max_influences=max_influences,
-        threshold=threshold,
-        allowed=rig.allowed,
-        skin=skin and skin(),
-        progress=progress,
-    )
-    weights = refine_weights(
-        rig,
-        weights,
-        smoothing=smoothing,
-        symmetric=symmetric,
-        locked=locked,
-        max_influences=max_influences,
-        threshold=threshold,
-    )
-    progress("weights", 1.0)
-    ticks.append(perf_counter())
-    seconds = dict(zip(("graph", "distances", "weights"), np.diff(ticks).tolist(), strict=True))
-    return Binding(weights, graph, distances, seconds, _warnings(graph, distances))
+
+
+@contextmanager
+def _timed(stage: str, seconds: dict[str, float]) -> Iterator[None]:
+    begin = perf_counter()
+    yield
+    seconds[stage] = perf_counter() - begin
 
 
 def _warnings(graph: CutCellGraph, distances: BoneDistances) -> tuple[str, ...]:

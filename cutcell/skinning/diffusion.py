@@ -1,4 +1,4 @@
-"""Weights spread over the skin, as far as the skin is away from its bone."""
+"""Bone heat on the surface: weights in equilibrium between conduction and the bones' pull."""
 
 from __future__ import annotations
 
@@ -10,56 +10,56 @@ from numpy.typing import NDArray
 from ..compiled import compiled
 from ..progress import Shares, Tell
 from ..threads import in_threads, parts, watched
-from .elimination import LANES, Factors, factorise, substitute
-from .skin import Skin
+from .ldl import RIGHT_SIDES, Factors, factorise, substitute
+from .surface_operators import SurfaceOperators
 
 SHARPNESS = 3.0
-"""c: weights spread over about 1 / sqrt(c) of the distance from skin to bone."""
+"""c: weights spread over about 1 / sqrt(c) of the distance from surface to bone."""
 LEAST_CELLS = 0.25
-"""Lattice cells; skin on a bone itself would not let go of its weights at all."""
+"""Lattice cells: a vertex on a bone itself would keep its weights whatever is around it."""
 
 
 @dataclass(frozen=True, eq=False)
 class Diffusion:
-    """The equilibrium of weights that the skin conducts and its bones hold on to.
+    """The screened Poisson equation of bone heat.
 
         (L + M H) w = M H p,    H = c / depth²
 
-    Without the right side's p being spread already, this is bone heat. Each joint of the
-    skeleton bends the skin over a stretch about as long as the limb is thick there.
+    The right side p is the surface as it was divided among the joints by distance. Each joint
+    then bends the surface over a stretch about as long as the limb is thick there.
 
     Parameters
     ----------
-    hold : array, shape (k,)
+    screening : array, shape (k,)
         The diagonal of M H.
     factors : Factors
-        Of the matrix, with rows and columns in the order of elimination.
+        Of the matrix, with rows and columns in the fill-reducing ordering.
     order : array, shape (k,), int32
-        Which place is at each of those.
+        That ordering, of welded vertices.
 
     References
     ----------
     Baran & Popović 2007, "Automatic rigging and animation of 3D characters", section 4.
     """
 
-    hold: NDArray[np.float64]
+    screening: NDArray[np.float64]
     factors: Factors
     order: NDArray[np.int32]
 
     @classmethod
     def over(
         cls,
-        skin: Skin,
+        surface: SurfaceOperators,
         depth: NDArray[np.float64],
         resolution: int,
         tell: Tell = lambda done: None,
     ) -> Diffusion:
-        """Prepare the equation.
+        """Factorise the equation's matrix.
 
         Parameters
         ----------
-        skin : Skin
-            Of k places.
+        surface : SurfaceOperators
+            Of k welded vertices.
         depth : array, shape (k,)
             Distance to the nearest bone through the body, in the unit cube.
         resolution : int
@@ -68,13 +68,15 @@ class Diffusion:
             See `progress.Tell`.
         """
         depth = np.maximum(depth, LEAST_CELLS / resolution)
-        # A place without area conducts nothing; any positive number lets it keep its own weights.
-        hold = np.maximum(skin.areas, 1e-12) * SHARPNESS / depth**2
-        start, column, value = skin.stiffness
-        diagonal = value[start[:-1]] + hold
+        # A vertex without area conducts nothing; any positive number makes it keep its own weights.
+        screening = np.maximum(surface.areas, 1e-12) * SHARPNESS / depth**2
+        start, column, value = surface.stiffness
+        diagonal = value[start[:-1]] + screening
         matrix = start, column, value, diagonal
-        factors = watched(lambda pace: factorise(*matrix, skin.order, pace), len(hold), tell)
-        return cls(hold, factors, skin.order)
+        factors = watched(
+            lambda pace: factorise(*matrix, surface.order, pace), len(screening), tell
+        )
+        return cls(screening, factors, surface.order)
 
     def spread(
         self, weights: NDArray[np.float64], tell: Tell = lambda done: None
@@ -82,21 +84,21 @@ class Diffusion:
         """Return the equilibrium of weights p, shape (k, j); rows sum to one before and after."""
         used = np.flatnonzero(weights.max(axis=0))
         spread = np.zeros_like(weights)
-        groups = [used[first : first + LANES] for first in range(0, len(used), LANES)]
+        groups = [used[first : first + RIGHT_SIDES] for first in range(0, len(used), RIGHT_SIDES)]
         shares = Shares(lambda stage, done: tell(done), "weights", len(groups))
 
         def solve(group: int) -> None:
-            known = *self.factors, self.order, self.hold, weights, groups[group], spread
+            known = *self.factors, self.order, self.screening, weights, groups[group], spread
             watched(
                 lambda pace: _solve(*known, pace),
-                2 * len(self.hold),
+                2 * len(self.screening),
                 lambda done: shares.tell(group, done),
             )
             shares.tell(group, 1.0)
 
         def normalise(part: slice) -> None:
             total = spread[part].sum(axis=1, keepdims=True)
-            # Next to needles rounding leaves nothing: such places keep their own weights.
+            # Next to needle triangles rounding may leave nothing: keep the vertex' own weights.
             known = np.isfinite(total) & (total > 0)
             if known.all():
                 spread[part] /= total
@@ -110,14 +112,14 @@ class Diffusion:
 
 
 @compiled
-def _solve(begin, rows, values, pivots, order, hold, weights, joints, spread, pace):
-    """Put the equilibrium of some joints' weights into `spread`; see `substitute` for `pace`."""
-    right = np.zeros((len(order), LANES))
+def _solve(begin, rows, values, pivots, order, screening, weights, joints, spread, pace):
+    """Solve for the weights of some joints, into `spread`; see `substitute` for `pace`."""
+    right = np.zeros((len(order), RIGHT_SIDES))
     for k in range(len(order)):
         v = order[k]
-        for lane in range(len(joints)):
-            right[k, lane] = hold[v] * weights[v, joints[lane]]
+        for i in range(len(joints)):
+            right[k, i] = screening[v] * weights[v, joints[i]]
     substitute(begin, rows, values, pivots, right, pace)
     for k in range(len(order)):
-        for lane in range(len(joints)):
-            spread[order[k], joints[lane]] = max(right[k, lane], 0.0)
+        for i in range(len(joints)):
+            spread[order[k], joints[i]] = max(right[k, i], 0.0)

@@ -1,4 +1,4 @@
-"""From distances to weights (paper section 3.2, equation 1; Dionne & de Lasa 2013)."""
+"""The kernel of the paper (section 3.2, equation 1; Dionne & de Lasa 2013)."""
 
 from __future__ import annotations
 
@@ -48,9 +48,9 @@ def pruned_paper_kernel(
     threshold: float,
     priority: NDArray[np.intp],
 ) -> NDArray[np.float64]:
-    """Apply the paper's falloff, and prune: the same as one after the other, in one go.
+    """Apply the paper's falloff and prune in one pass, without a matrix in between.
 
-    A page that follows a slider has no time for a matrix in between.
+    The result is that of `paper_kernel` and `prune`. The page calls it while a slider moves.
 
     Parameters
     ----------
@@ -74,31 +74,33 @@ def pruned_paper_kernel(
     return weights
 
 
-BLOCK = 64
-"""Vertices whose weights fit into the nearest cache: distances are stored by joint."""
+BLOCK_ROWS = 64
+"""Vertices at a time: distances are stored by joint, and a block of rows fits into the cache."""
 
 
 @compiled
 def _paper_kernel(distance, diagonal, alpha, weights, begin, stop):
-    for first in range(begin, stop, BLOCK):
-        _fall(distance, diagonal, alpha, first, weights[first : min(first + BLOCK, stop)])
+    for first in range(begin, stop, BLOCK_ROWS):
+        _kernel_rows(
+            distance, diagonal, alpha, first, weights[first : min(first + BLOCK_ROWS, stop)]
+        )
 
 
 @compiled
 def _pruned_paper_kernel(
     distance, diagonal, alpha, most, threshold, priority, weights, begin, stop
 ):
-    rows = np.empty((BLOCK, len(distance)))
+    rows = np.empty((BLOCK_ROWS, len(distance)))
     kept = np.empty(len(priority), np.intp)
-    for first in range(begin, stop, BLOCK):
-        count = min(BLOCK, stop - first)
-        _fall(distance, diagonal, alpha, first, rows[:count])
+    for first in range(begin, stop, BLOCK_ROWS):
+        count = min(BLOCK_ROWS, stop - first)
+        _kernel_rows(distance, diagonal, alpha, first, rows[:count])
         for v in range(count):
             keep_largest(rows[v], most, threshold, priority, kept, weights[first + v])
 
 
 @compiled
-def _fall(distance, diagonal, alpha, first, rows):
+def _kernel_rows(distance, diagonal, alpha, first, rows):
     for j in range(len(distance)):
         for v in range(len(rows)):
             x = distance[j, first + v] / diagonal
@@ -112,7 +114,7 @@ def _normalise(row):
     least = np.inf
     for steepness in row:
         least = min(least, steepness)
-    # Relative to the nearest joint nothing overflows, however small the distances.
+    # Relative to the nearest joint nothing overflows, however small the distances are.
     total = 0.0
     for j, steepness in enumerate(row):
         if steepness == np.inf:

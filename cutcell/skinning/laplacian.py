@@ -86,16 +86,16 @@ def stiffness(points, faces):
 
 @compiled
 def _merge(start, column, value):
-    """Add up what is at one place of the matrix."""
-    place = np.full(len(start) - 1, -1)
+    """Add up the entries of one row and column."""
+    entry = np.full(len(start) - 1, -1)
     end, first = 0, 0
     for row in range(len(start) - 1):
         begin, last = end, start[row + 1]
         for e in range(first, last):
-            if place[column[e]] >= begin:
-                value[place[column[e]]] += value[e]
+            if entry[column[e]] >= begin:
+                value[entry[column[e]]] += value[e]
             else:
-                place[column[e]] = end
+                entry[column[e]] = end
                 column[end], value[end] = column[e], value[e]
                 end += 1
         start[row + 1], first = end, last
@@ -104,7 +104,7 @@ def _merge(start, column, value):
 
 @compiled
 def _cotangent(p, q, r):
-    """Return the cotangent of the angle at p; zero where two corners are at one place."""
+    """Return the cotangent of the angle at p; zero where two corners coincide."""
     ax, ay, az = q[0] - p[0], q[1] - p[1], q[2] - p[2]
     bx, by, bz = r[0] - p[0], r[1] - p[1], r[2] - p[2]
     x, y, z = ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
@@ -112,7 +112,7 @@ def _cotangent(p, q, r):
     longest = max(
         ax * ax + ay * ay + az * az, bx * bx + by * by + bz * bz, cx * cx + cy * cy + cz * cz
     )
-    # The same for all three corners: then no triangle, however thin, conducts uphill.
+    # The same for all three corners: then the matrix stays positive for any thin triangle.
     double_area = max(np.sqrt(x * x + y * y + z * z), THINNEST * longest)
     return (ax * bx + ay * by + az * bz) / double_area if longest > 0 else 0.0
 

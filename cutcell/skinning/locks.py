@@ -36,8 +36,8 @@ def lock_joints(
     Returns
     -------
     array, shape (n, j)
-        Rows sum to one. A vertex that no locked joint holds, and that has weight of locked
-        joints only, keeps what was computed.
+        Rows sum to one. A vertex without weight of locked joints in the file, for which weight of
+        locked joints alone was computed, keeps what was computed.
 
     Raises
     ------
@@ -46,11 +46,11 @@ def lock_joints(
     WeightsError
         The rig has no weights to keep.
     """
-    held = locked_joints(rig, locked)
-    if not held.any() or rig.weights is None:
+    is_locked = locked_joints(rig, locked)
+    if not is_locked.any() or rig.weights is None:
         return weights
-    kept = np.where(held, rig.weights, 0.0)
-    free = np.where(held, 0.0, weights)
+    kept = np.where(is_locked, rig.weights, 0.0)
+    free = np.where(is_locked, 0.0, weights)
     if max_influences is not None:
         free = _largest(free, max_influences - (kept > 0).sum(axis=1))
     share = free.sum(axis=1, keepdims=True)
@@ -74,15 +74,15 @@ def locked_joints(rig: Rig, locked: Sequence[int | str]) -> NDArray[np.bool_]:
         raise ParameterError(
             f"locked must be a list of joints, by index or by name, not {shown(locked)}"
         )
-    held = np.zeros(len(rig.skeleton.names), bool)
+    is_locked = np.zeros(len(rig.skeleton.names), bool)
     for joint in locked:
-        held[joint_index(rig.skeleton, joint)] = True
-    if held.any() and rig.weights is None:
+        is_locked[joint_index(rig.skeleton, joint)] = True
+    if is_locked.any() and rig.weights is None:
         raise WeightsError(
             f"{rig.name} has no weights of its own, so no joint of it can be locked; "
             "leave out the locked joints"
         )
-    return held
+    return is_locked
 
 
 def joint_index(skeleton: Skeleton, joint: int | str) -> int:

@@ -1,4 +1,4 @@
-"""Few influences a vertex, as files and graphics cards want them."""
+"""Pruning: few influences a vertex, as files and graphics cards want them."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from ..progress import Tell
 from ..threads import in_threads, parts, threads
 
 EQUAL = 1 + 1e-9
-"""Times a weight: what is less counts as equal to it. Two bones that meet in a joint weigh the
-same wherever that joint is the nearest of both, and rounding must not choose between them."""
+"""Weights that differ by less than this factor count as equal. Two bones that meet in a joint weigh
+the same wherever that joint is the nearest point of both, and rounding must not choose."""
 
 A_PART = 2_000_000
-"""Weights that are looked at in some hundredths of a second."""
+"""Weights of one part of the work, which takes some hundredths of a second."""
 
 
 def prune(
@@ -63,7 +63,7 @@ def _prune(weights, most, threshold, priority, pruned):
 
 @compiled
 def keep_largest(row, most, threshold, priority, kept, pruned):
-    """Prune one vertex: see `prune`. `pruned` holds zeros, and `kept` has room for all joints."""
+    """Prune one vertex: see `prune`. `pruned` is all zeros, and `kept` has room for all joints."""
     count = 0
     for joint in priority:
         weight = row[joint]
@@ -73,11 +73,11 @@ def keep_largest(row, most, threshold, priority, kept, pruned):
             count += 1
         elif weight <= EQUAL * row[kept[count - 1]]:
             continue
-        place = count - 1
-        while place > 0 and EQUAL * row[kept[place - 1]] < weight:
-            kept[place] = kept[place - 1]
-            place -= 1
-        kept[place] = joint
+        rank = count - 1
+        while rank > 0 and EQUAL * row[kept[rank - 1]] < weight:
+            kept[rank] = kept[rank - 1]
+            rank -= 1
+        kept[rank] = joint
     # Now the largest come first.
     total = 0.0
     for k in range(count):

@@ -1,13 +1,15 @@
-"""What a person may ask of weights beyond the method: smooth, mirrored, partly the artist's."""
+"""Touching weights up: smoothing, symmetry, and joints whose weights an artist has painted."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TypedDict, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..checks import check_flag, check_integer
+from ..method import ANIMATION, Method, MethodName, method_of
 from ..rig import Rig
 from .locks import lock_joints, locked_joints
 from .prune import prune
@@ -15,15 +17,30 @@ from .smoothing import MOST_PASSES, smooth_weights
 from .symmetry import balance, find_mirror, mirror_weights
 
 
+class Touches(TypedDict):
+    """What can be asked of the weights of one character, see `refine_weights`."""
+
+    smoothing: int
+    symmetric: bool
+    locked: Sequence[int | str]
+
+
+class Pruning(TypedDict, total=False):
+    """Options of a `Method` that `refine_weights` follows."""
+
+    max_influences: int | None
+    threshold: float
+
+
 def refine_weights(
     rig: Rig,
     weights: NDArray[np.float64],
     *,
+    method: Method | MethodName = ANIMATION,
     smoothing: int = 0,
     symmetric: bool = False,
     locked: Sequence[int | str] = (),
-    max_influences: int | None = 4,
-    threshold: float = 0.0,
+    **options: Unpack[Pruning],
 ) -> NDArray[np.float64]:
     """Smooth weights, mirror them, and put back those of locked joints: in this order.
 
@@ -32,14 +49,16 @@ def refine_weights(
     rig : Rig
     weights : array, shape (n, j)
         Rows sum to one.
+    method : Method, "animation" or "paper"
+        Its greatest number of influences and threshold hold again after smoothing and mirroring.
     smoothing : int
         Passes over the mesh; see `smooth_weights`.
     symmetric : bool
         Left and right get the same; see `find_mirror`.
     locked : sequence of int or str
         Joints that keep the rig's own weights; see `lock_joints`.
-    max_influences, threshold
-        See `skinning_weights`; held again after smoothing and mirroring.
+    **options
+        Single options of the method: `max_influences`, `threshold`.
 
     Returns
     -------
@@ -51,6 +70,7 @@ def refine_weights(
     ParameterError, MeshError, WeightsError
         What is asked is out of range, or the rig is not made for it.
     """
+    method = method_of(method, **options)
     symmetric = check_flag("symmetric", symmetric)
     if smoothing or symmetric:
         mirror = find_mirror(rig) if symmetric else None
@@ -58,10 +78,11 @@ def refine_weights(
         if mirror is not None:
             weights = mirror_weights(weights, mirror)
         weights = _permitted(rig, weights)
-        weights = prune(weights, max_influences, threshold, np.lexsort(rig.skeleton.joints.T))
+        order = np.lexsort(rig.skeleton.joints.T)
+        weights = prune(weights, method.max_influences, method.threshold, order)
         if mirror is not None:
             weights = balance(weights, mirror)
-    return lock_joints(rig, weights, locked, max_influences)
+    return lock_joints(rig, weights, locked, method.max_influences)
 
 
 def check_refinement(

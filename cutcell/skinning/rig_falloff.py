@@ -8,38 +8,37 @@ from scipy.spatial.distance import cdist
 
 from ..compiled import lean
 from ..geodesics import BoneDistances, Bones
+from ..method import RIG_REACH
 from ..progress import Tell, share_of
-from ..threads import together
+from ..threads import run_parallel
+from .containment import cross_component_penalty, joint_containment, make_rigid
 from .diffusion import Diffusion
-from .pieces import bones_held
-from .skin import Skin
-from .worn import dress, follow_lone_bones, foreign_bones
+from .rigid_accessories import attach_accessories
+from .surface_operators import SurfaceOperators
 
 POWER = 20
-"""Skin belongs to its nearest joint; another that is 10 % farther counts a seventh."""
-NEAREST_JOINTS = 3
-"""Of each vertex, at least. As many others are measured, and hardly a vertex has a fourth that is
-not among them. It follows more joints only as the skin around it does, however many are kept."""
-TOWARDS = 1 / 6
-"""Nearness of a bone to skin that looks right at it, as part of what it is to skin that looks
-away: skin covers the bones that it looks away from."""
+"""A vertex belongs to its nearest joint; another that is 10 % farther counts a seventh."""
+FACING_LEAST = 1 / RIG_REACH
+"""Surface covers the bones that it looks away from. The distance of a bone that it looks right at
+is divided by this, that of one that it looks away from by 1."""
 LEAST_CELLS = 0.01
 """Lattice cells: distances that are all shorter are equal."""
-COVER = 1.5
-"""Skin that is so many times as far from a bone as its median skin is not about that bone. The
-edges of a square bar are 1.41 times as far as the middle of its sides."""
-LEAST_COVER = 0.5
-"""Lattice cells: no bone's skin is nearer than this."""
-LEADS_ON = 0.02
-"""Of the longest side: as near to another joint's bone must a bone end to lead on to it."""
-SHARES = 1e-3
-"""Smaller shares do not count as a joint's skin."""
+RADIUS_FACTOR = 1.5
+"""Surface that is this many times as far from a bone as the median of that bone's surface is not
+about that bone. The edges of a square bar are 1.41 times as far as the middle of its sides."""
+LEAST_RADIUS = 0.5
+"""Lattice cells: no bone has a smaller radius than this."""
+CONNECTED = 0.02
+"""Of the longest side: a bone that ends as near as this to where another joint's bone begins leads
+on to it."""
+LEAST_SHARE = 1e-3
+"""A vertex with a smaller share of a joint does not count as that joint's surface."""
 TAIL = 0.05
-"""Of a vertex' largest weight: taken off all its weights, so that what is far gets nothing."""
+"""Of a vertex' largest weight: subtracted from all its weights, so that they end somewhere."""
 
 
-def rig_kernel(
-    distances: BoneDistances, skin: Skin, tell: Tell = lambda done: None
+def rig_weights(
+    distances: BoneDistances, surface: SurfaceOperators, tell: Tell = lambda done: None
 ) -> NDArray[np.float64]:
     """Turn distances into weights for animation.
 
@@ -47,7 +46,7 @@ def rig_kernel(
     ----------
     distances : BoneDistances
         Best with bones fitted to the body, `leaf="fit"`.
-    skin : Skin
+    surface : SurfaceOperators
         Of their graph.
     tell : callable
         See `progress.Tell`.
@@ -55,43 +54,56 @@ def rig_kernel(
     Returns
     -------
     array, shape (k, j)
-        For the places of the mesh. Rows sum to one.
+        Per welded vertex. Rows sum to one.
     """
     graph, bones = distances.graph, distances.bones
     distance, resolution = distances.at_places, graph.lattice.resolution
     weights = np.zeros(distance.shape[::-1])
 
     def divide() -> NDArray[np.float64]:
-        held = _held_by_joint(skin, bones, len(distance))
+        """Divide the surface among the joints: the right side of the equilibrium."""
+        containment = joint_containment(surface, bones, len(distance))
         first_bone = np.searchsorted(bones.joint, np.arange(len(distance) + 1))
-        known = skin.points, skin.normals, distance, foreign_bones(held), skin.piece
+        penalty = cross_component_penalty(containment)
+        known = surface.points, surface.normals, distance, penalty, surface.component
         ends = first_bone, bones.start, bones.end, LEAST_CELLS / resolution
-        anywhere, chosen = np.full(len(distance), np.inf), np.ones(len(weights), np.bool_)
-        _put_shares(*known, *ends, anywhere, chosen, weights)
-        cover = _cover(weights, distance, skin.areas, bones, resolution)
-        _mark_beyond(distance, weights, cover, chosen)
-        _put_shares(*known, *ends, cover, chosen, weights)
-        return held
+        unbounded, chosen = np.full(len(distance), np.inf), np.ones(len(weights), np.bool_)
+        _divide_by_distance(*known, *ends, unbounded, chosen, weights)
+        radius = _radii(weights, distance, surface.areas, bones, resolution)
+        _mark_beyond(distance, weights, radius, chosen)
+        _divide_by_distance(*known, *ends, radius, chosen, weights)
+        return containment
 
     def prepare() -> Diffusion:
-        return Diffusion.over(skin, distance.min(axis=0), resolution, share_of(tell, 0, 0.5))
+        return Diffusion.over(surface, distance.min(axis=0), resolution, share_of(tell, 0, 0.5))
 
-    held, diffusion = together(divide, prepare)
+    containment, diffusion = run_parallel(divide, prepare)
     weights = diffusion.spread(weights, share_of(tell, 0.5, 1))
-    if len(held) > 1:
-        weights = follow_lone_bones(held, skin.piece, weights)
-    weights = dress(graph, skin, held, weights)
-    _end(weights)
+    if len(containment) > 1:
+        weights = make_rigid(containment, surface.component, weights)
+    weights = attach_accessories(graph, surface, containment, weights)
+    _subtract_tail(weights)
     return weights
 
 
 @lean
-def _put_shares(
-    points, normals, distance, foreign, piece, bone, start, end, near, cover, chosen, weights
+def _divide_by_distance(
+    points,
+    normals,
+    distance,
+    penalty,
+    component,
+    bone,
+    start,
+    end,
+    near,
+    radius,
+    chosen,
+    weights,
 ):
-    """Divide chosen places among joints by distance; `bone` tells where each joint's bones begin.
+    """Divide chosen vertices among joints by distance; `bone` tells where each joint's bones begin.
 
-    Distances up to `near` are equal; beyond a joint's `cover` they grow by their square.
+    Distances up to `near` are equal; beyond a joint's `radius` they grow by their square.
     """
     for v in range(len(points)):
         if not chosen[v]:
@@ -101,11 +113,11 @@ def _put_shares(
             weights[v, j] = 0.0
             if distance[j, v] == np.inf:
                 continue
-            away = foreign[piece[v], j] * max(distance[j, v], near)
-            away *= max(1.0, distance[j, v] / cover[j])
-            away /= _facing(points[v], normals[v], start, end, bone[j], bone[j + 1])
-            weights[v, j] = away
-            least = min(least, away)
+            effective = penalty[component[v], j] * max(distance[j, v], near)
+            effective *= max(1.0, distance[j, v] / radius[j])
+            effective /= _facing(points[v], normals[v], start, end, bone[j], bone[j + 1])
+            weights[v, j] = effective
+            least = min(least, effective)
         total = 0.0
         for j in range(len(distance)):
             if distance[j, v] < np.inf:
@@ -116,18 +128,18 @@ def _put_shares(
 
 
 @lean
-def _mark_beyond(distance, weights, cover, found):
-    """Mark the places, shape (k,), that have a share of a joint that does not cover them."""
+def _mark_beyond(distance, weights, radius, found):
+    """Mark the vertices, shape (k,), with a share of a joint that are beyond its radius."""
     for v in range(len(weights)):
         found[v] = False
         for j in range(len(distance)):
-            if weights[v, j] > SHARES and distance[j, v] > cover[j]:
+            if weights[v, j] > LEAST_SHARE and distance[j, v] > radius[j]:
                 found[v] = True
 
 
 @lean
-def _end(weights):
-    """Take a part of each place's largest weight off all of them, down to zero, in place."""
+def _subtract_tail(weights):
+    """Subtract a part of each vertex' largest weight from all of them, down to zero, in place."""
     for v in range(len(weights)):
         largest = 0.0
         for j in range(weights.shape[1]):
@@ -142,7 +154,7 @@ def _end(weights):
 
 @lean
 def _facing(point, normal, start, end, first, last):
-    """Return how much skin looks away from the nearest of some bones, `TOWARDS` to 1."""
+    """Return how much a surface looks away from the nearest of some bones, `FACING_LEAST` to 1."""
     nearest, cosine = np.inf, 0.0
     for b in range(first, last):
         along, squared = 0.0, 0.0
@@ -152,59 +164,49 @@ def _facing(point, normal, start, end, first, last):
         t = min(max(along / squared, 0.0), 1.0) if squared > 0 else 0.0
         length, out = 0.0, 0.0
         for c in range(3):
-            way = point[c] - start[b, c] - t * (end[b, c] - start[b, c])
-            length += way * way
-            out += way * normal[c]
+            displacement = point[c] - start[b, c] - t * (end[b, c] - start[b, c])
+            length += displacement * displacement
+            out += displacement * normal[c]
         if length < nearest:
             nearest = length
             cosine = out / np.sqrt(length) if length > 0 else 0.0
-    return TOWARDS + (1 - TOWARDS) * (1 + cosine) / 2
+    return FACING_LEAST + (1 - FACING_LEAST) * (1 + cosine) / 2
 
 
-def _cover(
+def _radii(
     weights: NDArray[np.float64],
     distance: NDArray[np.float64],
     areas: NDArray[np.float64],
     bones: Bones,
     resolution: int,
 ) -> NDArray[np.float64]:
-    """Measure up to which distance skin is about each joint's bones, shape (j,).
+    """Measure up to which distance the surface is about each joint's bones, shape (j,).
 
-    A neck's skin lies all around it at about one distance: what is much farther, such as a
-    chin, is not the neck's even if no other bone is nearer. Where a last bone ends is only a
-    guess: its skin may be at any distance, which is infinite here.
+    A neck's surface lies all around it at about one distance: what is much farther, such as a
+    chin, is not the neck's even if no other bone is nearer. Where a leaf bone ends is only a
+    guess, so that its surface may be at any distance: its radius is infinite.
     """
-    place, joint = np.nonzero(weights > SHARES)
-    away, part = distance[joint, place], weights[place, joint] * (areas[place] + 1e-12)
-    order = np.lexsort((away, joint))
-    joint, away, total = joint[order], away[order], np.cumsum(part[order])
+    vertex, joint = np.nonzero(weights > LEAST_SHARE)
+    length, area = distance[joint, vertex], weights[vertex, joint] * (areas[vertex] + 1e-12)
+    order = np.lexsort((length, joint))
+    joint, length, total = joint[order], length[order], np.cumsum(area[order])
     first = np.searchsorted(joint, np.arange(len(distance) + 1))
     before = np.concatenate([[0.0], total])[first]
-    middle = np.searchsorted(total, (before[:-1] + before[1:]) / 2)
-    cover = np.full(len(distance), np.inf)
+    median = np.searchsorted(total, (before[:-1] + before[1:]) / 2)
+    radius = np.full(len(distance), np.inf)
     known = _leads_on(bones, len(distance)) & (first[1:] > first[:-1])
-    cover[known] = COVER * np.maximum(away[middle[known]], LEAST_COVER / resolution)
-    return cover
+    least = LEAST_RADIUS / resolution
+    radius[known] = RADIUS_FACTOR * np.maximum(length[median[known]], least)
+    return radius
 
 
 def _leads_on(bones: Bones, joints: int) -> NDArray[np.bool_]:
     """Tell which joints have a bone that ends where another joint's begins."""
-    meets = cdist(bones.end, bones.start, "chebyshev") < LEADS_ON
+    meets = cdist(bones.end, bones.start, "chebyshev") < CONNECTED
     meets &= bones.joint[:, None] != bones.joint
     leads = np.zeros(joints, np.bool_)
     leads[bones.joint[meets.any(axis=1)]] = True
     return leads
-
-
-def _held_by_joint(skin: Skin, bones: Bones, joints: int) -> NDArray[np.float64]:
-    """Measure which part of each joint's best held bone is in each piece, shape (pieces, j)."""
-    if not skin.piece.any():  # a lone piece: no bone belongs more to another
-        return np.ones((1, joints))
-    held = bones_held(skin.points, skin.faces, skin.piece, bones)
-    result = np.zeros((len(held), joints))
-    for bone, owner in enumerate(bones.joint):
-        result[:, owner] = np.maximum(result[:, owner], held[:, bone])
-    return result
 
 
 def permitted(

@@ -11,14 +11,14 @@ from scipy.spatial import cKDTree
 from scipy.spatial.distance import cdist
 
 from ..errors import MeshError
-from ..graph.weld import WELD_TOLERANCE, weld
 from ..rig import Rig, Skeleton
+from ..surface.weld import WELD_TOLERANCE, weld
 
 VERTEX_TOLERANCE = 1e-3
 """Of the bounding box's diagonal: how far from its mirror image a vertex's partner may lie."""
 
 JOINT_TOLERANCE = 3e-2
-"""The same for joints, which artists place by eye."""
+"""The same for joints, which artists set by eye."""
 
 LEAST_SHARE = 0.5
 """Of the vertices that must have a partner, for the character to count as mirrored."""
@@ -139,24 +139,24 @@ def _vertex_partners(
     vertices: NDArray[np.float64], axis: int, position: float, diagonal: float
 ) -> NDArray[np.intp]:
     """Pair vertices that are each other's nearest after reflection."""
-    # Places, not vertices: copies of a vertex at a seam must all get the same partner.
-    places, place = weld(vertices, WELD_TOLERANCE * diagonal)
-    distance, near = cKDTree(places).query(
-        _reflected(places, axis, position), distance_upper_bound=VERTEX_TOLERANCE * diagonal
+    # Welded vertices: copies of a vertex at a seam must all get the same partner.
+    points, welded = weld(vertices, WELD_TOLERANCE * diagonal)
+    distance, near = cKDTree(points).query(
+        _reflected(points, axis, position), distance_upper_bound=VERTEX_TOLERANCE * diagonal
     )
     near[np.isinf(distance)] = -1
     mutual = (near >= 0) & (near[near] == np.arange(len(near)))
-    first = np.zeros(len(places), np.intp)
-    first[place[::-1]] = np.arange(len(place))[::-1]
-    partner = np.where(mutual, first[near], -1)[place]
-    on_plane = (near == np.arange(len(near)))[place]
-    return np.where(on_plane, np.arange(len(place)), partner)
+    first = np.zeros(len(points), np.intp)
+    first[welded[::-1]] = np.arange(len(welded))[::-1]
+    partner = np.where(mutual, first[near], -1)[welded]
+    on_plane = (near == np.arange(len(near)))[welded]
+    return np.where(on_plane, np.arange(len(welded)), partner)
 
 
 def _joint_partners(
     skeleton: Skeleton, axis: int, position: float, tolerance: float
 ) -> NDArray[np.intp]:
-    """Pair joints by place; of several at one place, those whose branches lie alike."""
+    """Pair joints by position; of several at one position, those whose branches lie alike."""
     joints = skeleton.joints
     branch = skeleton.subtree @ joints / skeleton.subtree.sum(axis=1, keepdims=True)
     gap = cdist(_reflected(joints, axis, position), joints)

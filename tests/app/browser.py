@@ -47,7 +47,7 @@ SETTLED = """async (limit) => {
 IN_SIGHT = """(code) => {
   const view = window.__cutcell
   const wanted = new Function("vertex", `return ${code}`)
-  const points = view.stage.figures.get("body").rest.length / 3
+  const points = view.renderer.actors.get("body").rest.length / 3
   const box = view.overlay.canvas.getBoundingClientRect()
   for (let vertex = 0; vertex < points; vertex++) {
     if (!wanted(vertex)) { continue }
@@ -224,7 +224,7 @@ class Visit:
 
     def points(self, name: str = "body") -> np.ndarray:
         """Return where an actor's points are now, shape (n, 3)."""
-        code = "name => Array.from(__cutcell.stage.figures.get(name).posed())"
+        code = "name => Array.from(__cutcell.renderer.actors.get(name).posed())"
         return np.array(self.page.evaluate(code, name)).reshape(-1, 3)
 
     def button(self, name: str, exact: bool = True) -> Locator:

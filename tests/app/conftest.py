@@ -6,9 +6,11 @@ import pytest
 from playwright.sync_api import Browser, sync_playwright
 
 import cutcell
-from app.session import Session
-from assets import demo_path
 from cutcell.rig import Rig
+from cutcell_app.commands import loading
+from cutcell_app.commands.session import Session
+from cutcell_app.layout.session import begin
+from cutcell_assets import demo_path
 from scripts.get_chromium import FLAGS
 from tests.app.browser import Visit, served
 from tests.app.loop import Loop
@@ -27,7 +29,7 @@ def loop() -> Loop:
 @pytest.fixture
 def session(loop: Loop) -> Iterator[Session]:
     """Begin a session without a browser."""
-    session = Session(loop)
+    session = begin(loop)
     yield session
     session.close()
 
@@ -36,7 +38,7 @@ def session(loop: Loop) -> Iterator[Session]:
 def bound(session: Session, loop: Loop) -> Session:
     """Let the session show a bound character."""
     session.state.resolution = 16
-    session.opening.rig(arm_rig())
+    loading.show_rig(session, arm_rig())
     loop.run_until(lambda: session.state.binding is not None)
     return session
 

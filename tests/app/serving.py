@@ -12,7 +12,7 @@ from typing import Any
 
 from tornado.ioloop import IOLoop
 
-from app.serve import begin, free_port
+from cutcell_app.serve import begin, free_port
 
 
 class Serving:

@@ -3,16 +3,17 @@
 import numpy as np
 import pytest
 
-from app.choices import to_query
-from app.panels import PANELS
-from app.panels.bone import bone
-from app.panels.take_along import take_along
-from app.render import Choices, describe
-from app.scenes import resolve
-from app.sidebar import NO_SKELETON, panels
-from app.status import messages, summary
 from cutcell.errors import SkeletonError
 from cutcell.rig import Rig, Skeleton
+from cutcell_app.commands import keys, loading, look
+from cutcell_app.layout.sidebar import NO_SKELETON, panels
+from cutcell_app.layout.status import messages, summary
+from cutcell_app.panels import PANELS
+from cutcell_app.panels.bone import bone
+from cutcell_app.panels.export import export
+from cutcell_app.render import Choices, describe
+from cutcell_app.scenes import resolve
+from cutcell_app.state.url import to_query
 from tests.viewers.arm import arm_rig
 
 
@@ -25,14 +26,14 @@ def bare_arm():
 def bare(session, loop):
     """Return a session on which a bare mesh stands, with all panels built for a rig before."""
     session.state.resolution = 16
-    session.opening.rig(arm_rig())
+    loading.show_rig(session, arm_rig())
     loop.run_until(lambda: session.state.binding is not None)
-    session.built = [panels(session), bone(session), take_along(session), messages(session)]
+    session.built = [panels(session), bone(session), export(session), messages(session)]
     for panel in PANELS:
         session.state.panel = panel.id
-    session.opening.rig(bare_arm())
+    loading.show_rig(session, bare_arm())
     loop.run_until(lambda: session.state.bare_graph is not None)
-    loop.run_until(lambda: not session.working)
+    loop.run_until(lambda: not session.tasks.running)
     return session
 
 
@@ -73,10 +74,10 @@ def test_cuts_slices_and_keys_do_no_harm(bare, loop):
     state.edge_colors = "distance"
     assert resolve(state).actors
     for act in ("play", "parent", "child", "reset"):
-        getattr(bare.habits, act)()
-    bare.habits.step(1)
-    bare.pick(0)
-    bare.pick_vertex(0)
+        keys.act(bare, act)
+    keys.step(state, 1)
+    look.pick(bare, 0)
+    look.pick_vertex(bare, 0)
     assert state.vertex is None
     assert not state.moving
     loop.run_for(0.1)
@@ -95,7 +96,7 @@ def test_another_resolution_builds_again(bare, loop):
 
 
 def test_a_character_after_it_is_bound_as_ever(bare, loop):
-    bare.opening.rig(arm_rig())
+    loading.show_rig(bare, arm_rig())
     loop.run_until(lambda: bare.state.binding is not None)
     assert bare.state.bare_graph is None
     assert np.isfinite(bare.state.weights).all()

@@ -7,11 +7,11 @@ import numpy as np
 from playwright.sync_api import expect
 
 import cutcell
-from assets import demo_path
+from cutcell_assets import demo_path
+from cutcell_viewers.character import pose_in_scene, to_scene
+from cutcell_viewers.pose_scene import joint_turns, turn
 from tests.app.browser import Visit, changed
 from tests.conftest import SHARED_RIGS
-from viewers.character import pose_in_scene, to_scene
-from viewers.pose_scene import joint_turns, turn
 
 LAYERS = ["Surface", "Mesh edges", "Interior edges", "Surface edges"]
 

@@ -3,7 +3,7 @@
 import pytest
 from axe_playwright_python.sync_playwright import Axe
 
-from app.panels import PANELS
+from cutcell_app.panels import PANELS
 from tests.app.browser import Visit
 
 SERIOUS = ("serious", "critical")

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from playwright.sync_api import expect
 
-from assets import demo_path
+from cutcell_assets import demo_path
 from tests.app.browser import Visit, changed
 from tests.conftest import SHARED_RIGS
 
@@ -74,12 +74,12 @@ def test_a_bone_is_picked_in_any_view(visit):
     expect(visit.bone).not_to_have_text("")
     chosen = visit.bone.inner_text()
     ends = visit.page.evaluate("""() => {
-      const {bones, stage, overlay} = __cutcell
+      const {bones, renderer, overlay} = __cutcell
       const box = overlay.canvas.getBoundingClientRect()
       return bones.names.map((name, joint) => {
         const i = bones.joint.indexOf(joint)
-        const start = stage.project(bones.start.slice(3 * i, 3 * i + 3), 1)
-        const end = stage.project(bones.end.slice(3 * i, 3 * i + 3), 1)
+        const start = renderer.project(bones.start.slice(3 * i, 3 * i + 3), 1)
+        const end = renderer.project(bones.end.slice(3 * i, 3 * i + 3), 1)
         return [name, box.left + (start[0] + end[0]) / 2, box.top + (start[1] + end[1]) / 2]
       })
     }""")

@@ -4,7 +4,7 @@ import re
 
 from playwright.sync_api import expect
 
-from app.tour import TOUR
+from cutcell_app.state.tour import TOUR
 from tests.app.browser import LOAD_MS, Visit
 
 
@@ -24,11 +24,11 @@ def test_a_link_to_a_step_shows_its_scene_and_the_tour_goes_on(browser, url):
     assert not visit.page.get_by_text(re.compile("^Vertex ")).is_visible()
     visit.button("Back").click()
     expect(card(visit)).to_contain_text(TOUR[2].title)
-    visit.page.wait_for_function("__cutcell.stage.views.length === 2", timeout=LOAD_MS)
+    visit.page.wait_for_function("__cutcell.renderer.views.length === 2", timeout=LOAD_MS)
     visit.settle()
     # The card covers none of the methods that stand side by side.
     right, lower = visit.page.evaluate("""() => {
-      const {tiles} = __cutcell.stage
+      const {tiles} = __cutcell.renderer
       const most = (end) => Math.max(...tiles.map(end))
       return [most(([x, , w]) => x + w), most(([, y, , h]) => y + h)]
     }""")

@@ -65,9 +65,9 @@ def test_a_slab_and_a_slice_with_its_rays(visit):
     told = visit.page.evaluate(
         """() => {
           const view = window.__cutcell
-          const figure = view.stage.figures.get("slice rays")
-          for (let i = 0; i < figure.rest.length / 3; i += 8) {
-            const [x, y] = view.stage.project([...figure.rest.slice(3 * i, 3 * i + 3)])
+          const actor = view.renderer.actors.get("slice rays")
+          for (let i = 0; i < actor.rest.length / 3; i += 8) {
+            const [x, y] = view.renderer.project([...actor.rest.slice(3 * i, 3 * i + 3)])
             const text = view.pointer.surfaceReading(x, y)
             if (text && text.startsWith("winding number 1")) { return text }
           }
@@ -98,8 +98,8 @@ def test_the_field_its_starts_and_the_way_back(visit):
     visit.expect_text(re.compile(r"\d+ sources, up to 0\.\d+ from the bone"))
     assert visit.report()["actors"]["sources"]["points"] > 0
     visit.switch("Where distances begin")
-    visit.click_vertex("__cutcell.stage.figures.get('body').values[vertex] < 0.04")
-    visit.expect_text(re.compile(r"way back, \d\.\d+ long"))
+    visit.click_vertex("__cutcell.renderer.actors.get('body').values[vertex] < 0.04")
+    visit.expect_text(re.compile(r"shortest path, \d\.\d+ long"))
     assert visit.report()["actors"]["path"]["points"] > 0
     visit.close_card()
     assert changed(whole, visit.look()) < 0.02  # the canvas has the focus, and shows it
@@ -119,13 +119,13 @@ def test_the_wave_runs_and_halts(visit):
     visit.slide("How far it came", "ArrowRight", 8)
     visit.page.wait_for_function("f => __cutcell.report().front > f", arg=front)
     visit.button("Let it run").click()
-    visit.page.wait_for_function("__cutcell.report().filming")
+    visit.page.wait_for_function("__cutcell.report().animating")
     messages = visit.report()["messages"]
     first = visit.report()["front"]
     visit.page.wait_for_function("f => __cutcell.report().front !== f", arg=first)
     assert visit.report()["messages"] == messages  # nothing is streamed
     visit.button("Halt the wave").click()
-    visit.page.wait_for_function("!__cutcell.report().filming")
+    visit.page.wait_for_function("!__cutcell.report().animating")
     visit.settle()
     visit.switch("Wavefront")
     assert changed(whole, visit.look()) < 0.002
@@ -137,7 +137,7 @@ def test_weights_in_many_ways(visit):
     for option, legend in (
         ("The strongest bone", None),
         ("The chosen bone", "Weight of"),
-        ("How many bones hold a point", "Joints that a vertex follows"),
+        ("Influences per vertex", "Joints that a vertex follows"),
     ):
         before = visit.look()
         visit.choose("Colours show", option)
@@ -145,11 +145,11 @@ def test_weights_in_many_ways(visit):
             visit.expect_text(legend)
         assert changed(before, visit.look()) > 0.001, option
     one = visit.look()
-    visit.slide("Bones a vertex, at most", "Home")
-    visit.expect_text("1.0 bones a vertex")
+    visit.slide("Influences per vertex, at most", "Home")
+    visit.expect_text("1.0 influences per vertex")
     assert changed(one, visit.look()) > 0.0005
     for _ in range(3):
-        visit.slide("Bones a vertex, at most", "ArrowRight")
+        visit.slide("Influences per vertex, at most", "ArrowRight")
         visit.settle()
     visit.choose("Colours show", "All bones")
     assert changed(mixed, visit.look()) < 0.001

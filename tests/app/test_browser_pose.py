@@ -7,11 +7,11 @@ import pytest
 from playwright.sync_api import expect
 
 import cutcell
-from assets import demo_path
+from cutcell_assets import demo_path
+from cutcell_viewers.character import pose_in_scene
+from cutcell_viewers.pose_scene import joint_turns, turn
 from tests.app.browser import Visit, changed
 from tests.conftest import SHARED_RIGS
-from viewers.character import pose_in_scene
-from viewers.pose_scene import joint_turns, turn
 
 REAL = SHARED_RIGS / "quaternius_wizard.glb"
 SOURCE = REAL if REAL.exists() else demo_path("rabbit")
@@ -103,12 +103,12 @@ def test_what_the_card_draws_is_where_the_points_are(visit):
     visit.settle()
     turned = visit.look()
     visit.page.evaluate("""() => {
-      const {stage} = __cutcell
-      const figures = [...stage.figures.values()].filter((figure) => figure.skin)
-      window.__rests = figures.map((figure) => [figure, figure.rest])
-      const moved = figures.map((figure) => figure.posed())
-      stage.setPose(null)
-      figures.forEach((figure, i) => figure.setPoints(moved[i]))
+      const {renderer} = __cutcell
+      const actors = [...renderer.actors.values()].filter((actor) => actor.skin)
+      window.__rests = actors.map((actor) => [actor, actor.rest])
+      const moved = actors.map((actor) => actor.posed())
+      renderer.setPose(null)
+      actors.forEach((actor, i) => actor.setPoints(moved[i]))
       __cutcell.changed()
     }""")
     same = visit.look()
@@ -116,7 +116,7 @@ def test_what_the_card_draws_is_where_the_points_are(visit):
     assert changed(plain, turned) > 0.01
     assert far < 0.004, far
     visit.page.evaluate("""() => {
-      for (const [figure, rest] of window.__rests) { figure.setPoints(rest) }
+      for (const [actor, rest] of window.__rests) { actor.setPoints(rest) }
       __cutcell.applyPose()
     }""")
     rest(visit)

@@ -10,11 +10,11 @@ import pytest
 from playwright.sync_api import expect
 
 import cutcell
-from assets import demo_path
+from cutcell_assets import demo_path
+from cutcell_viewers.character import pose_in_scene
+from cutcell_viewers.pose_scene import joint_turns, turn
 from tests.app.browser import Visit, changed
 from tests.conftest import SHARED_RIGS
-from viewers.character import pose_in_scene
-from viewers.pose_scene import joint_turns, turn
 
 RESOLUTION = 24
 FILES = {
@@ -64,7 +64,7 @@ def looks_at_weights(visit, rig, binding):
     assert changed(mixed, visit.look()) > 0.002
     visit.close_card()
     visit.choose("Colours show", "Difference to the file's own")
-    visit.expect_text("Weight that sits on other joints")
+    visit.expect_text("Difference to the file's weights")
 
 
 def looks_at_the_graph(visit, binding):
@@ -83,7 +83,7 @@ def follows_the_distance(visit, rig, binding):
     visit.panel("Distance")
     name = visit.bone.inner_text()
     visit.expect_text(f"Distance from {name}")
-    shown = "Array.from(__cutcell.stage.figures.get('body').values)"
+    shown = "Array.from(__cutcell.renderer.actors.get('body').values)"
     visit.settle()
     values = np.array(visit.page.evaluate(shown))
     field = binding.distances.on_mesh(rig.skeleton.names.index(name))

@@ -9,19 +9,19 @@ WIDE = {"width": 1440, "height": 900}
 
 # How many points of the body at rest are seen behind an element of the page.
 BEHIND = """(element) => {
-  const {stage, overlay} = window.__cutcell
+  const {renderer, overlay} = window.__cutcell
   const canvas = overlay.canvas.getBoundingClientRect()
   const {left, right, top, bottom} = element.getBoundingClientRect()
-  const {rest} = stage.figures.get("body")
+  const {rest} = renderer.actors.get("body")
   let behind = 0
   for (let i = 0; i < rest.length; i += 3) {
-    const [x, y] = stage.project([rest[i], rest[i + 1], rest[i + 2]])
+    const [x, y] = renderer.project([rest[i], rest[i + 1], rest[i + 2]])
     const across = canvas.left + x >= left && canvas.left + x <= right
     behind += across && canvas.top + y >= top && canvas.top + y <= bottom
   }
   return behind
 }"""
-MIDDLE = "__cutcell.stage.room.left - __cutcell.stage.room.right"
+MIDDLE = "__cutcell.renderer.insets.left - __cutcell.renderer.insets.right"
 
 
 @pytest.fixture(params=["rabbit", "biped"])
@@ -68,5 +68,5 @@ def test_a_notice_hides_no_head(browser, url):
     assert behind(visit, visit.page.get_by_role("alert")) == 0
     visit.dismiss()
     visit.settle()
-    assert visit.page.evaluate("__cutcell.stage.room.top") == 20
+    assert visit.page.evaluate("__cutcell.renderer.insets.top") == 20
     visit.close()

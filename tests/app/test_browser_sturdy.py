@@ -4,8 +4,8 @@ import re
 
 from playwright.sync_api import expect
 
-from app.state import MAX_UPLOAD
-from assets import demo_path
+from cutcell_app.files.receive import MAX_UPLOAD
+from cutcell_assets import demo_path
 from tests.app.browser import Visit, changed
 
 SAME = 0.01

@@ -4,22 +4,22 @@ import threading
 
 import pytest
 
-from app.actions import compare
-from app.jobs import COMPARING, Job
-from app.panels.compare import rows_of
-from app.session import Session
 from cutcell.apart import _WANTED
 from cutcell.baselines import METHODS, BaselineBinding
 from cutcell.progress import silent
+from cutcell_app.commands import compare, loading
+from cutcell_app.layout.session import begin
+from cutcell_app.panels.compare import rows_of
+from cutcell_app.work.jobs import COMPARING, Job
 from tests.viewers.arm import arm_rig
 
 
 @pytest.fixture
 def sessions(loop):
-    there = [Session(loop) for _ in range(2)]
+    there = [begin(loop) for _ in range(2)]
     for session in there:
         session.state.resolution = 16
-        session.opening.rig(arm_rig())
+        loading.show_rig(session, arm_rig())
     loop.run_until(lambda: all(session.state.binding is not None for session in there), 60)
     yield there
     for session in there:

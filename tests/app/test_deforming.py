@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from app.panels.deform import HIDDEN, SHOWN, deforming
+from cutcell_app.panels.deform import HIDDEN, SHOWN, deforming
 
 
 def parts(section):

@@ -6,18 +6,19 @@ import numpy as np
 import pytest
 
 import cutcell
-from app.actions.diagnosis import look_at, repair, take_back
-from app.actions.take_along import repaired_file
-from app.panels.character import faults
-from app.panels.diagnosis import diagnosis, told
-from app.scenes import resolve
-from app.scenes.common import bounds_of
-from app.state import State
 from cutcell.rig import TriangleMesh
+from cutcell_app.commands import loading
+from cutcell_app.commands.diagnosis import look_at, repair, take_back
+from cutcell_app.commands.export import export_repaired
+from cutcell_app.panels.character import faults
+from cutcell_app.panels.diagnosis import diagnosis, told
+from cutcell_app.scenes import resolve
+from cutcell_app.scenes.common import bounds_of
+from cutcell_app.state import State
+from cutcell_viewers.camera import sees
+from cutcell_viewers.finding_scene import finding_marks
 from tests.app.test_bare import bare_arm
 from tests.viewers.arm import arm_rig
-from viewers.camera import sees
-from viewers.finding_scene import finding_marks
 
 FLIPPED = np.arange(0, 60)
 
@@ -36,7 +37,7 @@ def spoiled_arm():
 def spoiled(session, loop):
     """Let the session show the spoiled arm, diagnosed, on the panel."""
     session.state.param.update(resolution=16, panel="diagnosis")
-    session.opening.rig(spoiled_arm())
+    loading.show_rig(session, spoiled_arm())
     loop.run_until(lambda: session.state.diagnosis is not None)
     return session
 
@@ -107,7 +108,7 @@ def test_the_repaired_file_is_handed_over(spoiled, loop, tmp_path):
     offered = []
     repair(spoiled, ["inverted-faces", "unweighted-vertices"])
     loop.run_until(lambda: spoiled.state.repair is not None and spoiled.state.binding is not None)
-    repaired_file(spoiled, lambda *args: offered.append(args))
+    export_repaired(spoiled, lambda *args: offered.append(args))
     loop.run_until(lambda: offered)
     name, content = offered[0]
     assert name == "arm-repaired.glb"
@@ -118,7 +119,7 @@ def test_the_repaired_file_is_handed_over(spoiled, loop, tmp_path):
 
 def test_another_character_begins_anew(spoiled, loop):
     look_at(spoiled, "inverted-faces")
-    spoiled.opening.rig(bare_arm())
+    loading.show_rig(spoiled, bare_arm())
     assert (spoiled.state.diagnosis, spoiled.state.finding) == (None, "")
     loop.run_until(lambda: spoiled.state.diagnosis is not None)
     assert codes(spoiled) == []

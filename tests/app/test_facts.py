@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 import cutcell
-from app.facts import NO_WEIGHT, components, vertex_facts
-from app.scenes import Memo
-from app.state import State
 from cutcell.rig import TriangleMesh
+from cutcell_app.scenes import Memo
+from cutcell_app.scenes.facts import NO_WEIGHT, components, vertex_facts
+from cutcell_app.state import State
 from tests.viewers.arm import arm_rig
 
 

@@ -9,9 +9,10 @@ import psutil
 import pytest
 from bokeh.util.token import generate_jwt_token, generate_session_id
 
-from app import handlers
-from app.session import Session
 from benchmarks.visitors import Visitor
+from cutcell_app.commands.session import Session
+from cutcell_app.server import handlers
+from cutcell_app.widgets.modules import ADDRESS, FOLDER
 from tests.app.serving import serving
 
 
@@ -116,6 +117,16 @@ def test_a_host_that_this_server_is_not_is_refused(here, begun):
     assert not begun
 
 
+def test_scripts_are_served_and_nothing_beside_them(here):
+    answer = get(here, f"/{ADDRESS}/view.js")
+    assert answer.status == 200
+    assert "javascript" in answer.getheader("Content-Type")
+    assert answer.text == (FOLDER / "view.js").read_text(encoding="utf-8")
+    assert get(here, f"/{ADDRESS}/view.js", Host=f"rebound.example:{here.port}").status == 421
+    for path in ("/../serve.py", "/..%2fserve.py", "/", "/none.js", f"/{FOLDER.parent}/serve.py"):
+        assert get(here, f"/{ADDRESS}{path}").status in (403, 404)
+
+
 def test_a_strange_host_is_told_as_text(here):
     assert "<b>" not in get(here, Host="<b>x</b>").text
 
@@ -155,7 +166,7 @@ def test_nothing_is_computed_before_a_browser_has_the_view(here, begun, monkeypa
     wait_until(lambda: begun)
     session = begun[-1]
     time.sleep(0.5)
-    assert not session.working
+    assert not session.tasks.running
     assert session.state.rig is None
     assert session.state.panel == "graph", "what the address says is chosen"
     monkeypatch.undo()

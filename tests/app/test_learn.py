@@ -3,12 +3,13 @@
 import numpy as np
 import pytest
 
-from app.actions.learn import camera_of, go
-from app.scenes import resolve
-from app.session import Session
-from app.state import PANELS, State
-from app.tour import TOUR
-from assets import DEMOS
+from cutcell_app.commands import arrival
+from cutcell_app.commands.tour import camera_of, go
+from cutcell_app.layout.session import begin
+from cutcell_app.scenes import resolve
+from cutcell_app.state import PANELS, State
+from cutcell_app.state.tour import TOUR
+from cutcell_assets import DEMOS
 
 
 def test_every_step_can_be_told():
@@ -50,19 +51,19 @@ def test_a_step_on_another_character_opens_it(session, loop):
 
 
 def test_a_link_to_a_step_alone_sets_its_scene(session, loop):
-    session.opening.arrive("?panel=learn&step=7", lambda: pytest.fail("the step has a character"))
+    arrival.arrive(session, "?panel=learn&step=7", lambda: pytest.fail("the step has a character"))
     state, look = session.state, TOUR[6].look
     loop.run_until(lambda: state.binding is not None)
     assert (state.tour, state.demo, state.panel) == (6, "biped", "geodesics")
     assert state.rig.skeleton.names[state.joint] == look.bone
     assert (state.connectivity, state.cut_axis) == (6, "z")
     assert session.view.camera == camera_of(session, look)
-    assert not session.habits._history.can_undo
+    assert not session.history.can_undo
 
 
 def test_what_a_link_says_beside_a_step_is_set_on_its_scene(session, loop):
-    session.opening.arrive(
-        "?panel=weights&step=5&resolution=20&camera=1,2,3,0,1,0&kitchen=1", lambda: None
+    arrival.arrive(
+        session, "?panel=weights&step=5&resolution=20&camera=1,2,3,0,1,0&kitchen=1", lambda: None
     )
     state = session.state
     loop.run_until(lambda: computed_at(state, 20))
@@ -76,8 +77,8 @@ def test_a_link_of_a_person_on_the_tour_brings_back_what_they_made_of_it(session
     loop.run_until(lambda: session.state.binding is not None)
     session.state.param.update(connectivity="any", panel="learn")
     query = session.view.told("address")
-    again = Session(loop)
-    again.opening.arrive(query, lambda: None)
+    again = begin(loop)
+    arrival.arrive(again, query, lambda: None)
     loop.run_until(lambda: again.state.binding is not None)
     assert (again.state.tour, again.state.panel) == (6, "learn")
     assert again.state.connectivity == "any"
@@ -86,7 +87,7 @@ def test_a_link_of_a_person_on_the_tour_brings_back_what_they_made_of_it(session
 
 @pytest.mark.parametrize("step", ["0", "99", "-3", "two"])
 def test_a_link_to_a_step_that_there_is_not_says_so(session, loop, step):
-    session.opening.arrive(f"?step={step}&rig=robot&resolution=16", lambda: None)
+    arrival.arrive(session, f"?step={step}&rig=robot&resolution=16", lambda: None)
     loop.run_until(lambda: session.state.binding is not None)
     assert session.state.tour == -1
     assert f"step={step}" in session.state.message[1]

@@ -7,9 +7,9 @@ import weakref
 
 import pytest
 
-from app.session import Session
-from assets import demo_path
 from benchmarks.visitors import BOUND, Visitor
+from cutcell_app.commands.session import Session
+from cutcell_assets import demo_path
 from tests.app.serving import serving
 
 

@@ -2,8 +2,8 @@
 
 import panel_material_ui as pmui
 
-from app.panels.bone import bone
-from app.panels.parts import offer, unique_names
+from cutcell_app.panels.bone import bone
+from cutcell_app.panels.parts import offer, unique_names
 
 
 def test_an_index_that_stays_is_shown_by_its_new_name_at_once():

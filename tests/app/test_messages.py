@@ -8,11 +8,11 @@ from html import unescape
 import panel_material_ui as pmui
 import pytest
 
-from app.log import Printable
-from app.messages import sentence, told
-from app.panels.parts import as_text, unique_names
 from cutcell.display import printable
 from cutcell.errors import FileError
+from cutcell_app.panels.parts import as_text, unique_names
+from cutcell_app.server.log import Printable
+from cutcell_app.work.messages import sentence, told
 
 
 @pytest.mark.parametrize(

@@ -9,12 +9,12 @@ from PIL import Image
 from typer.testing import CliRunner
 
 import cutcell
-import viewers
-from app.render import VIEWS, Choices, check, describe, find_bone, find_clip, order
-from assets import demo_path
+import cutcell_viewers
 from cutcell.cli import app
 from cutcell.errors import FileError, ParameterError
 from cutcell.io.numbers import save_numbers
+from cutcell_app.render import VIEWS, Choices, check, describe, find_bone, find_clip, order
+from cutcell_assets import demo_path
 from tests.viewers.arm import arm_rig
 
 DOCUMENT = Path(__file__).resolve().parents[2] / "docs" / "pictures.md"
@@ -39,7 +39,7 @@ def drawn(monkeypatch):
         orders.append(order)
         path.write_bytes(b"drawn")
 
-    monkeypatch.setattr("viewers.worker.draw_apart", remember)
+    monkeypatch.setattr("cutcell_viewers.worker.draw_apart", remember)
     return orders
 
 
@@ -166,10 +166,10 @@ def test_the_body_follows_a_clip_on_panels_where_it_rests_otherwise(rig, binding
 
 def test_a_notebook_gets_a_picture_or_a_plotter(rig, binding):
     scene = describe(rig, Choices("weights", bone="elbow"), binding=binding)
-    picture = viewers.show(scene, size=(160, 120))
+    picture = cutcell_viewers.show(scene, size=(160, 120))
     assert picture.size == (160, 120)
     assert picture._repr_png_().startswith(b"\x89PNG")
-    plotter = viewers.plotter(scene, size=(160, 120), dark=True)
+    plotter = cutcell_viewers.plotter(scene, size=(160, 120), dark=True)
     assert plotter.window_size == [160, 120]
     plotter.close()
 
@@ -187,7 +187,7 @@ def test_the_documents_commands_are_understood(drawn, tmp_path, monkeypatch):
 def test_the_documents_examples_run(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "assets").symlink_to(demo_path("biped").parent)
-    monkeypatch.setattr("viewers.film.TURN_SECONDS", 0.2)
+    monkeypatch.setattr("cutcell_viewers.film.TURN_SECONDS", 0.2)
     names: dict = {}
     for example in re.findall(r"```python\n(.*?)```", DOCUMENT.read_text(), re.DOTALL):
         exec(example, names)

@@ -4,7 +4,7 @@ import socket
 
 import pytest
 
-from app.serve import allowed_hosts, free_port
+from cutcell_app.serve import allowed_hosts, free_port
 
 
 @pytest.fixture
@@ -29,7 +29,7 @@ def test_an_address_of_another_machine_is_an_error():
 
 
 def test_when_all_ports_are_taken(monkeypatch, taken):
-    monkeypatch.setattr("app.serve.PORTS_TRIED", 1)
+    monkeypatch.setattr("cutcell_app.serve.PORTS_TRIED", 1)
     with pytest.raises(OSError, match="taken"):
         free_port(taken)
 

@@ -1,4 +1,4 @@
-"""A session without a browser: opening, binding, failing, cancelling."""
+"""A session without a browser: loading, binding, failing, cancelling."""
 
 import os
 import shutil
@@ -11,17 +11,18 @@ import param
 import pytest
 
 import cutcell
-from app import scenes
-from app.session import Session
-from app.status import stage_text, summary, warning
 from cutcell.errors import MeshError
+from cutcell_app import scenes
+from cutcell_app.commands import binding, loading, look
+from cutcell_app.layout.session import begin
+from cutcell_app.layout.status import stage_text, summary, warning
 from tests.viewers.arm import arm_rig
 
 
 def test_a_demo_stands_there_first_and_is_bound_then(session, loop):
     seen = []
     session.state.param.watch(lambda e: seen.append(e.name), ["rig", "binding"])
-    session.opening.demo("robot")
+    loading.load_demo(session, "robot")
     assert session.state.busy
     loop.run_until(lambda: session.state.binding is not None)
     assert [name for name in seen if name == "rig"] == ["rig"]
@@ -52,12 +53,12 @@ def test_an_impossible_resolution_is_told_and_changes_nothing(bound, loop, resol
     assert bound.state.binding is before
     assert not bound.state.busy
     assert bound.state.resolution == 16, "what is shown is what is there"
-    assert not bound.habits._history.can_undo
+    assert not bound.history.can_undo
 
 
 def test_an_impossible_resolution_of_an_address_gives_way_to_what_is_possible(session, loop):
     session.state.resolution = 10_000
-    session.opening.rig(arm_rig())
+    loading.show_rig(session, arm_rig())
     loop.run_until(lambda: session.state.binding is not None)
     assert session.state.binding.graph.lattice.resolution == session.state.resolution == 64
     assert "resolution" in session.state.message[1].lower()
@@ -71,18 +72,18 @@ def test_what_fails_with_the_defaults_is_not_tried_again(session, loop, monkeypa
         raise MeshError("no room")
 
     monkeypatch.setattr(cutcell, "bind", broken)
-    session.opening.rig(arm_rig())
+    loading.show_rig(session, arm_rig())
     loop.run_until(lambda: session.state.message is not None)
-    loop.run_until(lambda: not session.working)
+    loop.run_until(lambda: not session.tasks.running)
     assert len(tried) == 1
 
 
 def test_a_cancelled_resolution_gives_way_to_the_one_that_is_there(bound, loop):
     bound.state.resolution = 24
     loop.run_until(lambda: bound.state.busy)
-    bound.cancel()
+    binding.cancel(bound)
     assert bound.state.resolution == 16
-    loop.run_until(lambda: not bound.working)
+    loop.run_until(lambda: not bound.tasks.running)
     assert bound.state.binding.graph.lattice.resolution == 16
 
 
@@ -90,7 +91,7 @@ def test_a_bad_file_is_told_and_the_old_character_stays(bound, loop, tmp_path):
     before = bound.state.rig
     bad = tmp_path / "bad.glb"
     bad.write_text("this is a text file")
-    bound.opening.files([bad])
+    loading.load_files(bound, [bad])
     loop.run_until(lambda: bound.state.message is not None)
     assert "bad.glb" in bound.state.message[1]
     assert bound.state.rig is before
@@ -98,7 +99,7 @@ def test_a_bad_file_is_told_and_the_old_character_stays(bound, loop, tmp_path):
 
 
 def test_files_without_a_character_are_told(bound, tmp_path):
-    bound.opening.files([tmp_path / "notes.txt"])
+    loading.load_files(bound, [tmp_path / "notes.txt"])
     assert "notes.txt" in bound.state.message[1]
 
 
@@ -107,14 +108,14 @@ def test_unexpected_errors_are_told_kindly_and_logged(bound, loop, monkeypatch, 
         raise RuntimeError("the sky fell")
 
     monkeypatch.setattr(cutcell, "bind", broken)
-    bound.bind()
+    binding.bind(bound)
     loop.run_until(lambda: bound.state.message is not None)
     assert "unexpected" in bound.state.message[1]
     assert "the sky fell" in caplog.text
 
 
 def test_what_goes_wrong_on_the_pages_own_thread_is_told_too(session, loop):
-    session.later(lambda: [].pop())
+    session.tasks.later(lambda: [].pop())
     loop.run_until(lambda: session.state.message is not None)
     assert "unexpected" in session.state.message[1]
 
@@ -126,14 +127,14 @@ def test_cancelling_keeps_what_was_there(bound, loop, monkeypatch):
 
     monkeypatch.setattr(cutcell, "bind", endless)
     before = bound.state.binding
-    bound.bind()
+    binding.bind(bound)
     loop.run_until(lambda: bound.state.stage == "graph")
-    bound.cancel()
+    binding.cancel(bound)
     assert not bound.state.busy
     assert bound.state.binding is before
     assert bound.state.message[0] == "info"
     bound.state.message = None
-    bound.cancel()
+    binding.cancel(bound)
     assert bound.state.message is None
 
 
@@ -147,18 +148,18 @@ def test_another_character_supersedes_a_running_computation(bound, loop, monkeyp
 
     monkeypatch.setattr(cutcell, "bind", slow)
     other = arm_rig()
-    bound.bind()
+    binding.bind(bound)
     loop.run_until(lambda: bound.state.stage == "graph")
-    bound.opening.rig(other)
+    loading.show_rig(bound, other)
     loop.run_until(lambda: bound.state.binding is not None)
     assert bound.state.rig is other
     assert len(bound.state.binding.weights) == len(other.mesh.vertices)
 
 
 def test_picking_a_bone_shows_its_weights(bound):
-    bound.pick(2)
+    look.pick(bound, 2)
     assert (bound.state.joint, bound.state.weights_shown) == (2, "bone")
-    bound.pick(99)
+    look.pick(bound, 99)
     assert bound.state.joint == 2
 
 
@@ -171,31 +172,31 @@ def test_the_field_is_fetched_when_it_is_wanted(bound, loop):
 
 def test_a_new_character_starts_at_rest(bound, loop):
     bound.state.param.update(turns={1: (0, 0, 60)}, moving=True, playing=True)
-    bound.opening.rig(arm_rig())
+    loading.show_rig(bound, arm_rig())
     assert not bound.state.posed
     assert bound.state.clip == 0
     loop.run_until(lambda: bound.state.binding is not None)
 
 
 def test_the_end_of_a_session_leaves_nothing_behind(loop):
-    session = Session(loop)
+    session = begin(loop)
     folder = session.folder
     (folder / "upload").mkdir()
     (folder / "upload" / "a.glb").write_bytes(b"1")
-    session.bind()
+    binding.bind(session)
     session.close()
     assert not folder.exists()
     session.close()
 
 
 def test_two_sessions_share_nothing_that_changes(loop):
-    one, other = Session(loop), Session(loop)
+    one, other = begin(loop), begin(loop)
     try:
         assert one.folder != other.folder
         one.state.param.update(resolution=16, turns={0: (1, 2, 3)})
         assert other.state.resolution == 64
         assert other.state.turns == {}
-        one.opening.rig(arm_rig())
+        loading.show_rig(one, arm_rig())
         assert other.state.rig is None
     finally:
         one.close()
@@ -206,7 +207,7 @@ def test_real_characters_open(session, loop, rigs):
     path = next(path for path in rigs if path.stem == "khronos_CesiumMan")
     copy = session.folder / path.name
     shutil.copy(path, copy)
-    session.opening.files([Path(copy)])
+    loading.load_files(session, [Path(copy)])
     loop.run_until(lambda: session.state.binding is not None)
     np.testing.assert_allclose(session.state.binding.weights.sum(axis=1), 1, atol=1e-6)
 
@@ -219,8 +220,8 @@ def test_what_was_odd_about_the_file_is_told(bound):
 def test_methods_are_compared_one_after_the_other_and_one_that_fails_stops_none(
     bound, loop, monkeypatch
 ):
-    from app.actions.compare import cancel
     from cutcell.baselines import METHODS, BaselineBinding
+    from cutcell_app.commands.compare import cancel
 
     def fails(rig):
         return BaselineBinding(None, failed="it cannot")
@@ -238,18 +239,18 @@ def test_methods_are_compared_one_after_the_other_and_one_that_fails_stops_none(
     assert state.compared["euclidean"].weights.shape == state.rig.weights.shape
     assert state.compared["now"].source is state.binding
     before = state.compared["now"]
-    bound.bind()
+    binding.bind(bound)
     loop.run_until(lambda: state.compared["now"] is not before, 60)
     state.param.update(methods=["now", "voxel"])
     cancel(bound)
     assert state.comparing != "voxel"
     assert "voxel" not in state.methods
-    bound.opening.rig(arm_rig())
+    loading.show_rig(bound, arm_rig())
     assert state.compared == {}
     loop.run_until(lambda: state.binding is not None)
 
 
-@pytest.mark.parametrize("falloff", cutcell.skinning.FALLOFFS)
+@pytest.mark.parametrize("falloff", cutcell.method.FALLOFFS)
 def test_another_falloff_changes_weights_and_measures_nothing(bound, loop, falloff):
     state = bound.state
     state.falloff = falloff
@@ -258,8 +259,9 @@ def test_another_falloff_changes_weights_and_measures_nothing(bound, loop, fallo
     state.param.update(alpha=0.9, max_influences=2, threshold=0.1)
     loop.run_until(lambda: not state.busy)
     assert state.binding.distances is before.distances
+    chosen = {"falloff": falloff, **({"alpha": 0.9} if falloff == "paper" else {})}
     expected = cutcell.skinning.skinning_weights(
-        before.distances, falloff=falloff, alpha=0.9, max_influences=2, threshold=0.1
+        before.distances, max_influences=2, threshold=0.1, **chosen
     )
     np.testing.assert_allclose(state.binding.weights, expected, atol=1e-9)
     assert (state.binding.weights > 0).sum(axis=1).max() <= 2
@@ -273,7 +275,7 @@ def test_what_is_bound_is_what_the_command_binds(bound):
 
 def test_a_falloff_chosen_while_distances_are_measured_counts(session, loop):
     session.state.resolution = 16
-    session.opening.rig(arm_rig())
+    loading.show_rig(session, arm_rig())
     session.state.param.update(max_influences=1, falloff="paper")
     loop.run_until(lambda: session.state.binding is not None and not session.state.busy)
     distances = session.state.binding.distances
@@ -282,14 +284,14 @@ def test_a_falloff_chosen_while_distances_are_measured_counts(session, loop):
 
 
 def test_a_vertex_is_chosen_and_forgotten_with_its_character(bound, loop):
-    bound.pick_vertex(3)
+    look.pick_vertex(bound, 3)
     assert bound.state.vertex == 3
-    bound.pick_vertex(10**6)
+    look.pick_vertex(bound, 10**6)
     assert bound.state.vertex == 3
-    bound.opening.rig(arm_rig())
+    loading.show_rig(bound, arm_rig())
     assert bound.state.vertex is None
-    bound.pick_vertex(1)
-    bound.pick_vertex(None)
+    look.pick_vertex(bound, 1)
+    look.pick_vertex(bound, None)
     assert bound.state.vertex is None
 
 
@@ -298,24 +300,24 @@ def test_the_wave_is_told_once_and_not_frame_by_frame(bound, loop):
     bound.view.tell = lambda **parts: told.append(parts)
     bound.state.panel = "geodesics"
     loop.run_until(lambda: bound.state.field is not None)
-    bound.state.param.update(wave=True, filming=True)
-    films = [parts["film"] for parts in told if "film" in parts]
+    bound.state.param.update(wave=True, animating=True)
+    films = [parts["animation"] for parts in told if "animation" in parts]
     assert len(films) == 1
     assert films[0]["end"] > 0
     bound.state.front = 0.5
-    assert [parts for parts in told if "film" in parts] == [{"film": films[0]}]
+    assert [parts for parts in told if "animation" in parts] == [{"animation": films[0]}]
 
 
 def test_what_is_told_reads_well(session):
     assert stage_text("graph") == "Building the graph"
-    assert stage_text("opening a.glb") == "Opening a.glb"
+    assert stage_text("loading a.glb") == "Loading a.glb"
     assert stage_text("") == "Starting"
     assert summary(session.state) == ""
     assert warning(session.state) is None
 
 
 def test_a_large_character_is_described_beside_the_pages_own_thread(session, loop, monkeypatch):
-    monkeypatch.setattr("app.state.QUICK_MESH", 10)
+    monkeypatch.setattr("cutcell_app.state.QUICK_MESH", 10)
     threads, described = [], []
     resolve = scenes.resolve
 
@@ -324,17 +326,17 @@ def test_a_large_character_is_described_beside_the_pages_own_thread(session, loo
             threads.append(threading.current_thread())
         return resolve(state, memo)
 
-    monkeypatch.setattr("app.session.resolve", noted)
+    monkeypatch.setattr("cutcell_app.commands.look.resolve", noted)
     monkeypatch.setattr(session.view, "present", described.append)
     session.state.resolution = 16
-    session.opening.rig(arm_rig())
+    loading.show_rig(session, arm_rig())
     loop.run_until(lambda: session.state.binding is not None)
     for panel in ("graph", "pose", "weights"):
         session.state.panel = panel
     session.state.falloff = "paper"
-    loop.run_until(lambda: not session.working)
+    loop.run_until(lambda: not session.tasks.running)
     session.state.alpha = 0.25
-    loop.run_until(lambda: not session.working)
+    loop.run_until(lambda: not session.tasks.running)
     assert threading.current_thread() not in threads
     assert described[-1].actors.keys() == resolve(session.state).actors.keys()
     expected = resolve(session.state).actors["body"].colors
@@ -356,13 +358,13 @@ def test_a_character_of_many_joints_is_large(session):
 def test_reading_that_does_not_come_to_an_end_is_cancelled(session, loop, tmp_path):
     pipe = tmp_path / "pipe.glb"
     os.mkfifo(pipe)  # whoever reads it waits for someone who writes
-    session.opening.files([pipe])
-    loop.run_until(lambda: session.state.stage == "opening pipe.glb")
+    loading.load_files(session, [pipe])
+    loop.run_until(lambda: session.state.stage == "loading pipe.glb")
     loop.run_for(0.2)
-    session.cancel()
+    binding.cancel(session)
     assert "Cancelled" in session.state.message[1]
     session.state.resolution = 16
-    session.opening.rig(arm_rig())
+    loading.show_rig(session, arm_rig())
     loop.run_until(lambda: session.state.binding is not None)
 
 
@@ -384,13 +386,13 @@ def test_running_out_of_memory_is_a_sentence_and_the_page_goes_on(bound, loop, m
 
 def test_a_falloff_that_asks_for_more_joints_measures_them(bound, loop):
     bound.state.falloff = "paper"
-    loop.run_until(lambda: not bound.working)
+    loop.run_until(lambda: not bound.tasks.running)
     assert bound.state.message is None
     expected = cutcell.bind(arm_rig(), 16, falloff="paper", leaf="fit").weights
     np.testing.assert_allclose(bound.state.binding.weights, expected, atol=1e-6)
     before = bound.state.binding.distances
     bound.state.max_influences = 8
-    loop.run_until(lambda: not bound.working)
+    loop.run_until(lambda: not bound.tasks.running)
     assert bound.state.binding.distances is before
 
 
@@ -402,11 +404,11 @@ def test_an_error_that_nobody_looks_at_is_measured_no_longer(session, loop, monk
         while True:
             progress("deformation", 0.0)
 
-    monkeypatch.setattr("app.actions.pose.scene_error", measured)
+    monkeypatch.setattr("cutcell_app.commands.pose.scene_error", measured)
     session.state.param.update(resolution=16, panel="pose")
-    session.opening.rig(arm_rig())
+    loading.show_rig(session, arm_rig())
     loop.run_until(begun.is_set)
     session.state.panel = "weights"
-    assert not session.jobs("errors").running
+    assert not session.tasks.jobs("errors").running
     session.state.panel = "pose"
-    assert session.jobs("errors").running
+    assert session.tasks.jobs("errors").running

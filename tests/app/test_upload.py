@@ -6,17 +6,16 @@ from pathlib import Path
 
 import pytest
 
-from app.keep import Keep
-from app.reading import main_file
-from app.state import MAX_UPLOAD
-from app.storage import Storage
-from app.upload import NAME_BYTES, Receiver, safe_name
 from cutcell.errors import FileError
+from cutcell_app.files.reading import main_file
+from cutcell_app.files.receive import MAX_UPLOAD, NAME_BYTES, Receiver, safe_name
+from cutcell_app.files.storage import Storage
+from cutcell_app.files.upload_cache import UploadCache
 
 
 @pytest.fixture
 def keep(tmp_path):
-    keep = Keep(Storage(tmp_path))
+    keep = UploadCache(Storage(tmp_path))
     yield keep
     keep.close()
 
@@ -181,7 +180,7 @@ def test_a_folder_that_is_a_loop_of_links_is_told_in_a_sentence(tmp_path):
     loop = tmp_path / "loop"
     loop.symlink_to(loop)
     refused = []
-    receiver = Receiver(Keep(Storage(loop)), "a page", pytest.fail, refused.append)
+    receiver = Receiver(UploadCache(Storage(loop)), "a page", pytest.fail, refused.append)
     answer = send(receiver, ("a.glb", b"1234"))
     assert not answer["ok"]
     assert "could not store the file" in answer["message"]

@@ -6,14 +6,15 @@ import numpy as np
 import pytest
 
 import cutcell
-from app.changes import changes
-from app.view import SceneView, camera_part, theme_part
+from cutcell_app.scenes.common import camera_part, theme_part
+from cutcell_app.widgets.changes import changes
+from cutcell_app.widgets.view import SceneView
+from cutcell_viewers.camera import framing
+from cutcell_viewers.description import Cut, Description
+from cutcell_viewers.graph_scene import graph_scene
+from cutcell_viewers.palette import DARK
+from cutcell_viewers.weights_scene import weights_scene
 from tests.viewers.arm import arm_rig
-from viewers.camera import framing
-from viewers.description import Cut, Description
-from viewers.graph_scene import graph_scene
-from viewers.palette import DARK
-from viewers.weights_scene import weights_scene
 
 
 @pytest.fixture(scope="module")
@@ -28,11 +29,11 @@ def scene(rig):
 
 @pytest.fixture
 def view():
-    picked = []
-    view = SceneView(picked.append)
+    view = SceneView()
+    view.picked = []
+    view.listen("pick", lambda message: view.picked.append(message["joint"]))
     view.sent = []
     view._send_msg = view.sent.append
-    view.picked = picked
     return view
 
 

@@ -10,7 +10,7 @@ import pytest
 from numpy.typing import NDArray
 
 import cutcell
-from assets import demo_path
+from cutcell_assets import demo_path
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from assets import DEMOS, demo_path
+from cutcell_assets import DEMOS, demo_path
 from tests.gltf_validator.validator import errors, reports
 
 from .conftest import load

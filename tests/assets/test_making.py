@@ -3,16 +3,16 @@
 import numpy as np
 import pytest
 
-from assets import __main__ as command
-from assets import demo_path, glb
-from assets.body import Body
-from assets.character import Bones
-from assets.meshing import mesh_of
-from assets.plates import barrel, box, globe
-from assets.remesh import edges_of
-from assets.sdf import ball, ellipsoid, round_cone, smooth_min
-from assets.seams import with_seams
-from assets.weights import from_parts, quantised
+from cutcell_assets import __main__ as command
+from cutcell_assets import demo_path, glb
+from cutcell_assets.body import Body
+from cutcell_assets.character import Bones
+from cutcell_assets.meshing import mesh_of
+from cutcell_assets.plates import barrel, box, globe
+from cutcell_assets.remesh import edges_of
+from cutcell_assets.sdf import ball, ellipsoid, round_cone, smooth_min
+from cutcell_assets.seams import with_seams
+from cutcell_assets.weights import from_parts, quantised
 
 pytest.importorskip("skimage")
 

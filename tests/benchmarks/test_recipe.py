@@ -5,9 +5,9 @@ import pytest
 from scipy.spatial import cKDTree
 
 from benchmarks import recipe
-from cutcell import Rig, Skeleton, TriangleMesh, bind, build_graph
-from cutcell.geodesics import bone_distances
+from cutcell import Rig, Skeleton, TriangleMesh, bind
 from tests import meshes
+from tests.paper import bone_distances, build_graph
 
 # Turned, so that hardly any ray meets an edge, where float32 decides by itself.
 TURN = np.array([[0.36, 0.48, -0.8], [-0.8, 0.6, 0], [0.48, 0.64, 0.6]])

@@ -8,7 +8,7 @@ import time
 import pytest
 
 from cutcell import Cancelled
-from cutcell.threads import in_threads, meanwhile, parts, threads, watched
+from cutcell.threads import in_threads, parts, submit, threads, watched
 
 
 def test_results_keep_the_order_of_the_items():
@@ -46,29 +46,29 @@ def test_errors_reach_the_caller():
         in_threads(fail, range(8))
 
 
-def test_something_is_done_meanwhile(monkeypatch):
+def test_something_is_done_submit(monkeypatch):
     monkeypatch.setattr("cutcell.threads.threads", lambda: 2)
     done = threading.Event()
-    result = meanwhile(lambda: done.set() or threading.current_thread())
+    result = submit(lambda: done.set() or threading.current_thread())
     assert done.wait(10), "begun before anybody asks"
     assert result() is not threading.current_thread()
 
 
 def test_what_nobody_has_begun_is_done_by_who_asks():
     free = threading.Event()
-    busy = [meanwhile(free.wait) for _ in range(threads() - 1)]
-    asked = meanwhile(threading.current_thread)
+    busy = [submit(free.wait) for _ in range(threads() - 1)]
+    asked = submit(threading.current_thread)
     assert asked() is threading.current_thread()
     free.set()
     assert all(wait() for wait in busy)
 
 
-def test_errors_of_what_is_done_meanwhile_reach_who_asks():
+def test_errors_of_what_is_done_submit_reach_who_asks():
     def fail():
         raise ValueError("three")
 
     with pytest.raises(ValueError, match="three"):
-        meanwhile(fail)()
+        submit(fail)()
 
 
 def test_parts_cover_everything_once():

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.random import Generator
 
 import cutcell
-from cutcell.skinning.kernels import load_kernels
+from cutcell import skinning
 
 from .harness import main
 from .shapes import KINDS, mesh_of
@@ -198,8 +198,8 @@ def _check_progress(stage: str, done: float) -> None:
 
 
 def warm_up() -> None:
-    """Load the kernels: a case is not to be blamed for that."""
-    load_kernels()
+    """Load what is compiled: a case is not to be blamed for that."""
+    skinning.warm_up()
 
 
 if __name__ == "__main__":

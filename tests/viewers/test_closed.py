@@ -5,7 +5,7 @@ import time
 import numpy as np
 import trimesh
 
-from viewers.character import is_closed, smooth_normals
+from cutcell_viewers.character import is_closed, smooth_normals
 
 
 def box(**how):

@@ -8,9 +8,8 @@ from hypothesis import strategies as st
 from cutcell import linear_blend_skinning
 from cutcell.metrics import deformation_error
 from cutcell.pose import rotate_joint
-from tests.viewers.arm import arm_rig
-from viewers.character import pose_in_scene, to_scene
-from viewers.error_scene import (
+from cutcell_viewers.character import pose_in_scene, to_scene
+from cutcell_viewers.error_scene import (
     FLOOR,
     Gap,
     error_limits,
@@ -18,8 +17,9 @@ from viewers.error_scene import (
     scene_error,
     squared_unit,
 )
-from viewers.pose_scene import joint_turns, turn
-from viewers.skin import squared_apart
+from cutcell_viewers.pose_scene import joint_turns, turn
+from cutcell_viewers.skin import squared_apart
+from tests.viewers.arm import arm_rig
 
 
 @pytest.fixture(scope="module")

@@ -8,17 +8,17 @@ import numpy as np
 import pytest
 from PIL import Image
 
-import viewers.worker
+import cutcell_viewers.worker
 from cutcell import Clip
 from cutcell.errors import Cancelled, FileError, MissingLibraryError
+from cutcell_viewers.camera import Camera, around, framing, sees
+from cutcell_viewers.character import pose_in_scene
+from cutcell_viewers.film import FRAMES, Order, _camera, draw
+from cutcell_viewers.palette import DARK, LIGHT
+from cutcell_viewers.studio import Studio
+from cutcell_viewers.weights_scene import weights_scene
+from cutcell_viewers.worker import draw_apart
 from tests.viewers.arm import arm_rig
-from viewers.camera import Camera, around, framing, sees
-from viewers.character import pose_in_scene
-from viewers.film import FRAMES, Order, _camera, draw
-from viewers.palette import DARK, LIGHT
-from viewers.studio import Studio
-from viewers.weights_scene import weights_scene
-from viewers.worker import draw_apart
 
 SIZE = (160, 120)
 
@@ -155,7 +155,7 @@ def test_a_film_that_is_no_longer_wanted_is_stopped_at_once(scene, tmp_path, mon
         if fraction > 0:
             raise Cancelled
 
-    monkeypatch.setattr(viewers.worker.subprocess, "Popen", remembered)
+    monkeypatch.setattr(cutcell_viewers.worker.subprocess, "Popen", remembered)
     path = tmp_path / "turn.gif"
     with pytest.raises(Cancelled):
         draw_apart(Order(scene, size=SIZE, turntable=True), path, cancel)
@@ -165,8 +165,8 @@ def test_a_film_that_is_no_longer_wanted_is_stopped_at_once(scene, tmp_path, mon
 
 
 def test_a_process_that_dies_without_reason_is_told(scene, tmp_path, monkeypatch):
-    monkeypatch.setattr("viewers.worker.sys.executable", "false")
-    monkeypatch.setattr("viewers.opengl._can_draw", lambda: True)
+    monkeypatch.setattr("cutcell_viewers.worker.sys.executable", "false")
+    monkeypatch.setattr("cutcell_viewers.opengl._can_draw", lambda: True)
     with pytest.raises(RuntimeError, match="exit code 1"):
         draw_apart(Order(scene, size=SIZE), tmp_path / "a.png")
 

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from viewers import lettering
-from viewers.description import Legend
-from viewers.palette import LIGHT
+from cutcell_viewers import lettering
+from cutcell_viewers.description import Legend
+from cutcell_viewers.palette import LIGHT
 
 
 @pytest.mark.parametrize("height", range(690, 730, 5))

@@ -8,15 +8,15 @@ import pytest
 import cutcell
 from cutcell.geodesics import shortest_path
 from cutcell.graph import slice_rays
+from cutcell_viewers.character import to_scene
+from cutcell_viewers.graph_scene import depth_field
+from cutcell_viewers.marks import beads, path_tube, rods, tube, vertex_mark
+from cutcell_viewers.palette import EYES, JOINT_COLORS, LIGHT, _srgb_to_oklab, as_seen, joint_colors
+from cutcell_viewers.section_scene import section, section_rays, section_resolution, values_at
+from cutcell_viewers.slice_scene import file_axis, slice_place, slice_scene
+from cutcell_viewers.start_scene import first_distances, start_scene
+from cutcell_viewers.weights_scene import count_colors, difference_colors, dominant_colors
 from tests.viewers.arm import arm_rig
-from viewers.character import to_scene
-from viewers.graph_scene import depth_field
-from viewers.marks import beads, path_tube, rods, tube, vertex_mark
-from viewers.palette import EYES, JOINT_COLORS, LIGHT, _srgb_to_oklab, as_seen, joint_colors
-from viewers.section_scene import section, section_rays, section_resolution, values_at
-from viewers.slice_scene import file_axis, slice_place, slice_scene
-from viewers.start_scene import first_distances, start_scene
-from viewers.weights_scene import count_colors, difference_colors, dominant_colors
 
 
 @pytest.fixture(scope="module")

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from viewers import palette
+from cutcell_viewers import palette
 
 
 def test_the_papers_colours():

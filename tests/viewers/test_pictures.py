@@ -7,15 +7,15 @@ import pytest
 from PIL import Image
 
 import cutcell
+from cutcell_viewers import palette
+from cutcell_viewers.camera import framing
+from cutcell_viewers.description import Description
+from cutcell_viewers.distance_scene import distance_scene
+from cutcell_viewers.graph_scene import cut_at, graph_scene
+from cutcell_viewers.pose_scene import joint_turns, pose_scene, turn
+from cutcell_viewers.scene import Scene, render_png
+from cutcell_viewers.weights_scene import weights_scene
 from tests.viewers.arm import arm_rig
-from viewers import palette
-from viewers.camera import framing
-from viewers.description import Description
-from viewers.distance_scene import distance_scene
-from viewers.graph_scene import cut_at, graph_scene
-from viewers.pose_scene import joint_turns, pose_scene, turn
-from viewers.scene import Scene, render_png
-from viewers.weights_scene import weights_scene
 
 SIZE = (240, 180)
 

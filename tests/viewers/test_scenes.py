@@ -8,16 +8,23 @@ import pytest
 import cutcell
 from cutcell.graph import INTERIOR, MESH, SURFACE
 from cutcell.rig import Skeleton
+from cutcell_viewers import palette
+from cutcell_viewers.character import (
+    body,
+    bones,
+    drawn_segments,
+    pose_in_scene,
+    smooth_normals,
+    to_scene,
+)
+from cutcell_viewers.description import Description
+from cutcell_viewers.distance_scene import distance_scene
+from cutcell_viewers.graph_scene import LAYERS, cut_at, graph_scene
+from cutcell_viewers.palette import UNREACHED, colormap, to_bytes
+from cutcell_viewers.pose_scene import joint_turns, pose_at, pose_scene, swing, turn
+from cutcell_viewers.skin import moved
+from cutcell_viewers.weights_scene import weights_scene
 from tests.viewers.arm import WORLD, arm_rig
-from viewers import palette
-from viewers.character import body, bones, drawn_segments, pose_in_scene, smooth_normals, to_scene
-from viewers.description import Description
-from viewers.distance_scene import distance_scene
-from viewers.graph_scene import LAYERS, cut_at, graph_scene
-from viewers.palette import UNREACHED, colormap, to_bytes
-from viewers.pose_scene import joint_turns, pose_at, pose_scene, swing, turn
-from viewers.skin import moved
-from viewers.weights_scene import weights_scene
 
 
 @pytest.fixture(scope="module")

@@ -5,8 +5,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from cutcell import forward_kinematics, linear_blend_skinning
+from cutcell_viewers.skin import MAX_INFLUENCES, moved, rigid_skin, skin_of_weights, turned
 from tests.viewers.arm import arm_rig
-from viewers.skin import MAX_INFLUENCES, moved, rigid_skin, skin_of_weights, turned
 
 
 @given(st.integers(0, 2**32 - 1), st.integers(1, MAX_INFLUENCES))

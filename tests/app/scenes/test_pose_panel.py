@@ -6,11 +6,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import cutcell
-from app.scenes import Memo, resolve
-from app.scenes.pose import VIEWS, angles_of, error_of, gizmo_part, rotation_of
-from app.state import State
+from cutcell_app.scenes import Memo, resolve
+from cutcell_app.scenes.pose import VIEWS, angles_of, error_of, gizmo_part, rotation_of
+from cutcell_app.state import State
+from cutcell_viewers.error_scene import Gap
 from tests.viewers.arm import arm_rig
-from viewers.error_scene import Gap
 
 angle = st.floats(-180, 180)
 

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 import cutcell
-from app.scenes import RIGID, Memo, following, resolve
-from app.scenes.common import SEE_THROUGH, bones_part, cells_of, first_joint
-from app.scenes.geodesics import field_of, wants_field
-from app.scenes.pose import clip_of, clip_part, pose_of
-from app.state import LAYERS, PANELS, State
+from cutcell_app.scenes import RIGID, Memo, following, resolve
+from cutcell_app.scenes.common import SEE_THROUGH, bones_part, cells_of, first_joint
+from cutcell_app.scenes.geodesics import field_of, wants_field
+from cutcell_app.scenes.pose import clip_of, clip_part, pose_of
+from cutcell_app.state import LAYERS, PANELS, State
+from cutcell_viewers.palette import DARK, LIGHT
 from tests.viewers.arm import arm_rig
-from viewers.palette import DARK, LIGHT
 
 
 @pytest.fixture(scope="module")

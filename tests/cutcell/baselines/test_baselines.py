@@ -80,7 +80,7 @@ def test_weights_that_a_file_cannot_store_are_not_given(name):
 
 def test_the_artists_weights_are_the_files():
     rig = bar()
-    assert METHODS["artist"](rig).failed == "the file holds no weights"
+    assert METHODS["artist"](rig).failed == "the file has no weights"
     weights = np.tile([1.0, 0, 0], (len(rig.mesh.vertices), 1))
     np.testing.assert_array_equal(METHODS["artist"](rig.with_weights(weights)).weights, weights)
 
@@ -259,7 +259,7 @@ def test_heat_along_a_tube_falls_off_as_it_should(heat):
     assert (found.weights[(x < 0.5) & (left > 0.98), 0] == 1).all()
 
 
-def test_pieces_that_no_bone_sees_get_weights_too():
+def test_components_that_no_bone_sees_get_weights_too():
     rig = bar()
     inner, faces = meshes.ball(1)
     shell = trimesh.creation.box(extents=(0.5, 0.5, 0.5))  # neither sees into the bar
@@ -275,7 +275,8 @@ def test_pieces_that_no_bone_sees_get_weights_too():
     hidden = Rig(mesh, rig.skeleton)
     found = METHODS["bone_heat"](hidden)
     check_weights(hidden, found)
-    assert f"{m + 8} of {len(vertices)} places lie on pieces" in found.warnings[0]
+    said = f"{m + 8} of {len(vertices)} welded vertices lie on components that no bone sees"
+    assert said in found.warnings[0]
 
 
 @pytest.mark.parametrize(

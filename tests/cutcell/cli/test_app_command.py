@@ -6,22 +6,24 @@ import pytest
 
 from tests.cutcell.cli.files import refused
 
+PAGE = "cutcell_app.command_line._page"
+
 
 def test_serves_what_it_was_asked_to(run, bar, monkeypatch):
     seen = []
-    monkeypatch.setattr("cutcell.cli._page", lambda: lambda *a, **k: seen.append((a, k)))
+    monkeypatch.setattr(PAGE, lambda: lambda *a, **k: seen.append((a, k)))
     words = ["app", bar, "--port", 5010, "--address", "0.0.0.0", "--no-show"]
     assert run(*words).exit_code == 0
     assert seen == [((bar,), {"port": 5010, "address": "0.0.0.0", "show": False})]
 
 
 def test_a_wrong_file_is_told_before_anything_is_served(run, monkeypatch, tmp_path):
-    monkeypatch.setattr("cutcell.cli._page", lambda: pytest.fail)
+    monkeypatch.setattr(PAGE, lambda: pytest.fail)
     assert "no such file" in refused(run("app", tmp_path / "nope.glb"))
 
 
 def test_says_what_to_install_where_the_page_is_missing(run, monkeypatch):
-    monkeypatch.setitem(sys.modules, "app.serve", None)
+    monkeypatch.setitem(sys.modules, "cutcell_app.serve", None)
     assert "pip install 'cutcell[app]'" in refused(run("app"))
 
 
@@ -33,5 +35,5 @@ def test_an_address_that_cannot_be_served(run, monkeypatch):
     def serve(*_, **__):
         raise OSError(98, "Address already in use")
 
-    monkeypatch.setattr("cutcell.cli._page", lambda: serve)
+    monkeypatch.setattr(PAGE, lambda: serve)
     assert "Address already in use" in refused(run("app"))

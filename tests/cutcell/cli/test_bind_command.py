@@ -1,13 +1,13 @@
 """`cutcell bind`: the options reach the library, what it computes reaches the file."""
 
 import json
+from dataclasses import asdict
 
 import numpy as np
 import pytest
 
 import cutcell
 from cutcell.io import SAVED
-from cutcell.skinning.weights import DEFAULT_LEAF
 from tests.cutcell.cli.files import BAR, JOINTS, bar_faces, refused, write_obj
 
 
@@ -50,10 +50,63 @@ def test_options_reach_the_library(run, bar, tmp_path):
 
 def test_defaults_are_those_of_the_library(run, bar, tmp_path):
     document = json.loads(run("bind", bar, tmp_path / "bound.glb", "--json").stdout)
-    defaults = {**cutcell.bind.__kwdefaults__, "resolution": cutcell.bind.__defaults__[0]}
-    del defaults["progress"]
-    defaults["leaf"] = DEFAULT_LEAF[defaults["falloff"]]
-    assert document["parameters"] == {**defaults, "locked": list(defaults["locked"])}
+    touches = {"smoothing": 0, "symmetric": False, "locked": []}
+    assert document["parameters"] == {**asdict(cutcell.ANIMATION), **touches}
+    assert document["warnings"] == []
+    every = ("--max-influences", "all", "--method", "paper")
+    document = json.loads(run("bind", bar, tmp_path / "bound.glb", *every, "--json").stdout)
+    assert document["parameters"] == {**asdict(cutcell.PAPER), **touches}
+
+
+def chain(tmp_path, joints=6):
+    """Write a bar with a joint near every vertex."""
+    places = [[k / (joints - 1), 0.1, 0.1] for k in range(joints)]
+    parents = [None, *(f"j{k}" for k in range(joints - 1))]
+    listed = [{"name": f"j{k}", "position": p, "parent": parents[k]} for k, p in enumerate(places)]
+    return write_obj(tmp_path / "chain.obj", joints=listed)
+
+
+def test_the_papers_influences_are_limited_in_gltf_and_the_command_says_what_it_dropped(
+    run, tmp_path
+):
+    path = chain(tmp_path)
+    every = cutcell.bind(cutcell.load(path), 8, method="paper").weights
+    result = run("bind", path, tmp_path / "out.glb", "-r", 8, "--method", "paper", "--json")
+    document = json.loads(result.stdout)
+    assert document["influences"] == {"mean": 4.0, "most": 4}
+    assert document["parameters"]["max_influences"] == 4
+    expected = cutcell.bind(cutcell.load(path), 8, method="paper", max_influences=4).weights
+    found = cutcell.load(tmp_path / "out.glb").weights
+    np.testing.assert_allclose(found, expected, atol=1e-6)
+    dropped = np.where(expected > 0, 0, every).sum(axis=1)
+    (sentence,) = document["warnings"]
+    assert "of up to 6 influences a vertex the 4 largest are saved" in sentence
+    assert f"{dropped.mean():.1%} of the weight on average and {dropped.max():.1%}" in sentence
+
+
+@pytest.mark.parametrize(
+    ("out", "more"), [("out.npz", ()), ("out.glb", ("--max-influences", "all"))]
+)
+def test_all_of_the_papers_influences_are_saved_where_that_is_asked_for(run, tmp_path, out, more):
+    path = chain(tmp_path)
+    result = run("bind", path, tmp_path / out, "-r", 8, "--method", "paper", *more)
+    assert result.stderr == ""
+    expected = cutcell.bind(cutcell.load(path), 8, method="paper").weights
+    np.testing.assert_allclose(cutcell.load(tmp_path / out).weights, expected, atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (["--alpha", 0.5], "alpha shapes the paper's falloff and has no effect"),
+        (["--method", "paper", "--falloff", "rig", "--alpha", 0.5], "has no effect"),
+        (["--method", "papers"], "method must be one of 'animation', 'paper', not 'papers'"),
+        (["--max-influences", "many"], "max_influences must be a whole number from 1"),
+        (["--connectivity", "8"], "connectivity must be one of 6, 26, 'any', not 8"),
+    ],
+)
+def test_options_that_do_not_go_together_are_refused(run, bar, tmp_path, words, sentence):
+    assert sentence in refused(run("bind", bar, tmp_path / "out.glb", *words))
 
 
 def test_touching_up_reaches_the_library(run, bar, tmp_path):
@@ -95,8 +148,9 @@ def test_warns_of_vertices_that_no_path_reaches(run, tmp_path):
         ("no/where/o.glb", "there is no folder"),
     ],
 )
-def test_a_wrong_output_is_told_before_the_work(run, bar, tmp_path, name, sentence):
-    assert sentence in refused(run("bind", bar, tmp_path / name, "-r", 10_000))
+def test_a_wrong_output_is_told_before_the_work(run, bar, tmp_path, monkeypatch, name, sentence):
+    monkeypatch.setattr("cutcell.skinning.bind", pytest.fail)
+    assert sentence in refused(run("bind", bar, tmp_path / name))
 
 
 @pytest.mark.parametrize("ending", SAVED)
@@ -124,9 +178,10 @@ def test_the_mesh_that_was_read_is_left_as_it_is(run, bar, tmp_path):
     assert bar.read_text() == textured
 
 
-def test_a_file_that_would_be_replaced_is_told_before_the_work(run, bar, tmp_path):
+def test_a_file_that_would_be_replaced_is_told_before_the_work(run, bar, tmp_path, monkeypatch):
+    monkeypatch.setattr("cutcell.skinning.bind", pytest.fail)
     (tmp_path / "out.obj").write_text("another mesh")
-    sentence = refused(run("bind", bar, tmp_path / "out.txt", "-r", 10_000))
+    sentence = refused(run("bind", bar, tmp_path / "out.txt"))
     assert "out.txt: its mesh belongs in out.obj" in sentence
     assert (tmp_path / "out.obj").read_text() == "another mesh"
 
@@ -135,5 +190,5 @@ def test_all_files_that_are_written_are_told(run, bar, tmp_path):
     run("bind", bar, tmp_path / "one.glb", "-r", 8)
     (tmp_path / "two.bin").write_text("of something else")
     result = run("bind", tmp_path / "one.glb", tmp_path / "two.gltf", "-r", 8)
-    assert "files         two-2.bin, two.gltf" in result.stdout
+    assert "files two-2.bin, two.gltf" in " ".join(result.stdout.split())
     assert (tmp_path / "two.bin").read_text() == "of something else"

@@ -10,7 +10,7 @@ import pytest
 import cutcell
 from cutcell.cli import main
 from cutcell.console import print_json, progress_bars
-from cutcell.skinning.weights import FALLOFFS
+from cutcell.method import FALLOFFS
 from tests.conftest import ROOT
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import cutcell
-from assets import demo_path
+from cutcell_assets import demo_path
 from tests.cutcell.cli.files import BAR, JOINTS, bar_faces, refused, write_obj
 from tests.cutcell.io.gltf_builder import FACES, column
 

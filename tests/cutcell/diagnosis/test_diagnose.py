@@ -9,10 +9,10 @@ import trimesh
 from igl.copyleft.cgal import remesh_self_intersections
 
 import cutcell
-from assets import demo_path
 from cutcell import ParameterError, Rig, Skeleton, SkeletonError, TriangleMesh
 from cutcell.diagnosis import unreadable
 from cutcell.diagnosis.intersections import intersecting_faces
+from cutcell_assets import demo_path
 from tests import meshes
 from tests.cutcell.diagnosis.worm import worm
 

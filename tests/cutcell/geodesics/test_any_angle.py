@@ -6,14 +6,16 @@ import numpy as np
 import pytest
 import trimesh
 
-from assets import demo_path
-from cutcell import ParameterError, Skeleton, TriangleMesh, bone_distances, build_graph, load
+from cutcell import ParameterError, Skeleton, TriangleMesh, load
 from cutcell.geodesics import distance_to_segment
 from cutcell.geodesics.any_angle import SPAN, any_angle_paths, least_distances
 from cutcell.geodesics.bones import find_sources, node_grid
-from cutcell.geodesics.front import in_halves
+from cutcell.geodesics.contraction import contract
+from cutcell.geodesics.wavefront import partition_sources
+from cutcell_assets import demo_path
 from tests import meshes
 from tests.bars import fork
+from tests.paper import bone_distances, build_graph
 
 
 def l_bar():
@@ -149,16 +151,16 @@ def test_the_nearest_joints_are_those_of_all(nearest):
     assert error.max() < 0.15
 
 
-def test_a_field_tells_of_crossings_that_paths_pass_over():
+def test_a_field_has_values_at_contracted_nodes():
     graph = build_graph(TriangleMesh(*meshes.ball(3)), 24, connectivity="any")
     start, end = np.array([[0.4, 0.5, 0.45], [0.6, 0.5, 0.5]])
     field = bone_distances(graph, Skeleton([start, end], [-1, 0])).field(0)
     start, end = graph.lattice.to_unit(np.array([start, end]))
     straight = distance_to_segment(graph.nodes, start, end)
-    left = graph.contracted
-    passed = left.node[left.number] != np.arange(len(graph.nodes))
-    assert passed.sum() > 1000
-    np.testing.assert_allclose(field[passed], straight[passed], rtol=1e-9)
+    nodes = np.arange(len(graph.nodes))
+    contracted = contract(graph).representative(nodes) != nodes
+    assert contracted.sum() > 1000
+    np.testing.assert_allclose(field[contracted], straight[contracted], rtol=1e-9)
     assert (field >= straight * (1 - 1e-9)).all()
 
 
@@ -175,10 +177,11 @@ def test_with_three_joints_for_certain_the_fourth_is_hardly_ever_missed():
 def test_some_joints_are_measured_where_no_other_is_much_nearer():
     graph, skeleton = chain_in_the_l()
     bones = bone_distances(graph, skeleton).bones
-    sources = find_sources(graph, bones, 5, node_grid(graph))
-    nodes = graph.contracted.node
-    every = any_angle_paths(graph, sources, bones, nodes)
-    least = least_distances(graph, sources, bones)
+    contraction = contract(graph)
+    sources = find_sources(graph, bones, 5, node_grid(graph), contraction)
+    nodes = contraction.node
+    every = any_angle_paths(graph, contraction, sources, bones, nodes)
+    least = least_distances(graph, contraction, sources, bones)
     error = np.abs(least / every.min(axis=0) - 1)
     assert (error < 1e-9).mean() > 0.95
     assert error.mean() < 1e-3
@@ -186,7 +189,7 @@ def test_some_joints_are_measured_where_no_other_is_much_nearer():
 
     some = np.isin(bones.joint, (2, 7))
     mine = sources.some(some), bones.some(some), nodes
-    found = any_angle_paths(graph, *mine, nearest=2, within=1.5, least=least)
+    found = any_angle_paths(graph, contraction, *mine, nearest=2, within=1.5, least=least)
     near = every[[2, 7]] <= 1.5 * np.maximum(least, 0.5 / 24)
     assert 0.1 < near.mean() < 0.5
     assert (np.isfinite(found) == near).mean() > 0.99
@@ -232,12 +235,14 @@ def test_all_joints_are_measured_where_as_many_are_wanted():
         bone_distances(graph, skeleton, nearest_joints=0)
 
 
-def test_neighbours_spread_in_different_halves():
+def test_neighbours_are_in_different_parts():
     chain = np.arange(9.0)[:, None] * [1, 0, 0]
     even = np.arange(9) % 2 == 0
-    np.testing.assert_array_equal(in_halves(chain), [even, ~even])
-    np.testing.assert_array_equal(in_halves(np.zeros((2, 3))), [[True, False], [False, True]])
-    np.testing.assert_array_equal(in_halves(np.zeros((1, 3))), [[True]])
+    np.testing.assert_array_equal(partition_sources(chain), [even, ~even])
+    np.testing.assert_array_equal(
+        partition_sources(np.zeros((2, 3))), [[True, False], [False, True]]
+    )
+    np.testing.assert_array_equal(partition_sources(np.zeros((1, 3))), [[True]])
 
 
 def test_distances_repeat_to_the_last_bit():

@@ -5,13 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from cutcell import Skeleton, TriangleMesh, bone_distances, build_graph
+from cutcell import Skeleton, TriangleMesh
 from cutcell.geodesics.bone_extents import fit_bones
 from cutcell.geodesics.bones import node_grid
 from cutcell.geodesics.probe import BodyProbe
 from cutcell.geodesics.rest_axis import rest_directions
 from tests import meshes
 from tests.bars import grid_box
+from tests.paper import bone_distances, build_graph
 
 
 def limb():
@@ -38,7 +39,7 @@ def test_probe_knows_a_box():
     np.testing.assert_allclose(probe.depth(points), [0.5, 0.1, 0, 0], atol=0.01)
     assert probe.inner_part(points[0], points[1]) == 1
     assert 0.5 < probe.inner_part(points[0], [1.4, 0.5, 0.5]) < 0.65
-    way = probe.way_out(points[[0, 3]], np.array([[1.0, 0, 0]] * 2))
+    way = probe.exit_distance(points[[0, 3]], np.array([[1.0, 0, 0]] * 2))
     np.testing.assert_allclose(way, [0.5, 0], atol=1 / 32)
     assert way[1] == 0
 

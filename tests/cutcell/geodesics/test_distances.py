@@ -12,13 +12,12 @@ from cutcell import (
     Skeleton,
     TriangleMesh,
     WeightsError,
-    bone_distances,
     bone_segments,
-    build_graph,
 )
 from cutcell.geodesics import FALLBACK_REASONS, distance_to_segment
 from cutcell.geodesics.fallback import NOT_ALLOWED, REACHED, UNREACHED, UNUSED
 from tests import meshes, naive
+from tests.paper import bone_distances, build_graph
 
 ARM = Skeleton(
     [[0.5, 0.5, 0.3], [0.5, 0.5, 0.5], [0.5, 0.52, 0.7]], [-1, 0, 1], ["root", "elbow", "hand"]

@@ -7,12 +7,11 @@ from cutcell import (
     ParameterError,
     Skeleton,
     TriangleMesh,
-    bone_distances,
-    build_graph,
 )
 from cutcell.geodesics import path_length, shortest_path
 from tests import meshes
 from tests.cutcell.geodesics.test_any_angle import l_bar
+from tests.paper import bone_distances, build_graph
 
 SKELETON = Skeleton([[0.9, 0.1, 0.12], [0.8, 0.1, 0.12]], [-1, 0], deform=[True, False])
 

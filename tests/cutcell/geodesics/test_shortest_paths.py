@@ -8,11 +8,12 @@ from numba import njit
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 
-from cutcell import TriangleMesh, build_graph
+from cutcell import TriangleMesh
 from cutcell.geodesics.bones import Sources
-from cutcell.geodesics.lanes import LANES, lower
 from cutcell.geodesics.shortest_paths import shortest_paths
+from cutcell.geodesics.simd import SIMD_WIDTH, lower
 from tests import meshes, naive
+from tests.paper import build_graph
 
 
 def any_graph(nodes, edges, lengths):
@@ -41,7 +42,7 @@ def slow(graph, sources, bones):
     return np.array(rows)
 
 
-@pytest.mark.parametrize("bones", [1, 2, LANES, LANES + 1, 20])
+@pytest.mark.parametrize("bones", [1, 2, SIMD_WIDTH, SIMD_WIDTH + 1, 20])
 @pytest.mark.parametrize("degree", [0, 0.7, 3, 12])  # below 1, most parts are not reached
 @pytest.mark.parametrize("seed", range(3))
 def test_random_graphs(seed, degree, bones):
@@ -119,7 +120,7 @@ def _lower(distance, u, v, step):
 
 def test_a_row_is_lowered_lane_by_lane():
     rng = np.random.default_rng(1)
-    distance = rng.random((5, LANES))
+    distance = rng.random((5, SIMD_WIDTH))
     distance[1, :2] = np.inf
     distance[3, 1:3] = np.inf
     expected = distance.copy()
@@ -131,9 +132,9 @@ def test_a_row_is_lowered_lane_by_lane():
     np.testing.assert_array_equal(distance, expected)
 
 
-@pytest.mark.parametrize("lane", range(LANES))
+@pytest.mark.parametrize("lane", range(SIMD_WIDTH))
 def test_a_fall_in_any_lane_is_told(lane):
-    distance = np.ones((2, LANES))
+    distance = np.ones((2, SIMD_WIDTH))
     distance[0, lane] = 0.5
     assert _lower(distance, 1, 0, 0.25)
-    assert distance[1].tolist() == [0.75 if k == lane else 1.0 for k in range(LANES)]
+    assert distance[1].tolist() == [0.75 if k == lane else 1.0 for k in range(SIMD_WIDTH)]

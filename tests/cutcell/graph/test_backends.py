@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from cutcell import MissingLibraryError, TriangleMesh, winding_number
-from cutcell.graph import backends
-from cutcell.graph.midpoints import list_segments
-from cutcell.graph.rays import AXES, cast_rays
-from cutcell.graph.weld import weld
+from cutcell.graph.fast_winding import fast_intervals, list_segments
+from cutcell.surface import ray_tracers
+from cutcell.surface.rays import AXES, cast_rays
+from cutcell.surface.weld import weld
 from tests import meshes
 
 RUN = ("ray", "first", "last", "low", "high")
@@ -17,7 +17,12 @@ FLOAT32 = 2e-6
 """Rays within this distance of an edge may miss or double it in float32."""
 
 
-CASTERS = {"open3d": backends.cast_rays_open3d, "embree": backends.cast_rays_embree}
+def open3d_rays(*arguments):
+    pytest.importorskip("open3d", reason="Open3D is not installed", exc_type=ImportError)
+    return ray_tracers.cast_rays_open3d(*arguments)
+
+
+CASTERS = {"open3d": open3d_rays, "embree": ray_tracers.cast_rays_embree}
 
 
 def turned(vertices, faces):
@@ -103,8 +108,8 @@ def both_runs(vertices, faces, resolution, axis, tau):
     crossings = cast_rays(vertices, faces, resolution, axis)
     segments = list_segments(crossings, resolution, closed=False)
     number = winding_number(TriangleMesh(vertices, faces), segments.points(resolution, axis))
-    exact = segments.runs(segments.has_ends & (number >= tau))
-    fast = backends.find_runs_fast(vertices, faces, crossings, resolution, axis, tau)
+    exact = segments.intervals(segments.has_ends & (number >= tau))
+    fast = fast_intervals(vertices, faces, crossings, resolution, axis, tau)
     return tuple(
         set(zip(*(getattr(r, n).tolist() for n in RUN), strict=True)) for r in (exact, fast)
     )
@@ -130,14 +135,14 @@ def test_a_ray_that_meets_nothing_has_no_runs():
     vertices, faces = meshes.box(0.4, 0.6)
     crossings = cast_rays(vertices, faces, 2, 0)
     assert len(crossings.position) == 0
-    assert len(backends.find_runs_fast(vertices, faces, crossings, 2, 0, 0.5).ray) == 0
+    assert len(fast_intervals(vertices, faces, crossings, 2, 0, 0.5).ray) == 0
 
 
 @pytest.mark.parametrize(
     ("call", "module", "package"),
     [
-        (backends.cast_rays_open3d, "open3d", "pip install open3d"),
-        (backends.cast_rays_embree, "embreex.rtcore_scene", "pip install embreex"),
+        (ray_tracers.cast_rays_open3d, "open3d", "pip install open3d"),
+        (ray_tracers.cast_rays_embree, "embreex.rtcore_scene", "pip install embreex"),
     ],
 )
 def test_a_missing_package_is_named(monkeypatch, call, module, package):
@@ -151,7 +156,7 @@ def test_missing_libigl_is_named(monkeypatch):
     crossings = cast_rays(vertices, faces, 4, 0)
     monkeypatch.setitem(sys.modules, "igl", None)
     with pytest.raises(MissingLibraryError, match="pip install libigl"):
-        backends.find_runs_fast(vertices, faces, crossings, 4, 0, 0.5)
+        fast_intervals(vertices, faces, crossings, 4, 0, 0.5)
 
 
 @pytest.mark.parametrize(
@@ -165,6 +170,6 @@ def test_a_missing_system_library_is_named(monkeypatch, message, advice):
     def fail(name):
         raise OSError(message)
 
-    monkeypatch.setattr(backends, "import_module", fail)
+    monkeypatch.setattr(ray_tracers, "import_module", fail)
     with pytest.raises(MissingLibraryError, match=advice):
-        backends.cast_rays_open3d(*meshes.box(), 4, 0)
+        ray_tracers.cast_rays_open3d(*meshes.box(), 4, 0)

@@ -7,12 +7,12 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 import cutcell
-from assets import demo_path
 from cutcell.graph import inverted_faces
 from cutcell.io.gltf_accessors import read_accessor
 from cutcell.io.gltf_container import read_document
 from cutcell.io.gltf_faces import with_faces
 from cutcell.rig import TriangleMesh
+from cutcell_assets import demo_path
 from tests.cutcell.io.gltf_builder import COLUMN, FACES, column, two_skins
 from tests.gltf_validator.validator import errors, reports
 

@@ -199,7 +199,7 @@ class TestDamage:
 
 def test_without_the_library_it_says_what_to_install(load, tmp_path, monkeypatch):
     (tmp_path / "pxr.py").write_text("raise ModuleNotFoundError(name='pxr')")
-    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    monkeypatch.syspath_prepend(tmp_path)
     with pytest.raises(
         cutcell.FileError,
         match=r"^column\.usda: .*pxr is not installed; try: pip install 'cutcell\[usd\]'",

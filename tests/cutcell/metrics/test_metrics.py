@@ -48,7 +48,7 @@ def split(rig):
 
 
 def slow_deformation_error(rig, ours, theirs, degrees):
-    """Move the whole mesh for each joint and axis, and compare (paper section 4.1.1)."""
+    """Move the whole mesh for each joint and axis, and compare (paper section 4.3.1)."""
     scale = 100 / np.ptp(rig.mesh.vertices, axis=0).max()
     errors = []
     for joint in np.flatnonzero(rig.skeleton.deform):
@@ -122,7 +122,7 @@ def test_blocks_change_nothing(monkeypatch):
     rig = chain()
     ours, theirs = random_weights(rig, 1), random_weights(rig, 2)
     whole = deformation_error(rig, ours, theirs)
-    monkeypatch.setattr("cutcell.metrics.deformation.BLOCK", 20)
+    monkeypatch.setattr("cutcell.metrics.deformation.BLOCK_NUMBERS", 20)
     parts = deformation_error(rig, ours, theirs)
     np.testing.assert_array_equal(whole.vertex, parts.vertex)
     np.testing.assert_allclose(whole.turn_mean, parts.turn_mean)
@@ -131,7 +131,7 @@ def test_blocks_change_nothing(monkeypatch):
 def test_measuring_can_be_stopped_between_blocks(monkeypatch):
     rig, told = chain(), []
     ours, theirs = random_weights(rig, 1), random_weights(rig, 2)
-    monkeypatch.setattr("cutcell.metrics.deformation.BLOCK", 20)
+    monkeypatch.setattr("cutcell.metrics.deformation.BLOCK_NUMBERS", 20)
 
     def stop(stage, fraction):
         told.append((stage, fraction))
@@ -193,7 +193,7 @@ def test_seams_do_not_count_twice():
 
 def test_vertices_without_face_count_nothing():
     mesh = TriangleMesh([[0, 0, 0], [1, 0, 0], [0, 1, 0], [9, 9, 9]], [[0, 1, 2]])
-    for count in ("places", "vertices"):
+    for count in ("welded", "vertices"):
         np.testing.assert_allclose(vertex_shares(mesh, count), [1 / 3, 1 / 3, 1 / 3, 0])
 
 

@@ -2,11 +2,14 @@
 
 import numpy as np
 import pytest
+import trimesh
 from scipy.spatial.transform import Rotation
 
 import cutcell
 from cutcell import Cancelled, ParameterError, Rig, Skeleton, SkeletonError, TriangleMesh, bind
 from tests import meshes
+
+MIXED = cutcell.Method(connectivity=26, leaf="extend", max_influences=3, threshold=0.05)
 
 
 def figure():
@@ -103,6 +106,8 @@ def test_every_stage_reports_and_each_can_be_cancelled():
         ({"leaf": 0}, "leaf must be one of 'point', 'extend', 'fit', not 0"),
         ({"falloff": []}, "falloff must be one of 'rig', 'paper', not \\[\\]"),
         ({"alpha": 1j}, "alpha must be a number from 0 to 1, not 1j"),
+        ({"alpha": 0.5}, "alpha shapes the paper's falloff and has no effect with falloff='rig'"),
+        ({"method": "papers"}, "method must be one of 'animation', 'paper', not 'papers'"),
         ({"threshold": np.nan}, "threshold must be a number from 0 to 1, not nan"),
         ({"max_influences": 0}, "max_influences must be a whole number from 1 to 1,024, not 0"),
         ({"locked": 5}, "locked must be a list of joints"),
@@ -134,6 +139,38 @@ def test_warnings_say_what_happened():
     binding = bind(Rig(inside_out, Skeleton([[0.5, 0.5, 0.5]], [-1])), 16)
     assert "inside out" in binding.warnings[0]
     np.testing.assert_allclose(binding.weights.sum(axis=1), 1)
+
+
+@pytest.mark.parametrize("method", [cutcell.ANIMATION, cutcell.PAPER, "paper", MIXED])
+def test_the_stages_one_after_the_other_are_bind(demo_paths, method):
+    rig = cutcell.load(next(path for path in demo_paths if path.stem == "rabbit"))
+    graph = cutcell.build_graph(rig.mesh, 32, method=method)
+    distances = cutcell.bone_distances(graph, rig.skeleton, method=method, allowed=rig.allowed)
+    weights = cutcell.skinning_weights(distances, method=method, allowed=rig.allowed)
+    weights = cutcell.refine_weights(rig, weights, method=method, smoothing=1)
+    expected = bind(rig, 32, method=method, smoothing=1)
+    np.testing.assert_array_equal(graph.edges, expected.graph.edges)
+    np.testing.assert_allclose(weights, expected.weights, atol=1e-12)
+
+
+def test_the_paper_keeps_all_influences_and_nothing_else_differs():
+    rig = figure()
+    found = bind(rig, 16, method="paper")
+    assert (found.weights > 0).all()
+    options = dict(connectivity=6, leaf="point", falloff="paper", max_influences=None)
+    np.testing.assert_array_equal(found.weights, bind(rig, 16, **options).weights)
+    few = bind(rig, 16, method="paper", max_influences=2).weights
+    np.testing.assert_array_equal((few > 0).sum(axis=1), 2)
+
+
+def test_arrays_and_other_libraries_meshes_are_bound_as_rigs_are():
+    rig = figure()
+    vertices, faces = rig.mesh.vertices, rig.mesh.faces
+    joints, parents = rig.skeleton.joints, rig.skeleton.parents
+    expected = bind(rig, 12).weights
+    other = trimesh.Trimesh(vertices, faces, process=False)
+    for given in ((vertices, faces, joints, parents), (other, (joints, parents))):
+        np.testing.assert_array_equal(bind(given, 12).weights, expected)
 
 
 def test_all_real_rigs_can_be_bound(rigs):

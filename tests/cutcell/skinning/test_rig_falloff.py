@@ -10,8 +10,8 @@ from cutcell.metrics import deformation_error, vertex_shares, weight_l1
 from cutcell.skinning import rig_falloff
 from cutcell.skinning.diffusion import SHARPNESS, Diffusion
 from cutcell.skinning.laplacian import cotangent_laplacian, vertex_areas
-from cutcell.skinning.rig_falloff import TOWARDS, _facing
-from cutcell.skinning.skin import Skin
+from cutcell.skinning.rig_falloff import FACING_LEAST, _facing
+from cutcell.skinning.surface_operators import SurfaceOperators
 from tests import meshes
 from tests.bars import grid_box
 
@@ -48,15 +48,16 @@ def test_thicker_limbs_bend_over_a_longer_stretch():
     assert stretch(0.3) > 1.5 * stretch(0.1)
 
 
-def test_skin_is_given_to_the_bone_that_it_looks_away_from():
+def test_surface_is_given_to_the_bone_that_it_looks_away_from():
     point, start, end = np.zeros(3), np.array([[0, 1.0, -1]]), np.array([[0, 1.0, 1]])
-    for normal, expected in (([0, -1, 0], 1), ([0, 1, 0], TOWARDS), ([1, 0, 0], (1 + TOWARDS) / 2)):
+    half = (1 + FACING_LEAST) / 2
+    for normal, expected in (([0, -1, 0], 1), ([0, 1, 0], FACING_LEAST), ([1, 0, 0], half)):
         found = _facing(point, np.array(normal, float), start, end, 0, 1)
         assert found == pytest.approx(expected)
-    # Of a joint's bones the nearest counts; a place on the bone itself looks at nothing.
+    # Of a joint's bones the nearest counts; a vertex on the bone itself looks at nothing.
     both = np.array([[0, 1.0, 0], [0, -2.0, 0]])
-    assert _facing(point, np.array([0, 1.0, 0]), both, both, 0, 2) == pytest.approx(TOWARDS)
-    assert _facing(start[0], np.ones(3), start, end, 0, 1) == pytest.approx((1 + TOWARDS) / 2)
+    assert _facing(point, np.array([0, 1.0, 0]), both, both, 0, 2) == pytest.approx(FACING_LEAST)
+    assert _facing(start[0], np.ones(3), start, end, 0, 1) == pytest.approx(half)
 
 
 def test_diffusion_is_the_solution_of_its_equation():
@@ -65,10 +66,10 @@ def test_diffusion_is_the_solution_of_its_equation():
     weights = rng.random((len(points), 3))
     weights /= weights.sum(axis=1, keepdims=True)
     depth = rng.uniform(0.1, 0.4, len(points))
-    hold = SHARPNESS * vertex_areas(points, faces) / depth**2
-    system = cotangent_laplacian(points, faces).toarray() + np.diag(hold)
-    expected = np.linalg.solve(system, hold[:, None] * weights)
-    found = Diffusion.over(Skin.over(points, faces), depth, 64).spread(weights)
+    screening = SHARPNESS * vertex_areas(points, faces) / depth**2
+    system = cotangent_laplacian(points, faces).toarray() + np.diag(screening)
+    expected = np.linalg.solve(system, screening[:, None] * weights)
+    found = Diffusion.over(SurfaceOperators.over(points, faces), depth, 64).spread(weights)
     np.testing.assert_allclose(found, expected, atol=1e-12)
 
 
@@ -128,7 +129,7 @@ def test_weights_end():
     np.testing.assert_allclose(weights.sum(axis=1), 1)
 
 
-def test_skin_far_from_a_bone_that_has_skin_of_its_own_is_the_next_ones(monkeypatch):
+def test_surface_beyond_the_radius_of_a_bone_is_the_next_ones(monkeypatch):
     """A chin hangs beside the neck, as near to its bone as to the head's."""
     vertices, faces = grid_box(40, 6)
     head = vertices[:, 0] > 0.69
@@ -138,6 +139,6 @@ def test_skin_far_from_a_bone_that_has_skin_of_its_own_is_the_next_ones(monkeypa
     rig = Rig(TriangleMesh(vertices, faces), skeleton)
     chin = head & (vertices[:, 0] < 0.8) & (vertices[:, 1] > 0.6)
     with_rule = bind(rig, 48).weights[chin, 2]
-    monkeypatch.setattr(rig_falloff, "COVER", np.inf)
+    monkeypatch.setattr(rig_falloff, "RADIUS_FACTOR", np.inf)
     assert with_rule.mean() > bind(rig, 48).weights[chin, 2].mean() + 0.1
     assert with_rule.min() > 0.6

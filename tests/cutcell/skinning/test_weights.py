@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from cutcell import ParameterError, Skeleton, TriangleMesh, bone_distances, build_graph
-from cutcell.skinning import skinning_weights
+from cutcell import ParameterError, Skeleton, TriangleMesh
 from cutcell.skinning.kernel import paper_kernel, pruned_paper_kernel
 from cutcell.skinning.prune import prune
 from tests import meshes, naive
+from tests.paper import bone_distances, build_graph, skinning_weights
 
 CHAIN = Skeleton([[0.5, 0.5, 0.15 * k] for k in range(1, 7)], range(-1, 5))
 
@@ -92,6 +92,11 @@ def test_pruning_keeps_the_largest():
 def test_parameters_are_checked(distances, name, value, sentence):
     with pytest.raises(ParameterError, match=sentence):
         skinning_weights(distances, **{name: value})
+
+
+def test_alpha_is_refused_where_it_has_no_effect(distances):
+    with pytest.raises(ParameterError, match="alpha shapes the paper's falloff and has no effect"):
+        skinning_weights(distances, falloff="rig", alpha=0.5)
 
 
 @pytest.mark.parametrize("influences", [4, None])

@@ -1,0 +1,1 @@
+"""What happens on the page: functions that are given a session, and change its state."""

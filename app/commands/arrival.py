@@ -1,0 +1,71 @@
+"""What an address says: which character it names, and what is chosen there."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from cutcell_assets import DEMOS
+
+from ..state.url import from_query
+from ..work.messages import shown
+from . import tour
+from .loading import load_demo, load_files
+from .session import Session
+
+GONE = (
+    "The character of this address was uploaded, and the server no longer has it; here is "
+    "another. Drop the file again to go on with it."
+)
+
+
+def choose(session: Session, query: str, first: str = "") -> None:
+    """Choose what an address says, before any character is there.
+
+    Parameters
+    ----------
+    session : Session
+    query : str
+    first : str
+        The demo that is to come where it says nothing of that; empty for none.
+    """
+    state = session.state
+    choices, arrival, _ = from_query(query, state)
+    demo = tour.demo_of(arrival) if tour.opens(arrival) else arrival.get("rig", first)
+    known = {demo.id for demo in DEMOS if demo.path.exists()}
+    state.param.update(**choices, demo=demo if demo in known else "")
+
+
+def arrive(session: Session, query: str, otherwise: Callable[[], None]) -> None:
+    """Show what an address says.
+
+    Parameters
+    ----------
+    session : Session
+    query : str
+    otherwise : callable
+        Loads a character where the address names none that is there.
+    """
+    choices, arrival, problems = from_query(query, session.state)
+    session.state.param.update(**choices)
+    session.arrival = arrival
+    rig = arrival.get("rig", "")
+    kept = session.uploads.cache.take(rig[1:]) if rig.startswith("~") else None
+    demo = any(demo.id == rig and demo.path.exists() for demo in DEMOS)
+    if rig and not rig.startswith("~") and not demo:
+        problems.append(f"rig={rig}"[:60])
+    if rig.startswith("~") and kept is None:
+        arrival["told"] = GONE
+    elif problems:
+        arrival["told"] = (
+            f"The address says what this page does not know ({shown(', '.join(problems))}); "
+            "the rest of it was taken."
+        )
+    if tour.opens(arrival):
+        tour.go(session, arrival["tour"], frozenset({**choices, **arrival}))
+    elif kept is not None:
+        session.uploads.hold(rig[1:])
+        load_files(session, kept, rig[1:])
+    elif demo:
+        load_demo(session, rig)
+    else:
+        otherwise()

@@ -1,0 +1,94 @@
+"""Find what is wrong with the character once it is bound; look at a finding; repair."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from cutcell.diagnosis import Diagnosis, Repaired, diagnose
+from cutcell.progress import Progress
+from cutcell_viewers.finding_scene import camera_on
+
+from ..scenes.common import bounds_of
+from ..state.diagnosis import Repair
+from ..state.method import GRAPH, method_of
+from .binding import swap
+from .look import look
+from .session import Session
+
+STANDARD = ("connectivity", "orient", "winding_threshold", "leaf")
+"""Choices that must be as at the start for the page's distances to tell what is wrong."""
+
+
+def watch(session: Session) -> None:
+    """Keep the diagnosis up to the character and its graph."""
+    session.state.param.watch(lambda *events: _begin_anew(session), "rig")
+    session.state.param.watch(lambda *events: examine(session), ["rig", "binding", "bare_graph"])
+
+
+def _begin_anew(session: Session) -> None:
+    state = session.state
+    session.tasks.jobs("diagnosis").cancel()
+    session.diagnosed = None
+    state.param.update(diagnosis=None, finding="")
+    if state.repair is not None and state.repair.after is not state.rig:
+        state.repair = None
+
+
+def examine(session: Session) -> None:
+    """Diagnose what stands there, unless its graph is known to be sound or not."""
+    state = session.state
+    if state.graph is None or session.diagnosed is state.graph:
+        return
+    rig, resolution = state.rig, state.resolution
+    session.diagnosed = state.graph
+    known = None if state.bare or not _is_standard(state) else state.binding.distances
+
+    def work(progress: Progress) -> Diagnosis:
+        return diagnose(rig, resolution, distances=known, progress=progress)
+
+    def done(diagnosis: Diagnosis) -> None:
+        state.diagnosis = diagnosis
+
+    session.tasks.jobs("diagnosis").start(work, done, session.fail, lambda stage, fraction: None)
+
+
+def _is_standard(state: Any) -> bool:
+    first, now = method_of(type(state)(), GRAPH), method_of(state, GRAPH)
+    return all(first[name] == now[name] for name in STANDARD)
+
+
+def look_at(session: Session, code: str) -> None:
+    """Mark what a finding names, and go there; an empty code, or the same again, leaves it."""
+    state = session.state
+    if code == state.finding:
+        code = ""
+    state.finding = code
+    if state.found is not None:
+        camera = camera_on(state.rig, state.found, bounds_of(state), session.view.aspect)
+        if camera is not None:
+            look(session, camera)
+
+
+def repair(session: Session, codes: list[str]) -> None:
+    """Repair some findings, and bind what comes of it."""
+    state, before = session.state, session.state.diagnosis
+
+    def work(progress: Progress) -> Repaired:
+        progress("repairing", 0.0)
+        return before.repaired(codes)
+
+    def show(repaired: Repaired) -> None:
+        first, earlier = before, ()
+        if state.repair is not None:
+            first, earlier = state.repair, state.repair.done
+        original = first.rig if isinstance(first, Diagnosis) else first.before
+        done = Repair(original, repaired.rig, first.counts, (*earlier, *repaired.done))
+        swap(session, repaired.rig, repair=done)
+
+    session.start(work, show)
+
+
+def take_back(session: Session) -> None:
+    """Let the character stand there as it was before all repairs."""
+    if session.state.repair is not None:
+        swap(session, session.state.repair.before, repair=None)

@@ -1,0 +1,191 @@
+"""Export the bound character, pictures, films, numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import partial
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import cutcell
+from cutcell.io import binary_ending
+from cutcell.io.numbers import save_numbers
+from cutcell.progress import Progress
+from cutcell.rig import Clip
+from cutcell_viewers.camera import Camera
+from cutcell_viewers.description import Description
+from cutcell_viewers.film import Order
+from cutcell_viewers.pose_scene import clip_in_scene, pose_at, swing
+from cutcell_viewers.worker import draw_apart
+
+from ..files.receive import safe_name
+from ..scenes import Memo, following, resolve
+from ..scenes.pose import SWING_DEGREES, clip_of
+from ..state import State
+from ..work.jobs import COMPUTING, DRAWING, Slots
+from ..work.processes import in_process
+from .session import Session
+
+Done = Callable[[str, bytes], None]
+"""Takes the name and the content of a file."""
+
+PICTURE_PIXELS = 2400 * 1800
+FILM_PIXELS = 960 * 720
+
+ENDED = "writing it came to a sudden end; there may be too little memory"
+
+
+@dataclass(frozen=True)
+class Seen:
+    """What a page shows at one moment, for a thread that draws it later."""
+
+    state: Any
+    memo: Memo
+    camera: Camera | None
+    aspect: float
+    time: float
+
+    @classmethod
+    def now(cls, session: Session) -> Seen:
+        """Return what a session's page shows."""
+        view = session.view
+        return cls(session.state.still(), session.memo, view.camera, view.aspect, view.time)
+
+    def posed(self) -> Description:
+        """Return the scene, in the pose that a motion has come to."""
+        description, clip = resolve(self.state, self.memo), clip_of(self.state)
+        if clip is None or not len(clip.times):
+            return description
+        return replace(description, pose=pose_at(self.state.rig, clip, self.time))
+
+    def order(self, pixels: int, description: Description) -> Order:
+        """Return what is to be drawn of a scene, from where it is looked at."""
+        theme = "dark" if self.state.dark else "light"
+        return Order(description, theme, picture_size(pixels, self.aspect), self.camera)
+
+
+def export_picture(session: Session, done: Done) -> None:
+    """Draw what is seen, large and with its legend, and hand over the PNG."""
+    _draw(session, "png", done, lambda seen: seen.order(PICTURE_PIXELS, seen.posed()))
+
+
+def export_turntable(session: Session, ending: str, done: Done) -> None:
+    """Film what is seen while the camera goes around it once; "mp4" or "gif"."""
+
+    def order(seen: Seen) -> Order:
+        return replace(seen.order(FILM_PIXELS, seen.posed()), turntable=True)
+
+    _draw(session, ending, done, order)
+
+
+def export_motion(session: Session, ending: str, done: Done) -> None:
+    """Film the motion that is chosen, as what is seen now goes through it."""
+    if session.state.weights is None:
+        session.state.message = ("info", "There are no weights to move the skin by yet.")
+        return
+
+    def order(seen: Seen) -> Order:
+        motion = clip_in_scene(seen.state.rig, chosen_clip(seen.state))
+        return replace(seen.order(FILM_PIXELS, following(seen.state, seen.memo)), motion=motion)
+
+    _draw(session, ending, done, order)
+
+
+def export_numbers(session: Session, what: str, ending: str, done: Done) -> None:
+    """Hand over "weights", "distances" or "all" as numbers, in a "csv" or "npz"."""
+    binding, rig = session.state.binding, session.state.rig
+    if binding is None:
+        session.state.message = ("info", "There are no numbers to save yet.")
+        return
+    named = replace(rig, clips=(), attachments=(), source=None)
+    name = f"{_stem(session)}-{'numbers' if what == 'all' else what}.{ending}"
+
+    def write(path: Path, progress: Progress) -> None:
+        tables = {}
+        if what != "distances":
+            tables["weights"] = binding.weights
+        if what != "weights":
+            tables["distances"] = binding.distances.all_joints(progress).T
+        wanted = partial(progress, "writing the numbers", 0.0)
+        in_process(partial(save_numbers, path, named, **tables), wanted=wanted, ended=ENDED)
+
+    _hand_over(session, name, write, done)
+
+
+def export_bound(session: Session, done: Done) -> None:
+    """Write the character with its new weights, and hand over its name and content."""
+    state = session.state
+    if state.binding is None:
+        state.message = ("info", "There are no weights to download yet.")
+        return
+    rig = state.rig.with_weights(state.binding.weights)
+
+    def write(path: Path, progress: Progress) -> None:
+        wanted = partial(progress, "writing the file", 0.0)
+        in_process(cutcell.save, path, rig, wanted=wanted, ended=ENDED)
+
+    _hand_over(session, f"{_stem(session)}-bound{binary_ending(rig)}", write, done)
+
+
+def export_repaired(session: Session, done: Done) -> None:
+    """Write the repaired character with its own weights, and hand over its name and content."""
+    rig = session.state.rig
+
+    def write(path: Path, progress: Progress) -> None:
+        wanted = partial(progress, "writing the file", 0.0)
+        in_process(cutcell.save, path, rig, wanted=wanted, ended=ENDED)
+
+    _hand_over(session, f"{_stem(session)}-repaired{binary_ending(rig)}", write, done)
+
+
+def chosen_clip(state: State) -> Clip:
+    """Return the motion that is chosen, whether or not it is on."""
+    if 0 <= state.clip < len(state.rig.clips):
+        return state.rig.clips[state.clip]
+    return swing(state.rig, state.joint, state.axis, SWING_DEGREES)
+
+
+def picture_size(pixels: int, aspect: float) -> tuple[int, int]:
+    """Return width and height, even numbers, of about so many pixels in a given shape."""
+    height = (pixels / aspect) ** 0.5
+    return 2 * round(height * aspect / 2), 2 * round(height / 2)
+
+
+def _draw(session: Session, ending: str, done: Done, order: Callable[[Seen], Order]) -> None:
+    """Draw what is seen now; describing a large character takes a while, too."""
+    seen = Seen.now(session)
+    stage = "drawing the picture" if ending == "png" else "drawing the film"
+
+    def write(path: Path, progress: Progress) -> None:
+        progress(stage, 0.0)
+        draw_apart(order(seen), path, lambda _, fraction: progress(stage, fraction))
+
+    _hand_over(session, f"{_stem(session)}-{seen.state.panel}.{ending}", write, done, DRAWING)
+
+
+def _hand_over(
+    session: Session,
+    name: str,
+    write: Callable[[Path, Progress], None],
+    done: Done,
+    slots: Slots = COMPUTING,
+) -> None:
+    """Let a file be written, and hand over its name and content; nothing of it stays."""
+    place = session.folder
+
+    def work(progress: Progress) -> bytes:
+        # One of its own: what was stopped may still write.
+        with TemporaryDirectory(dir=place, ignore_cleanup_errors=True) as folder:
+            path = Path(folder, name)
+            write(path, progress)
+            return path.read_bytes()
+
+    session.start(work, lambda content: done(name, content), slots)
+
+
+def _stem(session: Session) -> str:
+    """Return what the files of a character are called; its own name may be no file's name."""
+    rig = session.state.rig
+    return safe_name(Path(rig.name).stem) if rig is not None and rig.name else "character"

@@ -1,0 +1,83 @@
+"""What was chosen before, and what the address says of what is chosen now."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from ..state.history import History
+from ..state.url import NOTED, simple, taken, to_query
+from .session import Session
+
+RESULT = ("rig", "repair")
+"""What changes the result beside the choices: other joints that deform, repaired faces."""
+
+
+def watch(session: Session) -> None:
+    """Keep the address and the history up to what is chosen."""
+    state = session.state
+    state.param.watch(lambda *events: _chosen(session), [*simple(state), *NOTED, *RESULT])
+    state.param.watch(lambda *events: tell(session), ["tour", "vertex"])
+    session.view.on_camera = lambda: tell(session)
+
+
+def begin(session: Session) -> None:
+    """Begin anew, with a new character."""
+    session.history = History(_now(session))
+    tell(session)
+
+
+def withdraw(session: Session, choices: dict[str, Any]) -> None:
+    """Choose something again in place of what cannot be; nobody goes back to that."""
+    restore(session, choices)
+    session.history.withdraw(_now(session))
+    tell(session)
+
+
+def restore(session: Session, choices: dict[str, Any]) -> None:
+    """Choose something without noting it."""
+    with restoring(session):
+        session.state.param.update(**choices)
+
+
+@contextmanager
+def restoring(session: Session) -> Iterator[None]:
+    """Note no choices for a while."""
+    session.restoring = True
+    try:
+        yield
+    finally:
+        session.restoring = False
+
+
+def tell(session: Session) -> None:
+    """Tell the view what the address says now, and whether one can go back, if that is new."""
+    if session.state.rig is None:
+        return
+    said = {
+        "address": "?" + query(session),
+        "able": [session.history.can_undo, session.history.can_redo],
+    }
+    if {name: session.view.told(name) for name in said} != said:
+        session.view.tell(**said)
+
+
+def query(session: Session) -> str:
+    """Return what the address says now."""
+    view, camera = session.view, None
+    if view.camera is not None and not view.at_home:
+        camera = [*view.camera.position, *view.camera.focal_point]
+    return to_query(session.state, session.uploads.key, camera)
+
+
+def _chosen(session: Session) -> None:
+    if session.state.rig is not None and not session.restoring:
+        session.history.note(_now(session), time.monotonic())
+        tell(session)
+
+
+def _now(session: Session) -> dict[str, Any]:
+    state = session.state
+    return {**taken(state), **{name: getattr(state, name) for name in RESULT}}

@@ -1,0 +1,77 @@
+"""What the keys do, and the buttons over the canvas."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ..scenes.common import first_joint
+from ..state import State
+from ..state.url import defaults
+from .binding import restore
+from .session import Session
+
+
+def watch(session: Session) -> None:
+    """Obey the keys."""
+    session.view.listen("act", lambda message: act(session, str(message.get("act"))))
+
+
+def act(session: Session, name: str) -> None:
+    """Do what a key or a button says."""
+    state = session.state
+    does = {
+        "undo": lambda: _go(session, session.history.undo()),
+        "redo": lambda: _go(session, session.history.redo()),
+        "reset": lambda: reset(session),
+        "play": lambda: play(state),
+        "next": lambda: step(state, 1),
+        "previous": lambda: step(state, -1),
+        "parent": lambda: to_parent(state),
+        "child": lambda: to_child(state),
+    }.get(name)
+    if does is not None and state.rig is not None:
+        does()
+
+
+def reset(session: Session) -> None:
+    """Choose what one begins with, at rest, on the panel that is open."""
+    state = session.state
+    first = {**defaults(state), "moving": False, "playing": False}
+    state.param.update(**first, joint=first_joint(state.rig))
+    session.view.tell(home=True)
+
+
+def play(state: State) -> None:
+    """Play the motion, or halt it; on the panel where things move."""
+    if state.bare:
+        return
+    if not state.moving or state.panel not in ("pose", "compare"):
+        panel = state.panel if state.panel == "compare" else "pose"
+        state.param.update(panel=panel, moving=True, playing=True)
+    else:
+        state.playing = not state.playing
+
+
+def step(state: State, count: int) -> None:
+    """Choose the next joint of the list, or the one before."""
+    if not state.bare:
+        state.joint = (state.joint + count) % len(state.rig.skeleton.names)
+
+
+def to_parent(state: State) -> None:
+    """Choose the joint that the chosen one hangs on."""
+    above = -1 if state.bare else int(state.rig.skeleton.parents[state.joint])
+    if above >= 0:
+        state.joint = above
+
+
+def to_child(state: State) -> None:
+    """Choose the first joint that hangs on the chosen one."""
+    below = [] if state.bare else state.rig.skeleton.children[state.joint]
+    if len(below):
+        state.joint = int(below[0])
+
+
+def _go(session: Session, choices: dict[str, Any] | None) -> None:
+    if choices:
+        restore(session, choices)

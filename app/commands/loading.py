@@ -1,0 +1,171 @@
+"""How a character comes to stand on the page: a demo, or files."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from param.parameterized import batch_call_watchers
+
+from cutcell.errors import CutcellError
+from cutcell.progress import Progress
+from cutcell.rig import Rig
+from cutcell_assets import DEMOS
+from cutcell_viewers.camera import Camera, framing
+
+from ..files.reading import demo_rig, main_file, read
+from ..files.receive import Receiver
+from ..files.upload_cache import Group
+from ..scenes.common import bones_part, bounds_of, camera_part, first_joint
+from ..state.url import first_clip
+from ..work.jobs import READING
+from . import history
+from .binding import bind
+from .compare import carry
+from .look import look
+from .session import Session
+
+
+def load_demo(
+    session: Session,
+    id: str,
+    chosen: Callable[[], None] = lambda: None,
+    then: Callable[[], None] = lambda: None,
+) -> None:
+    """Show a demo character and bind it.
+
+    Parameters
+    ----------
+    session : Session
+    id : str
+    chosen : callable
+        Chooses more, together with the character.
+    then : callable
+        Called when it stands there.
+    """
+    session.state.demo = id
+    title = next(demo.title for demo in DEMOS if demo.id == id)
+    _load(
+        session,
+        lambda wanted: demo_rig(id),
+        f"loading {title}",
+        lambda: session.uploads.stay(""),
+        chosen,
+        then,
+    )
+
+
+def load_files(session: Session, paths: list[Path], key: str = "") -> None:
+    """Show the character in some files, and bind it.
+
+    Parameters
+    ----------
+    session : Session
+    paths : list of Path
+        The file, and those that belong to it.
+    key : str
+        That of uploaded files; see `UploadCache`.
+    """
+    uploads = session.uploads
+    try:
+        path = main_file(paths)
+    except CutcellError as error:
+        session.fail(error)
+        uploads.leave(key)
+        return
+    _load(
+        session,
+        lambda wanted: read(path, wanted),
+        f"loading {path.name}",
+        lambda: uploads.stay(key),
+        failed=lambda: uploads.leave(key),
+        demo="",
+    )
+
+
+def load_upload(session: Session, group: Group) -> None:
+    """Show the character in files that a person dropped; they are kept for a while."""
+    session.arrival = {}  # what an address says is of another character
+    session.uploads.hold(group.key)
+    load_files(session, group.paths, group.key)
+
+
+def receiver(session: Session) -> Receiver:
+    """Return what takes files from the browser and loads them."""
+    uploads = session.uploads
+    made = Receiver(uploads.cache, uploads, lambda group: load_upload(session, group), session.fail)
+    uploads.when_closed(made.drop)
+    return made
+
+
+def show_rig(session: Session, rig: Rig, chosen: Callable[[], None] = lambda: None) -> None:
+    """Show a character that is loaded already, and bind it.
+
+    Parameters
+    ----------
+    session : Session
+    rig : Rig
+    chosen : callable
+        Chooses more, together with the character.
+    """
+    state, view = session.state, session.view
+    session.tasks.jobs("field").cancel()
+    before, arrival, session.arrival = state.rig, session.arrival, {}
+    # All at once: a menu whose value changes twice in a moment may tell the first one back.
+    with batch_call_watchers(state):
+        state.param.update(
+            rig=rig, binding=None, bare_graph=None, field=None, turns={}, moving=False,
+            playing=False, repair=None,
+            clip=first_clip(rig), message=None, joint=first_joint(rig), vertex=None,
+        )  # fmt: skip
+        if state.bare:
+            state.panel = "graph"
+        _arrive(session, rig, arrival)
+        carry(state, before, arrival)
+        chosen()
+    view.camera = framing(bounds_of(state), 1.2)
+    view.at_home = True
+    view.tell(bones=bones_part(state), camera=camera_part(view.camera))
+    if "camera" in arrival:
+        eye, target = arrival["camera"][:3], arrival["camera"][3:]
+        look(session, Camera(tuple(eye), tuple(target)))
+    history.begin(session)
+    bind(session)
+
+
+def _load(
+    session: Session,
+    load: Callable[[Callable[[], object]], Rig],
+    stage: str,
+    loaded: Callable[[], None],
+    chosen: Callable[[], None] = lambda: None,
+    then: Callable[[], None] = lambda: None,
+    failed: Callable[[], None] = lambda: None,
+    **more: Any,
+) -> None:
+    def work(progress: Progress) -> Rig:
+        progress(stage, 0.0)
+        return load(lambda: progress(stage, 0.0))
+
+    def done(rig: Rig) -> None:
+        loaded()
+        session.state.param.update(**more)
+        show_rig(session, rig, chosen)
+        then()
+
+    session.start(work, done, READING, failed)
+
+
+def _arrive(session: Session, rig: Rig, arrival: dict[str, Any]) -> None:
+    """Choose what an address says of the character."""
+    names, state = rig.skeleton.names, session.state
+    if arrival.get("bone") in names:
+        state.joint = names.index(arrival["bone"])
+    state.turns = {j: t for j, t in arrival.get("turns", {}).items() if j < len(names)}
+    if -1 <= arrival.get("clip", -2) < len(rig.clips):
+        state.clip = arrival["clip"]
+    state.tour = arrival.get("tour", state.tour)
+    if 0 <= arrival.get("vertex", -1) < len(rig.mesh.vertices):
+        state.vertex = arrival["vertex"]
+    session.notice = arrival.get("told", "")

@@ -1,0 +1,65 @@
+"""Choose a bone or a vertex, look from somewhere; the view shows the scene of the state."""
+
+from __future__ import annotations
+
+from cutcell_viewers.camera import Camera, framing
+
+from ..scenes import resolve
+from ..scenes.common import bounds_of, camera_part, theme_of, theme_part
+from ..state import UNSEEN
+from .session import Session
+
+
+def watch(session: Session) -> None:
+    """Let the view follow the state, and the state what is picked in the view."""
+    state, view = session.state, session.view
+    seen = [name for name in state.param if name not in UNSEEN]
+    state.param.watch(lambda *events: show(session), seen)
+    state.param.watch(lambda *events: show_theme(session), "dark")
+    view.listen("pick", lambda message: pick(session, int(message["joint"])))
+    view.listen("pick-vertex", lambda message: pick_vertex(session, int(message["vertex"])))
+    show_theme(session)
+
+
+def pick(session: Session, joint: int) -> None:
+    """Choose a joint; show its weights where the colours told of all joints."""
+    state = session.state
+    if state.rig is None or not 0 <= joint < len(state.rig.skeleton.joints):
+        return
+    state.param.update(joint=joint, weights_shown="bone")
+
+
+def pick_vertex(session: Session, vertex: int | None) -> None:
+    """Choose a vertex to look at closely; None for no more."""
+    state = session.state
+    count = 0 if state.rig is None or state.bare else len(state.rig.mesh.vertices)
+    if vertex is not None and vertex >= count:
+        return
+    state.vertex = vertex
+
+
+def look(session: Session, camera: Camera | None) -> None:
+    """Look from somewhere; None for the view that one begins with."""
+    view = session.view
+    home = camera_part(framing(bounds_of(session.state), 1.2))
+    if camera is not None:
+        view.camera, view.at_home = camera, False
+        home["now"] = camera_part(camera)
+    view.tell(camera=home)
+
+
+def show(session: Session) -> None:
+    """Show the scene of the state; that of a large character, when it is described."""
+    state, view, memo = session.state, session.view, session.memo
+    scene = session.tasks.newest("scene")
+    if state.quick:
+        scene.cancel()
+        view.present(resolve(state, memo))
+    else:
+        now = state.still()
+        scene.do(lambda progress: resolve(now, memo), view.present)
+
+
+def show_theme(session: Session) -> None:
+    """Show the colours of the theme that is chosen."""
+    session.view.tell(theme=theme_part(theme_of(session.state)))

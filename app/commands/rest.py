@@ -1,0 +1,25 @@
+"""Answers whether any work is still running: for tests, before they look."""
+
+from __future__ import annotations
+
+import threading
+from typing import Any
+
+from .session import Session
+
+AFTER = 0.1
+"""Seconds to wait with the answer: Panel holds what a widget says for half as long."""
+
+
+def watch(session: Session) -> None:
+    """Answer when asked."""
+
+    def asked(message: dict[str, Any]) -> None:
+        timer = threading.Timer(AFTER, lambda: session.tasks.later(answer))
+        timer.daemon = True
+        timer.start()
+
+    def answer() -> None:
+        session.view.answer(rests=not session.tasks.running)
+
+    session.view.listen("rests?", asked)

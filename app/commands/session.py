@@ -1,0 +1,151 @@
+"""What one browser's page has: its state, its view, the work that goes on for it.
+
+It does nothing by itself: commands, the functions of the modules beside this one, are given it, and
+change the state; `watchers.follow` lets others follow.
+"""
+
+from __future__ import annotations
+
+import logging
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, Protocol
+
+from cutcell.errors import CutcellError
+from cutcell.progress import Progress
+from cutcell_viewers.camera import Camera
+from cutcell_viewers.description import Description
+
+from ..files.upload_cache import UPLOADS, PageUploads
+from ..scenes import Memo
+from ..state import State
+from ..state.history import History
+from ..work.jobs import COMPUTING, Schedule, Slots
+from ..work.messages import told
+from ..work.tasks import Tasks
+
+logger = logging.getLogger("cutcell.app")
+
+
+class View(Protocol):
+    """What commands need of the 3D view; `widgets.view.SceneView` is one."""
+
+    camera: Camera | None
+    at_home: bool
+    on_camera: Callable[[], None]
+    aspect: float
+    time: float
+
+    def listen(self, kind: str, act: Callable[[dict[str, Any]], Any]) -> None:
+        """Call a function with every message of a kind that the browser sends."""
+
+    def present(self, description: Description) -> None:
+        """Show a scene."""
+
+    def tell(self, **parts: Any) -> None:
+        """Send parts of the view that are no actors; they are kept for a browser that comes."""
+
+    def told(self, name: str) -> Any:
+        """Return what was last told of a part; None if nothing was."""
+
+    def offer(self, name: str, content: bytes) -> None:
+        """Let the browser save a file."""
+
+    def answer(self, **message: Any) -> None:
+        """Tell the browser what it asked for."""
+
+
+class Session:
+    """The store of one page, its view, and its work.
+
+    Parameters
+    ----------
+    view : View
+    schedule : callable
+        Runs a function on the page's own thread; see `Jobs`.
+
+    Attributes
+    ----------
+    state : State
+    tasks : Tasks
+    memo : Memo
+    history : History
+    restoring : bool
+        Whether choices of the past are being restored: they are not noted anew.
+    uploads : PageUploads
+    arrival : dict
+        What an address says of the character that is on its way.
+    notice : str
+        What is to be told once that is bound; empty for nothing.
+    bound_for, built_for : dict
+        The graph's parameters that were last computed for, and those of the graph that is there.
+    falloffs : dict
+        (distances, weights) of many influences for each falloff that was worked out.
+    diagnosed : CutCellGraph or None
+        The graph that the diagnosis is of.
+    """
+
+    def __init__(self, view: View, schedule: Schedule) -> None:
+        self.state = State()
+        self.view = view
+        self.tasks = Tasks(schedule, self.fail)
+        self.memo = Memo()
+        self.history = History({})
+        self.restoring = False
+        self.uploads = PageUploads(UPLOADS)
+        self.arrival: dict[str, Any] = {}
+        self.notice = ""
+        self.bound_for: dict[str, Any] = {}
+        self.built_for: dict[str, Any] = {}
+        self.falloffs: dict[str, tuple[Any, Any]] = {}
+        self.diagnosed: Any = None
+        self._folder: Path | None = None
+
+    def start(
+        self,
+        work: Callable[[Progress], Any],
+        done: Callable[[Any], None],
+        slots: Slots = COMPUTING,
+        failed: Callable[[], None] = lambda: None,
+    ) -> None:
+        """Do some work that the page shows progress of; it stops what went on before.
+
+        What goes wrong is told, and then `failed` is called.
+        """
+        state, jobs = self.state, self.tasks.jobs("main")
+
+        def finish(result: Any) -> None:
+            state.busy = jobs.running
+            done(result)
+
+        def went_wrong(error: Exception) -> None:
+            state.busy = False
+            self.fail(error)
+            failed()
+
+        def report(stage: str, fraction: float) -> None:
+            state.param.update(stage=stage, fraction=fraction)
+
+        state.param.update(busy=True, stage="", fraction=0.0)
+        jobs.start(work, finish, went_wrong, report, slots)
+
+    def fail(self, error: Exception) -> None:
+        """Tell what went wrong; the page keeps what it had."""
+        if not isinstance(error, CutcellError | MemoryError):
+            logger.error("unexpected error", exc_info=error)
+        self.state.message = ("error", told(error))
+
+    @property
+    def folder(self) -> Path:
+        """A folder for files that are about to be handed over."""
+        if self._folder is None or not self._folder.is_dir():
+            self._folder = UPLOADS.storage.make()
+        return self._folder
+
+    def close(self) -> None:
+        """Stop all work and remove what was uploaded."""
+        self.tasks.close()
+        self.uploads.close()
+        if self._folder is not None:
+            shutil.rmtree(self._folder, ignore_errors=True)

@@ -1,0 +1,125 @@
+"""Go to a step of the tour: set the scene so that its point is seen."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from cutcell.rig import Rig
+from cutcell_viewers.camera import Camera, framing
+from cutcell_viewers.character import to_scene
+
+from ..scenes.common import bounds_of
+from ..state.tour import TOUR, Look
+from ..state.url import defaults
+from .loading import load_demo
+from .look import look as look_from
+from .session import Session
+
+
+def go(session: Session, index: int, said: frozenset[str] = frozenset()) -> None:
+    """Show a step of the tour; -1 leaves it, and the page stays as it is.
+
+    Parameters
+    ----------
+    session : Session
+    index : int
+    said : set of str
+        What an address that names the step says beside it, and what therefore stays.
+    """
+    state = session.state
+    if not 0 <= index < len(TOUR):
+        state.tour = -1
+        return
+    look = TOUR[index].look
+    state.tour = index
+    if _stands(state, look.demo):
+        show(session, look, said)
+        aim(session, look)
+    else:
+        load_demo(
+            session,
+            look.demo,
+            lambda: show(session, look, said),
+            lambda: None if "camera" in said else aim(session, look),
+        )
+
+
+def opens(arrival: dict[str, Any]) -> bool:
+    """Whether an address leaves the scene to the step that it names.
+
+    One that the page made tells the bone, and all that a person changed since.
+    """
+    if "tour" not in arrival or "bone" in arrival:
+        return False
+    return bool(arrival.get("rig", demo_of(arrival)) == demo_of(arrival))
+
+
+def demo_of(arrival: dict[str, Any]) -> str:
+    """Return the character of the step that an address names."""
+    return str(TOUR[arrival["tour"]].look.demo)
+
+
+def show(session: Session, look: Look, said: frozenset[str] = frozenset()) -> None:
+    """Choose what a step asks for, but for what an address said; its character is there."""
+    state = session.state
+    names = list(state.rig.skeleton.names)
+    scene = {
+        **defaults(state),
+        "panel": look.panel,
+        "joint": names.index(look.bone),
+        "turns": {names.index(name): angles for name, angles in look.turns.items()},
+        "vertex": clicked(state.rig, look),
+        "moving": False,
+        "playing": False,
+        **look.choices,
+    }
+    kept = said - {"panel"} if state.panel == "learn" else said
+    state.param.update(**{name: value for name, value in scene.items() if name not in kept})
+
+
+def aim(session: Session, look: Look) -> None:
+    """Look from where a step does."""
+    look_from(session, camera_of(session, look))
+
+
+def points_out(state: Any) -> bool:
+    """Whether the chosen vertex is one that the tour clicked, not a person."""
+    if state.tour < 0 or state.rig is None or state.vertex is None:
+        return False
+    look = TOUR[state.tour].look
+    return state.demo == look.demo and state.vertex == clicked(state.rig, look)
+
+
+def clicked(rig: Rig, look: Look) -> int | None:
+    """Return the vertex that a step clicks, or None."""
+    if not look.clicked or rig.weights is None:
+        return None
+    names = rig.skeleton.names
+    away = np.linalg.norm(rig.mesh.vertices - rig.skeleton.joints[names.index(look.bone)], axis=1)
+    away[rig.weights.argmax(axis=1) != names.index(look.clicked)] = np.inf
+    return int(away.argmin())
+
+
+def camera_of(session: Session, look: Look) -> Camera:
+    """Return where a step looks from."""
+    rig = session.state.rig
+    around, above = np.radians(look.angles)
+    whole = framing(bounds_of(session.state), 1.0)
+    target = np.array(whole.focal_point)
+    distance = float(np.linalg.norm(np.array(whole.position) - target)) * look.near
+    if look.focus:
+        joint = rig.skeleton.joints[rig.skeleton.names.index(look.focus)]
+        target = to_scene(rig, joint[None])[0]
+    direction = np.array(
+        [np.cos(above) * np.sin(around), np.sin(above), np.cos(above) * np.cos(around)]
+    )
+    eye = target + distance * direction
+    return Camera(tuple(eye.tolist()), tuple(target.tolist()))
+
+
+def _stands(state: Any, demo: str) -> bool:
+    """Whether a demo character is there, and not just on its way."""
+    here = state.rig is not None and state.rig.name == demo
+    return bool(state.demo == demo and here)

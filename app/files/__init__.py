@@ -1,0 +1,1 @@
+"""Files of characters: received from browsers, kept for a while, and read."""

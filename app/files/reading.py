@@ -1,0 +1,65 @@
+"""Files as characters: which of a group is opened, and how it is read."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+import cutcell
+from cutcell.errors import FileError
+from cutcell.io.files import naming
+from cutcell.rig import Rig
+from cutcell_assets import demo_path
+
+from ..work.processes import in_process
+
+COMPANIONS = {".txt", ".json", ".mtl", ".bin", ".png", ".jpg", ".jpeg"}
+"""Files that come along with the one that is opened."""
+
+
+ENDED = "reading it came to a sudden end; the file is damaged, or needs more memory than there is"
+
+
+@functools.cache
+def demo_rig(id: str) -> Rig:
+    """Return a demo character; it is read once, and nothing can write to it."""
+    return cutcell.load(demo_path(id))
+
+
+def read(path: Path, wanted: Callable[[], object] = lambda: None) -> Rig:
+    """Load a character in a process of its own; see `apart.in_process`."""
+    with naming(path):
+        return frozen(in_process(cutcell.load, path, wanted=wanted, ended=ENDED))
+
+
+def frozen(rig: Rig) -> Rig:
+    """Let nothing write to a rig that was copied, as to one that was made."""
+    meshes, motions = [one.mesh for one in rig.attachments], [clip.motion for clip in rig.clips]
+    for part in (rig, rig.mesh, rig.skeleton, *meshes, *motions):
+        for value in vars(part).values():
+            if isinstance(value, np.ndarray):
+                value.flags.writeable = False
+    return rig
+
+
+def main_file(paths: list[Path]) -> Path:
+    """Return the one file of a dropped group that is to be opened.
+
+    Raises
+    ------
+    FileError
+        There is none, or more than one.
+    """
+    found = [path for path in paths if path.suffix.lower() not in COMPANIONS]
+    names = ", ".join(path.name for path in paths)
+    if not found:
+        raise FileError(
+            f"no character among the dropped files ({names}); drop a GLB, glTF, VRM, FBX, USD, "
+            "OBJ, PLY, STL, OFF or NPZ file, and the files that belong to it together with it"
+        )
+    if len(found) > 1:
+        raise FileError(f"more than one character was dropped ({names}); drop one at a time")
+    return found[0]

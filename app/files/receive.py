@@ -1,0 +1,152 @@
+"""Files from the browser: received in pieces, straight to where they are kept."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from cutcell.errors import CutcellError, FileError
+
+from ..work.messages import FULL
+from .upload_cache import Group, UploadCache
+
+MAX_UPLOAD = 200 * 1024 * 1024
+"""The largest file that the page takes, in bytes."""
+
+MAX_FILES = 64
+
+NAME_BYTES = 200
+"""Of a file's name: most systems take 255, and what is made of the file has a longer one."""
+
+
+class Receiver:
+    """Takes the files that one browser sends.
+
+    Parameters
+    ----------
+    cache : UploadCache
+        Where they go.
+    owner : object
+        The page that they count for.
+    received : callable
+        Called with a group when all of it is there.
+    refused : callable
+        Called with the error when a group is not taken.
+    """
+
+    def __init__(
+        self,
+        cache: UploadCache,
+        owner: object,
+        received: Callable[[Group], None],
+        refused: Callable[[Exception], None],
+    ) -> None:
+        self._cache = cache
+        self._owner = owner
+        self._received = received
+        self._refused = refused
+        self._group: Group | None = None
+        self._sizes: list[int] = []
+        self._written = 0
+
+    def answer(self, message: dict[str, Any]) -> dict[str, Any] | None:
+        """Handle one message; return what to answer, None if it is no concern of ours.
+
+        The browser waits for the answer: there is one whatever goes wrong.
+        """
+        act = {
+            "upload-begin": self._begin,
+            "upload-piece": self._piece,
+            "upload-end": self._end,
+            "upload-cancel": self._cancel,
+        }.get(str(message.get("type")))
+        if act is None:
+            return None
+        try:
+            act(message)
+        except Exception as error:
+            self.drop()
+            problem = _problem(error)
+            self._refused(problem)
+            return {"ok": False, "message": str(problem)}
+        return {"ok": True}
+
+    def drop(self) -> None:
+        """Forget what came of a group."""
+        group, self._group = self._group, None
+        if group is not None:
+            self._cache.drop(group)
+
+    def _begin(self, message: dict[str, Any]) -> None:
+        self.drop()
+        names, sizes = _announced(message["files"])
+        group = self._group = self._cache.begin(sum(sizes), self._owner)
+        group.paths = [group.folder / name for name in names]
+        self._sizes, self._written = sizes, 0
+        for path in group.paths:
+            path.touch()
+
+    def _piece(self, message: dict[str, Any]) -> None:
+        index, data = int(message["index"]), message["data"]
+        if not isinstance(data, bytes | bytearray | memoryview):
+            raise TypeError("a piece of a file must be bytes")
+        if self._group is None or not 0 <= index < len(self._sizes):
+            raise FileError("a piece of a file came that nothing had announced; try again")
+        self._written += len(data)
+        if self._written > sum(self._sizes):
+            raise FileError("more came than was announced; try again")
+        with self._group.paths[index].open("ab") as file:
+            file.write(data)
+
+    def _end(self, message: dict[str, Any]) -> None:
+        group = self._group
+        if group is None:
+            raise FileError("no files were announced; try again")
+        sizes = zip(group.paths, self._sizes, strict=True)
+        short = [path.name for path, size in sizes if path.stat().st_size != size]
+        if short:
+            raise FileError(f'"{", ".join(short)}" did not arrive whole; try again')
+        self._group = None
+        self._received(group)
+
+    def _cancel(self, message: dict[str, Any]) -> None:
+        self.drop()
+        if message.get("unreadable"):
+            raise FileError("the browser could not read the file; was it moved or changed?")
+
+
+def _announced(files: list[dict[str, Any]]) -> tuple[list[str], list[int]]:
+    """Return the names and sizes of the files that are to come."""
+    if not 0 < len(files) <= MAX_FILES:
+        raise FileError(f"{len(files)} files came at once; 1 to {MAX_FILES} can be opened")
+    names = [safe_name(str(file["name"])) for file in files]
+    sizes = [int(file["size"]) for file in files]
+    for name, size in zip(names, sizes, strict=True):
+        if not 0 <= size <= MAX_UPLOAD:
+            raise FileError(
+                f'"{name}" has {size / 2**20:,.0f} MB; the page takes files '
+                f"of up to {MAX_UPLOAD // 2**20} MB (the cutcell command takes any)"
+            )
+    twice = {name for name in names if names.count(name) > 1}
+    if twice:
+        raise FileError(f'two of the files are called "{min(twice)}"; give them names of their own')
+    return names, sizes
+
+
+def _problem(error: Exception) -> Exception:
+    """Return what a person is told of an error, as far as one can tell."""
+    if isinstance(error, OSError):
+        if error.errno in FULL:
+            return FileError("the server's disk is full, and the file was not taken; try again")
+        return FileError(f"the server could not store the file ({error.strerror}); try again")
+    if isinstance(error, KeyError | TypeError | ValueError) and not isinstance(error, CutcellError):
+        return FileError("the browser sent what this page does not understand; reload it")
+    return error
+
+
+def safe_name(name: str) -> str:
+    """Return the last part of a name from the browser, fit to be a file's name here."""
+    last = name.replace("\\", "/").rsplit("/", 1)[-1]
+    kept = "".join(c for c in last if c.isprintable() and c not in '<>:"|?*').strip(". ")
+    # Systems count bytes, and what matters of a long name is its end.
+    return kept.encode()[-NAME_BYTES:].decode(errors="ignore").strip(". ") or "file"

@@ -1,0 +1,245 @@
+"""Uploaded files: kept while a page uses them, and some time longer, for whoever comes back.
+
+All of them together have a quota, and so have those of one page. What nobody uses any more makes
+way for what is sent.
+"""
+
+from __future__ import annotations
+
+import atexit
+import secrets
+import shutil
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from cutcell.errors import FileError
+
+from .storage import Storage
+
+KEPT_SECONDS = 15 * 60.0
+"""How long files stay when no page uses them any more."""
+
+MB = 2**20
+MOST_BYTES = 2048 * MB
+"""Of all uploaded files together."""
+MOST_OF_A_PAGE = 500 * MB
+"""Of those that one page has sent and that are still there."""
+SPARE_BYTES = 256 * MB
+"""What uploads leave free on the disk, for others."""
+
+SWEEP_SECONDS = 60.0
+
+
+@dataclass(eq=False)
+class Group:
+    """Files that belong together.
+
+    Parameters
+    ----------
+    key : str
+        Cannot be guessed.
+    folder : Path
+    size : int
+        Bytes, of all of them, as they were announced.
+    owner : object
+        The page that sends them.
+    """
+
+    key: str
+    folder: Path
+    size: int
+    owner: object
+    paths: list[Path] = field(default_factory=list)
+    users: int = 1
+    left: float = 0.0
+
+
+class UploadCache:
+    """Groups of uploaded files.
+
+    Parameters
+    ----------
+    storage : Storage, optional
+    seconds : float
+        How long a group stays when no page uses it any more.
+    """
+
+    def __init__(self, storage: Storage | None = None, seconds: float = KEPT_SECONDS) -> None:
+        self.storage = storage or Storage()
+        self._seconds = seconds
+        self._lock = threading.Lock()
+        self._groups: dict[str, Group] = {}
+
+    def begin(self, size: int, owner: object) -> Group:
+        """Make room for a group of files, and a folder; it is in use.
+
+        Raises
+        ------
+        FileError
+            The files, with those that are there, are more than a page or the server may hold,
+            or more than fits on the disk.
+        OSError
+            No folder can be made.
+        """
+        with self._lock:
+            self._sweep()
+            self._check_page(size, owner)
+            self._check_all(size)
+            group = Group(secrets.token_urlsafe(9), self.storage.make(), size, owner)
+            self._groups[group.key] = group
+            return group
+
+    def drop(self, group: Group) -> None:
+        """Remove a group of files that did not arrive."""
+        with self._lock:
+            self._remove(group)
+
+    def take(self, key: str) -> list[Path] | None:
+        """Use a group of files; None where it is not kept any more."""
+        with self._lock:
+            self._sweep()
+            group = self._groups.get(key)
+            if group is None or not group.paths:
+                return None
+            group.users += 1
+            return group.paths
+
+    def leave(self, key: str) -> None:
+        """Use a group of files no longer; it stays for a while."""
+        with self._lock:
+            group = self._groups.get(key)
+            if group is not None:
+                group.users -= 1
+                group.left = time.monotonic()
+            self._sweep()
+
+    def sweep(self) -> None:
+        """Remove what was left long ago, here and by servers that ended."""
+        with self._lock:
+            self._sweep()
+        self.storage.sweep()
+
+    def sweep_by_the_clock(self) -> None:
+        """Sweep now, and once a minute for as long as the process lives."""
+
+        def sweep() -> None:
+            while True:
+                self.sweep()
+                time.sleep(SWEEP_SECONDS)
+
+        threading.Thread(target=sweep, daemon=True, name="cutcell sweep").start()
+
+    def close(self) -> None:
+        """Remove everything."""
+        with self._lock:
+            self._groups.clear()
+        self.storage.close()
+
+    def _check_page(self, size: int, owner: object) -> None:
+        if size > MOST_OF_A_PAGE:
+            raise FileError(
+                f"the files have {_mb(size)} together; a page takes {_mb(MOST_OF_A_PAGE)} (the "
+                "cutcell command takes any)"
+            )
+        held = self._make_room(size, MOST_OF_A_PAGE, owner)
+        if held + size > MOST_OF_A_PAGE:
+            raise FileError(
+                f"this page has sent {_mb(held)} that are still in use, and may send "
+                f"{_mb(MOST_OF_A_PAGE)}; reload it, or open the file by the cutcell command"
+            )
+
+    def _check_all(self, size: int) -> None:
+        held = self._make_room(size, MOST_BYTES)
+        if held + size > MOST_BYTES:
+            raise FileError(
+                f"the server holds {_mb(held)} of uploaded files that are in use, and takes "
+                f"{_mb(MOST_BYTES)}; try again when others have closed their pages"
+            )
+        if self.storage.free() - size < SPARE_BYTES:
+            self._make_room(MOST_BYTES, MOST_BYTES)  # whatever nobody uses
+        free = self.storage.free()
+        if free - size < SPARE_BYTES:
+            raise FileError(
+                f"the server's disk has no room for {_mb(size)}: {_mb(free)} are free, and "
+                f"{_mb(SPARE_BYTES)} must stay so"
+            )
+
+    def _make_room(self, size: int, most: int, owner: object = None) -> int:
+        """Remove what nobody uses, the oldest first, until a size fits; return what is held."""
+        groups = [one for one in self._groups.values() if owner in (None, one.owner)]
+        held = sum(group.size for group in groups)
+        unused = (group for group in groups if group.users <= 0)
+        for group in sorted(unused, key=lambda group: group.left):
+            if held + size <= most:
+                break
+            self._remove(group)
+            held -= group.size
+        return held
+
+    def _sweep(self) -> None:
+        old = time.monotonic() - self._seconds
+        for group in list(self._groups.values()):
+            if group.users <= 0 and group.left <= old:
+                self._remove(group)
+
+    def _remove(self, group: Group) -> None:
+        self._groups.pop(group.key, None)
+        shutil.rmtree(group.folder, ignore_errors=True)
+
+
+class PageUploads:
+    """The uploaded files that one page uses.
+
+    Parameters
+    ----------
+    cache : UploadCache
+
+    Attributes
+    ----------
+    key : str
+        Of the character that stands there; empty where it was not uploaded.
+    """
+
+    def __init__(self, cache: UploadCache) -> None:
+        self.cache = cache
+        self.key = ""
+        self._held: set[str] = set()
+        self._closing: list[Callable[[], None]] = []
+
+    def hold(self, key: str) -> None:
+        """Note files that are in use already."""
+        self._held.add(key)
+
+    def stay(self, key: str) -> None:
+        """Let the character of some files stand there, and use no others; "" for none."""
+        self.key = key
+        for other in self._held - {key}:
+            self.leave(other)
+
+    def leave(self, key: str) -> None:
+        """Use files no longer, unless their character stands there."""
+        if key in self._held and key != self.key:
+            self._held.remove(key)
+            self.cache.leave(key)
+
+    def when_closed(self, act: Callable[[], None]) -> None:
+        """Do something when the page is closed."""
+        self._closing.append(act)
+
+    def close(self) -> None:
+        """Let go of what was uploaded, and of what is still being sent."""
+        self.stay("")
+        for act in self._closing:
+            act()
+
+
+def _mb(size: int) -> str:
+    return f"{size / MB:,.0f} MB"
+
+
+UPLOADS = UploadCache()
+"""That of this server."""
+atexit.register(UPLOADS.close)

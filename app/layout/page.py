@@ -1,0 +1,153 @@
+"""The layout of the page: a sidebar, one big canvas, a slim line of facts."""
+
+from __future__ import annotations
+
+import functools
+import weakref
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+from urllib.parse import urlencode
+
+import panel as pn
+import panel_material_ui as pmui
+from panel.io.resources import LOCAL_DIST
+from tornado.ioloop import IOLoop
+
+from cutcell_assets import DEMOS
+
+from ..commands import arrival
+from ..commands.loading import load_demo, load_files
+from ..commands.session import Session
+from ..panels.parts import words
+from ..server.memory import let_go, tidy_soon
+from ..widgets.inspector import inspector
+from ..widgets.modules import style
+from ..widgets.tour_card import tour_card
+from ..work.jobs import Gate, on_its_thread
+from .favicon import FAVICON
+from .session import begin
+from .sidebar import sidebar
+from .status import messages, status_line
+from .theme import PAGE_STYLE, THEME
+
+NARROW = 600
+"""Windows that are less wide than this, in pixels, show the sidebar on demand only."""
+
+
+def page(path: Path | None = None) -> pmui.Page:
+    """Return a new page, on which a character is about to stand.
+
+    Parameters
+    ----------
+    path : Path, optional
+        The character to open; the first demo when left out.
+    """
+    document: Any = pn.state.curdoc
+    # Panel sets this as it writes a session's HTML; here that is written once for all of them.
+    document.template_variables["dist_url"] = LOCAL_DIST
+    gate = Gate(on_its_thread(document, IOLoop.current()))
+    pn.state.onload(gate.open)
+    session = begin(gate)
+    # Panel keeps its settings per document for as long as the document lives: what they hold
+    # must not in turn hold the document.
+    fail = weakref.WeakMethod(session.fail)
+    pn.config.exception_handler = lambda error: _told(fail(), error)
+    query = asked()
+    first = "" if path is not None else next(demo.id for demo in DEMOS if demo.path.exists())
+    arrival.choose(session, query, first)
+    view: Any = session.view
+    result = layout(session)
+    document.on_session_destroyed(functools.partial(_close, session))
+
+    def otherwise() -> None:
+        if path is None:
+            load_demo(session, first)
+        else:
+            load_files(session, [path])
+
+    # Whoever only asks for the page, and never looks at it, makes nothing be computed.
+    later = session.tasks.later
+    view.when_seen(lambda: later(lambda: arrival.arrive(session, query, otherwise)))
+    return result
+
+
+def asked() -> str:
+    """Return what the address that was asked for says behind its question mark."""
+    given = pn.state.session_args or {}
+    pairs = [(name, value) for name, values in given.items() for value in values[:1]]
+    return urlencode(pairs)
+
+
+def _close(session: Session, context: Any) -> None:
+    session.close()
+    tidy_soon()
+
+
+def _told(fail: Callable[[Exception], None] | None, error: Exception) -> None:
+    if fail is not None:
+        fail(error)
+
+
+def layout(session: Session) -> pmui.Page:
+    """Return the page of a session."""
+    view: Any = session.view
+    tagline = words(
+        "geodesic skinning weights for any mesh",
+        sx={"color": "text.secondary", "fontSize": 13, "display": {"xs": "none", "sm": "block"}},
+        margin=(2, 0, 0, 16),
+    )
+    main = pmui.Column(
+        pmui.Column(
+            view,
+            messages(session),
+            inspector(session),
+            tour_card(session),
+            sizing_mode="stretch_both",
+            margin=0,
+            styles={"position": "relative"},
+        ),
+        status_line(session),
+        sizing_mode="stretch_both",
+        margin=0,
+    )
+    result = pmui.Page(
+        title="cutcell",
+        header=[tagline],
+        sidebar=sidebar(session),
+        sidebar_width=320,
+        sidebar_variant="auto",
+        sidebar_open="Mobi" not in (pn.state.headers or {}).get("User-Agent", ""),
+        main=[main],
+        busy_indicator=None,
+        raw_css=[style("loader")],
+        theme_config=THEME,
+        sx=PAGE_STYLE,
+        favicon=FAVICON,
+    )
+
+    def themed(event: Any) -> None:
+        session.state.dark = event.new
+        view.tell(dark=event.new)
+
+    def remembered(event: Any) -> None:
+        if event.new is not None:
+            session.tasks.later(lambda: result.param.update(dark_theme=event.new))
+
+    def sized(event: Any) -> None:
+        # The canvas comes first where both have no room side by side.
+        wide = event.new >= NARROW
+        session.tasks.later(lambda: result.param.update(sidebar_open=wide))
+
+    def told(event: Any) -> None:
+        # Over the canvas nobody reads what lies behind the sidebar.
+        if event.new and event.new[0] == "error" and 0 < view.window_width < NARROW:
+            session.tasks.later(lambda: result.param.update(sidebar_open=False))
+
+    let_go(result)
+    result.param.watch(themed, "dark_theme")
+    view.param.watch(sized, "window_width")
+    session.state.param.watch(told, "message")
+    view.param.watch(remembered, "dark")
+    session.state.dark = result.dark_theme
+    return result

@@ -1,0 +1,24 @@
+"""A session of the page: its beginning and its end."""
+
+from __future__ import annotations
+
+from ..commands.loading import receiver
+from ..commands.session import Session
+from ..commands.watchers import follow
+from ..widgets.view import SceneView
+from ..work.jobs import Schedule
+
+
+def begin(schedule: Schedule) -> Session:
+    """Return a new session with a view of its own, which everything follows.
+
+    Parameters
+    ----------
+    schedule : callable
+        Runs a function on the page's own thread; see `Jobs`.
+    """
+    view = SceneView(sizing_mode="stretch_both")
+    session = Session(view, schedule)
+    view.receiver = receiver(session)
+    follow(session)
+    return session

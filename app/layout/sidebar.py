@@ -1,0 +1,63 @@
+"""The sidebar: character and bone, the tabs, the chosen panel's controls, export."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import panel_material_ui as pmui
+
+from ..commands.session import Session
+from ..panels import PANELS
+from ..panels.bone import bone
+from ..panels.character import character
+from ..panels.export import export
+from ..panels.parts import lead
+from ..widgets.tabs import Tabs
+
+BARE = ("graph", "diagnosis", "learn")
+"""The panels for a mesh without a skeleton."""
+NO_SKELETON = (
+    "This mesh has no skeleton, so it has no bones to measure from, to weigh or to move; its graph "
+    "can be seen. Export it together with its armature, or drop it together with a skeleton in a "
+    "JSON file of the same name."
+)
+
+
+def sidebar(session: Session) -> list[Any]:
+    """Return what stands in the sidebar, from top to bottom."""
+    return [character(session), bone(session), *panels(session), export(session)]
+
+
+def panels(session: Session) -> tuple[Tabs, pmui.Column]:
+    """Return the tabs, and the place that holds the chosen panel.
+
+    A panel is built when it is first looked at.
+    """
+    state = session.state
+    tabs = Tabs(
+        value=state.panel,
+        tabs=[(panel.id, panel.title, panel.icon) for panel in PANELS],
+        margin=(10, 20, 0, 20),
+        sizing_mode="stretch_width",
+    )
+    place = pmui.Column(margin=0, sizing_mode="stretch_width")
+    built: dict[str, Any] = {}
+
+    def shown(*events: Any) -> None:
+        tabs.value = state.panel
+        if state.bare and state.panel not in BARE:
+            place.objects = [lead(NO_SKELETON)]
+            return
+        for panel in PANELS:
+            if panel.id == state.panel:
+                place.objects = [
+                    built.get(panel.id) or built.setdefault(panel.id, panel.build(session))
+                ]
+
+    def chosen(event: Any) -> None:
+        state.panel = event.new
+
+    state.param.watch(shown, ["panel", "rig"])
+    tabs.param.watch(chosen, "value")
+    shown()
+    return tabs, place

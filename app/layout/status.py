@@ -1,0 +1,155 @@
+"""What is told about the work: progress, counts and seconds, warnings, errors."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import panel_material_ui as pmui
+
+from cutcell.graph import INTERIOR, MESH, SURFACE
+
+from ..commands.binding import cancel
+from ..commands.session import Session
+from ..panels.parts import when, words
+from ..state import State
+from ..widgets.modules import style
+from ..work.messages import sentence, shown
+
+TITLES = {
+    "compile": "Compiling, once on this machine (about a minute)",
+    "graph": "Building the graph",
+    "distances": "Measuring distances",
+    "weights": "Computing weights",
+}
+
+
+# The line keeps its height whatever it says: the canvas above must not jump.
+_CUT = {"whiteSpace": "nowrap", "overflow": "hidden", "textOverflow": "ellipsis"}
+# The text stands in a paragraph of its own.
+_ONE_LINE = {"display": "block", **_CUT, "& > p": {**_CUT, "margin": 0}}
+
+
+def status_line(session: Session) -> pmui.Row:
+    """Return the slim line under the canvas."""
+    state = session.state
+    small = {"fontSize": "12px", "lineHeight": 1.4, "fontVariantNumeric": "tabular-nums"}
+    counts = words(
+        when(
+            lambda *_: summary(state),
+            state.param.rig,
+            state.param.binding,
+            state.param.bare_graph,
+        ),
+        visible=when(lambda busy: not busy, state.param.busy),
+        sx={**small, **_ONE_LINE, "color": "text.secondary"},
+        margin=(10, 16),
+        sizing_mode="stretch_width",
+    )
+    stage = words(
+        when(stage_text, state.param.stage),
+        visible=state.param.busy,
+        sx={**small, **_ONE_LINE, "minWidth": "150px", "maxWidth": "46vw"},
+        margin=(10, 8, 10, 16),
+    )
+    bar = pmui.LinearProgress(
+        value=when(lambda fraction: round(100 * fraction), state.param.fraction),
+        visible=state.param.busy,
+        variant="determinate",
+        sizing_mode="stretch_width",
+        margin=(17, 8),
+    )
+    stop = pmui.Button(
+        label="Cancel",
+        size="small",
+        variant="text",
+        visible=state.param.busy,
+        on_click=lambda event: cancel(session),
+        margin=(4, 12),
+    )
+    return pmui.Row(
+        stage,
+        bar,
+        stop,
+        counts,
+        sizing_mode="stretch_width",
+        margin=0,
+        sx={
+            "height": "38px",
+            "overflow": "hidden",
+            "borderTop": "1px solid",
+            "borderColor": "divider",
+            "bgcolor": "background.paper",
+        },
+    )
+
+
+def messages(session: Session) -> pmui.Column:
+    """Return the place over the canvas where errors and warnings are shown."""
+    state = session.state
+    # The sentence is the title: titles are shown as they are, never read as HTML.
+    look = {
+        "bgcolor": "background.paper",
+        "boxShadow": "0 4px 18px rgba(10, 20, 40, .16)",
+        "& .MuiAlertTitle-root": {"fontSize": 13, "fontWeight": 400, "m": 0},
+    }
+    alert = pmui.Alert(
+        closeable=True, margin=0, sizing_mode="stretch_width", visible=False, sx=look,
+        variant="outlined",
+    )  # fmt: skip
+
+    def told(*events: Any) -> None:
+        if events and all(only_weights(event) for event in events):
+            return  # what was warned of stays as it was
+        severity, text = state.message or warning(state) or ("info", "")
+        alert.param.update(severity=severity, title=text, closed=False, visible=bool(text))
+
+    def closed(event: Any) -> None:
+        if event.new:
+            alert.visible = False
+
+    state.param.watch(told, ["message", "binding", "bare_graph"])
+    alert.param.watch(closed, "closed")
+    return pmui.Column(
+        alert, margin=0, sizing_mode="stretch_width", stylesheets=[style("messages_place")]
+    )
+
+
+def only_weights(event: Any) -> bool:
+    """Whether a change of the binding left the distances as they were."""
+    old, new = event.old, event.new
+    known = event.name == "binding" and old is not None and new is not None
+    return known and old.distances is new.distances
+
+
+def warning(state: State) -> tuple[str, str] | None:
+    """Return what a person should know about the result."""
+    if state.graph is None:
+        return None
+    texts = [*state.rig.warnings, *(state.binding.warnings if state.binding else ())]
+    return ("warning", " ".join(sentence(shown(text)) for text in texts)) if texts else None
+
+
+def stage_text(stage: str) -> str:
+    """Return a stage as it is told to a person."""
+    return TITLES.get(stage, sentence(stage).rstrip(".") if stage else "Starting")
+
+
+def summary(state: State) -> str:
+    """Return the counts and the seconds, in one line."""
+    rig, binding = state.rig, state.binding
+    if rig is None:
+        return ""
+    mesh, joints = rig.mesh, len(rig.skeleton.joints)
+    parts = [f"{len(mesh.vertices):,} vertices · {len(mesh.faces):,} faces · {joints} joints"]
+    if state.graph is not None:
+        graph = state.graph
+        kinds = np.bincount(graph.edge_kind, minlength=3)
+        parts.append(
+            f"{len(graph.nodes):,} nodes · {len(graph.edges):,} edges ({kinds[MESH]:,} mesh, "
+            f"{kinds[INTERIOR]:,} interior, {kinds[SURFACE]:,} surface)"
+        )
+    if binding is not None:
+        seconds = binding.seconds.items()
+        parts.append(" · ".join(f"{stage} {value:.2f} s" for stage, value in seconds))
+    return "  |  ".join(parts)

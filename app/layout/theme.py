@@ -1,0 +1,65 @@
+"""How the page looks: colours, type and spacing, in light and in dark."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from cutcell_viewers.palette import DARK, LIGHT, to_hex
+
+_SHAPE = {
+    "shape": {"borderRadius": 8},
+    "typography": {
+        "fontSize": 13,
+        "h3": {"fontSize": "1.15rem", "fontWeight": 600, "letterSpacing": "-0.01em"},
+        "button": {"textTransform": "none", "fontWeight": 500},
+    },
+    # A menu that fades away still takes the next click, wherever that goes: it is gone at once.
+    "components": {
+        "MuiDrawer": {
+            "styleOverrides": {
+                # Dark paper is as dark over the canvas as beside it.
+                "paper": {"backgroundImage": "none"},
+                # What lies over the bar on top needs no room below it.
+                "modal": {"& .MuiDrawer-paper > .MuiToolbar-root": {"display": "none"}},
+            }
+        },
+        "MuiMenu": {"defaultProps": {"transitionDuration": {"enter": 160, "exit": 0}}},
+    },
+}
+
+THEME: dict[str, Any] = {
+    "light": {
+        **_SHAPE,
+        "palette": {
+            "primary": {"main": "#17678c", "contrastText": "#ffffff"},
+            "background": {"default": to_hex(LIGHT.top), "paper": "#ffffff"},
+            "text": {"primary": "#1f2632", "secondary": "#5c6675"},
+            "divider": "#dde3ea",
+        },
+    },
+    "dark": {
+        **_SHAPE,
+        "palette": {
+            "primary": {"main": "#90d2ec", "contrastText": "#10222c"},
+            "background": {"default": to_hex(DARK.bottom), "paper": "#1b2028"},
+            "text": {"primary": "#e8ecf3", "secondary": "#9aa5b5"},
+            "divider": "#2f3743",
+        },
+    },
+}
+
+# The bar on top is as quiet as the page: no band of colour, a hairline below.
+PAGE_STYLE: dict[str, Any] = {
+    "& .header": {
+        "backgroundColor": "background.paper",
+        "backgroundImage": "none",
+        "color": "text.primary",
+        "boxShadow": "none",
+        "borderBottom": "1px solid",
+        "borderColor": "divider",
+    },
+    "& .header a, & .header .title": {"color": "inherit"},
+    "& .header .MuiToolbar-root": {"minHeight": "52px", "margin": 0},
+    "& .MuiToolbar-root": {"minHeight": "52px"},
+    "& .sidebar": {"backgroundImage": "none", "borderColor": "divider"},
+}

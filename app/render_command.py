@@ -1,0 +1,244 @@
+"""The command `cutcell render`: a picture or a film of what the page shows."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from cutcell.console import for_people, print_line, print_warnings, progress_bars
+from cutcell.errors import MissingLibraryError, ParameterError
+from cutcell.options import FILES, Resolution, RigFile, SkeletonFile
+
+WHAT = "What is seen"
+HOW = "How it is seen"
+PICTURE_SIZE = (1600, 1200)
+FILM_SIZE = (960, 720)
+LARGEST = 8192
+
+EPILOG = """Examples:
+
+- `cutcell render character.glb --bone hand.L weights.png`
+
+- `cutcell render character.glb --panel distance --bone hand.L --turntable distance.mp4`
+
+- `cutcell render character.glb --panel graph --cut z --dark graph.png`
+
+- `cutcell render character.glb --panel pose --clip walk --error walk.gif`
+
+- `cutcell render character.glb --panel compare --methods now,bone_heat,artist compare.png`"""
+
+
+@for_people
+def render(
+    rig: RigFile,
+    out: Annotated[
+        Path,
+        typer.Argument(
+            metavar="OUT", help="A picture: .png or .jpg. What moves is a film: .mp4 or .gif."
+        ),
+    ],
+    panel: Annotated[
+        str,
+        typer.Option(
+            "--panel",
+            "-p",
+            metavar="PANEL",
+            help="As on the page: graph, distance, weights, pose or compare.",
+            rich_help_panel=WHAT,
+        ),
+    ] = "weights",
+    bone: Annotated[
+        str | None,
+        typer.Option(
+            "--bone",
+            "-b",
+            metavar="NAME",
+            help="Whose weights or distance. Weights of all bones are mixed if left out.",
+            rich_help_panel=WHAT,
+        ),
+    ] = None,
+    shown: Annotated[
+        str | None,
+        typer.Option(
+            "--show",
+            metavar="WHAT",
+            help="Of the weights: bone, mix, dominant, count, or difference to the file's own.",
+            rich_help_panel=WHAT,
+        ),
+    ] = None,
+    turn: Annotated[
+        str | None,
+        typer.Option(
+            "--turn",
+            metavar="AXIS=DEGREES",
+            help="Turn the bone, such as z=30, on the panels pose and compare.",
+            rich_help_panel=WHAT,
+        ),
+    ] = None,
+    error: Annotated[
+        bool,
+        typer.Option(
+            "--error",
+            help="Colour by the error against the file's own weights: pose, compare.",
+            rich_help_panel=WHAT,
+        ),
+    ] = False,
+    methods: Annotated[
+        str,
+        typer.Option(
+            "--methods",
+            metavar="A,B,...",
+            help="What stands side by side on the panel compare; now is what is set here.",
+            rich_help_panel=WHAT,
+        ),
+    ] = "",
+    cut: Annotated[
+        str | None,
+        typer.Option(
+            "--cut",
+            metavar="AXIS",
+            help="Cut the body across x, y or z: graph, distance.",
+            rich_help_panel=WHAT,
+        ),
+    ] = None,
+    clip: Annotated[
+        str | None,
+        typer.Option(
+            "--clip",
+            metavar="NAME",
+            help="Film one of the file's motions, by name or number.",
+            rich_help_panel=HOW,
+        ),
+    ] = None,
+    time: Annotated[
+        float | None,
+        typer.Option(
+            "--time",
+            metavar="SECONDS",
+            help="With --clip: a picture of that moment instead of a film.",
+            rich_help_panel=HOW,
+        ),
+    ] = None,
+    turntable: Annotated[
+        bool,
+        typer.Option("--turntable", help="Film it from all around.", rich_help_panel=HOW),
+    ] = False,
+    view: Annotated[
+        str,
+        typer.Option(
+            "--view",
+            metavar="VIEW",
+            help="From where: front, three-quarter, left, right, back or top.",
+            rich_help_panel=HOW,
+        ),
+    ] = "three-quarter",
+    size: Annotated[
+        str | None,
+        typer.Option(
+            "--size",
+            metavar="WxH",
+            help="In pixels; 1600x1200 for pictures, 960x720 for films if left out.",
+            rich_help_panel=HOW,
+        ),
+    ] = None,
+    dark: Annotated[
+        bool, typer.Option("--dark", help="On a dark ground.", rich_help_panel=HOW)
+    ] = False,
+    skeleton: Annotated[
+        bool,
+        typer.Option("--bones/--no-bones", help="Draw the skeleton, too.", rich_help_panel=HOW),
+    ] = True,
+    legend: Annotated[
+        bool,
+        typer.Option("--legend/--no-legend", help="Write the legend on it.", rich_help_panel=HOW),
+    ] = True,
+    resolution: Resolution = 64,
+    skeleton_file: SkeletonFile = None,
+    quiet: Annotated[
+        bool,
+        typer.Option("--quiet", "-q", help="No bars, no warnings.", rich_help_panel=FILES),
+    ] = False,
+) -> None:
+    """Draw a character as the page shows it, into a picture or a film.
+
+    Weights are computed first; nothing of the character's file is changed.
+    """
+    scenes, film, worker = _libraries()
+    moves = turntable or (clip is not None and time is None)
+    film.check_picture_file(out, moves=moves)
+    pixels = _size(size) if size else FILM_SIZE if moves else PICTURE_SIZE
+    from cutcell.io import load
+    from cutcell.io.files import naming
+
+    loaded = load(rig, skeleton=skeleton_file)
+    choices = scenes.Choices(
+        panel=panel,
+        bone=bone,
+        shown=shown,
+        turn=_turn(turn),
+        error=error,
+        methods=[name.strip() for name in methods.split(",") if name.strip()],
+        cut=cut,
+        clip=clip,
+        time=time,
+        skeleton=skeleton,
+        dark=dark,
+    )
+    # A wrong name is refused before anything long begins.
+    with naming(rig):
+        scenes.check(loaded, choices, view)
+    from cutcell.skinning import bind
+
+    bare = not len(loaded.skeleton.joints)
+    with progress_bars(quiet) as progress:
+        binding = None if bare else bind(loaded, resolution, progress=progress)
+        description = scenes.describe(
+            loaded, choices, binding=binding, resolution=resolution, progress=progress
+        )
+        order = scenes.order(
+            loaded, description, choices, size=pixels, view=view, turntable=turntable, legend=legend
+        )
+        worker.draw_apart(order, out, progress)
+    if not quiet:
+        print_warnings([*loaded.warnings, *(binding.warnings if binding else ())])
+        print_line(f"{out}: {pixels[0]} x {pixels[1]} pixels, {_kilobytes(out)}")
+
+
+def _libraries() -> tuple[Any, Any, Any]:
+    try:
+        from cutcell_viewers import film, worker
+
+        from . import render as scenes
+    except ModuleNotFoundError as error:
+        raise MissingLibraryError(
+            f"pictures need libraries that are not installed ({error.name} is missing); "
+            "install them by: pip install 'cutcell[app]'"
+        ) from None
+    return scenes, film, worker
+
+
+def _size(text: str) -> tuple[int, int]:
+    found = re.fullmatch(r"(\d{1,5})\s*[xX×]\s*(\d{1,5})", text.strip())
+    sides = tuple(int(side) for side in found.groups()) if found else ()
+    if not sides or not all(16 <= side <= LARGEST for side in sides):
+        raise ParameterError(
+            f"size must be width x height in pixels, 16 to {LARGEST} each, such as 1600x1200, "
+            f'not "{text}"'
+        )
+    return sides[0], sides[1]
+
+
+def _turn(text: str | None) -> tuple[str, float] | None:
+    if text is None:
+        return None
+    found = re.fullmatch(r"\s*([xyzXYZ])\s*=\s*([-+]?\d+(?:\.\d*)?)\s*°?\s*", text)
+    if not found:
+        raise ParameterError(f'turn must be an axis and degrees, such as z=30, not "{text}"')
+    return found[1].lower(), float(found[2])
+
+
+def _kilobytes(path: Path) -> str:
+    return f"{max(path.stat().st_size // 1000, 1):,} kB"

@@ -1,0 +1,95 @@
+"""What there is to know of one vertex: a pure function of the state."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from cutcell.display import shown_name
+from cutcell.geodesics import FALLBACK_REASONS
+from cutcell.graph import MESH, CutCellGraph
+from cutcell_viewers.palette import joint_colors, to_hex
+
+from ..state import State
+from .memo import Memo
+
+MOST_WEIGHTS = 6
+MOST_DISTANCES = 5
+NO_WEIGHT = 5e-3
+"""Weights that would be shown as 0.00 are not shown."""
+
+
+def vertex_facts(state: State, memo: Memo) -> dict[str, Any] | None:
+    """Return what the inspector shows of the chosen vertex; None if none is chosen.
+
+    Returns
+    -------
+    dict or None
+        "vertex", "computed"; once it is bound also "weights" and "distances" (a list of bones
+        each, the most important first), "component", "reached", "reason"; and "artist",
+        whether the file has weights of its own.
+    """
+    rig, binding, vertex = state.rig, state.binding, state.vertex
+    if rig is None or vertex is None or vertex >= len(rig.mesh.vertices):
+        return None
+    facts: dict[str, Any] = {"vertex": int(vertex), "computed": binding is not None}
+    if binding is None:
+        return facts
+    colors = memo("colors", (rig,), lambda: joint_colors(rig.skeleton.parents))
+
+    def bone(joint: int, **values: float) -> dict[str, Any]:
+        color = to_hex(tuple(colors[joint]))
+        return {
+            "joint": int(joint),
+            "name": shown_name(rig.skeleton.names[joint]),
+            "color": color,
+            **values,
+        }
+
+    artist = None if rig.weights is None else rig.weights[vertex]
+    ours = binding.weights[vertex]
+    either = ours if artist is None else np.maximum(ours, artist)
+    shown = [j for j in np.argsort(-either, kind="stable")[:MOST_WEIGHTS] if either[j] > NO_WEIGHT]
+    distance = binding.distances.joint[:, vertex]
+    near = [j for j in np.argsort(distance, kind="stable")[:MOST_DISTANCES]]
+    which, sizes = memo("components", (binding.graph,), lambda: components(binding.graph))
+    own = int(which[vertex])
+    fallback = int(binding.distances.fallback[vertex])
+    return {
+        **facts,
+        "artist": artist is not None,
+        "weights": [
+            bone(j, ours=float(ours[j]), artist=0.0 if artist is None else float(artist[j]))
+            for j in shown
+        ],
+        "distances": [bone(j, distance=float(distance[j])) for j in near if distance[j] < np.inf],
+        "component": {"number": own + 1, "of": len(sizes), "vertices": int(sizes[own])},
+        "reached": fallback == 0,
+        "reason": FALLBACK_REASONS[fallback],
+    }
+
+
+def components(graph: CutCellGraph) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Return the part of the mesh that each vertex hangs together with, and the parts' sizes.
+
+    Returns
+    -------
+    which : array, shape (n,)
+        The largest part is 0.
+    sizes : array, shape (c,)
+        In vertices of the file.
+    """
+    welded = graph.first_point
+    a, b = graph.edges[graph.edge_kind == MESH].T
+    links = coo_array((np.ones(len(a), bool), (a, b)), shape=(welded, welded))
+    label = connected_components(links, directed=False)[1][graph.vertex_node]
+    sizes = np.bincount(label)
+    order = np.argsort(-sizes, kind="stable")
+    rank = np.empty(len(order), int)
+    rank[order] = np.arange(len(order))
+    present = sizes[order] > 0
+    return rank[label], sizes[order][present]

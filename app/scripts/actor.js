@@ -1,0 +1,264 @@
+// One actor of the scene, drawn by vtk.js; changed in place by what the server sends.
+
+import {plain, plainList} from "./arrays.js"
+import {ALL, Colours, pointIds} from "./colour.js"
+import {shaderSwaps} from "./shade.js"
+import {skinArrays, skinned} from "./skin.js"
+import {TriangleTree} from "./triangle_tree.js"
+
+const MANY_LINES = 40000
+
+function withCounts(cells, corners, stride = 1) {
+  const total = Math.ceil(cells.length / corners / stride)
+  const out = new Uint32Array(total * (corners + 1))
+  for (let i = 0; i < total; i++) {
+    out[i * (corners + 1)] = corners
+    for (let c = 0; c < corners; c++) {
+      out[i * (corners + 1) + 1 + c] = cells[i * stride * corners + c]
+    }
+  }
+  return out
+}
+
+export class Actor {
+  constructor(renderer) {
+    const {vtk} = renderer
+    this.vtk = vtk
+    this.renderer = renderer
+    this.data = vtk.Common.DataModel.vtkPolyData.newInstance()
+    this.made = [this.make(this.data)]
+    this.colours = new Colours(renderer.context)
+    this.visible = true
+  }
+
+  make(data) {
+    const {vtkMapper, vtkActor} = this.vtk.Rendering.Core
+    const mapper = vtkMapper.newInstance({scalarVisibility: false})
+    mapper.setInputData(data)
+    const actor = vtkActor.newInstance()
+    actor.setMapper(mapper)
+    return {data, mapper, actor}
+  }
+
+  update(part, cut) {
+    if (part.kind) { this.kind = part.kind }
+    if (part.points) { this.setPoints(plain(part.points)) }
+    if (part.normals) { this.setNormals(plain(part.normals)) }
+    if (part.cells) { this.setCells(plain(part.cells)) }
+    if ("skin" in part || "apart" in part) { this.setSkins(part) }
+    if (part.colors) { this.colours.setColors(plain(part.colors)) }
+    if (part.scalars) {
+      this.values = plain(part.scalars)
+      this.colours.setValues(this.values, plain(part.table), part.limits)
+    }
+    if (part.paint) { this.paint(part.paint) }
+    this.shade()
+    if (part.place) {
+      [this.overlay, this.view] = [part.place.overlay, part.place.view]
+      this.place()
+    }
+    if ("reading" in part) {
+      const {reading} = part
+      this.reading = reading && {...reading, values: reading.values && plain(reading.values)}
+    }
+    if ("animation" in part) { this.animation = part.animation }
+    if ("clipped" in part) { [this.clipped, this.slab] = [part.clipped, part.slab] }
+    if ("visible" in part) { this.visible = part.visible }
+    this.cut(cut)
+  }
+
+  setPoints(points) {
+    this.rest = points
+    this.data.getPoints().setData(points.slice(), 3)
+    this.data.modified()
+    this.bounds = this.data.getBounds()
+  }
+
+  setNormals(normals) {
+    this.restNormals = normals
+    const {vtkDataArray} = this.vtk.Common.Core
+    this.data.getPointData().setNormals(vtkDataArray.newInstance({
+      name: "Normals", numberOfComponents: 3, values: normals.slice(),
+    }))
+  }
+
+  setCells(cells) {
+    const corners = {surface: 3, lines: 2, points: 1}[this.kind]
+    const put = (data, stride) => {
+      const array = {surface: "Polys", lines: "Lines", points: "Verts"}[this.kind]
+      data[`get${array}`]().setData(withCounts(cells, corners, stride))
+      data.modified()
+    }
+    put(this.data, 1)
+    if (this.kind === "surface") { this.triangles = cells }
+    if (this.kind === "lines") { this.pairs = cells }
+    this.count = cells.length / corners
+    // While the camera moves, a twin with fewer lines stands in.
+    if (this.kind === "lines" && this.count > MANY_LINES && this.made.length < 2) {
+      const few = this.vtk.Common.DataModel.vtkPolyData.newInstance()
+      few.setPoints(this.data.getPoints())
+      this.made.push(this.make(few))
+      put(few, Math.ceil(this.count / MANY_LINES))
+    }
+  }
+
+  // How the points follow the joints, and a second skin, the distance to which colours them.
+  setSkins({skin, apart}) {
+    const plainSkin = ({joints, weights, count}) =>
+      ({joints: plain(joints), weights: plain(weights), count})
+    if (skin) { this.skin = plainSkin(skin) }
+    if (apart !== undefined) {
+      this.apart = apart && {...plainSkin(apart), unit: apart.unit}
+    }
+    this.shaded = null
+  }
+
+  // Changes the shaders to what moves and colours the points now; nothing while that is the same.
+  shade() {
+    const {skin, apart} = this
+    const sets = (of) => of ? Math.ceil(of.count / 4) : 0
+    const needs = {sets: sets(skin), otherSets: sets(skin && apart), by: this.coloured ? this.colours.by : ""}
+    const shaded = JSON.stringify([needs, this.made.length])
+    if (shaded === this.shaded || !(needs.sets || needs.by || this.shaded)) { return }
+    this.shaded = shaded
+    const arrays = [
+      ...needs.by ? [["pointId", pointIds(this.rest.length / 3), 1]] : [],
+      ...needs.sets ? skinArrays("skin", skin) : [],
+      ...needs.otherSets ? skinArrays("other", apart) : [],
+    ]
+    for (const {data, mapper} of this.made) {
+      this.attach(data, arrays)
+      mapper.setCustomShaderAttributes(arrays.map(([name]) => name))
+      Object.assign(mapper.getViewSpecificProperties(), {
+        OpenGL: {ShaderReplacements: shaderSwaps(needs)},
+        ShadersCallbacks: [{callback: (_, primitive) => this.use(primitive)}],
+      })
+      mapper.modified()
+    }
+  }
+
+  attach(data, arrays) {
+    const {vtkDataArray} = this.vtk.Common.Core
+    const held = data.getPointData()
+    for (const [name, values, numberOfComponents = 4] of arrays) {
+      held.removeArray(name)
+      held.addArray(vtkDataArray.newInstance({name, numberOfComponents, values}))
+    }
+    data.modified()
+  }
+
+  // Called by vtk.js before it draws.
+  use(primitive) {
+    const program = primitive.getProgram()
+    this.renderer.poses.use(program, primitive.getCABO(), this.apart?.unit)
+    this.colours.use(program)
+  }
+
+  // Values beyond the front are left grey.
+  setFront(front) {
+    this.colours.front = this.animation ? front ?? ALL : ALL
+  }
+
+  paint({color, opacity, width, ambient, coloured, behind, closed, hull}) {
+    this.closed = closed
+    this.hull = hull
+    this.coloured = coloured
+    for (const {mapper, actor} of this.made) {
+      const look = actor.getProperty()
+      look.setColor(...color)
+      look.setOpacity(opacity)
+      look.setPointSize(width)
+      look.setAmbient(ambient)
+      look.setLighting(this.kind === "surface" && !hull)
+      look.setFrontfaceCulling(hull)
+      if (!this.restNormals) { look.setInterpolationToFlat() }
+      if (behind) { mapper.setRelativeCoincidentTopologyPolygonOffsetParameters(2, 30) }
+      if (this.kind === "lines") {
+        mapper.setRelativeCoincidentTopologyLineOffsetParameters(0, -4)
+      }
+    }
+  }
+
+  // Stands in the view that it belongs to, or in every one.
+  place() {
+    this.leave()
+    const own = typeof this.view === "number" ? this.renderer.views[this.view] : null
+    const views = own ? [own] : this.renderer.views
+    this.layers = views.map((view) => this.overlay ? view.over : view.base)
+    for (const {actor} of this.made) {
+      for (const layer of this.layers) { layer.addActor(actor) }
+    }
+  }
+
+  // Whether it is seen in a view.
+  standsIn(view) {
+    return typeof this.view !== "number" || this.view === view
+  }
+
+  leave() {
+    for (const {actor} of this.made) {
+      for (const layer of this.layers || []) { layer.removeActor(actor) }
+    }
+  }
+
+  cut(cut) {
+    this.opened = Boolean(cut && this.clipped)
+    for (const {mapper} of this.made) {
+      mapper.removeAllClippingPlanes()
+      if (!cut || !this.clipped) { continue }
+      const {vtkPlane} = this.vtk.Common.DataModel
+      const [origin, normal] = [plainList(cut.origin), plainList(cut.normal)]
+      mapper.addClippingPlane(vtkPlane.newInstance({origin, normal: normal.map((x) => -x)}))
+      if (this.slab > 0) {
+        const back = origin.map((x, i) => x - this.slab * normal[i])
+        mapper.addClippingPlane(vtkPlane.newInstance({origin: back, normal}))
+      }
+    }
+  }
+
+  // `outside`: the eye is, so that of a closed surface no back is seen unless it is cut.
+  show(moving, outside) {
+    const whole = this.closed && outside && !this.opened
+    this.made[0].actor.getProperty().setBackfaceCulling(Boolean(whole))
+    const few = moving && this.made.length > 1
+    this.made.forEach(({actor}, i) => {
+      actor.setVisibility(this.visible && (this.made.length === 1 || few === (i === 1)))
+    })
+  }
+
+  // Where the points are now; the card alone knows as long as nobody asks.
+  posed() {
+    const {pose, poseCount} = this.renderer
+    if (!this.skin || !pose) { return this.rest }
+    const known = this.known
+    if (known?.poseCount !== poseCount || known.skin !== this.skin || known.rest !== this.rest) {
+      const {skin, rest} = this
+      this.known = {poseCount, skin, rest, points: skinned(skin, rest, pose)}
+    }
+    return this.known.points
+  }
+
+  // For rays: grown when first asked for, and fitted to where the points are now.
+  get tree() {
+    if (this.grown?.triangles !== this.triangles) {
+      this.grown = new TriangleTree(this.rest, this.triangles)
+    }
+    this.grown.fit(this.posed())
+    return this.grown
+  }
+
+  remove() {
+    this.leave()
+    this.colours.remove()
+    for (const {actor, mapper} of this.made) {
+      actor.delete()
+      mapper.delete()
+    }
+    for (const {data} of this.made) { data.delete() }
+  }
+}
+
+// What is to be seen whole; bones may reach far out of it, those above all that move nothing.
+export function isCharacter(actor) {
+  return !actor.overlay
+}

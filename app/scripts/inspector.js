@@ -1,0 +1,99 @@
+// The card of one vertex: its weights as bars, its nearest bones, where it belongs.
+
+import {stylesheet} from "./styles.js"
+
+const styled = await stylesheet("inspector.css")
+
+function element(tag, className, text) {
+  const made = document.createElement(tag)
+  if (className) { made.className = className }
+  if (text !== undefined) { made.textContent = text }
+  return made
+}
+
+function bar(color, part) {
+  const made = element("span", "bar")
+  made.style.background = color
+  made.style.width = `${Math.max(0, Math.min(1, part)) * 100}%`
+  return made
+}
+
+function row(model, {joint, name}, bars, value, spoken) {
+  const made = element("button", "row")
+  made.type = "button"
+  made.title = `Choose ${name}`
+  made.setAttribute("aria-label", spoken)
+  const track = element("span", "bars")
+  track.append(...bars)
+  // What many names begin with ("mixamorig:") tells none of them apart, and there is little room.
+  const short = name.replace(/^.*[:|](?=.)/, "")
+  made.append(element("span", "name", short), track, element("span", "value", value))
+  made.addEventListener("click", () => model.send_msg({type: "bone", joint}))
+  return made
+}
+
+function card(model, facts) {
+  const root = element("section", "vertex-card")
+  root.setAttribute("aria-label", `Vertex ${facts.vertex}`)
+  const header = element("header")
+  const close = element("button", "close", "×")
+  close.type = "button"
+  close.setAttribute("aria-label", "Close the vertex")
+  close.addEventListener("click", () => model.send_msg({type: "close"}))
+  header.append(element("h2", "", `Vertex ${facts.vertex.toLocaleString("en")}`), close)
+  root.append(header)
+  if (!facts.computed) {
+    root.append(element("div", "quiet", "Its weights come as soon as they are computed."))
+    return root
+  }
+  const {number, of, vertices} = facts.component
+  const part = of === 1 ? "The mesh is one part" : `Part ${number} of ${of} of the mesh`
+  const size = `${vertices.toLocaleString("en")} ${vertices === 1 ? "vertex" : "vertices"}`
+  root.append(element("div", "quiet", `${part} · ${size}`))
+
+  const heading = element("h3", "", "Weights")
+  if (facts.artist) { heading.append(element("small", "", "outlined: the file's own")) }
+  root.append(heading)
+  for (const bone of facts.weights) {
+    const bars = [bar(bone.color, bone.ours)]
+    let spoken = `${bone.name}: weight ${bone.ours.toFixed(2)}`
+    if (facts.artist) {
+      bars.push(bar(bone.color, bone.artist))
+      spoken += `, in the file ${bone.artist.toFixed(2)}`
+    }
+    root.append(row(model, bone, bars, bone.ours.toFixed(2), spoken))
+  }
+
+  const distances = element("h3", "", "The nearest bones")
+  distances.append(element("small", "", "distance; longest side = 1"))
+  root.append(distances)
+  const most = Math.max(...facts.distances.map(({distance}) => distance), 1e-12)
+  for (const bone of facts.distances) {
+    const {name, distance, color} = bone
+    const spoken = `${name}: distance ${distance.toFixed(3)}`
+    root.append(row(model, bone, [bar(color, distance / most)], distance.toFixed(3), spoken))
+  }
+
+  const state = element("div", "state")
+  const dot = element("span", "dot")
+  dot.style.background = facts.reached ? "#4c9a2a" : "#d9822b"
+  const why = facts.reached ? "Reached through the body."
+    : `It follows its nearest bones in a straight line: ${facts.reason}.`
+  state.append(dot, element("span", "", why))
+  root.append(state)
+  return root
+}
+
+export function render({model}) {
+  const root = document.createElement("div")
+  root.style.maxHeight = "inherit"
+  const show = () => root.replaceChildren(styled(), ...(model.facts ? [card(model, model.facts)] : []))
+  const escape = (e) => {
+    if (e.key === "Escape" && model.facts) { model.send_msg({type: "close"}) }
+  }
+  document.addEventListener("keydown", escape)
+  model.on("remove", () => document.removeEventListener("keydown", escape))
+  model.on("facts", show)
+  show()
+  return root
+}

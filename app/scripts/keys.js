@@ -1,0 +1,137 @@
+// What the keys do anywhere on the page, the buttons for it, and the card that lists them.
+
+import {stylesheet} from "./styles.js"
+
+const KEYS = [
+  ["Space", "play the motion, or halt it"],
+  ["← →", "the bone before, the next bone"],
+  ["↑ ↓", "towards the root, away from it"],
+  ["Ctrl Z", "undo a choice"],
+  ["Ctrl Shift Z", "choose it again"],
+  ["PgDn PgUp", "the tour's next step, the one before"],
+  ["?", "show or hide this card"],
+  ["Esc", "close it"],
+]
+const CANVAS_KEYS = [
+  ["Tab", "to the canvas; then the arrows turn the view"],
+  ["+ −", "nearer, farther"],
+  ["Home", "the view one begins with"],
+]
+
+const POINTER = [
+  ["drag", "turn", "drag"],
+  ["right-drag", "move (or Shift and drag)", "two fingers"],
+  ["wheel", "nearer, farther", "pinch"],
+  ["click", "choose a bone, or a point of the body", "tap"],
+  ["double click", "the view one begins with", "double tap"],
+]
+
+const styled = await stylesheet("keys.css")
+
+const TOOLS = [
+  ["undo", "Undo", '<path d="M9 14L4 9l5-5M4 9h10a6 6 0 0 1 0 12h-3"/>'],
+  ["redo", "Redo", '<path d="M15 14l5-5-5-5M20 9H10a6 6 0 0 0 0 12h3"/>'],
+  ["reset", "Reset all choices", '<path d="M4 4v5h5M4.6 9A8 8 0 1 1 4 13"/>'],
+  ["keys", "Help: mouse, touch and keys",
+    '<path d="M9.2 9.3a2.9 2.9 0 1 1 4.4 2.5c-1 .6-1.6 1.2-1.6 2.3M12 17.6v.1"/>'],
+]
+
+// Elements that have a use of their own for keys.
+const TYPED = "input, textarea, select, [contenteditable], [role=combobox], [role=listbox], "
+  + "[role=option], [role=menu], [role=menuitem], [role=slider], [role=spinbutton], [role=tab], dialog"
+const BOX = "input[type=text]:not([role])"
+const PRESSED = "button, a, summary, [role=button], [role=switch], [role=checkbox]"
+
+export class Keys {
+  constructor(overlay, {act, turnable}) {
+    this.overlay = overlay
+    this.act = act
+    this.turnable = turnable
+      overlay.root.append(styled(), this.makeTools(), this.makeCard())
+    this.listener = (e) => this.pressed(e)
+    document.addEventListener("keydown", this.listener)
+  }
+
+  makeTools() {
+    const bar = document.createElement("div")
+    bar.className = "tools"
+    bar.setAttribute("role", "toolbar")
+    bar.setAttribute("aria-label", "Undo, reset, help")
+    this.tools = {}
+    for (const [name, title, icon] of TOOLS) {
+      const button = document.createElement("button")
+      button.type = "button"
+      button.title = title
+      button.setAttribute("aria-label", title)
+      button.innerHTML = `<svg viewBox="0 0 24 24" aria-hidden="true">${icon}</svg>`
+      button.addEventListener("click", () => name === "keys" ? this.toggle() : this.act(name))
+      this.tools[name] = button
+      bar.append(button)
+    }
+    this.able([false, false])
+    return bar
+  }
+
+  makeCard() {
+    const card = document.createElement("dialog")
+    card.className = "keys"
+    card.setAttribute("aria-labelledby", "keys-title")
+    const touch = matchMedia("(pointer: coarse)").matches
+    const pointer = POINTER.map(([mouse, what, fingers]) =>
+      [(touch ? fingers : mouse).replace(/ /g, "\u00a0"), touch ? what.replace(/ \(.*/, "") : what])
+    const list = (keys) => `<dl>${keys.map(([key, what]) =>
+      `<dt>${key.split(" ").map((k) => `<kbd>${k}</kbd>`).join("")}</dt><dd>${what}</dd>`).join("")}</dl>`
+    // Where fingers are all there is, keys are none.
+    const keys = matchMedia("(any-hover: none)").matches ? []
+      : [["Keys", KEYS], ["Keys in the canvas", CANVAS_KEYS]]
+    const sections = [["In the canvas", pointer], ...keys].map(([title, all]) =>
+      `<section><h3>${title}</h3>${list(all)}</section>`)
+    card.innerHTML = `<h2 id="keys-title">How to get about</h2><div>${sections.join("")}</div>`
+      + `<button type="button">Close</button>`
+    card.querySelector("button").addEventListener("click", () => card.close())
+    card.addEventListener("click", (e) => { if (e.target === card) { card.close() } })
+    card.addEventListener("keydown", (e) => {
+      if (e.key === "?") { e.preventDefault(); e.stopPropagation(); card.close() }
+    })
+    this.card = card
+    return card
+  }
+
+  able([undo, redo]) {
+    this.tools.undo.disabled = !undo
+    this.tools.redo.disabled = !redo
+  }
+
+  toggle() {
+    if (this.card.open) { this.card.close() } else { this.card.showModal() }
+  }
+
+  pressed(e) {
+    if (e.defaultPrevented || e.altKey) { return }
+    const over = e.composedPath().filter((part) => part instanceof Element)
+    // A number that was entered is done with: its box would not take another one otherwise.
+    if (e.key === "Enter") { setTimeout(() => over.find((part) => part.matches(BOX))?.blur()) }
+    if (over.some((part) => part.matches(TYPED))) { return }
+    const control = e.ctrlKey || e.metaKey
+    const name = e.key.toLowerCase()
+    let act = null
+    if (control) {
+      act = {z: e.shiftKey ? "redo" : "undo", y: "redo"}[name]
+    } else if (e.key === "?") {
+      act = "keys"
+    } else if (e.key === " " && !over.some((part) => part.matches(PRESSED))) {
+      act = "play"
+    } else if (!e.shiftKey && !this.turnable()) {
+      act = {
+        ArrowLeft: "previous", ArrowRight: "next", ArrowUp: "parent", ArrowDown: "child",
+      }[e.key]
+    }
+    if (!act) { return }
+    e.preventDefault()
+    if (act === "keys") { this.toggle() } else { this.act(act) }
+  }
+
+  remove() {
+    document.removeEventListener("keydown", this.listener)
+  }
+}

@@ -1,0 +1,162 @@
+// The camera: a turntable that keeps the character upright. Drag turns, right drag or
+// Shift moves, the wheel or two fingers zoom, a double click goes back to the start.
+
+export const VIEW_ANGLE = 30
+const MAX_PITCH = 1.5
+
+export class Orbit {
+  constructor(element, {changed, rested, clicked, hovered}) {
+    this.element = element
+    this.changed = changed
+    this.rested = rested
+    this.home = {target: [0, 0, 0], yaw: 0.4, pitch: 0.15, distance: 4}
+    this.reset()
+    this.pointers = new Map()
+    this.moving = false
+    const on = (type, handler) => element.addEventListener(type, handler, {passive: false})
+    // Arrow keys turn when the canvas was reached by keys; after a click they change the bone.
+    on("blur", () => { this.byMouse = false })
+    on("pointerdown", (e) => {
+      this.byMouse = true
+      element.setPointerCapture(e.pointerId)
+      this.pointers.set(e.pointerId, [e.clientX, e.clientY])
+      this.pressed = this.pointers.size === 1 ? [e.clientX, e.clientY, e.button] : null
+    })
+    on("pointermove", (e) => {
+      if (this.pointers.has(e.pointerId)) { this.drag(e) }
+      else if (e.pointerType === "mouse") { hovered(e) }
+    })
+    on("pointerup", (e) => {
+      this.release(e)
+      const p = this.pressed
+      if (p && p[2] === 0 && Math.hypot(e.clientX - p[0], e.clientY - p[1]) < 5) { clicked(e) }
+      this.pressed = null
+    })
+    on("pointercancel", (e) => this.release(e))
+    on("pointerleave", () => hovered(null))
+    on("contextmenu", (e) => e.preventDefault())
+    on("dblclick", () => { this.reset(); this.move(); this.rest() })
+    on("wheel", (e) => {
+      e.preventDefault()
+      this.zoom(Math.exp(Math.sign(e.deltaY) * Math.min(Math.abs(e.deltaY), 120) * 0.0012))
+      this.rest(180)
+    })
+    on("keydown", (e) => this.key(e))
+  }
+
+  reset() {
+    Object.assign(this, structuredClone(this.home))
+  }
+
+  // Remembers this camera as the one that a double click goes back to.
+  setHome(position, target) {
+    const d = position.map((x, i) => x - target[i])
+    const distance = Math.hypot(...d)
+    this.home = {
+      target: [...target], distance, yaw: Math.atan2(d[0], d[2]), pitch: Math.asin(d[1] / distance),
+    }
+    this.reset()
+  }
+
+  // Goes nearer or farther, and takes the start along: the same is seen in another window.
+  scale(factor) {
+    this.home.distance *= factor
+    this.distance *= factor
+  }
+
+  // Looks from a place at another, and leaves the start as it is.
+  look(position, target) {
+    const d = position.map((x, i) => x - target[i])
+    this.distance = Math.hypot(...d)
+    this.target = [...target]
+    this.yaw = Math.atan2(d[0], d[2])
+    this.pitch = Math.asin(d[1] / this.distance)
+  }
+
+  get atHome() {
+    const {home} = this
+    const near = (a, b) => Math.abs(a - b) < 1e-6 * Math.max(1, home.distance)
+    return near(this.yaw, home.yaw) && near(this.pitch, home.pitch)
+      && near(this.distance, home.distance) && this.target.every((x, i) => near(x, home.target[i]))
+  }
+
+  get position() {
+    const c = Math.cos(this.pitch)
+    const out = [c * Math.sin(this.yaw), Math.sin(this.pitch), c * Math.cos(this.yaw)]
+    return out.map((x, i) => this.target[i] + this.distance * x)
+  }
+
+  drag(e) {
+    const last = this.pointers.get(e.pointerId)
+    const dx = e.clientX - last[0]
+    const dy = e.clientY - last[1]
+    if (this.pointers.size > 1) {
+      const [other] = [...this.pointers].filter(([id]) => id !== e.pointerId).map(([, p]) => p)
+      const before = Math.hypot(last[0] - other[0], last[1] - other[1])
+      const after = Math.hypot(e.clientX - other[0], e.clientY - other[1])
+      if (before > 0 && after > 0) { this.zoom(before / after) }
+      this.pan(dx / 2, dy / 2)
+    } else if (e.shiftKey || e.ctrlKey || (e.buttons & 6)) {
+      this.pan(dx, dy)
+    } else {
+      this.turn(-dx * 0.008, dy * 0.008)
+    }
+    this.pointers.set(e.pointerId, [e.clientX, e.clientY])
+  }
+
+  release(e) {
+    this.pointers.delete(e.pointerId)
+    if (this.pointers.size === 0) { this.rest() }
+  }
+
+  turn(yaw, pitch) {
+    this.yaw += yaw
+    this.pitch = Math.max(-MAX_PITCH, Math.min(MAX_PITCH, this.pitch + pitch))
+    this.move()
+  }
+
+  zoom(factor) {
+    const {distance} = this.home
+    this.distance = Math.max(distance * 0.04, Math.min(distance * 6, this.distance * factor))
+    this.move()
+  }
+
+  pan(dx, dy) {
+    const scale = 2 * this.distance * Math.tan(VIEW_ANGLE * Math.PI / 360)
+      / this.element.clientHeight
+    const [sy, cy] = [Math.sin(this.yaw), Math.cos(this.yaw)]
+    const [sp, cp] = [Math.sin(this.pitch), Math.cos(this.pitch)]
+    const right = [cy, 0, -sy]
+    const up = [-sp * sy, cp, -sp * cy]
+    this.target = this.target.map((x, i) => x + scale * (-dx * right[i] + dy * up[i]))
+    this.move()
+  }
+
+  key(e) {
+    const act = {
+      ArrowLeft: () => this.turn(-0.12, 0), ArrowRight: () => this.turn(0.12, 0),
+      ArrowUp: () => this.turn(0, 0.08), ArrowDown: () => this.turn(0, -0.08),
+      "+": () => this.zoom(0.88), "=": () => this.zoom(0.88), "-": () => this.zoom(1.14),
+      Home: () => { this.reset(); this.move() },
+    }[e.key]
+    if (!act || e.ctrlKey || e.metaKey || e.altKey) { return }
+    if (this.byMouse && e.key.startsWith("Arrow")) { return }
+    e.preventDefault()
+    e.stopPropagation()
+    act()
+    this.rest(180)
+  }
+
+  move() {
+    this.moving = true
+    clearTimeout(this.timer)
+    this.changed()
+  }
+
+  rest(after = 0) {
+    clearTimeout(this.timer)
+    this.timer = setTimeout(() => {
+      if (this.moving && this.pointers.size === 0) { this.moving = false; this.rested() }
+    }, after)
+  }
+}

@@ -1,0 +1,74 @@
+// What lies under the pointer: told while it rests there, chosen with a click.
+
+import {pickBone, REACH, TOUCH} from "./pick.js"
+import {hitLine, hitSurface, told} from "./surface.js"
+
+export class Pointer {
+  constructor(view) {
+    this.view = view
+  }
+
+  place(e) {
+    const box = this.view.overlay.canvas.getBoundingClientRect()
+    return [e.clientX - box.left, e.clientY - box.top]
+  }
+
+  // What lies under the pointer: a bone if it is met well or nothing else is, else a vertex.
+  under(x, y) {
+    const {renderer, bones: all} = this.view
+    const bones = renderer.actors.get("bones")?.visible ? all : null
+    const pick = (reach) => pickBone(renderer, bones, this.view.currentPose, x, y, reach)
+    const touched = pick(TOUCH)
+    if (touched !== null) { return {joint: touched} }
+    const hit = this.bodyAt(x, y)
+    if (hit) { return hit }
+    const near = pick(REACH)
+    return near === null ? null : {joint: near}
+  }
+
+  bodyAt(x, y, those = (name) => name.startsWith("body")) {
+    let best = null
+    const view = this.view.renderer.viewAt(x, y)
+    for (const [name, actor] of this.view.renderer.actors) {
+      if (!those(name, actor) || !actor.standsIn(view)) { continue }
+      const hit = hitSurface(this.view.renderer, actor, x, y, this.view.cut)
+      if (hit && (!best || hit.far < best.far)) { best = {...hit, vertex: hit.point, actor} }
+    }
+    return best
+  }
+
+  clicked(e) {
+    const found = this.under(...this.place(e))
+    if (!found) { return }
+    const {joint, vertex} = found
+    this.view.model.send_msg(
+      joint === undefined ? {type: "pick-vertex", vertex} : {type: "pick", joint},
+    )
+  }
+
+  hovered(e) {
+    if (!e || this.view.playing) { this.view.overlay.showBone(null); return }
+    const [x, y] = this.place(e)
+    const found = this.under(x, y)
+    if (found?.joint !== undefined) {
+      this.view.overlay.showBone(this.view.bones.names[found.joint], x, y)
+      return
+    }
+    const text = this.lineReading(x, y) ?? this.surfaceReading(x, y)
+    this.view.overlay.showBone(text, x, y, false)
+  }
+
+  surfaceReading(x, y) {
+    const hit = this.bodyAt(x, y, (name, actor) => actor.reading)
+    return hit && told(hit.actor, hit.point)
+  }
+
+  lineReading(x, y) {
+    for (const actor of this.view.renderer.actors.values()) {
+      if (actor.kind !== "lines" || !actor.reading) { continue }
+      const cell = hitLine(this.view.renderer, actor, x, y, TOUCH)
+      if (cell !== null) { return told(actor, cell) }
+    }
+    return null
+  }
+}

@@ -1,0 +1,52 @@
+// The bar under a motion: play and halt it, move through it, change its speed.
+
+const SPEEDS = [0.25, 0.5, 1, 2]
+const PLAY_ICON = '<svg viewBox="0 0 24 24" aria-hidden="true"><path d="M8 5v14l11-7z"/></svg>'
+const PAUSE_ICON =
+  '<svg viewBox="0 0 24 24" aria-hidden="true"><path d="M6 5h4v14H6zM14 5h4v14h-4z"/></svg>'
+
+export class Transport {
+  // `play(on)` and `seek(seconds)` hear what a person does.
+  constructor(overlay, {play, seek}) {
+    this.overlay = overlay
+    this.place = overlay.transport
+    this.speed = 1
+    const make = (tag) => this.place.appendChild(document.createElement(tag))
+    this.button = make("button")
+    this.button.type = "button"
+    this.button.addEventListener("click", () => play(!this.playing))
+    this.track = make("input")
+    Object.assign(this.track, {type: "range", min: 0, step: 0.001})
+    this.track.setAttribute("aria-label", "Time in the motion")
+    this.track.addEventListener("input", () => seek(Number(this.track.value)))
+    this.clock = make("output")
+    this.rate = make("button")
+    this.rate.type = "button"
+    this.rate.addEventListener("click", () => {
+      this.speed = SPEEDS[(SPEEDS.indexOf(this.speed) + 1) % SPEEDS.length]
+      this.label()
+    })
+    this.label()
+    this.show(null, false)
+  }
+
+  label() {
+    this.rate.textContent = `${{0.25: "¼", 0.5: "½"}[this.speed] || this.speed}×`
+    this.rate.setAttribute("aria-label", `Speed: ${this.speed} times; press for another`)
+  }
+
+  show(clip, playing) {
+    this.playing = playing
+    this.place.hidden = !clip
+    this.overlay.root.classList.toggle("moving", Boolean(clip))
+    if (clip) { this.track.max = clip.duration }
+    this.button.innerHTML = playing ? PAUSE_ICON : PLAY_ICON
+    this.button.setAttribute("aria-label", playing ? "Halt the motion" : "Run the motion")
+  }
+
+  tick(clip, time) {
+    const now = clip.moment(time)
+    this.track.value = now
+    this.clock.textContent = `${now.toFixed(2)} / ${clip.duration.toFixed(2)} s`
+  }
+}

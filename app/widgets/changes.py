@@ -1,0 +1,162 @@
+"""What a browser is told, so that one description of a scene becomes another."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cutcell.display import printable, shown_name
+from cutcell_viewers.description import Actor, Apart, Description, Legend, Reading
+from cutcell_viewers.palette import colormap, to_hex
+from cutcell_viewers.scene import AMBIENT
+from cutcell_viewers.skin import Skin
+
+
+def changes(old: Description, new: Description, sent: set[str]) -> dict[str, Any]:
+    """Return the message that turns one description into another.
+
+    Parameters
+    ----------
+    old, new : Description
+    sent : set of str
+        Names of the actors that the browser has; brought up to date here. An actor is
+        not sent before it is first seen.
+    """
+    message: dict[str, Any] = {}
+    removed = [name for name in sent if name not in new.actors]
+    actors: dict[str, Any] = {}
+    for name, actor in new.actors.items():
+        if name not in sent and not actor.visible:
+            continue
+        part = _part(old.actors.get(name) if name in sent else None, actor)
+        if part:
+            actors[name] = part
+        sent.add(name)
+    sent.difference_update(removed)
+    if removed:
+        message["remove"] = removed
+    if actors:
+        message["actors"] = actors
+    if old.cut != new.cut:
+        message["cut"] = new.cut and {"origin": new.cut.origin, "normal": new.cut.normal}
+    if old.front != new.front:
+        message["front"] = new.front
+    if old.legend != new.legend:
+        message["legend"] = _legend(new.legend)
+    if old.views != new.views:
+        message["views"] = [printable(name) for name in new.views]
+    if not _same(old.pose, new.pose):
+        message["pose"] = None if new.pose is None else _flat(new.pose, np.float32)
+    return message
+
+
+def _part(old: Actor | None, new: Actor) -> dict[str, Any]:
+    part: dict[str, Any] = {}
+    if old is None or old.kind != new.kind:
+        part["kind"] = new.kind
+        old = None
+    for name, dtype in (("points", np.float32), ("normals", np.float32), ("cells", np.uint32)):
+        value = getattr(new, name)
+        if value is not None and (old is None or not _same(getattr(old, name), value)):
+            part[name] = _flat(value, dtype)
+    if new.skin is not None and (old is None or not _same_skin(old, new)):
+        part["skin"] = _skin(new.skin)
+    if old is None or old.apart is not new.apart:
+        part["apart"] = _apart(new.apart)
+    part.update(_colouring(old, new))
+    if (old is not None and old.film) != new.film:
+        part["animation"] = new.film
+    if not _same_reading(None if old is None else old.reading, new.reading):
+        part["reading"] = _reading(new.reading)
+    for name, value in _settings(new).items():
+        if old is None or _settings(old)[name] != value:
+            part[name] = value
+    if old is None or (old.clipped, old.slab) != (new.clipped, new.slab):
+        part["clipped"], part["slab"] = new.clipped, new.slab
+    return part
+
+
+def _apart(apart: Apart | None) -> dict[str, Any] | None:
+    if apart is None:
+        return None
+    return {**_skin(apart.skin), "unit": apart.unit}
+
+
+def _skin(skin: Skin) -> dict[str, Any]:
+    return {
+        "joints": _flat(skin.joints, np.uint16),
+        "weights": _flat(skin.weights, np.float32),
+        "count": skin.joints.shape[1],
+    }
+
+
+def _colouring(old: Actor | None, new: Actor) -> dict[str, Any]:
+    if new.colors is not None:
+        if old is None or not _same(old.colors, new.colors):
+            return {"colors": _flat(new.colors, np.uint8)}
+        return {}
+    if new.scalars is None:
+        return {}
+    same = old is not None and old.colors is None and _same(old.scalars, new.scalars)
+    if same and old is not None and (old.colormap, old.limits) == (new.colormap, new.limits):
+        return {}
+    table = _flat(colormap(new.colormap), np.uint8)
+    return {"scalars": _flat(new.scalars, np.float32), "table": table, "limits": new.limits}
+
+
+def _settings(actor: Actor) -> dict[str, Any]:
+    paint = {
+        "color": actor.color,
+        "opacity": actor.opacity,
+        "width": actor.width,
+        "ambient": AMBIENT,
+        "behind": actor.behind,
+        "closed": actor.closed and actor.opacity == 1,
+        "hull": actor.hull,
+        "coloured": actor.colors is not None or actor.scalars is not None,
+    }
+    place = {"overlay": actor.overlay, "view": actor.view}
+    return {"paint": paint, "place": place, "visible": actor.visible}
+
+
+def _reading(reading: Reading | None) -> dict[str, Any] | None:
+    if reading is None:
+        return None
+    values = None if reading.values is None else _flat(reading.values, np.float32)
+    names = [shown_name(name) for name in reading.names]
+    text = printable(reading.text)
+    return {"text": text, "values": values, "names": names, "percent": reading.percent}
+
+
+def _legend(legend: Legend | None) -> dict[str, Any] | None:
+    if legend is None:
+        return None
+    table = _flat(colormap(legend.colormap), np.uint8) if legend.colormap else None
+    swatches = [(to_hex(color), printable(text)) for color, text in legend.swatches]
+    ends = {"low": legend.low, "high": legend.high}
+    return {"title": printable(legend.title), "table": table, "swatches": swatches, **ends}
+
+
+def _flat(array: NDArray, dtype: Any) -> NDArray:
+    return np.ascontiguousarray(array, dtype).ravel()
+
+
+def _same(a: NDArray | None, b: NDArray | None) -> bool:
+    if a is None or b is None:
+        return a is b
+    return a is b or (a.shape == b.shape and np.array_equal(a, b))
+
+
+def _same_reading(old: Reading | None, new: Reading | None) -> bool:
+    if old is None or new is None:
+        return old is new
+    same = (old.text, old.names, old.percent) == (new.text, new.names, new.percent)
+    return same and _same(old.values, new.values)
+
+
+def _same_skin(old: Actor, new: Actor) -> bool:
+    if old.skin is None or new.skin is None:
+        return old.skin is new.skin
+    return _same(old.skin.joints, new.skin.joints) and _same(old.skin.weights, new.skin.weights)

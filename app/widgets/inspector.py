@@ -1,0 +1,53 @@
+"""The card over the canvas that tells all about the clicked vertex."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import param
+from panel.custom import JSComponent
+
+from ..commands.look import pick, pick_vertex
+from ..commands.session import Session
+from ..commands.tour import points_out
+from ..scenes.facts import vertex_facts
+from .modules import script, style
+
+
+class Inspector(JSComponent):
+    """A card with the facts of one vertex; hidden without any."""
+
+    facts = param.Dict(None, allow_None=True, doc="What `vertex_facts` returns.")
+
+    _esm = script("inspector")
+
+    def __init__(self, session: Session, **params: Any) -> None:
+        super().__init__(**params)
+        self._session = session
+        self._follow()
+        names = ["rig", "binding", "vertex", "tour"]
+        session.state.param.watch(self._follow, names)
+
+    def _follow(self, *events: Any) -> None:
+        state = self._session.state
+        # What the tour clicks shows its point in the scene, and needs no card.
+        self.facts = None if points_out(state) else vertex_facts(state, self._session.memo)
+
+    def _handle_msg(self, data: dict[str, Any]) -> None:
+        if data.get("type") == "close":
+            pick_vertex(self._session, None)
+        elif data.get("type") == "bone":
+            pick(self._session, int(data["joint"]))
+
+
+def inspector(session: Session) -> Inspector:
+    """Return the card of a session, in its place over the canvas."""
+    card = Inspector(session, stylesheets=[style("inspector_place")], margin=0)
+
+    def place(*events: Any) -> None:
+        # Not by other stylesheets: Panel then asks for its own at a server far away.
+        card.css_classes = ["beside-tour"] if session.state.tour >= 0 else []
+
+    session.state.param.watch(place, "tour")
+    place()
+    return card

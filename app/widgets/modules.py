@@ -1,0 +1,46 @@
+"""The browser's half of the page: the modules and styles of `scripts/`, and where they are served.
+
+Their address tells what they hold, so that no browser takes an older version for them.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from pathlib import Path
+
+FOLDER = Path(__file__).parents[1] / "scripts"
+
+
+def _version() -> str:
+    """Return what is another one whenever a script or a style is."""
+    files = sorted(path for path in FOLDER.iterdir() if path.suffix in (".js", ".css"))
+    held = b"".join(path.name.encode() + path.read_bytes() for path in files)
+    return hashlib.sha256(held).hexdigest()[:12]
+
+
+ADDRESS = f"scripts-{_version()}"
+"""Of the folder, relative to the page."""
+
+STATIC = {ADDRESS: str(FOLDER)}
+"""For `guard`, or for `panel.serve(static_dirs=...)`."""
+
+
+def script(name: str) -> str:
+    """Return a module for Panel that is rendered by one of `scripts/`."""
+    # Panel evaluates it from a blob, from where no path leads to the other modules.
+    return f"""
+export async function render(given) {{
+  const module = await import(new URL("{ADDRESS}/{name}.js", document.baseURI).href)
+  return module.render(given)
+}}"""
+
+
+def preloads() -> str:
+    """Return what lets a browser fetch all modules at once, while the page is still loading."""
+    names = sorted(path.name for path in FOLDER.glob("*.js"))
+    return "".join(f'<link rel="modulepreload" href="{ADDRESS}/{name}">' for name in names)
+
+
+def style(name: str) -> str:
+    """Return the rules of one of the .css files of `scripts/`."""
+    return (FOLDER / f"{name}.css").read_text(encoding="utf-8")

@@ -1,0 +1,54 @@
+"""The card of the tour, over the canvas: text, formula, dots, back and next."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import param
+from panel.custom import JSComponent
+from panel.models.katex import KATEX_VERSION
+
+from ..commands.session import Session
+from ..commands.tour import go
+from ..state.tour import TOUR
+from .modules import script, style
+
+
+class TourCard(JSComponent):
+    """Shows one step; tells which one is asked for."""
+
+    step = param.Integer(-1, doc="Which step is told; -1 shows nothing.")
+    steps = param.List([], doc="Title, text, formula and what to look at, of each.")
+    katex_url = param.String(
+        f"static/extensions/panel/bundled/katex/katex@{KATEX_VERSION}/dist/katex.min.js",
+        constant=True,
+        doc="Where Panel's own server keeps KaTeX.",
+    )
+
+    _esm = script("tour_card")
+
+    def __init__(self, session: Session, **params: Any) -> None:
+        super().__init__(**params)
+        self._session = session
+
+    def _handle_msg(self, data: dict[str, Any]) -> None:
+        if data.get("type") == "step":
+            go(self._session, int(data["step"]))
+
+
+def tour_card(session: Session) -> TourCard:
+    """Return the card of a session's tour."""
+    steps = [{"title": s.title, "text": s.text, "formula": s.formula, "task": s.task} for s in TOUR]
+    card = TourCard(
+        session,
+        step=session.state.tour,
+        steps=steps,
+        stylesheets=[style("tour_card_place")],
+        margin=0,
+    )
+
+    def told(*events: Any) -> None:
+        card.step = session.state.tour
+
+    session.state.param.watch(told, "tour")
+    return card

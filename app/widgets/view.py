@@ -1,0 +1,132 @@
+"""The 3D view of the page: a scene's description, streamed to vtk.js in the browser."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import param
+from panel.custom import JSComponent
+from panel.models.vtk import VTK_VERSION
+
+from cutcell_viewers.camera import Camera
+from cutcell_viewers.description import Description
+from cutcell_viewers.scene import LIGHTS
+
+from ..files.receive import Receiver
+from .changes import changes
+from .modules import script
+
+
+class SceneView(JSComponent):
+    """Shows a `Description`, and tells what a person does with it.
+
+    Only what changed since the last time is sent. Nothing is sent before the browser says
+    that it is ready; then it gets everything.
+    """
+
+    vtk_url = param.String(
+        f"static/extensions/panel/bundled/abstractvtkplot/vtk.js@{VTK_VERSION}/vtk.js",
+        constant=True,
+        doc="Where Panel's own server keeps vtk.js.",
+    )
+
+    dark = param.Boolean(None, allow_None=True, doc="The theme this browser had last time.")
+
+    window_width = param.Integer(0, doc="Width of the browser's window, once it is known.")
+
+    _rename = {"window_width": None, "dark": None}  # noqa: RUF012
+    _esm = script("view")
+
+    def __init__(self, **params: Any) -> None:
+        super().__init__(**params)
+        self.receiver: Receiver | None = None
+        self.camera: Camera | None = None
+        self.at_home = True
+        self.on_camera: Callable[[], None] = lambda: None
+        self.aspect = 4 / 3
+        self.time = 0.0
+        self._ready = False
+        self._seen = False
+        self._awaited: list[Callable[[], Any]] = []
+        self._count = 0
+        self._parts: dict[str, Any] = {}
+        self._shown = Description()
+        self._wanted = Description()
+        self._sent: set[str] = set()
+        self._listeners: dict[str, Callable[[dict[str, Any]], Any]] = {}
+
+    def listen(self, kind: str, act: Callable[[dict[str, Any]], Any]) -> None:
+        """Call a function with every message of a kind that the browser sends."""
+        self._listeners[kind] = act
+
+    def when_seen(self, act: Callable[[], Any]) -> None:
+        """Do something once, as soon as a browser has the view, or says that it cannot show it."""
+        self._awaited.append(act)
+        if self._seen:
+            self._begin()
+
+    def present(self, description: Description) -> None:
+        """Make the view what a description says."""
+        self._wanted = description
+        if self._ready:
+            self._send(changes(self._shown, description, self._sent))
+            self._shown = description
+
+    def tell(self, **parts: Any) -> None:
+        """Send the parts of the view that are no actors: see `scenes.common`.
+
+        The last value of each is kept, for a browser that comes later.
+        """
+        self._parts.update(parts)
+        if self._ready:
+            self._send(parts)
+
+    def told(self, name: str) -> Any:
+        """Return what was last told of a part of the view; None if nothing was."""
+        return self._parts.get(name)
+
+    def offer(self, name: str, content: bytes) -> None:
+        """Let the browser save a file."""
+        self._send_msg({"download": {"name": name, "content": content}})
+
+    def answer(self, **message: Any) -> None:
+        """Tell the browser what it asked for; it is not told again to one that comes later."""
+        self._send_msg(message)
+
+    def _send(self, message: dict[str, Any]) -> None:
+        if message:
+            self._count += 1
+            self._send_msg({"id": self._count, **message})
+
+    def _handle_msg(self, data: dict[str, Any]) -> None:
+        kind = data.get("type")
+        answer = None if self.receiver is None else self.receiver.answer(data)
+        if answer is not None:
+            self._send_msg({"upload": answer})
+        if kind == "ready":
+            self._ready = True
+            self.dark = {"1": True, "0": False}.get(str(data.get("dark")))
+            self.window_width = int(data.get("width", 0))
+            self._sent.clear()
+            first = {"lights": LIGHTS, **changes(Description(), self._wanted, self._sent)}
+            self._send({**first, **self._parts})
+            self._shown = self._wanted
+            self._begin()
+        elif kind == "cannot show":
+            self._begin()
+        elif kind in self._listeners:
+            self._listeners[kind](data)
+        elif kind == "time":
+            self.time = float(data["time"])
+        elif kind == "camera":
+            self.camera = Camera(tuple(data["position"]), tuple(data["focal_point"]))
+            self.aspect = min(max(float(data.get("aspect", self.aspect)), 0.3), 4.0)
+            self.at_home = bool(data.get("home", False))
+            self.on_camera()
+
+    def _begin(self) -> None:
+        self._seen = True
+        awaited, self._awaited = self._awaited, []
+        for act in awaited:
+            act()

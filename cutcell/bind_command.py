@@ -1,0 +1,183 @@
+"""The command `cutcell bind`: compute weights and save them."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from .console import for_people, print_json, print_table, print_warnings, progress_bars
+from .options import (
+    Alpha,
+    Connectivity,
+    Deform,
+    Falloff,
+    Fresh,
+    How,
+    Json,
+    Leaf,
+    Lock,
+    MaxInfluences,
+    NoDeform,
+    Orient,
+    Quiet,
+    Resolution,
+    RigFile,
+    Samples,
+    SkeletonFile,
+    Smoothing,
+    Symmetric,
+    Threshold,
+    WindingThreshold,
+    chosen_method,
+)
+from .report import report_rows
+
+if TYPE_CHECKING:
+    from .method import Method
+    from .rig import Rig
+    from .skinning import Binding
+
+EPILOG = """Examples:
+
+- `cutcell bind character.glb bound.glb`
+
+- `cutcell bind character.glb bound.glb -r 128`  (a finer lattice keeps close parts apart)
+
+- `cutcell bind character.glb bound.npz --method paper`  (just as in the paper, every influence)
+
+- `cutcell bind character.glb bound.glb --method paper --connectivity any --alpha 0.3`
+
+- `cutcell bind character.glb bound.glb --lock Jaw --lock Eye.L --symmetric`  (keep these two)
+
+- `cutcell bind character.glb bound.glb --fresh --no-deform '*_IK' --deform Tail`  (other joints)
+
+- `cutcell bind body.obj bound.glb --skeleton body.json`  (a bare mesh)
+
+- `cutcell bind character.glb bound.glb --json | jq .seconds`  (for a script)"""
+
+GLTF = (".glb", ".gltf", ".vrm")
+GLTF_INFLUENCES = 4
+"""Influences a vertex that are saved in glTF where nobody says how many: what engines read."""
+
+
+@for_people
+def bind(
+    rig: RigFile,
+    out: Annotated[
+        Path,
+        typer.Argument(
+            metavar="OUT",
+            help="Where to save it with the new weights; all else in the file stays as it was.",
+        ),
+    ],
+    method: How = "animation",
+    resolution: Resolution = 64,
+    connectivity: Connectivity = None,
+    winding_threshold: WindingThreshold = 0.5,
+    orient: Orient = True,
+    samples: Samples = 5,
+    leaf: Leaf = None,
+    falloff: Falloff = None,
+    alpha: Alpha = None,
+    max_influences: MaxInfluences = None,
+    threshold: Threshold = 0.0,
+    smoothing: Smoothing = 0,
+    symmetric: Symmetric = False,
+    lock: Lock = None,
+    deform: Deform = None,
+    no_deform: NoDeform = None,
+    fresh: Fresh = False,
+    skeleton: SkeletonFile = None,
+    json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Compute skinning weights for RIG and save it with them as OUT.
+
+    Weights follow the shortest path through the inside of the mesh from each bone to each
+    vertex, so that a hand beside a hip does not follow the hip. The paths are found in a
+    graph: rays along x, y and z cut the mesh, and the intervals inside become edges.
+    """
+    from . import summary
+    from .checks import check_has_joints
+    from .deform import choose_deform
+    from .io import check_output, load, save
+    from .io.files import naming
+    from .skinning import bind as compute
+
+    how = chosen_method(
+        method,
+        resolution=resolution,
+        connectivity=connectivity,
+        winding_threshold=winding_threshold,
+        orient=orient,
+        samples=samples,
+        leaf=leaf,
+        falloff=falloff,
+        alpha=alpha,
+        max_influences=max_influences,
+        threshold=threshold,
+    )
+    touches: dict[str, Any] = {
+        "smoothing": smoothing,
+        "symmetric": symmetric,
+        "locked": lock or [],
+    }
+    check_output(out)
+    loaded = load(rig, skeleton=skeleton)
+    with naming(rig):
+        check_has_joints(loaded.skeleton)
+        loaded = choose_deform(loaded, deform or (), no_deform or (), fresh=fresh)
+    check_output(out, loaded)
+    with progress_bars(quiet) as progress:
+        binding = compute(loaded, method=how, **touches, progress=progress)
+    warnings = [*loaded.warnings, *binding.warnings]
+    if max_influences is None and how.max_influences is None and out.suffix.lower() in GLTF:
+        how = how.with_options(max_influences=GLTF_INFLUENCES)
+        binding, dropped = _limited(loaded, binding, how, touches)
+        warnings += dropped
+    files = save(out, loaded.with_weights(binding.weights))
+    document = {
+        "input": str(rig),
+        "output": str(out),
+        "files": [str(file) for file in files],
+        "method": method,
+        "parameters": {**asdict(how), **touches},
+        "mesh": summary.summarize_mesh(loaded.mesh, binding.graph),
+        "meshes": summary.summarize_parts(loaded),
+        "skeleton": summary.summarize_skeleton(loaded.skeleton),
+        "graph": summary.summarize_graph(binding.graph),
+        "fallback": summary.summarize_fallback(binding.distances),
+        "influences": summary.summarize_weights(binding.weights),
+        "seconds": {name: round(value, 4) for name, value in binding.seconds.items()},
+        "warnings": warnings,
+    }
+    if not quiet:
+        print_warnings(warnings)
+    if json:
+        print_json(document)
+    elif not quiet:
+        print_table(f"{rig.name} -> {out}", report_rows(document))
+
+
+def _limited(
+    rig: Rig, binding: Binding, method: Method, touches: dict[str, Any]
+) -> tuple[Binding, list[str]]:
+    """Keep as few influences as a method says, and tell in a sentence what that drops."""
+    from .skinning import refine_weights, skinning_weights
+
+    every = binding.weights
+    most = int((every > 0).sum(axis=1).max())
+    if method.max_influences is None or most <= method.max_influences:
+        return binding, []
+    weights = skinning_weights(binding.distances, method=method, allowed=rig.allowed)
+    weights = refine_weights(rig, weights, method=method, **touches)
+    dropped = every.sum(axis=1, where=weights == 0)
+    sentence = (
+        f"of up to {most} influences a vertex the {method.max_influences} largest are saved, as "
+        f"glTF files are read; that drops {dropped.mean():.1%} of the weight on average and "
+        f"{dropped.max():.1%} at most. --max-influences says how many, or all"
+    )
+    return replace(binding, weights=weights), [sentence]

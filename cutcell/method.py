@@ -1,0 +1,245 @@
+"""How weights are computed: one object that all stages, commands and the page share."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields, replace
+from difflib import get_close_matches
+from typing import Any, Literal, TypedDict, get_args
+
+from .checks import check_choice, check_flag, check_integer, check_number
+from .errors import ParameterError
+
+Connectivity = Literal[6, 26, "any"]
+Leaf = Literal["point", "extend", "fit"]
+Falloff = Literal["rig", "paper"]
+MethodName = Literal["animation", "paper"]
+
+CONNECTIVITIES: tuple[Connectivity, ...] = get_args(Connectivity)
+LEAVES: tuple[Leaf, ...] = get_args(Leaf)
+FALLOFFS: tuple[Falloff, ...] = get_args(Falloff)
+
+MIN_RESOLUTION = 2
+MAX_RESOLUTION = 1024
+MOST_SAMPLES = 1000
+MOST_INFLUENCES = 1024
+
+LEAF_OF: dict[Falloff, Leaf] = {"rig": "fit", "paper": "point"}
+"""The bones that each falloff is made for."""
+ALPHA = 0.5
+"""Of the paper's falloff, where none is given."""
+RIG_JOINTS = 3
+"""Nearest joints of each vertex that the falloff "rig" divides the surface among, at least: hardly
+a vertex has a fourth. It follows more joints only as the surface around it does."""
+RIG_REACH = 6.0
+"""Times as far as its nearest joint: whatever is farther gets no weight of the falloff "rig"."""
+
+
+class GraphOptions(TypedDict, total=False):
+    """Options of a `Method` that `build_graph` follows, beside the resolution."""
+
+    connectivity: Connectivity
+    winding_threshold: float
+    orient: bool
+
+
+class DistanceOptions(TypedDict, total=False):
+    """Options of a `Method` that `bone_distances` follows."""
+
+    samples: int
+    leaf: Leaf | None
+
+
+class WeightOptions(TypedDict, total=False):
+    """Options of a `Method` that `skinning_weights` follows."""
+
+    falloff: Falloff
+    alpha: float | None
+    max_influences: int | None
+    threshold: float
+
+
+class Options(GraphOptions, DistanceOptions, WeightOptions):
+    """All options of a `Method` beside the resolution."""
+
+
+def check_resolution(resolution: Any) -> int:
+    """Return how many cells a lattice has along each side.
+
+    Raises
+    ------
+    ParameterError
+        Not a whole number from 2 to 1024.
+    """
+    why = "it counts the cells along the mesh's longest side, 64 suits most characters"
+    return check_integer("resolution", resolution, MIN_RESOLUTION, MAX_RESOLUTION, why)
+
+
+def _checked_alpha(alpha: Any, falloff: Falloff) -> float | None:
+    if falloff == "paper":
+        return check_number("alpha", ALPHA if alpha is None else alpha, 0, 1)
+    if alpha is not None:
+        check_number("alpha", alpha, 0, 1)
+        raise ParameterError(
+            f"alpha shapes the paper's falloff and has no effect with falloff={falloff!r}; "
+            "leave it out, or choose falloff='paper'"
+        )
+    return None
+
+
+@dataclass(frozen=True)
+class Method:
+    """How weights are computed, whatever the character: from the lattice to the last weight.
+
+    `cutcell.ANIMATION` makes weights to animate with and is the default everywhere;
+    `cutcell.PAPER` is the method of the paper. Wherever a method is taken, either may be given by
+    its name, "animation" or "paper", and single options on top of it.
+
+    What is done to weights afterwards (smoothing, symmetry, locked joints) is asked of one
+    character and is no part of the method; see `bind`.
+
+    Parameters
+    ----------
+    resolution : int
+        R, lattice cells along the mesh's longest side, 2 to 1024.
+    connectivity : {6, 26, "any"}
+        How paths run inside. 6: along the axes, as in the paper. 26: along the diagonals of
+        lattice cells, too. "any": at any angle, so that distances converge to geodesic ones.
+    winding_threshold : float
+        tau: what has at least this winding number is inside, 0 to 1.
+    orient : bool
+        Whether faces that are inside out count as turned round.
+    samples : int
+        N, points on each bone that distances start from, 1 to 1000.
+    leaf : {"fit", "point", "extend"}, optional
+        Where bones end. "point", "extend": at the child joints; a joint without children is a
+        point, or a bone along its parent's direction. "fit": where the body says. Left out, what
+        the falloff is made for: "fit" for "rig", "point" for "paper".
+    falloff : {"rig", "paper"}
+        How weight falls with distance. "rig": made to animate with. "paper": equation 1.
+    alpha : float, optional
+        Smoothness of the paper's falloff, 0 to 1, 0.5 when left out; the other has none.
+    max_influences : int, optional
+        Joints a vertex may follow, 1 to 1024; None for no limit.
+    threshold : float
+        Of the weights that are left, those below it are dropped, 0 to 1.
+
+    Raises
+    ------
+    ParameterError
+        An option is out of its range, or has no effect.
+
+    Examples
+    --------
+    >>> cutcell.PAPER.with_options(resolution=128, alpha=0.3)  # doctest: +SKIP
+    >>> cutcell.bind(rig, method="paper", alpha=0.3)  # doctest: +SKIP
+    """
+
+    resolution: int = 64
+    connectivity: Connectivity = "any"
+    winding_threshold: float = 0.5
+    orient: bool = True
+    samples: int = 5
+    leaf: Leaf = None  # type: ignore[assignment]
+    falloff: Falloff = "rig"
+    alpha: float | None = None
+    max_influences: int | None = 4
+    threshold: float = 0.0
+
+    def __post_init__(self) -> None:
+        falloff = check_choice("falloff", self.falloff, FALLOFFS)
+        leaf = LEAF_OF[falloff] if self.leaf is None else self.leaf
+        checked = {
+            "resolution": check_resolution(self.resolution),
+            "connectivity": check_choice("connectivity", self.connectivity, CONNECTIVITIES),
+            "winding_threshold": check_number("winding_threshold", self.winding_threshold, 0, 1),
+            "orient": check_flag("orient", self.orient),
+            "samples": check_integer("samples", self.samples, 1, MOST_SAMPLES),
+            "leaf": check_choice("leaf", leaf, LEAVES),
+            "falloff": falloff,
+            "alpha": _checked_alpha(self.alpha, falloff),
+            "threshold": check_number("threshold", self.threshold, 0, 1),
+        }
+        if self.max_influences is not None:
+            checked["max_influences"] = check_integer(
+                "max_influences", self.max_influences, 1, MOST_INFLUENCES
+            )
+        for name, value in checked.items():
+            object.__setattr__(self, name, value)
+
+    def with_options(self, **options: Any) -> Method:
+        """Return this method with other options.
+
+        Where `falloff` changes, `leaf` and `alpha` become what the new one is made for unless
+        they are given, too.
+
+        Parameters
+        ----------
+        **options
+            Any of the parameters of `Method`.
+
+        Raises
+        ------
+        TypeError
+            There is no such option.
+        ParameterError
+            An option is out of its range, or has no effect.
+        """
+        known = [field.name for field in fields(self)]
+        for name in options:
+            if name not in known:
+                close = get_close_matches(name, known, n=1)
+                instead = f"did you mean {close[0]!r}?" if close else f"it has {', '.join(known)}"
+                raise TypeError(f"a method has no option {name!r}; {instead}")
+        if options.get("falloff", self.falloff) != self.falloff:
+            options = {"leaf": None, "alpha": None, **options}
+        return replace(self, **options)
+
+    @property
+    def joints_needed(self) -> int | None:
+        """From how many nearest joints of each vertex distances are needed; None: from all."""
+        return joints_needed(self.falloff, self.max_influences)
+
+    @property
+    def reach_needed(self) -> float:
+        """How many times as far as the nearest a joint may be and still get some weight."""
+        return RIG_REACH if self.falloff == "rig" else float("inf")
+
+
+ANIMATION = Method()
+"""Weights to animate with (docs/falloff.md): what `bind` does when it is not told otherwise."""
+PAPER = Method(connectivity=6, falloff="paper", max_influences=None)
+"""The paper's method: a 6-connected graph, leaf bones as points, equation 1 for all joints."""
+METHODS: dict[MethodName, Method] = {"animation": ANIMATION, "paper": PAPER}
+"""The methods that have names."""
+
+
+def method_of(method: Method | MethodName, resolution: int | None = None, **options: Any) -> Method:
+    """Return a method that is given as such or by its name, with single options on top.
+
+    Parameters
+    ----------
+    method : Method, "animation" or "paper"
+    resolution : int, optional
+        The method's own when left out.
+    **options
+        Any other of the parameters of `Method`.
+
+    Raises
+    ------
+    TypeError
+        There is no such option.
+    ParameterError
+        There is no such method, or an option is out of its range or has no effect.
+    """
+    if not isinstance(method, Method):
+        method = METHODS[check_choice("method", method, METHODS)]
+    if resolution is not None:
+        options["resolution"] = resolution
+    return method.with_options(**options) if options else method
+
+
+def joints_needed(falloff: Falloff, max_influences: int | None) -> int | None:
+    """Return from how many nearest joints of each vertex a falloff needs distances."""
+    if falloff == "paper" or max_influences is None:
+        return max_influences
+    return RIG_JOINTS

@@ -1,0 +1,80 @@
+"""The operators of a mesh's surface that weights are smoothed by, whatever the bones are."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from weakref import WeakKeyDictionary
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..compiled import compiled
+from ..graph import CutCellGraph
+from ..threads import submit
+from .components import label_components
+from .laplacian import stiffness, vertex_areas, vertex_normals
+from .ldl import fill_reducing_ordering
+
+
+@dataclass(frozen=True, eq=False)
+class SurfaceOperators:
+    """The cotangent Laplacian of a welded mesh, and what goes with it.
+
+    Parameters
+    ----------
+    points : array, shape (k, 3)
+        The welded vertices, in the unit cube.
+    faces : array, shape (m, 3), int32
+        Triangles with three different corners.
+    normals, areas : arrays, shapes (k, 3) and (k,)
+        Per welded vertex, see `laplacian`.
+    component : array, shape (k,)
+        The connected component of each welded vertex, see `label_components`.
+    stiffness : tuple of arrays
+        Rows of the Laplacian, see `laplacian.stiffness`.
+    order : array, shape (k,), int32
+        See `fill_reducing_ordering`.
+    """
+
+    points: NDArray[np.float64]
+    faces: NDArray[np.int32]
+    normals: NDArray[np.float64]
+    areas: NDArray[np.float64]
+    component: NDArray[np.int32]
+    stiffness: tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.float64]]
+    order: NDArray[np.int32]
+
+    @classmethod
+    def of(cls, graph: CutCellGraph) -> SurfaceOperators:
+        """Return those of a graph's mesh, which are computed once for each graph."""
+        cls.begin(graph)
+        found = _of_graph[graph]()
+        _of_graph[graph] = lambda: found
+        return found
+
+    @classmethod
+    def begin(cls, graph: CutCellGraph) -> None:
+        """Let another core compute them while this one does something else."""
+        if graph not in _of_graph:
+            points, faces = graph.nodes[: graph.first_point], graph.faces
+            _of_graph[graph] = submit(lambda: cls.over(points, faces))
+
+    @classmethod
+    def over(cls, points: NDArray[np.float64], faces: NDArray[np.int32]) -> SurfaceOperators:
+        """Compute those of a mesh: points (k, 3) in the unit cube, faces (m, 3)."""
+        a, b, c = faces.T
+        faces = faces[(a != b) & (b != c) & (c != a)]  # the others were welded to nothing
+        return cls(points, faces, *_operators(points, faces))
+
+
+_of_graph: WeakKeyDictionary[CutCellGraph, Callable[[], SurfaceOperators]] = WeakKeyDictionary()
+
+
+# One compiled function: each call from another thread has to wait for Python's lock.
+@compiled
+def _operators(points, faces):
+    normals, areas = vertex_normals(points, faces), vertex_areas(points, faces)
+    rows = stiffness(points, faces)
+    order = fill_reducing_ordering(rows[0], rows[1])
+    return normals, areas, label_components(faces, len(points)), rows, order

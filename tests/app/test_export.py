@@ -1,0 +1,204 @@
+"""What a person takes along from a session: the bound character, pictures, films, numbers."""
+
+import io
+import os
+import signal
+import time
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+import pytest
+
+import cutcell
+from cutcell.progress import silent
+from cutcell_app.commands import binding, loading
+from cutcell_app.commands.export import (
+    export_bound,
+    export_motion,
+    export_numbers,
+    export_picture,
+    export_turntable,
+)
+from cutcell_app.state import PANELS
+from cutcell_app.work.jobs import PATIENCE, Jobs
+from tests.cutcell.io.gltf_builder import column
+
+
+def test_the_bound_character_can_be_taken_along(bound, loop, tmp_path):
+    got = []
+    export_bound(bound, lambda name, content: got.append((name, content)))
+    loop.run_until(lambda: bool(got))
+    name, content = got[0]
+    assert name == "arm-bound.glb"
+    path = tmp_path / name
+    path.write_bytes(content)
+    loaded = cutcell.load(path)
+    np.testing.assert_allclose(loaded.weights, bound.state.binding.weights, atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("name", "taken_as"),
+    [
+        ("骨" * 85, "骨" * 66 + "-bound.glb"),
+        ("a/b\\c:d.glb", "cd-bound.glb"),
+        ("..", "file-bound.glb"),
+        ("nul\0l\ud800.obj", "null-bound.glb"),
+        ("", "character-bound.glb"),
+        ('<"?*|>', "file-bound.glb"),
+    ],
+)
+def test_a_name_that_no_file_can_have_is_no_hindrance(bound, loop, name, taken_as):
+    bound.state.rig = replace(bound.state.rig, name=name)
+    got = []
+    export_bound(bound, lambda *file: got.append(file))
+    loop.run_until(lambda: bool(got))
+    assert got[0][0] == taken_as
+    assert got[0][1].startswith(b"glTF")
+
+
+def test_an_avatar_keeps_its_ending(session, loop, tmp_path):
+    path = column().save(tmp_path / "avatar.glb").rename(tmp_path / "avatar.vrm")
+    session.state.resolution = 16
+    loading.show_rig(session, cutcell.load(path))
+    loop.run_until(lambda: session.state.binding is not None)
+    got = []
+    export_bound(session, lambda *file: got.append(file))
+    loop.run_until(lambda: bool(got))
+    assert got[0][0] == "avatar-bound.vrm"
+    assert got[0][1].startswith(b"glTF")
+
+
+def test_nothing_to_export_is_told(session):
+    export_bound(session, lambda name, content: None)
+    assert session.state.message[0] == "info"
+
+
+def taken(loop, act, *arguments):
+    got = []
+    act(*arguments, lambda name, content: got.append((name, content)))
+    loop.run_until(lambda: bool(got), 60)
+    return got[0]
+
+
+@pytest.fixture
+def small(monkeypatch):
+    monkeypatch.setattr("cutcell_app.commands.export.PICTURE_PIXELS", 160 * 120)
+    monkeypatch.setattr("cutcell_app.commands.export.FILM_PIXELS", 64 * 48)
+
+
+def test_pictures_show_what_is_seen_in_its_pose(bound, loop, small):
+    bound.state.panel = "pose"
+    name, rest = taken(loop, export_picture, bound)
+    assert name == "arm-pose.png"
+    bound.state.turns = {1: (0, 0, 60)}
+    _, turned = taken(loop, export_picture, bound)
+    bound.state.param.update(moving=True, clip=0)
+    bound.view.time = 0.5
+    _, halfway = taken(loop, export_picture, bound)
+    assert len({rest, turned, halfway}) == 3
+    assert all(content.startswith(b"\x89PNG") for content in (rest, turned, halfway))
+    assert list(bound.folder.iterdir()) == []
+
+
+@pytest.mark.parametrize("panel", PANELS)
+def test_the_body_goes_through_a_filmed_motion_on_every_panel(bound, loop, panel, monkeypatch):
+    orders = []
+
+    def remember(order, path, progress):
+        orders.append(order)
+        path.write_bytes(b"drawn")
+
+    monkeypatch.setattr("cutcell_app.commands.export.draw_apart", remember)
+    bound.state.param.update(panel=panel, cut_axis="z")
+    taken(loop, export_motion, bound, "gif")
+    shown = orders[0].description
+    assert any("body" in name for name in shown.actors)
+    assert all(actor.skin is not None for actor in shown.actors.values())
+    assert shown.cut is None
+    assert orders[0].motion is not None
+
+
+def test_no_motion_is_filmed_before_there_are_weights(session):
+    export_motion(session, "gif", lambda name, content: None)
+    assert session.state.message[0] == "info"
+
+
+def test_drawing_leaves_the_page_free_and_can_be_cancelled(bound, loop, small):
+    got = []
+    export_turntable(bound, "gif", lambda name, content: got.append(name))
+    stages = []
+    bound.state.param.watch(lambda event: stages.append(event.new), "stage")
+    loop.run_until(lambda: "drawing the film" in stages)
+    assert bound.state.busy
+    binding.cancel(bound)
+    assert not bound.state.busy
+    loop.run_for(0.5)
+    assert got == []
+
+
+def never_ends(*given):
+    time.sleep(600)
+
+
+def killed(*given):
+    os.kill(os.getpid(), signal.SIGKILL)
+
+
+WRITERS = {
+    "file": ("cutcell.save", export_bound),
+    "numbers": ("cutcell_app.commands.export.save_numbers", partial(export_numbers, what="all")),
+}
+
+
+@pytest.mark.parametrize("what", WRITERS)
+def test_writing_can_be_cancelled_and_others_compute_then(bound, loop, monkeypatch, what):
+    writer, act = WRITERS[what]
+    monkeypatch.setattr(writer, never_ends)
+    more = {"ending": "csv"} if what == "numbers" else {}
+    act(bound, done=lambda name, content: pytest.fail("it never ends"), **more)
+    loop.run_until(lambda: bound.state.stage.startswith("writing"))
+    loop.run_for(0.2)
+    binding.cancel(bound)
+    assert not bound.state.busy
+    began, got = time.monotonic(), []
+    Jobs(loop).start(lambda progress: "computed", got.append, got.append, silent)
+    loop.run_until(lambda: got == ["computed"])
+    assert time.monotonic() - began < PATIENCE, "it was not only passed by: it has ended"
+    assert list(bound.folder.iterdir()) == []
+
+
+def test_a_writer_that_crashes_is_told_in_a_sentence(bound, loop, monkeypatch):
+    monkeypatch.setattr("cutcell.save", killed)
+    export_bound(bound, lambda name, content: pytest.fail("it crashed"))
+    loop.run_until(lambda: not bound.state.busy)
+    assert "Writing it came to a sudden end" in bound.state.message[1]
+    assert bound.state.binding is not None
+
+
+def test_numbers_are_those_that_were_computed(bound, loop):
+    name, content = taken(loop, export_numbers, bound, "all", "npz")
+    assert name == "arm-numbers.npz"
+    with np.load(io.BytesIO(content)) as numbers:
+        np.testing.assert_array_equal(numbers["weights"], bound.state.binding.weights)
+        np.testing.assert_array_equal(numbers["distances"].T, bound.state.binding.distances.joint)
+        assert numbers["joint_names"].tolist() == ["shoulder", "elbow", "wrist"]
+    name, content = taken(loop, export_numbers, bound, "weights", "csv")
+    assert name == "arm-weights.csv"
+    assert content.decode().splitlines()[0] == "vertex,shoulder,elbow,wrist"
+
+
+def test_numbers_that_are_not_there_yet_are_told(session):
+    export_numbers(session, "all", "npz", lambda name, content: None)
+    assert session.state.message[0] == "info"
+
+
+def test_a_machine_that_cannot_draw_is_told_so(bound, loop, small, monkeypatch):
+    got = []
+    monkeypatch.setattr("cutcell_viewers.worker.sys.executable", "false")
+    monkeypatch.setattr("cutcell_viewers.opengl._can_draw", lambda: False)
+    export_picture(bound, lambda name, content: got.append(name))
+    loop.run_until(lambda: bound.state.message is not None)
+    assert "no OpenGL" in bound.state.message[1]
+    assert got == []
+    assert bound.state.binding is not None

@@ -1,0 +1,82 @@
+"""The page's rooms: arrows run one way, and nothing imports in a circle, not even for types."""
+
+import ast
+import subprocess
+import sys
+from graphlib import CycleError, TopologicalSorter
+from pathlib import Path
+
+import pytest
+
+from tests.test_layers import ROOT, imports_of, modules_of, package_of
+
+APP = ROOT / "app"
+
+ROOMS = (
+    {"work", "state", "server"},
+    {"files", "scenes"},
+    {"commands"},
+    {"widgets"},
+    {"panels"},
+    {"layout"},
+    {"serve", "render"},
+    {"render_command"},
+    {"command_line"},
+)
+"""Each may use itself and those before it; the last are the commands and what they open."""
+RANK = {room: rank for rank, rooms in enumerate(ROOMS) for room in rooms}
+
+
+def graph_of(names: list[str]) -> dict[str, set[str]]:
+    """Return which modules of `app` each one imports, under TYPE_CHECKING and in functions, too."""
+    known = set(names)
+    graph: dict[str, set[str]] = {}
+    for name in names:
+        path = APP / Path(*name.split(".")[1:])
+        path = path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
+        graph[name] = {found for found in used_by(path) if found in known}
+    return graph
+
+
+def used_by(path: Path) -> set[str]:
+    """Return all that a file imports: `from ..commands import pose` is of both."""
+    package = package_of(path)
+    found = {name for name, _ in imports_of(path)}
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.ImportFrom) and node.level and node.module:
+            base = (*package[: len(package) - node.level + 1], node.module)
+            found |= {".".join((*base, alias.name)) for alias in node.names}
+    return found
+
+
+def test_nothing_imports_in_a_circle():
+    graph = graph_of(modules_of("cutcell_app"))
+    assert sum(map(len, graph.values())) > 100, "the imports were not found"
+    try:
+        TopologicalSorter(graph).prepare()
+    except CycleError as error:
+        pytest.fail(" -> ".join(error.args[1]))
+
+
+def test_rooms_use_only_those_before_them():
+    rooms = {path.stem for path in APP.glob("*.py")} - {"__init__"}
+    rooms |= {path.parent.name for path in APP.glob("*/__init__.py")}
+    assert rooms == set(RANK)
+    wrong = [
+        f"{name} imports {used}"
+        for name, all_used in graph_of(modules_of("cutcell_app")).items()
+        for used in all_used
+        if name.count(".") and used.count(".")
+        if (a := name.split(".")[1]) != (b := used.split(".")[1]) and RANK[b] >= RANK[a]
+    ]
+    assert wrong == []
+
+
+def test_commands_know_no_widget_and_no_server():
+    code = (
+        "import sys, cutcell_app.render, cutcell_app.commands.watchers\n"
+        "import cutcell_app.commands.arrival\n"
+        "print({'panel', 'bokeh', 'tornado'} & set(sys.modules))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=ROOT)
+    assert done.stdout.strip() == "set()", done.stdout + done.stderr

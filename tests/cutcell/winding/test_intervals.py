@@ -1,0 +1,86 @@
+"""Inside intervals equal those that exact winding numbers give, segment by segment."""
+
+import numpy as np
+import pytest
+
+from cutcell import TooLargeError, TriangleMesh, winding_number
+from cutcell.graph.fast_winding import list_segments
+from cutcell.surface.rays import cast_all_rays
+from cutcell.surface.weld import weld
+from cutcell.winding.boundary import find_boundary
+from cutcell.winding.intervals import inside_intervals
+from tests import meshes
+
+
+def apart(share):
+    """Shrink the triangles of a ball so that no two of them touch."""
+    vertices, faces = meshes.ball(3)
+    corners = vertices[faces]
+    middle = corners.mean(axis=1, keepdims=True)
+    points = (middle + share * (corners - middle)).reshape(-1, 3)
+    return points, np.arange(len(points), dtype=np.int32).reshape(-1, 3)
+
+
+def jittered():
+    """Move each corner of each triangle by itself."""
+    points, faces = apart(1.0)
+    return points + np.random.default_rng(0).normal(0, 0.01, points.shape), faces
+
+
+def many_flipped():
+    """Turn every fifth triangle round, by chance."""
+    vertices, faces = meshes.ball(4)
+    turned = np.random.default_rng(1).random(len(faces)) < 0.2
+    faces[turned] = faces[turned, ::-1]
+    return vertices, faces
+
+
+def confetti():
+    """Triangles that have nothing in common, through each other."""
+    rng = np.random.default_rng(2)
+    points = rng.uniform(0.2, 0.8, (150, 1, 3)) + rng.normal(0, 0.08, (150, 3, 3))
+    return points.reshape(-1, 3), np.arange(450, dtype=np.int32).reshape(-1, 3)
+
+
+RESOLUTION = 15
+"""No power of two: then no midpoint lies on a rim, where the number is anyone's."""
+SOUPS = {
+    "narrow gaps": lambda: apart(0.99),
+    "wide gaps": lambda: apart(0.7),
+    "jittered": jittered,
+    "many flipped": many_flipped,
+    "confetti": confetti,
+}
+SHAPES = SOUPS | meshes.OPEN
+
+
+@pytest.mark.parametrize("tau", [0.2, 0.3, 0.5])
+@pytest.mark.parametrize("name", [n for n in SHAPES if "soup" not in n])
+def test_intervals_equal_those_of_exact_numbers(name, tau):
+    vertices, index = weld(SHAPES[name]()[0])
+    faces = index[SHAPES[name]()[1]]
+    tau -= 1e-9  # symmetric meshes have the number 1/2 at many places, up to rounding
+    boundary = find_boundary(faces)
+    hits = cast_all_rays(vertices, faces, RESOLUTION)
+    inside = inside_intervals(vertices, faces, hits, boundary, RESOLUTION, tau)
+    for axis in range(3):
+        segments = list_segments(hits[axis], RESOLUTION, closed=False)
+        number = winding_number(TriangleMesh(vertices, faces), segments.points(RESOLUTION, axis))
+        expected = segments.intervals(segments.has_ends & (number >= tau))
+        long = expected.first <= expected.last  # without length, the number is anyone's
+        rows, others = (
+            np.stack([r.ray, r.first, r.last, r.low, r.high], axis=1)[r.first <= r.last]
+            for r in (inside[axis], expected)
+        )
+        assert long.any()
+        np.testing.assert_array_equal(rows, others)
+
+
+def test_more_midpoints_than_fit_in_memory_are_refused_while_they_are_listed(monkeypatch):
+    vertices, faces = apart(0.7)
+    boundary, hits = find_boundary(faces), cast_all_rays(vertices, faces, RESOLUTION)
+    monkeypatch.setattr("cutcell.memory.available_memory", lambda enough: 1000)
+    listed_all = "cutcell.winding.intervals.query_points"
+    monkeypatch.setattr(listed_all, lambda *given: pytest.fail("listed all"))
+    with pytest.raises(TooLargeError, match=r"midpoints among holes .* choose a lower resolution"):
+        inside_intervals(vertices, faces, hits, boundary, RESOLUTION, 0.5)
