@@ -24,7 +24,7 @@ from .layout.page import page
 from .server.handlers import guard
 from .server.log import log_to_terminal
 from .server.memory import settle
-from .widgets.modules import STATIC, preloads
+from .widgets.modules import STATIC, head
 from .work.processes import get_ready
 
 PORTS_TRIED = 20
@@ -125,7 +125,7 @@ def begin(path: Path | None, port: int, address: str = "localhost", **more: Any)
         threaded=False,
         **{**ENDINGS, **more},
     )
-    text = guard(server._tornado, allowed_hosts(address, port), STATIC, preloads())
+    text = guard(server._tornado, allowed_hosts(address, port), STATIC, head())
     server.io_loop.add_callback(text.make)
     server.io_loop.add_callback(_settle, server)
     return server

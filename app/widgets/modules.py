@@ -35,10 +35,12 @@ export async function render(given) {{
 }}"""
 
 
-def preloads() -> str:
-    """Return what lets a browser fetch all modules at once, while the page is still loading."""
+def head() -> str:
+    """Return what the page's head needs: all modules, and what runs before Panel draws anything."""
     names = sorted(path.name for path in FOLDER.glob("*.js"))
-    return "".join(f'<link rel="modulepreload" href="{ADDRESS}/{name}">' for name in names)
+    # A browser fetches them at once, while the page is still loading.
+    links = "".join(f'<link rel="modulepreload" href="{ADDRESS}/{name}">' for name in names)
+    return f'{links}<script type="module" src="{ADDRESS}/component_state.js"></script>'
 
 
 def style(name: str) -> str:

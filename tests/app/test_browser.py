@@ -201,6 +201,36 @@ def test_a_file_goes_in_and_the_bound_one_comes_out(visit, tmp_path):
     np.testing.assert_allclose(loaded.weights, expected, atol=1e-6)
 
 
+# What a model is told in quick succession, as a server may tell it; what it says by itself.
+TOLD_QUICKLY = """async () => {
+  const models = [...Bokeh.documents[0]._all_models.values()]
+  const {data} = models.find(({data}) => String(data?.attributes.object).includes(" vertices "))
+  const channel = new MessageChannel()
+  const pauses = [
+    () => new Promise((done) => setTimeout(done)),
+    () => new Promise(requestAnimationFrame),
+    () => new Promise((done) => { channel.port1.onmessage = done; channel.port2.postMessage(0) }),
+  ]
+  const before = data.object
+  const strange = []
+  let told = before
+  data.properties.object.change.connect(() => {
+    if (data.object !== told) { strange.push([told, data.object]) }
+  })
+  for (let round = 0; round < 300; round++) {
+    told = round === 299 ? before : `told ${round}`
+    data.setv({object: told}, {sync: false})
+    await pauses[round % 3]()
+  }
+  await new Promise((done) => setTimeout(done, 200))
+  return strange
+}"""
+
+
+def test_a_component_does_not_tell_back_what_it_was_told(visit):
+    assert visit.page.evaluate(TOLD_QUICKLY) == []
+
+
 def test_the_picture_comes_out_as_a_png(visit, tmp_path):
     with visit.page.expect_download() as download:
         visit.button("Picture, film", exact=False).click()
