@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 import cutcell
 from cutcell import CutcellError, TriangleMesh, build_graph
 from cutcell.graph import INTERIOR, inverted_faces
+from cutcell.triangles import areas
 
 from .rigs import SHARED, rig_paths
 from .tables import Table, percent, publish
@@ -76,9 +77,7 @@ def measure(mesh: TriangleMesh, resolution: int) -> tuple[list[str], bool]:
     whole = TriangleMesh(vertices, faces[:, ::-1])
     damaged = TriangleMesh(vertices, np.where(part[:, None], faces[:, ::-1], faces))
     wrong = inverted_faces(damaged) != (part ^ turned)
-    corners = vertices[faces]
-    sides = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    area = np.linalg.norm(sides, axis=1)
+    area = areas(vertices[faces])
     missed = float(area[wrong].sum() / area.sum())
     counts = [
         int(

@@ -47,6 +47,7 @@ ORDER = [
         "sorting",
         "subprocesses",
         "threads",
+        "triangles",
         "unions",
         "writing",
     },

@@ -10,6 +10,7 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
 from cutcell.rig import Rig, Skeleton, TriangleMesh
+from cutcell.triangles import normals
 
 from .description import Actor
 from .palette import ATTACHMENT, BODY, BONE, BONE_CHOSEN, BONE_EDGE, BONE_IDLE, to_bytes
@@ -167,16 +168,21 @@ _OCTAHEDRON = np.array(
 )
 
 
+def across(along: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return two unit vectors (n, 3) at right angles to others and to each other."""
+    helper = np.where(np.abs(along[:, 1:2]) < 0.9, [0.0, 1, 0], [1.0, 0, 0])
+    side = np.cross(along, helper)
+    side /= np.linalg.norm(side, axis=1, keepdims=True)
+    return side, np.cross(along, side)
+
+
 def _octahedra(
     start: NDArray, end: NDArray, size: float, deform: NDArray[np.bool_], wider: NDArray
 ) -> NDArray[np.float64]:
     along = end - start
     length = np.linalg.norm(along, axis=1, keepdims=True)
     along = np.where(length > 0, along / np.where(length > 0, length, 1), [0.0, 1, 0])
-    helper = np.where(np.abs(along[:, 1:2]) < 0.9, [0.0, 1, 0], [1.0, 0, 0])
-    side = np.cross(along, helper)
-    side /= np.linalg.norm(side, axis=1, keepdims=True)
-    other = np.cross(along, side)
+    side, other = across(along)
     # Bones that move nothing are thin: some reach far out of the body.
     most = np.where(deform[:, None], 0.0105, 0.003) * size
     radius = np.clip(0.085 * length, 0.0025 * size, most)
@@ -246,8 +252,7 @@ def smooth_normals(points: NDArray[np.float64], faces: NDArray) -> NDArray[np.fl
     Vertices at the same place share their normals where these differ by less than 45
     degrees: exporters split vertices at texture seams as well as at hard edges.
     """
-    corner = points[faces]
-    area = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
+    area = normals(points[faces])
     own = np.zeros_like(points)
     for k in range(3):
         np.add.at(own, faces[:, k], area)

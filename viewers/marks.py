@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from cutcell.rig import Rig
 
-from .character import smooth_normals, to_scene
+from .character import across, smooth_normals, to_scene
 from .description import Actor
 from .palette import MARK
 from .skin import skin_of_weights
@@ -59,10 +59,7 @@ def tube(path: NDArray[np.float64], radius: float, sides: int = 10) -> tuple[NDA
     start, along = path[:-1], np.diff(path, axis=0)
     length = np.linalg.norm(along, axis=1, keepdims=True)
     along = np.where(length > 0, along / np.where(length > 0, length, 1), [0.0, 1, 0])
-    helper = np.where(np.abs(along[:, 1:2]) < 0.9, [0.0, 1, 0], [1.0, 0, 0])
-    side = np.cross(along, helper)
-    side /= np.linalg.norm(side, axis=1, keepdims=True)
-    other = np.cross(along, side)
+    side, other = across(along)
     angle = 2 * np.pi * np.arange(sides) / sides
     ring = np.cos(angle)[:, None] * side[:, None] + np.sin(angle)[:, None] * other[:, None]
     rings = np.stack([start[:, None] + radius * ring, path[1:, None] + radius * ring], axis=1)
@@ -85,10 +82,7 @@ def rods(
     """Return one square rod a piece (s, 3): points, triangles, and the piece of each point."""
     along = end - start
     along = along / np.maximum(np.linalg.norm(along, axis=1, keepdims=True), 1e-300)
-    helper = np.where(np.abs(along[:, 1:2]) < 0.9, [0.0, 1, 0], [1.0, 0, 0])
-    side = np.cross(along, helper)
-    side /= np.linalg.norm(side, axis=1, keepdims=True)
-    other = np.cross(along, side)
+    side, other = across(along)
     half = np.broadcast_to(thickness, len(start))[:, None] / 2
     ring = [half * (a * side + b * other) for a, b in ((1, 1), (-1, 1), (-1, -1), (1, -1))]
     points = np.stack([*(start + r for r in ring), *(end + r for r in ring)], axis=1)

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from ..rig import TriangleMesh
+from ..triangles import normals
 
 SPACING = 0.02
 """Of the longest side: samples of the surface are about as far apart."""
@@ -71,7 +72,7 @@ def _samples(corners: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray
     """Cut triangles (m, 3, 3) into equal ones that are small; return middles and area vectors."""
     sides = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
     splits = np.clip(np.ceil(sides / SPACING), 1, MOST_SPLITS).astype(int)
-    area = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]) / 2
+    area = normals(corners) / 2
     points: list[NDArray] = []
     areas: list[NDArray] = []
     for n in np.unique(splits):

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..surface.weld import WELD_TOLERANCE, weld
+from ..triangles import unit_normals
 from .finding import Finding, count
 from .subject import Subject
 
@@ -66,9 +67,4 @@ def _normals(
     order = np.argsort(sides, axis=None)
     wanted = start * len(points) + end
     found = order[np.searchsorted(sides.ravel(), wanted, sorter=order)] // 3
-    a, b, c = points[faces[found]].transpose(1, 0, 2)
-    normals = np.cross(b - a, c - a)
-    unit: NDArray[np.float64] = normals / np.maximum(
-        np.linalg.norm(normals, axis=1, keepdims=True), 1e-300
-    )
-    return unit
+    return unit_normals(points[faces[found]])

@@ -15,6 +15,7 @@ from ..progress import Progress, silent
 from ..rig import Rig, TriangleMesh
 from ..skinning.components import label_components
 from ..surface.edges import MeshEdges, find_edges
+from ..triangles import areas
 from ..winding.boundary import Boundary, boundary_of
 
 
@@ -110,9 +111,7 @@ class Subject:
     @cached_property
     def areas(self) -> NDArray[np.float64]:
         """The area of each face of the file in the unit cube, shape (m,)."""
-        a, b, c = self.points[self.welded[self.rig.mesh.faces]].transpose(1, 0, 2)
-        area: NDArray[np.float64] = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
-        return area
+        return areas(self.points[self.welded[self.rig.mesh.faces]])
 
     @cached_property
     def component(self) -> NDArray[np.int32]:

@@ -16,6 +16,7 @@ from ..progress import Tell
 from ..sorting import sort_into
 from ..surface.rays import column_span, height_between
 from ..threads import in_threads
+from ..triangles import areas, unit_normals
 
 LINES = 12
 SAMPLES = 2, 32
@@ -64,9 +65,7 @@ def exposure(
     """
     count = len(wanted)
     face, points = _samples(vertices, faces, patch, wanted)
-    corners = vertices[faces[face]]
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    normals /= np.maximum(np.linalg.norm(normals, axis=1), 1e-300)[:, None]
+    normals = unit_normals(vertices[faces[face]])
     of = patch[face]
     single, own = _each_once(faces)
     own = own[face]
@@ -121,9 +120,8 @@ def _samples(
     # Sorted by corners: the result depends neither on the order of faces nor on their winding.
     corners = np.sort(faces[mine], axis=1)
     order = np.lexsort((*corners.T[::-1], patch[mine]))
-    mine, (a, b, c) = mine[order], vertices[corners[order]].transpose(1, 0, 2)
-    sides = np.cross(b - a, c - a)
-    reached = np.cumsum(np.linalg.norm(sides, axis=1))
+    mine, triangles = mine[order], vertices[corners[order]]
+    reached = np.cumsum(areas(triangles))
     first = np.flatnonzero(np.diff(patch[mine], prepend=-1))
     last = np.append(first[1:], len(mine)) - 1
     low = np.concatenate([[0], reached[last[:-1]]])
@@ -135,7 +133,7 @@ def _samples(
     k = np.tile(np.arange(each), len(first))
     u, v = 0.7548777 * (k + 1) % 1, 0.5698403 * (k + 1) % 1
     u, v = np.where(u + v > 1, 1 - u, u)[:, None], np.where(u + v > 1, 1 - v, v)[:, None]
-    a, b, c = a[found], b[found], c[found]
+    a, b, c = triangles[found].transpose(1, 0, 2)
     return mine[found], a + u * (b - a) + v * (c - a)
 
 

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from ..compiled import compiled
 from ..surface.vectors import between, cross, dot, length
+from ..triangles import normals
 from ..unions import join, numbered
 
 NONE = -1
@@ -80,9 +81,9 @@ def _without_duplicates(
     start = faces.ravel()
     half_edge = half_edge[start[half_edge] == start[partner[half_edge]]]
     corners = vertices[faces[np.stack([half_edge, partner[half_edge]]) // 3]]
-    normals = np.cross(corners[:, :, 1] - corners[:, :, 0], corners[:, :, 2] - corners[:, :, 0])
-    sizes = np.linalg.norm(normals, axis=2).prod(axis=0)
-    same = np.einsum("ij,ij->i", *normals) > SAME * sizes
+    pairs = normals(corners)
+    sizes = np.linalg.norm(pairs, axis=2).prod(axis=0)
+    same = np.einsum("ij,ij->i", *pairs) > SAME * sizes
     partner = partner.copy()
     partner[half_edge[same]] = NONE
     return partner

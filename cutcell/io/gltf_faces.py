@@ -9,6 +9,7 @@ import numpy as np
 import pygltflib
 from numpy.typing import NDArray
 
+from .. import triangles
 from ..rig import Rig, TriangleMesh
 from .gltf_accessors import read_accessor
 from .gltf_read import GltfSource, StoredFaces
@@ -122,8 +123,7 @@ def _normals(
         read_accessor(source.document, named[name], "VEC3", name).astype(np.float64)
         for name in ("POSITION", "NORMAL")
     )
-    a, b, c = (positions[corners[turned, k]] for k in range(3))
-    facing = np.cross(b - a, c - a)
+    facing = triangles.normals(positions[corners[turned]])
     agreement, others = np.zeros(len(positions)), np.zeros(len(positions), bool)
     others[corners[~turned]] = True
     for vertex in corners[turned].T:

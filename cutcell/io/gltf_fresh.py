@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from .. import __version__
 from ..errors import CutcellError, FileError, MeshError, SkeletonError, WeightsError
 from ..rig import Clip, Rig, Skeleton, TriangleMesh
+from ..triangles import normals
 from .gltf_container import json_bytes, pack_glb, with_whole_names
 from .gltf_influences import pack_influences
 from .gltf_nodes import decompose
@@ -206,8 +207,7 @@ class _File:
 
 def vertex_normals(mesh: TriangleMesh) -> NDArray[np.float32]:
     """Return unit normals, shape (n, 3): faces weighted by area, equal positions together."""
-    corners = mesh.vertices[mesh.faces]
-    area = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    area = normals(mesh.vertices[mesh.faces])
     _, same = np.unique(mesh.vertices, axis=0, return_inverse=True)
     same = same.reshape(-1)
     summed = np.zeros((same.max() + 1, 3))

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import MissingLibraryError
+from ..triangles import normals
 from .rays import AXES, RayHits
 
 Vertices = NDArray[np.float64]
@@ -180,15 +181,15 @@ def _positions(
 ) -> NDArray[np.float64]:
     """Intersect rays with the planes of triangles, in double precision."""
     u, v, along = AXES[axis]
-    a, b, c = (vertices[faces[triangle, k]] for k in range(3))
-    normal = np.cross(b - a, c - a)
+    corners = vertices[faces[triangle]]
+    normal = normals(corners)
+    a, ends = corners[:, 0], corners[:, :, along]
     du = (ray // resolution + 0.5) / resolution - a[:, u]
     dv = (ray % resolution + 0.5) / resolution - a[:, v]
     steep = np.where(normal[:, along] == 0, 1, normal[:, along])
     position = a[:, along] - (du * normal[:, u] + dv * normal[:, v]) / steep
     # A ray may graze a triangle that stands nearly along it: stay within its extent.
-    ends = np.stack([a[:, along], b[:, along], c[:, along]])
-    return np.clip(position, ends.min(axis=0), ends.max(axis=0))
+    return np.clip(position, ends.min(axis=1), ends.max(axis=1))
 
 
 def _ray_hits(
@@ -197,8 +198,7 @@ def _ray_hits(
     """Sort hits by ray and position, one for each point where a ray passes the surface."""
     ray, triangle = _with_twins(faces, ray, triangle)
     along = AXES[axis][2]
-    corners = vertices[faces[triangle]]
-    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normal = normals(vertices[faces[triangle]])
     sign = np.sign(normal[:, along]).astype(np.int8)
     facing = sign != 0  # a triangle seen edge-on is not passed
     ray, triangle, sign = ray[facing], triangle[facing], sign[facing]

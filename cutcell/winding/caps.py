@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from ..compiled import compiled
 from ..surface.weld import weld
+from ..triangles import areas
 from .boundary import Boundary, boundary_of
 
 GAP = 3e-3
@@ -94,8 +95,7 @@ def _strips(vertices: NDArray[np.float64], boundary: Boundary) -> Boundary:
 
 
 def _area(caps: Caps) -> float:
-    a, b, c = (caps.vertices[corner] for corner in caps.faces.T)
-    return float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2)
+    return float(areas(caps.vertices[caps.faces]).sum())
 
 
 @compiled
