@@ -7,8 +7,8 @@ from typing import Any
 
 from .session import Session
 
-AFTER = 0.1
-"""Seconds to wait with the answer: Panel holds what a widget says for half as long."""
+AFTER = 0.06
+"""Seconds to wait with the answer: Panel holds what a widget says for 0.05 of them."""
 
 
 def watch(session: Session) -> None:

@@ -75,6 +75,11 @@ AT_FIRST_SIGHT = """(button, limit) => new Promise((seen, missed) => {
   look()
 })"""
 
+SAME_RIG = """query => {
+  const [now, then] = [location.search, query].map((said) => new URLSearchParams(said).get("rig"))
+  return now === then
+}"""
+
 # What a browser says of its own software rendering, never of the page.
 OF_THE_BROWSER = re.compile(r"GL Driver Message|GroupMarkerNotSet|software WebGL|SwiftShader")
 
@@ -165,21 +170,31 @@ class Visit:
         counts = self.status.inner_text().rpartition("|")[0]
         return self.page.evaluate("location.search"), counts
 
+    @property
+    def character(self) -> str:
+        """The demo that is chosen, or "Your own"."""
+        return self.page.get_by_role("combobox", name="Character").inner_text()
+
     def remember_beginning(self) -> None:
         """Note what `begin_anew` goes back to."""
-        self.first = self.beginning
+        self.first = self.character, self.beginning
 
     def begin_anew(self) -> bool:
         """Undo all that was chosen; return whether the page is as it was."""
         try:
+            demo, beginning = self.first
             self.page.keyboard.press("Escape")
+            if self.character != demo:
+                self.choose("Character", demo)
+                self.page.wait_for_function(SAME_RIG, arg=beginning[0])
+                self.settle()
             self.button("Reset all choices").click(timeout=ANSWER_MS)
             self.page.get_by_role("tab", name="Weights", exact=True).click(timeout=ANSWER_MS)
             self.page.mouse.move(2, 2)
             self.settle()
             if self.button("Close").is_visible():
                 self.dismiss()
-            return self.beginning == self.first
+            return self.beginning == beginning
         except (Error, AssertionError):
             return False
 
