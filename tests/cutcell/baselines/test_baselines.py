@@ -12,7 +12,7 @@ from scipy.spatial import cKDTree
 
 import cutcell
 from cutcell import ParameterError, Rig, Skeleton, TriangleMesh
-from cutcell.baselines import METHODS, BaselineBinding
+from cutcell.baselines import METHODS
 from cutcell.baselines.body import Body
 from cutcell.baselines.paths import path_lengths
 from cutcell.baselines.visibility import Blockers
@@ -83,11 +83,6 @@ def test_the_artists_weights_are_the_files():
     assert METHODS["artist"](rig).failed == "the file has no weights"
     weights = np.tile([1.0, 0, 0], (len(rig.mesh.vertices), 1))
     np.testing.assert_array_equal(METHODS["artist"](rig.with_weights(weights)).weights, weights)
-
-
-def test_a_result_says_what_it_is():
-    assert BaselineBinding(None, failed="no").failed == "no"
-    assert BaselineBinding(np.eye(2)).warnings == ()
 
 
 @pytest.mark.parametrize(
