@@ -68,6 +68,7 @@ ORDER = [
         "report",
         "bind_command",
         "diagnose_command",
+        "explain_command",
         "graph_command",
         "render_command",
         "joints_command",

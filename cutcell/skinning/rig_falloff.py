@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.distance import cdist
@@ -37,8 +39,15 @@ TAIL = 0.05
 """Of a vertex' largest weight: subtracted from all its weights, so that they end somewhere."""
 
 
+Record = Callable[[str, NDArray], None]
+"""Is told the name of each step and what it has computed, which may change afterwards."""
+
+
 def rig_weights(
-    distances: BoneDistances, surface: SurfaceOperators, tell: Tell = lambda done: None
+    distances: BoneDistances,
+    surface: SurfaceOperators,
+    tell: Tell = lambda done: None,
+    record: Record = lambda step, array: None,
 ) -> NDArray[np.float64]:
     """Turn distances into weights for animation.
 
@@ -50,6 +59,10 @@ def rig_weights(
         Of their graph.
     tell : callable
         See `progress.Tell`.
+    record : callable
+        See `Record`: "penalty" (components, j), "radius" (j,), "beyond" (k,), which vertices have
+        a share of a joint beyond its radius; and weights (k, j) after the steps "falloff",
+        "spread" and "rigid".
 
     Returns
     -------
@@ -72,16 +85,21 @@ def rig_weights(
         radius = _radii(weights, distance, surface.areas, bones, resolution)
         _mark_beyond(distance, weights, radius, chosen)
         _divide_by_distance(*known, *ends, radius, chosen, weights)
+        for step, array in (("penalty", penalty), ("radius", radius), ("beyond", chosen)):
+            record(step, array)
         return containment
 
     def prepare() -> Diffusion:
         return Diffusion.over(surface, distance.min(axis=0), resolution, share_of(tell, 0, 0.5))
 
     containment, diffusion = run_parallel(divide, prepare)
+    record("falloff", weights)
     weights = diffusion.spread(weights, share_of(tell, 0.5, 1))
+    record("spread", weights)
     if len(containment) > 1:
         weights = make_rigid(containment, surface.component, weights)
     weights = attach_accessories(graph, surface, containment, weights)
+    record("rigid", weights)
     _subtract_tail(weights)
     return weights
 
@@ -198,6 +216,17 @@ def _radii(
     least = LEAST_RADIUS / resolution
     radius[known] = RADIUS_FACTOR * np.maximum(length[median[known]], least)
     return radius
+
+
+def facing(
+    point: NDArray[np.float64], normal: NDArray[np.float64], bones: Bones, joint: int
+) -> float:
+    """Return how much surface at a point looks away from a joint's bones, `FACING_LEAST` to 1.
+
+    1 if it looks right at them: its distance is divided by this.
+    """
+    first, last = np.searchsorted(bones.joint, [joint, joint + 1])
+    return float(_facing(point, normal, bones.start, bones.end, first, last))
 
 
 def _leads_on(bones: Bones, joints: int) -> NDArray[np.bool_]:
