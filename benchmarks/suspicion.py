@@ -47,8 +47,8 @@ def weights_of(rig: cutcell.Rig, method: str, resolution: int) -> np.ndarray | N
 def suspicion_tables(paths: Sequence[Path], resolution: int) -> list[Table]:
     """Examine all rigs; return what is found of each, and how often."""
     note = (
-        f"R = {resolution}. How many vertices each finding names; several sets of weights for one "
-        "character. `-` where nothing is found."
+        f"R = {resolution}. How many vertices each finding names, with `!` where it is a warning; "
+        "several sets of weights for one character. `-` where nothing is found."
     )
     each = Table("Suspicious weights", ["character", "weights", *CODES.values()], note)
     often = {method: np.zeros(len(CODES) + 2, int) for method in SETS}
@@ -65,19 +65,26 @@ def suspicion_tables(paths: Sequence[Path], resolution: int) -> list[Table]:
             if weights is None:
                 continue
             found = cutcell.diagnose(rig.with_weights(weights), resolution)
-            sizes = [len(found[code].vertices) if code in found else 0 for code in CODES]
-            often[method] += [1, any(sizes), *np.minimum(sizes, 1)]
-            row = name, method, *(f"{size:,}" if size else "-" for size in sizes)
+            grave = [code in found and found[code].severity == "warning" for code in CODES]
+            often[method] += [1, any(grave), *grave]
+            row = name, method, *(_cell(found, code) for code in CODES)
             each.add(*row)
             print(*row, flush=True)
     summary = Table(
         "How often weights are suspicious",
         ["weights", "characters", "with any", *CODES.values()],
-        "Characters with each finding.",
+        "Characters with each finding as a warning.",
     )
     for method, counts in often.items():
         summary.add(method, *counts)
     return [summary, each]
+
+
+def _cell(found: cutcell.Diagnosis, code: str) -> str:
+    if code not in found:
+        return "-"
+    finding = found[code]
+    return f"{len(finding.vertices):,}" + "!" * (finding.severity == "warning")
 
 
 def main(given: Sequence[str] | None = None) -> None:

@@ -1,5 +1,6 @@
 from . import baselines as baselines
 from . import compare as compare
+from . import corrections as corrections
 from . import deform as deform
 from . import diagnosis as diagnosis
 from . import errors as errors
@@ -14,6 +15,9 @@ from . import progress as progress
 from . import skinning as skinning
 from . import surface as surface
 from . import winding as winding
+from .corrections import Corrections as Corrections
+from .corrections import JointCorrection as JointCorrection
+from .corrections import PartCorrection as PartCorrection
 from .deform import DeformJoints as DeformJoints
 from .deform import choose_deform as choose_deform
 from .deform import deform_joints as deform_joints

@@ -39,6 +39,7 @@ ORDER = [
         "errors",
         "inputs",
         "compile_cache",
+        "corrections",
         "memory",
         "method",
         "motion",

@@ -24,6 +24,9 @@ FLIPPED = 0.01
 """Of the surface: where as much is turned over in one pose, it is more than a crease."""
 LOST = 0.1
 """Of the volume, in one pose."""
+GRAVE = 3.0
+"""Times these bounds: then it is a warning. Artists' weights crease, too, where a joint bends in a
+way that no animation asks of it."""
 MOVES = 1e-3
 """A vertex that follows a joint less does not count as moved by it."""
 MOST_LINES = 40
@@ -62,8 +65,8 @@ def _poses(subject: Subject, weights: NDArray[np.float64]) -> Iterator[_Seen]:
     length = np.linalg.norm(points[a] - points[b], axis=1)
     normals = _normals(points, faces)
     area = np.linalg.norm(normals, axis=1).sum()
-    middle = points[faces].mean(axis=(0, 1))  # nearly no volume is lost by holes then
-    volume = _volumes(points - middle, faces).sum()
+    volume = _Volume(subject)
+    at_rest = volume.of(points)
     for j in range(len(joints)):
         moved = held[:, skeleton.subtree[j]].sum(axis=1)
         if not ((moved > MOVES) & (moved < 1 - MOVES)).any():
@@ -82,14 +85,13 @@ def _poses(subject: Subject, weights: NDArray[np.float64]) -> Iterator[_Seen]:
                 follow = moved[around].mean(axis=1)[:, None]
                 expected = before + follow * (before @ turn.T - before)
                 over = (after * expected).sum(axis=1) < 0
-                now = _volumes(posed - middle, faces).sum() if volume > 0 else volume
                 yield _Seen(
                     Pose(j, axis, degrees),
                     np.unique([a[bent[torn]], b[bent[torn]]]),
                     float(longer[torn].max(initial=0)),
                     unlike[over],
                     float(np.linalg.norm(before[over], axis=1).sum() / area),
-                    1 - float(now / volume) if volume > 0 else 0.0,
+                    1 - volume.of(posed) / at_rest if at_rest > 0 else 0.0,
                 )
 
 
@@ -103,7 +105,7 @@ def _stretched(subject: Subject, found: list[_Seen]) -> Iterator[Finding]:
     worst = torn[0]
     yield Finding(
         "stretched-edges",
-        "warning",
+        "warning" if worst.longest > GRAVE * SEEN else "note",
         f"Edges at {count(len(vertices), 'vertex')} become {STRETCH:g} times as long or more when "
         f"a joint turns by {DEGREES:g}°.",
         "Blend the weights there, or bind again.",
@@ -123,7 +125,7 @@ def _flipped(subject: Subject, found: list[_Seen]) -> Iterator[Finding]:
     faces = subject.whole[np.unique(np.concatenate([seen.flipped for seen in over]))]
     yield Finding(
         "flipped-faces",
-        "warning",
+        "warning" if worst.flipped_area > GRAVE * FLIPPED else "note",
         f"Up to {share(worst.flipped_area, 1)} of the surface is turned over when a joint turns by "
         f"{DEGREES:g}°.",
         "Blend the weights there, or bind again.",
@@ -145,7 +147,7 @@ def _lost(subject: Subject, found: list[_Seen]) -> Iterator[Finding]:
     assert subject.rig.weights is not None
     yield Finding(
         "lost-volume",
-        "warning",
+        "warning" if worst.lost > GRAVE * LOST else "note",
         f"The body loses up to {share(worst.lost, 1)} of its volume when a joint turns by "
         f"{DEGREES:g}°.",
         "Blend the weights over a longer stretch, or bind again.",
@@ -175,8 +177,24 @@ def _normals(points: NDArray[np.float64], faces: NDArray[np.int32]) -> NDArray[n
     return np.cross(b - a, c - a)
 
 
-def _volumes(points: NDArray[np.float64], faces: NDArray[np.int32]) -> NDArray[np.float64]:
-    """Return the signed volumes that faces span with the origin, times six."""
-    a, b, c = points[faces].transpose(1, 0, 2)
-    volumes: NDArray[np.float64] = np.einsum("ij,ij->i", a, np.cross(b, c))
-    return volumes
+class _Volume:
+    """The volume of a mesh in any pose; a fan to the middle of each open rim closes it."""
+
+    def __init__(self, subject: Subject) -> None:
+        self._loop, start = subject.boundary
+        self._start = start[:-1]
+        sizes = np.diff(start)
+        before = np.roll(self._loop, 1)
+        before[self._start] = self._loop[start[1:] - 1]
+        middles = len(subject.points) + np.repeat(np.arange(len(sizes)), sizes)
+        self._sizes = sizes[:, None]
+        fans = np.stack([self._loop, before, middles], axis=1)
+        self._faces = np.concatenate([subject.graph.faces[subject.whole], fans])
+
+    def of(self, points: NDArray[np.float64]) -> float:
+        """Return it, times six, for welded vertices (k, 3)."""
+        if len(self._sizes):
+            middles = np.add.reduceat(points[self._loop], self._start) / self._sizes
+            points = np.concatenate([points, middles])
+        a, b, c = points[self._faces].transpose(1, 0, 2)
+        return float(np.einsum("ij,ij->", a, np.cross(b, c)))

@@ -13,6 +13,7 @@ from ..geodesics import BoneDistances, Bones
 from ..method import RIG_REACH
 from ..progress import Tell, share_of
 from ..threads import run_parallel
+from .adjustments import Adjustments
 from .containment import cross_component_penalty, joint_containment, make_rigid
 from .diffusion import Diffusion
 from .rigid_accessories import attach_accessories
@@ -48,6 +49,7 @@ def rig_weights(
     surface: SurfaceOperators,
     tell: Tell = lambda done: None,
     record: Record = lambda step, array: None,
+    adjustments: Adjustments | None = None,
 ) -> NDArray[np.float64]:
     """Turn distances into weights for animation.
 
@@ -63,6 +65,7 @@ def rig_weights(
         See `Record`: "penalty" (components, j), "radius" (j,), "beyond" (k,), which vertices have
         a share of a joint beyond its radius; and weights (k, j) after the steps "falloff",
         "spread" and "rigid".
+    adjustments : Adjustments, optional
 
     Returns
     -------
@@ -78,11 +81,15 @@ def rig_weights(
         containment = joint_containment(surface, bones, len(distance))
         first_bone = np.searchsorted(bones.joint, np.arange(len(distance) + 1))
         penalty = cross_component_penalty(containment)
+        if adjustments is not None:
+            penalty = penalty / adjustments.gain
         known = surface.points, surface.normals, distance, penalty, surface.component
         ends = first_bone, bones.start, bones.end, LEAST_CELLS / resolution
         unbounded, chosen = np.full(len(distance), np.inf), np.ones(len(weights), np.bool_)
         _divide_by_distance(*known, *ends, unbounded, chosen, weights)
         radius = _radii(weights, distance, surface.areas, bones, resolution)
+        if adjustments is not None:
+            radius = np.where(np.isnan(adjustments.radius), radius, adjustments.radius)
         _mark_beyond(distance, weights, radius, chosen)
         _divide_by_distance(*known, *ends, radius, chosen, weights)
         for step, array in (("penalty", penalty), ("radius", radius), ("beyond", chosen)):
@@ -96,9 +103,10 @@ def rig_weights(
     record("falloff", weights)
     weights = diffusion.spread(weights, share_of(tell, 0.5, 1))
     record("spread", weights)
+    by_itself = None if adjustments is None else adjustments.by_itself
     if len(containment) > 1:
-        weights = make_rigid(containment, surface.component, weights)
-    weights = attach_accessories(graph, surface, containment, weights)
+        weights = make_rigid(containment, surface.component, weights, by_itself)
+    weights = attach_accessories(graph, surface, containment, weights, by_itself)
     record("rigid", weights)
     _subtract_tail(weights)
     return weights
