@@ -1,5 +1,6 @@
 from . import baselines as baselines
 from . import compare as compare
+from . import corrections as corrections
 from . import deform as deform
 from . import diagnosis as diagnosis
 from . import errors as errors
@@ -14,6 +15,9 @@ from . import progress as progress
 from . import skinning as skinning
 from . import surface as surface
 from . import winding as winding
+from .corrections import Corrections as Corrections
+from .corrections import JointCorrection as JointCorrection
+from .corrections import PartCorrection as PartCorrection
 from .deform import DeformJoints as DeformJoints
 from .deform import choose_deform as choose_deform
 from .deform import deform_joints as deform_joints
@@ -49,7 +53,10 @@ from .rig import Rig as Rig
 from .rig import Skeleton as Skeleton
 from .rig import TriangleMesh as TriangleMesh
 from .skinning import Binding as Binding
+from .skinning import Explanation as Explanation
+from .skinning import JointShare as JointShare
 from .skinning import bind as bind
+from .skinning import explain as explain
 from .skinning import refine_weights as refine_weights
 from .skinning import skinning_weights as skinning_weights
 from .winding import winding_number as winding_number

@@ -12,6 +12,7 @@ from .console import for_people, print_json, print_table, print_warnings, progre
 from .options import (
     Alpha,
     Connectivity,
+    CorrectionsFile,
     Deform,
     Falloff,
     Fresh,
@@ -36,6 +37,7 @@ from .options import (
 from .report import report_rows
 
 if TYPE_CHECKING:
+    from .corrections import Corrections
     from .method import Method
     from .rig import Rig
     from .skinning import Binding
@@ -53,6 +55,8 @@ EPILOG = """Examples:
 - `cutcell bind character.glb bound.glb --lock Jaw --lock Eye.L --symmetric`  (keep these two)
 
 - `cutcell bind character.glb bound.glb --fresh --no-deform '*_IK' --deform Tail`  (other joints)
+
+- `cutcell bind character.glb bound.glb --corrections character.corrections.json`
 
 - `cutcell bind body.obj bound.glb --skeleton body.json`  (a bare mesh)
 
@@ -90,6 +94,7 @@ def bind(
     deform: Deform = None,
     no_deform: NoDeform = None,
     fresh: Fresh = False,
+    corrections: CorrectionsFile = None,
     skeleton: SkeletonFile = None,
     json: Json = False,
     quiet: Quiet = False,
@@ -102,6 +107,7 @@ def bind(
     """
     from . import summary
     from .checks import check_has_joints
+    from .corrections import Corrections
     from .deform import choose_deform
     from .io import check_output, load, save
     from .io.files import naming
@@ -125,6 +131,7 @@ def bind(
         "symmetric": symmetric,
         "locked": lock or [],
     }
+    corrected = None if corrections is None else Corrections.load(corrections)
     check_output(out)
     loaded = load(rig, skeleton=skeleton)
     with naming(rig):
@@ -132,11 +139,11 @@ def bind(
         loaded = choose_deform(loaded, deform or (), no_deform or (), fresh=fresh)
     check_output(out, loaded)
     with progress_bars(quiet) as progress:
-        binding = compute(loaded, method=how, **touches, progress=progress)
+        binding = compute(loaded, method=how, **touches, corrections=corrected, progress=progress)
     warnings = [*loaded.warnings, *binding.warnings]
     if max_influences is None and how.max_influences is None and out.suffix.lower() in GLTF:
         how = how.with_options(max_influences=GLTF_INFLUENCES)
-        binding, dropped = _limited(loaded, binding, how, touches)
+        binding, dropped = _limited(loaded, binding, how, touches, corrected)
         warnings += dropped
     files = save(out, loaded.with_weights(binding.weights))
     document = {
@@ -145,6 +152,7 @@ def bind(
         "files": [str(file) for file in files],
         "method": method,
         "parameters": {**asdict(how), **touches},
+        "corrections": None if corrections is None else str(corrections),
         "mesh": summary.summarize_mesh(loaded.mesh, binding.graph),
         "meshes": summary.summarize_parts(loaded),
         "skeleton": summary.summarize_skeleton(loaded.skeleton),
@@ -163,17 +171,25 @@ def bind(
 
 
 def _limited(
-    rig: Rig, binding: Binding, method: Method, touches: dict[str, Any]
+    rig: Rig,
+    binding: Binding,
+    method: Method,
+    touches: dict[str, Any],
+    corrections: Corrections | None,
 ) -> tuple[Binding, list[str]]:
     """Keep as few influences as a method says, and tell in a sentence what that drops."""
+    from .skinning import bind as compute
     from .skinning import refine_weights, skinning_weights
 
     every = binding.weights
     most = int((every > 0).sum(axis=1).max())
     if method.max_influences is None or most <= method.max_influences:
         return binding, []
-    weights = skinning_weights(binding.distances, method=method, allowed=rig.allowed)
-    weights = refine_weights(rig, weights, method=method, **touches)
+    if corrections:
+        weights = compute(rig, method=method, **touches, corrections=corrections).weights
+    else:
+        weights = skinning_weights(binding.distances, method=method, allowed=rig.allowed)
+        weights = refine_weights(rig, weights, method=method, **touches)
     dropped = every.sum(axis=1, where=weights == 0)
     sentence = (
         f"of up to {most} influences a vertex the {method.max_influences} largest are saved, as "

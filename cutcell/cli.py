@@ -20,6 +20,8 @@ from .bind_command import bind
 from .console import for_people, print_json, print_warnings, progress_bars
 from .diagnose_command import EPILOG as DIAGNOSE_EPILOG
 from .diagnose_command import diagnose
+from .explain_command import EPILOG as EXPLAIN_EPILOG
+from .explain_command import explain
 from .graph_command import EPILOG as GRAPH_EPILOG
 from .graph_command import graph
 from .joints_command import EPILOG as JOINTS_EPILOG
@@ -139,6 +141,7 @@ def compare(
 
 
 app.command(epilog=DIAGNOSE_EPILOG)(diagnose)
+app.command(epilog=EXPLAIN_EPILOG)(explain)
 app.command(epilog=JOINTS_EPILOG)(joints)
 
 

@@ -183,6 +183,16 @@ Fresh = Annotated[
         rich_help_panel=JOINTS,
     ),
 ]
+CorrectionsFile = Annotated[
+    Path | None,
+    typer.Option(
+        "--corrections",
+        metavar="FILE",
+        help="What is corrected (.json): joints without weight, locked, or of another reach; parts"
+        " glued to joints; weights of single vertices.",
+        rich_help_panel=TOUCH,
+    ),
+]
 Smoothing = Annotated[
     int,
     typer.Option(

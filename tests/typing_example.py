@@ -70,6 +70,23 @@ def look(rig: cutcell.Rig) -> list[str]:
     return [*names, *(finding.message for finding in findings)]
 
 
+def why(rig: cutcell.Rig) -> dict[str, float]:
+    found = cutcell.explain(rig, 7, method="paper", connectivity="any")
+    assert_type(found, cutcell.Explanation)
+    shares: tuple[cutcell.JointShare, ...] = found.joints
+    return {share.name: share.steps["normalise"] for share in shares}
+
+
+def put_right(rig: cutcell.Rig) -> cutcell.Binding:
+    corrections = cutcell.Corrections(
+        joints={"Root": cutcell.JointCorrection(deform=False)},
+        parts={7: cutcell.PartCorrection("glued", "Head")},
+        vertices={3: {"Head": 0.5, "Neck": 0.5}},
+    )
+    again = cutcell.corrections.Corrections.from_json(corrections.to_json())
+    return cutcell.bind(rig, corrections=again)
+
+
 def move(rig: cutcell.Rig, weights: NDArray[np.float64]) -> NDArray[np.float64]:
     turns = np.tile(cutcell.pose.axis_rotation("x", 30.0), (len(rig.skeleton.joints), 1, 1))
     transforms = cutcell.forward_kinematics(rig.skeleton, turns)

@@ -1,6 +1,6 @@
 """What is wrong with a rig: checks that name the elements at fault, and repairs."""
 
-from .finding import SEVERITIES, TITLES, Diagnosis, Finding
+from .finding import SEVERITIES, TITLES, Diagnosis, Finding, Pose
 from .repair import Repaired
 from .run import diagnose, unreadable
 
@@ -9,6 +9,7 @@ __all__ = [
     "TITLES",
     "Diagnosis",
     "Finding",
+    "Pose",
     "Repaired",
     "diagnose",
     "unreadable",

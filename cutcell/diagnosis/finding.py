@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -47,6 +47,12 @@ TITLES = {
     "unweighted-vertices": "Vertices without weight",
     "unnormalised-weights": "Weights that do not sum to one",
     "leaked-weights": "Leaked weights",
+    "stray-weights": "Stray weights",
+    "weight-islands": "Islands of weight",
+    "stretched-edges": "Edges that stretch",
+    "flipped-faces": "Faces that flip",
+    "lost-volume": "Volume that is lost",
+    "asymmetric-weights": "Left and right differ",
     "torn-seams": "Seams that tear",
     "many-influences": "More than four influences",
 }
@@ -55,6 +61,24 @@ TITLES = {
 
 def _none() -> NDArray[np.intp]:
     return np.zeros(0, np.intp)
+
+
+@dataclass(frozen=True)
+class Pose:
+    """A pose in which a finding is seen: one joint turned, all below it along with it.
+
+    Parameters
+    ----------
+    joint : int
+    axis : {"x", "y", "z"}
+        Of the rig's space.
+    degrees : float
+        See `pose.rotate_joint`.
+    """
+
+    joint: int
+    axis: str
+    degrees: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,6 +100,8 @@ class Finding:
         A line for each part or joint, where one sentence does not tell enough.
     repair : str
         What `Diagnosis.repaired` does about it; empty where nothing is safe.
+    pose : Pose, optional
+        One in which it is seen, where it is not seen at rest.
     """
 
     code: str
@@ -87,6 +113,7 @@ class Finding:
     joints: NDArray[np.intp] = field(default_factory=_none)
     details: tuple[str, ...] = ()
     repair: str = ""
+    pose: Pose | None = None
 
     @property
     def title(self) -> str:
@@ -106,6 +133,7 @@ class Finding:
             "faces": self.faces.tolist(),
             "joints": self.joints.tolist(),
             "repair": self.repair or None,
+            "pose": None if self.pose is None else asdict(self.pose),
         }
 
 

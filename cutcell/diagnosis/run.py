@@ -9,12 +9,14 @@ from ..progress import Progress, silent
 from ..rig import Rig
 from .finding import Diagnosis, Finding, by_gravity
 from .joints import check_joints
+from .leaks import check_leaks
 from .mesh import check_mesh
 from .parts import check_parts
 from .subject import Subject
+from .sweep import check_sweep
 from .weights import check_weights
 
-CHECKS = (check_mesh, check_joints, check_parts, check_weights)
+CHECKS = (check_mesh, check_joints, check_parts, check_weights, check_leaks, check_sweep)
 
 
 def diagnose(

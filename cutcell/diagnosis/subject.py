@@ -114,6 +114,21 @@ class Subject:
         return areas(self.points[self.welded[self.rig.mesh.faces]])
 
     @cached_property
+    def place_areas(self) -> NDArray[np.float64]:
+        """A third of the areas of the faces around each welded vertex, shape (k,)."""
+        corners = self.welded[self.rig.mesh.faces].ravel()
+        area: NDArray[np.float64] = np.zeros(len(self.points))
+        np.add.at(area, corners, np.repeat(self.areas / 3, 3))
+        return area
+
+    @property
+    def vertex_areas(self) -> NDArray[np.float64]:
+        """`place_areas` divided among the vertices of the file at each place, shape (n,)."""
+        shared = np.bincount(self.welded, minlength=len(self.points))
+        area: NDArray[np.float64] = (self.place_areas / shared)[self.welded]
+        return area
+
+    @cached_property
     def component(self) -> NDArray[np.int32]:
         """The connected component of each welded vertex, shape (k,)."""
         return label_components(self.graph.faces, len(self.points))

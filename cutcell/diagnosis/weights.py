@@ -124,7 +124,7 @@ def _leaked(
     asked = distances.fallback[vertex] == REACHED
     vertex, joint = vertex[asked], joint[asked]
     nearest = distances.joint.min(axis=0)
-    through = _through(subject, distances, vertex, joint)
+    through = through_body(subject, distances, vertex, joint)
     straight = _straight(subject, distances, vertex, joint)
     beyond = through - nearest[vertex]
     with np.errstate(invalid="ignore"):
@@ -161,7 +161,7 @@ def _told(subject: Subject, distances: BoneDistances) -> NDArray[np.bool_]:
     return told & (subject.joint_distance <= OUTSIDE)
 
 
-def _through(
+def through_body(
     subject: Subject, distances: BoneDistances, vertex: NDArray[np.intp], joint: NDArray[np.intp]
 ) -> NDArray[np.float64]:
     """Return the distances through the body of vertices from joints, measured if not known."""

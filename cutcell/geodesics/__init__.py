@@ -4,18 +4,21 @@ from ..method import LEAVES
 from .bones import Bones, Sources, bone_samples, bone_segments, distance_to_segment
 from .distances import BoneDistances, bone_distances
 from .fallback import FALLBACK_REASONS
-from .paths import path_length, shortest_path
+from .paths import PIECES, TracedPath, path_length, shortest_path, trace_path
 
 __all__ = [
     "FALLBACK_REASONS",
     "LEAVES",
+    "PIECES",
     "BoneDistances",
     "Bones",
     "Sources",
+    "TracedPath",
     "bone_distances",
     "bone_samples",
     "bone_segments",
     "distance_to_segment",
     "path_length",
     "shortest_path",
+    "trace_path",
 ]

@@ -21,6 +21,7 @@ from .bone_extents import REGION_LEAVES, REGION_WITHIN, aim_leaf_bones, fit_bone
 from .bones import Bones, Sources, bone_segments, find_sources, node_grid
 from .contraction import Contraction, contract
 from .fallback import NOT_ALLOWED, REACHED, UNREACHED, UNUSED, straight_to_nearest
+from .inside import Inside
 from .shortest_paths import shortest_paths
 
 
@@ -69,6 +70,11 @@ class BoneDistances:
         if self.of_vertices is not None:
             return self.of_vertices
         return self.at_places.take(self.graph.vertex_node, axis=1)
+
+    @cached_property
+    def inside(self) -> Inside:
+        """Tells which straight segments stay inside the body."""
+        return Inside(self.graph, self.contraction)
 
     @property
     def source_node(self) -> NDArray[np.int32]:

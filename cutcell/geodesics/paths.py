@@ -2,25 +2,87 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.sparse.csgraph import dijkstra
 
 from ..checks import check_integer
 from ..errors import ParameterError
-from ..graph import CutCellGraph
+from ..graph import INTERIOR, MESH, SURFACE, CutCellGraph
 from .bones import Bones, distance_to_segment
 from .distances import BoneDistances
+from .inside import Inside
+from .taut import taut
 
-STRAIGHT = 1.005
-"""A path counts as straight if it is at most this factor longer than the straight line."""
-SLACK = 0.9
-"""The share of a straight segment's length by which the field must fall along it."""
+PIECES = ("mesh edge", "interior edge", "surface edge", "line of sight", "outside")
+"""Kinds of the pieces of a path. The first three are edges of the graph, numbered as its kinds of
+edges; a line of sight cuts across the body. Outside lies what leaves the body to reach a bone that
+is not in it, and that alone."""
+LINE_OF_SIGHT, OUTSIDE = 3, 4
+ROUNDING = 1e-12
+"""Lengths that differ by less than this, in the unit cube, are equal."""
+
+
+@dataclass(frozen=True, eq=False)
+class TracedPath:
+    """A path from a vertex to a bone, in pieces.
+
+    Parameters
+    ----------
+    points : array, shape (p, 3), float64
+        From the vertex to a point of the bone, in the unit cube; none if there is no path.
+    kinds : array, shape (p - 1,), uint8
+        What each piece between two points is, an index into `PIECES`.
+    """
+
+    points: NDArray[np.float64]
+    kinds: NDArray[np.uint8]
+
+    @property
+    def lengths(self) -> NDArray[np.float64]:
+        """The length of each piece, shape (p - 1,)."""
+        apart: NDArray[np.float64] = np.linalg.norm(np.diff(self.points, axis=0), axis=1)
+        return apart
+
+    @property
+    def length(self) -> float:
+        """The length of the whole path."""
+        return float(self.lengths.sum())
 
 
 def shortest_path(
     distances: BoneDistances, joint: int, vertex: int, field: ArrayLike | None = None
 ) -> NDArray[np.float64]:
     """Walk from a vertex back to the nearest of a joint's bones.
+
+    Parameters
+    ----------
+    distances, joint, vertex, field
+        See `trace_path`.
+
+    Returns
+    -------
+    array, shape (p, 3), float64
+        The points of what `trace_path` returns.
+
+    Raises
+    ------
+    ParameterError
+        There is no such vertex, `joint` may carry no weight, or `field` has another shape.
+    """
+    return trace_path(distances, joint, vertex, field).points
+
+
+def trace_path(
+    distances: BoneDistances, joint: int, vertex: int, field: ArrayLike | None = None
+) -> TracedPath:
+    """Walk from a vertex back to the nearest of a joint's bones, and tell what each piece is.
+
+    No piece is farther than half a lattice cell from the body (`inside.TOLERANCE`), except those
+    of the kind "outside": the way from the node nearest to a bone to that bone, where the bone is
+    not in the body.
 
     Parameters
     ----------
@@ -33,8 +95,7 @@ def shortest_path(
 
     Returns
     -------
-    array, shape (p, 3), float64
-        From the vertex to a point of the bone, in the unit cube; no points if there is no path.
+    TracedPath
         With connectivity 6 and 26 it runs along the graph's edges, and its length is the value
         of the field; with "any" it is straightened, and its length is within a tenth of that.
 
@@ -53,13 +114,23 @@ def shortest_path(
         )
     node = int(graph.vertex_node[vertex])
     if not np.isfinite(field[node]):
-        return np.empty((0, 3))
+        return TracedPath(np.empty((0, 3)), np.empty(0, np.uint8))
     own = distances.bones.joint == joint
-    bones = Bones(distances.bones.start[own], distances.bones.end[own], distances.bones.joint[own])
-    chain, foot = _descend(graph, field, bones, node)
+    bones, sources = distances.bones.some(own), distances.sources.some(own)
+    source = np.full(len(graph.nodes), np.inf)
+    np.minimum.at(source, sources.node, sources.distance)
+    chain, inside = _descend(graph, field, source, node), distances.inside
+    feet = _nearest_on(bones, graph.nodes[chain])
+    at_source = field[chain[-1]] >= source[chain[-1]] - ROUNDING
+    if not at_source and not inside.segments(graph.nodes[chain[-1:]], feet[-1:])[0].all():
+        chain = _search(graph, source, node)
+        feet = _nearest_on(bones, graph.nodes[chain])
+    kept = list(range(len(chain)))
     if graph.connectivity == "any":
-        chain = _straightened(graph.nodes, field, chain)
-    return np.concatenate([graph.nodes[chain], foot[None]])
+        kept = taut(inside, graph.nodes[chain], field[chain], feet)
+    path, kinds = _pieces(graph, [chain[k] for k in kept], np.diff(kept) > 1)
+    last, to_bone = _to_bone(inside, path[-1], feet[kept[-1]])
+    return TracedPath(np.concatenate([path, last]), np.concatenate([kinds, to_bone]))
 
 
 def path_length(path: ArrayLike) -> float:
@@ -68,55 +139,69 @@ def path_length(path: ArrayLike) -> float:
 
 
 def _descend(
-    graph: CutCellGraph, field: NDArray[np.float64], bones: Bones, node: int
-) -> tuple[list[int], NDArray[np.float64]]:
-    """Descend the field from neighbour to neighbour, until the bone is straight ahead."""
+    graph: CutCellGraph, field: NDArray[np.float64], source: NDArray[np.float64], node: int
+) -> list[int]:
+    """Descend the field from neighbour to neighbour, to a source or a local minimum.
+
+    Along edges the field is exact, and a neighbour is next on the shortest path if the edge to it
+    is as long as the field falls. At any angle the neighbour in the direction of the steepest
+    descent is, and the field may have local minima.
+    """
     indptr, indices, lengths = graph.adjacency
     chain = [node]
-    while True:
+    while field[chain[-1]] < source[chain[-1]] - ROUNDING:
         here = chain[-1]
-        straight, foot = _to_bone(graph.nodes[here], bones)
-        if field[here] <= straight * STRAIGHT + 1e-12:
-            return chain, foot
         around = slice(indptr[here], indptr[here + 1])
-        near = indices[around]
-        # Edges may have zero length, and an any-angle field may have local minima.
-        total = np.where(np.isin(near, chain), np.inf, field[near] + lengths[around])
-        if not np.isfinite(total).any():
-            return chain, foot
-        chain.append(int(near[np.argmin(total)]))
+        near, length = indices[around], lengths[around]
+        if graph.connectivity == "any":
+            falls = field[near] < field[here]
+            with np.errstate(divide="ignore", invalid="ignore"):
+                cost = np.where(falls, (field[near] - field[here]) / length, np.inf)
+        else:  # edges may have zero length
+            cost = np.where(np.isin(near, chain), np.inf, field[near] + length)
+        if not len(near) or cost.min() == np.inf:
+            break
+        chain.append(int(near[np.argmin(cost)]))
+    return chain
 
 
-def _to_bone(point: NDArray[np.float64], bones: Bones) -> tuple[float, NDArray[np.float64]]:
-    """Return the distance to the nearest bone, and the nearest point on it."""
-    distance = distance_to_segment(point, bones.start, bones.end)
-    k = int(np.argmin(distance))
-    start, along = bones.start[k], bones.end[k] - bones.start[k]
-    squared = float(along @ along)
-    fraction = np.clip((point - start) @ along / squared, 0, 1) if squared > 0 else 0.0
-    return float(distance[k]), start + fraction * along
+def _search(graph: CutCellGraph, source: NDArray[np.float64], node: int) -> list[int]:
+    """Find the shortest path along edges from a node to a source."""
+    length, before = dijkstra(graph.csr(), indices=node, return_predecessors=True)
+    chain = [int(np.argmin(length + source))]
+    while chain[-1] != node:
+        chain.append(int(before[chain[-1]]))
+    return chain[::-1]
 
 
-def _straightened(
-    nodes: NDArray[np.float64], field: NDArray[np.float64], chain: list[int]
-) -> list[int]:
-    """Leave out nodes between two with line of sight, so that the path is shortest.
+def _nearest_on(bones: Bones, points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the point nearest to each of some points on any bone, shape (p, 3)."""
+    distance = distance_to_segment(points[:, None], bones.start, bones.end)
+    nearest = distance.argmin(axis=1)
+    start, along = bones.start[nearest], (bones.end - bones.start)[nearest]
+    squared = (along**2).sum(axis=1)
+    fraction = ((points - start) * along).sum(axis=1) / np.where(squared > 0, squared, 1)
+    foot: NDArray[np.float64] = start + np.clip(fraction, 0, 1)[:, None] * along
+    return foot
 
-    Along a straight segment of a shortest path the field falls by the segment's length; where it
-    falls by more, the straight line leaves the body.
-    """
-    points, height = nodes[chain], field[chain]
-    last = len(chain) - 1
-    left, following = np.zeros(len(chain)), np.zeros(len(chain), int)
-    for k in range(last - 1, -1, -1):
-        length = np.linalg.norm(points[k + 1 :] - points[k], axis=1)
-        fall = height[k] - height[k + 1 :]
-        seen = (fall <= length * STRAIGHT) & (fall >= SLACK * length)
-        seen[0] = True
-        total = np.where(seen, length + left[k + 1 :], np.inf)
-        best = int(np.flatnonzero(total <= total.min() * (1 + 1e-9))[-1])  # the fewest points
-        left[k], following[k] = total[best], k + 1 + best
-    kept = [0]
-    while kept[-1] < last:
-        kept.append(int(following[kept[-1]]))
-    return [chain[k] for k in kept]
+
+def _pieces(
+    graph: CutCellGraph, chain: list[int], sees: NDArray[np.bool_]
+) -> tuple[NDArray[np.float64], NDArray[np.uint8]]:
+    """Return the points of a chain of nodes, and the kinds of the pieces between them."""
+    kind = graph.node_kind[chain]
+    first, second = np.minimum(kind[:-1], kind[1:]), np.maximum(kind[:-1], kind[1:])
+    # Mesh vertices are joined to each other and to surface nodes, all else lies inside.
+    edge = np.where(first != MESH, INTERIOR, np.where(second == MESH, MESH, SURFACE))
+    return graph.nodes[chain], np.where(sees, LINE_OF_SIGHT, edge).astype(np.uint8)
+
+
+def _to_bone(
+    inside: Inside, start: NDArray[np.float64], foot: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.uint8]]:
+    """Divide the last piece where it leaves the body: its points but the first, and its kinds."""
+    (is_in,) = inside.segments(start[None], foot[None])
+    change = np.flatnonzero(np.diff(is_in)) + 1
+    share = np.append(change, len(is_in)) / len(is_in)
+    kinds = np.where(is_in[np.append(0, change)], LINE_OF_SIGHT, OUTSIDE)
+    return start + share[:, None] * (foot - start), kinds.astype(np.uint8)

@@ -29,6 +29,7 @@ def assemble(
     lattice: Lattice,
     connectivity: int | str,
     inverted: NDArray[np.bool_],
+    winding_threshold: float,
 ) -> CutCellGraph:
     """Build the graph from the hits of the rays and their intervals inside.
 
@@ -46,6 +47,7 @@ def assemble(
     connectivity : {6, 26, "any"}
     inverted : array, shape (m,), bool
         Which of the faces were flipped.
+    winding_threshold : float
 
     Raises
     ------
@@ -108,6 +110,7 @@ def assemble(
         connectivity=connectivity,
         interior=points,
         inverted=inverted,
+        winding_threshold=winding_threshold,
     )
 
 

@@ -132,6 +132,6 @@ def build_graph(
     tell(0.9)
     is_closed = len(boundary.loop) == 0
     found = vertices, vertex_node, faces, mesh_edges, is_closed, hits, inside
-    graph = assemble(*found, lattice, connectivity, inverted)
+    graph = assemble(*found, lattice, connectivity, inverted, winding_threshold)
     tell(1.0)
     return graph

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from ..surface.lattice import Lattice
+from ..winding.exact import WindingNumbers
 from .interior import InteriorPoints
 from .neighbours import Adjacency, list_neighbours
 
@@ -52,6 +53,8 @@ class CutCellGraph:
         The lattice points inside, in the order of their nodes.
     inverted : array, shape (m,), bool
         Which faces of the mesh are inside out, see `inverted_faces`.
+    winding_threshold : float
+        tau: what has at least this winding number is inside.
     """
 
     nodes: NDArray[np.float64]
@@ -67,6 +70,7 @@ class CutCellGraph:
     connectivity: int | str
     interior: InteriorPoints
     inverted: NDArray[np.bool_]
+    winding_threshold: float = 0.5
 
     @property
     def first_point(self) -> int:
@@ -87,6 +91,11 @@ class CutCellGraph:
     def adjacency(self) -> Adjacency:
         """Neighbours of each node, see `list_neighbours`."""
         return list_neighbours(self.edges, self.lengths, len(self.nodes))
+
+    @cached_property
+    def winding_numbers(self) -> WindingNumbers:
+        """The winding number of the graph's mesh, faces as they count, at points."""
+        return WindingNumbers(self.nodes[: self.first_point], self.faces)
 
     @cached_property
     def connected(self) -> NDArray[np.bool_]:

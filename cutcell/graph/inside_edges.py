@@ -138,6 +138,15 @@ def diagonal_edges(steps: NDArray[np.int32], first_point: int) -> NDArray[np.int
     return edges
 
 
+def cells_inside(steps: NDArray[np.int32]) -> NDArray[np.bool_]:
+    """Tell which interior points are the lowest corner of a cell whose twelve edges lie inside.
+
+    `steps` as of `lattice_steps`; shape (p,).
+    """
+    found: NDArray[np.bool_] = _mark_cells(steps)
+    return found
+
+
 @compiled(inline="always")
 def _step(steps, point, column):
     """Return the neighbour of a point, OUTSIDE if it has none or is itself outside."""

@@ -2,12 +2,17 @@
 
 from .bind import Binding, bind
 from .compilation import is_compiled, warm_up
+from .explain import Explanation, JointShare, Piece, explain
 from .refine import refine_weights
 from .weights import keep_strongest, skinning_weights
 
 __all__ = [
     "Binding",
+    "Explanation",
+    "JointShare",
+    "Piece",
     "bind",
+    "explain",
     "is_compiled",
     "keep_strongest",
     "refine_weights",

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..checks import check_has_joints, check_positions
+from ..corrections import Corrections
 from ..errors import SkeletonError
 from ..geodesics import FALLBACK_REASONS, BoneDistances, bone_distances
 from ..graph import CutCellGraph, build_graph
@@ -22,6 +23,14 @@ from ..progress import Progress, silent
 from ..rig import Rig
 from ..surface.lattice import Lattice
 from .compilation import is_compiled, warm_up
+from .correct import (
+    adjustments_of,
+    corrected_parts,
+    corrected_rig,
+    joints_measured,
+    locked_by,
+    overruled,
+)
 from .refine import Touches, check_refinement, refine_weights
 from .surface_operators import SurfaceOperators
 from .weights import skinning_weights
@@ -62,6 +71,7 @@ def bind(
     smoothing: int = 0,
     symmetric: bool = False,
     locked: Sequence[int | str] = (),
+    corrections: Corrections | None = None,
     progress: Progress = silent,
     **options: Unpack[Options],
 ) -> Binding:
@@ -82,6 +92,9 @@ def bind(
         the paper's method.
     smoothing, symmetric, locked
         See `refine_weights`.
+    corrections : Corrections, optional
+        What a person corrects: joints without weight, locked or of another reach, parts that are
+        glued, single vertices.
     progress : callable
         See `cutcell.progress`; stages are "graph", "distances", "weights", and
         before them "compile" the very first time on a machine, and after a change of the code.
@@ -109,6 +122,10 @@ def bind(
     """
     rig = as_rig(rig)
     method = method_of(method, resolution, **options)
+    corrections = Corrections() if corrections is None else corrections
+    rig = corrected_rig(rig, corrections)
+    if corrections.joints:
+        locked = [*locked, *locked_by(corrections)]
     touches: Touches = {"smoothing": smoothing, "symmetric": symmetric, "locked": locked}
     _check(rig, method, touches)
     if not is_compiled():
@@ -120,13 +137,28 @@ def bind(
         graph = build_graph(rig.mesh, method=method, progress=progress)
     with _timed("distances", seconds):
         _begin_what_follows(graph, method)
+        nearest, within = joints_measured(corrections, method)
         distances = bone_distances(
-            graph, rig.skeleton, method=method, allowed=rig.allowed, progress=progress
+            graph,
+            rig.skeleton,
+            method=method,
+            nearest_joints=nearest,
+            within=within,
+            allowed=rig.allowed,
+            progress=progress,
         )
     with _timed("weights", seconds):
         progress("weights", 0.0)
-        weights = skinning_weights(distances, method=method, allowed=rig.allowed, progress=progress)
+        weights = skinning_weights(
+            distances,
+            method=method,
+            allowed=rig.allowed,
+            adjustments=adjustments_of(rig, graph, corrections),
+            progress=progress,
+        )
+        weights = corrected_parts(rig, graph, weights, corrections)
         weights = refine_weights(rig, weights, method=method, **touches)
+        weights = overruled(rig, weights, corrections)
         progress("weights", 1.0)
     return Binding(weights, graph, distances, seconds, _warnings(graph, distances))
 

@@ -64,7 +64,10 @@ def cross_component_penalty(containment: NDArray[np.float64]) -> NDArray[np.floa
 
 
 def make_rigid(
-    containment: NDArray[np.float64], component: NDArray[np.int32], weights: NDArray[np.float64]
+    containment: NDArray[np.float64],
+    component: NDArray[np.int32],
+    weights: NDArray[np.float64],
+    by_itself: NDArray[np.bool_] | None = None,
 ) -> NDArray[np.float64]:
     """Let components that contain bones of one joint only follow that joint: plates, wheels.
 
@@ -75,12 +78,15 @@ def make_rigid(
     component : array, shape (k,)
         Of each welded vertex.
     weights : array, shape (k, j)
+    by_itself : array, shape (components,), bool, optional
+        Components that do not.
 
     Returns
     -------
     array, shape (k, j)
     """
-    rigid = (np.count_nonzero(containment, axis=1) == 1)[component]
+    alone = np.count_nonzero(containment, axis=1) == 1
+    rigid = (alone if by_itself is None else alone & ~by_itself)[component]
     if not rigid.any():
         return weights
     result = weights.copy()

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.distance import cdist
@@ -11,6 +13,7 @@ from ..geodesics import BoneDistances, Bones
 from ..method import RIG_REACH
 from ..progress import Tell, share_of
 from ..threads import run_parallel
+from .adjustments import Adjustments
 from .containment import cross_component_penalty, joint_containment, make_rigid
 from .diffusion import Diffusion
 from .rigid_accessories import attach_accessories
@@ -37,8 +40,16 @@ TAIL = 0.05
 """Of a vertex' largest weight: subtracted from all its weights, so that they end somewhere."""
 
 
+Record = Callable[[str, NDArray], None]
+"""Is told the name of each step and what it has computed, which may change afterwards."""
+
+
 def rig_weights(
-    distances: BoneDistances, surface: SurfaceOperators, tell: Tell = lambda done: None
+    distances: BoneDistances,
+    surface: SurfaceOperators,
+    tell: Tell = lambda done: None,
+    record: Record = lambda step, array: None,
+    adjustments: Adjustments | None = None,
 ) -> NDArray[np.float64]:
     """Turn distances into weights for animation.
 
@@ -50,6 +61,11 @@ def rig_weights(
         Of their graph.
     tell : callable
         See `progress.Tell`.
+    record : callable
+        See `Record`: "penalty" (components, j), "radius" (j,), "beyond" (k,), which vertices have
+        a share of a joint beyond its radius; and weights (k, j) after the steps "falloff",
+        "spread" and "rigid".
+    adjustments : Adjustments, optional
 
     Returns
     -------
@@ -65,23 +81,33 @@ def rig_weights(
         containment = joint_containment(surface, bones, len(distance))
         first_bone = np.searchsorted(bones.joint, np.arange(len(distance) + 1))
         penalty = cross_component_penalty(containment)
+        if adjustments is not None:
+            penalty = penalty / adjustments.gain
         known = surface.points, surface.normals, distance, penalty, surface.component
         ends = first_bone, bones.start, bones.end, LEAST_CELLS / resolution
         unbounded, chosen = np.full(len(distance), np.inf), np.ones(len(weights), np.bool_)
         _divide_by_distance(*known, *ends, unbounded, chosen, weights)
         radius = _radii(weights, distance, surface.areas, bones, resolution)
+        if adjustments is not None:
+            radius = np.where(np.isnan(adjustments.radius), radius, adjustments.radius)
         _mark_beyond(distance, weights, radius, chosen)
         _divide_by_distance(*known, *ends, radius, chosen, weights)
+        for step, array in (("penalty", penalty), ("radius", radius), ("beyond", chosen)):
+            record(step, array)
         return containment
 
     def prepare() -> Diffusion:
         return Diffusion.over(surface, distance.min(axis=0), resolution, share_of(tell, 0, 0.5))
 
     containment, diffusion = run_parallel(divide, prepare)
+    record("falloff", weights)
     weights = diffusion.spread(weights, share_of(tell, 0.5, 1))
+    record("spread", weights)
+    by_itself = None if adjustments is None else adjustments.by_itself
     if len(containment) > 1:
-        weights = make_rigid(containment, surface.component, weights)
-    weights = attach_accessories(graph, surface, containment, weights)
+        weights = make_rigid(containment, surface.component, weights, by_itself)
+    weights = attach_accessories(graph, surface, containment, weights, by_itself)
+    record("rigid", weights)
     _subtract_tail(weights)
     return weights
 
@@ -198,6 +224,17 @@ def _radii(
     least = LEAST_RADIUS / resolution
     radius[known] = RADIUS_FACTOR * np.maximum(length[median[known]], least)
     return radius
+
+
+def facing(
+    point: NDArray[np.float64], normal: NDArray[np.float64], bones: Bones, joint: int
+) -> float:
+    """Return how much surface at a point looks away from a joint's bones, `FACING_LEAST` to 1.
+
+    1 if it looks right at them: its distance is divided by this.
+    """
+    first, last = np.searchsorted(bones.joint, [joint, joint + 1])
+    return float(_facing(point, normal, bones.start, bones.end, first, last))
 
 
 def _leads_on(bones: Bones, joints: int) -> NDArray[np.bool_]:

@@ -27,6 +27,7 @@ def attach_accessories(
     surface: SurfaceOperators,
     containment: NDArray[np.float64],
     weights: NDArray[np.float64],
+    by_itself: NDArray[np.bool_] | None = None,
 ) -> NDArray[np.float64]:
     """Let small components without bones follow what they sit on: eyes, buttons, horns, armour.
 
@@ -39,6 +40,8 @@ def attach_accessories(
     containment : array, shape (components, j)
         See `joint_containment`.
     weights : array, shape (k, j)
+    by_itself : array, shape (components,), bool, optional
+        Components that do not.
 
     Returns
     -------
@@ -49,23 +52,40 @@ def attach_accessories(
     has_area = np.bincount(component, areas, len(containment)) > 0
     is_small = _longest_sides(points, component) <= SMALL
     is_accessory = has_area & is_small & (containment.max(axis=1) == 0)
+    if by_itself is not None:
+        is_accessory &= ~by_itself
     if not is_accessory.any():
         return weights
     on_body = ~is_accessory[component]
     # A mesh that is in patches all over is no body with things on it.
     if areas[on_body].sum() < areas.sum() / 2:
         return weights
+    return attach(graph, surface, is_accessory, weights)
+
+
+def attach(
+    graph: CutCellGraph,
+    surface: SurfaceOperators,
+    is_accessory: NDArray[np.bool_],
+    weights: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """Let some components, shape (components,), follow the others where they touch them.
+
+    `weights` and what is returned have the shape (k, j).
+    """
+    points, component, areas = surface.points, surface.component, surface.areas
+    on_body = ~is_accessory[component]
     attached = np.flatnonzero(~on_body)
     distance, corners = _nearest_on_body(graph, on_body, points[attached])
     label = component[attached]
-    least = np.full(len(containment), np.inf)
+    least = np.full(len(is_accessory), np.inf)
     np.minimum.at(least, label, distance)
     touching = np.flatnonzero(distance <= least[label] + CONTACT / graph.lattice.resolution)
     rows = _contact_weights(
         weights[corners[touching]].mean(axis=1),
         areas[attached[touching]] + 1e-12,
         label[touching],
-        len(containment),
+        len(is_accessory),
     )
     result = weights.copy()
     result[attached] = rows[label]

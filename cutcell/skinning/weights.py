@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Unpack
 
 import numpy as np
@@ -12,6 +13,7 @@ from ..geodesics import BoneDistances
 from ..method import ANIMATION, Method, MethodName, WeightOptions, method_of
 from ..progress import Progress, share_of, silent
 from ..threads import in_threads, parts, threads
+from .adjustments import Adjustments
 from .kernel import paper_kernel, pruned_paper_kernel
 from .prune import A_PART, prune
 from .rig_falloff import permitted, rig_weights
@@ -23,6 +25,7 @@ def skinning_weights(
     *,
     method: Method | MethodName = ANIMATION,
     allowed: NDArray[np.bool_] | None = None,
+    adjustments: Adjustments | None = None,
     progress: Progress = silent,
     **options: Unpack[WeightOptions],
 ) -> NDArray[np.float64]:
@@ -36,6 +39,8 @@ def skinning_weights(
         must be those of enough joints for it.
     allowed : array, shape (n, j), bool, optional
         Which joints each vertex may follow; see `Rig.allowed`.
+    adjustments : Adjustments, optional
+        What `bind` makes of `Corrections`.
     progress : callable
         See `cutcell.progress`; the stage is called "weights".
     **options
@@ -67,18 +72,27 @@ def skinning_weights(
     def tell(done: float) -> None:
         progress("weights", done)
 
+    if adjustments is not None and method.falloff == "paper":
+        distances = _divided(distances, adjustments.gain)
     graph, alpha = distances.graph, method.alpha  # alpha is None with the falloff "rig"
     kept = method.max_influences, method.threshold, _by_position(distances)
     if allowed is not None:  # vertices that were welded may follow different joints
         if alpha is not None:
             weights = paper_kernel(distances.joint, graph.lattice.diagonal, alpha)
         else:
-            weights = rig_weights(distances, SurfaceOperators.of(graph), tell)[graph.vertex_node]
+            weights = rig_weights(
+                distances, SurfaceOperators.of(graph), tell, adjustments=adjustments
+            )[graph.vertex_node]
         return prune(permitted(weights, distances.joint, allowed), *kept)
     if alpha is not None:
         welded = pruned_paper_kernel(distances.at_places, graph.lattice.diagonal, alpha, *kept)
     else:
-        welded = rig_weights(distances, SurfaceOperators.of(graph), share_of(tell, 0, 0.8))
+        welded = rig_weights(
+            distances,
+            SurfaceOperators.of(graph),
+            share_of(tell, 0, 0.8),
+            adjustments=adjustments,
+        )
         welded = prune(welded, *kept, share_of(tell, 0.8, 0.9))
     weights = np.empty((len(graph.vertex_node), welded.shape[1]))
     in_threads(
@@ -120,6 +134,13 @@ def keep_strongest(
     """
     method = Method(max_influences=max_influences, threshold=threshold)
     return prune(weights, method.max_influences, method.threshold, _by_position(distances))
+
+
+def _divided(distances: BoneDistances, gain: NDArray[np.float64]) -> BoneDistances:
+    """Divide the distances of each joint by its gain."""
+    of = distances.of_vertices
+    of = None if of is None else of / gain[:, None]
+    return replace(distances, at_places=distances.at_places / gain[:, None], of_vertices=of)
 
 
 def _by_position(distances: BoneDistances) -> NDArray[np.intp]:

@@ -67,14 +67,27 @@ def winding_number(mesh: TriangleMesh, points: ArrayLike) -> NDArray[np.float64]
         raise ParameterError("points must be finite numbers")
     lattice = Lattice.around(mesh, 2)
     vertices, index = weld(lattice.to_unit(mesh.vertices))
-    faces = index[mesh.faces]
-    boundary = find_boundary(faces)
-    points = lattice.to_unit(points)
-    cells, start, listed = _bin_faces(vertices, faces)
-    surface = vertices, faces, cells, start, listed, boundary
-    return np.concatenate(
-        in_threads(lambda part: _number_at(points[part], *surface), parts(len(points)))
-    )
+    return WindingNumbers(vertices, index[mesh.faces]).at(lattice.to_unit(points))
+
+
+class WindingNumbers:
+    """A welded mesh in the unit cube, prepared for many calls of `at`.
+
+    Parameters
+    ----------
+    vertices : array, shape (n, 3), float64
+    faces : array, shape (m, 3), int32
+    """
+
+    def __init__(self, vertices: NDArray[np.float64], faces: NDArray[np.int32]) -> None:
+        self._surface = vertices, faces, *_bin_faces(vertices, faces), find_boundary(faces)
+
+    def at(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the winding number at points (q, 3) of the unit cube, shape (q,)."""
+        numbers = in_threads(
+            lambda part: _number_at(points[part], *self._surface), parts(len(points))
+        )
+        return np.concatenate([np.empty(0), *numbers])
 
 
 def _bin_faces(vertices, faces):

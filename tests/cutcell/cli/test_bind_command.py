@@ -192,3 +192,15 @@ def test_all_files_that_are_written_are_told(run, bar, tmp_path):
     result = run("bind", tmp_path / "one.glb", tmp_path / "two.gltf", "-r", 8)
     assert "files two-2.bin, two.gltf" in " ".join(result.stdout.split())
     assert (tmp_path / "two.bin").read_text() == "of something else"
+
+
+def test_corrections_of_a_file_are_applied(run, bar, tmp_path):
+    rig = cutcell.load(bar)
+    name = rig.skeleton.names[0]
+    path = tmp_path / "corrections.json"
+    cutcell.Corrections(vertices={0: {name: 1.0}}).save(path)
+    out = tmp_path / "out.npz"
+    run("bind", bar, out, "-r", 16, "--corrections", path)
+    assert cutcell.load(out).weights[0].tolist() == [1.0] + [0.0] * (len(rig.skeleton.names) - 1)
+    path.write_text('{"joints": {"nobody": {"gain": 2}}}')
+    assert 'no joint "nobody"' in refused(run("bind", bar, out, "-r", 16, "--corrections", path))

@@ -1,14 +1,20 @@
 """The way back from a vertex is as long as its distance, and stays inside."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
+import cutcell
+from benchmarks.paths import outside_by, samples_of
 from cutcell import (
     ParameterError,
     Skeleton,
     TriangleMesh,
 )
-from cutcell.geodesics import path_length, shortest_path
+from cutcell.geodesics import PIECES, path_length, shortest_path, trace_path
+from cutcell.geodesics.inside import TOLERANCE
+from cutcell_assets import demo_path
 from tests import meshes
 from tests.cutcell.geodesics.test_any_angle import l_bar
 from tests.paper import bone_distances, build_graph
@@ -72,3 +78,42 @@ def test_what_there_is_not_is_refused():
         shortest_path(distances, 1, 0)
     with pytest.raises(ParameterError, match="field has the shape"):
         shortest_path(distances, 0, 0, np.zeros(3))
+
+
+@pytest.mark.parametrize("connectivity", [6, 26, "any"])
+@pytest.mark.parametrize("demo", ["biped", "biped_soup"])
+def test_no_piece_leaves_the_body_by_half_a_cell(demo, connectivity):
+    rig = cutcell.load(demo_path(demo))
+    graph = cutcell.build_graph(rig.mesh, 32, connectivity=connectivity)
+    distances = cutcell.bone_distances(graph, rig.skeleton, leaf="fit")
+    rng = np.random.default_rng(3)
+    for joint in rng.choice(np.unique(distances.bones.joint), 4).tolist():
+        field = distances.field(joint)
+        reached = np.flatnonzero(np.isfinite(field[graph.vertex_node]))
+        for vertex in rng.choice(reached, 8).tolist():
+            path = trace_path(distances, joint, vertex, field)
+            points, kinds = samples_of(path, 32)
+            away = outside_by(distances, points)[kinds != PIECES.index("outside")]
+            assert away.max() <= TOLERANCE < 0.5
+            assert path.length >= np.linalg.norm(path.points[-1] - path.points[0]) - 1e-12
+
+
+def test_pieces_are_told_by_what_they_are():
+    _, distances = measured(6)
+    graph, vertex = distances.graph, 97
+    path = trace_path(distances, 0, vertex)
+    kinds: dict[frozenset, set[int]] = {}  # by position: nodes may share one
+    for edge, kind in zip(graph.edges, graph.edge_kind, strict=True):
+        kinds.setdefault(frozenset(map(tuple, graph.nodes[edge])), set()).add(int(kind))
+    for piece, kind in zip(pairwise(map(tuple, path.points[:-1])), path.kinds[:-1], strict=True):
+        assert kind in kinds[frozenset(piece)]
+    assert PIECES[path.kinds[-1]] == "line of sight"
+
+
+def test_the_way_to_a_bone_outside_of_the_body_is_told_as_outside():
+    above = Skeleton([[0.9, 0.1, 1.0], [0.8, 0.1, 1.0]], [-1, 0], deform=[True, False])
+    for connectivity in (6, "any"):
+        _, distances = measured(connectivity, above)
+        path = trace_path(distances, 0, 5)
+        assert PIECES[path.kinds[-1]] == "outside"
+        assert np.count_nonzero(path.kinds == PIECES.index("outside")) == 1

@@ -1,0 +1,167 @@
+"""Weights that look wrong without anything to compare them with."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from ..display import shown_name
+from ..errors import MeshError
+from ..geodesics import BoneDistances
+from ..skinning.symmetry import find_mirror
+from .finding import Finding, Pose, count, share
+from .subject import Subject
+from .weights import NOTICED, through_body
+
+STRAY = 0.002
+"""Of all weight: a joint that holds less in the file was hardly meant to move skin."""
+OWNED = 0.01
+"""Of the surface, that such a joint is nearest to: a binding would give it about as much."""
+AWAY = 0.1
+"""Of the longest side: where a joint is so much farther through the body than the nearest one, an
+island of its influence is no part of the limb that it moves."""
+UNLIKE = 0.25
+"""Of its weight that a vertex gives to other joints than its mirror image does."""
+ASYMMETRIC = 0.01
+"""Of the vertices that may differ as much: artists mend single ones."""
+DEGREES = 45.0
+"""How far a joint turns in the pose that shows a finding."""
+MOST_LINES = 40
+
+
+def check_leaks(subject: Subject) -> Iterator[Finding]:
+    """Look for weight that is suspicious whatever else the file says."""
+    weights, distances = subject.rig.weights, subject.distances
+    if weights is None or distances is None or not weights.any():
+        return
+    yield from _stray(subject, distances, weights)
+    yield from _islands(subject, distances, weights)
+    yield from _asymmetric(subject, weights)
+
+
+def _stray(
+    subject: Subject, distances: BoneDistances, weights: NDArray[np.float64]
+) -> Iterator[Finding]:
+    area = subject.vertex_areas
+    held = area @ weights / area.sum()
+    nearest = distances.joint.argmin(axis=0)
+    reached = np.isfinite(distances.joint.min(axis=0))
+    owned = np.bincount(nearest[reached], area[reached], len(held)) / area.sum()
+    found = np.flatnonzero((held > 0) & (held < STRAY) & (owned > OWNED))
+    if not len(found):
+        return
+    names = subject.rig.skeleton.names
+    vertices = np.flatnonzero((weights[:, found] > 0).any(axis=1))
+    worst = int(found[owned[found].argmax()])
+    yield Finding(
+        "stray-weights",
+        "warning",
+        f"{count(len(found), 'joint', 'hold')} hardly any weight, yet would get much of the skin "
+        "when the rig is bound again, for no other is nearer.",
+        "If it is a control, let it carry no weight: --no-deform, or the joint's box on the page.",
+        vertices=vertices,
+        joints=found,
+        details=tuple(
+            f"{shown_name(names[j])}: {100 * held[j]:.2g}% of the weight, nearest to "
+            f"{share(owned[j], 1)} of the surface"
+            for j in found[np.argsort(-owned[found])][:MOST_LINES]
+        ),
+        pose=pose_of(subject, worst, np.flatnonzero(nearest == worst)),
+    )
+
+
+def _islands(
+    subject: Subject, distances: BoneDistances, weights: NDArray[np.float64]
+) -> Iterator[Finding]:
+    welded, edges = subject.welded, subject.edges.edges
+    first = np.unique(welded, return_index=True)[1]
+    at_places, area = weights[first], subject.place_areas
+    joints, places, lines, worst = [], [], [], (0.0, -1)
+    measurable = np.isin(np.arange(weights.shape[1]), distances.bones.joint)
+    for j in np.flatnonzero(measurable & (at_places.max(axis=0) > NOTICED)).tolist():
+        held = at_places[:, j] > NOTICED
+        between = edges[held[edges].all(axis=1)]
+        ones = np.ones(len(between), np.int8)
+        graph = coo_array((ones, tuple(between.T)), shape=(len(held),) * 2)
+        label = connected_components(graph, directed=False)[1]
+        total = np.bincount(label[held], (at_places[:, j] * area)[held], label.max() + 1)
+        # An island is away from a larger region of the same joint on the same component.
+        of = subject.component
+        largest = np.zeros(of.max() + 1)
+        np.maximum.at(largest, of[held], total[label[held]])
+        apart = np.flatnonzero(held & (total[label] < largest[of]))
+        if not len(apart):
+            continue
+        through = through_body(subject, distances, first[apart], np.full(len(apart), j))
+        beyond = through - distances.at_places.min(axis=0)[apart]
+        nearest = np.full(label.max() + 1, np.inf)
+        np.minimum.at(nearest, label[apart], np.where(np.isfinite(beyond), beyond, -np.inf))
+        apart = apart[nearest[label[apart]] > AWAY]
+        if not len(apart):
+            continue
+        most = float(at_places[apart, j].max())
+        number = len(np.unique(label[apart]))
+        joints.append(j)
+        places.append(apart)
+        worst = max(worst, (most, j))
+        lines.append(
+            f"{shown_name(subject.rig.skeleton.names[j])}: up to {most:.0%} on "
+            f"{count(number, 'island')} of {count(len(apart), 'vertex')}"
+        )
+    if not joints:
+        return
+    found = np.zeros(len(at_places), bool)
+    found[np.concatenate(places)] = True
+    vertices = subject.vertices_at(found)
+    yield Finding(
+        "weight-islands",
+        "warning",
+        f"{count(len(vertices), 'vertex', 'follow')} a joint whose influence is elsewhere: islands "
+        "of it lie away from its bones, with other joints between.",
+        "Take this weight away, or bind again.",
+        vertices=vertices,
+        joints=np.array(joints),
+        details=tuple(lines[:MOST_LINES]),
+        pose=pose_of(subject, worst[1], vertices),
+    )
+
+
+def _asymmetric(subject: Subject, weights: NDArray[np.float64]) -> Iterator[Finding]:
+    try:
+        mirror = find_mirror(subject.rig)
+    except MeshError:
+        return
+    partner, swap = mirror.vertex, mirror.joint
+    # On the plane itself a vertex is its own partner; joints without a partner tell nothing.
+    alone = (weights[:, swap < 0] > 0).any(axis=1)
+    paired = np.flatnonzero((partner >= 0) & ~alone & subject.is_used)
+    if not len(paired):
+        return
+    other = weights[partner[paired]][:, np.where(swap < 0, np.arange(len(swap)), swap)]
+    differ = np.abs(weights[paired] - other).sum(axis=1) / 2
+    found = paired[differ > UNLIKE]
+    if len(found) <= ASYMMETRIC * len(paired):
+        return
+    gap = np.abs(weights[paired] - other)[differ > UNLIKE]
+    joints = np.flatnonzero((gap > UNLIKE).any(axis=0))
+    yield Finding(
+        "asymmetric-weights",
+        "note",
+        f"{count(len(found), 'vertex', 'follow')} other joints than the mirror image does, though "
+        "mesh and skeleton are mirrored.",
+        "Mirror one side, or bind with --symmetric.",
+        vertices=found,
+        joints=joints,
+        pose=pose_of(subject, int(gap.sum(axis=0).argmax()), found),
+    )
+
+
+def pose_of(subject: Subject, joint: int, vertices: NDArray[np.intp]) -> Pose:
+    """Turn a joint about the axis that moves some vertices most."""
+    away = subject.rig.mesh.vertices[vertices] - subject.rig.skeleton.joints[joint]
+    spread = (away**2).sum(axis=0)
+    return Pose(joint, "xyz"[int(np.argmin(spread))], DEGREES)

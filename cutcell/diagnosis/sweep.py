@@ -1,0 +1,200 @@
+"""Faults that are seen when joints turn: a sweep of poses, one joint at a time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..display import shown_name
+from ..pose import axis_rotation
+from .finding import Finding, Pose, count, share
+from .subject import Subject
+
+DEGREES = 45.0
+"""Each joint turns by this about x, y and z, either way: less than elbows and knees do."""
+STRETCH = 4.0
+"""An edge that becomes this much longer, by a chord of 45 degrees at most, joins vertices of which
+one follows and the other stays far from the joint: no smooth bend does that."""
+SEEN = 0.03
+"""Of the longest side: an edge that becomes longer by less does not show."""
+FLIPPED = 0.01
+"""Of the surface: where as much is turned over in one pose, it is more than a crease."""
+LOST = 0.1
+"""Of the volume, in one pose."""
+GRAVE = 3.0
+"""Times these bounds: then it is a warning. Artists' weights crease, too, where a joint bends in a
+way that no animation asks of it."""
+MOVES = 1e-3
+"""A vertex that follows a joint less does not count as moved by it."""
+MOST_LINES = 40
+
+
+def check_sweep(subject: Subject) -> Iterator[Finding]:
+    """Turn one joint after the other and look for edges, faces and volumes that it ruins."""
+    weights = subject.rig.weights
+    if weights is None or not weights.any():
+        return
+    found = sorted(_poses(subject, weights), key=lambda seen: -seen.longest)
+    yield from _stretched(subject, found)
+    yield from _flipped(subject, found)
+    yield from _lost(subject, found)
+
+
+@dataclass(frozen=True, eq=False)
+class _Seen:
+    """What is seen in one pose."""
+
+    pose: Pose
+    stretched: NDArray[np.intp]  # welded vertices
+    longest: float
+    flipped: NDArray[np.intp]  # of the faces that are whole
+    flipped_area: float
+    lost: float
+
+
+def _poses(subject: Subject, weights: NDArray[np.float64]) -> Iterator[_Seen]:
+    skeleton, points, faces = subject.rig.skeleton, subject.points, subject.faces
+    first = np.unique(subject.welded, return_index=True)[1]
+    total = weights.sum(axis=1, keepdims=True)
+    held = (weights / np.where(total > 0, total, 1))[first]
+    joints = subject.graph.lattice.to_unit(skeleton.joints)
+    a, b = subject.edges.edges.T
+    length = np.linalg.norm(points[a] - points[b], axis=1)
+    normals = _normals(points, faces)
+    area = np.linalg.norm(normals, axis=1).sum()
+    volume = _Volume(subject)
+    at_rest = volume.of(points)
+    for j in range(len(joints)):
+        moved = held[:, skeleton.subtree[j]].sum(axis=1)
+        if not ((moved > MOVES) & (moved < 1 - MOVES)).any():
+            continue  # all moves as one, or nothing does
+        unlike = np.flatnonzero(np.ptp(moved[faces], axis=1) > MOVES)
+        bent = np.flatnonzero(np.abs(moved[a] - moved[b]) > MOVES)
+        around = faces[unlike]
+        before = normals[unlike]
+        for axis in "xyz":
+            for degrees in (DEGREES, -DEGREES):
+                turn = axis_rotation(axis, degrees)
+                posed = points + moved[:, None] * ((points - joints[j]) @ (turn - np.eye(3)).T)
+                longer = np.linalg.norm(posed[a[bent]] - posed[b[bent]], axis=1) - length[bent]
+                torn = (longer > SEEN) & (longer > (STRETCH - 1) * length[bent])
+                after = _normals(posed, around)
+                follow = moved[around].mean(axis=1)[:, None]
+                expected = before + follow * (before @ turn.T - before)
+                over = (after * expected).sum(axis=1) < 0
+                yield _Seen(
+                    Pose(j, axis, degrees),
+                    np.unique([a[bent[torn]], b[bent[torn]]]),
+                    float(longer[torn].max(initial=0)),
+                    unlike[over],
+                    float(np.linalg.norm(before[over], axis=1).sum() / area),
+                    1 - volume.of(posed) / at_rest if at_rest > 0 else 0.0,
+                )
+
+
+def _stretched(subject: Subject, found: list[_Seen]) -> Iterator[Finding]:
+    torn = [seen for seen in found if len(seen.stretched)]
+    if not torn:
+        return
+    places = np.zeros(len(subject.points), bool)
+    places[np.concatenate([seen.stretched for seen in torn])] = True
+    vertices = subject.vertices_at(places)
+    worst = torn[0]
+    yield Finding(
+        "stretched-edges",
+        "warning" if worst.longest > GRAVE * SEEN else "note",
+        f"Edges at {count(len(vertices), 'vertex')} become {STRETCH:g} times as long or more when "
+        f"a joint turns by {DEGREES:g}°.",
+        "Blend the weights there, or bind again.",
+        vertices=vertices,
+        joints=_joints(torn),
+        details=_lines(subject, torn, lambda s: f"by {share(s.longest, 1)} of the longest side"),
+        pose=worst.pose,
+    )
+
+
+def _flipped(subject: Subject, found: list[_Seen]) -> Iterator[Finding]:
+    over = [seen for seen in found if seen.flipped_area > FLIPPED]
+    over.sort(key=lambda seen: -seen.flipped_area)
+    if not over:
+        return
+    worst = over[0]
+    faces = subject.whole[np.unique(np.concatenate([seen.flipped for seen in over]))]
+    yield Finding(
+        "flipped-faces",
+        "warning" if worst.flipped_area > GRAVE * FLIPPED else "note",
+        f"Up to {share(worst.flipped_area, 1)} of the surface is turned over when a joint turns by "
+        f"{DEGREES:g}°.",
+        "Blend the weights there, or bind again.",
+        vertices=np.unique(subject.rig.mesh.faces[faces]).astype(np.intp),
+        faces=faces,
+        joints=_joints(over),
+        details=_lines(subject, over, lambda s: f"{share(s.flipped_area, 1)} of the surface"),
+        pose=worst.pose,
+    )
+
+
+def _lost(subject: Subject, found: list[_Seen]) -> Iterator[Finding]:
+    lost = [seen for seen in found if seen.lost > LOST]
+    lost.sort(key=lambda seen: -seen.lost)
+    if not lost:
+        return
+    worst = lost[0]
+    joints = _joints(lost)
+    assert subject.rig.weights is not None
+    yield Finding(
+        "lost-volume",
+        "warning" if worst.lost > GRAVE * LOST else "note",
+        f"The body loses up to {share(worst.lost, 1)} of its volume when a joint turns by "
+        f"{DEGREES:g}°.",
+        "Blend the weights over a longer stretch, or bind again.",
+        vertices=np.flatnonzero((subject.rig.weights[:, joints] > MOVES).any(axis=1)),
+        joints=joints,
+        details=_lines(subject, lost, lambda s: f"{share(s.lost, 1)} of the volume"),
+        pose=worst.pose,
+    )
+
+
+def _joints(found: list[_Seen]) -> NDArray[np.intp]:
+    return np.unique([seen.pose.joint for seen in found])
+
+
+def _lines(subject: Subject, found: list[_Seen], told: Callable[[_Seen], str]) -> tuple[str, ...]:
+    """Return a line for each joint, of the first pose: the worst."""
+    best: dict[int, str] = {}
+    for seen in found:
+        name = shown_name(subject.rig.skeleton.names[seen.pose.joint])
+        best.setdefault(seen.pose.joint, f"{name}: {told(seen)}, about {seen.pose.axis}")
+    return tuple(best.values())[:MOST_LINES]
+
+
+def _normals(points: NDArray[np.float64], faces: NDArray[np.int32]) -> NDArray[np.float64]:
+    """Return normals of the length of twice the areas."""
+    a, b, c = points[faces].transpose(1, 0, 2)
+    return np.cross(b - a, c - a)
+
+
+class _Volume:
+    """The volume of a mesh in any pose; a fan to the middle of each open rim closes it."""
+
+    def __init__(self, subject: Subject) -> None:
+        self._loop, start = subject.boundary
+        self._start = start[:-1]
+        sizes = np.diff(start)
+        before = np.roll(self._loop, 1)
+        before[self._start] = self._loop[start[1:] - 1]
+        middles = len(subject.points) + np.repeat(np.arange(len(sizes)), sizes)
+        self._sizes = sizes[:, None]
+        fans = np.stack([self._loop, before, middles], axis=1)
+        self._faces = np.concatenate([subject.graph.faces[subject.whole], fans])
+
+    def of(self, points: NDArray[np.float64]) -> float:
+        """Return it, times six, for welded vertices (k, 3)."""
+        if len(self._sizes):
+            middles = np.add.reduceat(points[self._loop], self._start) / self._sizes
+            points = np.concatenate([points, middles])
+        a, b, c = points[self._faces].transpose(1, 0, 2)
+        return float(np.einsum("ij,ij->", a, np.cross(b, c)))

@@ -1,0 +1,27 @@
+"""What a person adjusts of the falloff, as arrays."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+@dataclass(frozen=True, eq=False)
+class Adjustments:
+    """Adjustments of the falloff.
+
+    Parameters
+    ----------
+    gain : array, shape (j,)
+        Distances of each joint are divided by this; 1 for most.
+    radius : array, shape (j,)
+        Of the surface about each joint's bones, in the unit cube; NaN where it is measured.
+    by_itself : array, shape (components,), bool
+        Connected components that are never rigid.
+    """
+
+    gain: NDArray[np.float64]
+    radius: NDArray[np.float64]
+    by_itself: NDArray[np.bool_]

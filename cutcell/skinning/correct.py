@@ -1,0 +1,138 @@
+"""Applying a person's corrections to a rig and to its weights."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..corrections import Corrections
+from ..errors import ParameterError, SkeletonError
+from ..graph import CutCellGraph
+from ..method import Method
+from ..rig import Rig
+from .adjustments import Adjustments
+from .locks import joint_index
+from .rigid_accessories import attach
+from .surface_operators import SurfaceOperators
+
+JOINTS_FOR_GAINS = 8
+"""Nearest joints of each vertex that distances are measured from where one has a gain: with a
+longer reach it may count although others are nearer."""
+
+
+def corrected_rig(rig: Rig, corrections: Corrections) -> Rig:
+    """Check all names and vertices; return the rig with the joints that may carry weight.
+
+    Raises
+    ------
+    ParameterError
+        A joint or a vertex that the rig does not have, or weights that its file cannot store.
+    SkeletonError
+        No joint would be left to carry weight.
+    """
+    count = len(rig.mesh.vertices)
+    for vertex in (*corrections.parts, *corrections.vertices):
+        if vertex >= count:
+            raise ParameterError(
+                f"corrections name the vertex {vertex}, but {rig.name} has only {count} "
+                "(numbered from 0); are they of another character?"
+            )
+    for vertex, weights in corrections.vertices.items():
+        for name in weights:
+            joint = joint_index(rig.skeleton, name)
+            if rig.allowed is not None and not rig.allowed[vertex, joint]:
+                raise ParameterError(f'the file cannot store weight of "{name}" at vertex {vertex}')
+    for part in corrections.parts.values():
+        if part.joint is not None:
+            joint_index(rig.skeleton, part.joint)
+    deform = rig.skeleton.deform.copy()
+    for name, one in corrections.joints.items():
+        joint = joint_index(rig.skeleton, name)
+        deform[joint] = deform[joint] if one.deform is None else one.deform
+    if not deform.any():
+        raise SkeletonError("by the corrections no joint of the skeleton may carry weight")
+    if np.array_equal(deform, rig.skeleton.deform):
+        return rig
+    return replace(rig, skeleton=replace(rig.skeleton, deform=deform))
+
+
+def locked_by(corrections: Corrections) -> list[int | str]:
+    """List the joints that keep the file's weights."""
+    return [name for name, one in corrections.joints.items() if one.locked]
+
+
+def joints_measured(corrections: Corrections, method: Method) -> tuple[int | None, float]:
+    """Return from how many nearest joints, and how far beyond the nearest, distances are needed."""
+    gains = [1.0, *(one.gain for one in corrections.joints.values())]
+    needed, within = method.joints_needed, method.reach_needed
+    if set(gains) == {1.0} or needed is None:
+        return needed, within
+    return max(needed, JOINTS_FOR_GAINS), within * max(gains) / min(gains)
+
+
+def adjustments_of(rig: Rig, graph: CutCellGraph, corrections: Corrections) -> Adjustments | None:
+    """Return gains, radii and unrigid components as arrays; None if all are as they are anyway."""
+    gain, radius = np.ones(len(rig.skeleton.joints)), np.full(len(rig.skeleton.joints), np.nan)
+    for name, one in corrections.joints.items():
+        joint = joint_index(rig.skeleton, name)
+        gain[joint] = one.gain
+        if one.radius is not None:
+            radius[joint] = one.radius / graph.lattice.size
+    itself = [v for v, part in corrections.parts.items() if part.how == "itself"]
+    if not len(itself) and (gain == 1).all() and np.isnan(radius).all():
+        return None
+    component = SurfaceOperators.of(graph).component
+    by_itself = np.zeros(component.max() + 1, np.bool_)
+    by_itself[component[graph.vertex_node[itself]]] = True
+    return Adjustments(gain, radius, by_itself)
+
+
+def corrected_parts(
+    rig: Rig, graph: CutCellGraph, weights: NDArray[np.float64], corrections: Corrections
+) -> NDArray[np.float64]:
+    """Glue components to joints, or let them follow the body where they touch it."""
+    if all(part.how == "itself" for part in corrections.parts.values()):
+        return weights
+    surface = SurfaceOperators.of(graph)
+    node, weights = graph.vertex_node, weights.copy()
+    component = surface.component[node]
+    touching = np.zeros(component.max() + 1, np.bool_)
+    for vertex, part in corrections.parts.items():
+        mine = component == component[vertex]
+        if part.joint is not None:
+            joint = joint_index(rig.skeleton, part.joint)
+            if rig.allowed is not None and not rig.allowed[mine, joint].all():
+                raise ParameterError(
+                    f'the file cannot store weight of "{part.joint}" for the part of '
+                    f"vertex {vertex}"
+                )
+            weights[mine] = np.eye(weights.shape[1])[joint]
+        touching[component[vertex]] = part.how == "touching"
+    if touching.all():
+        raise ParameterError("every component is to follow where it touches, and none is left")
+    if touching.any():
+        first = np.unique(node, return_index=True)[1]
+        attached = attach(graph, surface, touching, weights[first])
+        mine = touching[component]
+        rows = attached[node[mine]]
+        if rig.allowed is not None:
+            rows = np.where(rig.allowed[mine], rows, 0.0)
+        total = rows.sum(axis=1, keepdims=True)
+        weights[mine] = np.divide(rows, total, out=weights[mine], where=total > 0)
+    return weights
+
+
+def overruled(
+    rig: Rig, weights: NDArray[np.float64], corrections: Corrections
+) -> NDArray[np.float64]:
+    """Put the weights that a person gives to single vertices."""
+    if not corrections.vertices:
+        return weights
+    weights = weights.copy()
+    for vertex, given in corrections.vertices.items():
+        weights[vertex] = 0
+        for name, value in given.items():
+            weights[vertex, joint_index(rig.skeleton, name)] = value
+    return weights

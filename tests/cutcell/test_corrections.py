@@ -1,0 +1,155 @@
+"""Corrections: as data, in JSON, and in what `bind` makes of them."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import trimesh
+
+import cutcell
+from cutcell import Corrections, JointCorrection, ParameterError, PartCorrection, TriangleMesh
+from cutcell.errors import FileError, SkeletonError, WeightsError
+from tests.cutcell.diagnosis.test_leaks import soldier
+from tests.cutcell.diagnosis.worm import worm
+
+WORM = worm()
+HEAD, CHEST = (WORM.skeleton.names.index(name) for name in ("head", "chest"))
+ALL = Corrections(
+    joints={
+        "neck": JointCorrection(deform=False),
+        "head": JointCorrection(locked=True, gain=1.5, radius=0.25),
+    },
+    parts={3: PartCorrection("glued", "head"), 4: PartCorrection("touching")},
+    vertices={7: {"head": 3.0, "tail": 1.0}},
+)
+
+
+def with_button():
+    button = trimesh.creation.icosphere(subdivisions=1, radius=0.03)
+    vertices = np.concatenate([WORM.mesh.vertices, np.array([0.55, 0.12, 0]) + button.vertices])
+    faces = np.concatenate([WORM.mesh.faces, button.faces + len(WORM.mesh.vertices)])
+    return cutcell.Rig(TriangleMesh(vertices, faces), WORM.skeleton), len(WORM.mesh.vertices)
+
+
+def bound(rig, **parts):
+    return cutcell.bind(rig, 24, corrections=Corrections(**parts)).weights
+
+
+def test_json_and_back_is_the_same(tmp_path):
+    assert Corrections.from_json(ALL.to_json()) == ALL
+    assert ALL.vertices[7] == {"head": 0.75, "tail": 0.25}
+    ALL.save(tmp_path / "c.json")
+    assert Corrections.load(tmp_path / "c.json") == ALL
+    assert not Corrections.from_json(Corrections().to_json())
+
+
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        ("[", "corrections are no JSON"),
+        ("[]", "corrections must be a mapping"),
+        ('{"joint": {}}', 'corrections has no .joint.; did you mean "joints"'),
+        (
+            '{"joints": {"Head": {"gian": 2}}}',
+            '"Head" has no .gian.; did you mean "gain"',
+        ),
+        ('{"joints": {"Head": {"gain": 0}}}', 'the joint "Head": gain must be'),
+        ('{"joints": {"Head": {"radius": 0}}}', "radius must be more than 0"),
+        ('{"joints": {"Head": {"locked": 1}}}', "locked must be"),
+        ('{"parts": {}}', "parts must be a list"),
+        ('{"parts": [{"how": "glued"}]}', 'part 0 needs "vertex"'),
+        ('{"parts": [{"vertex": 1, "how": "glued"}]}', "part 0: a part that is glued needs"),
+        ('{"parts": [{"vertex": 1, "how": "itself", "joint": "a"}]}', "only if it is glued"),
+        ('{"parts": [{"vertex": -1, "how": "itself"}]}', "vertex of part 0 must be"),
+        ('{"vertices": {"x": {}}}', "vertices go by their numbers"),
+        ('{"vertices": {"1": {"a": 0}}}', "vertex 1 needs a weight above 0"),
+        ('{"vertices": {"1": {"a": -1}}}', "the weight of vertex 1 for"),
+    ],
+)
+def test_what_is_wrong_is_named(text, sentence):
+    with pytest.raises(ParameterError, match=sentence):
+        Corrections.from_json(text)
+
+
+def test_a_file_that_cannot_be_read_is_named(tmp_path):
+    with pytest.raises(FileError, match=r"absent\.json cannot be read"):
+        Corrections.load(tmp_path / "absent.json")
+    (tmp_path / "bad.json").write_text('{"joints": 1}')
+    with pytest.raises(ParameterError, match=r"bad\.json: joints must be"):
+        Corrections.load(tmp_path / "bad.json")
+
+
+@pytest.mark.parametrize(
+    ("corrections", "error", "sentence"),
+    [
+        ({"joints": {"haed": JointCorrection()}}, ParameterError, 'no joint "haed".*"head"'),
+        ({"parts": {0: PartCorrection("glued", "hed")}}, ParameterError, 'no joint "hed"'),
+        ({"vertices": {0: {"hed": 1}}}, ParameterError, 'no joint "hed"'),
+        ({"vertices": {10**6: {"head": 1}}}, ParameterError, "name the vertex 1000000"),
+        (
+            {"joints": {name: JointCorrection(deform=False) for name in WORM.skeleton.names}},
+            SkeletonError,
+            "no joint of the skeleton may carry weight",
+        ),
+        ({"parts": {0: PartCorrection("touching")}}, ParameterError, "none is left"),
+    ],
+)
+def test_what_the_rig_does_not_have_is_refused(corrections, error, sentence):
+    with pytest.raises(error, match=sentence):
+        bound(WORM, **corrections)
+    with pytest.raises(WeightsError, match="no weights of its own"):
+        bound(replace(WORM, weights=None), joints={"head": JointCorrection(locked=True)})
+
+
+def test_nothing_corrected_changes_nothing():
+    plain = cutcell.bind(WORM, 24).weights
+    assert np.array_equal(bound(WORM), plain)
+    assert np.array_equal(bound(WORM, joints={"head": JointCorrection()}), plain)
+
+
+def test_joints_lose_weight_keep_the_files_and_reach_farther():
+    plain = cutcell.bind(WORM, 24).weights
+    off = bound(WORM, joints={"head": JointCorrection(deform=False)})
+    assert off[:, HEAD].max() == 0
+    locked = bound(WORM, joints={"head": JointCorrection(locked=True)})
+    np.testing.assert_allclose(locked[:, HEAD], WORM.weights[:, HEAD], atol=1e-12)
+    for method in ("animation", "paper"):
+        held = [
+            cutcell.bind(
+                WORM, 24, method=method, corrections=Corrections({"chest": JointCorrection(gain=g)})
+            )
+            .weights[:, CHEST]
+            .sum()
+            for g in (0.5, 1.0, 2.0)
+        ]
+        assert held[0] < held[1] < held[2]
+    small = bound(WORM, joints={"chest": JointCorrection(radius=0.05)})
+    assert small[:, CHEST].sum() < plain[:, CHEST].sum()
+
+
+def test_parts_are_glued_follow_or_are_bound_by_themselves():
+    rig, first = with_button()
+    plain = cutcell.bind(rig, 24).weights[first:]
+    assert np.ptp(plain, axis=0).max() < 1e-9, "rigid by itself"
+    glued = bound(rig, parts={first + 2: PartCorrection("glued", "tail")})
+    assert (glued[first:, WORM.skeleton.names.index("tail")] == 1).all()
+    np.testing.assert_allclose(glued[:first], cutcell.bind(rig, 24).weights[:first], atol=1e-12)
+    touching = bound(rig, parts={first: PartCorrection("touching")})
+    np.testing.assert_allclose(touching[first:], plain, atol=0.05)
+    itself = bound(rig, parts={first: PartCorrection("itself")})
+    np.testing.assert_allclose(itself.sum(axis=1), 1)
+    assert not np.allclose(itself[first:], plain)
+
+
+def test_a_vertex_is_overruled_after_all_else():
+    weights = cutcell.bind(
+        WORM, 24, smoothing=2, corrections=Corrections(vertices={7: {"head": 3, "tail": 1}})
+    ).weights
+    assert weights[7, HEAD] == 0.75
+    assert weights[7].sum() == 1
+
+
+def test_the_soldier_is_mended_by_one_correction():
+    rig = soldier()
+    mended = bound(rig, joints={"Root": JointCorrection(deform=False)})
+    assert mended[:, -1].max() == 0
