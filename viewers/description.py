@@ -74,6 +74,14 @@ class Actor:
     apart : Apart, optional
         While there is a pose, the scalars are the squared distances between where `skin`
         and this one take each point.
+    width : float
+        Of lines and points, in pixels of the screen, from far.
+    thick : float
+        Their radius in the scene, where that is more on the screen, up to six times as much.
+    dash : float
+        Lines are dashed: the length of a dash and the gap after it, in the scene; 0 for none.
+    form : {"round", "square", "triangle"}
+        Of points.
     view : int, optional
         Which of the scene's views shows it; all of them when left out.
     overlay : bool
@@ -105,6 +113,9 @@ class Actor:
     limits: tuple[float, float] = (0.0, 1.0)
     opacity: float = 1.0
     width: float = 1.0
+    thick: float = 0.0
+    dash: float = 0.0
+    form: Literal["round", "square", "triangle"] = "round"
     visible: bool = True
     overlay: bool = False
     behind: bool = False

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from typing import Any, Literal
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from cutcell.graph import INTERIOR, MESH, SURFACE, CutCellGraph
@@ -11,8 +14,22 @@ from cutcell.rig import Rig
 
 from . import palette
 from .character import to_scene
-from .description import Actor, Cut, Description
+from .description import Actor, Cut, Description, Reading
 from .distance_scene import distance_limits, shown_distance
+
+WIDTHS = (1.1, 1.9, 1.5)
+"""Pixels that mesh, interior and surface edges are wide from far."""
+THICK = (0.012, 0.04, 0.025)
+"""Their radii, in cells of the lattice."""
+DASH = 0.16
+"""Surface edges are dashed: the length of a dash and its gap, in cells."""
+NODES = {"mesh nodes": MESH, "interior nodes": INTERIOR, "surface nodes": SURFACE}
+"""The names of the actors of nodes, and the kind that each shows."""
+FORMS: tuple[Literal["round", "square", "triangle"], ...] = ("round", "square", "triangle")
+"""Of mesh, interior and surface nodes."""
+NODE_WIDTH, NODE_THICK = 4.0, 0.09
+KINDS = ("mesh", "interior", "surface")
+"""What kinds of nodes and edges are called."""
 
 LAYERS = {"mesh edges": MESH, "interior edges": INTERIOR, "surface edges": SURFACE}
 """The names of the three actors, and the kind of edge that each shows."""
@@ -28,6 +45,7 @@ def graph_scene(
     field: ArrayLike | None = None,
     kinds: tuple[int, ...] = (INTERIOR,),
     shades: str = "distance",
+    colors: ArrayLike | None = None,
     cut: Cut | None = None,
     slab: float = 0.0,
     theme: palette.Theme = palette.LIGHT,
@@ -47,6 +65,8 @@ def graph_scene(
         The kinds of edges that are.
     shades : str
         The colour map that it is shown with.
+    colors : array_like, shape (N, 3), uint8, optional
+        A colour for every node: edges are then coloured by it, whatever their kind.
     cut : Cut, optional
         Takes away what lies before it, so that the interior is seen.
     slab : float
@@ -57,12 +77,15 @@ def graph_scene(
     Returns
     -------
     Description
-        With the actors "mesh edges", "interior edges" and "surface edges".
+        With the actors "mesh edges", "interior edges" and "surface edges", thin, thick and dashed,
+        and "mesh nodes", "interior nodes" and "surface nodes", hidden: balls, squares, triangles.
     """
     nodes = to_scene(rig, graph.lattice.to_file(graph.nodes)).astype(np.float32)
-    colors = (theme.mesh_edge, palette.INTERIOR, palette.SURFACE)
+    cell = to_scene_length(rig, graph)
+    inks = (theme.mesh_edge, palette.INTERIOR, theme.surface_edge)
+    own = None if colors is None else np.asarray(colors, np.uint8)
     actors = {}
-    for (name, kind), color in zip(LAYERS.items(), colors, strict=True):
+    for (name, kind), color in zip(LAYERS.items(), inks, strict=True):
         edges = graph.edges[graph.edge_kind == kind]
         used, cells = np.unique(edges, return_inverse=True)
         scalars, limits = None, (0.0, 1.0)
@@ -74,13 +97,79 @@ def graph_scene(
             nodes[used],
             cells.reshape(-1, 2).astype(np.int32),
             color=color,
+            colors=None if own is None else own[used],
             scalars=scalars,
             colormap=shades,
             limits=limits,
+            width=WIDTHS[kind],
+            thick=THICK[kind] * cell,
+            dash=DASH * cell if kind == SURFACE else 0.0,
             visible=name in layers,
             slab=slab if kind == INTERIOR else 0.0,
         )
+    for (name, kind), color in zip(NODES.items(), inks, strict=True):
+        which = np.flatnonzero((graph.node_kind == kind) & graph.connected)
+        actors[name] = Actor(
+            "points",
+            nodes[which],
+            np.arange(len(which), dtype=np.int32)[:, None],
+            color=color,
+            colors=None if own is None else own[which],
+            width=NODE_WIDTH,
+            thick=NODE_THICK * cell,
+            form=FORMS[kind],
+            reading=Reading(f"{KINDS[kind]} node ", which.astype(np.float32)),
+            visible=False,
+        )
     return Description(actors, cut=cut)
+
+
+def to_scene_length(rig: Rig, graph: CutCellGraph) -> float:
+    """Return the length of a cell of the lattice in the scene."""
+    lattice = graph.lattice
+    return lattice.size / lattice.resolution * float(np.linalg.norm(rig.world[:3, 0]))
+
+
+def component_colors(graph: CutCellGraph) -> tuple[NDArray[np.uint8], int]:
+    """Return a colour for each node, by the connected component it is in, and their number.
+
+    The largest have colours of their own; there are more components than colours.
+
+    Returns
+    -------
+    colors : array, shape (N, 3), uint8
+    count : int
+    """
+    count, label = connected_components(graph.csr(), directed=False)
+    rank = np.empty(count, int)
+    rank[np.argsort(-np.bincount(label, minlength=count), kind="stable")] = np.arange(count)
+    colors = np.array(palette.JOINT_COLORS, np.uint8)
+    used = np.bincount(label[graph.connected], minlength=count) > 0
+    return colors[rank[label] % len(colors)], int(used.sum())
+
+
+def node_marks(rig: Rig, graph: CutCellGraph, node: int, theme: palette.Theme) -> dict[str, Actor]:
+    """Return the mark of a node, the edges that lead from it, and the nodes they lead to."""
+    indptr, indices, _ = graph.adjacency
+    ring = np.asarray(indices[indptr[node] : indptr[node + 1]])
+    points = to_scene(rig, graph.lattice.to_file(graph.nodes[[node, *ring]])).astype(np.float32)
+    cell = to_scene_length(rig, graph)
+    ends = np.arange(1, len(points), dtype=np.int32)
+    common: dict[str, Any] = {"overlay": True, "clipped": False}
+    return {
+        "node ring": Actor(
+            "lines", points, np.stack([0 * ends, ends], axis=1), color=theme.ink, width=2.5,
+            thick=0.03 * cell, **common,
+        ),
+        "node neighbours": Actor(
+            "points", points, ends[:, None], color=theme.ink, width=7, thick=0.1 * cell,
+            reading=Reading("node ", np.array([node, *ring], np.float32)), **common,
+        ),
+        "node": Actor(
+            "points", points[:1], np.zeros((1, 1), np.int32), color=palette.MARK, width=12,
+            thick=0.12 * cell, **common,
+        ),
+    }  # fmt: skip
 
 
 def depth_field(graph: CutCellGraph) -> NDArray[np.float64]:

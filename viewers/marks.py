@@ -12,26 +12,26 @@ from .description import Actor
 from .palette import MARK
 from .skin import skin_of_weights
 
-BALL = 0.006
+BALL = 13.0
+"""How wide a vertex's mark is, in pixels of the screen."""
 TUBE = 0.0035
-"""Radii, in parts of the diagonal of the character's box."""
+"""A radius, in parts of the diagonal of the character's box."""
 
 
 def vertex_mark(rig: Rig, vertex: int, weights: ArrayLike | None = None) -> Actor:
-    """Return a ball at a vertex, drawn over everything; it follows the vertex's weights."""
-    points, faces = _ball()
-    centre = to_scene(rig, rig.mesh.vertices[vertex])
-    placed = centre + BALL * _size(rig) * points
+    """Return a ball at a vertex, drawn over everything; it follows the vertex's weights.
+
+    It is as large on the screen from near as from far.
+    """
     skin = None
     if weights is not None:
-        row = np.asarray(weights, float)[vertex]
-        skin = skin_of_weights(np.broadcast_to(row, (len(points), len(row))))
+        skin = skin_of_weights(np.asarray(weights, float)[[vertex]])
     return Actor(
-        "surface",
-        placed.astype(np.float32),
-        faces,
-        normals=points.astype(np.float32),
+        "points",
+        to_scene(rig, rig.mesh.vertices[[vertex]]).astype(np.float32),
+        np.zeros((1, 1), np.int32),
         color=MARK,
+        width=BALL,
         skin=skin,
         overlay=True,
         clipped=False,

@@ -78,12 +78,19 @@ class Theme:
     bottom: Color
     ink: Color
     mesh_edge: Color
+    surface_edge: Color
 
 
+# Blue and green are the paper's hues, as light or dark as every one of `EYES` needs to tell them
+# from each other, from orange, and from what is around.
 LIGHT = Theme(
-    "light", _rgb(250, 251, 253), _rgb(222, 228, 236), _rgb(31, 38, 50), _rgb(58, 150, 192)
-)
-DARK = Theme("dark", _rgb(37, 43, 54), _rgb(17, 20, 26), _rgb(232, 236, 243), MESH)
+    "light", _rgb(250, 251, 253), _rgb(222, 228, 236), _rgb(31, 38, 50), _rgb(58, 150, 192),
+    _rgb(30, 85, 25),
+)  # fmt: skip
+DARK = Theme(
+    "dark", _rgb(37, 43, 54), _rgb(17, 20, 26), _rgb(232, 236, 243), _rgb(90, 170, 230),
+    _rgb(210, 250, 150),
+)  # fmt: skip
 THEMES = {theme.name: theme for theme in (LIGHT, DARK)}
 
 # Control points of the colour maps, mixed in OKLab, so that equal steps look equal.
@@ -199,18 +206,19 @@ def _joint_colors(told: tuple[int, ...]) -> NDArray[np.float64]:
 @cache
 def _differences() -> NDArray[np.float64]:
     """Return how far apart the joints' colours are, in OKLab, to the eye that sees it least."""
-    colors = np.array(JOINT_COLORS) / 255
-    apart = [
-        np.linalg.norm(lab[:, None] - lab, axis=2)
-        for lab in (_srgb_to_oklab(as_seen(colors, eye)) for eye in EYES)
-    ]
-    return np.min(apart, axis=0)
+    return differences(np.array(JOINT_COLORS) / 255)
 
 
 def as_seen(colors: ArrayLike, eye: str) -> NDArray[np.float64]:
     """Return colours (n, 3), from 0 to 1, as an eye sees them: one of `EYES`."""
     linear = _to_linear(np.asarray(colors, float)) @ np.array(EYES[eye]).T
     return np.clip(_from_linear(linear), 0, 1)
+
+
+def differences(colors: ArrayLike) -> NDArray[np.float64]:
+    """Return how far apart colours (n, 3) are in OKLab, to the eye that sees it least, (n, n)."""
+    seen = [_srgb_to_oklab(as_seen(colors, eye)) for eye in EYES]
+    return np.min([np.linalg.norm(lab[:, None] - lab, axis=2) for lab in seen], axis=0)
 
 
 def to_bytes(colors: ArrayLike) -> NDArray[np.uint8]:

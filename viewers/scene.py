@@ -104,6 +104,10 @@ class Scene:
 # A key light from the upper left and a soft fill from the right, both tied to the camera.
 LIGHTS = (((-0.5, 0.7, 1.0), 0.82), ((0.9, -0.1, 0.6), 0.34))
 AMBIENT = 0.16
+LINE_AMBIENT = 0.5
+"""Lines are thin: with less light from all around their colour would not be seen."""
+PICTURE_WIDTH = 1.5
+"""How many times as wide lines and points are in a picture, which has more pixels than a page."""
 
 
 def render_png(
@@ -138,14 +142,16 @@ def cut_planes(cut: Cut, slab: float) -> list[dict[str, tuple[float, ...]]]:
 
 
 def _dataset(actor: Actor, pose: NDArray[np.float64] | None) -> pv.PolyData:
-    points, normals = actor.points, actor.normals
+    points, normals, cells = actor.points, actor.normals, actor.cells
     if pose is not None and actor.skin is not None:
         points = moved(points, actor.skin, pose).astype(np.float32)
         if normals is not None:
             normals = turned(normals, actor.skin, pose).astype(np.float32)
+    if actor.dash > 0 and actor.scalars is None and actor.colors is None:
+        points, cells = _dashes(points[cells], actor.dash)
     data: Any = pv.PolyData()
     data.points = points
-    cells = np.insert(actor.cells, 0, actor.cells.shape[1], axis=1).ravel()
+    cells = np.insert(cells, 0, cells.shape[1], axis=1).ravel()
     setattr(data, {"surface": "faces", "lines": "lines", "points": "verts"}[actor.kind], cells)
     if normals is not None:
         data.point_data.active_normals = normals
@@ -154,6 +160,20 @@ def _dataset(actor: Actor, pose: NDArray[np.float64] | None) -> pv.PolyData:
     elif actor.scalars is not None:
         data.point_data["values"] = _values(actor, pose)
     return data
+
+
+def _dashes(ends: NDArray, dash: float) -> tuple[NDArray[np.float32], NDArray[np.int32]]:
+    """Return the dashes of segments (m, 2, 3): a little more than half of each piece is drawn."""
+    start, along = ends[:, 0], ends[:, 1] - ends[:, 0]
+    length = np.linalg.norm(along, axis=1)
+    count = np.maximum(np.ceil(length / dash), 1).astype(int)
+    of = np.repeat(np.arange(len(ends)), count)
+    first = (np.arange(len(of)) - np.repeat(np.cumsum(count) - count, count)) * dash
+    part = np.stack([first, np.minimum(first + 0.55 * dash, length[of])], axis=1)
+    part /= np.maximum(length[of], 1e-300)[:, None]
+    points = start[of, None] + part[:, :, None] * along[of, None]
+    cells = np.arange(2 * len(of), dtype=np.int32).reshape(-1, 2)
+    return points.reshape(-1, 3).astype(np.float32), cells
 
 
 def _values(actor: Actor, pose: NDArray[np.float64] | None) -> Any:
@@ -168,7 +188,12 @@ def _paint(drawn: pv.Actor, actor: Actor, front: float | None = None) -> None:
     look.color, look.opacity, look.line_width = actor.color, actor.opacity, actor.width
     look.ambient, look.diffuse = AMBIENT, 1.0
     look.lighting = actor.kind == "surface" and not actor.hull
-    look.point_size = actor.width
+    look.point_size = actor.width * PICTURE_WIDTH
+    look.render_points_as_spheres = actor.kind == "points" and actor.form == "round"
+    if actor.kind == "lines":
+        look.line_width = actor.width * PICTURE_WIDTH
+        look.render_lines_as_tubes = True
+        look.lighting, look.ambient = True, LINE_AMBIENT
     look.interpolation = "flat" if actor.normals is None else "phong"
     mapper = drawn.mapper
     mapper.scalar_visibility = actor.colors is not None or actor.scalars is not None

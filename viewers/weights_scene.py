@@ -120,5 +120,31 @@ def difference_colors(
     return {**look, "reading": Reading("Weights differ from the file's by ", percent=True)}, legend
 
 
+def bone_difference_colors(
+    rig: Rig, weights: ArrayLike, truth: ArrayLike, joint: int, names: tuple[str, str]
+) -> tuple[dict[str, Any], Legend]:
+    """Colour each vertex by what one matrix gives to a joint beyond what another does.
+
+    Parameters
+    ----------
+    rig : Rig
+    weights, truth : array_like, shape (n, j)
+    joint : int
+    names : (str, str)
+        What the two are called.
+
+    Returns
+    -------
+    look, legend
+        As `weight_colors`.
+    """
+    name = rig.skeleton.names[joint]
+    more = np.asarray(weights)[:, joint] - np.asarray(truth)[:, joint]
+    title = f"Weight of {name}: {names[0]} minus {names[1]}"
+    legend = Legend(title, "difference", "\N{MINUS SIGN}1", "+1")
+    look = {"scalars": more.astype(np.float32), "colormap": "difference", "limits": (-1.0, 1.0)}
+    return {**look, "reading": Reading(f"{name} ")}, legend
+
+
 def _strongest(rig: Rig, weights: ArrayLike) -> Reading:
     return Reading("", np.asarray(weights).argmax(axis=1).astype(np.float32), rig.skeleton.names)

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 from cutcell_assets import DEMOS
 
-from ..state.url import from_query
+from ..state.url import defaults, from_query
 from ..work.messages import shown
 from . import tour
+from .history import restore
 from .loading import load_demo, load_files
 from .session import Session
 
@@ -16,6 +18,30 @@ GONE = (
     "The character of this address was uploaded, and the server no longer has it; here is "
     "another. Drop the file again to go on with it."
 )
+
+
+GREETING = "pose"
+"""The panel that a page begins with whose address says nothing: there the character moves."""
+
+
+def watch(session: Session) -> None:
+    """Go back and on to addresses of this page, as the browser's buttons say."""
+
+    def visit(message: dict[str, Any]) -> None:
+        restore(session, defaults(session.state))
+        arrive(session, str(message["query"]), lambda: None)
+
+    session.view.listen("visit", visit)
+
+
+def greet(session: Session, demo: str) -> None:
+    """Show the first character as it moves, in the colours of its weights."""
+
+    def chosen() -> None:
+        moves = bool(session.state.rig.clips) and not session.view.calm
+        session.state.param.update(moving=moves, playing=moves)
+
+    load_demo(session, demo, chosen)
 
 
 def choose(session: Session, query: str, first: str = "") -> None:
@@ -30,6 +56,8 @@ def choose(session: Session, query: str, first: str = "") -> None:
     """
     state = session.state
     choices, arrival, _ = from_query(query, state)
+    if first and not query:
+        choices["panel"] = GREETING
     demo = tour.demo_of(arrival) if tour.opens(arrival) else arrival.get("rig", first)
     known = {demo.id for demo in DEMOS if demo.path.exists()}
     state.param.update(**choices, demo=demo if demo in known else "")
@@ -49,7 +77,7 @@ def arrive(session: Session, query: str, otherwise: Callable[[], None]) -> None:
     session.state.param.update(**choices)
     session.arrival = arrival
     rig = arrival.get("rig", "")
-    kept = session.uploads.cache.take(rig[1:]) if rig.startswith("~") else None
+    kept = session.uploads.take(rig[1:]) if rig.startswith("~") else None
     demo = any(demo.id == rig and demo.path.exists() for demo in DEMOS)
     if rig and not rig.startswith("~") and not demo:
         problems.append(f"rig={rig}"[:60])
@@ -63,7 +91,6 @@ def arrive(session: Session, query: str, otherwise: Callable[[], None]) -> None:
     if tour.opens(arrival):
         tour.go(session, arrival["tour"], frozenset({**choices, **arrival}))
     elif kept is not None:
-        session.uploads.hold(rig[1:])
         load_files(session, kept, rig[1:])
     elif demo:
         load_demo(session, rig)

@@ -94,8 +94,8 @@ def swap(session: Session, rig: Rig, **more: Any) -> None:
 
 def restore(session: Session, choices: dict[str, Any]) -> None:
     """Choose again what was chosen once; the character that it was chosen of is bound again."""
-    state, rig = session.state, choices["rig"]
-    history.restore(session, {name: choices[name] for name in choices if name != "rig"})
+    state, rig = session.state, choices.get("rig", session.state.rig)
+    history.restore(session, history.plain(choices))
     if rig is not state.rig:
         with history.restoring(session):
             swap(session, rig, repair=choices["repair"])

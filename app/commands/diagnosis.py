@@ -48,6 +48,8 @@ def examine(session: Session) -> None:
 
     def done(diagnosis: Diagnosis) -> None:
         state.diagnosis = diagnosis
+        if state.panel == "diagnosis":
+            _look(session)
 
     session.tasks.jobs("diagnosis").start(work, done, session.fail, lambda stage, fraction: None)
 
@@ -63,6 +65,19 @@ def look_at(session: Session, code: str) -> None:
     if code == state.finding:
         code = ""
     state.finding = code
+    _look(session)
+
+
+def go_to(session: Session, code: str) -> None:
+    """Go where a warning is told: to the panel that shows what a finding names, and its advice."""
+    state = session.state
+    state.param.update(panel="diagnosis", finding=code)
+    _look(session)  # where the check is not done yet, it is looked at then
+
+
+def _look(session: Session) -> None:
+    """Look at what the finding names that is looked at."""
+    state = session.state
     if state.found is not None:
         camera = camera_on(state.rig, state.found, bounds_of(state), session.view.aspect)
         if camera is not None:

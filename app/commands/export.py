@@ -20,6 +20,7 @@ from cutcell_viewers.film import Order
 from cutcell_viewers.pose_scene import clip_in_scene, pose_at, swing
 from cutcell_viewers.worker import draw_apart
 
+from ..files.graph_numbers import save_graph
 from ..files.receive import safe_name
 from ..scenes import Memo, following, resolve
 from ..scenes.pose import SWING_DEGREES, clip_of
@@ -112,6 +113,20 @@ def export_numbers(session: Session, what: str, ending: str, done: Done) -> None
         in_process(partial(save_numbers, path, named, **tables), wanted=wanted, ended=ENDED)
 
     _hand_over(session, name, write, done)
+
+
+def export_graph(session: Session, ending: str, done: Done) -> None:
+    """Hand over the graph's nodes and edges as numbers, in a "zip" of tables or an "npz"."""
+    graph = session.state.graph
+    if graph is None:
+        session.state.message = ("info", "There is no graph to save yet.")
+        return
+
+    def write(path: Path, progress: Progress) -> None:
+        progress("writing the numbers", 0.0)
+        save_graph(path, graph)
+
+    _hand_over(session, f"{_stem(session)}-graph.{ending}", write, done)
 
 
 def export_bound(session: Session, done: Done) -> None:

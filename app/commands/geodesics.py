@@ -16,7 +16,7 @@ WAVE_SECONDS = 6.0
 def watch(session: Session) -> None:
     """Keep the field up to what is seen."""
     session.state.param.watch(
-        lambda *events: find_field(session), ["panel", "binding", "joint", "edge_colors"]
+        lambda *events: find_field(session), ["panel", "binding", "joint", "edge_colors", "vertex"]
     )
     session.view.listen("front", lambda message: halt_wave(session, message["front"]))
     session.state.param.watch(

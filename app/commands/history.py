@@ -23,10 +23,29 @@ def watch(session: Session) -> None:
     session.view.on_camera = lambda: tell(session)
 
 
-def begin(session: Session) -> None:
-    """Begin anew, with a new character."""
-    session.history = History(_now(session))
+def begin(session: Session, before: str) -> None:
+    """Begin anew, with a new character, or go on with one that somebody went back to.
+
+    Parameters
+    ----------
+    session : Session
+    before : str
+        What opens the character that stood there; see `Session.character`.
+    """
+    now = _now(session)
+    if session.returning:
+        session.returning = False
+        session.history.here(now)
+    elif before and session.character:
+        session.history.turn(now, RESULT)
+    else:
+        session.history = History(now)
     tell(session)
+
+
+def plain(choices: dict[str, Any]) -> dict[str, Any]:
+    """Return what of some choices the state holds, but for the character."""
+    return {name: value for name, value in choices.items() if name not in ("rig", "character")}
 
 
 def withdraw(session: Session, choices: dict[str, Any]) -> None:
@@ -80,4 +99,5 @@ def _chosen(session: Session) -> None:
 
 def _now(session: Session) -> dict[str, Any]:
     state = session.state
-    return {**taken(state), **{name: getattr(state, name) for name in RESULT}}
+    result = {name: getattr(state, name) for name in RESULT}
+    return {**taken(state), **result, "character": session.character}

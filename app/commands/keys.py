@@ -8,6 +8,8 @@ from ..scenes.common import first_joint
 from ..state import State
 from ..state.url import defaults
 from .binding import restore
+from .history import RESULT, plain, restoring
+from .loading import load_again
 from .session import Session
 
 
@@ -73,5 +75,18 @@ def to_child(state: State) -> None:
 
 
 def _go(session: Session, choices: dict[str, Any] | None) -> None:
-    if choices:
+    if not choices:
+        return
+    if choices["character"] == session.character:
         restore(session, choices)
+        return
+    # Another character stood there then. It is opened as its file has it.
+    session.history.drop(RESULT)
+    chosen = {name: value for name, value in plain(choices).items() if name not in RESULT}
+
+    def chosen_then() -> None:
+        session.returning = True
+        with restoring(session):
+            session.state.param.update(**chosen)
+
+    load_again(session, choices["character"], chosen_then)

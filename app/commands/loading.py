@@ -8,7 +8,7 @@ from typing import Any
 
 from param.parameterized import batch_call_watchers
 
-from cutcell.errors import CutcellError
+from cutcell.errors import CutcellError, FileError
 from cutcell.progress import Progress
 from cutcell.rig import Rig
 from cutcell_assets import DEMOS
@@ -51,12 +51,18 @@ def load_demo(
         lambda wanted: demo_rig(id),
         f"loading {title}",
         lambda: session.uploads.stay(""),
+        f"demo {id}",
         chosen,
         then,
     )
 
 
-def load_files(session: Session, paths: list[Path], key: str = "") -> None:
+def load_files(
+    session: Session,
+    paths: list[Path],
+    key: str = "",
+    chosen: Callable[[], None] = lambda: None,
+) -> None:
     """Show the character in some files, and bind it.
 
     Parameters
@@ -65,9 +71,13 @@ def load_files(session: Session, paths: list[Path], key: str = "") -> None:
     paths : list of Path
         The file, and those that belong to it.
     key : str
-        That of uploaded files; see `UploadCache`.
+        That of uploaded files; see `UploadCache`. Without one they are files of this machine.
+    chosen : callable
+        Chooses more, together with the character.
     """
     uploads = session.uploads
+    if not key:
+        session.given = paths
     try:
         path = main_file(paths)
     except CutcellError as error:
@@ -78,7 +88,9 @@ def load_files(session: Session, paths: list[Path], key: str = "") -> None:
         session,
         lambda wanted: read(path, wanted),
         f"loading {path.name}",
-        lambda: uploads.stay(key),
+        lambda: uploads.stay(key, path.name),
+        f"~{key}",
+        chosen,
         failed=lambda: uploads.leave(key),
         demo="",
     )
@@ -91,6 +103,31 @@ def load_upload(session: Session, group: Group) -> None:
     load_files(session, group.paths, group.key)
 
 
+def load_again(session: Session, character: str, chosen: Callable[[], None] = lambda: None) -> None:
+    """Show a character that stood there before.
+
+    Parameters
+    ----------
+    session : Session
+    character : str
+        As `Session.character` was then.
+    chosen : callable
+        Chooses more, together with the character.
+    """
+    kind, _, demo = character.partition(" ")
+    if kind == "demo":
+        load_demo(session, demo, chosen)
+        return
+    key = character[1:]
+    paths = session.uploads.take(key) if key else session.given
+    if paths is None:
+        name = session.uploads.listed.pop(key, "that character")
+        session.fail(FileError(f"the server no longer has the files of {name}; drop them again"))
+        session.state.param.trigger("demo")
+    else:
+        load_files(session, paths, key, chosen)
+
+
 def receiver(session: Session) -> Receiver:
     """Return what takes files from the browser and loads them."""
     uploads = session.uploads
@@ -99,7 +136,9 @@ def receiver(session: Session) -> Receiver:
     return made
 
 
-def show_rig(session: Session, rig: Rig, chosen: Callable[[], None] = lambda: None) -> None:
+def show_rig(
+    session: Session, rig: Rig, chosen: Callable[[], None] = lambda: None, character: str = ""
+) -> None:
     """Show a character that is loaded already, and bind it.
 
     Parameters
@@ -108,12 +147,15 @@ def show_rig(session: Session, rig: Rig, chosen: Callable[[], None] = lambda: No
     rig : Rig
     chosen : callable
         Chooses more, together with the character.
+    character : str
+        See `Session.character`.
     """
     state, view = session.state, session.view
+    old, session.character = session.character, character
     session.tasks.jobs("field").cancel()
     before, arrival, session.arrival = state.rig, session.arrival, {}
     # All at once: a menu whose value changes twice in a moment may tell the first one back.
-    with batch_call_watchers(state):
+    with history.restoring(session), batch_call_watchers(state):
         state.param.update(
             rig=rig, binding=None, bare_graph=None, field=None, turns={}, moving=False,
             playing=False, repair=None,
@@ -130,7 +172,7 @@ def show_rig(session: Session, rig: Rig, chosen: Callable[[], None] = lambda: No
     if "camera" in arrival:
         eye, target = arrival["camera"][:3], arrival["camera"][3:]
         look(session, Camera(tuple(eye), tuple(target)))
-    history.begin(session)
+    history.begin(session, old)
     bind(session)
 
 
@@ -139,6 +181,7 @@ def _load(
     load: Callable[[Callable[[], object]], Rig],
     stage: str,
     loaded: Callable[[], None],
+    character: str,
     chosen: Callable[[], None] = lambda: None,
     then: Callable[[], None] = lambda: None,
     failed: Callable[[], None] = lambda: None,
@@ -151,7 +194,7 @@ def _load(
     def done(rig: Rig) -> None:
         loaded()
         session.state.param.update(**more)
-        show_rig(session, rig, chosen)
+        show_rig(session, rig, chosen, character)
         then()
 
     session.start(work, done, READING, failed)

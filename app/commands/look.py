@@ -18,7 +18,19 @@ def watch(session: Session) -> None:
     state.param.watch(lambda *events: show_theme(session), "dark")
     view.listen("pick", lambda message: pick(session, int(message["joint"])))
     view.listen("pick-vertex", lambda message: pick_vertex(session, int(message["vertex"])))
+    view.listen("pick-node", lambda message: pick_node(session, int(message["node"])))
+    state.param.watch(lambda *events: pick_node(session, None), ["rig", "binding", "bare_graph"])
     show_theme(session)
+
+
+def pick_node(session: Session, node: int | None) -> None:
+    """Choose a node of the graph to look at closely; None for no more."""
+    graph = session.state.graph
+    if node is not None and (graph is None or not 0 <= node < len(graph.nodes)):
+        return
+    session.state.node = node
+    if node is not None:
+        session.state.vertex = None  # one card at a time
 
 
 def pick(session: Session, joint: int) -> None:
@@ -35,7 +47,7 @@ def pick_vertex(session: Session, vertex: int | None) -> None:
     count = 0 if state.rig is None or state.bare else len(state.rig.mesh.vertices)
     if vertex is not None and vertex >= count:
         return
-    state.vertex = vertex
+    state.param.update(vertex=vertex, node=None)
 
 
 def look(session: Session, camera: Camera | None) -> None:

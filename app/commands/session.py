@@ -36,6 +36,7 @@ class View(Protocol):
     on_camera: Callable[[], None]
     aspect: float
     time: float
+    calm: bool
 
     def listen(self, kind: str, act: Callable[[dict[str, Any]], Any]) -> None:
         """Call a function with every message of a kind that the browser sends."""
@@ -74,6 +75,13 @@ class Session:
     restoring : bool
         Whether choices of the past are being restored: they are not noted anew.
     uploads : PageUploads
+    character : str
+        What opens the character that stands there again: "demo" and its id, or "~" and the key of
+        uploaded files ("" for those of this machine); empty where nothing does.
+    given : list of Path
+        Files of this machine that the page was opened with.
+    returning : bool
+        Whether that character is shown because somebody went back to it.
     arrival : dict
         What an address says of the character that is on its way.
     notice : str
@@ -94,6 +102,9 @@ class Session:
         self.history = History({})
         self.restoring = False
         self.uploads = PageUploads(UPLOADS)
+        self.character = ""
+        self.given: list[Path] | None = None
+        self.returning = False
         self.arrival: dict[str, Any] = {}
         self.notice = ""
         self.bound_for: dict[str, Any] = {}

@@ -46,6 +46,23 @@ def go(session: Session, index: int, said: frozenset[str] = frozenset()) -> None
         )
 
 
+def offer(session: Session, index: int) -> None:
+    """Choose what a button on the step's card stands for."""
+    state = session.state
+    if 0 <= state.tour < len(TOUR) and 0 <= index < len(TOUR[state.tour].offers):
+        state.param.update(**TOUR[state.tour].offers[index].choices)
+
+
+def taken(state: Any) -> list[bool]:
+    """Return for each button on the step's card whether what it chooses is chosen."""
+    if not 0 <= state.tour < len(TOUR):
+        return []
+    return [
+        all(getattr(state, name) == value for name, value in one.choices.items())
+        for one in TOUR[state.tour].offers
+    ]
+
+
 def opens(arrival: dict[str, Any]) -> bool:
     """Whether an address leaves the scene to the step that it names.
 

@@ -46,6 +46,10 @@ class Group:
         Bytes, of all of them, as they were announced.
     owner : object
         The page that sends them.
+    users : int
+        Pages on which their character stands, or is about to.
+    listed : int
+        Open pages on which it can be chosen again. It waits for that, but makes way for others.
     """
 
     key: str
@@ -54,6 +58,7 @@ class Group:
     owner: object
     paths: list[Path] = field(default_factory=list)
     users: int = 1
+    listed: int = 0
     left: float = 0.0
 
 
@@ -115,6 +120,19 @@ class UploadCache:
                 group.users -= 1
                 group.left = time.monotonic()
             self._sweep()
+
+    def list(self, key: str, count: int = 1) -> None:
+        """Note that one more page lists a group of files; with -1, that one does no longer."""
+        with self._lock:
+            group = self._groups.get(key)
+            if group is not None:
+                group.listed += count
+                group.left = time.monotonic()
+
+    def has(self, key: str) -> bool:
+        """Whether a group of files is still kept."""
+        with self._lock:
+            return key in self._groups
 
     def sweep(self) -> None:
         """Remove what was left long ago, here and by servers that ended."""
@@ -182,7 +200,7 @@ class UploadCache:
     def _sweep(self) -> None:
         old = time.monotonic() - self._seconds
         for group in list(self._groups.values()):
-            if group.users <= 0 and group.left <= old:
+            if group.users <= 0 and group.listed <= 0 and group.left <= old:
                 self._remove(group)
 
     def _remove(self, group: Group) -> None:
@@ -201,11 +219,14 @@ class PageUploads:
     ----------
     key : str
         Of the character that stands there; empty where it was not uploaded.
+    listed : dict of str to str
+        The keys of the characters that stood there, and what they are called, in order.
     """
 
     def __init__(self, cache: UploadCache) -> None:
         self.cache = cache
         self.key = ""
+        self.listed: dict[str, str] = {}
         self._held: set[str] = set()
         self._closing: list[Callable[[], None]] = []
 
@@ -213,9 +234,24 @@ class PageUploads:
         """Note files that are in use already."""
         self._held.add(key)
 
-    def stay(self, key: str) -> None:
-        """Let the character of some files stand there, and use no others; "" for none."""
+    def take(self, key: str) -> list[Path] | None:
+        """Use a group of files; None where it is not kept any more."""
+        if key in self._held:
+            self.cache.leave(key)
+        paths = self.cache.take(key)
+        if paths is not None:
+            self.hold(key)
+        return paths
+
+    def stay(self, key: str, name: str = "") -> None:
+        """Let the character of some files stand there, and use no others; "" for none.
+
+        It can be chosen again by its name, if it has one.
+        """
         self.key = key
+        if key and name and key not in self.listed:
+            self.listed[key] = name
+            self.cache.list(key)
         for other in self._held - {key}:
             self.leave(other)
 
@@ -225,6 +261,10 @@ class PageUploads:
             self._held.remove(key)
             self.cache.leave(key)
 
+    def offered(self) -> dict[str, str]:
+        """Return what is `listed` and still kept."""
+        return {key: name for key, name in self.listed.items() if self.cache.has(key)}
+
     def when_closed(self, act: Callable[[], None]) -> None:
         """Do something when the page is closed."""
         self._closing.append(act)
@@ -232,6 +272,9 @@ class PageUploads:
     def close(self) -> None:
         """Let go of what was uploaded, and of what is still being sent."""
         self.stay("")
+        for key in self.listed:
+            self.cache.list(key, -1)
+        self.listed.clear()
         for act in self._closing:
             act()
 

@@ -62,7 +62,10 @@ def page(path: Path | None = None) -> pmui.Page:
 
     def otherwise() -> None:
         if path is None:
-            load_demo(session, first)
+            if query:
+                load_demo(session, first)
+            else:
+                arrival.greet(session, first)
         else:
             load_files(session, [path])
 

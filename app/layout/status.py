@@ -10,8 +10,10 @@ import panel_material_ui as pmui
 from cutcell.graph import INTERIOR, MESH, SURFACE
 
 from ..commands.binding import cancel
+from ..commands.diagnosis import go_to
 from ..commands.session import Session
 from ..panels.parts import when, words
+from ..scenes.warnings import Door, warnings
 from ..state import State
 from ..widgets.modules import style
 from ..work.messages import sentence, shown
@@ -23,6 +25,17 @@ TITLES = {
     "weights": "Computing weights",
 }
 
+
+DOORS = {
+    "bgcolor": "background.paper",
+    "borderRadius": "0 0 8px 8px",
+    "boxShadow": "0 4px 18px rgba(10, 20, 40, .16)",
+    "flexWrap": "wrap",
+    "width": "fit-content",
+    "marginLeft": "16px",
+    "padding": "2px 4px",
+}
+"""The buttons below a warning, as a tongue of it."""
 
 # The line keeps its height whatever it says: the canvas above must not jump.
 _CUT = {"whiteSpace": "nowrap", "overflow": "hidden", "textOverflow": "ellipsis"}
@@ -103,15 +116,38 @@ def messages(session: Session) -> pmui.Column:
             return  # what was warned of stays as it was
         severity, text = state.message or warning(state) or ("info", "")
         alert.param.update(severity=severity, title=text, closed=False, visible=bool(text))
+        leads = [] if state.message else [door for door in warnings(state) if door.code]
+        doors.objects = [_door(session, door) for door in leads]
+        doors.visible = bool(leads)
 
     def closed(event: Any) -> None:
         if event.new:
-            alert.visible = False
+            alert.visible = doors.visible = False
 
     state.param.watch(told, ["message", "binding", "bare_graph"])
     alert.param.watch(closed, "closed")
-    return pmui.Column(
-        alert, margin=0, sizing_mode="stretch_width", stylesheets=[style("messages_place")]
+    doors = pmui.Row(margin=0, visible=False, sx=DOORS)
+    place = pmui.Column(
+        alert, doors, margin=0, sizing_mode="stretch_width", stylesheets=[style("messages_place")]
+    )
+
+    def beside(*events: Any) -> None:
+        place.css_classes = ["beside-tour"] if state.tour >= 0 else []
+
+    state.param.watch(beside, "tour")
+    beside()
+    return place
+
+
+def _door(session: Session, door: Door) -> pmui.Button:
+    """Return what leads from a warning to its elements, and to what can be done about it."""
+    return pmui.Button(
+        label=door.label,
+        icon="my_location",
+        size="small",
+        variant="text",
+        margin=(0, 4),
+        on_click=lambda event: go_to(session, door.code),
     )
 
 
@@ -124,9 +160,7 @@ def only_weights(event: Any) -> bool:
 
 def warning(state: State) -> tuple[str, str] | None:
     """Return what a person should know about the result."""
-    if state.graph is None:
-        return None
-    texts = [*state.rig.warnings, *(state.binding.warnings if state.binding else ())]
+    texts = [door.text for door in warnings(state)]
     return ("warning", " ".join(sentence(shown(text)) for text in texts)) if texts else None
 
 

@@ -6,6 +6,28 @@ from typing import Any
 
 from cutcell_viewers.palette import DARK, LIGHT, to_hex
 
+NARROW = "@media (max-width: 599.95px)"
+SHEET = "46dvh"
+"""How high the sidebar is in a narrow window: a sheet at the bottom, the canvas above it."""
+
+_SHEET = {
+    # What its sliders change stays seen, and can be turned meanwhile.
+    "pointerEvents": "none",
+    "& .MuiBackdrop-root": {"display": "none"},
+    "& .MuiDrawer-paper": {
+        "pointerEvents": "auto",
+        "top": f"calc(100dvh - {SHEET}) !important",
+        "bottom": "auto !important",
+        "left": "0 !important",
+        "right": "0 !important",
+        "width": "100% !important",
+        "height": f"{SHEET} !important",
+        "maxHeight": SHEET,
+        "borderRadius": "16px 16px 0 0",
+        "boxShadow": "0 -4px 20px rgba(10, 20, 40, .18)",
+    },
+}
+
 _SHAPE = {
     "shape": {"borderRadius": 8},
     "typography": {
@@ -20,7 +42,10 @@ _SHAPE = {
                 # Dark paper is as dark over the canvas as beside it.
                 "paper": {"backgroundImage": "none"},
                 # What lies over the bar on top needs no room below it.
-                "modal": {"& .MuiDrawer-paper > .MuiToolbar-root": {"display": "none"}},
+                "modal": {
+                    "& .MuiDrawer-paper > .MuiToolbar-root": {"display": "none"},
+                    NARROW: _SHEET,
+                },
             }
         },
         "MuiMenu": {"defaultProps": {"transitionDuration": {"enter": 160, "exit": 0}}},
@@ -62,4 +87,6 @@ PAGE_STYLE: dict[str, Any] = {
     "& .header .MuiToolbar-root": {"minHeight": "52px", "margin": 0},
     "& .MuiToolbar-root": {"minHeight": "52px"},
     "& .sidebar": {"backgroundImage": "none", "borderColor": "divider"},
+    # How high the sheet is that stands there now: scripts/sheet.js.
+    NARROW: {"& .main > .MuiBox-root": {"height": "calc(100dvh - var(--sheet, 0px)) !important"}},
 }

@@ -6,14 +6,15 @@ from typing import Any
 
 import panel_material_ui as pmui
 
+from cutcell.display import shown_name
 from cutcell_assets import DEMOS
 
-from ..commands.loading import load_demo, receiver
+from ..commands.loading import load_again, load_demo, receiver
 from ..commands.session import Session
 from ..files.receive import MAX_UPLOAD
 from ..state import State
 from ..widgets.file_drop import FileDrop
-from .parts import GAP, as_text, caption, section
+from .parts import GAP, as_text, caption, section, unique_names
 
 MOST_FAULTS = 2
 """The panel Check tells of all."""
@@ -36,12 +37,25 @@ def character(session: Session) -> pmui.Column:
     lesson = caption()
 
     def chosen(event: Any) -> None:
-        if event.new and event.new != state.demo:
-            load_demo(session, event.new)
+        if event.new is not None and event.new != now():
+            if event.new in demos.values():
+                load_demo(session, event.new)
+            else:
+                load_again(session, event.new)
+
+    def now() -> str:
+        return state.demo or f"~{session.uploads.key}"
 
     def shown(*events: Any) -> None:
-        own = {} if state.demo else {OWN: ""}
-        select.param.update(options={**own, **demos}, value=state.demo)
+        listed = session.uploads.offered()
+        own = {} if now() == "~" and session.given is None else {OWN: "~"}
+        if session.given is not None:
+            own = {shown_name(session.given[0].name): "~"}
+        elif state.demo or session.uploads.key in listed:
+            own = {}
+        names = unique_names(list(listed.values()))
+        opened = {name: f"~{key}" for name, key in zip(names, listed, strict=True)}
+        select.param.update(options={**own, **opened, **demos}, value=now())
         lessons = {demo.id: demo.lesson for demo in DEMOS}
         found = faults(state)
         name = state.rig.name + ":" * bool(found) if state.rig else ""

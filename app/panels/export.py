@@ -35,13 +35,15 @@ def export(session: Session) -> pmui.Column:
         "Weights (CSV)": lambda: actions.export_numbers(session, "weights", "csv", offer),
         "Distances (CSV)": lambda: actions.export_numbers(session, "distances", "csv", offer),
         "Both, with names (NPZ)": lambda: actions.export_numbers(session, "all", "npz", offer),
+        "Nodes and edges of the graph (CSV)": lambda: actions.export_graph(session, "zip", offer),
+        "Nodes and edges of the graph (NPZ)": lambda: actions.export_graph(session, "npz", offer),
     }
     return section(
         "Export",
         bound,
         pmui.Row(
             _menu("Picture, film", "movie", films, state.param.rig, (4, 8, 4, 0)),
-            _menu("Numbers", "table_chart", numbers, state.param.binding, GAP),
+            _menu("Numbers", "table_chart", numbers, state.param.rig, GAP),
             margin=0,
             sizing_mode="stretch_width",
         ),

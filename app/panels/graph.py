@@ -21,10 +21,15 @@ KINDS = {"mesh_edges": MESH, "interior_edges": INTERIOR, "surface_edges": SURFAC
 LAYER_COLORS = {
     "mesh_edges": "#3a96c0",
     "interior_edges": to_hex(palette.INTERIOR),
-    "surface_edges": to_hex(palette.SURFACE),
+    "surface_edges": "#5aa02c",
 }
 """What marks each layer's switch, in the paper's colours."""
 LEAF_TITLES = {"point": "Points", "extend": "Extended", "fit": "Fitted"}
+SEARCHED = (
+    "Interior edges only carry the search: a distance runs straight wherever there is line of "
+    "sight. Click the body to see the lines of sight to the chosen bone."
+)
+"""What interior edges are where paths need not follow them."""
 AXES = {"X": "x", "Y": "y", "Z": "z"}
 
 
@@ -33,7 +38,9 @@ def graph(session: Session) -> pmui.Column:
     state = session.state
     return pmui.Column(
         lead("The paths that distances are measured on: along the mesh and through the inside."),
-        section("Layers", *[_layer(state, name) for name in LAYERS], *_colors(state)),
+        section(
+            "Layers", *[_layer(state, name) for name in LAYERS], _nodes(state), *_colors(state)
+        ),
         section("Look inside", *_inside(state)),
         section("Build", *_build(session)),
         margin=0,
@@ -69,6 +76,16 @@ def _layer(state: State, name: str) -> pmui.Row:
     return pmui.Row(switch, spacer, number, sizing_mode="stretch_width", margin=0, visible=visible)
 
 
+def _nodes(state: State) -> pmui.Column:
+    """Return the switch of the nodes of the layers that are seen."""
+    switch = pmui.Switch.from_param(
+        state.param.nodes, label="Their nodes", size="small", margin=(1, 0), description=""
+    )
+    hint = caption("Click a node: a card tells all of it.", visible=state.param.nodes)
+    seen = when(lambda slicing: not slicing, state.param.slicing)
+    return pmui.Column(switch, hint, margin=0, sizing_mode="stretch_width", visible=seen)
+
+
 def count(state: State, layer: str) -> str:
     """Return how many faces or edges a layer has, as text."""
     if layer == "body":
@@ -91,7 +108,7 @@ def _colors(state: State) -> list[Any]:
             state.param.slicing,
         ),
     )
-    options = {"By kind": "kind", "By depth": "depth", "By distance": "distance"}
+    options = {"Kind": "kind", "Depth": "depth", "Distance": "distance", "Part": "component"}
     seen = when(lambda slicing: not slicing, state.param.slicing)
     return [choice(state.param.edge_colors, options, visible=seen), idle]
 
@@ -199,6 +216,7 @@ def _build(session: Session) -> list[Any]:
         orient,
         caption("Paths inside run along", margin=(4, 0, 0, 0)),
         choice(state.param.connectivity, {"6 axes": 6, "26 diagonals": 26, "Any angle": "any"}),
+        caption(SEARCHED, visible=when(lambda value: value == "any", state.param.connectivity)),
         caption("Leaf bones are", margin=(4, 0, 0, 0)),
         choice(state.param.leaf, {LEAF_TITLES.get(leaf, leaf): leaf for leaf in LEAVES}),
         again,

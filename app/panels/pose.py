@@ -27,7 +27,7 @@ def pose(session: Session) -> pmui.Column:
     """Return the controls of the panel Pose."""
     return pmui.Column(
         lead("How the skin follows when bones turn, by hand or in a motion."),
-        _turning(session), _motion(session), _comparison(session),
+        _turning(session), _motion(session), _colours(session), _comparison(session),
         margin=0, sizing_mode="stretch_width",
     )  # fmt: skip
 
@@ -120,6 +120,12 @@ def _motion(session: Session) -> pmui.Column:
         sizing_mode="stretch_width",
     )
     return section("", motion, axis, play, margin=(2, 20, 4, 20))
+
+
+def _colours(session: Session) -> pmui.Column:
+    state = session.state
+    names = {"Weights": "weights", "Plain": "plain"}
+    return section("Colours of the body", choice(state.param.pose_colors, names))
 
 
 def _comparison(session: Session) -> pmui.Column:

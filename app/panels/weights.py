@@ -20,7 +20,10 @@ SHOWN = {
     "The chosen bone": "bone",
     "Influences per vertex": "count",
 }
-DIFFERENCE = {"Difference to the file's own": "difference"}
+DIFFERENCE = {
+    "Difference to the file's own": "difference",
+    "The chosen bone's difference": "bone_difference",
+}
 FALLOFF_TITLES = {"rig": "To animate with", "paper": "The paper's"}
 
 
@@ -46,12 +49,37 @@ def weights(session: Session) -> pmui.Column:
     state.param.watch(lambda *events: session.tasks.later(tell), ["binding", "rig"])
     return pmui.Column(
         lead("How much each bone moves each point of the skin."),
-        section("", shown, facts, margin=(8, 20, 4, 20)),
+        section("", shown, *_sides(state), facts, margin=(8, 20, 4, 20)),
         section("Falloff with distance", *_falloff(state)),
         deforming(session),
         margin=0,
         sizing_mode="stretch_width",
     )
+
+
+def _sides(state: State) -> list[Any]:
+    """Return the choices between what was computed and what the file says."""
+    names = {"Ours": "ours", "The file's own": "file"}
+    whose = choice(
+        state.param.weights_of,
+        names,
+        visible=when(
+            lambda rig, shown: _has_own(rig) and shown not in DIFFERENCE.values(),
+            state.param.rig,
+            state.param.weights_shown,
+        ),
+    )
+    signed = when(
+        lambda rig, shown: _has_own(rig) and shown == "bone_difference",
+        state.param.rig,
+        state.param.weights_shown,
+    )
+    truth = {"The file is right": "file", "Ours are right": "ours"}
+    return [whose, choice(state.param.truth, truth, visible=signed)]
+
+
+def _has_own(rig: Any) -> bool:
+    return rig is not None and rig.weights is not None
 
 
 def _falloff(state: State) -> list[Any]:

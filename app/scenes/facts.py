@@ -12,6 +12,8 @@ from scipy.sparse.csgraph import connected_components
 from cutcell.display import shown_name
 from cutcell.geodesics import FALLBACK_REASONS
 from cutcell.graph import MESH, CutCellGraph
+from cutcell.winding import winding_number
+from cutcell_viewers.graph_scene import KINDS
 from cutcell_viewers.palette import joint_colors, to_hex
 
 from ..state import State
@@ -71,6 +73,51 @@ def vertex_facts(state: State, memo: Memo) -> dict[str, Any] | None:
         "reached": fallback == 0,
         "reason": FALLBACK_REASONS[fallback],
     }
+
+
+MOST_NEIGHBOURS = 26
+"""How many neighbours of a node are listed, the nearest first."""
+
+
+def node_facts(state: State, memo: Memo) -> dict[str, Any] | None:
+    """Return what the inspector shows of the chosen node of the graph; None if none is chosen.
+
+    Returns
+    -------
+    dict or None
+        "node", "kind", "position" (in the file's units), "winding", "neighbours" (number, kind,
+        kind of the edge, length in the file's units), "degree", "triangle" (its face and that
+        face's corners, of a surface node) and "vertices" (of a mesh node).
+    """
+    graph, node = state.graph, state.node
+    if state.panel != "graph" or graph is None or node is None or node >= len(graph.nodes):
+        return None
+    indptr, indices, lengths = graph.adjacency
+    around = slice(indptr[node], indptr[node + 1])
+    near = sorted(zip(lengths[around].tolist(), indices[around].tolist(), strict=True))
+    position = graph.lattice.to_file(graph.nodes[node][None])[0]
+    face = int(graph.triangle[node])
+    return {
+        "node": int(node),
+        "kind": KINDS[graph.node_kind[node]],
+        "position": [float(x) for x in position],
+        "winding": memo("node winding", (graph, node), lambda: _winding(state, position)),
+        "degree": len(near),
+        "neighbours": [
+            {
+                "node": other,
+                "kind": KINDS[graph.node_kind[other]],
+                "length": length * graph.lattice.size,
+            }
+            for length, other in near[:MOST_NEIGHBOURS]
+        ],
+        "triangle": None if face < 0 else [face, *state.rig.mesh.faces[face].tolist()],
+        "vertices": np.flatnonzero(graph.vertex_node == node)[:8].tolist(),
+    }
+
+
+def _winding(state: State, position: NDArray[np.float64]) -> float:
+    return float(winding_number(state.rig.mesh, position[None])[0])
 
 
 def components(graph: CutCellGraph) -> tuple[NDArray[np.intp], NDArray[np.intp]]:

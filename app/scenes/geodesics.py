@@ -138,7 +138,8 @@ def has_field(state: State) -> bool:
 def wants_field(state: State) -> bool:
     """Whether the distance is to be known at every node of the graph."""
     wanted = state.panel == "geodesics" or (
-        state.panel == "graph" and state.edge_colors == "distance"
+        state.panel == "graph"
+        and (state.edge_colors == "distance" or (state.vertex is not None and state.path))
     )
     return wanted and has_field(state)
 

@@ -6,27 +6,29 @@ from dataclasses import replace
 from typing import Any
 
 from cutcell.graph import INTERIOR, MESH, SURFACE, slice_rays
+from cutcell_viewers.character import to_scene
 from cutcell_viewers.description import Actor, Cut, Description, Legend
 from cutcell_viewers.distance_scene import distance_legend, distance_limits
-from cutcell_viewers.graph_scene import depth_field, graph_scene
+from cutcell_viewers.graph_scene import component_colors, depth_field, graph_scene, node_marks
+from cutcell_viewers.marks import path_tube
 from cutcell_viewers.palette import INTERIOR as INTERIOR_COLOR
-from cutcell_viewers.palette import SURFACE as SURFACE_COLOR
+from cutcell_viewers.palette import MARK
 from cutcell_viewers.slice_scene import file_axis, slice_place, slice_scene
 
 from ..state import LAYERS, State
 from .common import SEE_THROUGH, cells_of, character, cut_of, theme_of
-from .geodesics import field_of
+from .geodesics import field_of, path_of
 from .memo import Memo
 
 FACE_CELLS = 3
 """How many cells behind a cut are its face."""
 KINDS = {
-    "mesh_edges": "mesh: the edges of its triangles",
-    "interior_edges": "interior: the way through the body",
-    "surface_edges": "surface: between the two",
+    "mesh_edges": "mesh: thin lines, balls",
+    "interior_edges": "interior: thick lines, squares",
+    "surface_edges": "surface: dashed lines, triangles",
 }
-"""What each kind of edges is."""
-X_RAY = 0.14
+"""The kinds of edges, and how they and their nodes are told apart."""
+X_RAY = 0.5
 """How opaque each edge inside is where nothing is cut."""
 SHELL = 0.5
 """How opaque the body is behind a slice."""
@@ -41,6 +43,16 @@ def graph(state: State, memo: Memo) -> Description:
     actors = character(state, memo, visible=state.body, opacity=body_opacity(state))
     layers, legend = graph_layers(state, memo)
     actors |= layers
+    if state.node is not None and state.graph is not None and state.node < len(state.graph.nodes):
+        inputs = (state.rig, state.graph, state.node, state.dark)
+        actors |= memo("node", inputs, lambda: node_marks(*inputs[:3], theme_of(state)))
+    path = sight_of(state, memo)
+    if path is not None and len(path):
+        places = to_scene(state.rig, state.graph.lattice.to_file(path))
+        actors["path"] = memo("sight", (path,), lambda: path_tube(state.rig, places))
+        told = f"lines of sight that vertex {state.vertex:,} is measured along"
+        swatches = ((MARK, told), *(() if legend is None else legend.swatches))
+        legend = replace(legend or Legend("The graph's edges"), swatches=swatches)
     for name, actor in actors.items():
         if actor.clipped:
             slab = thick.get("interior" if name == "interior edges" else "rest", 0.0)
@@ -56,7 +68,7 @@ def graph_layers(state: State, memo: Memo) -> tuple[dict[str, Actor], Legend | N
     field, look, legend = _field(state, memo)
     drawn = memo(
         "graph",
-        (rig, lattice, theme.name, field, look.get("shades", "")),
+        (rig, lattice, theme.name, field, look.get("shades", ""), look.get("colors")),
         lambda: graph_scene(rig, lattice, theme=theme, field=field, **look).actors,
     )
     seen = {
@@ -64,7 +76,16 @@ def graph_layers(state: State, memo: Memo) -> tuple[dict[str, Actor], Legend | N
         for layer, name in LAYERS.items()
         if name in drawn
     }
+    for layer, name in LAYERS.items():
+        nodes = name.replace("edges", "nodes")
+        if nodes in drawn and nodes != name:
+            seen[nodes] = replace(drawn[nodes], visible=state.nodes and getattr(state, layer))
     return seen, legend
+
+
+def sight_of(state: State, memo: Memo) -> Any:
+    """Return the straight pieces that the chosen vertex's distance is made of (p, 3), or None."""
+    return path_of(state, memo) if state.connectivity == "any" else None
 
 
 def _thin(state: State, name: str) -> float:
@@ -80,6 +101,10 @@ def _field(state: State, memo: Memo) -> tuple[Any, dict[str, Any], Legend | None
         most = distance_limits(depth)[1]
         legend = Legend("Depth below the surface", "depth", "0", f"{most:.3f} of the longest side")
         return depth, {"shades": "depth"}, legend
+    if state.edge_colors == "component":
+        colors, count = memo("parts", (state.graph,), lambda: component_colors(state.graph))
+        legend = Legend(f"{count:,} connected component{'s' * (count != 1)}")
+        return None, {"colors": colors}, legend
     field = field_of(state) if state.edge_colors == "distance" else None
     if field is None:
         return None, {}, kinds_legend(state)
@@ -89,8 +114,9 @@ def _field(state: State, memo: Memo) -> tuple[Any, dict[str, Any], Legend | None
 
 def kinds_legend(state: State) -> Legend | None:
     """Return what the colours of the layers of edges that are seen stand for."""
-    colors = {"mesh_edges": theme_of(state).mesh_edge, "interior_edges": INTERIOR_COLOR,
-              "surface_edges": SURFACE_COLOR}  # fmt: skip
+    theme = theme_of(state)
+    colors = {"mesh_edges": theme.mesh_edge, "interior_edges": INTERIOR_COLOR,
+              "surface_edges": theme.surface_edge}  # fmt: skip
     seen = tuple((colors[name], text) for name, text in KINDS.items() if getattr(state, name))
     return Legend("The graph's edges", swatches=seen) if seen else None
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from cutcell.rig import Clip
 from cutcell_viewers.character import body, pose_in_scene
-from cutcell_viewers.description import Actor, Apart, Description
+from cutcell_viewers.description import Actor, Apart, Description, Legend
 from cutcell_viewers.error_scene import Gap, error_legend, error_limits, error_look, squared_unit
 from cutcell_viewers.palette import GHOST
 from cutcell_viewers.pose_scene import joint_turns, swing, turn
@@ -18,6 +18,7 @@ from cutcell_viewers.skin import skin_of_weights
 from ..state import State
 from .common import POSED, character
 from .memo import Memo
+from .weights import weights_look, weights_seen
 
 SWING_DEGREES = 50.0
 GHOST_OPACITY = 0.38
@@ -31,9 +32,10 @@ VIEWS = ("cutcell", "The file's own weights")
 def pose(state: State, memo: Memo) -> Description:
     """Return the scene of the panel Pose."""
     placed = pose_of(state)
+    look, legend, coloured = _colours(state, memo, weights_seen(state), "weights")
     if not has_rival(state):
-        return Description(character(state, memo), pose=placed)
-    look, legend = {}, None
+        actors = character(state, memo, bones_coloured=coloured, **look)
+        return Description(actors, pose=placed, legend=legend)
     if state.heat:
         limits = error_limits_of(state, placed, memo)
         apart = memo(
@@ -46,8 +48,8 @@ def pose(state: State, memo: Memo) -> Description:
             (state.rig, limits[1]),
             lambda: error_look(len(state.rig.mesh.vertices), apart, limits),
         )
-        legend = error_legend(limits)
-    actors = character(state, memo, **look)
+        legend, coloured = error_legend(limits), False
+    actors = character(state, memo, bones_coloured=coloured, **look)
     if state.rival == "alone":
         return Description(actors, pose=placed, legend=legend)
     rival = rival_of(state, memo)
@@ -55,8 +57,18 @@ def pose(state: State, memo: Memo) -> Description:
         rival = replace(rival, color=GHOST, opacity=GHOST_OPACITY, behind=True)
         return Description({**actors, "rival": rival}, pose=placed, legend=legend)
     actors["body"] = replace(actors["body"], view=0)
-    rival = replace(rival, view=1)
+    own = {} if state.heat else _colours(state, memo, state.rig.weights, "file weights")[0]
+    rival = replace(rival, view=1, **own)
     return Description({**actors, "rival": rival}, pose=placed, legend=legend, views=VIEWS)
+
+
+def _colours(
+    state: State, memo: Memo, held: Any, name: str
+) -> tuple[dict[str, Any], Legend | None, bool]:
+    """Return the look of a body that keeps the colours of its weights as it moves."""
+    if state.pose_colors != "weights" or held is None:
+        return {}, None, False
+    return weights_look(state, memo, held, name)
 
 
 def has_rival(state: State) -> bool:

@@ -5,9 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
+from numpy.typing import NDArray
+
 from cutcell_viewers.description import Description, Legend
 from cutcell_viewers.palette import joint_colors
 from cutcell_viewers.weights_scene import (
+    bone_difference_colors,
     count_colors,
     difference_colors,
     dominant_colors,
@@ -18,36 +21,75 @@ from ..state import State
 from .common import character
 from .memo import Memo
 
+DIFFERENCES = ("difference", "bone_difference")
+"""What tells two sides apart."""
+FILES = "In the file"
+"""What the legend begins with where it is of the file's own weights."""
+
 
 def weights(state: State, memo: Memo) -> Description:
-    """Return the scene of the panel Weights; plain before anything is computed."""
-    if state.binding is None:
+    """Return the scene of the panel Weights; plain where there are no weights at all."""
+    held = weights_seen(state)
+    if held is None:
         return Description(character(state, memo))
+    look, legend, coloured = weights_look(state, memo, held)
+    return Description(character(state, memo, bones_coloured=coloured, **look), legend=legend)
+
+
+def weights_look(
+    state: State, memo: Memo, held: NDArray, name: str = "weights"
+) -> tuple[dict[str, Any], Legend, bool]:
+    """Return how a body is coloured by weights, how to read it, and whether bones are, too.
+
+    Parameters
+    ----------
+    state : State
+    memo : Memo
+    held : array, shape (n, j)
+    name : str
+        What the memo keeps it under.
+    """
     shown = weights_shown(state)
-    which = state.joint if shown == "bone" else -1
-    colors, legend = memo(
-        "weights", (state.rig, state.weights, shown, which), lambda: coloring(state, shown)
+    which = state.joint if shown in ("bone", "bone_difference") else -1
+    look, legend = memo(
+        name,
+        (state.rig, held, state.weights, shown, which, state.truth),
+        lambda: coloring(state, shown, held),
     )
     coloured = shown in ("mix", "dominant")
     if coloured:
-        name = state.rig.skeleton.names[state.joint]
+        bone = state.rig.skeleton.names[state.joint]
         own = joint_colors(state.rig.skeleton.parents)[state.joint]
-        legend = replace(legend, swatches=((tuple(own.tolist()), name),))
-    return Description(character(state, memo, bones_coloured=coloured, **colors), legend=legend)
+        legend = replace(legend, swatches=((tuple(own.tolist()), bone),))
+    if held is state.rig.weights and shown not in DIFFERENCES:
+        legend = replace(legend, title=f"{FILES}: {legend.title}")
+    return look, legend, coloured
+
+
+def weights_seen(state: State) -> Any:
+    """Return the weights that colours tell: the file's own also until others are computed."""
+    own = state.rig.weights
+    return own if state.weights_of == "file" and own is not None else state.weights
 
 
 def weights_shown(state: State) -> str:
-    """Return what is seen of the weights: there may be none to differ from."""
-    if state.weights_shown == "difference" and state.rig.weights is None:
-        return "mix"
+    """Return what is seen of the weights: there may be no two sides to tell apart."""
+    two = state.binding is not None and state.rig.weights is not None
+    if state.weights_shown in DIFFERENCES and not two:
+        return "mix" if state.weights_shown == "difference" else "bone"
     return state.weights_shown
 
 
-def coloring(state: State, shown: str) -> tuple[dict[str, Any], Legend]:
+def coloring(state: State, shown: str, held: NDArray) -> tuple[dict[str, Any], Legend]:
     """Return the fields of the body's `Actor` that colour it, and how to read them."""
-    rig, held = state.rig, state.weights
+    rig = state.rig
     if shown == "difference":
-        return difference_colors(rig, held, rig.weights)
+        return difference_colors(rig, state.weights, rig.weights)
+    if shown == "bone_difference":
+        ours, own = state.weights, rig.weights
+        pair = (ours, own) if state.truth == "file" else (own, ours)
+        who = ("ours", "the file") if state.truth == "file" else ("the file", "ours")
+        return bone_difference_colors(rig, *pair, state.joint, who)
     if shown == "count":
         return count_colors(rig, held)
     if shown == "dominant":

@@ -4,20 +4,29 @@ import {plain, plainList} from "./arrays.js"
 import {ALL, Colours, pointIds} from "./colour.js"
 import {shaderSwaps} from "./shade.js"
 import {skinArrays, skinned} from "./skin.js"
+import {Strokes} from "./strokes.js"
 import {TriangleTree} from "./triangle_tree.js"
 
 const MANY_LINES = 40000
 
-function withCounts(cells, corners, stride = 1) {
-  const total = Math.ceil(cells.length / corners / stride)
-  const out = new Uint32Array(total * (corners + 1))
-  for (let i = 0; i < total; i++) {
-    out[i * (corners + 1)] = corners
-    for (let c = 0; c < corners; c++) {
-      out[i * (corners + 1) + 1 + c] = cells[i * stride * corners + c]
-    }
+// Corners of triangles as vtk.js keeps them: their number comes before each.
+function withCounts(cells) {
+  const out = new Uint32Array(cells.length / 3 * 4)
+  for (let i = 0, at = 0; i < cells.length; i += 3) {
+    out[at++] = 3
+    for (let c = 0; c < 3; c++) { out[at++] = cells[i + c] }
   }
   return out
+}
+
+function boundsOf(points) {
+  const b = [Infinity, -Infinity, Infinity, -Infinity, Infinity, -Infinity]
+  for (let i = 0; i < points.length; i++) {
+    const k = 2 * (i % 3)
+    if (points[i] < b[k]) { b[k] = points[i] }
+    if (points[i] > b[k + 1]) { b[k + 1] = points[i] }
+  }
+  return b
 }
 
 export class Actor {
@@ -41,7 +50,7 @@ export class Actor {
   }
 
   update(part, cut) {
-    if (part.kind) { this.kind = part.kind }
+    if (part.kind) { this.begin(part.kind) }
     if (part.points) { this.setPoints(plain(part.points)) }
     if (part.normals) { this.setNormals(plain(part.normals)) }
     if (part.cells) { this.setCells(plain(part.cells)) }
@@ -67,8 +76,38 @@ export class Actor {
     this.cut(cut)
   }
 
+  // Lines and points are drawn by strokes.js, where vtk.js would draw a line without length.
+  begin(kind) {
+    this.kind = kind
+    this.strokes?.remove()
+    this.strokes = null
+    if (kind === "surface") { return }
+    this.strokes = new Strokes(this.renderer, kind)
+    this.colours = this.strokes.colours
+    const [{data, mapper}] = this.made
+    data.getPoints().setData(new Float32Array(6), 3)
+    data.getLines().setData(Uint32Array.of(2, 0, 1))
+    mapper.getViewSpecificProperties().ShadersCallbacks = [{callback: () => this.stroke()}]
+  }
+
+  stroke() {
+    const {renderer, look, strokes} = this
+    if (this.skin && this.drawnPose !== renderer.poseCount) {
+      strokes.setPoints(this.posed())
+      this.drawnPose = renderer.poseCount
+    }
+    const every = renderer.moving ? Math.max(1, Math.ceil(this.count / MANY_LINES)) : 1
+    strokes.draw({...look, cut: this.opened && this.plane, slab: this.slab, every})
+  }
+
   setPoints(points) {
     this.rest = points
+    if (this.strokes) {
+      this.strokes.setPoints(points)
+      this.drawnPose = null
+      this.bounds = boundsOf(points)
+      return
+    }
     this.data.getPoints().setData(points.slice(), 3)
     this.data.modified()
     this.bounds = this.data.getBounds()
@@ -83,23 +122,15 @@ export class Actor {
   }
 
   setCells(cells) {
-    const corners = {surface: 3, lines: 2, points: 1}[this.kind]
-    const put = (data, stride) => {
-      const array = {surface: "Polys", lines: "Lines", points: "Verts"}[this.kind]
-      data[`get${array}`]().setData(withCounts(cells, corners, stride))
-      data.modified()
+    this.count = cells.length / {surface: 3, lines: 2, points: 1}[this.kind]
+    if (this.strokes) {
+      this.strokes.setCells(cells)
+      if (this.kind === "lines") { this.pairs = cells }
+      return
     }
-    put(this.data, 1)
-    if (this.kind === "surface") { this.triangles = cells }
-    if (this.kind === "lines") { this.pairs = cells }
-    this.count = cells.length / corners
-    // While the camera moves, a twin with fewer lines stands in.
-    if (this.kind === "lines" && this.count > MANY_LINES && this.made.length < 2) {
-      const few = this.vtk.Common.DataModel.vtkPolyData.newInstance()
-      few.setPoints(this.data.getPoints())
-      this.made.push(this.make(few))
-      put(few, Math.ceil(this.count / MANY_LINES))
-    }
+    this.data.getPolys().setData(withCounts(cells))
+    this.data.modified()
+    this.triangles = cells
   }
 
   // How the points follow the joints, and a second skin, the distance to which colours them.
@@ -115,6 +146,7 @@ export class Actor {
 
   // Changes the shaders to what moves and colours the points now; nothing while that is the same.
   shade() {
+    if (this.strokes) { return }
     const {skin, apart} = this
     const sets = (of) => of ? Math.ceil(of.count / 4) : 0
     const needs = {sets: sets(skin), otherSets: sets(skin && apart), by: this.coloured ? this.colours.by : ""}
@@ -159,24 +191,24 @@ export class Actor {
     this.colours.front = this.animation ? front ?? ALL : ALL
   }
 
-  paint({color, opacity, width, ambient, coloured, behind, closed, hull}) {
+  paint({color, opacity, width, thick, dash, form, ambient, coloured, behind, closed, hull}) {
     this.closed = closed
     this.hull = hull
     this.coloured = coloured
-    for (const {mapper, actor} of this.made) {
-      const look = actor.getProperty()
-      look.setColor(...color)
-      look.setOpacity(opacity)
-      look.setPointSize(width)
-      look.setAmbient(ambient)
-      look.setLighting(this.kind === "surface" && !hull)
-      look.setFrontfaceCulling(hull)
-      if (!this.restNormals) { look.setInterpolationToFlat() }
-      if (behind) { mapper.setRelativeCoincidentTopologyPolygonOffsetParameters(2, 30) }
-      if (this.kind === "lines") {
-        mapper.setRelativeCoincidentTopologyLineOffsetParameters(0, -4)
-      }
+    if (this.strokes) {
+      this.strokes.form = form
+      this.look = {color, opacity, width, thick, dash, coloured}
+      return
     }
+    const [{mapper, actor}] = this.made
+    const look = actor.getProperty()
+    look.setColor(...color)
+    look.setOpacity(opacity)
+    look.setAmbient(ambient)
+    look.setLighting(!hull)
+    look.setFrontfaceCulling(hull)
+    if (!this.restNormals) { look.setInterpolationToFlat() }
+    if (behind) { mapper.setRelativeCoincidentTopologyPolygonOffsetParameters(2, 30) }
   }
 
   // Stands in the view that it belongs to, or in every one.
@@ -203,6 +235,10 @@ export class Actor {
 
   cut(cut) {
     this.opened = Boolean(cut && this.clipped)
+    if (this.strokes) {
+      this.plane = this.opened && {origin: plainList(cut.origin), normal: plainList(cut.normal)}
+      return
+    }
     for (const {mapper} of this.made) {
       mapper.removeAllClippingPlanes()
       if (!cut || !this.clipped) { continue }
@@ -217,13 +253,11 @@ export class Actor {
   }
 
   // `outside`: the eye is, so that of a closed surface no back is seen unless it is cut.
-  show(moving, outside) {
+  show(outside) {
     const whole = this.closed && outside && !this.opened
-    this.made[0].actor.getProperty().setBackfaceCulling(Boolean(whole))
-    const few = moving && this.made.length > 1
-    this.made.forEach(({actor}, i) => {
-      actor.setVisibility(this.visible && (this.made.length === 1 || few === (i === 1)))
-    })
+    const [{actor}] = this.made
+    actor.getProperty().setBackfaceCulling(Boolean(whole))
+    actor.setVisibility(this.visible)
   }
 
   // Where the points are now; the card alone knows as long as nobody asks.
@@ -249,6 +283,7 @@ export class Actor {
 
   remove() {
     this.leave()
+    this.strokes?.remove()
     this.colours.remove()
     for (const {actor, mapper} of this.made) {
       actor.delete()

@@ -26,19 +26,9 @@ export class Colours {
     this.putPoints(colors, this.gl.RGB8, this.gl.RGB, this.gl.UNSIGNED_BYTE, 3)
   }
 
-  putPoints(values, inside, format, type, size) {
-    const {gl} = this
-    const count = values.length / size
-    const rows = Math.max(Math.ceil(count / POINTS_WIDE), 1)
-    if (String([inside, rows]) !== this.points?.shape) {
-      this.points?.remove()
-      this.points = new DataTexture(gl, POINT_UNIT, inside, POINTS_WIDE, rows, gl.NEAREST)
-      this.points.shape = String([inside, rows])
-    }
-    const whole = Math.floor(count / POINTS_WIDE)
-    const split = whole * POINTS_WIDE * size
-    this.points.put(0, POINTS_WIDE, whole, format, type, values.subarray(0, split))
-    this.points.put(whole, count - whole * POINTS_WIDE, 1, format, type, values.subarray(split))
+  putPoints(...values) {
+    this.points ??= new PointTexture(this.gl, POINT_UNIT)
+    this.points.put(...values)
   }
 
   putTable(table) {
@@ -71,6 +61,36 @@ export class Colours {
   remove() {
     this.points?.remove()
     this.table?.remove()
+  }
+}
+
+// Some numbers of each point, in rows.
+export class PointTexture {
+  constructor(gl, unit) {
+    Object.assign(this, {gl, unit})
+  }
+
+  put(values, inside, format, type, size) {
+    const {gl} = this
+    const count = values.length / size
+    const rows = Math.max(Math.ceil(count / POINTS_WIDE), 1)
+    if (String([inside, rows]) !== this.shape) {
+      this.data?.remove()
+      this.data = new DataTexture(gl, this.unit, inside, POINTS_WIDE, rows, gl.NEAREST)
+      this.shape = String([inside, rows])
+    }
+    const whole = Math.floor(count / POINTS_WIDE)
+    const split = whole * POINTS_WIDE * size
+    this.data.put(0, POINTS_WIDE, whole, format, type, values.subarray(0, split))
+    this.data.put(whole, count - whole * POINTS_WIDE, 1, format, type, values.subarray(split))
+  }
+
+  bind() {
+    this.data.bind()
+  }
+
+  remove() {
+    this.data?.remove()
   }
 }
 

@@ -32,16 +32,49 @@ function row(model, {joint, name}, bars, value, spoken) {
   return made
 }
 
-function card(model, facts) {
+function empty(model, what, number) {
   const root = element("section", "vertex-card")
-  root.setAttribute("aria-label", `Vertex ${facts.vertex}`)
+  root.setAttribute("aria-label", `${what} ${number}`)
   const header = element("header")
   const close = element("button", "close", "×")
   close.type = "button"
-  close.setAttribute("aria-label", "Close the vertex")
+  close.setAttribute("aria-label", `Close the ${what.toLowerCase()}`)
   close.addEventListener("click", () => model.send_msg({type: "close"}))
-  header.append(element("h2", "", `Vertex ${facts.vertex.toLocaleString("en")}`), close)
+  header.append(element("h2", "", `${what} ${number.toLocaleString("en")}`), close)
   root.append(header)
+  return root
+}
+
+const FORMS = {mesh: "●", interior: "■", surface: "▲"}
+
+// A node of the graph; a press on a neighbour goes there.
+function nodeCard(model, {node, kind, position, winding, degree, neighbours, triangle, vertices}) {
+  const root = empty(model, "Node", node)
+  root.append(element("div", "quiet", `${FORMS[kind]} ${kind} node`))
+  const list = element("dl")
+  const tell = (name, value) => list.append(element("dt", "", name), element("dd", "", value))
+  tell("position", position.map((x) => Number(x.toPrecision(4))).join(", "))
+  tell("winding number", winding.toFixed(3))
+  if (triangle) { tell("cut from", `face ${triangle[0]}: ${triangle.slice(1).join(", ")}`) }
+  if (vertices.length) { tell(vertices.length > 1 ? "vertices" : "vertex", vertices.join(", ")) }
+  const heading = element("h3", "", degree === 1 ? "1 neighbour" : `${degree} neighbours`)
+  heading.append(element("small", "", "length, in the file's units"))
+  root.append(list, heading)
+  for (const other of neighbours) {
+    const button = element("button", "row step")
+    button.type = "button"
+    const length = String(Number(other.length.toPrecision(3)))
+    button.setAttribute("aria-label", `Go to ${other.kind} node ${other.node}, ${length} away`)
+    button.append(element("span", "name", `${FORMS[other.kind]} ${other.node}`), element("span", "", other.kind), element("span", "value", length))
+    button.addEventListener("click", () => model.send_msg({type: "node", node: other.node}))
+    root.append(button)
+  }
+  return root
+}
+
+function card(model, facts) {
+  if (facts.node !== undefined) { return nodeCard(model, facts) }
+  const root = empty(model, "Vertex", facts.vertex)
   if (!facts.computed) {
     root.append(element("div", "quiet", "Its weights come as soon as they are computed."))
     return root

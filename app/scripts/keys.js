@@ -15,7 +15,9 @@ const KEYS = [
 const CANVAS_KEYS = [
   ["Tab", "to the canvas; then the arrows turn the view"],
   ["+ −", "nearer, farther"],
+  ["Shift ← →", "with Shift the arrows move it"],
   ["Home", "the view one begins with"],
+  ["Enter", "choose the point of the body at the cross"],
 ]
 
 const POINTER = [

@@ -15,6 +15,15 @@ const UNNAMED = [
     part.querySelector("input").setAttribute("aria-label", part.getAttribute("aria-label"))
     part.removeAttribute("aria-label")
   }],
+  // The library calls what a list offers items of a menu, and so the list must be one.
+  [".MuiMenu-list[role=listbox]", (part) => part.setAttribute("role", "menu")],
+  ["[role=combobox][aria-haspopup=listbox]", (part) => part.setAttribute("aria-haspopup", "menu")],
+  // The page's name is its first heading; what only keeps room for a heading is none.
+  [".header .title:not([aria-level])", (part) => {
+    part.setAttribute("role", "heading")
+    part.setAttribute("aria-level", "1")
+  }],
+  [".MuiToolbar-root > h5:not([role])", (part) => part.setAttribute("role", "presentation")],
   ["[aria-label='Resize sidebar']:not([role])", (part) => {
     part.setAttribute("role", "separator")
     part.setAttribute("aria-orientation", "vertical")

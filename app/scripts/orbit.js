@@ -3,12 +3,14 @@
 
 export const VIEW_ANGLE = 30
 const MAX_PITCH = 1.5
+const STEP = 24  // pixels that a key moves the view
 
 export class Orbit {
-  constructor(element, {changed, rested, clicked, hovered}) {
+  constructor(element, {changed, rested, clicked, hovered, chosen}) {
     this.element = element
     this.changed = changed
     this.rested = rested
+    this.chosen = chosen
     this.home = {target: [0, 0, 0], yaw: 0.4, pitch: 0.15, distance: 4}
     this.reset()
     this.pointers = new Map()
@@ -133,7 +135,11 @@ export class Orbit {
   }
 
   key(e) {
-    const act = {
+    const moves = {
+      ArrowLeft: [STEP, 0], ArrowRight: [-STEP, 0], ArrowUp: [0, STEP], ArrowDown: [0, -STEP],
+    }[e.key]
+    const act = e.shiftKey && moves ? () => this.pan(...moves) : {
+      Enter: () => this.chosen(),
       ArrowLeft: () => this.turn(-0.12, 0), ArrowRight: () => this.turn(0.12, 0),
       ArrowUp: () => this.turn(0, 0.08), ArrowDown: () => this.turn(0, -0.08),
       "+": () => this.zoom(0.88), "=": () => this.zoom(0.88), "-": () => this.zoom(1.14),

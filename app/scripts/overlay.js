@@ -20,10 +20,13 @@ export class Overlay {
     this.canvas.tabIndex = 0
     this.canvas.setAttribute("role", "application")
     this.canvas.setAttribute(
-      "aria-label", "The character in 3D. Arrow keys turn, plus and minus zoom, Home resets.",
+      "aria-label", "The character in 3D. Arrow keys turn, with Shift they move, plus and minus "
+        + "zoom, Home resets, Enter chooses the point of the body in the middle.",
     )
     this.legend = make("div", "card legend", this.root)
     this.bone = make("div", "card bone", this.root)
+    this.cross = make("div", "cross", this.root, false)
+    this.cross.setAttribute("aria-hidden", "true")
     this.gizmo = document.createElementNS("http://www.w3.org/2000/svg", "svg")
     this.gizmo.classList.add("gizmo")
     this.root.append(this.gizmo)
@@ -104,6 +107,11 @@ export class Overlay {
     this.bone.textContent = name
     this.bone.style.left = `${x}px`
     this.bone.style.top = `${y}px`
+  }
+
+  // Where Enter chooses a point; seen while the canvas has the keys.
+  showTarget([x, y]) {
+    Object.assign(this.cross.style, {left: `${x}px`, top: `${y}px`})
   }
 
   // A notice over the canvas, with a button if there is something to stop.

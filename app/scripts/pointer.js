@@ -1,7 +1,7 @@
 // What lies under the pointer: told while it rests there, chosen with a click.
 
 import {pickBone, REACH, TOUCH} from "./pick.js"
-import {hitLine, hitSurface, told} from "./surface.js"
+import {hitLine, hitPoint, hitSurface, told} from "./surface.js"
 
 export class Pointer {
   constructor(view) {
@@ -37,7 +37,23 @@ export class Pointer {
     return best
   }
 
+  // The node of the graph that lies under the pointer, as the actor that shows it tells.
+  nodeAt(x, y) {
+    let best = null
+    for (const actor of this.view.renderer.actors.values()) {
+      if (actor.kind !== "points" || !actor.visible || !actor.reading) { continue }
+      const hit = hitPoint(this.view.renderer, actor, x, y)
+      if (hit && (!best || hit.score < best.score)) { best = {...hit, actor} }
+    }
+    return best
+  }
+
   clicked(e) {
+    const node = this.nodeAt(...this.place(e))
+    if (node) {
+      this.view.model.send_msg({type: "pick-node", node: node.actor.reading.values[node.point]})
+      return
+    }
     const found = this.under(...this.place(e))
     if (!found) { return }
     const {joint, vertex} = found
@@ -46,9 +62,20 @@ export class Pointer {
     )
   }
 
+  // By keys: the point of the body in the middle, where the cross is.
+  chosen() {
+    const hit = this.bodyAt(...this.view.renderer.target)
+    if (hit) { this.view.model.send_msg({type: "pick-vertex", vertex: hit.vertex}) }
+  }
+
   hovered(e) {
     if (!e || this.view.playing) { this.view.overlay.showBone(null); return }
     const [x, y] = this.place(e)
+    const node = this.nodeAt(x, y)
+    if (node) {
+      this.view.overlay.showBone(told(node.actor, node.point), x, y)
+      return
+    }
     const found = this.under(x, y)
     if (found?.joint !== undefined) {
       this.view.overlay.showBone(this.view.bones.names[found.joint], x, y)

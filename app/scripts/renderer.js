@@ -48,6 +48,7 @@ export class Renderer {
     this.pose = null
     this.poseCount = 0
     this.insets = noCards(false)
+    this.haze = [0.9, 0.9, 0.9]
     this.divide([])
     this.frames = 0
   }
@@ -143,7 +144,8 @@ export class Renderer {
       for (const renderer of [base, over]) { renderer.setViewport(...part) }
     })
     const outside = this.isOutside()
-    for (const actor of this.actors.values()) { actor.show(moving, outside) }
+    this.moving = moving
+    for (const actor of this.actors.values()) { actor.show(outside) }
     this.camera.setClippingRange(...this.depthRange())
     smooth.draw(this.size, this.rough, () => { this.clear(); this.gl.traverseAllPasses() })
     this.frames += 1
@@ -175,6 +177,18 @@ export class Renderer {
     return [Math.max(toCentre - radius, distance * 0.02), toCentre + radius * 1.5]
   }
 
+  // Between what distances the character lies: what is farther in it is hazier.
+  get nearAndFar() {
+    const [eye, target] = [this.camera.getPosition(), this.camera.getFocalPoint()]
+    const b = this.bounds(isCharacter)
+    const ahead = target.map((x, i) => x - eye[i])
+    const length = Math.hypot(...ahead)
+    const middle = [0, 1, 2].map((i) => (b[2 * i] + b[2 * i + 1]) / 2 - eye[i])
+    const along = middle.reduce((sum, x, i) => sum + x * ahead[i], 0) / length
+    const half = [0, 1, 2].reduce((sum, i) => sum + Math.abs(ahead[i]) * (b[2 * i + 1] - b[2 * i]), 0) / length / 2
+    return [along - half, along + half]
+  }
+
   bounds(those = () => true) {
     const b = [Infinity, -Infinity, Infinity, -Infinity, Infinity, -Infinity]
     for (const actor of this.actors.values()) {
@@ -198,6 +212,13 @@ export class Renderer {
     const [, , w, h] = this.tiles[0]
     const {left, right, top, bottom} = this.taken(this.insets, w)
     return [(left - right) / Math.max(w, 1), (bottom - top) / Math.max(h, 1)]
+  }
+
+  // Where on the canvas what one looks at is seen.
+  get target() {
+    const [left, top, w, h] = this.tiles[0]
+    const [aside, above] = this.middle
+    return [left + (1 + aside) / 2 * w, top + (1 - above) / 2 * h]
   }
 
   // Which view a pixel of the canvas belongs to.

@@ -32,6 +32,28 @@ export function hitLine(renderer, actor, x, y, reach) {
   return best && best.cell
 }
 
+// The point of an actor at a place of the canvas: of those that are met, the one nearest to the eye.
+export function hitPoint(renderer, actor, x, y, reach = 7) {
+  const p = actor.rest
+  const [left, top, w, h] = renderer.tiles[0]
+  const m = renderer.camera.getCompositeProjectionMatrix(w / h, -1, 1)
+  let best = null
+  for (let i = 0; i < p.length; i += 3) {
+    const depth = m[12] * p[i] + m[13] * p[i + 1] + m[14] * p[i + 2] + m[15]
+    if (depth <= 0) { continue }
+    const along = (m[0] * p[i] + m[1] * p[i + 1] + m[2] * p[i + 2] + m[3]) / depth
+    const away = Math.abs(left + (along + 1) / 2 * w - x)
+    if (away > reach) { continue }
+    const up = (m[4] * p[i] + m[5] * p[i + 1] + m[6] * p[i + 2] + m[7]) / depth
+    const far = Math.hypot(away, top + (1 - up) / 2 * h - y)
+    if (far > reach) { continue }
+    if (actor.plane && !keeps(actor.plane, actor.slab, [p[i], p[i + 1], p[i + 2]])) { continue }
+    const score = far / reach + 8 * depth / renderer.camera.getDistance()
+    if (!best || score < best.score) { best = {point: i / 3, score} }
+  }
+  return best
+}
+
 export function told(actor, index) {
   const {text, values, names, percent} = actor.reading
   const value = (values || actor.values)?.[index]

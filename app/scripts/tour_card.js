@@ -4,6 +4,10 @@ import {stylesheet} from "./styles.js"
 
 const styled = await stylesheet("tour_card.css")
 
+// A face that is declared within a part of the page is not taken: it is the document's.
+const face = new FontFace("cutcell math", `url(${new URL("math.woff", import.meta.url)})`)
+face.load().then(() => document.fonts.add(face)).catch(() => {})
+
 function loadKatex(url) {
   window.__cutcellKatex ??= new Promise((resolve) => {
     if (window.katex) { resolve(window.katex); return }
@@ -64,7 +68,17 @@ export function render({model}) {
     title.textContent = step.title
     body.replaceChildren(...step.text.split("\n\n").map((text) => make("p", "", text)))
     const formula = make("div", "formula")
-    body.append(formula, make("p", "look", step.task))
+    const offers = make("div", "offers")
+    offers.setAttribute("role", "group")
+    offers.setAttribute("aria-label", "Try it")
+    step.offers.forEach((label, index) => {
+      const offer = make("button", "offer", label)
+      offer.type = "button"
+      offer.addEventListener("click", () => model.send_msg({type: "offer", index}))
+      offers.append(offer)
+    })
+    body.append(formula, make("p", "look", step.task), ...step.offers.length ? [offers] : [])
+    press()
     back.disabled = model.step === 0
     next.textContent = model.step + 1 < model.steps.length ? "Next" : "Done"
     ;[...dots.children].forEach((dot, i) => {
@@ -78,6 +92,11 @@ export function render({model}) {
     })
   }
 
+  // Shows which of the step's buttons are chosen.
+  const press = () => [...card.querySelectorAll(".offer")].forEach((offer, i) => {
+    offer.setAttribute("aria-pressed", Boolean(model.taken[i]))
+  })
+
   const pressed = (e) => {
     if (card.hidden || e.ctrlKey || e.metaKey || e.altKey || e.defaultPrevented) { return }
     const path = e.composedPath().filter((part) => part instanceof Element)
@@ -89,6 +108,7 @@ export function render({model}) {
   document.addEventListener("keydown", pressed)
   model.on("remove", () => document.removeEventListener("keydown", pressed))
   model.on("step", show)
+  model.on("taken", press)
   show()
   const root = make("div")
   root.style.cssText = "display: flex; width: 100%; min-width: 0; min-height: 0"

@@ -14,6 +14,7 @@ import {Overlay} from "./overlay.js"
 import {Pointer} from "./pointer.js"
 import {probe} from "./probe.js"
 import {loadVtk, Renderer} from "./renderer.js"
+import {Sheet} from "./sheet.js"
 import {Clip} from "./skin.js"
 import {Transport} from "./transport.js"
 import {acceptDrops, Uploader} from "./upload.js"
@@ -30,6 +31,7 @@ class View {
       rested: () => this.rested(),
       clicked: (e) => this.pointer.clicked(e),
       hovered: (e) => this.pointer.hovered(e),
+      chosen: () => this.pointer.chosen(),
     })
     this.pointer = new Pointer(this)
     this.animation = new Animation(this)
@@ -53,8 +55,11 @@ class View {
       act: (act) => model.send_msg({type: "act", act}),
       turnable: () => document.activeElement && overlay.canvas.matches(":focus") && !this.orbit.byMouse,
     })
+    this.wentBack = () => model.send_msg({type: "visit", query: location.search})
+    window.addEventListener("popstate", this.wentBack)
     this.connection = new Connection(overlay)
     this.names = new Names(overlay.root)
+    this.sheet = new Sheet(overlay.root)
     this.messages = 0
     this.posed = 0
     this.insets = new Insets({
@@ -73,7 +78,10 @@ class View {
       renderer.actors.delete(name)
     }
     if (message.lights) { renderer.light(message.lights) }
-    if (message.theme) { this.overlay.theme(message.theme) }
+    if (message.theme) {
+      this.overlay.theme(message.theme)
+      renderer.haze = between(message.theme.top, message.theme.bottom)
+    }
     if ("dark" in message) { localStorage.setItem("cutcell dark", message.dark ? "1" : "0") }
     if ("legend" in message) { this.overlay.showLegend(message.legend) }
     if ("cut" in message) {
@@ -176,13 +184,21 @@ class View {
     }
     this.renderer.draw(moving, resting)
     this.gizmo.draw()
+    this.overlay.showTarget(this.renderer.target)
     if (this.address) { setTimeout(() => this.putAddress()) }
     if (this.renderer.rough && !moving) { this.calming = setTimeout(() => this.draw(true), CALM) }
   }
 
   // The address waits for the picture: to change it takes some browsers longer than to draw.
   putAddress() {
-    if (this.address) { history.replaceState(history.state, "", location.pathname + this.address) }
+    if (this.address) {
+      // Another character is a page of its own: the browser's Back leads to the one before.
+      const rig = (query) => new URLSearchParams(query).get("rig")
+      const other = this.told && rig(location.search) !== rig(this.address)
+      const put = other ? "pushState" : "replaceState"
+      history[put](history.state, "", location.pathname + this.address)
+      this.told = true
+    }
     this.address = null
   }
 
@@ -197,9 +213,11 @@ class View {
   remove() {
     this.gone = true
     this.playing = false
+    window.removeEventListener("popstate", this.wentBack)
     this.keys.remove()
     this.connection.remove()
     this.names.remove()
+    this.sheet.remove()
     this.insets.remove()
     clearTimeout(this.calming)
     cancelAnimationFrame(this.waiting)
@@ -215,6 +233,11 @@ function save({name, content}) {
   link.href = URL.createObjectURL(new Blob([content]))
   link.click()
   setTimeout(() => URL.revokeObjectURL(link.href), 60000)
+}
+
+// Halfway between two colours as a style sheet writes them, from 0 to 1.
+function between(a, b) {
+  return [1, 3, 5].map((i) => (parseInt(a.slice(i, i + 2), 16) + parseInt(b.slice(i, i + 2), 16)) / 510)
 }
 
 function entries(map) {
@@ -235,7 +258,8 @@ export function render({model}) {
     // What was chosen here before, else what the system prefers.
     const system = matchMedia("(prefers-color-scheme: dark)").matches ? "1" : null
     const dark = localStorage.getItem("cutcell dark") ?? system
-    model.send_msg({type: "ready", width: window.innerWidth, dark})
+    const calm = matchMedia("(prefers-reduced-motion: reduce)").matches
+    model.send_msg({type: "ready", width: window.innerWidth, dark, calm})
   }).catch((error) => {
     console.error(error)
     model.send_msg({type: "cannot show"})  // all but the view goes on

@@ -34,7 +34,11 @@ class GraphChoices(param.Parameterized):
     mesh_edges: Any = param.Boolean(False, label="Mesh edges")
     interior_edges: Any = param.Boolean(True, label="Interior edges")
     surface_edges: Any = param.Boolean(False, label="Surface edges")
-    edge_colors: Any = param.Selector(default="kind", objects=["kind", "depth", "distance"])
+    nodes: Any = param.Boolean(False, label="Nodes")
+    edge_colors: Any = param.Selector(
+        default="kind", objects=["kind", "depth", "distance", "component"]
+    )
+    node: Any = param.Integer(None, allow_None=True, doc="The node that is looked at, or None.")
 
     cut_keeps: Any = param.Selector(
         default="face",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from typing import Any
 
 Choices = dict[str, Any]
@@ -26,6 +27,27 @@ class History:
         self._past: list[Choices] = []
         self._future: list[Choices] = []
         self._last: tuple[frozenset[str], float] = (frozenset(), -1e9)
+
+    @property
+    def now(self) -> Choices:
+        """What is chosen now."""
+        return self._now
+
+    def here(self, now: Choices) -> None:
+        """Note what is chosen now in place of what was; it is no step."""
+        self._now = now
+
+    def turn(self, now: Choices, without: Collection[str]) -> None:
+        """Note another character: what was chosen is kept, without what only the old one has."""
+        past = [*self._past, self._now][-STEPS:]
+        self._past = [{k: v for k, v in one.items() if k not in without} for one in past]
+        self._future.clear()
+        self._now, self._last = now, (frozenset(), -1e9)
+
+    def drop(self, without: Collection[str]) -> None:
+        """Forget of all that was chosen what only the character had that stood there."""
+        for steps in (self._past, self._future):
+            steps[:] = [{k: v for k, v in one.items() if k not in without} for one in steps]
 
     @property
     def can_undo(self) -> bool:

@@ -19,6 +19,9 @@ class PoseChoices(param.Parameterized):
     moving: Any = param.Boolean(False, doc="Whether a motion, rather than `turns`, poses.")
     playing: Any = param.Boolean(False, doc="Whether that motion runs, or is halted.")
 
+    pose_colors: Any = param.Selector(
+        default="weights", objects=["weights", "plain"], doc="What the moving body's colours tell."
+    )
     rival: Any = param.Selector(
         default="alone",
         objects=["alone", "ghost", "beside"],

@@ -43,6 +43,21 @@ class Look:
 
 
 @dataclass(frozen=True)
+class Offer:
+    """A button on a step's card.
+
+    Parameters
+    ----------
+    label : str
+    choices : dict
+        What it chooses.
+    """
+
+    label: str
+    choices: dict[str, Any]
+
+
+@dataclass(frozen=True)
 class Step:
     """One step of the tour.
 
@@ -56,6 +71,8 @@ class Step:
     task : str
         What to look at, or to try, in one sentence.
     look : Look
+    offers : tuple of Offer
+        What the card itself changes, so that nobody is sent to look for a control.
     """
 
     title: str
@@ -63,6 +80,7 @@ class Step:
     formula: str
     task: str
     look: Look
+    offers: tuple[Offer, ...] = ()
 
 
 CUT = {"cut_axis": "z", "cut_position": 0.5, "skeleton": False}
@@ -149,7 +167,7 @@ TOUR = (
         r"G = \underbrace{E_{\text{mesh}}}_{\text{blue}} \cup "
         r"\underbrace{E_{\text{inside}}}_{\text{orange}} \cup "
         r"\underbrace{E_{\text{surface}}}_{\text{green}}",
-        "Move the cut with its slider, and go through the body.",
+        "Go through the body, from its back to its front.",
         Look(
             "graph",
             bone="chest",
@@ -157,6 +175,10 @@ TOUR = (
             near=0.24,
             angles=(14.0, 10.0),
             choices={**CUT, "mesh_edges": True, "surface_edges": True, "resolution": 40},
+        ),
+        tuple(
+            Offer(label, {"cut_axis": "z", "cut_position": at})
+            for label, at in (("Back", 0.35), ("Middle", 0.5), ("Front", 0.65))
         ),
     ),
     Step(
@@ -167,15 +189,16 @@ TOUR = (
         "Twice as many cells show twice as fine details, and there are eight times as many of "
         "them. R = 64 does for most characters.",
         r"h = \frac{\text{longest side}}{R} \qquad \text{cells} \propto R^3",
-        "Not one orange street leads into the fingers. Move Resolution, and watch them fill.",
+        "Not one orange street leads into the fingers. Choose more cells, and watch them fill.",
         Look(
             "graph",
             bone="hand.L",
-            focus="middle1.L",
-            near=0.2,
+            focus="hand.L",
+            near=0.26,
             angles=(10.0, 4.0),
-            choices={"resolution": 20, "skeleton": False},
+            choices={"resolution": 20, "skeleton": False, "mesh_edges": True},
         ),
+        tuple(Offer(f"R = {cells}", {"resolution": cells}) for cells in (20, 64, 128)),
     ),
     Step(
         "Diamonds and circles",
@@ -185,7 +208,7 @@ TOUR = (
         "So the default lets the way run straight as far as it can see, at any angle. Equal "
         "distances become round, as they are in truth.",
         r"\|x\|_1 = |x_1| + |x_2| + |x_3| \;\ge\; \|x\|_2",
-        "Here only axes are allowed. Choose “Any angle” on the panel Graph, and come back.",
+        "Here only axes are allowed. Allow any angle, and see the diamonds become round.",
         Look(
             "geodesics",
             bone="spine2",
@@ -193,6 +216,11 @@ TOUR = (
             near=0.36,
             angles=(0.0, 4.0),
             choices={**CUT, "connectivity": 6},
+        ),
+        (
+            Offer("Axes only", {"connectivity": 6}),
+            Offer("Diagonals", {"connectivity": 26}),
+            Offer("Any angle", {"connectivity": "any"}),
         ),
     ),
     Step(
@@ -203,14 +231,17 @@ TOUR = (
         "α says how steep it falls: at 0 like 1/d², at 1 like 1/d⁴. Steep is stiff, each bone "
         "keeps to its own; flat is soft, and far bones have a say.",
         r"w = \left(\frac{1}{(1-\alpha)\,\frac{d}{D} + \alpha\,(\frac{d}{D})^2}\right)^{2}",
-        "Even the far head is tinged. Move α, or choose another falloff: no distance is measured "
-        "again.",
+        "Even the far head is tinged. Choose another α: no distance is measured again.",
         Look(
             "weights",
             bone="chest",
             focus="chest",
             near=0.6,
             choices={"weights_shown": "bone", "falloff": "paper", "alpha": 0.5},
+        ),
+        tuple(
+            Offer(f"α = {alpha:g}", {"falloff": "paper", "alpha": alpha})
+            for alpha in (0.0, 0.5, 1.0)
         ),
     ),
     Step(
@@ -223,7 +254,7 @@ TOUR = (
         "and its distances creep along the skin. So faces whose back is what one sees from outside "
         "are turned round first; here they are not.",
         r"w(p) = \frac{1}{4\pi}\sum_{t} \Omega_t(p) \;\ge\; \tau",
-        "Compare the two arms in the cut. Then switch on “Turn inverted faces”: the arm fills.",
+        "Compare the two arms in the cut. Then turn the inverted faces round: the arm fills.",
         Look(
             "graph",
             bone="forearm.R",
@@ -232,6 +263,10 @@ TOUR = (
             angles=(4.0, 6.0),
             demo="biped_flipped_arm",
             choices={**CUT, "orient": False},
+        ),
+        (
+            Offer("As they are", {"orient": False}),
+            Offer("Turn them round", {"orient": True}),
         ),
     ),
     Step(

@@ -13,13 +13,22 @@ from .method import default
 MOST = 8
 """Influences that a vertex is measured for, and the most that can be chosen."""
 
-SHOWN = ("bone", "dominant", "mix", "count", "difference")
+SHOWN = ("bone", "dominant", "mix", "count", "difference", "bone_difference")
+
+SIDES = ("ours", "file")
+"""Whose weights: those that were computed, or the file's own."""
 
 
 class WeightsChoices(param.Parameterized):
     """Which weights are seen, and how they fall with distance."""
 
     weights_shown: Any = param.Selector(default="mix", objects=list(SHOWN))
+    weights_of: Any = param.Selector(
+        default="ours", objects=list(SIDES), doc="Whose weights the colours tell."
+    )
+    truth: Any = param.Selector(
+        default="file", objects=list(SIDES), doc="What the other side is measured against."
+    )
 
     falloff: Any = param.Selector(default=default("falloff"), objects=list(FALLOFFS))
     alpha: Any = param.Number(default("alpha"), bounds=(0, 1))

@@ -7,17 +7,17 @@ from typing import Any
 import param
 from panel.custom import JSComponent
 
-from ..commands.look import pick, pick_vertex
+from ..commands.look import pick, pick_node, pick_vertex
 from ..commands.session import Session
 from ..commands.tour import points_out
-from ..scenes.facts import vertex_facts
+from ..scenes.facts import node_facts, vertex_facts
 from .modules import script, style
 
 
 class Inspector(JSComponent):
     """A card with the facts of one vertex; hidden without any."""
 
-    facts = param.Dict(None, allow_None=True, doc="What `vertex_facts` returns.")
+    facts = param.Dict(None, allow_None=True, doc="What `vertex_facts` or `node_facts` returns.")
 
     _esm = script("inspector")
 
@@ -25,17 +25,21 @@ class Inspector(JSComponent):
         super().__init__(**params)
         self._session = session
         self._follow()
-        names = ["rig", "binding", "vertex", "tour"]
+        names = ["rig", "binding", "bare_graph", "panel", "vertex", "node", "tour"]
         session.state.param.watch(self._follow, names)
 
     def _follow(self, *events: Any) -> None:
         state = self._session.state
         # What the tour clicks shows its point in the scene, and needs no card.
-        self.facts = None if points_out(state) else vertex_facts(state, self._session.memo)
+        memo = self._session.memo
+        node = node_facts(state, memo)
+        self.facts = node or (None if points_out(state) else vertex_facts(state, memo))
 
     def _handle_msg(self, data: dict[str, Any]) -> None:
         if data.get("type") == "close":
             pick_vertex(self._session, None)
+        elif data.get("type") == "node":
+            pick_node(self._session, int(data["node"]))
         elif data.get("type") == "bone":
             pick(self._session, int(data["joint"]))
 

@@ -13,7 +13,7 @@ FOLDER = Path(__file__).parents[1] / "scripts"
 
 def _version() -> str:
     """Return what is another one whenever a script or a style is."""
-    files = sorted(path for path in FOLDER.iterdir() if path.suffix in (".js", ".css"))
+    files = sorted(path for path in FOLDER.iterdir() if path.suffix in (".js", ".css", ".woff"))
     held = b"".join(path.name.encode() + path.read_bytes() for path in files)
     return hashlib.sha256(held).hexdigest()[:12]
 

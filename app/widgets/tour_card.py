@@ -9,7 +9,7 @@ from panel.custom import JSComponent
 from panel.models.katex import KATEX_VERSION
 
 from ..commands.session import Session
-from ..commands.tour import go
+from ..commands.tour import go, offer, taken
 from ..state.tour import TOUR
 from .modules import script, style
 
@@ -18,7 +18,8 @@ class TourCard(JSComponent):
     """Shows one step; tells which one is asked for."""
 
     step = param.Integer(-1, doc="Which step is told; -1 shows nothing.")
-    steps = param.List([], doc="Title, text, formula and what to look at, of each.")
+    steps = param.List([], doc="Title, text, formula, what to look at, and buttons, of each.")
+    taken = param.List([], doc="Whether what each of the step's buttons chooses is chosen.")
     katex_url = param.String(
         f"static/extensions/panel/bundled/katex/katex@{KATEX_VERSION}/dist/katex.min.js",
         constant=True,
@@ -34,21 +35,32 @@ class TourCard(JSComponent):
     def _handle_msg(self, data: dict[str, Any]) -> None:
         if data.get("type") == "step":
             go(self._session, int(data["step"]))
+        elif data.get("type") == "offer":
+            offer(self._session, int(data["index"]))
 
 
 def tour_card(session: Session) -> TourCard:
     """Return the card of a session's tour."""
-    steps = [{"title": s.title, "text": s.text, "formula": s.formula, "task": s.task} for s in TOUR]
+    state = session.state
+    steps = [
+        {
+            "title": s.title, "text": s.text, "formula": s.formula, "task": s.task,
+            "offers": [one.label for one in s.offers],
+        }
+        for s in TOUR
+    ]  # fmt: skip
     card = TourCard(
         session,
-        step=session.state.tour,
+        step=state.tour,
+        taken=taken(state),
         steps=steps,
         stylesheets=[style("tour_card_place")],
         margin=0,
     )
 
     def told(*events: Any) -> None:
-        card.step = session.state.tour
+        card.param.update(step=state.tour, taken=taken(state))
 
-    session.state.param.watch(told, "tour")
+    names = {name for step in TOUR for one in step.offers for name in one.choices}
+    state.param.watch(told, ["tour", *sorted(names)])
     return card

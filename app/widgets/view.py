@@ -46,6 +46,7 @@ class SceneView(JSComponent):
         self.on_camera: Callable[[], None] = lambda: None
         self.aspect = 4 / 3
         self.time = 0.0
+        self.calm = False
         self._ready = False
         self._seen = False
         self._awaited: list[Callable[[], Any]] = []
@@ -107,6 +108,7 @@ class SceneView(JSComponent):
         if kind == "ready":
             self._ready = True
             self.dark = {"1": True, "0": False}.get(str(data.get("dark")))
+            self.calm = bool(data.get("calm", False))
             self.window_width = int(data.get("width", 0))
             self._sent.clear()
             first = {"lights": LIGHTS, **changes(Description(), self._wanted, self._sent)}

@@ -10,7 +10,7 @@ import cutcell
 from cutcell_assets import demo_path
 from cutcell_viewers.character import pose_in_scene, to_scene
 from cutcell_viewers.pose_scene import joint_turns, turn
-from tests.app.browser import Visit, changed
+from tests.app.browser import BIND_MS, Visit, changed
 from tests.conftest import SHARED_RIGS
 
 LAYERS = ["Surface", "Mesh edges", "Interior edges", "Surface edges"]
@@ -18,8 +18,12 @@ LAYERS = ["Surface", "Mesh edges", "Interior edges", "Surface edges"]
 
 def test_the_first_demo_stands_there_without_a_click(browser, url):
     visit = Visit(browser, url)
-    visit.wait_until_bound()
+    # It moves, in the colours of its weights, until somebody halts it.
+    visit.status.wait_for(timeout=BIND_MS)
+    visit.page.wait_for_function("__cutcell.report().playing && __cutcell.report().time > 0.2")
+    visit.button("Halt the motion").click()
     seen = visit.look()
+    assert visit.page.evaluate("__cutcell.renderer.actors.get('body').coloured")
     assert visit.page.get_by_role("combobox", name="Character").inner_text() == "Walker"
     assert visit.report()["actors"]["body"]["visible"]
     assert len(np.unique(seen.reshape(-1, 3), axis=0)) > 2000
@@ -257,6 +261,26 @@ def test_a_text_file_named_glb_is_told_and_the_old_character_stays(visit, tmp_pa
     visit.wait_until_bound()
 
 
+def test_a_character_that_was_opened_stays_within_reach(visit, tmp_path):
+    mine = tmp_path / "mine.glb"
+    shutil.copy(demo_path("rabbit"), mine)
+    visit.open(mine)
+    points = visit.report()["actors"]["body"]["points"]
+    visit.choose("Character", "Octopus")
+    stands = "n => (__cutcell.report().actors.body.points === n)"
+    visit.page.wait_for_function(f"n => !({stands})(n)", arg=points)
+    visit.wait_until_bound()
+    visit.page.go_back()
+    visit.page.wait_for_function(stands, arg=points)
+    visit.wait_until_bound()
+    visit.button("Undo").click()
+    visit.page.wait_for_function(f"n => !({stands})(n)", arg=points)
+    visit.wait_until_bound()
+    visit.choose("Character", "mine.glb")
+    visit.page.wait_for_function(stands, arg=points)
+    visit.wait_until_bound()
+
+
 def test_light_and_dark(visit):
     light = visit.look()
     visit.button("Toggle theme").click()
@@ -280,12 +304,24 @@ def test_a_narrow_window_shows_the_canvas_first_and_the_systems_theme(browser, u
     visit.button("Open drawer").click()
     visit.panel("Graph")
     visit.page.get_by_role("switch", name="Mesh edges").wait_for()
+    # A sheet at the bottom: what its switches change is seen above it, and can be turned.
+    canvas = visit.page.locator(".canvas").bounding_box()
+    sheet = visit.page.locator(".MuiDrawer-paper").bounding_box()
+    assert canvas["height"] > 250
+    assert canvas["y"] + canvas["height"] <= sheet["y"]
+    camera = visit.report()["camera"]
+    visit.page.mouse.move(200, 250)
+    visit.page.mouse.down()
+    visit.page.mouse.move(260, 250, steps=3)
+    visit.page.mouse.up()
+    visit.settle()
+    assert visit.report()["camera"] != camera
     # What went wrong is not told behind the sidebar.
     bad = tmp_path / "bad.glb"
     bad.write_text("this is not a character")
     visit.drop(bad)
     visit.expect_text(re.compile(r"bad\.glb"))
-    expect(visit.page.locator(".MuiBackdrop-root")).to_have_count(0)
+    expect(visit.page.locator(".MuiDrawer-paper")).to_have_count(0)
     visit.dismiss()
     visit.close()
 

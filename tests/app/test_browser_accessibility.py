@@ -40,6 +40,36 @@ def lasting(visit, rules):
     return found
 
 
+def opened(visit, panel):
+    """Return the faults of each list of a panel, opened."""
+    found = []
+    lists = (
+        visit.page.get_by_role("combobox").all() if panel in ("graph", "weights", "pose") else []
+    )
+    for one in lists:
+        if not one.is_visible():
+            continue
+        name = one.inner_text()
+        one.click()
+        visit.page.get_by_role("menu").wait_for()
+        found += [f"{panel}, {name}: {fault}" for fault in lasting(visit, {})]
+        visit.page.keyboard.press("Escape")
+        visit.page.get_by_role("menu").wait_for(state="hidden")
+    return found
+
+
+def test_a_point_of_the_body_is_chosen_by_keys_alone(visit):
+    canvas = visit.page.get_by_role("application")
+    canvas.blur()
+    canvas.focus()
+    visit.page.keyboard.press("ArrowLeft")
+    visit.page.keyboard.press("Shift+ArrowUp")
+    visit.page.keyboard.press("Enter")
+    visit.card.wait_for()
+    assert visit.page.get_by_role("heading", level=1).inner_text() == "cutcell"
+    visit.close_card()
+
+
 # In the dark only colours differ.
 @pytest.mark.parametrize(
     ("theme", "rules"), [("light", {}), ("dark", {"runOnly": ["color-contrast"]})]
@@ -54,6 +84,8 @@ def test_no_panel_has_a_serious_fault(visit, theme, rules):
         visit.page.wait_for_function("id => location.search.includes('panel=' + id)", arg=panel.id)
         visit.settle()
         told += [f"{panel.id}: {fault}" for fault in lasting(visit, rules)]
+        if theme == "light":
+            told += opened(visit, panel.id)
     visit.page.keyboard.press("?")
     told += [f"keys: {fault}" for fault in lasting(visit, rules)]
     visit.page.keyboard.press("Escape")

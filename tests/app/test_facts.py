@@ -1,5 +1,6 @@
 """What the inspector tells of a vertex, without a browser."""
 
+import zipfile
 from dataclasses import replace
 
 import numpy as np
@@ -7,8 +8,10 @@ import pytest
 
 import cutcell
 from cutcell.rig import TriangleMesh
+from cutcell.winding import winding_number as cutcell_winding
+from cutcell_app.files.graph_numbers import save_graph
 from cutcell_app.scenes import Memo
-from cutcell_app.scenes.facts import NO_WEIGHT, components, vertex_facts
+from cutcell_app.scenes.facts import NO_WEIGHT, components, node_facts, vertex_facts
 from cutcell_app.state import State
 from tests.viewers.arm import arm_rig
 
@@ -73,3 +76,45 @@ def test_a_vertex_apart_from_the_rest_says_why_it_fell_back(rig):
     which, sizes = components(binding.graph)
     assert sizes.tolist() == [len(vertices), 4]
     assert (which == np.repeat([0, 1], sizes)).all()
+
+
+def test_a_node_tells_where_it_is_and_what_it_leads_to(rig, binding):
+    graph = binding.graph
+    state = State(rig=rig, binding=binding, panel="graph")
+    assert node_facts(state, Memo()) is None
+    for kind, name in enumerate(("mesh", "interior", "surface")):
+        state.node = node = int(np.flatnonzero((graph.node_kind == kind) & graph.connected)[0])
+        found = node_facts(state, Memo())
+        assert (found["node"], found["kind"]) == (node, name)
+        place = graph.lattice.to_file(graph.nodes[[node]])
+        np.testing.assert_allclose([found["position"]], place)
+        assert found["winding"] == pytest.approx(cutcell_winding(rig.mesh, place)[0])
+        row = graph.csr()[[node]].tocoo()
+        told = {other["node"]: other["length"] for other in found["neighbours"]}
+        assert found["degree"] == len(row.col)
+        assert set(told) <= set(row.col.tolist())
+        if kind == 2:
+            face = graph.triangle[node]
+            assert found["triangle"] == [face, *rig.mesh.faces[face]]
+        else:
+            assert found["triangle"] is None
+    state.panel = "weights"
+    assert node_facts(state, Memo()) is None
+
+
+def test_a_graph_leaves_as_numbers(binding, tmp_path):
+    graph = binding.graph
+    for ending in ("npz", "zip"):
+        save_graph(tmp_path / f"graph.{ending}", graph)
+    with np.load(tmp_path / "graph.npz") as held:
+        np.testing.assert_array_equal(held["edges"], graph.edges)
+        ends = held["nodes"][graph.edges]
+        length = np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1)
+        np.testing.assert_allclose(held["lengths"], length, atol=1e-6)
+    with zipfile.ZipFile(tmp_path / "graph.zip") as archive:
+        nodes = archive.read("nodes.csv").decode().splitlines()
+        edges = archive.read("edges.csv").decode().splitlines()
+    assert nodes[0] == "node,kind,x,y,z,triangle"
+    assert (len(nodes), len(edges)) == (len(graph.nodes) + 1, len(graph.edges) + 1)
+    a, b = graph.edges[-1]
+    assert edges[-1].startswith(f"{a},{b},surface,")

@@ -45,3 +45,13 @@ def test_greys_that_stand_for_different_things_are_told_apart():
     greys = [palette.BODY, palette.UNREACHED, palette.ATTACHMENT]
     light = np.array(greys) @ [0.2126, 0.7152, 0.0722]
     assert (np.diff(light) < -0.12).all()
+
+
+@pytest.mark.parametrize("theme", palette.THEMES.values(), ids=palette.THEMES)
+def test_the_three_kinds_of_edges_are_told_apart_by_every_eye(theme):
+    kinds = [theme.mesh_edge, palette.INTERIOR, theme.surface_edge]
+    apart = palette.differences(kinds)[np.triu_indices(3, 1)]
+    assert apart.min() > 0.15
+    # Green and orange of the paper are hardly two colours to an eye without middle cones.
+    paper = palette.differences([palette.INTERIOR, palette.SURFACE])[0, 1]
+    assert paper < 0.1

@@ -71,7 +71,8 @@ def test_the_picture_is_written_as_a_png(scenes, tmp_path):
 
 
 def test_the_graph_is_in_the_papers_colours(scenes):
-    for name, color in (("interior edges", palette.INTERIOR), ("surface edges", palette.SURFACE)):
+    inks = (("interior edges", palette.INTERIOR), ("surface edges", palette.LIGHT.surface_edge))
+    for name, color in inks:
         actors = {name: scenes["graph"].actors[name]}
         picture, seen = drawn(Description(actors))
         # Lines are thin: where they cross, their colour is there undiluted.

@@ -19,7 +19,7 @@ from cutcell_viewers.character import (
 )
 from cutcell_viewers.description import Description
 from cutcell_viewers.distance_scene import distance_scene
-from cutcell_viewers.graph_scene import LAYERS, cut_at, graph_scene
+from cutcell_viewers.graph_scene import LAYERS, NODES, cut_at, graph_scene
 from cutcell_viewers.palette import UNREACHED, colormap, to_bytes
 from cutcell_viewers.pose_scene import joint_turns, pose_at, pose_scene, swing, turn
 from cutcell_viewers.skin import moved
@@ -139,10 +139,10 @@ def test_nothing_reached_at_all_is_a_scene_still(rig):
 
 def test_the_graph_has_its_three_layers_where_the_body_is(rig, binding):
     scene = graph_scene(rig, binding.graph)
-    assert tuple(scene.actors) == tuple(LAYERS)
+    assert tuple(scene.actors) == (*LAYERS, *NODES)
     for (name, kind), color in zip(
         LAYERS.items(),
-        (palette.LIGHT.mesh_edge, palette.INTERIOR, palette.SURFACE),
+        (palette.LIGHT.mesh_edge, palette.INTERIOR, palette.LIGHT.surface_edge),
         strict=True,
     ):
         actor = scene.actors[name]
@@ -169,6 +169,7 @@ def test_layers_are_hidden_not_left_out(rig, binding):
         "mesh edges": True,
         "interior edges": False,
         "surface edges": False,
+        **dict.fromkeys(NODES, False),
     }
 
 

@@ -38,13 +38,44 @@ def test_without_a_character_there_is_an_empty_scene():
     assert resolve(State()).actors == {}
 
 
-@pytest.mark.parametrize("panel", PANELS)
+@pytest.mark.parametrize("panel", set(PANELS) - {"weights", "pose", "learn"})
 def test_before_anything_is_computed_the_character_stands_there_plain(rig, panel):
     scene = resolve(State(rig=rig, panel=panel))
     assert set(scene.actors) == {"body", "bones", "bone outlines", "attachment 0"}
     assert scene.actors["body"].scalars is None
     assert scene.actors["body"].colors is None
     assert scene.legend is None
+
+
+@pytest.mark.parametrize("panel", ["weights", "pose", "learn"])
+def test_before_anything_is_computed_the_files_own_weights_are_seen(rig, panel):
+    scene = resolve(State(rig=rig, panel=panel, weights_shown="bone", joint=1))
+    np.testing.assert_allclose(scene.actors["body"].scalars, rig.weights[:, 1], atol=1e-6)
+    assert scene.legend.title.startswith("In the file")
+    plain = resolve(State(rig=rig.with_weights(None), panel=panel))
+    assert plain.actors["body"].scalars is None
+    assert plain.legend is None
+
+
+def test_either_side_may_be_seen_alone_and_taken_for_the_truth(state, rig, binding):
+    state.param.update(panel="weights", weights_shown="bone", weights_of="file")
+    seen = resolve(state)
+    np.testing.assert_allclose(seen.actors["body"].scalars, rig.weights[:, 1], atol=1e-6)
+    assert seen.legend.title.startswith("In the file")
+    state.param.update(weights_shown="bone_difference", truth="file")
+    more = resolve(state).actors["body"].scalars
+    np.testing.assert_allclose(more, (binding.weights - rig.weights)[:, 1], atol=1e-6)
+    state.truth = "ours"
+    np.testing.assert_allclose(resolve(state).actors["body"].scalars, -more, atol=1e-6)
+
+
+def test_the_colours_of_the_weights_stay_while_it_moves(state, binding):
+    state.param.update(panel="pose", weights_shown="bone", turns={1: (0, 0, 40)})
+    scene = resolve(state)
+    assert scene.pose is not None
+    np.testing.assert_allclose(scene.actors["body"].scalars, binding.weights[:, 1], atol=1e-6)
+    state.pose_colors = "plain"
+    assert resolve(state).actors["body"].scalars is None
 
 
 @pytest.mark.parametrize("layer", LAYERS)
@@ -241,3 +272,33 @@ def test_the_legend_of_a_motion_names_only_what_moves(state, binding):
     assert {text for _, text in whole.swatches} > {RIGID}
     assert [text for _, text in moving.swatches] == [RIGID]
     assert moving.title == whole.title
+
+
+def test_the_graph_is_told_apart_by_form_and_its_nodes_can_be_looked_at(state, binding):
+    state.param.update(panel="graph", mesh_edges=True, surface_edges=True, nodes=True)
+    actors = resolve(state).actors
+    edges = [actors[f"{kind} edges"] for kind in ("mesh", "interior", "surface")]
+    assert len({edge.width for edge in edges}) == 3
+    assert [edge.dash > 0 for edge in edges] == [False, False, True]
+    nodes = [actors[f"{kind} nodes"] for kind in ("mesh", "interior", "surface")]
+    assert [node.form for node in nodes] == ["round", "square", "triangle"]
+    assert all(node.visible for node in nodes)
+    told = np.concatenate([node.reading.values for node in nodes]).astype(int)
+    np.testing.assert_array_equal(np.sort(told), np.flatnonzero(binding.graph.connected))
+    state.node = int(told[-1])
+    ring = resolve(state).actors["node ring"]
+    assert len(ring.cells) == np.diff(binding.graph.adjacency[0])[state.node]
+    state.edge_colors = "component"
+    assert "1 connected component" in resolve(state).legend.title
+    assert resolve(state).actors["mesh edges"].colors is not None
+
+
+def test_any_angle_shows_the_lines_of_sight_of_a_vertex(state, binding):
+    state.param.update(panel="graph", vertex=0, joint=2, connectivity="any")
+    assert wants_field(state)
+    state.field = (binding.distances, 2, binding.distances.field(2))
+    scene = resolve(state)
+    assert "path" in scene.actors
+    assert "lines of sight" in scene.legend.swatches[0][1]
+    state.connectivity = 6
+    assert "path" not in resolve(state).actors

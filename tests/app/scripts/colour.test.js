@@ -29,11 +29,11 @@ test("new values of as many points are put into the same texture", () => {
   const colours = new Colours(card().gl)
   const table = new Uint8Array(3 * 16)
   colours.setValues(new Float32Array(10), table, [0, 1])
-  const {points} = colours
+  const {data} = colours.points
   colours.setValues(new Float32Array(10), table, [0, 2])
-  assert.equal(colours.points, points)
+  assert.equal(colours.points.data, data)
   colours.setColors(new Uint8Array(30))
-  assert.notEqual(colours.points, points)
+  assert.notEqual(colours.points.data, data)
 })
 
 test("corners know their points", () => {
