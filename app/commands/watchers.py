@@ -2,12 +2,25 @@
 
 from __future__ import annotations
 
-from . import arrival, binding, compare, diagnosis, geodesics, history, keys, look, pose, rest
+from . import (
+    arrival,
+    binding,
+    compare,
+    diagnosis,
+    explain,
+    geodesics,
+    history,
+    keys,
+    look,
+    pose,
+    rest,
+)
 from .session import Session
 
 
 def follow(session: Session) -> None:
     """Let everything follow the state of a new session."""
     # In this order: what is seen comes before what is computed for it.
-    for one in (look, geodesics, pose, compare, binding, history, keys, rest, diagnosis, arrival):
+    seen = (look, geodesics, pose, compare)
+    for one in (*seen, binding, explain, history, keys, rest, diagnosis, arrival):
         one.watch(session)

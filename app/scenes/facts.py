@@ -17,6 +17,7 @@ from cutcell_viewers.graph_scene import KINDS
 from cutcell_viewers.palette import joint_colors, to_hex
 
 from ..state import State
+from .explain import explanation_facts
 from .memo import Memo
 
 MOST_WEIGHTS = 6
@@ -33,7 +34,8 @@ def vertex_facts(state: State, memo: Memo) -> dict[str, Any] | None:
     dict or None
         "vertex", "computed"; once it is bound also "weights" and "distances" (a list of bones
         each, the most important first), "component", "reached", "reason"; and "artist",
-        whether the file has weights of its own.
+        whether the file has weights of its own; "explain", whether it is asked why, and "why", the
+        answer for each joint, once it is there (see `explanation_facts`).
     """
     rig, binding, vertex = state.rig, state.binding, state.vertex
     if rig is None or vertex is None or vertex >= len(rig.mesh.vertices):
@@ -43,7 +45,7 @@ def vertex_facts(state: State, memo: Memo) -> dict[str, Any] | None:
         return facts
     colors = memo("colors", (rig,), lambda: joint_colors(rig.skeleton.parents))
 
-    def bone(joint: int, **values: float) -> dict[str, Any]:
+    def bone(joint: int, **values: Any) -> dict[str, Any]:
         color = to_hex(tuple(colors[joint]))
         return {
             "joint": int(joint),
@@ -72,6 +74,8 @@ def vertex_facts(state: State, memo: Memo) -> dict[str, Any] | None:
         "component": {"number": own + 1, "of": len(sizes), "vertices": int(sizes[own])},
         "reached": fallback == 0,
         "reason": FALLBACK_REASONS[fallback],
+        "explain": state.explain,
+        "why": [bone(j, **told) for j, told in explanation_facts(state).items()],
     }
 
 

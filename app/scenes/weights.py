@@ -19,10 +19,13 @@ from cutcell_viewers.weights_scene import (
 
 from ..state import State
 from .common import character
+from .explain import explained_paths
 from .memo import Memo
 
 DIFFERENCES = ("difference", "bone_difference")
 """What tells two sides apart."""
+SEE_PATHS = 0.42
+"""How opaque the body is while paths inside it are to be seen."""
 FILES = "In the file"
 """What the legend begins with where it is of the file's own weights."""
 
@@ -33,7 +36,11 @@ def weights(state: State, memo: Memo) -> Description:
     if held is None:
         return Description(character(state, memo))
     look, legend, coloured = weights_look(state, memo, held)
-    return Description(character(state, memo, bones_coloured=coloured, **look), legend=legend)
+    paths = explained_paths(state, memo)
+    if paths:
+        look = {**look, "opacity": SEE_PATHS}
+    actors = character(state, memo, bones_coloured=coloured, **look)
+    return Description({**actors, **paths}, legend=legend)
 
 
 def weights_look(

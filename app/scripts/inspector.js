@@ -72,6 +72,70 @@ function nodeCard(model, {node, kind, position, winding, degree, neighbours, tri
   return root
 }
 
+const LENGTH = (x) => x === null ? "farther" : String(Number(x.toPrecision(3)))
+const PIECES = {
+  "mesh edge": "along the mesh", "interior edge": "inside", "surface edge": "through the skin",
+  "line of sight": "straight inside", outside: "outside",
+}
+
+// A path as a bar of its pieces, as long as they are.
+function pathBar(path) {
+  const bar = element("span", "path")
+  const whole = path.reduce((sum, [, length]) => sum + length, 0) || 1
+  for (const [kind, length] of path) {
+    const piece = element("span", `piece ${kind.replaceAll(" ", "-")}`)
+    piece.style.flexGrow = 100 * length / whole
+    piece.title = `${PIECES[kind]}: ${LENGTH(length)}`
+    bar.append(piece)
+  }
+  return bar
+}
+
+// From distance to weight, a step a line; what a step takes away is pale.
+function waterfall({color, steps, file}) {
+  const list = element("dl", "steps")
+  let before = null
+  for (const [name, value] of [...steps, ...(file === null ? [] : [["in the file", file]])]) {
+    const track = element("dd")
+    const own = bar(color, value)
+    if (name === "in the file") { own.className = "bar files" }
+    const bars = element("span", "track")
+    bars.append(own)
+    if (before !== null && value < before - 0.005 && name !== "in the file") {
+      const lost = bar(color, before - value)
+      lost.className = "bar lost"
+      bars.append(lost)
+    }
+    track.append(bars, element("span", "value", value.toFixed(2)))
+    list.append(element("dt", "", name), track)
+    before = value
+  }
+  return list
+}
+
+function explained(bone, first) {
+  const root = element("details")
+  root.open = first
+  const summary = element("summary")
+  const dot = element("span", "dot")
+  dot.style.background = bone.color
+  summary.append(dot, element("span", "name", bone.name), element("span", "value", bone.steps.at(-1)[1].toFixed(2)))
+  root.append(summary)
+  if (bone.path.length) {
+    const told = new Map()
+    for (const [kind, length] of bone.path) { told.set(kind, (told.get(kind) || 0) + length) }
+    const parts = [...told].map(([kind, length]) => `${PIECES[kind]} ${LENGTH(length)}`)
+    root.append(pathBar(bone.path), element("div", "quiet", parts.join(" · ")))
+  } else {
+    root.append(element("div", "quiet", "No path leads there through the body."))
+  }
+  const far = `Distance ${LENGTH(bone.distance)}, through the air ${LENGTH(bone.straight)}`
+  const factors = bone.factors.map(([name, value]) => `×\u202f${value.toPrecision(2)} ${name}`)
+  const counts = factors.length ? `; ${factors.join(", ")}: counts as ${LENGTH(bone.effective)}` : ""
+  root.append(element("div", "quiet", `${far}${counts}.`), waterfall(bone))
+  return root
+}
+
 function card(model, facts) {
   if (facts.node !== undefined) { return nodeCard(model, facts) }
   const root = empty(model, "Vertex", facts.vertex)
@@ -107,12 +171,20 @@ function card(model, facts) {
     root.append(row(model, bone, [bar(color, distance / most)], distance.toFixed(3), spoken))
   }
 
+  const why = element("button", "why", facts.explain ? "Hide why" : "Why these weights?")
+  why.type = "button"
+  why.setAttribute("aria-expanded", String(facts.explain))
+  why.addEventListener("click", () => model.send_msg({type: "explain"}))
+  root.append(why)
+  if (facts.explain && !facts.why.length) { root.append(element("div", "quiet", "Tracing its paths …")) }
+  root.append(...facts.why.map((bone, number) => explained(bone, number === 0)))
+
   const state = element("div", "state")
   const dot = element("span", "dot")
   dot.style.background = facts.reached ? "#4c9a2a" : "#d9822b"
-  const why = facts.reached ? "Reached through the body."
+  const reached = facts.reached ? "Reached through the body."
     : `It follows its nearest bones in a straight line: ${facts.reason}.`
-  state.append(dot, element("span", "", why))
+  state.append(dot, element("span", "", reached))
   root.append(state)
   return root
 }

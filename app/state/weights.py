@@ -30,6 +30,13 @@ class WeightsChoices(param.Parameterized):
         default="file", objects=list(SIDES), doc="What the other side is measured against."
     )
 
+    explain: Any = param.Boolean(
+        False, doc="Whether the card says how the chosen vertex comes to its weights."
+    )
+    explanation: Any = param.Parameter(
+        None, doc="The binding, and what `cutcell.explain` says of a vertex of it; or None so far."
+    )
+
     falloff: Any = param.Selector(default=default("falloff"), objects=list(FALLOFFS))
     alpha: Any = param.Number(default("alpha"), bounds=(0, 1))
     max_influences: Any = param.Integer(default("max_influences"), bounds=(1, MOST))

@@ -26,6 +26,7 @@ class Inspector(JSComponent):
         self._session = session
         self._follow()
         names = ["rig", "binding", "bare_graph", "panel", "vertex", "node", "tour"]
+        names += ["explain", "explanation"]
         session.state.param.watch(self._follow, names)
 
     def _follow(self, *events: Any) -> None:
@@ -38,6 +39,8 @@ class Inspector(JSComponent):
     def _handle_msg(self, data: dict[str, Any]) -> None:
         if data.get("type") == "close":
             pick_vertex(self._session, None)
+        elif data.get("type") == "explain":
+            self._session.state.explain = not self._session.state.explain
         elif data.get("type") == "node":
             pick_node(self._session, int(data["node"]))
         elif data.get("type") == "bone":

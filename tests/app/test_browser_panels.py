@@ -19,6 +19,15 @@ def test_a_vertex_is_looked_at_closely(visit, robot):
     expect(row).to_be_visible()
     expect(visit.card).to_contain_text("nearest bones")
     assert visit.report()["actors"]["vertex"]["visible"]
+    visit.card.get_by_role("button", name="Why these weights?").click()
+    answer = visit.card.locator("details").first
+    expect(answer).to_contain_text(f"{name}{weight:.2f}")
+    expect(answer).to_contain_text("normalised")
+    visit.page.wait_for_function(
+        "joint => `path to ${joint}` in __cutcell.report().actors", arg=strongest
+    )
+    visit.card.get_by_role("button", name="Hide why").click()
+    expect(answer).to_have_count(0)
     row.click()
     visit.expect_text(f"Weight of {name}")
     visit.close_card()

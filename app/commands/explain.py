@@ -1,0 +1,38 @@
+"""Explain the weights of the chosen vertex, where that is asked for."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import cutcell
+from cutcell.progress import Progress
+
+from ..scenes.explain import explanation_of
+from ..state.method import effective, method_of
+from .session import Session
+
+
+def watch(session: Session) -> None:
+    """Keep the explanation up to the vertex that is chosen."""
+    session.state.param.watch(lambda *events: explain(session), ["vertex", "binding", "explain"])
+
+
+def explain(session: Session) -> None:
+    """Explain the chosen vertex, unless that is done."""
+    state, newest = session.state, session.tasks.newest("explain")
+    rig, binding, vertex = state.rig, state.binding, state.vertex
+    if not state.explain or binding is None or vertex is None:
+        newest.cancel()
+        return
+    if explanation_of(state) is not None:
+        return
+    method = effective(method_of(state))
+
+    def work(progress: Progress) -> Any:
+        distances = binding.distances
+        return cutcell.explain(rig, vertex, distances=distances, progress=progress, **method)
+
+    def done(found: Any) -> None:
+        state.explanation = (binding, found)
+
+    newest.do(work, done)

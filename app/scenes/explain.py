@@ -1,0 +1,84 @@
+"""How the chosen vertex comes to its weights: for the card, and the paths in the scene."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from cutcell.skinning import Explanation, JointShare
+from cutcell.skinning.explain import STEPS
+from cutcell_viewers.character import to_scene
+from cutcell_viewers.description import Actor
+from cutcell_viewers.marks import path_tube
+from cutcell_viewers.palette import joint_colors
+
+from ..state import State
+from .memo import Memo
+
+MOST_JOINTS = 4
+"""How many joints are explained, the heaviest first."""
+
+
+def explanation_of(state: State) -> Explanation | None:
+    """Return what explains the chosen vertex, if that is asked for and there."""
+    if not state.explain or state.explanation is None:
+        return None
+    binding, found = state.explanation
+    current = binding is state.binding and found.vertex == state.vertex
+    return found if current else None
+
+
+def explanation_facts(state: State) -> dict[int, dict[str, Any]]:
+    """Return what the card tells of each joint that is explained.
+
+    Returns
+    -------
+    dict
+        By joint: "distance" and "straight" in the file's units (None where the joint is not among
+        the nearest), "path" (kind and length of each run of pieces of a kind), "factors" (what the
+        distance is multiplied by, and why), "effective" and "steps" (name and weight).
+    """
+    found = explanation_of(state)
+    shares = () if found is None else found.joints[:MOST_JOINTS]
+    return {share.joint: _facts(share) for share in shares}
+
+
+def _facts(share: JointShare) -> dict[str, Any]:
+    runs: list[list[Any]] = []
+    for piece in share.path:
+        if runs and runs[-1][0] == piece.kind:
+            runs[-1][1] += piece.length
+        else:
+            runs.append([piece.kind, piece.length])
+    return {
+        "distance": _finite(share.distance),
+        "straight": _finite(share.straight),
+        "path": runs,
+        "factors": [[name, value] for name, value in share.factors.items() if value != 1],
+        "effective": _finite(share.effective),
+        "steps": [[STEPS[name], value] for name, value in share.steps.items()],
+        "file": share.file_weight,
+    }
+
+
+def _finite(length: float) -> float | None:
+    return length if np.isfinite(length) else None
+
+
+def explained_paths(state: State, memo: Memo) -> dict[str, Actor]:
+    """Return the paths from the chosen vertex to the joints that are explained, as tubes."""
+    found = explanation_of(state)
+    return {} if found is None else memo("explained", (found,), lambda: _tubes(state, found))
+
+
+def _tubes(state: State, found: Explanation) -> dict[str, Actor]:
+    rig, tubes = state.rig, {}
+    colors = joint_colors(rig.skeleton.parents)
+    for share in found.joints[:MOST_JOINTS]:
+        if share.path and share.weight > 0:
+            points = np.array([share.path[0].start, *(piece.end for piece in share.path)])
+            tube = path_tube(rig, to_scene(rig, points))
+            tubes[f"path to {share.joint}"] = replace(tube, color=tuple(colors[share.joint]))
+    return tubes

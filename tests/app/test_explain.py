@@ -1,0 +1,53 @@
+"""Why a vertex has its weights: the card and the paths, without a browser."""
+
+import pytest
+
+from cutcell_app.commands.look import pick_vertex
+from cutcell_app.scenes import resolve
+from cutcell_app.scenes.explain import explanation_of
+from cutcell_app.scenes.facts import vertex_facts
+
+
+@pytest.fixture
+def explained(bound, loop):
+    bound.state.panel = "weights"
+    bound.state.explain = True
+    pick_vertex(bound, 7)
+    loop.run_until(lambda: explanation_of(bound.state) is not None)
+    return bound
+
+
+def test_the_steps_end_with_the_weights_that_are_shown(explained):
+    state = explained.state
+    told = vertex_facts(state, explained.memo)["why"]
+    weights = {bone["joint"]: bone["steps"][-1][1] for bone in told}
+    assert weights == pytest.approx({j: state.binding.weights[7, j] for j in weights})
+    assert sum(weights.values()) == pytest.approx(1)
+    heaviest = told[0]
+    assert heaviest["distance"] >= 0.999 * heaviest["straight"] > 0
+    assert heaviest["file"] == state.rig.weights[7, heaviest["joint"]]
+    paths = sum(length for kind, length in heaviest["path"])
+    assert paths == pytest.approx(heaviest["distance"], rel=0.05)
+
+
+def test_its_paths_are_drawn_in_the_joints_colours(explained):
+    drawn = [name for name in resolve(explained.state).actors if name.startswith("path to ")]
+    assert drawn
+    told = vertex_facts(explained.state, explained.memo)["why"]
+    assert {f"path to {bone['joint']}" for bone in told if bone["steps"][-1][1]} == {*drawn}
+    explained.state.explain = False
+    assert not [name for name in resolve(explained.state).actors if name.startswith("path to ")]
+
+
+def test_other_weights_are_explained_anew(explained, loop):
+    explained.state.max_influences = 1
+    assert explanation_of(explained.state) is None
+    loop.run_until(lambda: explanation_of(explained.state) is not None)
+    told = vertex_facts(explained.state, explained.memo)["why"]
+    assert [bone["steps"][-1][1] for bone in told] == [1.0] + [0.0] * (len(told) - 1)
+
+
+def test_nothing_is_explained_unless_it_is_asked_for(bound):
+    pick_vertex(bound, 7)
+    assert not bound.tasks.jobs("explain").running
+    assert vertex_facts(bound.state, bound.memo)["why"] == []
