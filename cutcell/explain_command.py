@@ -15,6 +15,7 @@ from .display import shown_name
 from .options import (
     Alpha,
     Connectivity,
+    CorrectionsFile,
     Falloff,
     How,
     Json,
@@ -62,6 +63,7 @@ def explain(
     alpha: Alpha = None,
     max_influences: MaxInfluences = None,
     threshold: Threshold = 0.0,
+    corrections: CorrectionsFile = None,
     skeleton: SkeletonFile = None,
     json: Json = False,
 ) -> None:
@@ -70,6 +72,7 @@ def explain(
     For each joint: the distance and the path that it is the length of, what the falloff
     multiplies it by, the weight after each step, and the file's own weight.
     """
+    from .corrections import Corrections
     from .io import load
     from .skinning import explain as compute
 
@@ -86,9 +89,10 @@ def explain(
         max_influences=max_influences,
         threshold=threshold,
     )
+    corrected = None if corrections is None else Corrections.load(corrections)
     loaded = load(rig, skeleton=skeleton)
     with progress_bars(quiet=json) as progress:
-        found = compute(loaded, vertex, method=how, progress=progress)
+        found = compute(loaded, vertex, method=how, corrections=corrected, progress=progress)
     if json:
         print_json({"input": str(rig), **found.to_dict(), "warnings": list(loaded.warnings)})
         return

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Unpack
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +24,7 @@ from .bones import Bones, Sources, bone_segments, find_sources, node_grid
 from .contraction import Contraction, contract
 from .fallback import NOT_ALLOWED, REACHED, UNREACHED, UNUSED, straight_to_nearest
 from .inside import Inside
+from .nearest import NodeGrid
 from .shortest_paths import shortest_paths
 
 
@@ -209,15 +212,17 @@ def bone_distances(
     if allowed is not None:
         _check_allowed(graph, skeleton, allowed)
     targets = _on_mesh(graph)
-    contracted = submit(lambda: contract(graph)) if graph.connectivity == "any" else None
-    grid = node_grid(graph)
+    contracted = _contracted(graph) if graph.connectivity == "any" else None
+    grid = _grid(graph)
     if leaf == "fit":
         bones, aimed = fit_bones(graph, skeleton, grid)
     else:
         bones = bone_segments(skeleton, leaf)
         ends = graph.lattice.to_unit(bones.start), graph.lattice.to_unit(bones.end)
         bones, aimed = Bones(*ends, bones.joint), np.zeros(len(bones.joint), np.bool_)
-    contraction = contracted() if contracted else None
+    contraction = None
+    if contracted:
+        contraction = _contractions[graph] = contracted()
     sources = find_sources(graph, bones, samples, grid, contraction)
     if aimed.any():
         reach = _reach_of_leaves(graph, contraction, sources, bones, aimed, progress)
@@ -250,6 +255,23 @@ def bone_distances(
         return BoneDistances(joint, None, *known, fallback[graph.vertex_node], graph, contraction)
     first = np.unique(node, return_index=True)[1]
     return BoneDistances(joint[:, first], joint, *known, fallback, graph, contraction)
+
+
+_contractions: WeakKeyDictionary[CutCellGraph, Contraction] = WeakKeyDictionary()
+_grids: WeakKeyDictionary[CutCellGraph, NodeGrid] = WeakKeyDictionary()
+
+
+def _contracted(graph: CutCellGraph) -> Callable[[], Contraction]:
+    """Let another core contract a graph, unless it has been; return what waits for it."""
+    found = _contractions.get(graph)
+    return submit(lambda: contract(graph)) if found is None else lambda: found
+
+
+def _grid(graph: CutCellGraph) -> NodeGrid:
+    """Return the grid of a graph's nodes, which is made once for each graph."""
+    if graph not in _grids:
+        _grids[graph] = node_grid(graph)
+    return _grids[graph]
 
 
 def _on_mesh(graph: CutCellGraph) -> NDArray[np.int32]:

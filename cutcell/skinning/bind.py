@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from ..checks import check_has_joints, check_positions
 from ..corrections import Corrections
-from ..errors import SkeletonError
+from ..errors import ParameterError, SkeletonError
 from ..geodesics import FALLBACK_REASONS, BoneDistances, bone_distances
 from ..graph import CutCellGraph, build_graph
 from ..inputs import RigLike, as_rig
@@ -72,6 +72,7 @@ def bind(
     symmetric: bool = False,
     locked: Sequence[int | str] = (),
     corrections: Corrections | None = None,
+    graph: CutCellGraph | None = None,
     progress: Progress = silent,
     **options: Unpack[Options],
 ) -> Binding:
@@ -95,6 +96,9 @@ def bind(
     corrections : Corrections, optional
         What a person corrects: joints without weight, locked or of another reach, parts that are
         glued, single vertices.
+    graph : CutCellGraph, optional
+        That of another binding of the same mesh by the same method, `binding.graph`: it does not
+        depend on the skeleton. What only depends on it is then not computed again.
     progress : callable
         See `cutcell.progress`; stages are "graph", "distances", "weights", and
         before them "compile" the very first time on a machine, and after a change of the code.
@@ -118,6 +122,7 @@ def bind(
     >>> rig = cutcell.load("character.glb")  # doctest: +SKIP
     >>> binding = cutcell.bind(rig)  # doctest: +SKIP
     >>> cutcell.save("bound.glb", rig.with_weights(binding.weights))  # doctest: +SKIP
+    >>> again = cutcell.bind(moved, graph=binding.graph)  # other joints  # doctest: +SKIP
     >>> cutcell.bind((vertices, faces, joints, parents), method="paper")  # doctest: +SKIP
     """
     rig = as_rig(rig)
@@ -128,13 +133,16 @@ def bind(
         locked = [*locked, *locked_by(corrections)]
     touches: Touches = {"smoothing": smoothing, "symmetric": symmetric, "locked": locked}
     _check(rig, method, touches)
+    if graph is not None:
+        _check_graph(graph, rig, method)
     if not is_compiled():
         progress("compile", 0.0)
         warm_up()
         progress("compile", 1.0)
     seconds: dict[str, float] = {}
     with _timed("graph", seconds):
-        graph = build_graph(rig.mesh, method=method, progress=progress)
+        if graph is None:
+            graph = build_graph(rig.mesh, method=method, progress=progress)
     with _timed("distances", seconds):
         _begin_what_follows(graph, method)
         nearest, within = joints_measured(corrections, method)
@@ -176,6 +184,28 @@ def _check(rig: Rig, method: Method, touches: Touches) -> None:
     check_positions(rig.skeleton.joints, "joint", SkeletonError)
     check_refinement(rig, **touches)
     check_matrix(len(rig.mesh.vertices), len(rig.skeleton.joints), COPIES)
+
+
+def _check_graph(graph: CutCellGraph, rig: Rig, method: Method) -> None:
+    """Refuse a graph that is not of this mesh by this method."""
+    for name, has, wanted in (
+        ("resolution", graph.lattice.resolution, method.resolution),
+        ("connectivity", graph.connectivity, method.connectivity),
+        ("winding_threshold", graph.winding_threshold, method.winding_threshold),
+    ):
+        if has != wanted:
+            raise ParameterError(
+                f"the graph was built with {name}={has!r}, the method has {wanted!r}; "
+                "leave the graph out, and it is built"
+            )
+    points = graph.lattice.to_file(graph.nodes)
+    count = len(rig.mesh.vertices)
+    if count != len(graph.vertex_node) or not np.allclose(
+        points[graph.vertex_node], rig.mesh.vertices, rtol=0, atol=1e-5 * graph.lattice.size
+    ):
+        raise ParameterError(
+            "the graph is of another mesh than the rig's; leave the graph out, and it is built"
+        )
 
 
 @contextmanager

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..checks import check_integer
+from ..corrections import Corrections
 from ..geodesics import (
     FALLBACK_REASONS,
     PIECES,
@@ -23,10 +24,20 @@ from ..inputs import RigLike, as_rig
 from ..method import ANIMATION, Method, MethodName, Options, method_of
 from ..progress import Progress, silent
 from ..rig import Rig
+from .adjustments import Adjustments
+from .correct import (
+    adjustments_of,
+    corrected_parts,
+    corrected_rig,
+    joints_measured,
+    locked_by,
+    overruled,
+)
 from .kernel import paper_kernel
+from .locks import lock_joints
 from .rig_falloff import facing, permitted, rig_weights
 from .surface_operators import SurfaceOperators
-from .weights import keep_strongest
+from .weights import keep_strongest, skinning_weights
 
 STEPS = {
     "falloff": "shares by distance",
@@ -36,6 +47,7 @@ STEPS = {
     "storable": "storable in file",
     "limit": "limited",
     "normalise": "normalised",
+    "correct": "corrected",
 }
 """The steps from distances to weights, in their order. A method has some of them."""
 SOME = 1e-4
@@ -79,7 +91,8 @@ class JointShare:
     factors : dict of str to float
         What the falloff for rigs multiplies the distance by: "component", if the bone is in
         another component; "radius", if the vertex is beyond the bone's radius; "facing", if the
-        surface looks at the bone rather than away from it. Empty with the paper's falloff.
+        surface looks at the bone rather than away from it. The paper's has none. With either,
+        "gain", if corrections give the joint one.
     effective : float
         The distance times all factors: shares fall with it.
     steps : dict of str to float
@@ -134,6 +147,7 @@ def explain(
     resolution: int | None = None,
     *,
     method: Method | MethodName = ANIMATION,
+    corrections: Corrections | None = None,
     distances: BoneDistances | None = None,
     progress: Progress = silent,
     **options: Unpack[Options],
@@ -147,8 +161,11 @@ def explain(
     resolution : int, optional
         R; the method's when left out.
     method : Method, "animation" or "paper"
+    corrections : Corrections, optional
+        As of `bind`.
     distances : BoneDistances, optional
-        Of this rig by this method, such as those of a `Binding`; measured when left out.
+        Of this rig by this method and these corrections, such as those of a `Binding`;
+        measured when left out.
     progress : callable
         See `cutcell.progress`; stages are "graph", "distances" and "weights".
     **options
@@ -173,18 +190,30 @@ def explain(
     rig = as_rig(rig)
     method = method_of(method, resolution, **options)
     vertex = check_integer("vertex", vertex, 0, len(rig.mesh.vertices) - 1)
+    corrections = Corrections() if corrections is None else corrections
+    rig = corrected_rig(rig, corrections)
     if distances is None:
         graph = build_graph(rig.mesh, method=method, progress=progress)
+        nearest, within = joints_measured(corrections, method)
         distances = bone_distances(
-            graph, rig.skeleton, method=method, allowed=rig.allowed, progress=progress
+            graph,
+            rig.skeleton,
+            method=method,
+            nearest_joints=nearest,
+            within=within,
+            allowed=rig.allowed,
+            progress=progress,
         )
     progress("weights", 0.0)
-    falloff = _Paper(distances, method) if method.falloff == "paper" else _ForRigs(distances)
+    adjustments = adjustments_of(rig, distances.graph, corrections)
+    falloff = (_Paper if method.falloff == "paper" else _ForRigs)(distances, method, adjustments)
     steps = _limited(rig, distances, method, vertex, falloff.steps(vertex))
+    if corrections:
+        steps["correct"] = _corrected(rig, distances, method, vertex, corrections, adjustments)
     most = np.max(list(steps.values()), axis=0)
     own = None if rig.weights is None else rig.weights[vertex]
     listed = np.flatnonzero((most > SOME) | (0 if own is None else own > SOME))
-    last = steps["normalise"]
+    last = list(steps.values())[-1]
     shares = []
     for done, joint in enumerate(listed[np.argsort(-last[listed], kind="stable")].tolist()):
         progress("weights", done / len(listed))
@@ -198,31 +227,39 @@ def explain(
 class _Paper:
     """The paper's falloff: a formula of the distance alone."""
 
-    def __init__(self, distances: BoneDistances, method: Method) -> None:
+    def __init__(
+        self, distances: BoneDistances, method: Method, adjustments: Adjustments | None
+    ) -> None:
         assert method.alpha is not None
-        self._distances, self._alpha = distances, method.alpha
+        self._distances, self._alpha, self._adjustments = distances, method.alpha, adjustments
 
     def steps(self, vertex: int) -> dict[str, NDArray[np.float64]]:
         distance = self._distances.joint[:, [vertex]]
+        if self._adjustments is not None:
+            distance = distance / self._adjustments.gain[:, None]
         diagonal = self._distances.graph.lattice.diagonal
         return {"falloff": paper_kernel(distance, diagonal, self._alpha)[0]}
 
     def factors(self, vertex: int, joint: int) -> dict[str, float]:
-        return {}
+        return _gain(self._adjustments, joint)
 
 
 class _ForRigs:
     """The falloff for rigs, with what it records on its way."""
 
-    def __init__(self, distances: BoneDistances) -> None:
-        self._distances = distances
+    def __init__(
+        self, distances: BoneDistances, method: Method, adjustments: Adjustments | None
+    ) -> None:
+        self._distances, self._adjustments = distances, adjustments
         self._surface = SurfaceOperators.of(distances.graph)
         self._found: dict[str, NDArray] = {}
 
         def record(step: str, array: NDArray) -> None:
             self._found[step] = array.copy()
 
-        self._found["tail"] = rig_weights(distances, self._surface, record=record)
+        self._found["tail"] = rig_weights(
+            distances, self._surface, record=record, adjustments=adjustments
+        )
 
     def steps(self, vertex: int) -> dict[str, NDArray[np.float64]]:
         place = self._distances.graph.vertex_node[vertex]
@@ -232,13 +269,39 @@ class _ForRigs:
     def factors(self, vertex: int, joint: int) -> dict[str, float]:
         place, surface = self._distances.graph.vertex_node[vertex], self._surface
         penalty = float(self._found["penalty"][surface.component[place], joint])
+        gain = _gain(self._adjustments, joint)
         radius = 1.0
         if self._found["beyond"][place]:  # elsewhere nothing is beyond any radius
             known = self._distances.at_places[joint, place] / self._found["radius"][joint]
             radius = max(1.0, float(known))
         where = surface.points[place], surface.normals[place]
         away = facing(*where, self._distances.bones, joint)
-        return {"component": penalty, "radius": radius, "facing": 1 / away}
+        component = penalty / gain.get("gain", 1.0)
+        return {"component": component, "radius": radius, "facing": 1 / away, **gain}
+
+
+def _gain(adjustments: Adjustments | None, joint: int) -> dict[str, float]:
+    """Return the factor of a joint's distance that corrections ask for, if any."""
+    gain = 1.0 if adjustments is None else float(adjustments.gain[joint])
+    return {} if gain == 1 else {"gain": 1 / gain}
+
+
+def _corrected(
+    rig: Rig,
+    distances: BoneDistances,
+    method: Method,
+    vertex: int,
+    corrections: Corrections,
+    adjustments: Adjustments | None,
+) -> NDArray[np.float64]:
+    """Return the weights of a vertex after all corrections, as `bind` does."""
+    weights = skinning_weights(
+        distances, method=method, allowed=rig.allowed, adjustments=adjustments
+    )
+    weights = corrected_parts(rig, distances.graph, weights, corrections)
+    weights = lock_joints(rig, weights, locked_by(corrections), method.max_influences)
+    found: NDArray[np.float64] = overruled(rig, weights, corrections)[vertex]
+    return found
 
 
 def _limited(
@@ -283,7 +346,7 @@ def _share(
         factors=factors,
         effective=distance * unit * float(np.prod(list(factors.values()))),
         steps=weight,
-        weight=weight["normalise"],
+        weight=list(weight.values())[-1],
         file_weight=None if rig.weights is None else float(rig.weights[vertex, joint]),
     )
 

@@ -77,3 +77,26 @@ def test_it_is_plain_data_and_needs_no_weights_of_the_file():
 def test_a_vertex_that_is_not_there_is_refused():
     with pytest.raises(ParameterError, match="vertex must be a whole number"):
         cutcell.explain(RIG, len(RIG.mesh.vertices))
+
+
+@pytest.mark.parametrize("method", ["animation", "few"])
+def test_corrections_are_explained_as_they_are_bound(method):
+    names, method = RIG.skeleton.names, METHODS[method]
+    most = [names[j] for j in np.argsort(-RIG.weights.sum(axis=0))]
+    joints = {
+        most[0]: cutcell.JointCorrection(gain=1.5),
+        most[1]: cutcell.JointCorrection(deform=False),
+        most[2]: cutcell.JointCorrection(locked=True),
+    }
+    overruled = {VERTICES[1]: {most[0]: 1.0}}
+    corrections = cutcell.Corrections(joints, vertices=overruled)
+    weights = cutcell.bind(RIG, method=method, corrections=corrections).weights
+    for vertex in VERTICES[:4]:
+        found = cutcell.explain(RIG, vertex, method=method, corrections=corrections)
+        for share in found.joints:
+            assert share.weight == pytest.approx(weights[vertex, share.joint], abs=1e-12)
+            assert share.steps["correct"] == share.weight
+            assert ("gain" in share.factors) == (share.name == most[0] and bool(share.factors))
+            if share.factors:
+                product = share.distance * np.prod(list(share.factors.values()))
+                assert share.effective == pytest.approx(product)
