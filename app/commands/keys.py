@@ -77,7 +77,7 @@ def to_child(state: State) -> None:
 def _go(session: Session, choices: dict[str, Any] | None) -> None:
     if not choices:
         return
-    if choices["character"] == session.character:
+    if choices.get("character", session.character) == session.character:
         restore(session, choices)
         return
     # Another character stood there then. It is opened as its file has it.

@@ -62,10 +62,18 @@ export class Pointer {
     )
   }
 
-  // By keys: the point of the body in the middle, where the cross is.
+  // By keys: the point of the body in the middle, where the cross is, or the one nearest to it.
   chosen() {
-    const hit = this.bodyAt(...this.view.renderer.target)
-    if (hit) { this.view.model.send_msg({type: "pick-vertex", vertex: hit.vertex}) }
+    const {renderer} = this.view
+    const [x, y] = renderer.target
+    let vertex = this.bodyAt(x, y)?.vertex
+    const points = vertex === undefined ? renderer.actors.get("body")?.posed() || [] : []
+    for (let i = 0, least = Infinity; i < points.length; i += 3) {
+      const at = renderer.project([points[i], points[i + 1], points[i + 2]])
+      const far = at ? Math.hypot(at[0] - x, at[1] - y) : Infinity
+      if (far < least) { [least, vertex] = [far, i / 3] }
+    }
+    if (vertex !== undefined) { this.view.model.send_msg({type: "pick-vertex", vertex}) }
   }
 
   hovered(e) {

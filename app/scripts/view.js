@@ -185,6 +185,7 @@ class View {
     this.renderer.draw(moving, resting)
     this.gizmo.draw()
     this.overlay.showTarget(this.renderer.target)
+    this.overlay.root.classList.toggle("elsewhere", !this.orbit.atHome)
     if (this.address) { setTimeout(() => this.putAddress()) }
     if (this.renderer.rough && !moving) { this.calming = setTimeout(() => this.draw(true), CALM) }
   }
