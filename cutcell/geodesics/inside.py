@@ -28,8 +28,8 @@ class Inside:
     ----------
     graph : CutCellGraph
     contraction : Contraction or None
-        Of the graph. Its lattice steps spare most points their winding number: those in a lattice
-        cell whose twelve edges lie inside.
+        Of the graph. Where the mesh is closed, its lattice steps spare most points their winding
+        number: those in a lattice cell whose twelve edges lie inside.
     """
 
     def __init__(self, graph: CutCellGraph, contraction: Contraction | None) -> None:
@@ -65,7 +65,8 @@ class Inside:
     @cached_property
     def _cells(self) -> NDArray[np.int64]:
         """The cells whose twelve edges lie inside, numbered as by `_number`, ascending."""
-        if self._contraction is None:
+        # Where a mesh is open, the winding number may sink below tau between edges inside.
+        if self._contraction is None or not self._graph.is_closed:
             return np.empty(0, np.int64)
         graph = self._graph
         corners = graph.nodes[graph.first_point : graph.first_crossing]
