@@ -12,6 +12,7 @@ from scipy.sparse.csgraph import connected_components
 from ..display import shown_name
 from ..errors import MeshError
 from ..geodesics import BoneDistances
+from ..geodesics.fallback import REACHED
 from ..skinning.symmetry import find_mirror
 from .finding import Finding, Pose, count, share
 from .subject import Subject
@@ -49,7 +50,7 @@ def _stray(
     area = subject.vertex_areas
     held = area @ weights / area.sum()
     nearest = distances.joint.argmin(axis=0)
-    reached = np.isfinite(distances.joint.min(axis=0))
+    reached = distances.fallback == REACHED
     owned = np.bincount(nearest[reached], area[reached], len(held)) / area.sum()
     found = np.flatnonzero((held > 0) & (held < STRAY) & (owned > OWNED))
     if not len(found):

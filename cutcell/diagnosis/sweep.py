@@ -23,7 +23,7 @@ SEEN = 0.03
 FLIPPED = 0.01
 """Of the surface: where as much is turned over in one pose, it is more than a crease."""
 LOST = 0.1
-"""Of the volume, in one pose."""
+"""Of the volume of closed components, in one pose."""
 GRAVE = 3.0
 """Times these bounds: then it is a warning. Artists' weights crease, too, where a joint bends in a
 way that no animation asks of it."""
@@ -178,23 +178,15 @@ def _normals(points: NDArray[np.float64], faces: NDArray[np.int32]) -> NDArray[n
 
 
 class _Volume:
-    """The volume of a mesh in any pose; a fan to the middle of each open rim closes it."""
+    """The volume that the closed components of a mesh enclose, in any pose."""
 
     def __init__(self, subject: Subject) -> None:
-        self._loop, start = subject.boundary
-        self._start = start[:-1]
-        sizes = np.diff(start)
-        before = np.roll(self._loop, 1)
-        before[self._start] = self._loop[start[1:] - 1]
-        middles = len(subject.points) + np.repeat(np.arange(len(sizes)), sizes)
-        self._sizes = sizes[:, None]
-        fans = np.stack([self._loop, before, middles], axis=1)
-        self._faces = np.concatenate([subject.graph.faces[subject.whole], fans])
+        is_open = np.zeros(subject.component.max() + 1, np.bool_)
+        is_open[subject.component[subject.boundary.loop]] = True
+        faces = subject.graph.faces[subject.whole]
+        self._faces = faces[~is_open[subject.component[faces[:, 0]]]]
 
     def of(self, points: NDArray[np.float64]) -> float:
-        """Return it, times six, for welded vertices (k, 3)."""
-        if len(self._sizes):
-            middles = np.add.reduceat(points[self._loop], self._start) / self._sizes
-            points = np.concatenate([points, middles])
+        """Return it, times six, for welded vertices (k, 3); 0 if no component is closed."""
         a, b, c = points[self._faces].transpose(1, 0, 2)
         return float(np.einsum("ij,ij->", a, np.cross(b, c)))

@@ -18,7 +18,7 @@ BESIDE = 0.2
 that segments may run along the surface."""
 TOLERANCE = SPACING / 2 + BESIDE
 """Lattice cells: no point of a segment whose samples are all inside is farther from the body."""
-_STEPS = BESIDE * np.concatenate([np.zeros((1, 3)), np.eye(3), -np.eye(3)])
+_STEPS = BESIDE * np.concatenate([np.eye(3), -np.eye(3)])
 
 
 class Inside:
@@ -28,8 +28,8 @@ class Inside:
     ----------
     graph : CutCellGraph
     contraction : Contraction or None
-        Of the graph. Its lattice steps spare most points their winding number: those in a lattice
-        cell whose twelve edges lie inside.
+        Of the graph. Where the mesh is closed, its lattice steps spare most points their winding
+        number: those in a lattice cell whose twelve edges lie inside.
     """
 
     def __init__(self, graph: CutCellGraph, contraction: Contraction | None) -> None:
@@ -38,12 +38,12 @@ class Inside:
     def points(self, points: NDArray[np.float64]) -> NDArray[np.bool_]:
         """Tell which points (q, 3) of the unit cube are inside or beside it, shape (q,)."""
         inside = self._in_whole_cell(points)
-        for step in _STEPS / self._graph.lattice.resolution:
+        for steps in (np.zeros((1, 3)), _STEPS / self._graph.lattice.resolution):
             rest = np.flatnonzero(~inside)
-            if not len(rest):
-                break
-            number = self._graph.winding_numbers.at(points[rest] + step)
-            inside[rest] = number >= self._graph.winding_threshold
+            if len(rest):
+                around = (points[rest, None] + steps).reshape(-1, 3)
+                number = self._graph.winding_numbers.at(around).reshape(len(rest), -1)
+                inside[rest] = (number >= self._graph.winding_threshold).any(axis=1)
         return inside
 
     def segments(
@@ -65,7 +65,8 @@ class Inside:
     @cached_property
     def _cells(self) -> NDArray[np.int64]:
         """The cells whose twelve edges lie inside, numbered as by `_number`, ascending."""
-        if self._contraction is None:
+        # Where a mesh is open, the winding number may sink below tau between edges inside.
+        if self._contraction is None or not self._graph.is_closed:
             return np.empty(0, np.int64)
         graph = self._graph
         corners = graph.nodes[graph.first_point : graph.first_crossing]
