@@ -58,18 +58,6 @@ def opened(visit, panel):
     return found
 
 
-def test_a_point_of_the_body_is_chosen_by_keys_alone(visit):
-    canvas = visit.page.get_by_role("application")
-    canvas.blur()
-    canvas.focus()
-    visit.page.keyboard.press("ArrowLeft")
-    visit.page.keyboard.press("Shift+ArrowUp")
-    visit.page.keyboard.press("Enter")
-    visit.card.wait_for()
-    assert visit.page.get_by_role("heading", level=1).inner_text() == "cutcell"
-    visit.close_card()
-
-
 # In the dark only colours differ.
 @pytest.mark.parametrize(
     ("theme", "rules"), [("light", {}), ("dark", {"runOnly": ["color-contrast"]})]

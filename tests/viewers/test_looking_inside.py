@@ -97,10 +97,13 @@ def test_depth_is_zero_on_the_surface_and_grows_inwards(binding):
     np.testing.assert_allclose(graph.nodes[middle, 1:], 0.5, atol=1 / 16)
 
 
-def test_balls_rods_and_tubes_are_closed_to_the_outside(rig):
+def test_a_mark_is_a_point_over_everything_at_its_vertex(rig):
     mark = vertex_mark(rig, 5)
-    centre = to_scene(rig, rig.mesh.vertices[5])
-    assert (outward(mark.points.astype(float), mark.cells, centre) > 0).all()
+    np.testing.assert_allclose(mark.points, [to_scene(rig, rig.mesh.vertices[5])], atol=1e-6)
+    assert mark.overlay
+
+
+def test_balls_rods_and_tubes_are_closed_to_the_outside():
     points, faces = beads(np.zeros((1, 3)), 1.0)
     assert (outward(points, faces, np.zeros(3)) > 0).all()
     path = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0]])

