@@ -163,7 +163,7 @@ def _propagate(
     slots = (0,) * front.each if front.each in CONSTANT_LABELS else np.empty(front.each)
     scale = float(BUCKETS * body[0] ** 2)
     head = np.full(int(SPAN * scale), END, np.int32)
-    enqueue(labels, head, scale)
+    enqueue(labels, front.each, head, scale, contraction.node, contraction.number)
     adjacency = contraction.indptr, contraction.indices
     ahead = np.empty(int(np.diff(adjacency[0]).max()) + 1, np.int64)
     known = adjacency, body, ranking.table, within

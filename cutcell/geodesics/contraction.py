@@ -12,7 +12,7 @@ replaces four. This changes paths along edges, but any-angle paths are straight 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,18 +22,23 @@ from ..graph import INTERIOR, SURFACE, CutCellGraph
 from ..graph.inside_edges import lattice_steps
 from ..graph.interior import OUTSIDE
 from ..graph.neighbours import count_ends, list_ends
-from ..sorting import sort_into
+from ..sorting import order_by_place, sort_into
 
 KEPT, UNKNOWN = -1, -2
 """Instead of a representative: of nodes that are not contracted, or not yet known to be."""
 CORNERS = 3
 NO_BLOCK = -1
 BLOCK_POINTS = 8
+MANY_VERTICES = 50_000
+"""With more vertices, wavefronts take half as long if these are numbered by place."""
 
 
 @dataclass(frozen=True, eq=False)
 class Contraction:
-    """The kept nodes, numbered in their order, and the representatives of contracted ones.
+    """The kept nodes with numbers of their own, and the representatives of contracted ones.
+
+    Numbers follow the order of the graph's nodes, except that of many mesh vertices those in one
+    lattice cell come one after the other.
 
     Parameters
     ----------
@@ -71,7 +76,27 @@ def contract(graph: CutCellGraph) -> Contraction:
     inside = np.searchsorted(graph.edge_kind, np.array([INTERIOR, SURFACE], np.uint8))
     steps = lattice_steps(graph.nodes, graph.edges[slice(*inside)], first, last)
     block = find_blocks(graph.nodes[first:last], graph.lattice.resolution, steps)
-    return Contraction(steps, *_contract(graph.nodes, graph.edges, block, first))
+    contracted = Contraction(steps, *_contract(graph.nodes, graph.edges, block, first))
+    return _sorted_by_place(contracted, first) if first > MANY_VERTICES else contracted
+
+
+def _sorted_by_place(contracted: Contraction, vertices: int) -> Contraction:
+    """Renumber mesh vertices by place. Paths remain the same."""
+    order = np.arange(len(contracted.node))
+    order[:vertices] = order_by_place(contracted.places[:vertices])
+    rank = np.empty(len(order), np.int32)
+    rank[order] = np.arange(len(order))
+    size = np.diff(contracted.indptr)[order]
+    indptr = np.concatenate([[0], np.cumsum(size)]).astype(np.int32)
+    entry = np.arange(indptr[-1]) + np.repeat(contracted.indptr[order] - indptr[:-1], size)
+    return replace(
+        contracted,
+        indptr=indptr,
+        indices=rank[contracted.indices[entry]],
+        places=contracted.places[order],
+        node=contracted.node[order],
+        number=rank[contracted.number],
+    )
 
 
 def find_blocks(

@@ -319,7 +319,8 @@ def _reach_of_leaves(
     # Most of the body is in no leaf bone's region: there only the nearest joint matters.
     least = least_distances(graph, contraction, sources, bones, progress)
     leaves = sources.some(aimed), bones.some(aimed), targets, REGION_LEAVES, REGION_WITHIN
-    return any_angle_paths(graph, contraction, *leaves, least, progress), least[targets]
+    reach = any_angle_paths(graph, contraction, *leaves, least, progress)
+    return reach, least[contraction.number[targets]]
 
 
 def _least(distance: NDArray[np.float64], bones: Bones) -> NDArray[np.float64]:

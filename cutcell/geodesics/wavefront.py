@@ -155,8 +155,16 @@ def _enter_sources(labels, parents, least, each, group, rank, node, bone, distan
 
 
 @compiled
-def enqueue(labels, head, scale):
-    """Insert all used labels into the queue."""
-    for label in range(len(labels)):
-        if labels[label].joint != NO_JOINT:
-            join(head, labels, bucket_of(head, scale, labels[label].distance), label)
+def enqueue(labels, each, head, scale, node, number):
+    """Insert all used labels into the queue, in the order of the graph's nodes.
+
+    `node` and `number` are those of the contraction. However it numbers nodes, the result of paths
+    of equal length is the same.
+    """
+    for n in range(len(number)):
+        v = number[n]
+        if node[v] != n:
+            continue
+        for label in range(v * each, v * each + each):
+            if labels[label].joint != NO_JOINT:
+                join(head, labels, bucket_of(head, scale, labels[label].distance), label)

@@ -6,11 +6,15 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
 
 from ..compiled import compiled
 from ..progress import Shares, Tell
+from ..sorting import order_by_place
 from ..threads import in_threads, parts, watched
-from .ldl import RIGHT_SIDES, Factors, factorise, substitute
+from .lanes import RIGHT_SIDES
+from .ldl import Factors, factorise, substitute
+from .multigrid import Multigrid
 from .surface_operators import SurfaceOperators
 
 SHARPNESS = 3.0
@@ -32,10 +36,12 @@ class Diffusion:
     ----------
     screening : array, shape (k,)
         The diagonal of M H.
-    factors : Factors
-        Of the matrix, with rows and columns in the fill-reducing ordering.
-    order : array, shape (k,), int32
-        That ordering, of welded vertices.
+    solver : Factors or Multigrid
+        Of the matrix. Up to `surface_operators.MANY` welded vertices factors, which are exact;
+        beyond, multigrid, within 1e-3.
+    order : array, shape (k,), int32 or int64
+        In which its rows and columns are: the fill-reducing ordering of factors, for multigrid
+        ordered by place.
 
     References
     ----------
@@ -43,8 +49,8 @@ class Diffusion:
     """
 
     screening: NDArray[np.float64]
-    factors: Factors
-    order: NDArray[np.int32]
+    solver: Factors | Multigrid
+    order: NDArray[np.integer]
 
     @classmethod
     def over(
@@ -71,11 +77,14 @@ class Diffusion:
         # A vertex without area conducts nothing; any positive number makes it keep its own weights.
         screening = np.maximum(surface.areas, 1e-12) * SHARPNESS / depth**2
         start, column, value = surface.stiffness
-        diagonal = value[start[:-1]] + screening
-        matrix = start, column, value, diagonal
-        factors = watched(
-            lambda pace: factorise(*matrix, surface.order, pace), len(screening), tell
-        )
+        if surface.order is None:
+            value = value.copy()
+            value[start[:-1]] += screening
+            matrix = csr_array((value, column, start), (len(screening),) * 2)
+            order = order_by_place(surface.points)
+            return cls(screening, Multigrid.of(matrix[order][:, order]), order)
+        known = *surface.stiffness, value[start[:-1]] + screening, surface.order
+        factors = watched(lambda pace: factorise(*known, pace), len(screening), tell)
         return cls(screening, factors, surface.order)
 
     def spread(
@@ -88,12 +97,7 @@ class Diffusion:
         shares = Shares(lambda stage, done: tell(done), "weights", len(groups))
 
         def solve(group: int) -> None:
-            known = *self.factors, self.order, self.screening, weights, groups[group], spread
-            watched(
-                lambda pace: _solve(*known, pace),
-                2 * len(self.screening),
-                lambda done: shares.tell(group, done),
-            )
+            self._solve(groups[group], weights, spread, lambda done: shares.tell(group, done))
             shares.tell(group, 1.0)
 
         def normalise(part: slice) -> None:
@@ -109,6 +113,23 @@ class Diffusion:
         in_threads(solve, range(len(groups)))
         in_threads(normalise, parts(len(spread)), lambda done: tell(1.0))
         return spread
+
+    def _solve(
+        self,
+        joints: NDArray[np.intp],
+        weights: NDArray[np.float64],
+        spread: NDArray[np.float64],
+        tell: Tell,
+    ) -> None:
+        """Solve for the weights of at most `RIGHT_SIDES` joints, into `spread`."""
+        if isinstance(self.solver, Multigrid):
+            chosen = np.ix_(self.order, joints)
+            right = np.zeros((len(weights), RIGHT_SIDES))
+            right[:, : len(joints)] = weights[chosen] * self.screening[self.order, None]
+            spread[chosen] = np.maximum(self.solver.solve(right, tell)[:, : len(joints)], 0.0)
+        else:
+            known = *self.solver, self.order, self.screening, weights, joints, spread
+            watched(lambda pace: _solve(*known, pace), 2 * len(weights), tell)
 
 
 @compiled

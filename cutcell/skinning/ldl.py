@@ -12,13 +12,10 @@ from numpy.typing import NDArray
 
 from ..compiled import compiled, lean, put
 from ..geodesics.queue import END, join, leave
+from .lanes import NOTHING, minus, row_of, set_row
 
 LINKS = np.dtype([("after", np.int32), ("before", np.int32)], align=True)
 """Neighbours in the list of the unknowns of one degree, see `geodesics.queue`."""
-
-RIGHT_SIDES = 8
-"""Right sides that are solved for at once, one in each lane of the SIMD registers."""
-NOTHING = (0.0,) * RIGHT_SIDES
 
 Factors = tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.float64], NDArray[np.float64]]
 """L below its diagonal of ones, by columns: starts, rows, values; and D."""
@@ -238,50 +235,15 @@ def substitute(begin, rows, values, pivots, right, pace):
         pace[0] = c
         if pace[1] != 0:
             return
-        here = _row(right, c)
+        here = row_of(right, c)
         if here != NOTHING:
             for p in range(begin[c], begin[c + 1]):
-                _set_row(right, rows[p], _minus(_row(right, rows[p]), values[p], here))
+                set_row(right, rows[p], minus(row_of(right, rows[p]), values[p], here))
     for c in range(count - 1, -1, -1):
         pace[0] = 2 * count - c
         if pace[1] != 0:
             return
-        here = _minus(NOTHING, -1 / pivots[c], _row(right, c))
+        here = minus(NOTHING, -1 / pivots[c], row_of(right, c))
         for p in range(begin[c], begin[c + 1]):
-            here = _minus(here, values[p], _row(right, rows[p]))
-        _set_row(right, c, here)
-
-
-# Written out, all right sides stay in registers; a loop would write each before the next is read.
-@compiled(inline="always")
-def _row(right, k):
-    return (
-        right[k, 0],
-        right[k, 1],
-        right[k, 2],
-        right[k, 3],
-        right[k, 4],
-        right[k, 5],
-        right[k, 6],
-        right[k, 7],
-    )
-
-
-@compiled(inline="always")
-def _set_row(right, k, here):
-    right[k, 0], right[k, 1], right[k, 2], right[k, 3] = here[0], here[1], here[2], here[3]
-    right[k, 4], right[k, 5], right[k, 6], right[k, 7] = here[4], here[5], here[6], here[7]
-
-
-@compiled(inline="always")
-def _minus(here, times, there):
-    return (
-        here[0] - times * there[0],
-        here[1] - times * there[1],
-        here[2] - times * there[2],
-        here[3] - times * there[3],
-        here[4] - times * there[4],
-        here[5] - times * there[5],
-        here[6] - times * there[6],
-        here[7] - times * there[7],
-    )
+            here = minus(here, values[p], row_of(right, rows[p]))
+        set_row(right, c, here)

@@ -16,6 +16,11 @@ from .components import label_components
 from .laplacian import stiffness, vertex_areas, vertex_normals
 from .ldl import fill_reducing_ordering
 
+MANY = 50_000
+"""Welded vertices up to which equations are solved by factors of their matrix, which for few takes
+the least time and is exact. The time for factors grows faster than the mesh: from about here on
+multigrid takes less."""
+
 
 @dataclass(frozen=True, eq=False)
 class SurfaceOperators:
@@ -33,8 +38,8 @@ class SurfaceOperators:
         The connected component of each welded vertex, see `label_components`.
     stiffness : tuple of arrays
         Rows of the Laplacian, see `laplacian.stiffness`.
-    order : array, shape (k,), int32
-        See `fill_reducing_ordering`.
+    order : array, shape (k,), int32, or None
+        See `fill_reducing_ordering`; None for more than `MANY` welded vertices.
     """
 
     points: NDArray[np.float64]
@@ -43,7 +48,7 @@ class SurfaceOperators:
     areas: NDArray[np.float64]
     component: NDArray[np.int32]
     stiffness: tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.float64]]
-    order: NDArray[np.int32]
+    order: NDArray[np.int32] | None
 
     @classmethod
     def of(cls, graph: CutCellGraph) -> SurfaceOperators:
@@ -65,7 +70,10 @@ class SurfaceOperators:
         """Compute those of a mesh: points (k, 3) in the unit cube, faces (m, 3)."""
         a, b, c = faces.T
         faces = faces[(a != b) & (b != c) & (c != a)]  # the others were welded to nothing
-        return cls(points, faces, *_operators(points, faces))
+        has_order = len(points) <= MANY
+        normals, areas, component, rows, order = _operators(points, faces, has_order)
+        known = points, faces, normals, areas, component, rows
+        return cls(*known, order if has_order else None)
 
 
 _of_graph: WeakKeyDictionary[CutCellGraph, Callable[[], SurfaceOperators]] = WeakKeyDictionary()
@@ -73,8 +81,8 @@ _of_graph: WeakKeyDictionary[CutCellGraph, Callable[[], SurfaceOperators]] = Wea
 
 # One compiled function: each call from another thread has to wait for Python's lock.
 @compiled
-def _operators(points, faces):
+def _operators(points, faces, has_order):
     normals, areas = vertex_normals(points, faces), vertex_areas(points, faces)
     rows = stiffness(points, faces)
-    order = fill_reducing_ordering(rows[0], rows[1])
+    order = fill_reducing_ordering(rows[0], rows[1]) if has_order else np.empty(0, np.int32)
     return normals, areas, label_components(faces, len(points)), rows, order

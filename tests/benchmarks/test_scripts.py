@@ -8,6 +8,7 @@ import pytest
 from benchmarks import (
     accuracy,
     growth,
+    large,
     memory,
     meshers,
     orientation,
@@ -111,6 +112,14 @@ def test_growth_says_what_failed(capsys):
     assert "nowhere.glb" in growth.run(case, options)
     options.limit = 0.01
     assert growth.run(case, options) == "over 0.01 s"
+
+
+def test_large_meshes(capsys):
+    large.main(["--rig", DEMO, "--times", "0", "1", "--exact", "0"])
+    (rows,) = read_tables(capsys.readouterr().out).values()
+    assert len(rows) == 2
+    assert float(rows[0]["largest difference"]) == 0  # small meshes are solved exactly
+    assert rows[1]["largest difference"] == "-"
 
 
 def test_slopes():

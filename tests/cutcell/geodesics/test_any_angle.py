@@ -10,7 +10,7 @@ from cutcell import ParameterError, Skeleton, TriangleMesh, load
 from cutcell.geodesics import distance_to_segment
 from cutcell.geodesics.any_angle import SPAN, any_angle_paths, least_distances
 from cutcell.geodesics.bones import find_sources, node_grid
-from cutcell.geodesics.contraction import contract
+from cutcell.geodesics.contraction import _sorted_by_place, contract
 from cutcell.geodesics.wavefront import partition_sources
 from cutcell_assets import demo_path
 from tests import meshes
@@ -195,6 +195,26 @@ def test_some_joints_are_measured_where_no_other_is_much_nearer():
     assert (np.isfinite(found) == near).mean() > 0.99
     both = near & np.isfinite(found)
     assert (np.abs(found / every[[2, 7]] - 1)[both] < 1e-9).mean() > 0.95
+
+
+def test_distances_do_not_depend_on_how_vertices_are_numbered():
+    rig = load(demo_path("biped"))
+    graph = build_graph(rig.mesh, 24, connectivity="any")
+    bones = bone_distances(graph, rig.skeleton).bones
+    by_graph = contract(graph)
+    by_place = _sorted_by_place(by_graph, graph.first_point)
+    assert (by_place.node != by_graph.node).mean() > 0.1
+    assert (by_place.node[by_place.number] == by_graph.node[by_graph.number]).all()
+    nodes = np.arange(graph.first_point, dtype=np.int32)
+
+    def measured(contraction):
+        sources = find_sources(graph, bones, 5, node_grid(graph), contraction)
+        least = least_distances(graph, contraction, sources, bones)[contraction.number]
+        few = any_angle_paths(graph, contraction, sources, bones, nodes, nearest=3, within=6)
+        return least, few
+
+    for expected, found in zip(measured(by_graph), measured(by_place), strict=True):
+        np.testing.assert_array_equal(found, expected)
 
 
 def test_what_is_many_times_farther_than_the_nearest_is_left_out():

@@ -5,8 +5,9 @@ import pytest
 from scipy.sparse import coo_array, csr_array, eye_array, random_array
 from scipy.sparse.linalg import splu
 
+from cutcell.skinning.lanes import RIGHT_SIDES
 from cutcell.skinning.laplacian import cotangent_laplacian
-from cutcell.skinning.ldl import RIGHT_SIDES, factorise, fill_reducing_ordering, substitute
+from cutcell.skinning.ldl import factorise, fill_reducing_ordering, substitute
 from tests import meshes
 
 
