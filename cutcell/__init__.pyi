@@ -1,5 +1,6 @@
 from . import baselines as baselines
 from . import compare as compare
+from . import dataset as dataset
 from . import deform as deform
 from . import diagnosis as diagnosis
 from . import errors as errors

@@ -18,6 +18,7 @@ from . import __version__
 from .bind_command import EPILOG as BIND_EPILOG
 from .bind_command import bind
 from .console import for_people, print_json, print_warnings, progress_bars
+from .dataset_command import dataset
 from .diagnose_command import EPILOG as DIAGNOSE_EPILOG
 from .diagnose_command import diagnose
 from .graph_command import EPILOG as GRAPH_EPILOG
@@ -140,6 +141,7 @@ def compare(
 
 app.command(epilog=DIAGNOSE_EPILOG)(diagnose)
 app.command(epilog=JOINTS_EPILOG)(joints)
+app.add_typer(dataset, name="dataset")
 
 
 for above in entry_points(group="cutcell.commands"):

@@ -68,6 +68,8 @@ ORDER = [
         "report",
         "bind_command",
         "diagnose_command",
+        "dataset_audit_command",
+        "dataset_command",
         "graph_command",
         "render_command",
         "joints_command",

@@ -100,6 +100,7 @@ def careful(path: Path) -> str:
 
 
 MODULES = (
+    cutcell.dataset,
     cutcell.deform,
     cutcell.diagnosis,
     cutcell.errors,
