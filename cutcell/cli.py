@@ -14,7 +14,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from . import __version__
+from . import (
+    __version__,
+    dataset_audit_command,  # noqa: F401 - it adds itself to `dataset`
+)
 from .bind_command import EPILOG as BIND_EPILOG
 from .bind_command import bind
 from .console import for_people, print_json, print_warnings, progress_bars

@@ -2,6 +2,10 @@ from .archive import ArchivedAsset as ArchivedAsset
 from .archive import Split as Split
 from .archive import read_archive as read_archive
 from .archive import split as split
+from .auditing import Audit as Audit
+from .auditing import Pair as Pair
+from .auditing import audit as audit
+from .auditing import save_audit as save_audit
 from .binding import BindReport as BindReport
 from .binding import bind_all as bind_all
 from .export import export as export

@@ -45,6 +45,10 @@ class Cluster:
         self._done.add(future)
         self._under_way += 1
 
+    def scatter(self, things: list[Any]) -> list[Any]:
+        """Give things to the workers, who pass them on as jobs need them."""
+        return list(self._client.scatter(things, hash=False)) if things else []
+
     def next_result(self) -> tuple[str, Any]:
         """Wait for a job; return its key, and its result or the exception that it ended with.
 
@@ -102,7 +106,7 @@ def connected(scheduler: str | None, workers: int | None, processes: bool) -> It
         "distributed.scheduler.worker-saturation": 1.0,
         "distributed.comm.timeouts.connect": CONNECT,
         "distributed.logging.distributed": "critical",
-        "logging.distributed": "critical",
+        "distributed.worker.dashboard": False,
     }
     with dask.config.set(settings):
         if scheduler is not None:

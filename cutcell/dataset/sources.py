@@ -14,7 +14,7 @@ from ..errors import CutcellError, FileError
 from ..io import load
 from ..io.files import naming, read_bytes
 from ..io.rignet import rig_file
-from ..rig import Rig
+from ..rig import Rig, Skeleton, TriangleMesh
 from .archive import MEMBER
 from .formats import read_samples, read_unirig, samples_of
 
@@ -34,7 +34,7 @@ class Content:
 
     Parameters
     ----------
-    kind : {"file", "unirig"}
+    kind : {"file", "unirig", "stored"}
         How they are read.
     files : dict of str to bytes
         By name; the first is the one to load.
@@ -62,7 +62,7 @@ class Source:
     name : str
         Unlike all others: its path below the folder that was named, without ending.
     path : Path
-    kind : {"file", "unirig", "rignet", "puppeteer"}
+    kind : {"file", "unirig", "rignet", "puppeteer", "stored"}
     beside : Path or None
         RigNet's other file.
     sample : str
@@ -83,6 +83,8 @@ class Source:
         FileError
             They cannot be read.
         """
+        if self.kind == "stored":
+            return Content("stored", {"stored.npz": read_bytes(self.path)})
         if self.kind == "unirig":
             return Content("unirig", {RAW: read_bytes(self.path)})
         if self.kind == "puppeteer":
@@ -110,6 +112,8 @@ def read_content(content: Content, folder: Path) -> Rig:
         They are no rig.
     """
     first = next(iter(content.files))
+    if content.kind == "stored":
+        return _stored(content.files[first], folder)
     if content.kind == "unirig":
         return read_unirig(content.files[first], first)
     for name, data in content.files.items():
@@ -145,11 +149,29 @@ def find_sources(paths: Iterable[Path]) -> list[Source]:
     return _named(found)
 
 
+def _stored(data: bytes, folder: Path) -> Rig:
+    from .store import read_entry
+
+    path = folder / "stored.npz"
+    path.write_bytes(data)
+    entry = read_entry(path)
+    skeleton = Skeleton(entry.joints, entry.parents, entry.names)
+    return Rig(TriangleMesh(entry.vertices, entry.faces), skeleton, entry.artist)
+
+
+def _in_store(root: Path) -> Iterator[Source]:
+    from .store import Store
+
+    for row in Store(root).manifest():
+        if not row["error"]:
+            yield Source(row["name"], root / row["path"], "stored")
+
+
 def _in_folder(root: Path) -> Iterator[Source]:
-    taken: set[Path] = set()
+    if (root / STORE).is_file():
+        yield from _in_store(root)
+        return
     for path in sorted(p for p in root.rglob("*") if p.is_file()):
-        if path in taken:
-            continue
         kind, name = path.suffix.lower(), path.relative_to(root).with_suffix("").as_posix()
         if path.name == RAW:
             yield Source(path.parent.relative_to(root).as_posix(), path, "unirig")
