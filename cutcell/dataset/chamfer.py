@@ -40,9 +40,11 @@ class Block:
     centres : array, shape (n, 3), float64
         Mean of the joints.
     points : array, shape (n, p, 3), float32
-        On the surface, ascending in x.
-    cells : array, shape (n, p), int32
+        On the surface, in the unit cube, cell by cell.
+    cells : array, shape (n, p), uint16
         The cell that each point is in.
+    first : array, shape (n, CELLS³ + 1), uint16 or uint32
+        Where the points of each cell begin.
     near : array, shape (n, CELLS³), uint8
         How far each cell is from the nearest point, see `CODE`.
     spacing : array, shape (n,), float64
@@ -54,7 +56,8 @@ class Block:
     boxes: NDArray[np.float64]
     centres: NDArray[np.float64]
     points: NDArray[np.float32]
-    cells: NDArray[np.int32]
+    cells: NDArray
+    first: NDArray
     near: NDArray[np.uint8]
     spacing: NDArray[np.float64]
 
@@ -71,15 +74,20 @@ def block_of(characters: Sequence[Normalised]) -> Block:
     start = np.concatenate([[0], np.cumsum([len(j) for j in joints])])
     boxes = np.array([[j.min(axis=0), j.max(axis=0)] for j in joints], np.float64)
     centres = np.array([j.astype(np.float64).mean(axis=0) for j in joints])
-    points = np.stack([one.points[np.argsort(one.points[:, 0], kind="stable")]
-                       for one in characters])  # fmt: skip
+    points = np.stack([one.points for one in characters])
     index = np.clip((points * CELLS).astype(np.int32), 0, CELLS - 1)
-    cells = ((index[..., 0] * CELLS + index[..., 1]) * CELLS + index[..., 2]).astype(np.int32)
+    cells = (index[..., 0] * CELLS + index[..., 1]) * CELLS + index[..., 2]
+    order = np.argsort(cells, axis=1, kind="stable")
+    points = np.take_along_axis(points, order[..., None], axis=1)
+    cells = np.take_along_axis(cells, order, axis=1).astype(np.uint16)
+    kind = np.uint16 if points.shape[1] < 2**16 else np.uint32
+    every = np.arange(CELLS**3 + 1)
+    first = np.array([np.searchsorted(row, every) for row in cells]).astype(kind)
     near = np.empty((len(points), CELLS**3), np.uint8)
     for k in range(len(points)):
-        _distances_of_cells(points[k], near[k])
+        _distances_of_cells(points[k], first[k], np.unique(cells[k]).astype(np.int64), near[k])
     spacing = np.array([_spacing(one) for one in points])
-    return Block(np.concatenate(joints), start, boxes, centres, points, cells, near, spacing)
+    return Block(np.concatenate(joints), start, boxes, centres, points, cells, first, near, spacing)
 
 
 def _spacing(points: NDArray[np.float32]) -> float:
@@ -132,7 +140,10 @@ def close_surfaces(
         The squared Chamfer distance where it is less than the limit, infinity elsewhere.
     """
     distances = np.empty(len(pairs))
-    _close_surfaces(a.points, a.cells, a.near, b.points, b.cells, b.near, pairs, limit, distances)
+    _close_surfaces(
+        a.points, a.cells, a.first, a.near, b.points, b.cells, b.first, b.near,
+        pairs, limit, distances,
+    )  # fmt: skip
     return distances
 
 
@@ -145,43 +156,37 @@ def reach_of(a: Block, b: Block, pairs: NDArray[np.int32]) -> NDArray[np.float64
     reach = np.empty(len(pairs))
     squares = np.empty(a.points.shape[1]), np.empty(b.points.shape[1])
     for k, (i, j) in enumerate(pairs.tolist()):
-        _nearest_squares(a.points[i], b.points[j], squares[0])
-        _nearest_squares(b.points[j], a.points[i], squares[1])
+        _nearest_squares(a.points[i], b.points[j], b.first[j], squares[0])
+        _nearest_squares(b.points[j], a.points[i], a.first[i], squares[1])
         there, back = (np.sqrt(np.quantile(square, QUANTILE)) for square in squares)
         reach[k] = max(there - b.spacing[j], back - a.spacing[i], 0)
     return reach
 
 
 @compiled
-def _distances_of_cells(points, near):
+def _distances_of_cells(points, first, occupied, near):
     """Write how far each cell of the lattice is from the nearest point, rounded down."""
     side = 1.0 / CELLS
-    begin = 0
-    for x in range(CELLS):
-        while begin < len(points) and points[begin, 0] < x * side:
-            begin += 1
-        for y in range(CELLS):
-            for z in range(CELLS):
-                least = np.inf
-                for k in range(begin, len(points)):
-                    dx = max(points[k, 0] - (x + 1) * side, 0.0)
-                    if dx * dx >= least:
-                        break
-                    least = min(least, dx * dx + _square_beside(points, k, y, z, side))
-                for k in range(begin - 1, -1, -1):
-                    dx = x * side - points[k, 0]
-                    if dx * dx >= least:
-                        break
-                    least = min(least, dx * dx + _square_beside(points, k, y, z, side))
-                steps = int(np.sqrt(least) * (1 - 1e-6) / CODE)
-                near[(x * CELLS + y) * CELLS + z] = min(255, steps)
-
-
-@compiled
-def _square_beside(points, k, y, z, side):
-    dy = max(y * side - points[k, 1], points[k, 1] - (y + 1) * side, 0.0)
-    dz = max(z * side - points[k, 2], points[k, 2] - (z + 1) * side, 0.0)
-    return dy * dy + dz * dz
+    nearest = 0
+    for cell in range(len(near)):
+        x, y, z = cell // CELLS // CELLS, cell // CELLS % CELLS, cell % CELLS
+        least = np.inf
+        for k in range(-1, len(occupied)):
+            which = nearest if k < 0 else k  # that of the last cell is most likely near this one
+            other = occupied[which]
+            gap_x = max(abs(x - other // CELLS // CELLS) - 1, 0) * side
+            gap_y = max(abs(y - other // CELLS % CELLS) - 1, 0) * side
+            gap_z = max(abs(z - other % CELLS) - 1, 0) * side
+            if gap_x * gap_x + gap_y * gap_y + gap_z * gap_z >= least:
+                continue
+            for p in range(first[other], first[other + 1]):
+                dx = max(x * side - points[p, 0], points[p, 0] - (x + 1) * side, 0.0)
+                dy = max(y * side - points[p, 1], points[p, 1] - (y + 1) * side, 0.0)
+                dz = max(z * side - points[p, 2], points[p, 2] - (z + 1) * side, 0.0)
+                square = dx * dx + dy * dy + dz * dz
+                if square < least:
+                    least, nearest = square, which
+        near[cell] = min(255, int(np.sqrt(least) * (1 - 1e-6) / CODE))
 
 
 @compiled
@@ -233,17 +238,19 @@ def _one_way(points, first, last, others, other_first, other_last, limit):
 
 
 @compiled
-def _close_surfaces(points_a, cells_a, near_a, points_b, cells_b, near_b, pairs, limit, distances):
+def _close_surfaces(
+    points_a, cells_a, first_a, near_a, points_b, cells_b, first_b, near_b, pairs, limit, distances
+):
     for c in range(len(pairs)):
         i, j = pairs[c, 0], pairs[c, 1]
         distances[c] = np.inf
         bound = _cell_bound(cells_a[i], near_b[j]) + _cell_bound(cells_b[j], near_a[i])
         if bound >= limit * SLACK:
             continue
-        there = _sorted_one_way(points_a[i], points_b[j], limit)
+        there = _mean_square(points_a[i], points_b[j], first_b[j], limit)
         if there >= limit:
             continue
-        back = _sorted_one_way(points_b[j], points_a[i], limit - there)
+        back = _mean_square(points_b[j], points_a[i], first_a[i], limit - there)
         if there + back < limit:
             distances[c] = there + back
 
@@ -257,43 +264,54 @@ def _cell_bound(cells, near):
 
 
 @compiled
-def _sorted_one_way(points, others, limit):
+def _mean_square(points, others, first, limit):
+    """Return the mean squared distance of points from others, or infinity from the limit on."""
     total, number = 0.0, len(points)
-    begin = 0
     for p in range(number):
-        square, begin = _least_square(points, p, others, begin)
-        total += square
+        total += _least_square(points[p, 0], points[p, 1], points[p, 2], others, first)
         if total / number >= limit * SLACK:
             return np.inf
     return total / number
 
 
 @compiled
-def _nearest_squares(points, others, squares):
-    begin = 0
+def _nearest_squares(points, others, first, squares):
     for p in range(len(points)):
-        squares[p], begin = _least_square(points, p, others, begin)
+        squares[p] = _least_square(points[p, 0], points[p, 1], points[p, 2], others, first)
 
 
 @compiled
-def _least_square(points, p, others, begin):
-    """Search both ways from the same x, until x alone is farther than the nearest so far."""
-    x, y, z = np.float64(points[p, 0]), np.float64(points[p, 1]), np.float64(points[p, 2])
-    while begin < len(others) and others[begin, 0] < x:
-        begin += 1
+def _least_square(px, py, pz, others, first):
+    """Search the point's own cell, then shells of cells around it, while they may be nearer."""
+    x, y, z = np.float64(px), np.float64(py), np.float64(pz)
+    side = 1.0 / CELLS
+    own_x = min(max(int(x * CELLS), 0), CELLS - 1)
+    own_y = min(max(int(y * CELLS), 0), CELLS - 1)
+    own_z = min(max(int(z * CELLS), 0), CELLS - 1)
     least = np.inf
-    low, high = begin - 1, begin
-    while low >= 0 or high < len(others):
-        below = x - others[low, 0] if low >= 0 else np.inf
-        above = others[high, 0] - x if high < len(others) else np.inf
-        if below <= above:
-            q, dx = low, below
-            low -= 1
-        else:
-            q, dx = high, above
-            high += 1
-        if dx * dx >= least:
+    for shell in range(CELLS):
+        if shell > 1 and ((shell - 1) * side) ** 2 >= least:
             break
-        dy, dz = y - others[q, 1], z - others[q, 2]
-        least = min(least, dx * dx + dy * dy + dz * dz)
-    return least, begin
+        for cx in range(max(own_x - shell, 0), min(own_x + shell, CELLS - 1) + 1):
+            dx = max(cx * side - x, x - (cx + 1) * side, 0.0)
+            if dx * dx >= least:
+                continue
+            for cy in range(max(own_y - shell, 0), min(own_y + shell, CELLS - 1) + 1):
+                dy = max(cy * side - y, y - (cy + 1) * side, 0.0)
+                if dx * dx + dy * dy >= least:
+                    continue
+                inside = abs(cx - own_x) < shell and abs(cy - own_y) < shell
+                step = 2 * shell if inside else 1
+                for cz in range(own_z - shell, own_z + shell + 1, step):
+                    if cz < 0 or cz >= CELLS:
+                        continue
+                    cell = (cx * CELLS + cy) * CELLS + cz
+                    if first[cell] == first[cell + 1]:
+                        continue
+                    dz = max(cz * side - z, z - (cz + 1) * side, 0.0)
+                    if dx * dx + dy * dy + dz * dz >= least:
+                        continue
+                    for q in range(first[cell], first[cell + 1]):
+                        ex, ey, ez = x - others[q, 0], y - others[q, 1], z - others[q, 2]
+                        least = min(least, ex * ex + ey * ey + ez * ez)
+    return least

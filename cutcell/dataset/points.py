@@ -92,4 +92,5 @@ def normalised(rig: Rig, count: int, seed: int = 0) -> Normalised:
     vertices = (rig.mesh.vertices - middle) / size + 0.5
     joints = (rig.skeleton.joints - middle) / size + 0.5
     points = sample_surface(vertices, rig.mesh.faces, count, seed).places
-    return Normalised(joints.astype(np.float32), points.astype(np.float32))
+    # Rounding may put a point a little outside of the cube.
+    return Normalised(joints.astype(np.float32), points.clip(0, 1).astype(np.float32))

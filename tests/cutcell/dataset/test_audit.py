@@ -132,10 +132,10 @@ def planted() -> dict[str, Rig]:
     posed = cutcell.linear_blend_skinning(mesh.vertices, rig.weights, moved)
     there = np.einsum("jab,jb->ja", moved[:, :3, :3], skeleton.joints) + moved[:, :3, 3]
     centre = mesh.vertices[np.argmax(mesh.vertices[:, 1])]
-    hat = centre + np.array([[0, 0.25, 0], [0.05, 0, 0], [-0.03, 0, 0.05], [-0.03, 0, -0.05]])
-    sides = np.array([[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]]) + len(mesh.vertices)
+    cape = centre + np.array([[0, 0, -0.15], [0, 0, 0.15], [0, 0.2, 0.15], [0, 0.2, -0.15]])
+    sides = np.array([[0, 1, 2], [0, 2, 3]]) + len(mesh.vertices)
     dressed = TriangleMesh(
-        np.concatenate([mesh.vertices, hat]), np.concatenate([mesh.faces, sides])
+        np.concatenate([mesh.vertices, cape]), np.concatenate([mesh.faces, sides])
     )
     return {
         "original": rig,
