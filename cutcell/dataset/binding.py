@@ -282,9 +282,15 @@ def bind_apart(
             taken.append(size)
 
         try:
-            return runner.bind(content, key, parameters, limit, room)
+            try:
+                return runner.bind(content, key, parameters, limit, room)
+            except AssetLostError as error:
+                if not error.passing:
+                    raise
+                return runner.bind(content, key, parameters, limit, room)
         except AssetLostError as error:
-            return Outcome(key, {"error": str(error), "version": __version__})
+            record = {"error": str(error), "version": __version__, "passing": error.passing}
+            return Outcome(key, record)
         except TooLargeError as error:
             return Outcome(key, {"error": str(error), "version": __version__, "passing": True})
         finally:

@@ -30,7 +30,18 @@ LAST_WORDS = 2000
 
 
 class AssetLostError(Exception):
-    """A runner crashed or was too slow; the text says which, for the record of the asset."""
+    """A runner crashed or was too slow; the text says which, for the record of the asset.
+
+    Parameters
+    ----------
+    why : str
+    passing : bool
+        Whether another try may do better: the process was killed from outside.
+    """
+
+    def __init__(self, why: str, passing: bool = False) -> None:
+        super().__init__(why)
+        self.passing = passing
 
 
 class Runner:
@@ -119,7 +130,7 @@ class Runner:
         try:
             write(process.stdin, message)
         except OSError:
-            raise AssetLostError(self._crash(process)) from None
+            raise self._crash(process) from None
 
     def _receive(self, process: subprocess.Popen, limit: float, what: str) -> Any:
         assert process.stdout is not None
@@ -137,21 +148,23 @@ class Runner:
             if late.is_set():
                 self.stop()
                 raise AssetLostError(f"it took longer than {limit:g} seconds") from None
-            raise AssetLostError(self._crash(process)) from None
+            raise self._crash(process) from None
         finally:
             watch.cancel()
 
-    def _crash(self, process: subprocess.Popen) -> str:
+    def _crash(self, process: subprocess.Popen) -> AssetLostError:
         code = process.wait()
         self._errors.seek(0, os.SEEK_END)
         self._errors.seek(max(0, self._errors.tell() - LAST_WORDS))
         said = self._errors.read().decode("utf-8", "replace").strip().splitlines()
         self.stop()
         if code == -9:
-            return "its process was killed (signal 9); the system may have run out of memory"
+            why = "its process was killed (signal 9); the system may have run out of memory"
+            return AssetLostError(why, passing=True)
         if code < 0:
-            return f"its process crashed (signal {-code})"
-        return f"its process ended with exit code {code}: {said[-1] if said else 'it said nothing'}"
+            return AssetLostError(f"its process crashed (signal {-code})")
+        words = said[-1] if said else "it said nothing"
+        return AssetLostError(f"its process ended with exit code {code}: {words}")
 
 
 THREADS = ("NUMBA_NUM_THREADS", "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")

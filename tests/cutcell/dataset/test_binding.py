@@ -151,6 +151,7 @@ while True:
     if key == "hang": time.sleep(1000)
     if key == "crash": os.abort()
     if key == "exit": sys.exit("no more")
+    if key == "killed": os.kill(os.getpid(), 9)
     write(out, key + " done")
 """
 
@@ -164,8 +165,12 @@ def test_a_crash_or_a_hang_costs_one_asset():
 
     try:
         assert ask("a") == "a done"
-        with pytest.raises(AssetLostError, match="crashed"):
+        with pytest.raises(AssetLostError, match="crashed") as crash:
             ask("crash")
+        assert not crash.value.passing
+        with pytest.raises(AssetLostError, match="killed") as killed:
+            ask("killed")
+        assert killed.value.passing, "another try may do better"
         assert ask("b") == "b done"
         with pytest.raises(AssetLostError, match="longer than 1 seconds"):
             ask("hang", 1)
