@@ -385,7 +385,7 @@ def growth(count: int, folder: Path) -> list[Table]:
         "Generated characters of detail 12, 2,048 points each; a fifth are an earlier one again "
         "in another size. CPU time of one process; making the characters is not counted.",
     )  # fmt: skip
-    sizes = [size for size in (500, 1000, 2000, 4000, 8000, 16000, 48000) if size <= count]
+    sizes = [size for size in (50, 500, 1000, 2000, 4000, 8000, 16000, 48000) if size <= count]
     for size in sizes:
         characters, spent = [], 0.0
         for k in range(size):

@@ -106,7 +106,8 @@ def connected(scheduler: str | None, workers: int | None, processes: bool) -> It
         "distributed.scheduler.worker-saturation": 1.0,
         "distributed.comm.timeouts.connect": CONNECT,
         "distributed.logging.distributed": "critical",
-        "distributed.worker.dashboard": False,
+        "distributed.scheduler.http.routes": [],
+        "distributed.worker.http.routes": [],
     }
     with dask.config.set(settings):
         if scheduler is not None:
@@ -129,7 +130,9 @@ def connected(scheduler: str | None, workers: int | None, processes: bool) -> It
                 n_workers=shape[0],
                 threads_per_worker=shape[1],
                 processes=processes,
-                dashboard_address=None,
+                # Any free port of this machine alone, and nothing to see there.
+                dashboard_address="127.0.0.1:0",
+                scheduler_kwargs={"dashboard": False},
                 memory_limit=0,
                 silence_logs=50,
                 host="127.0.0.1" if processes else None,
