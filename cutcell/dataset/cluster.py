@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from typing import Any
@@ -119,7 +120,9 @@ def connected(scheduler: str | None, workers: int | None, processes: bool) -> It
                     "one with: dask scheduler"
                 ) from None
             with client:
-                yield Cluster(client, 1)
+                workers_of = client.scheduler_info(n_workers=-1)["workers"].values()
+                machines = Counter(worker["host"] for worker in workers_of)
+                yield Cluster(client, max(machines.values(), default=1))
             return
         from .binding import cores, stop_runners
 
