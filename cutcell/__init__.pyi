@@ -1,6 +1,7 @@
 from . import baselines as baselines
 from . import compare as compare
 from . import corrections as corrections
+from . import dataset as dataset
 from . import deform as deform
 from . import diagnosis as diagnosis
 from . import errors as errors

@@ -14,10 +14,14 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from . import __version__
+from . import (
+    __version__,
+    dataset_audit_command,  # noqa: F401 - it adds itself to `dataset`
+)
 from .bind_command import EPILOG as BIND_EPILOG
 from .bind_command import bind
 from .console import for_people, print_json, print_warnings, progress_bars
+from .dataset_command import dataset
 from .diagnose_command import EPILOG as DIAGNOSE_EPILOG
 from .diagnose_command import diagnose
 from .explain_command import EPILOG as EXPLAIN_EPILOG
@@ -143,6 +147,7 @@ def compare(
 app.command(epilog=DIAGNOSE_EPILOG)(diagnose)
 app.command(epilog=EXPLAIN_EPILOG)(explain)
 app.command(epilog=JOINTS_EPILOG)(joints)
+app.add_typer(dataset, name="dataset")
 
 
 for above in entry_points(group="cutcell.commands"):

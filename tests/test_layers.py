@@ -71,6 +71,8 @@ ORDER = [
         "bind_command",
         "diagnose_command",
         "explain_command",
+        "dataset_audit_command",
+        "dataset_command",
         "graph_command",
         "render_command",
         "joints_command",

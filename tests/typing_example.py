@@ -117,6 +117,7 @@ def careful(path: Path) -> str:
 
 
 MODULES = (
+    cutcell.dataset,
     cutcell.deform,
     cutcell.diagnosis,
     cutcell.errors,

@@ -7,6 +7,7 @@ import pytest
 
 from benchmarks import (
     accuracy,
+    dataset,
     growth,
     large,
     memory,
@@ -51,6 +52,14 @@ def test_start_up(capsys, monkeypatch):
     speed.main([*TINY, "--tables", "start", "--cold"])
     (rows,) = read_tables(capsys.readouterr().out).values()
     assert len(rows) == 4
+
+
+@pytest.mark.filterwarnings("ignore::ResourceWarning")
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
+def test_data_sets(capsys):
+    dataset.main(["growth", "--assets", "50"])
+    (rows,) = read_tables(capsys.readouterr().out).values()
+    assert rows[0]["pairs"] == "1,225"
 
 
 def test_accuracy(capsys, tmp_path):

@@ -1,0 +1,487 @@
+"""Which characters of a data set are near-duplicates of others (paper, algorithms 3 and 4)."""
+
+from __future__ import annotations
+
+import json
+import tempfile
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from itertools import combinations_with_replacement, product
+from pathlib import Path
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..checks import check_integer, check_number
+from ..errors import CutcellError
+from ..io.files import naming
+from ..writing import write_all
+from .chamfer import Block, block_of, close_joints, close_surfaces, reach_of
+from .cluster import Cluster, connected
+from .likeness import TWIN, VARIANT, Likeness, Traits, likeness, same_skeletons, traits_of
+from .points import Normalised, normalised
+from .sources import Content, Source, find_sources, read_content
+from .store import table_bytes
+
+POINTS = 2048
+"""On each surface."""
+BLOCK = 1000
+"""Characters that are compared with as many others as one job."""
+BATCH = 16
+"""Characters that are read as one job."""
+THRESHOLD = 0.01
+EPSILON = 0.5
+TIERS = (("twin", TWIN), ("variant", VARIANT))
+
+
+@dataclass(frozen=True)
+class Pair:
+    """Two near-duplicates.
+
+    Parameters
+    ----------
+    a, b : int
+        Places in the lists of names.
+    joints, surface : float
+        Squared Chamfer distances, of the joints and of the surface.
+    likeness : Likeness
+        The second measure.
+    """
+
+    a: int
+    b: int
+    joints: float
+    surface: float
+    likeness: Likeness
+
+    @property
+    def tier(self) -> str:
+        """How close: "twin" up to 5e-4, "variant" up to 2e-3, "near" up to the threshold."""
+        return next((name for name, most in TIERS if self.surface <= most), "near")
+
+
+@dataclass(frozen=True, eq=False)
+class Audit:
+    """What an audit found.
+
+    Parameters
+    ----------
+    names, others : list of str
+        Of the first set, and of the second; the same where one set was compared with itself.
+    pairs : list of Pair
+        Near-duplicates, nearest first.
+    posed : list of Pair
+        Characters of one skeleton that are too far apart for that; `joints` and `surface` are
+        infinite.
+    labels : array, shape (n,), int64, or None
+        The cluster of each of the first set, -1 for none; None where two sets were compared.
+    candidates : int
+        Pairs that stage 1 kept.
+    failed : dict of str to str
+        Why an asset was left out, by name.
+    sources, other_sources : list of Source
+        Of the names.
+    seconds : dict of str to float
+        "reading", "pairs", "clusters".
+    """
+
+    names: list[str]
+    others: list[str]
+    pairs: list[Pair]
+    posed: list[Pair]
+    labels: NDArray[np.int64] | None
+    candidates: int
+    failed: dict[str, str]
+    sources: list[Source]
+    other_sources: list[Source]
+    seconds: dict[str, float]
+
+    @property
+    def keep(self) -> list[str]:
+        """The first set without duplicates: its unclustered assets, and one of each cluster.
+
+        Where two sets were compared, those of the first without a match in the second.
+        """
+        if self.labels is None:
+            matched = {pair.a for pair in self.pairs}
+            return [name for k, name in enumerate(self.names) if k not in matched]
+        first = {label: k for k, label in reversed(list(enumerate(self.labels.tolist())))}
+        return [
+            name
+            for k, (name, label) in enumerate(zip(self.names, self.labels.tolist(), strict=True))
+            if label < 0 or first[label] == k
+        ]
+
+    def rows(self) -> list[dict[str, Any]]:
+        """Return all pairs as rows of a table; posed ones have the tier "posed"."""
+        rows = []
+        for tier, pairs in (("", self.pairs), ("posed", self.posed)):
+            for pair in pairs:
+                rows.append(
+                    {
+                        "a": self.names[pair.a],
+                        "b": self.others[pair.b],
+                        "tier": tier or pair.tier,
+                        "joints": pair.joints,
+                        "surface": pair.surface,
+                        **vars(pair.likeness),
+                    }
+                )
+        return rows
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the whole as plain data."""
+        tiers = [row["tier"] for row in self.rows()]
+        kinds = [row["kind"] for row in self.rows()]
+        labels = [] if self.labels is None else self.labels.tolist()
+        clusters = [
+            [self.names[k] for k in np.flatnonzero(np.array(labels) == label)]
+            for label in sorted(set(labels) - {-1})
+        ]
+        return {
+            "assets": len(self.names),
+            "others": len(self.others) if self.labels is None else None,
+            "candidates": self.candidates,
+            "pairs": len(self.pairs),
+            "tiers": {tier: tiers.count(tier) for tier in ("twin", "variant", "near", "posed")},
+            "kinds": {kind: kinds.count(kind) for kind in sorted(set(kinds))},
+            "clusters": clusters,
+            "keep": self.keep,
+            "failed": self.failed,
+            "seconds": {name: round(value, 3) for name, value in self.seconds.items()},
+        }
+
+
+def audit(
+    first: Sequence[Path],
+    second: Sequence[Path] = (),
+    *,
+    joint_threshold: float = THRESHOLD,
+    surface_threshold: float = THRESHOLD,
+    points: int = POINTS,
+    least: int = 2,
+    poses: bool = True,
+    scheduler: str | None = None,
+    workers: int | None = None,
+    tell: Callable[[int, int, str], None] = lambda done, count, name: None,
+) -> Audit:
+    """Find near-duplicates in a data set, or between two.
+
+    Each character is moved into the unit cube, and points are drawn on its surface with a fixed
+    seed. Pairs whose joints are closer than one threshold and whose surfaces are closer than the
+    other are near-duplicates. In one data set they are clustered by DBSCAN, as in the paper.
+
+    Parameters
+    ----------
+    first, second : sequence of Path
+        See `find_sources`; `first` is compared with itself where `second` is empty.
+    joint_threshold, surface_threshold : float
+        T_J and T_V, above 0, squared Chamfer distances.
+    points : int
+        On each surface, 16 to 100,000.
+    least : int
+        DBSCAN's MinPts, the point itself included. With 2 each pair is a cluster; the paper
+        does not say.
+    poses : bool
+        Whether pairs of one skeleton in other poses are looked for, too.
+    scheduler, workers, tell
+        See `bind_all`; work is done in processes.
+
+    Returns
+    -------
+    Audit
+
+    Raises
+    ------
+    FileError
+        There are no characters.
+    ParameterError
+        An argument is out of its range.
+    MissingLibraryError
+        Dask or scikit-learn is not installed.
+    CutcellError
+        The scheduler cannot be reached, or was lost.
+
+    References
+    ----------
+    Paper, appendix on the audit of the data set, algorithms 3 and 4.
+    """
+    limits = (
+        check_number("joint_threshold", joint_threshold, 1e-12, 10),
+        check_number("surface_threshold", surface_threshold, 1e-12, 10),
+    )
+    check_integer("points", points, 16, 100_000)
+    check_integer("least", least, 2, 1_000_000)
+    one, two = find_sources(first), find_sources(second) if second else None
+    seconds: dict[str, float] = {}
+    begin = perf_counter()
+    with connected(scheduler, workers, True) as cluster:
+        failed: dict[str, str] = {}
+        ours = _read(one, points, cluster, failed, tell)
+        theirs = ours if two is None else _read(two, points, cluster, failed, tell)
+        seconds["reading"] = perf_counter() - begin
+        begin = perf_counter()
+        found = compare(ours, None if two is None else theirs, limits, cluster, tell)
+    pairs = _pairs(ours, theirs, found)
+    posed = _posed(ours, None if two is None else theirs, pairs) if poses else []
+    seconds["pairs"] = perf_counter() - begin
+    begin = perf_counter()
+    labels = clusters(len(ours.sources), pairs, limits[1], least) if two is None else None
+    seconds["clusters"] = perf_counter() - begin
+    return Audit(
+        [source.name for source in ours.sources],
+        [source.name for source in theirs.sources],
+        pairs,
+        posed,
+        labels,
+        found.candidates,
+        failed,
+        ours.sources,
+        theirs.sources,
+        seconds,
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class Readings:
+    """What is known of a set of characters: those that could be read, in order."""
+
+    sources: list[Source]
+    traits: list[Traits]
+    blocks: list[Block]
+    size: int = BLOCK
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """Pairs by their places in both sets, with their figures, and how many stage 1 kept."""
+
+    pairs: NDArray[np.int64]
+    joints: NDArray[np.float64]
+    surface: NDArray[np.float64]
+    reach: NDArray[np.float64]
+    candidates: int
+
+
+def readings(
+    sources: list[Source], characters: list[tuple[Normalised, Traits]], size: int = BLOCK
+) -> Readings:
+    """Put characters into blocks."""
+    blocks = [
+        block_of([character for character, _ in characters[k : k + size]])
+        for k in range(0, len(characters), size)
+    ]
+    return Readings(sources, [traits for _, traits in characters], blocks, size)
+
+
+def _read(
+    sources: list[Source],
+    points: int,
+    cluster: Cluster,
+    failed: dict[str, str],
+    tell: Callable[[int, int, str], None],
+) -> Readings:
+    """Read all characters, many at a time; those that cannot be read are in `failed`."""
+    results: dict[int, list[Any]] = {}
+    done = 0
+
+    def take() -> None:
+        nonlocal done
+        key, result = cluster.next_result()
+        number = int(key.rpartition("-")[2])
+        batch = sources[number * BATCH : (number + 1) * BATCH]
+        if isinstance(result, BaseException):
+            result = [f"it was not read: {result}"] * len(batch)
+        results[number] = result
+        done += len(batch)
+        tell(done, len(sources), batch[-1].name)
+
+    count = 0
+    for number, batch in enumerate(_batches(sources)):
+        contents: list[Content | str] = []
+        for source in batch:
+            try:
+                contents.append(source.content())
+            except CutcellError as error:
+                contents.append(str(error))
+        while cluster.is_full():
+            take()
+        cluster.submit(f"read-{id(sources)}-{number}", _characters, contents, points)
+        count += 1
+    while len(results) < count:
+        take()
+    good, characters = [], []
+    read = [one for number in range(count) for one in results[number]]
+    for source, one in zip(sources, read, strict=True):
+        if isinstance(one, str):
+            failed[source.name] = one
+        else:
+            good.append(source)
+            characters.append(one)
+    return readings(good, characters)
+
+
+def _batches(sources: list[Source]) -> list[list[Source]]:
+    return [sources[k : k + BATCH] for k in range(0, len(sources), BATCH)]
+
+
+def _characters(
+    contents: list[Content | str], points: int
+) -> list[tuple[Normalised, Traits] | str]:
+    """Read some characters: what a Dask worker does. A text says why one cannot be read."""
+    found: list[tuple[Normalised, Traits] | str] = []
+    for content in contents:
+        if isinstance(content, str):
+            found.append(content)
+            continue
+        try:
+            with tempfile.TemporaryDirectory() as folder, naming(Path(next(iter(content.files)))):
+                rig = read_content(content, Path(folder))
+                if not len(rig.skeleton.joints):
+                    found.append("it has no joints")
+                    continue
+                found.append((normalised(rig, points), traits_of(rig)))
+        except (CutcellError, MemoryError) as error:
+            found.append(str(error) or "there is not enough memory")
+    return found
+
+
+def compare(
+    ours: Readings,
+    theirs: Readings | None,
+    limits: tuple[float, float],
+    cluster: Cluster,
+    tell: Callable[[int, int, str], None] = lambda done, count, name: None,
+) -> Found:
+    """Run both stages on all pairs, a block against a block as one job."""
+    left = cluster.scatter(ours.blocks)
+    right = left if theirs is None else cluster.scatter(theirs.blocks)
+    numbers = range(len(left)), range(len(right))
+    jobs = list(combinations_with_replacement(numbers[0], 2) if theirs is None
+                else product(*numbers))  # fmt: skip
+    parts: dict[str, tuple[NDArray, NDArray, int]] = {}
+
+    def take() -> None:
+        key, result = cluster.next_result()
+        if isinstance(result, BaseException):
+            raise CutcellError(f"a part of the comparison was lost: {result}; run it again")
+        parts[key] = result
+        tell(len(parts), len(jobs), "pairs")
+
+    for i, j in jobs:
+        while cluster.is_full():
+            take()
+        same = theirs is None and i == j
+        cluster.submit(f"pairs-{id(ours)}-{i}-{j}", _compared, left[i], right[j], limits, same)
+    while len(parts) < len(jobs):
+        take()
+    rows = []
+    for i, j in jobs:
+        pairs, figures, count = parts[f"pairs-{id(ours)}-{i}-{j}"]
+        size = ours.size, (theirs or ours).size
+        rows.append((pairs + np.array([i * size[0], j * size[1]]), figures, count))
+    if not rows:
+        nothing = np.zeros(0)
+        return Found(np.zeros((0, 2), np.int64), nothing, nothing, nothing, 0)
+    pairs = np.concatenate([row[0] for row in rows])
+    joints, surface, reach = np.concatenate([row[1] for row in rows], axis=1)
+    order = np.lexsort((pairs[:, 1], pairs[:, 0], surface))
+    candidates = sum(row[2] for row in rows)
+    return Found(pairs[order], joints[order], surface[order], reach[order], candidates)
+
+
+def _compared(
+    a: Block, b: Block, limits: tuple[float, float], same: bool
+) -> tuple[NDArray[np.int64], NDArray[np.float64], int]:
+    """Compare two blocks: what a Dask worker does. The figures are distances and reach."""
+    pairs, joints = close_joints(a, b, limits[0], same)
+    surface = close_surfaces(a, b, pairs, limits[1])
+    near = np.isfinite(surface)
+    figures = np.stack([joints[near], surface[near], reach_of(a, b, pairs[near])])
+    return pairs[near].astype(np.int64), figures, len(pairs)
+
+
+def _pairs(ours: Readings, theirs: Readings, found: Found) -> list[Pair]:
+    pairs = []
+    figures = found.joints.tolist(), found.surface.tolist(), found.reach.tolist()
+    for (a, b), joints, surface, reach in zip(found.pairs.tolist(), *figures, strict=True):
+        alike = likeness(ours.traits[a], theirs.traits[b], surface, reach)
+        pairs.append(Pair(a, b, joints, surface, alike))
+    return pairs
+
+
+def _posed(ours: Readings, theirs: Readings | None, pairs: list[Pair]) -> list[Pair]:
+    known = {(pair.a, pair.b) for pair in pairs}
+    other = ours if theirs is None else theirs
+    found = same_skeletons(ours.traits, None if theirs is None else theirs.traits)
+    posed = []
+    for a, b in found.tolist():
+        if (a, b) not in known:
+            alike = likeness(ours.traits[a], other.traits[b], np.inf, np.nan)
+            posed.append(Pair(a, b, np.inf, np.inf, alike))
+    return posed
+
+
+def clusters(count: int, pairs: Sequence[Pair], threshold: float, least: int) -> NDArray[np.int64]:
+    """Cluster characters by DBSCAN on 1 - exp(-D / T_V), eps 0.5; -1 for those in no cluster.
+
+    Parameters
+    ----------
+    count : int
+        Characters.
+    pairs : sequence of Pair
+        Those of less than the threshold; all others have dissimilarity 1.
+    threshold : float
+        T_V.
+    least : int
+        MinPts.
+    """
+    try:
+        from sklearn.cluster import DBSCAN
+    except ImportError:
+        from ..errors import MissingLibraryError
+
+        raise MissingLibraryError(
+            "clusters are found by scikit-learn, which is not installed; try: pip install "
+            "'cutcell[dataset]'"
+        ) from None
+    from scipy.sparse import csr_matrix
+
+    if not count or not pairs:
+        return np.full(count, -1, np.int64)
+    ends = np.array([(pair.a, pair.b) for pair in pairs])
+    apart = -np.expm1(-np.array([pair.surface for pair in pairs]) / threshold)
+    # A stored zero might be taken for a pair that is not there: duplicates must not vanish.
+    apart = np.maximum(apart, np.finfo(float).tiny)
+    rows, columns = np.concatenate([ends, ends[:, ::-1]]).T
+    matrix = csr_matrix((np.tile(apart, 2), (rows, columns)), shape=(count, count))
+    found = DBSCAN(eps=EPSILON, min_samples=least, metric="precomputed").fit(matrix)
+    return found.labels_.astype(np.int64)
+
+
+def save_audit(found: Audit, folder: Path) -> None:
+    """Write `pairs.parquet`, `clusters.parquet` and `audit.json` to a folder.
+
+    Raises
+    ------
+    FileError
+        They cannot be written.
+    MissingLibraryError
+        pyarrow is not installed.
+    """
+    kept = set(found.keep)
+    labels = [None] * len(found.names) if found.labels is None else found.labels.tolist()
+    assets = [
+        {"name": name, "cluster": label, "keep": name in kept}
+        for name, label in zip(found.names, labels, strict=True)
+    ]
+    text = json.dumps(found.to_dict(), indent=1)
+    write_all(
+        {
+            folder / "pairs.parquet": table_bytes(found.rows()),
+            folder / "clusters.parquet": table_bytes(assets),
+            folder / "audit.json": text.encode("utf-8", "replace") + b"\n",
+        }
+    )
