@@ -27,7 +27,7 @@ def compiled(function: Callable | None = None, **options: Any) -> Any:
     return dispatcher
 
 
-def lean(function: Callable) -> Callable:
+def no_refcount(function: Callable) -> Callable:
     """Compile a function without reference counting: it makes no array and returns none.
 
     numba counts references to arrays. To read an array from a tuple, or a row of one, is then an
@@ -38,7 +38,7 @@ def lean(function: Callable) -> Callable:
 
 
 @compiled(inline="always")
-def put(values, target):
+def copy_to(values, target):
     """Copy the entries of an array (n,) to the start of one that is at least as long.
 
     For an assignment to a slice numba first compiles the text of an error, which takes seconds.
@@ -47,8 +47,8 @@ def put(values, target):
         target[i] = values[i]
 
 
-def side_by_side(function: Callable) -> Callable:
-    """Compile a lean function whose loop is to be vectorised.
+def vectorized(function: Callable) -> Callable:
+    """Compile a function without reference counting whose loop is to be vectorised.
 
     A division by zero gives infinity: a check for it that raises an error would take a branch.
     A product may be added without being rounded first (fused multiply-add).

@@ -80,16 +80,16 @@ def _islands(
 ) -> Iterator[Finding]:
     welded, edges = subject.welded, subject.edges.edges
     first = np.unique(welded, return_index=True)[1]
-    at_places, area = weights[first], subject.place_areas
+    at_welded, area = weights[first], subject.place_areas
     joints, places, lines, worst = [], [], [], (0.0, -1)
     measurable = np.isin(np.arange(weights.shape[1]), distances.bones.joint)
-    for j in np.flatnonzero(measurable & (at_places.max(axis=0) > NOTICED)).tolist():
-        held = at_places[:, j] > NOTICED
+    for j in np.flatnonzero(measurable & (at_welded.max(axis=0) > NOTICED)).tolist():
+        held = at_welded[:, j] > NOTICED
         between = edges[held[edges].all(axis=1)]
         ones = np.ones(len(between), np.int8)
         graph = coo_array((ones, tuple(between.T)), shape=(len(held),) * 2)
         label = connected_components(graph, directed=False)[1]
-        total = np.bincount(label[held], (at_places[:, j] * area)[held], label.max() + 1)
+        total = np.bincount(label[held], (at_welded[:, j] * area)[held], label.max() + 1)
         # An island is away from a larger region of the same joint on the same component.
         of = subject.component
         largest = np.zeros(of.max() + 1)
@@ -98,13 +98,13 @@ def _islands(
         if not len(apart):
             continue
         through = through_body(subject, distances, first[apart], np.full(len(apart), j))
-        beyond = through - distances.at_places.min(axis=0)[apart]
+        beyond = through - distances.at_welded.min(axis=0)[apart]
         nearest = np.full(label.max() + 1, np.inf)
         np.minimum.at(nearest, label[apart], np.where(np.isfinite(beyond), beyond, -np.inf))
         apart = apart[nearest[label[apart]] > AWAY]
         if not len(apart):
             continue
-        most = float(at_places[apart, j].max())
+        most = float(at_welded[apart, j].max())
         number = len(np.unique(label[apart]))
         joints.append(j)
         places.append(apart)
@@ -115,7 +115,7 @@ def _islands(
         )
     if not joints:
         return
-    found = np.zeros(len(at_places), bool)
+    found = np.zeros(len(at_welded), bool)
     found[np.concatenate(places)] = True
     vertices = subject.vertices_at(found)
     yield Finding(

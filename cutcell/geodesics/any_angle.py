@@ -23,7 +23,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from ..compiled import lean
+from ..compiled import no_refcount
 from ..graph import CutCellGraph
 from ..progress import Progress, Shares, silent
 from ..threads import in_threads, parts, threads
@@ -180,7 +180,7 @@ def _propagate(
             origin, bucket = move_on(head, scale, labels), 0
 
 
-@lean
+@no_refcount
 def _read(nodes, body, bones, labels, parents, each, targets, row, distance):
     """Write the distances at some nodes of the graph; `row` holds the row of each joint.
 
@@ -200,7 +200,7 @@ def _read(nodes, body, bones, labels, parents, each, targets, row, distance):
             distance[row[labels[label].joint], t] = reached
 
 
-@lean
+@no_refcount
 def _leave_out(within, near, distance):
     """Set distances beyond `within` times the least, which is at least `near`, to infinity."""
     for t in range(distance.shape[1]):
@@ -212,7 +212,7 @@ def _leave_out(within, near, distance):
                 distance[j, t] = np.inf
 
 
-@lean
+@no_refcount
 def _settle(
     adjacency,
     body,
@@ -236,7 +236,7 @@ def _settle(
     """
     each = len(slots)
     indptr, indices = adjacency
-    resolution, first_point, first_crossing, nodes, _ = body
+    resolution, first_point, first_surface, nodes, _ = body
     settled = 0
     while bucket < len(head) - 1 and settled < most:
         while head[bucket] != END and settled < most:
@@ -274,8 +274,8 @@ def _settle(
                     seen = False
                 elif v < first_point:
                     seen = beside * resolution < NEAR
-                elif v >= first_crossing:
-                    seen = u < first_crossing
+                elif v >= first_surface:
+                    seen = u < first_surface
                 else:
                     seen = has_line_of_sight(body, parents, each, u, v, here, grandparent, start)
                 if not seen:

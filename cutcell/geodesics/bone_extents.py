@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.distance import cdist
 
-from ..compiled import lean
+from ..compiled import no_refcount
 from ..graph import CutCellGraph
 from ..rig import Skeleton
 from .bones import Bones
@@ -199,7 +199,7 @@ def aim_leaf_bones(
     return Bones(bones.start, end, bones.joint)
 
 
-@lean
+@no_refcount
 def _sum_regions(points, area, distance, nearest, total, middle):
     """Sum the area of each leaf bone's skin, and its first moment."""
     for leaf in range(len(distance)):
@@ -212,7 +212,7 @@ def _sum_regions(points, area, distance, nearest, total, middle):
                     middle[leaf, axis] += part * points[k, axis]
 
 
-@lean
+@no_refcount
 def _add_areas(points, faces, areas):
     """Add twice the area of each triangle to all its corners."""
     for f in range(len(faces)):

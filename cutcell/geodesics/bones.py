@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..checks import check_choice, check_has_joints
-from ..compiled import lean
+from ..compiled import no_refcount
 from ..errors import MeshError
 from ..graph import CutCellGraph
 from ..method import LEAVES
@@ -162,7 +162,7 @@ def bone_samples(
     return points, bone
 
 
-@lean
+@no_refcount
 def _put_samples(start, end, counts, points, bone):
     """Place counts[b] points on bone b, both ends included; a single one in the middle."""
     p = 0

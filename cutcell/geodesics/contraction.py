@@ -53,7 +53,7 @@ class Contraction:
     number : array, shape (N,), int32
         For each node of the graph its own number, or that of its representative: a lattice point
         next to a surface node, or of the same block.
-    first_crossing : int
+    first_surface : int
         The number of the first surface node.
     """
 
@@ -63,7 +63,7 @@ class Contraction:
     places: NDArray[np.float64]
     node: NDArray[np.int32]
     number: NDArray[np.int32]
-    first_crossing: int
+    first_surface: int
 
     def representative(self, nodes: NDArray[np.int64]) -> NDArray[np.int32]:
         """Return the representatives of nodes of the graph; of kept nodes themselves."""
@@ -72,7 +72,7 @@ class Contraction:
 
 def contract(graph: CutCellGraph) -> Contraction:
     """Contract blocks of lattice points, and surface nodes at the end of a single segment."""
-    first, last = graph.first_point, graph.first_crossing
+    first, last = graph.first_point, graph.first_surface
     inside = np.searchsorted(graph.edge_kind, np.array([INTERIOR, SURFACE], np.uint8))
     steps = lattice_steps(graph.nodes, graph.edges[slice(*inside)], first, last)
     block = find_blocks(graph.nodes[first:last], graph.lattice.resolution, steps)
@@ -167,21 +167,21 @@ def _fill_block(p, steps, deep, outward, block):
 @compiled
 def _contract(nodes, edges, block, mesh):
     """Contract a graph with `mesh` mesh vertices; edges of surface nodes to corners come last."""
-    first_crossing = mesh + len(block)
-    ends = len(edges) - CORNERS * (len(nodes) - first_crossing)
+    first_surface = mesh + len(block)
+    ends = len(edges) - CORNERS * (len(nodes) - first_surface)
     representative = _find_representatives(edges[:ends], block, mesh, len(nodes))
     node, number = _number(representative)
     kept = np.empty_like(edges)
     count = _keep_edges(nodes, edges, block, mesh, representative, number, kept)
     # Kept nodes are below 0 here, and left out.
-    start, order = sort_into(representative[first_crossing:] - mesh, len(block))
+    start, order = sort_into(representative[first_surface:] - mesh, len(block))
     count = _add_shortcuts(edges, ends, start, order, mesh, number, kept, count)
     indptr, indices = _list_neighbours(kept[:count], len(node))
     places, crossing = np.empty((len(node), 3)), 0
     for n in range(len(node)):
         for axis in range(3):
             places[n, axis] = nodes[node[n], axis]
-        crossing += node[n] < first_crossing
+        crossing += node[n] < first_surface
     return indptr, indices, places, node, number, crossing
 
 
@@ -192,12 +192,12 @@ def _find_representatives(edges, block, mesh, count):
     for p in range(len(block)):
         if block[p] != NO_BLOCK and block[p] != p:
             representative[mesh + p] = mesh + block[p]
-    first_crossing = mesh + len(block)
+    first_surface = mesh + len(block)
     for e in range(len(edges)):
         for side in range(2):
             c, other = edges[e, side], edges[e, 1 - side]
-            if c >= first_crossing:
-                single = representative[c] == UNKNOWN and mesh <= other < first_crossing
+            if c >= first_surface:
+                single = representative[c] == UNKNOWN and mesh <= other < first_surface
                 representative[c] = other if single else KEPT
     return representative
 
@@ -221,11 +221,11 @@ def _number(representative):
 @compiled
 def _keep_edges(nodes, edges, block, mesh, representative, number, kept):
     """List the edges between kept nodes, and one edge between neighbouring blocks."""
-    first_crossing = mesh + len(block)
+    first_surface = mesh + len(block)
     count = 0
     for e in range(len(edges)):
         u, v = edges[e, 0], edges[e, 1]
-        if max(u, v) >= first_crossing:
+        if max(u, v) >= first_surface:
             if representative[max(u, v)] >= 0:
                 continue
         elif min(u, v) >= mesh:

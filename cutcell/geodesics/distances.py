@@ -34,7 +34,7 @@ class BoneDistances:
 
     Parameters
     ----------
-    at_places : array, shape (j, k), float64
+    at_welded : array, shape (j, k), float64
         `joint` per welded vertex: the k first nodes of the graph. Where vertices at one place
         may follow different joints, that of the first one.
     of_vertices : array, shape (j, n), or None
@@ -53,7 +53,7 @@ class BoneDistances:
         Of the graph, with connectivity "any".
     """
 
-    at_places: NDArray[np.float64]
+    at_welded: NDArray[np.float64]
     of_vertices: NDArray[np.float64] | None
     nearest_joints: int | None
     bones: Bones
@@ -72,7 +72,7 @@ class BoneDistances:
         """
         if self.of_vertices is not None:
             return self.of_vertices
-        return self.at_places.take(self.graph.vertex_node, axis=1)
+        return self.at_welded.take(self.graph.vertex_node, axis=1)
 
     @cached_property
     def inside(self) -> Inside:
@@ -231,18 +231,18 @@ def bone_distances(
         sources = sources.replaced(aimed, of_aimed)
     given = graph, contraction, sources, bones
     by_node = _paths(*given, targets, nearest_joints, within, progress)
-    measured, at_places = np.unique(bones.joint), by_node
+    measured, at_welded = np.unique(bones.joint), by_node
     if len(measured) < len(skeleton.joints):
-        at_places = np.full((len(skeleton.joints), len(targets)), np.inf)
-        at_places[measured] = by_node
+        at_welded = np.full((len(skeleton.joints), len(targets)), np.inf)
+        at_welded[measured] = by_node
     reached = np.isfinite(by_node.min(axis=0))
     fallback = np.where(reached, REACHED, UNREACHED).astype(np.uint8)
     fallback[~graph.connected[targets]] = UNUSED
 
-    joint, node = at_places, targets
+    joint, node = at_welded, targets
     if allowed is not None:  # per vertex, as those at one place may differ
         node = graph.vertex_node
-        joint, fallback = at_places.take(node, axis=1), fallback[node]
+        joint, fallback = at_welded.take(node, axis=1), fallback[node]
         joint[~allowed.T] = np.inf
         fallback[(fallback == REACHED) & ~np.isfinite(joint).any(axis=0)] = NOT_ALLOWED
     lost = np.flatnonzero(fallback != REACHED)

@@ -69,7 +69,7 @@ class Inside:
         if self._contraction is None or not self._graph.is_closed:
             return np.empty(0, np.int64)
         graph = self._graph
-        corners = graph.nodes[graph.first_point : graph.first_crossing]
+        corners = graph.nodes[graph.first_point : graph.first_surface]
         lowest = corners[cells_inside(self._contraction.steps)]
         resolution = graph.lattice.resolution
         return np.sort(_number(np.rint(lowest * resolution - 0.5), resolution))

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..compiled import compiled, lean
+from ..compiled import compiled, no_refcount
 from ..graph import CutCellGraph
 from ..graph.interior import OUTSIDE
 from .contraction import Contraction
@@ -24,7 +24,7 @@ def body_of(graph: CutCellGraph, contraction: Contraction) -> tuple:
     `number` of the contraction.
     """
     steps = contraction.steps, contraction.node, contraction.number
-    first = graph.first_point, contraction.first_crossing
+    first = graph.first_point, contraction.first_surface
     return graph.lattice.resolution, *first, contraction.places, steps
 
 
@@ -96,7 +96,7 @@ def _step(steps, point, axis, direction):
     return steps[point, axis + 3 * (direction < 0)]
 
 
-@lean
+@no_refcount
 def _traverse(steps, point, x, y, z):
     """Tell if edges join all cells on a line of (x, y, z) cells (Amanatides & Woo 1987)."""
     dx, dy, dz = abs(x), abs(y), abs(z)

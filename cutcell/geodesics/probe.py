@@ -66,7 +66,7 @@ class BodyProbe:
     def to_skin(self, points: ArrayLike) -> NDArray[np.float64]:
         """Compute the distance of points (p, 3) to the nearest skin."""
         points, graph = np.asarray(points, np.float64), self._graph
-        skin = graph.nodes[: graph.first_point], graph.nodes[graph.first_crossing :]
+        skin = graph.nodes[: graph.first_point], graph.nodes[graph.first_surface :]
         return np.minimum(*(_to_nearest(points, nodes) for nodes in skin))
 
     def depth(self, points: ArrayLike) -> NDArray[np.float64]:

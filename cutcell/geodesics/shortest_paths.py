@@ -17,7 +17,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ..compiled import compiled, lean
+from ..compiled import compiled, no_refcount
 from ..graph import CutCellGraph
 from ..graph.neighbours import Adjacency, list_neighbours
 from ..progress import Progress, Shares, Tell, silent
@@ -94,7 +94,7 @@ def _sort_along_body(graph: CutCellGraph) -> tuple[NDArray[np.int32], Adjacency]
     return rank, list_neighbours(edges, graph.lengths, len(rank))
 
 
-@lean
+@no_refcount
 def _renumber(edges, rank, renumbered):
     for e in range(len(edges)):
         renumbered[e, 0], renumbered[e, 1] = rank[edges[e, 0]], rank[edges[e, 1]]
@@ -120,7 +120,7 @@ def _sweep_body(
         forth, left = not forth, left / 2
 
 
-@lean
+@no_refcount
 def _sweep_slice(indptr, indices, lengths, waiting, distance, first, last, forth):
     """Sweep the slices of a slice until no node of it is waiting; tell whether any was."""
     adjacency = indptr, indices, lengths
@@ -135,7 +135,7 @@ def _sweep_slice(indptr, indices, lengths, waiting, distance, first, last, forth
     return any_waited
 
 
-@lean
+@no_refcount
 def _sweep_nodes(adjacency, waiting, distance, first, last, forth):
     """Visit the nodes of the smallest slices until none is waiting; tell whether any was."""
     indptr, indices, lengths = adjacency

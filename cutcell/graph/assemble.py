@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ..compiled import compiled, put
+from ..compiled import compiled, copy_to
 from ..surface.lattice import Lattice
 from ..surface.rays import AXES, RayHits
 from ..threads import in_threads
@@ -56,14 +56,14 @@ def assemble(
     """
     resolution = lattice.resolution
     points = interior_points(inside, resolution)
-    first_crossing = len(vertices) + len(points)
+    first_surface = len(vertices) + len(points)
     numbers, starts = [], []
-    node, edge = first_crossing, len(mesh_edges)
+    node, edge = first_surface, len(mesh_edges)
     for intervals, found in zip(inside, hits, strict=True):
         numbers.append(_number_ends(intervals, len(found.position), node))
         starts.append(edge_starts(intervals, edge))
         node, edge = max(node, int(numbers[-1].max(initial=0)) + 1), int(starts[-1][-1])
-    node_kinds = [len(vertices), len(points), node - first_crossing]
+    node_kinds = [len(vertices), len(points), node - first_surface]
     edge_kinds = [len(mesh_edges), edge - len(mesh_edges), 3 * node_kinds[SURFACE]]
     check_memory(len(vertices), len(points), node_kinds[SURFACE], resolution, connectivity)
 
@@ -78,18 +78,18 @@ def assemble(
     def fill_surface(axis: int) -> None:
         found = hits[axis].start, hits[axis].position, hits[axis].triangle, numbers[axis]
         mesh = vertices, faces
-        first = first_crossing, edge
+        first = first_surface, edge
         _fill_surface(resolution, AXES[axis], found, mesh, first, nodes, triangle, edges, lengths)
 
     def fill_rest(_: int) -> None:
         _fill_mesh(vertices, mesh_edges, nodes, edges, lengths)
-        points.put_positions(nodes[len(vertices) : first_crossing])
+        points.put_positions(nodes[len(vertices) : first_surface])
 
     jobs = [(job, axis) for job in (fill_inside, fill_surface) for axis in range(3)]
     in_threads(lambda job: job[0](job[1]), [*jobs, (fill_rest, 0)])
     if connectivity == 26:
         kept = edges[len(mesh_edges) : edge]
-        steps = lattice_steps(nodes, kept, len(vertices), first_crossing)
+        steps = lattice_steps(nodes, kept, len(vertices), first_surface)
         diagonals = diagonal_edges(steps, len(vertices))
         edges = np.concatenate([edges[:edge], diagonals, edges[edge:]])
         ends = nodes[diagonals]
@@ -140,7 +140,7 @@ def _number_used(low, high, hits, first):
 
 @compiled
 def _fill_mesh(vertices, mesh_edges, nodes, edges, lengths):
-    put(vertices.reshape(-1), nodes.reshape(-1))
+    copy_to(vertices.reshape(-1), nodes.reshape(-1))
     for e in range(len(mesh_edges)):
         a, b = mesh_edges[e, 0], mesh_edges[e, 1]
         edges[e, 0], edges[e, 1] = a, b
@@ -153,7 +153,7 @@ def _fill_surface(resolution, axes, hits, mesh, first, nodes, triangle, edges, l
     u, v, along = axes
     start, position, of_triangle, node = hits
     vertices, faces = mesh
-    first_crossing, first_edge = first
+    first_surface, first_edge = first
     for ray in range(resolution * resolution):
         for c in range(start[ray], start[ray + 1]):
             n = node[c]
@@ -164,7 +164,7 @@ def _fill_surface(resolution, axes, hits, mesh, first, nodes, triangle, edges, l
             nodes[n, along] = position[c]
             triangle[n] = of_triangle[c]
             for k in range(3):
-                e = first_edge + 3 * (n - first_crossing) + k
+                e = first_edge + 3 * (n - first_surface) + k
                 corner = faces[of_triangle[c], k]
                 edges[e, 0], edges[e, 1] = n, corner
                 lengths[e] = _apart(nodes, n, vertices, corner)

@@ -78,7 +78,7 @@ class CutCellGraph:
         return int(self.vertex_node.max()) + 1
 
     @property
-    def first_crossing(self) -> int:
+    def first_surface(self) -> int:
         """The first surface node."""
         return self.first_point + len(self.interior)
 

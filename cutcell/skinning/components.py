@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ..compiled import compiled, lean
+from ..compiled import compiled, no_refcount
 from ..geodesics import Bones
 from ..sorting import sort_into
 from ..threads import in_threads
@@ -105,7 +105,7 @@ def _sort_into_columns(samples):
     return sort_into(column, CELLS * CELLS)
 
 
-@lean
+@no_refcount
 def _list_hits(points, faces, samples, start, face, sample, sign):
     """Return how many ray hits there are, also beyond the room for them.
 
@@ -135,7 +135,7 @@ def _list_hits(points, faces, samples, start, face, sample, sign):
     return count
 
 
-@lean
+@no_refcount
 def _crosses(points, corners, u, v):
     """Tell whether a line passes through a face: +1 where that faces up, -1 down, 0 if not."""
     # On the line u = const, how many edges of the face lie on the side of larger v.
@@ -161,7 +161,7 @@ def _cell(u):
     return min(max(int(u * CELLS), 0), CELLS - 1)
 
 
-@lean
+@no_refcount
 def _height(a, b, c, u, v):
     """Return where the plane through three points is over (u, v)."""
     x1, y1, z1 = b[0] - a[0], b[1] - a[1], b[2] - a[2]

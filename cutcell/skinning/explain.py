@@ -272,7 +272,7 @@ class _ForRigs:
         gain = _gain(self._adjustments, joint)
         radius = 1.0
         if self._found["beyond"][place]:  # elsewhere nothing is beyond any radius
-            known = self._distances.at_places[joint, place] / self._found["radius"][joint]
+            known = self._distances.at_welded[joint, place] / self._found["radius"][joint]
             radius = max(1.0, float(known))
         where = surface.points[place], surface.normals[place]
         away = facing(*where, self._distances.bones, joint)

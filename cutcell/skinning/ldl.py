@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ..compiled import compiled, lean, put
+from ..compiled import compiled, copy_to, no_refcount
 from ..geodesics.queue import END, join, leave
 from .lanes import NOTHING, minus, row_of, set_row
 
@@ -63,7 +63,7 @@ def fill_reducing_ordering(start, column):
         order[step], last_seen[pivot] = pivot, count
         if used + count > len(member):
             larger = np.empty(2 * len(member) + count, np.int32)
-            put(member, larger)
+            copy_to(member, larger)
             member = larger
         begin[clique] = used
         mine = member_of[start[pivot] : start[pivot] + memberships[pivot]]
@@ -106,7 +106,7 @@ def _edges_as_cliques(start, column):
     return begin, member[: 2 * edges].copy(), member_of, memberships
 
 
-@lean
+@no_refcount
 def _unite(cliques, begin, size, member, used, last_seen, step):
     """Append the union of some cliques, which become empty; return where it ends."""
     for c in cliques:
@@ -120,7 +120,7 @@ def _unite(cliques, begin, size, member, used, last_seen, step):
     return used
 
 
-@lean
+@no_refcount
 def _count_outside(others, start, member_of, memberships, size, outside, last_met, step):
     """Count how many members of each clique are not in the new one."""
     for v in others:
@@ -131,7 +131,7 @@ def _count_outside(others, start, member_of, memberships, size, outside, last_me
             outside[c] -= 1
 
 
-@lean
+@no_refcount
 def _relist(v, clique, start, member_of, memberships, size, outside):
     """List the cliques of v again, with the new one; return a bound on its degree."""
     touched, kept = size[clique] - 1, start[v]
@@ -224,7 +224,7 @@ def factorise(start, column, value, diagonal, order, pace):
     return begin, rows, values, pivots
 
 
-@lean
+@no_refcount
 def substitute(begin, rows, values, pivots, right, pace):
     """Solve L D Lᵀ x = b for several b at once, shape (k, RIGHT_SIDES), in place.
 

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
-from ..compiled import compiled, lean
+from ..compiled import compiled, no_refcount
 from ..progress import Tell
 from .lanes import NOTHING, RIGHT_SIDES, minus, row_of, set_row
 from .ldl import Factors, factorise, fill_reducing_ordering, substitute
@@ -293,7 +293,7 @@ def _smooth(
     _sweep(matrix.indptr, matrix.indices, matrix.data, level.inverse, right, x, direction)
 
 
-@lean
+@no_refcount
 def _sweep(start, column, value, inverse, right, x, direction):
     """Improve x by a Gauss-Seidel sweep from the first row to the last (1) or back (-1)."""
     for k in range(len(inverse)):
@@ -311,7 +311,7 @@ def _product(matrix: csr_array, x: NDArray[np.float64]) -> NDArray[np.float64]:
     return product
 
 
-@lean
+@no_refcount
 def _multiply(start, column, value, x, product):
     for v in range(len(product)):
         here = NOTHING

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.distance import cdist
 
-from ..compiled import lean
+from ..compiled import no_refcount
 from ..geodesics import BoneDistances, Bones
 from ..method import RIG_REACH
 from ..progress import Tell, share_of
@@ -73,7 +73,7 @@ def rig_weights(
         Per welded vertex. Rows sum to one.
     """
     graph, bones = distances.graph, distances.bones
-    distance, resolution = distances.at_places, graph.lattice.resolution
+    distance, resolution = distances.at_welded, graph.lattice.resolution
     weights = np.zeros(distance.shape[::-1])
 
     def divide() -> NDArray[np.float64]:
@@ -112,7 +112,7 @@ def rig_weights(
     return weights
 
 
-@lean
+@no_refcount
 def _divide_by_distance(
     points,
     normals,
@@ -153,7 +153,7 @@ def _divide_by_distance(
             weights[v, j] /= total
 
 
-@lean
+@no_refcount
 def _mark_beyond(distance, weights, radius, found):
     """Mark the vertices, shape (k,), with a share of a joint that are beyond its radius."""
     for v in range(len(weights)):
@@ -163,7 +163,7 @@ def _mark_beyond(distance, weights, radius, found):
                 found[v] = True
 
 
-@lean
+@no_refcount
 def _subtract_tail(weights):
     """Subtract a part of each vertex' largest weight from all of them, down to zero, in place."""
     for v in range(len(weights)):
@@ -178,7 +178,7 @@ def _subtract_tail(weights):
             weights[v, j] /= total
 
 
-@lean
+@no_refcount
 def _facing(point, normal, start, end, first, last):
     """Return how much a surface looks away from the nearest of some bones, `FACING_LEAST` to 1."""
     nearest, cosine = np.inf, 0.0

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
-from ..compiled import lean
+from ..compiled import no_refcount
 from ..geodesics.bones import TIE
 from ..geodesics.nearest import NodeGrid
 from ..graph import CutCellGraph
@@ -120,7 +120,7 @@ def _longest_sides(
     return (high - low).max(axis=1)
 
 
-@lean
+@no_refcount
 def _bound(points, component, low, high):
     for p in range(len(points)):
         for axis in range(3):
@@ -136,7 +136,7 @@ def _nearest_on_body(
     Returns the distances, and for the nearest node of each point the three welded vertices that
     its weights are the mean of.
     """
-    first = graph.first_crossing
+    first = graph.first_surface
     chosen = np.zeros(len(graph.nodes), np.bool_)
     chosen[: len(on_body)] = on_body
     chosen[first:] = on_body[graph.faces[graph.triangle[first:], 0]]

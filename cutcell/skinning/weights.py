@@ -85,7 +85,7 @@ def skinning_weights(
             )[graph.vertex_node]
         return prune(permitted(weights, distances.joint, allowed), *kept)
     if alpha is not None:
-        welded = pruned_paper_kernel(distances.at_places, graph.lattice.diagonal, alpha, *kept)
+        welded = pruned_paper_kernel(distances.at_welded, graph.lattice.diagonal, alpha, *kept)
     else:
         welded = rig_weights(
             distances,
@@ -140,11 +140,11 @@ def _divided(distances: BoneDistances, gain: NDArray[np.float64]) -> BoneDistanc
     """Divide the distances of each joint by its gain."""
     of = distances.of_vertices
     of = None if of is None else of / gain[:, None]
-    return replace(distances, at_places=distances.at_places / gain[:, None], of_vertices=of)
+    return replace(distances, at_welded=distances.at_welded / gain[:, None], of_vertices=of)
 
 
 def _by_position(distances: BoneDistances) -> NDArray[np.intp]:
     """Order the joints by where they are, so that ties do not hang on how they are numbered."""
-    positions = np.full((len(distances.at_places), 3), np.inf)
+    positions = np.full((len(distances.at_welded), 3), np.inf)
     positions[distances.bones.joint] = distances.bones.start
     return np.lexsort(positions.T[::-1])

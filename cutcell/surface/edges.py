@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..compiled import compiled, put
+from ..compiled import compiled, copy_to
 
 NONE = -1
 
@@ -65,7 +65,7 @@ def _find_edges(faces, vertices):
     twice = np.empty((half_edges, 3), np.int32)
     for s in range(half_edges):
         low = once[s, 0]
-        put(once[s], twice[by_low[low]])
+        copy_to(once[s], twice[by_low[low]])
         by_low[low] += 1
 
     edges, incidence = np.empty((half_edges, 2), np.int32), np.empty(half_edges, np.int32)

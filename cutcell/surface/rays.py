@@ -21,7 +21,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from ..compiled import compiled, put
+from ..compiled import compiled, copy_to
 from ..progress import Tell
 from ..threads import in_threads, threads
 from .vectors import between, cross
@@ -198,7 +198,7 @@ def _by_ray(at, hits, rays):
 def grown(array):
     """Return a copy of an array with twice the capacity."""
     larger = np.empty((2 * array.shape[0], *array.shape[1:]), array.dtype)
-    put(array.reshape(-1), larger.reshape(-1))
+    copy_to(array.reshape(-1), larger.reshape(-1))
     return larger
 
 
@@ -263,9 +263,9 @@ def _sort_rays(counts, position, triangle, sign):
         begin, end = end, end + counts[ray]
         if end - begin > 64:  # a soup of many layers would make the insertion sort quadratic
             order = begin + np.argsort(position[begin:end])
-            put(position[order], position[begin:end])
-            put(triangle[order], triangle[begin:end])
-            put(sign[order], sign[begin:end])
+            copy_to(position[order], position[begin:end])
+            copy_to(triangle[order], triangle[begin:end])
+            copy_to(sign[order], sign[begin:end])
         for k in range(begin + 1, end):
             p, t, s = position[k], triangle[k], sign[k]
             while k > begin and _after(position[k - 1], sign[k - 1], triangle[k - 1], p, s, t):

@@ -27,7 +27,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..compiled import compiled, put
+from ..compiled import compiled, copy_to
 from ..progress import Tell
 from ..surface.rays import grown, in_space
 from ..surface.vectors import between
@@ -166,7 +166,7 @@ def _classify(clusters, resolution, tau, corner, top, coarse):
     expanded, all_near = np.empty((64, COUNT + 1)), np.empty(1024, np.int32)
     rows = kept = listed = 0
     waiting, count = np.empty((64, 5), np.int64), 1  # blocks: corner, size and depth
-    put(corner, waiting[0])
+    copy_to(corner, waiting[0])
     waiting[0, 3], waiting[0, 4] = top, 1
     # For each ancestor of the current block: its centre, far expansion and near clusters.
     centre, far, local = np.zeros((DEPTH, 3)), np.zeros((DEPTH, SIZE)), np.empty(SIZE)
@@ -181,13 +181,13 @@ def _classify(clusters, resolution, tau, corner, top, coarse):
         q = x / resolution + half, y / resolution + half, z / resolution + half
         reach = half * np.sqrt(3)
         centre[depth, 0], centre[depth, 1], centre[depth, 2] = q
-        put(far[depth - 1], far[depth])
+        copy_to(far[depth - 1], far[depth])
         shift = between(centre[depth - 1], q)
         translate(far[depth], shift[0], shift[1], shift[2])
         among = near[depth - 1, : nears[depth - 1]]
         nears[depth] = add_far_clusters(clusters, among, far[depth], near[depth], q, reach)
         close = near[depth, : nears[depth]]
-        put(far[depth], local)
+        copy_to(far[depth], local)
         is_crossed = add_clusters(clusters, close, local, q, reach, TOLERANCE)
         found = _class_of(local, is_crossed, half, size, tau)
         a, b, c, wide = x // BLOCK, y // BLOCK, z // BLOCK, size // BLOCK
@@ -207,14 +207,14 @@ def _classify(clusters, resolution, tau, corner, top, coarse):
             if kept == len(expanded):
                 expanded = grown(expanded)
             row = expanded[kept]
-            put(far[depth] if found == AMBIGUOUS else local, row)
+            copy_to(far[depth] if found == AMBIGUOUS else local, row)
             row[SIZE], row[SIZE + 1], row[SIZE + 2] = q
             row[CROSSED], row[COUNT] = is_crossed and found != AMBIGUOUS, 0
             if found == AMBIGUOUS:
                 row[COUNT] = len(close)
                 while listed + len(close) > len(all_near):
                     all_near = grown(all_near)
-                put(close, all_near[listed:])
+                copy_to(close, all_near[listed:])
                 listed += len(close)
             found = kept
             kept += 1

@@ -31,7 +31,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..compiled import compiled, lean
+from ..compiled import compiled, no_refcount
 from ..surface.vectors import between, dot
 from ..threads import in_threads, parts
 from . import multipole
@@ -95,7 +95,7 @@ def build_tree(caps: Caps) -> Clusters:
     return Clusters(rim, first, apex, start, sphere, moments)
 
 
-@lean
+@no_refcount
 def _split(points, start, order, first, last):
     """Partition the points of clusters at the median of their longest axis."""
     leaves = len(start) - 1
@@ -119,7 +119,7 @@ def _split(points, start, order, first, last):
         _select(points, order, widest, begin, middle, end)
 
 
-@lean
+@no_refcount
 def _select(points, order, axis, begin, middle, end):
     """Put the lowest along an axis before the middle of a range (Hoare's quickselect, 1961)."""
     while end - begin > 1:

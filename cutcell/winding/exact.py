@@ -18,7 +18,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..compiled import compiled, lean
+from ..compiled import compiled, no_refcount
 from ..errors import ParameterError
 from ..rig import TriangleMesh
 from ..surface.lattice import Lattice
@@ -132,7 +132,7 @@ def _number_at(points, vertices, faces, cells, start, listed, boundary):
     return number
 
 
-@lean
+@no_refcount
 def boundary_angle(vertices, boundary, pu, pv, height):
     """Sum the solid angles of the boundary edges over 4 pi: the winding number less chi.
 

@@ -23,7 +23,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..compiled import compiled, lean
+from ..compiled import compiled, no_refcount
 from ..surface.vectors import between, cross, dot, length
 from .clusters import error_bound, next_cluster
 from .multipole import add_multipole
@@ -99,7 +99,7 @@ def variation(local, half):
     return half * (linear + half * (square + abs(local[6]) + abs(local[7]) + abs(local[8])))
 
 
-@lean
+@no_refcount
 def add_far_clusters(clusters, among, local, near, q, reach):
     """Add the clusters that are far from a ball to its expansion, and list the others.
 
@@ -140,7 +140,7 @@ def add_far_clusters(clusters, among, local, near, q, reach):
     return count
 
 
-@lean
+@no_refcount
 def add_clusters(clusters, among, local, q, reach, tolerance):
     """Add clusters to the local expansion of a ball; stop once its error is useless.
 
@@ -183,7 +183,7 @@ def add_clusters(clusters, among, local, q, reach, tolerance):
     return is_crossed
 
 
-@lean
+@no_refcount
 def _add_caps(clusters, leaf, local, q, reach, may_cross):
     """Add the caps of a leaf of the tree one by one; tell whether one crosses the ball."""
     is_crossed = False
@@ -204,7 +204,7 @@ def _relative(clusters, k, q, reach):
     return r, distance, error_bound(clusters.sphere[k], distance, reach)
 
 
-@lean
+@no_refcount
 def _winding_number(rim, apex, q):
     """Return the winding number of one cap: its solid angle over 4 pi.
 
@@ -238,7 +238,7 @@ def _winding_number(rim, apex, q):
     return turns + np.arctan2(y, x) / (2 * np.pi)
 
 
-@lean
+@no_refcount
 def _add_gradient(local, rim, apex, q, reach, may_cross):
     """Add the gradient of a cap, and its error; tell whether the cap crosses the ball."""
     is_crossed = False

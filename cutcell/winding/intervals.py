@@ -18,7 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..compiled import compiled, lean
+from ..compiled import compiled, no_refcount
 from ..memory import check_room
 from ..progress import Tell, share_of
 from ..surface.rays import (
@@ -163,7 +163,7 @@ def _constant_columns(coarse: NDArray[np.int32], along: int) -> NDArray[np.int32
     return np.where(is_constant, least - CONSTANT, AMBIGUOUS).astype(np.int32)
 
 
-@lean
+@no_refcount
 def _keep_segments(
     shared, rays, last_ray, results, listing, first_ray, filled, rows, row, queries, points
 ):
@@ -275,7 +275,7 @@ def _keep_segments(
     return last_ray, (count, query, undecided)
 
 
-@lean
+@no_refcount
 def _crossed_offset(shared, rays, where, point, row, cap_crossings, points):
     """Return the whole number n of a ray in a block crossed by caps: w = crossings + n - expansion.
 
@@ -294,7 +294,7 @@ def _crossed_offset(shared, rays, where, point, row, cap_crossings, points):
     return np.int64(np.round(angle + value))
 
 
-@lean
+@no_refcount
 def _rest(boundary, rays, where):
     """Return the winding number less the crossings ahead, by the exact formula."""
     axis, vertices = rays[:2]

@@ -13,7 +13,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from ..compiled import lean
+from ..compiled import no_refcount
 from ..progress import Tell
 from ..sorting import sort_into
 from ..surface.vectors import between, length
@@ -96,7 +96,7 @@ def _portions(clusters, row, start, order):
     return list(pairwise([*bounds.tolist(), len(order)]))
 
 
-@lean
+@no_refcount
 def _query(expansions, clusters, queries, row, start, order, every, first, last, points, results):
     """Decide order[first:last], batch by batch; `order` is permuted within batches.
 
@@ -110,7 +110,7 @@ def _query(expansions, clusters, queries, row, start, order, every, first, last,
         first = end
 
 
-@lean
+@no_refcount
 def _query_batch(expansions, clusters, queries, row, open_queries, every, points, results):
     """Decide at most BATCH queries of one block."""
     centre, local = expansions.centre[row], expansions.local[row]
@@ -144,7 +144,7 @@ def _query_batch(expansions, clusters, queries, row, open_queries, every, points
             tolerance *= min(max(share * share, STEP), 0.5)
 
 
-@lean
+@no_refcount
 def _load(which, queries, points):
     """Load midpoints into the workspace, rounded up to full vectors; return a ball around them."""
     count = len(which)

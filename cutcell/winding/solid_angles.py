@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..compiled import lean, side_by_side
+from ..compiled import no_refcount, vectorized
 from ..surface.vectors import between, length
 from .clusters import error_bound, next_cluster
 from .multipole import cube, in_registers, linear, square
@@ -29,7 +29,7 @@ NEAR = 1e-7
 TINY = 1e-300
 
 
-@lean
+@no_refcount
 def caps_winding_numbers(clusters, among, centre, reach, tolerance, points, count):
     """Sum the winding numbers of caps at some points.
 
@@ -77,7 +77,7 @@ def caps_winding_numbers(clusters, among, centre, reach, tolerance, points, coun
     return error
 
 
-@side_by_side
+@vectorized
 def _add_cluster(moments, sphere, points, count):
     """Add the multipole expansion of a cluster: the value of `multipole.add_multipole`."""
     p = in_registers(moments)
@@ -90,7 +90,7 @@ def _add_cluster(moments, sphere, points, count):
         points[VALUE + i] += (linear(p, x, y, z) + near * rest) * near * near / (4 * np.pi)
 
 
-@lean
+@no_refcount
 def _add_cap(rim, apex, points, count, unscaled):
     """Add the solid angles of one cap, as `expansion._winding_number` does for one point.
 
@@ -107,7 +107,7 @@ def _add_cap(rim, apex, points, count, unscaled):
     return unscaled
 
 
-@side_by_side
+@vectorized
 def _rescale(points, count):
     """Rescale the complex numbers before further products under- or overflow."""
     for i in range(count):
@@ -116,7 +116,7 @@ def _rescale(points, count):
         points[IM + i] *= scale
 
 
-@side_by_side
+@vectorized
 def _add_triangle(p, q, r, points, count):
     """Add the solid angle of a triangle p q r."""
     px, py, pz = p[0], p[1], p[2]

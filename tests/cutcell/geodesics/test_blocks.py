@@ -12,7 +12,7 @@ from tests import meshes
 def blocks_of(mesh, resolution):
     """Return the lattice places of all points, whether each is deep, and each one's block."""
     graph = build_graph(TriangleMesh(*mesh), resolution, connectivity="any")
-    nodes = graph.nodes[graph.first_point : graph.first_crossing]
+    nodes = graph.nodes[graph.first_point : graph.first_surface]
     place = (nodes * resolution).astype(int)
     steps = contract(graph).steps
     return place, (steps >= 0).all(axis=1), find_blocks(nodes, resolution, steps)

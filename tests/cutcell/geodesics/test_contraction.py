@@ -44,12 +44,12 @@ def test_surface_nodes_of_a_single_segment_are_contracted(name):
     assert not contracted[: graph.first_point].any()
     np.testing.assert_array_equal(left.node, np.flatnonzero(~contracted))
     np.testing.assert_array_equal(left.places, graph.nodes[left.node])
-    assert left.first_crossing == (left.node < graph.first_crossing).sum()
+    assert left.first_surface == (left.node < graph.first_surface).sum()
     assert (np.diff(left.indptr) > 0).all()
-    for node in range(graph.first_crossing, len(graph.nodes)):
+    for node in range(graph.first_surface, len(graph.nodes)):
         inside = graph.edges[(graph.edge_kind == 1) & (graph.edges == node).any(axis=1)]
         others = inside[inside != node]
-        alone = len(others) == 1 and graph.first_point <= others[0] < graph.first_crossing
+        alone = len(others) == 1 and graph.first_point <= others[0] < graph.first_surface
         assert representative[node] == (others[0] if alone else node)
 
 
@@ -57,11 +57,11 @@ def test_surface_nodes_stay_where_the_body_is_thinner_than_a_cell():
     vertices, faces = meshes.ALL["box"]()
     thin = TriangleMesh(vertices * [1, 1, 0.02], faces)
     graph = build_graph(thin, 16)
-    assert graph.first_crossing < len(graph.nodes)
-    along = graph.nodes[graph.first_crossing :, :2]
+    assert graph.first_surface < len(graph.nodes)
+    along = graph.nodes[graph.first_surface :, :2]
     across = np.isclose(along * 16 % 1, 0.5).all(axis=1)  # their rays run along z
     assert across.any()
-    assert not contracted_nodes(graph)[0][graph.first_crossing :][across].any()
+    assert not contracted_nodes(graph)[0][graph.first_surface :][across].any()
 
 
 @pytest.mark.parametrize("resolution", [16, 17])
@@ -83,7 +83,7 @@ def test_edges_between_blocks_are_straight_and_unique():
     begin, end = contracted_edges(graph)
     assert len(np.unique(np.stack([begin, end]), axis=1).T) == len(begin)
     contracted, representative = contracted_nodes(graph)
-    points = np.arange(graph.first_point, graph.first_crossing)
+    points = np.arange(graph.first_point, graph.first_surface)
     innermost = np.unique(representative[points[contracted[points]]])
     assert len(innermost) > 100
     both = np.isin(begin, innermost) & np.isin(end, innermost)

@@ -131,7 +131,7 @@ def test_weights_are_those_of_the_factors(bar):
     surface = SurfaceOperators.of(bar.graph)
     assert COARSEST < len(surface.points) <= MANY
     by_multigrid = replace(surface, order=None)
-    depth = bar.at_places.min(axis=0)
+    depth = bar.at_welded.min(axis=0)
     assert isinstance(Diffusion.over(by_multigrid, depth, 24).solver, Multigrid)
     difference = rig_weights(bar, by_multigrid) - rig_weights(bar, surface)
     assert 0 < np.abs(difference).max() < SAME
