@@ -51,7 +51,7 @@ def corrected_rig(rig: Rig, corrections: Corrections) -> Rig:
     for name, one in corrections.joints.items():
         joint = joint_index(rig.skeleton, name)
         deform[joint] = deform[joint] if one.deform is None else one.deform
-    if not deform.any():
+    if rig.skeleton.deform.any() and not deform.any():
         raise SkeletonError("by the corrections no joint of the skeleton may carry weight")
     if np.array_equal(deform, rig.skeleton.deform):
         return rig
