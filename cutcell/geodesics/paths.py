@@ -80,9 +80,9 @@ def trace_path(
 ) -> TracedPath:
     """Walk from a vertex back to the nearest of a joint's bones, and tell what each piece is.
 
-    No piece is farther than about half a lattice cell from the body (`inside.TOLERANCE`), except those
-    of the kind "outside": the way from the node nearest to a bone to that bone, where the bone is
-    not in the body.
+    No piece is farther than about half a lattice cell from the body (`inside.TOLERANCE`), except
+    those of the kind "outside": the way from the node nearest to a bone to that bone, where the
+    bone is not in the body.
 
     Parameters
     ----------
@@ -97,7 +97,7 @@ def trace_path(
     -------
     TracedPath
         With connectivity 6 and 26 it runs along the graph's edges, and its length is the value
-        of the field; with "any" it is straightened, and longer by some per cent (docs/performance.md).
+        of the field; with "any" it is straightened, and some per cent longer (docs/performance.md).
 
     Raises
     ------
