@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from ..display import shown_name
 from ..pose import axis_rotation
+from ..triangles import normals
 from .finding import Finding, Pose, count, share
 from .subject import Subject
 
@@ -63,8 +64,8 @@ def _poses(subject: Subject, weights: NDArray[np.float64]) -> Iterator[_Seen]:
     joints = subject.graph.lattice.to_unit(skeleton.joints)
     a, b = subject.edges.edges.T
     length = np.linalg.norm(points[a] - points[b], axis=1)
-    normals = _normals(points, faces)
-    area = np.linalg.norm(normals, axis=1).sum()
+    at_first = normals(points[faces])
+    area = np.linalg.norm(at_first, axis=1).sum()
     volume = _Volume(subject)
     at_rest = volume.of(points)
     for j in range(len(joints)):
@@ -74,14 +75,14 @@ def _poses(subject: Subject, weights: NDArray[np.float64]) -> Iterator[_Seen]:
         unlike = np.flatnonzero(np.ptp(moved[faces], axis=1) > MOVES)
         bent = np.flatnonzero(np.abs(moved[a] - moved[b]) > MOVES)
         around = faces[unlike]
-        before = normals[unlike]
+        before = at_first[unlike]
         for axis in "xyz":
             for degrees in (DEGREES, -DEGREES):
                 turn = axis_rotation(axis, degrees)
                 posed = points + moved[:, None] * ((points - joints[j]) @ (turn - np.eye(3)).T)
                 longer = np.linalg.norm(posed[a[bent]] - posed[b[bent]], axis=1) - length[bent]
                 torn = (longer > SEEN) & (longer > (STRETCH - 1) * length[bent])
-                after = _normals(posed, around)
+                after = normals(posed[around])
                 follow = moved[around].mean(axis=1)[:, None]
                 expected = before + follow * (before @ turn.T - before)
                 over = (after * expected).sum(axis=1) < 0
@@ -169,12 +170,6 @@ def _lines(subject: Subject, found: list[_Seen], told: Callable[[_Seen], str]) -
         name = shown_name(subject.rig.skeleton.names[seen.pose.joint])
         best.setdefault(seen.pose.joint, f"{name}: {told(seen)}, about {seen.pose.axis}")
     return tuple(best.values())[:MOST_LINES]
-
-
-def _normals(points: NDArray[np.float64], faces: NDArray[np.int32]) -> NDArray[np.float64]:
-    """Return normals of the length of twice the areas."""
-    a, b, c = points[faces].transpose(1, 0, 2)
-    return np.cross(b - a, c - a)
 
 
 class _Volume:
