@@ -20,10 +20,24 @@ class Boundary(NamedTuple):
         The vertices of the loops, one loop after the other, in the direction of the faces.
     start : array, shape (l + 1,), int64
         Loop i has the vertices loop[start[i]] to loop[start[i + 1] - 1].
+    times : array, shape (l,), int64
+        How often the chain runs around each loop: more than once where faces lie on copies.
     """
 
     loop: NDArray[np.int64]
     start: NDArray[np.int64]
+    times: NDArray[np.int64]
+
+    @property
+    def unrolled(self) -> Boundary:
+        """The same chain with loops that are run around once, and repeated."""
+        if (self.times == 1).all():
+            return self
+        begin = np.repeat(self.start[:-1], self.times)
+        size = np.repeat(np.diff(self.start), self.times)
+        start = np.concatenate([[0], np.cumsum(size)])
+        slot = np.arange(start[-1]) + np.repeat(begin - start[:-1], size)
+        return Boundary(self.loop[slot], start, np.ones_like(begin))
 
     @property
     def following(self) -> NDArray[np.int64]:
@@ -43,7 +57,7 @@ def boundary_of(edges: NDArray[np.int32], incidence: NDArray[np.int32]) -> Bound
     """Assemble the boundary from edges and their signed incidence, see `surface.edges`."""
     is_open = incidence != 0
     if not is_open.any():
-        return Boundary(np.empty(0, np.int64), np.zeros(1, np.int64))
+        return Boundary(np.empty(0, np.int64), np.zeros(1, np.int64), np.empty(0, np.int64))
     return Boundary(*_loops(edges[is_open], incidence[is_open], int(edges.max()) + 1))
 
 
@@ -52,40 +66,43 @@ def _loops(edges, count, vertices):
     """Decompose the boundary chain into closed loops without repeated vertices.
 
     The chain enters each vertex as often as it leaves it, so a walk along unused edges never gets
-    stuck. Whenever the walk returns to a vertex of its path it has closed a loop, which is removed.
+    stuck. Whenever the walk returns to a vertex of its path it has closed a loop, which is removed
+    as often as all of its edges are there.
     """
     leaving = np.zeros(vertices + 1, np.int64)
     for e in range(len(edges)):
-        leaving[(edges[e, 0] if count[e] > 0 else edges[e, 1]) + 1] += abs(count[e])
+        leaving[(edges[e, 0] if count[e] > 0 else edges[e, 1]) + 1] += 1
     leaving = np.cumsum(leaving)
-    cursor, following = leaving[:-1].copy(), np.empty(leaving[-1], np.int64)
+    cursor = leaving[:-1].copy()
+    following, unused = np.empty(len(edges), np.int64), np.empty(len(edges), np.int64)
     for e in range(len(edges)):
         a, b = (edges[e, 0], edges[e, 1]) if count[e] > 0 else (edges[e, 1], edges[e, 0])
-        for _ in range(abs(count[e])):
-            following[cursor[a]] = b
-            cursor[a] += 1
+        following[cursor[a]], unused[cursor[a]] = b, abs(count[e])
+        cursor[a] += 1
 
-    loop, start = np.empty(leaving[-1], np.int64), [0]
-    size = 0
-    path, slot = np.empty(leaving[-1] + 1, np.int64), np.full(vertices, -1)
+    loop, start, times = [np.int64(0) for _ in range(0)], [0], [np.int64(0) for _ in range(0)]
+    path, slot = np.empty(vertices + 1, np.int64), np.full(vertices, -1)
     cursor = leaving[:-1].copy()
     for first in range(vertices):
-        while cursor[first] < leaving[first + 1]:
-            path[0], slot[first], length = first, 0, 1
-            while length > 1 or cursor[first] < leaving[first + 1]:
-                here = path[length - 1]
-                there = following[cursor[here]]
-                cursor[here] += 1
-                if slot[there] < 0:
-                    path[length], slot[there] = there, length
-                    length += 1
-                    continue
-                for k in range(slot[there], length):
-                    loop[size] = path[k]
-                    size += 1
-                    if k > slot[there]:
-                        slot[path[k]] = -1
-                start.append(size)
-                length = slot[there] + 1
-            slot[first] = -1
-    return loop, np.array(start)
+        path[0], slot[first], length = first, 0, 1
+        while length > 1 or cursor[first] < leaving[first + 1]:
+            there = following[cursor[path[length - 1]]]
+            if slot[there] < 0:
+                path[length], slot[there] = there, length
+                length += 1
+                continue
+            around = path[slot[there] : length]
+            least = unused[cursor[around[0]]]
+            for a in around:
+                least = min(least, unused[cursor[a]])
+            for a in around:
+                loop.append(a)
+                unused[cursor[a]] -= least
+                cursor[a] += unused[cursor[a]] == 0
+                slot[a] = -1
+            start.append(len(loop))
+            times.append(least)
+            slot[there] = length - len(around)
+            length = slot[there] + 1
+        slot[first] = -1
+    return np.array(loop), np.array(start), np.array(times)

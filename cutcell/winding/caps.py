@@ -51,6 +51,7 @@ class Caps(NamedTuple):
 
 def smallest_caps(vertices: NDArray[np.float64], boundary: Boundary) -> Caps:
     """Close a mesh in the unit cube by fans or, if their area is smaller, strips between rims."""
+    boundary = boundary.unrolled
     caps = cap_holes(vertices, boundary)
     if len(boundary.loop) == 0:
         return caps
@@ -59,8 +60,9 @@ def smallest_caps(vertices: NDArray[np.float64], boundary: Boundary) -> Caps:
 
 def cap_holes(vertices: NDArray[np.float64], boundary: Boundary) -> Caps:
     """Close a mesh of vertices (n, 3) that has this boundary by a fan for each of its loops."""
-    apex, middles, faces = _fans(vertices, *boundary)
-    return Caps(np.concatenate([vertices, middles]), faces, *boundary, apex)
+    loop, start, _ = boundary.unrolled
+    apex, middles, faces = _fans(vertices, loop, start)
+    return Caps(np.concatenate([vertices, middles]), faces, loop, start, apex)
 
 
 def _strips(vertices: NDArray[np.float64], boundary: Boundary) -> Boundary:
@@ -87,11 +89,10 @@ def _strips(vertices: NDArray[np.float64], boundary: Boundary) -> Boundary:
     key, index = np.unique(side, return_inverse=True)
     incidence = np.bincount(index, np.sign(to_b - to_a)).astype(np.int32)
     edges = np.stack(np.divmod(key, len(vertices)), axis=1).astype(np.int32)
-    left = boundary_of(edges, incidence)
-    return Boundary(
-        np.concatenate([corners[is_corner], left.loop]),
-        np.concatenate([start, start[-1] + left.start[1:]]),
-    )
+    left = boundary_of(edges, incidence).unrolled
+    start = np.concatenate([start, start[-1] + left.start[1:]])
+    loop = np.concatenate([corners[is_corner], left.loop])
+    return Boundary(loop, start, np.ones(len(start) - 1, np.int64))
 
 
 def _area(caps: Caps) -> float:

@@ -99,6 +99,19 @@ def test_boundary_of_a_closed_mesh_is_empty_and_of_a_hole_its_rim():
     assert len(np.unique(rim.loop)) == 4
 
 
+def test_the_rim_of_copies_is_one_loop_run_around_several_times():
+    vertices, faces = meshes.box()
+    opened, once = faces[2:], faces[[4]]
+    rim = find_boundary(np.concatenate([np.tile(opened, (5, 1)), once]))
+    assert sorted(rim.times.tolist()) == [1, 5]
+    assert np.diff(rim.unrolled.start).tolist() == np.repeat(np.diff(rim.start), rim.times).tolist()
+    points = np.random.default_rng(5).uniform(-0.2, 1.2, (50, 3))
+    copies = np.concatenate([np.tile(opened, (5, 1)), once])
+    expected = naive.winding_number(vertices, copies, points)
+    found = winding_number(TriangleMesh(vertices, copies), points)
+    np.testing.assert_allclose(found, expected, atol=1e-12)
+
+
 @pytest.mark.parametrize("points", [np.zeros(3), np.zeros((2, 2)), [[0, 0, np.nan]]])
 def test_points_of_another_shape_are_refused(points):
     with pytest.raises(ParameterError, match="points must"):
