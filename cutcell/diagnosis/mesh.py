@@ -75,7 +75,7 @@ def _inverted(subject: Subject) -> Iterator[Finding]:
 
 
 def _open(subject: Subject) -> Iterator[Finding]:
-    loop, start = subject.boundary
+    loop, start, _ = subject.boundary
     if not len(loop):
         return
     lengths = np.diff(start)

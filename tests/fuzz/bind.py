@@ -133,7 +133,7 @@ def options_of(rng: Generator) -> dict[str, Any]:
         options[name] = NUMBERS[rng.integers(len(NUMBERS))](options[name])
     if rng.random() < 0.1:
         options[str(rng.choice(list(OPTIONS)))] = ODD[rng.integers(len(ODD))]
-    if options.get("falloff", "rig") == "rig":
+    if str(options.get("falloff")) != "paper":
         options.pop("alpha", None)  # it has no effect, and every case that names it is refused
     return options
 
