@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import reduce
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,6 +31,8 @@ GRAVE = 3.0
 way that no animation asks of it."""
 MOVES = 1e-3
 """A vertex that follows a joint less does not count as moved by it."""
+ALL = 1 - 1e-9
+"""A vertex that follows a joint as much follows it wholly."""
 MOST_LINES = 40
 
 
@@ -62,38 +65,66 @@ def _poses(subject: Subject, weights: NDArray[np.float64]) -> Iterator[_Seen]:
     total = weights.sum(axis=1, keepdims=True)
     held = (weights / np.where(total > 0, total, 1))[first]
     joints = subject.graph.lattice.to_unit(skeleton.joints)
-    a, b = subject.edges.edges.T
-    length = np.linalg.norm(points[a] - points[b], axis=1)
+    edges = subject.edges.edges
+    length = _lengths(points[edges])
     at_first = normals(points[faces])
     area = np.linalg.norm(at_first, axis=1).sum()
-    volume = _Volume(subject)
-    at_rest = volume.of(points)
-    for j in range(len(joints)):
+    closed = _closed_faces(subject)
+    volume = _volume(points[closed])
+    turns = [(axis, way, axis_rotation(axis, way)) for axis in "xyz" for way in (DEGREES, -DEGREES)]
+    for j, joint in enumerate(joints):
         moved = held[:, skeleton.subtree[j]].sum(axis=1)
         if not ((moved > MOVES) & (moved < 1 - MOVES)).any():
             continue  # all moves as one, or nothing does
-        unlike = np.flatnonzero(np.ptp(moved[faces], axis=1) > MOVES)
-        bent = np.flatnonzero(np.abs(moved[a] - moved[b]) > MOVES)
-        around = faces[unlike]
-        before = at_first[unlike]
-        for axis in "xyz":
-            for degrees in (DEGREES, -DEGREES):
-                turn = axis_rotation(axis, degrees)
-                posed = points + moved[:, None] * ((points - joints[j]) @ (turn - np.eye(3)).T)
-                longer = np.linalg.norm(posed[a[bent]] - posed[b[bent]], axis=1) - length[bent]
-                torn = (longer > SEEN) & (longer > (STRETCH - 1) * length[bent])
-                after = normals(posed[around])
-                follow = moved[around].mean(axis=1)[:, None]
-                expected = before + follow * (before @ turn.T - before)
-                over = (after * expected).sum(axis=1) < 0
-                yield _Seen(
-                    Pose(j, axis, degrees),
-                    np.unique([a[bent[torn]], b[bent[torn]]]),
-                    float(longer[torn].max(initial=0)),
-                    unlike[over],
-                    float(np.linalg.norm(before[over], axis=1).sum() / area),
-                    1 - volume.of(posed) / at_rest if at_rest > 0 else 0.0,
-                )
+        low, high = _extremes(moved, edges)
+        bent = np.flatnonzero(high - low > MOVES)
+        low, high = _extremes(moved, faces)
+        unlike = np.flatnonzero(high - low > MOVES)
+        # What follows wholly turns about the joint, which changes no volume seen from there.
+        low, high = _extremes(moved, closed)
+        changing = closed[(high > 0) & (low < ALL)]
+        before, around, apart = at_first[unlike], faces[unlike], edges[bent]
+        follow = moved[around].mean(axis=1)[:, None]
+        arms = points - joint
+        enclosed = _volume(arms[changing])
+        for axis, degrees, turn in turns:
+            posed = arms + moved[:, None] * (arms @ (turn - np.eye(3)).T)
+            longer = _lengths(posed[apart]) - length[bent]
+            torn = (longer > SEEN) & (longer > (STRETCH - 1) * length[bent])
+            expected = before + follow * (before @ turn.T - before)
+            over = np.einsum("ij,ij->i", normals(posed[around]), expected) < 0
+            yield _Seen(
+                Pose(j, axis, degrees),
+                np.unique(apart[torn]),
+                float(longer[torn].max(initial=0)),
+                unlike[over],
+                float(np.linalg.norm(before[over], axis=1).sum() / area),
+                (enclosed - _volume(posed[changing])) / volume if volume > 0 else 0.0,
+            )
+
+
+def _extremes(values: NDArray, rows: NDArray) -> tuple[NDArray, NDArray]:
+    """Return the least and the largest value at the vertices of each edge or face."""
+    columns = [values[column] for column in rows.T]
+    return reduce(np.minimum, columns), reduce(np.maximum, columns)
+
+
+def _lengths(ends: NDArray[np.float64]) -> NDArray[np.float64]:
+    along = ends[:, 0] - ends[:, 1]
+    return np.sqrt(np.einsum("ij,ij->i", along, along))
+
+
+def _closed_faces(subject: Subject) -> NDArray[np.int32]:
+    """Return the faces of components without a rim, facing outward."""
+    is_open = np.zeros(subject.component.max() + 1, np.bool_)
+    is_open[subject.component[subject.boundary.loop]] = True
+    faces = subject.graph.faces[subject.whole]
+    return faces[~is_open[subject.component[faces[:, 0]]]]
+
+
+def _volume(corners: NDArray[np.float64]) -> float:
+    """Return six times the volume between triangles, shape (m, 3, 3), and the origin."""
+    return float(np.einsum("ij,ij->", corners[:, 0], normals(corners)))
 
 
 def _stretched(subject: Subject, found: list[_Seen]) -> Iterator[Finding]:
@@ -170,18 +201,3 @@ def _lines(subject: Subject, found: list[_Seen], told: Callable[[_Seen], str]) -
         name = shown_name(subject.rig.skeleton.names[seen.pose.joint])
         best.setdefault(seen.pose.joint, f"{name}: {told(seen)}, about {seen.pose.axis}")
     return tuple(best.values())[:MOST_LINES]
-
-
-class _Volume:
-    """The volume that the closed components of a mesh enclose, in any pose."""
-
-    def __init__(self, subject: Subject) -> None:
-        is_open = np.zeros(subject.component.max() + 1, np.bool_)
-        is_open[subject.component[subject.boundary.loop]] = True
-        faces = subject.graph.faces[subject.whole]
-        self._faces = faces[~is_open[subject.component[faces[:, 0]]]]
-
-    def of(self, points: NDArray[np.float64]) -> float:
-        """Return it, times six, for welded vertices (k, 3); 0 if no component is closed."""
-        a, b, c = points[self._faces].transpose(1, 0, 2)
-        return float(np.einsum("ij,ij->", a, np.cross(b, c)))
