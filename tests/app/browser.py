@@ -43,6 +43,13 @@ SETTLED = """async (limit) => {
   return true
 }"""
 
+# One sample a pixel in place of four: most of what software rendering does would be to smooth edges.
+ONE_SAMPLE = """
+  WebGL2RenderingContext.prototype.renderbufferStorageMultisample = function (to, n, ...rest) {
+    this.renderbufferStorage(to, ...rest)
+  }
+"""
+
 # A vertex of the body for which something holds, and where a click means it.
 IN_SIGHT = """(code) => {
   const view = window.__cutcell
@@ -136,6 +143,7 @@ class Visit:
             **{"viewport": {"width": 1100, "height": 720}, "accept_downloads": True, **context}
         )
         self.context.set_default_timeout(LOAD_MS)
+        self.context.add_init_script(ONE_SAMPLE)
         self.page: Page = self.context.new_page()
         self.requests: list[str] = []
         self.complaints: list[str] = []
