@@ -1,5 +1,6 @@
 """Compile all functions of a binding at once, so that no character waits for one of them."""
 
+import gc
 import logging
 import subprocess
 import sys
@@ -30,10 +31,11 @@ def warm_up() -> None:
     """
     global _is_warm
     is_complete = compile_cache.is_complete()
-    with nullcontext() if is_complete else _beside("compile_after_graph"):
-        graphs = [build_graph(tube(), 8, connectivity=kind) for kind in ("any", 26)]
-    for graph in graphs:
-        _compile_after(graph)
+    with nullcontext() if is_complete else _without_garbage_collection():
+        with nullcontext() if is_complete else _beside("compile_after_graph"):
+            graphs = [build_graph(tube(), 8, connectivity=kind) for kind in ("any", 26)]
+        for graph in graphs:
+            _compile_after(graph)
     _is_warm = True
     if not is_complete:
         compile_cache.mark_complete()
@@ -47,7 +49,20 @@ def warm_up() -> None:
 
 def compile_after_graph() -> None:
     """Compile what a binding needs once it has its graph, which takes about as long as that."""
-    _compile_after(block_graph())
+    with _without_garbage_collection():
+        _compile_after(block_graph())
+
+
+@contextmanager
+def _without_garbage_collection() -> Iterator[None]:
+    """Do not look for garbage: a compiler makes millions of objects, and looks every moment."""
+    was_enabled = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if was_enabled:
+            gc.enable()
 
 
 def _compile_after(graph: CutCellGraph) -> None:
