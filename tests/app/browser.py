@@ -43,7 +43,7 @@ SETTLED = """async (limit) => {
   return true
 }"""
 
-# One sample a pixel in place of four: most of what software rendering does would be to smooth edges.
+# One sample a pixel, not four: smooth edges take software rendering longer than all the rest.
 ONE_SAMPLE = """
   WebGL2RenderingContext.prototype.renderbufferStorageMultisample = function (to, n, ...rest) {
     this.renderbufferStorage(to, ...rest)
