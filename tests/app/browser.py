@@ -68,10 +68,11 @@ IN_SIGHT = """(code) => {
   }
 }"""
 
-AT_FIRST_SIGHT = """(button, limit) => new Promise((seen, missed) => {
+AT_FIRST_SIGHT = """(buttons, limit) => new Promise((seen, missed) => {
   const end = performance.now() + limit
   const look = () => {
-    if (button.getClientRects().length && getComputedStyle(button).visibility === "visible") {
+    const button = buttons.find((one) => one.checkVisibility({visibilityProperty: true}))
+    if (button) {
       seen(button.click())
     } else if (performance.now() > end) {
       missed(new Error("the button never shows"))
@@ -81,6 +82,7 @@ AT_FIRST_SIGHT = """(button, limit) => new Promise((seen, missed) => {
   }
   look()
 })"""
+
 
 SAME_RIG = """query => {
   const [now, then] = [location.search, query].map((said) => new URLSearchParams(said).get("rig"))
@@ -256,7 +258,8 @@ class Visit:
 
     def click_when_seen(self, name: str) -> None:
         """Press a button in the first frame that shows it: it may be there for a moment only."""
-        self.button(name).evaluate(AT_FIRST_SIGHT, LOAD_MS)
+        hidden = self.page.get_by_role("button", name=name, exact=True, include_hidden=True)
+        hidden.evaluate_all(AT_FIRST_SIGHT, LOAD_MS)
 
     def panel(self, title: str) -> None:
         """Choose a panel."""
