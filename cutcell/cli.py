@@ -20,6 +20,8 @@ from . import (
 )
 from .bind_command import EPILOG as BIND_EPILOG
 from .bind_command import bind
+from .clean_command import EPILOG as CLEAN_EPILOG
+from .clean_command import clean
 from .console import for_people, print_json, print_warnings, progress_bars
 from .dataset_command import dataset
 from .diagnose_command import EPILOG as DIAGNOSE_EPILOG
@@ -71,6 +73,7 @@ def cutcell(
 
 
 app.command(epilog=BIND_EPILOG)(bind)
+app.command(epilog=CLEAN_EPILOG)(clean)
 app.command(epilog=GRAPH_EPILOG)(graph)
 
 
