@@ -37,6 +37,20 @@ def test_gvb(document, tmp_path, capsys):
     assert plot.stat().st_size > 10_000
 
 
+def test_coarse_against_fine(capsys, monkeypatch):
+    monkeypatch.setattr(gvb, "COARSE", 8)
+    monkeypatch.setattr(gvb, "FINE", 16)
+    gvb.main([DEMO, "--resolutions", "8", "16"])
+    tables = read_tables(capsys.readouterr().out)
+    (rows,) = [rows for title, rows in tables.items() if title.startswith("R = 8 against")]
+    assert [row["rig"] for row in rows] == ["rabbit", "ahead of voxel", "ahead of voxel_unirig"]
+    ours, theirs = (
+        np.array(rows[0][head].split(" / "), float) for head in ("cutcell_any, 8", "voxel, 16")
+    )
+    assert rows[1]["cutcell_any, 8"] == " / ".join(str(int(less)) for less in ours < theirs)
+    assert rows[1]["voxel, 16"] == "of 1"
+
+
 def test_runtime(document, tmp_path, capsys):
     plot = tmp_path / "runtime.png"
     given = [DEMO, "--resolutions", "8", "16", "--repeats", "1", "--out", str(document)]
