@@ -226,7 +226,7 @@ def near_table(rigs: dict[str, Rig], nears: Sequence[float], resolution: int) ->
         found = [measure(rig, name, resolution, DAMAGES) for name, rig in rigs.items()]
         worst = max(found, key=lambda one: one.changed)
         after = [
-            np.mean([one.errors[kind][2] for one in found if kind in one.errors])
+            np.mean([one.errors[kind][2] for one in found if kind in one.errors] or [np.nan])
             for kind in DAMAGES
         ]
         over = sum(one.changed >= ALLOWED for one in found)

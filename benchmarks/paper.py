@@ -2,9 +2,9 @@
 
     python -m benchmarks.paper [PART...] [--rigs RIG...]
 
-Parts: construction, runtime, optimisation, gvb, deformation; all when none is named, which takes
-an hour, most of it meshers and solvers. Each part but the last is a script of its own, run here
-with the options that the documents were printed with.
+Parts: construction, runtime, optimisation, gvb, deformation, unreachable; all when none is named,
+which takes an hour or two, most of it meshers and solvers. The first four are scripts of their own,
+run here with the options that the documents were printed with.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ import numpy as np
 
 import cutcell
 from cutcell.baselines import METHODS
+from cutcell.geodesics.fallback import UNREACHED
 from cutcell.metrics import TURNED, deformation_error
 
 from . import graph_construction, gvb, optimisation, runtime
@@ -70,6 +71,24 @@ def deformation_table(groups: dict[str, Sequence[Path]]) -> Table:
     return table
 
 
+def unreachable_table(groups: dict[str, Sequence[Path]]) -> Table:
+    """Count the vertices that no path reaches."""
+    columns = ["set", "characters", "with any", "largest share", "of"]
+    note = "R = 64, the paper's method: vertices with paths from no bone, of all of a character."
+    table = Table("Vertices that no path reaches", columns, note)
+    for group, paths in groups.items():
+        shares = {}
+        for path in paths:
+            rig = cutcell.load(path)
+            graph = cutcell.build_graph(rig.mesh, method="paper")
+            distances = cutcell.bone_distances(graph, rig.skeleton, method="paper")
+            shares[rig.name] = float((distances.fallback == UNREACHED).mean())
+        worst = max(shares, key=lambda name: shares[name])
+        some = sum(share > 0 for share in shares.values())
+        table.add(group, len(shares), some, f"{shares[worst]:.1%}", worst)
+    return table
+
+
 def construction(rigs: Sequence[Path]) -> None:
     """Print the paper's table of graph construction."""
     graph_construction.main([*map(str, rigs or _small()), "--limit", "120", "--out", str(PAPER)])
@@ -92,10 +111,21 @@ def over_resolution(rigs: Sequence[Path]) -> None:
 
 def deformation(rigs: Sequence[Path]) -> None:
     """Print the deformation error both ways."""
-    groups = {"named": rigs} if rigs else {group: files_of(group) for group in SETS}
-    text = deformation_table(groups).markdown()
-    print(text)
-    fill(PAPER, {"deformation": text})
+    _print("deformation", deformation_table(_groups(rigs)))
+
+
+def unreachable(rigs: Sequence[Path]) -> None:
+    """Print how many vertices no path reaches."""
+    _print("unreachable", unreachable_table(_groups(rigs)))
+
+
+def _groups(rigs: Sequence[Path]) -> dict[str, Sequence[Path]]:
+    return {"named": rigs} if rigs else {group: files_of(group) for group in SETS}
+
+
+def _print(name: str, table: Table) -> None:
+    print(table.markdown())
+    fill(PAPER, {name: table.markdown()})
 
 
 PARTS: dict[str, Callable[[Sequence[Path]], None]] = {
@@ -104,6 +134,7 @@ PARTS: dict[str, Callable[[Sequence[Path]], None]] = {
     "optimisation": solvers,
     "gvb": over_resolution,
     "deformation": deformation,
+    "unreachable": unreachable,
 }
 
 

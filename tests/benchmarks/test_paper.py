@@ -6,7 +6,16 @@ import numpy as np
 import pytest
 
 import cutcell
-from benchmarks import crosstalk, graph_construction, gvb, leaks, optimisation, runtime
+from benchmarks import (
+    clean,
+    crosstalk,
+    graph_construction,
+    gvb,
+    leaks,
+    optimisation,
+    paper,
+    runtime,
+)
 from benchmarks.rigs import ROOT
 from tests.bars import bar
 from tests.benchmarks.markdown import read_tables
@@ -18,7 +27,8 @@ DEMO = str(ROOT / "assets" / "rabbit.glb")
 def document(tmp_path):
     """Make a document with marks for every table."""
     path = tmp_path / "paper.md"
-    names = ("gvb", "runtime", "optimisation", "construction", "leaks", "crosstalk")
+    names = ("gvb", "runtime", "optimisation", "construction", "leaks", "crosstalk", "clean")
+    names += ("deformation", "unreachable")
     path.write_text("".join(f"<!-- {name} -->\n<!-- /{name} -->\n" for name in names))
     return path
 
@@ -126,3 +136,43 @@ def test_without_rigs_there_is_nothing_to_do(script, tmp_path, monkeypatch):
     monkeypatch.setattr(script, "SHARED", tmp_path)
     with pytest.raises(SystemExit, match="there are no rigs"):
         script.main([])
+
+
+def test_parts_of_the_paper(document, tmp_path, capsys, monkeypatch):
+    """The middle joint of the bar carries no weight: turning all joints is another measure."""
+    rig = bar(6)
+    far = rig.mesh.vertices[:, 0] > 0.5
+    weights = np.stack([~far, far], axis=1).astype(float)
+    skeleton = cutcell.Skeleton(
+        [[0.1, 0.1, 0.1], [0.5, 0.1, 0.1], [0.9, 0.1, 0.1]], [-1, 0, 1], deform=[True, False, True]
+    )
+    path = tmp_path / "bar.npz"
+    columns = np.insert(weights, 1, 0.0, axis=1)
+    cutcell.save(path, cutcell.Rig(rig.mesh, skeleton, weights=columns))
+    monkeypatch.setattr(paper, "PAPER", document)
+    paper.main(["deformation", "unreachable", "--rigs", str(path)])
+    text = capsys.readouterr().out
+    both, lost = read_tables(text).values()
+    assert [row["method"] for row in both] == list(paper.SIDES)
+    assert all(float(row["mean all"]) > float(row["mean deform"]) for row in both)
+    assert both[0]["joints turned: deform, all"] == "2, 3"
+    assert lost[0]["with any"] == "0"
+    assert all(part.strip() in document.read_text() for part in text.split("\n\n")[:2])
+    with pytest.raises(SystemExit):
+        paper.main(["wishes"])
+
+
+def test_clean(document, capsys, monkeypatch):
+    monkeypatch.setattr(clean, "files_of", lambda group: [ROOT / "assets" / "biped.glb"])
+    clean.main(["rigs", "--resolution", "24", "--near", "3", "--out", str(document)])
+    text = capsys.readouterr().out
+    assert text[text.index("###") :].strip() in document.read_text()
+    own, kinds, near, each = read_tables(text[text.index("###") :]).values()
+    assert float(own[0]["L1 worst"]) < clean.ALLOWED
+    assert {row["weights"] for row in kinds} <= set(clean.KINDS)
+    for row in kinds:
+        assert float(row["after"]) < float(row["L1 before"])
+    assert float(near[0]["own, worst L1"]) == float(own[0]["L1 worst"])
+    assert [row["character"] for row in each] == ["biped"]
+    with pytest.raises(SystemExit):
+        clean.main(["wishes"])
