@@ -167,9 +167,9 @@ def error_table(groups: dict[str, list[Found]]) -> Table:
         "weights",
         "characters",
         "L1 before",
-        "after",
+        "L1 after",
         "cm² before",
-        "after ",
+        "cm² after",
         "worse",
     ]
     note = (
