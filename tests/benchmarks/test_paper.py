@@ -171,7 +171,8 @@ def test_clean(document, capsys, monkeypatch):
     assert float(own[0]["L1 worst"]) < clean.ALLOWED
     assert {row["weights"] for row in kinds} <= set(clean.KINDS)
     for row in kinds:
-        assert float(row["after"]) < float(row["L1 before"])
+        assert float(row["L1 after"]) < float(row["L1 before"])
+        assert float(row["cm² after"]) < float(row["cm² before"])
     assert float(near[0]["own, worst L1"]) == float(own[0]["L1 worst"])
     assert [row["character"] for row in each] == ["biped"]
     with pytest.raises(SystemExit):
