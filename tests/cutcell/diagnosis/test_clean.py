@@ -12,7 +12,7 @@ import cutcell
 from cutcell import Rig, TriangleMesh
 from cutcell.diagnosis.widest import connected_weights
 from cutcell.errors import SkeletonError, WeightsError
-from cutcell.metrics import weight_l1
+from cutcell.metrics import vertex_shares, weight_l1
 from cutcell_assets import demo_path
 from tests.cutcell.diagnosis.worm import worm
 
@@ -145,3 +145,11 @@ def test_a_rig_without_weights_or_joints_is_refused():
         cutcell.clean(replace(WORM, weights=None))
     with pytest.raises(SkeletonError):
         cutcell.clean(Rig(WORM.mesh, cutcell.Skeleton(np.empty((0, 3)), [], [])))
+
+
+def test_artists_weights_hardly_change(rigs):
+    for path in rigs:
+        rig = cutcell.load(path)
+        if len(rig.mesh.vertices) < 6000:
+            shares = vertex_shares(rig.mesh)
+            assert weight_l1(cutcell.clean(rig).weights, rig.weights, shares) < 0.01, path.stem
