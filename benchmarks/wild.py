@@ -73,8 +73,7 @@ def measure(rig: Rig, name: str, resolution: int) -> Result:
 def _score(rig: Rig, weights: np.ndarray) -> Score:
     assert rig.weights is not None
     shares = vertex_shares(rig.mesh, "welded")
-    every = np.arange(len(rig.skeleton.joints))
-    error = deformation_error(rig, weights, rig.weights, joints=every)
+    error = deformation_error(rig, weights, rig.weights, joints="all")
     followed = (weights >= SOME).sum(axis=1) @ shares / shares.sum()
     return Score(weight_l1(weights, rig.weights, shares), error.mean, float(followed))
 

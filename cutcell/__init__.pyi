@@ -22,8 +22,11 @@ from .corrections import PartCorrection as PartCorrection
 from .deform import DeformJoints as DeformJoints
 from .deform import choose_deform as choose_deform
 from .deform import deform_joints as deform_joints
+from .diagnosis import Cleaned as Cleaned
 from .diagnosis import Diagnosis as Diagnosis
 from .diagnosis import Finding as Finding
+from .diagnosis import JointLoss as JointLoss
+from .diagnosis import clean as clean
 from .diagnosis import diagnose as diagnose
 from .errors import Cancelled as Cancelled
 from .errors import CutcellError as CutcellError

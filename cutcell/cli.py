@@ -20,6 +20,8 @@ from . import (
 )
 from .bind_command import EPILOG as BIND_EPILOG
 from .bind_command import bind
+from .clean_command import EPILOG as CLEAN_EPILOG
+from .clean_command import clean
 from .console import for_people, print_json, print_warnings, progress_bars
 from .dataset_command import dataset
 from .diagnose_command import EPILOG as DIAGNOSE_EPILOG
@@ -33,6 +35,7 @@ from .joints_command import joints
 from .options import Json, Quiet, Resolution
 
 if TYPE_CHECKING:
+    from .metrics import Turned
     from .rig import Rig
 
 app = typer.Typer(
@@ -71,6 +74,7 @@ def cutcell(
 
 
 app.command(epilog=BIND_EPILOG)(bind)
+app.command(epilog=CLEAN_EPILOG)(clean)
 app.command(epilog=GRAPH_EPILOG)(graph)
 
 
@@ -95,6 +99,15 @@ def compare(
         ),
     ] = None,
     resolution: Resolution = 64,
+    turned: Annotated[
+        str,
+        typer.Option(
+            "--turned",
+            metavar="J",
+            help="Which joints the deformation error turns. deform: those that carry weight."
+            " all: every joint of the skeleton, as in the paper.",
+        ),
+    ] = "deform",
     markdown: Annotated[
         bool, typer.Option("--markdown", help="Print Markdown, with a table for each measure.")
     ] = False,
@@ -111,16 +124,20 @@ def compare(
 
     L1 is the paper's weight error, cm² its deformation error: the squared distance between
     the skins as joints turn by 30°, with the mesh scaled to one metre. Only joints to which
-    the artist gave weight take part. A method that fails on a rig says why; the others go on.
+    the artist gave weight take part; --turned all turns the others, too. A method that fails on
+    a rig says why; the others go on.
     """
+    from .checks import check_choice
     from .compare import compare as measure
     from .compare import comparison_markdown
     from .compare.plot import check_plot, plot_comparison
     from .compare.terminal import print_comparison
     from .io import load
+    from .metrics import TURNED
 
     if plot is not None:
         check_plot(plot)
+    which: Turned = check_choice("turned", turned, TURNED)
     names = None if methods is None else [name.strip() for name in methods.split(",")]
     warnings: list[str] = []
 
@@ -131,7 +148,9 @@ def compare(
             yield loaded
 
     with progress_bars(quiet) as progress:
-        comparison = measure(load_each(), names, resolution=resolution, progress=progress)
+        comparison = measure(
+            load_each(), names, resolution=resolution, turned=which, progress=progress
+        )
     if not quiet:
         print_warnings(warnings)
     if plot is not None:

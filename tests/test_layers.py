@@ -69,6 +69,7 @@ ORDER = [
         "console",
         "report",
         "bind_command",
+        "clean_command",
         "diagnose_command",
         "explain_command",
         "dataset_audit_command",

@@ -36,7 +36,7 @@ def test_the_examples_run(tmp_path, monkeypatch, capsys):
 def test_the_commands_run(tmp_path, monkeypatch):
     in_a_folder_of_its_own(tmp_path, monkeypatch)
     commands = re.findall(r"^cutcell (.*)$", README, re.MULTILINE)
-    assert len(commands) == 8
+    assert len(commands) == 9
     for command in commands:
         assert CliRunner().invoke(app, command.split()).exit_code == 0
 

@@ -56,6 +56,9 @@ def of_arrays(
 
 
 def look(rig: cutcell.Rig) -> list[str]:
+    cleaned = cutcell.clean(rig)
+    assert_type(cleaned, cutcell.Cleaned)
+    assert_type(cleaned.losses, tuple[cutcell.JointLoss, ...])
     diagnosis = cutcell.diagnose(rig)
     assert_type(diagnosis, cutcell.Diagnosis)
     findings: tuple[cutcell.Finding, ...] = diagnosis.findings

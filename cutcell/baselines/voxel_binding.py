@@ -21,6 +21,9 @@ NEAREST = 3
 UNIRIG_VOXEL_COST = 3.0
 """UniRig counts a step between voxels three times, and so prefers paths on the surface."""
 
+UNIRIG_REACH = 1.001
+"""Voxels: UniRig links a vertex with a voxel that is this near, and no farther one."""
+
 UNIRIG_SIDE = 2.0
 """UniRig scales the longest side of a mesh to 2, and its falloff takes these lengths as is."""
 
@@ -114,7 +117,7 @@ def voxel_distances(body: Body, run: Run | None = None) -> NDArray[np.float64]:
 
 def voxel_unirig(
     rig: Rig,
-    resolution: int = 64,
+    resolution: int = 196,
     *,
     alpha: float = 0.5,
     max_influences: int | None = None,
@@ -122,15 +125,17 @@ def voxel_unirig(
 ) -> BaselineBinding:
     """Bind as UniRig prepares its prior: joints as points, voxels and surface as one graph.
 
-    Solid voxels are linked to their 26 neighbours at three times the distance, vertices to
-    the voxels around them and along the mesh's edges; each joint starts at the nearest node.
-    Where no path leads from a joint, it counts as far as the farthest that one leads from.
+    Solid are the voxels of the surface, and those between its first and last voxel along at least
+    two axes. Each is linked to its six neighbours at three times the distance; a vertex to the
+    nearest voxel, if it is within the size of one, and along the mesh's edges. Each joint starts
+    at the nearest node. Where no path leads from a joint, it counts as far as the farthest that
+    one leads from.
 
     Parameters
     ----------
     rig : Rig
     resolution : int
-        R, voxels along the longest side, 2 to 1024.
+        R, voxels along the longest side, 2 to 1024; UniRig takes 196.
     alpha : float
         Smoothness of the falloff, 0 to 1, of distances in half longest sides.
     max_influences, threshold
@@ -148,14 +153,15 @@ def voxel_unirig(
 
     References
     ----------
-    Zhang et al. 2025 (UniRig).
+    Zhang et al. 2025 (UniRig); its published settings: grid 196, alpha 0.5, grid query 7 (a voxel
+    and its six neighbours), vertex query 1, grid weight 3.
     """
     method = PAPER.with_options(
         resolution=resolution, alpha=alpha, max_influences=max_influences, threshold=threshold
     )
 
     def solve(body: Body, run: Run) -> NDArray[np.float64]:
-        voxels = voxelize(body)
+        voxels = voxelize(body, fill="spans")
         links, lengths = _unirig_links(body, voxels)
         run.end("graph")
         nodes = np.concatenate([body.points, voxels.centres])
@@ -217,18 +223,15 @@ def _unreached(lost: NDArray[np.intp], body: Body) -> str:
 
 
 def _unirig_links(body: Body, voxels: Voxels) -> tuple[NDArray, NDArray]:
-    """Link voxels, vertices with the voxels around them, and vertices along edges."""
-    between, lengths = voxels.links()
+    """Link voxels, vertices with the nearest voxel, and vertices along edges."""
+    between, lengths = voxels.links(connectivity=6)
     count = len(body.points)
     ends = np.concatenate([body.faces[:, [0, 1]], body.faces[:, [1, 2]], body.faces[:, [2, 0]]])
     edges = np.unique(np.sort(ends, axis=1), axis=0)
-    reach = np.sqrt(3) / voxels.resolution * (1 + 1e-9)
-    near = cKDTree(body.points).sparse_distance_matrix(
-        cKDTree(voxels.centres), reach, output_type="coo_matrix"
-    )
     along = np.linalg.norm(body.points[edges[:, 0]] - body.points[edges[:, 1]], axis=1)
-    links = [between + count, edges, np.stack([near.row, near.col + count], axis=1)]
+    away, nearest = cKDTree(voxels.centres).query(body.points)
+    near = np.flatnonzero(away < UNIRIG_REACH / voxels.resolution)
     return (
-        np.concatenate(links),
-        np.concatenate([UNIRIG_VOXEL_COST * lengths, along, np.maximum(near.data, 1e-12)]),
+        np.concatenate([between + count, edges, np.stack([near, nearest[near] + count], axis=1)]),
+        np.concatenate([UNIRIG_VOXEL_COST * lengths, along, np.maximum(away[near], 1e-12)]),
     )

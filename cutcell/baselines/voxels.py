@@ -1,8 +1,9 @@
-"""Solid voxels: conservative voxelisation of the surface, then a flood from outside."""
+"""Solid voxels: conservative voxelisation of the surface, then what it encloses."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -52,11 +53,19 @@ class Voxels:
         cell = np.clip(cell, 0, self.resolution + 2 * PAD - 1)
         return self.number[tuple(np.moveaxis(cell, -1, 0))]
 
-    def links(self) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
-        """List neighbours that share a face, an edge or a corner: (e, 2), and distances (e,)."""
+    def links(
+        self, connectivity: Literal[6, 26] = 26
+    ) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
+        """List neighbours that share a face (6), or an edge or a corner too (26).
+
+        Returns
+        -------
+        arrays, shapes (e, 2) and (e,)
+            Each pair once, and the distances of their centres.
+        """
         pairs, lengths = [], []
         inner = self.number[1:-1, 1:-1, 1:-1]
-        for step in NEIGHBOURS:
+        for step in NEIGHBOURS[np.abs(NEIGHBOURS).sum(axis=1) <= (1 if connectivity == 6 else 3)]:
             shifted = np.roll(self.number, -step, axis=(0, 1, 2))[1:-1, 1:-1, 1:-1]
             both = (inner >= 0) & (shifted >= 0)
             pairs.append(np.stack([inner[both], shifted[both]], axis=1))
@@ -64,13 +73,16 @@ class Voxels:
         return np.concatenate(pairs), np.concatenate(lengths)
 
 
-def voxelize(body: Body) -> Voxels:
-    """Mark all voxels that the surface touches, and all that it shuts off from outside.
+def voxelize(body: Body, fill: Literal["flood", "spans"] = "flood") -> Voxels:
+    """Mark all voxels that the surface touches, and all that it encloses.
 
     Parameters
     ----------
     body : Body
         Its lattice says how many voxels: R along each side of the unit cube.
+    fill : {"flood", "spans"}
+        "flood": what a flood from outside does not reach. "spans": what lies between the first
+        and the last voxel of the surface along at least two of the three axes.
 
     Returns
     -------
@@ -78,18 +90,34 @@ def voxelize(body: Body) -> Voxels:
 
     References
     ----------
-    Dionne & de Lasa 2013, section 3.1; the test of triangle and box: Akenine-Möller 2001.
+    Dionne & de Lasa 2013, section 3.1; the test of triangle and box: Akenine-Möller 2001; spans:
+    Zhang et al. 2025 (UniRig).
     """
     resolution = body.lattice.resolution
     surface = np.zeros((resolution + 2 * PAD,) * 3, bool)
     mark_triangles(body.points[body.faces] * resolution + PAD, surface)
-    # Faces stop the flood, so it runs through sides of voxels only.
-    outside = label(~surface)[0]
-    solid = outside != outside[0, 0, 0]
+    solid = _not_flooded(surface) if fill == "flood" else surface | _in_two_spans(surface)
     number = np.full(solid.shape, -1, np.int32)
     number[solid] = np.arange(solid.sum())
     centres = (np.argwhere(solid) - PAD + 0.5) / resolution
     return Voxels(solid, number, centres, resolution)
+
+
+def _not_flooded(surface: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    # Faces stop the flood, so it runs through sides of voxels only.
+    outside = label(~surface)[0]
+    solid: NDArray[np.bool_] = outside != outside[0, 0, 0]
+    return solid
+
+
+def _in_two_spans(surface: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    count = np.zeros(surface.shape, np.int8)
+    for axis in range(3):
+        begun = np.logical_or.accumulate(surface, axis=axis)
+        ahead = np.flip(np.logical_or.accumulate(np.flip(surface, axis), axis=axis), axis)
+        count += begun & ahead
+    between: NDArray[np.bool_] = count >= 2
+    return between
 
 
 @compiled

@@ -15,6 +15,8 @@ from ..checks import check_choice, check_has_joints
 from ..errors import Cancelled, CutcellError, ParameterError, WeightsError
 from ..graph import build_graph
 from ..metrics import (
+    TURNED,
+    Turned,
     clip_error,
     crosstalk,
     deformation_error,
@@ -38,6 +40,7 @@ def compare(
     *,
     resolution: int = 64,
     max_influences: int | None = None,
+    turned: Turned = "deform",
     progress: Progress = silent,
 ) -> Comparison:
     """Bind every rig by every method and measure all against the rigs' own weights.
@@ -53,6 +56,8 @@ def compare(
         R, for the methods that have a lattice.
     max_influences : int or None
         Joints a vertex may follow; None for no limit.
+    turned : {"deform", "all"}
+        Which joints the deformation error turns; see `deformation_error`.
     progress : callable
         See `cutcell.progress`; each rig is a stage.
 
@@ -68,7 +73,8 @@ def compare(
         A rig without joints or without weights.
     """
     chosen = _chosen(methods, {"resolution": resolution, "max_influences": max_influences})
-    scores = [_compare_rig(rig, chosen, progress) for rig in rigs]
+    check_choice("turned", turned, TURNED)
+    scores = [_compare_rig(rig, chosen, turned, progress) for rig in rigs]
     if not scores:
         raise ParameterError("there are no rigs to compare methods on")
     return Comparison(tuple(scores), tuple(chosen))
@@ -94,7 +100,9 @@ def _chosen(
     return chosen
 
 
-def _compare_rig(rig: Rig, methods: Mapping[str, Baseline], progress: Progress) -> RigScore:
+def _compare_rig(
+    rig: Rig, methods: Mapping[str, Baseline], turned: Turned, progress: Progress
+) -> RigScore:
     check_has_joints(rig.skeleton)
     if rig.weights is None:
         raise WeightsError(f'rig "{rig.name}" has no weights of its own to compare with')
@@ -105,7 +113,7 @@ def _compare_rig(rig: Rig, methods: Mapping[str, Baseline], progress: Progress) 
     for done, (name, method) in enumerate(methods.items()):
         progress(rig.name, (done + 1) / (len(methods) + 1))
         found = _attempt(method, rig)
-        scores.append(_score(name, rig, found, share, gaps))
+        scores.append(_score(name, rig, found, share, gaps, turned))
     progress(rig.name, 1.0)
     joints = int(rig.skeleton.deform.sum())
     counts = (len(rig.mesh.vertices), joints, len(rig.clips), len(gaps))
@@ -130,12 +138,13 @@ def _score(
     found: BaselineBinding,
     share: NDArray[np.float64],
     gaps: NDArray[np.int32],
+    turned: Turned,
 ) -> MethodScore:
     seconds = float(sum(found.seconds.values()))
     if found.weights is None or rig.weights is None:
         return MethodScore(name, found.failed, seconds=seconds, warnings=found.warnings)
     precision, recall = precision_recall(found.weights, rig.weights, shares=share)
-    error = deformation_error(rig, found.weights, rig.weights)
+    error = deformation_error(rig, found.weights, rig.weights, joints=turned)
     clips = [clip.largest for clip in clip_error(rig, found.weights, rig.weights)]
     return MethodScore(
         name,

@@ -23,7 +23,7 @@ class MethodScore:
     l1, precision, recall
         Of the weights; see `cutcell.metrics`.
     deformation : float
-        cm², every joint turned by 30°.
+        cm², joints turned by 30°.
     clips : float
         The same over the file's own clips, their mean.
     unweighted : float

@@ -1,5 +1,6 @@
 """What is wrong with a rig: checks that name the elements at fault, and repairs."""
 
+from .cleaning import Cleaned, JointLoss, clean
 from .finding import SEVERITIES, TITLES, Diagnosis, Finding, Pose
 from .repair import Repaired
 from .run import diagnose, unreadable
@@ -7,10 +8,13 @@ from .run import diagnose, unreadable
 __all__ = [
     "SEVERITIES",
     "TITLES",
+    "Cleaned",
     "Diagnosis",
     "Finding",
+    "JointLoss",
     "Pose",
     "Repaired",
+    "clean",
     "diagnose",
     "unreadable",
 ]

@@ -120,7 +120,7 @@ def _torn(subject: Subject, weights: NDArray[np.float64]) -> Iterator[Finding]:
 def _leaked(
     subject: Subject, distances: BoneDistances, weights: NDArray[np.float64]
 ) -> Iterator[Finding]:
-    vertex, joint = np.nonzero((weights > NOTICED) & _told(subject, distances))
+    vertex, joint = np.nonzero((weights > NOTICED) & measurable(subject, distances))
     asked = distances.fallback[vertex] == REACHED
     vertex, joint = vertex[asked], joint[asked]
     nearest = distances.joint.min(axis=0)
@@ -154,7 +154,7 @@ def _leaked(
     )
 
 
-def _told(subject: Subject, distances: BoneDistances) -> NDArray[np.bool_]:
+def measurable(subject: Subject, distances: BoneDistances) -> NDArray[np.bool_]:
     """Tell from which joints ways through the body are known, shape (j,)."""
     told = np.zeros(len(subject.joint_distance), bool)
     told[distances.bones.joint] = True

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..checks import check_has_joints, check_number
+from ..checks import check_choice, check_has_joints, check_number
 from ..errors import ParameterError, WeightsError
 from ..progress import Progress, silent
 from ..rig import Rig, Skeleton, TriangleMesh
@@ -15,6 +16,9 @@ from .counting import vertex_shares
 from .weight_error import checked_pair
 
 AXES = ("x", "y", "z")
+Turned = Literal["deform", "all"]
+TURNED: tuple[Turned, ...] = get_args(Turned)
+"""Which joints are turned, by a word."""
 CM2 = 1e4
 """Square centimetres in a square metre: the longest side of a mesh counts as 1 m."""
 BLOCK_NUMBERS = 1 << 20
@@ -91,7 +95,7 @@ def deformation_error(
     reference: ArrayLike,
     degrees: float = 30.0,
     *,
-    joints: ArrayLike | None = None,
+    joints: Turned | ArrayLike = "deform",
     count: str = "welded",
     progress: Progress = silent,
 ) -> DeformationError:
@@ -111,8 +115,9 @@ def deformation_error(
         Rows sum to one, or to zero.
     degrees : float
         θ, how far each joint turns, 0 to 180.
-    joints : array_like of int, optional
-        The joints to turn; those that may carry weight (`Skeleton.deform`) when left out.
+    joints : {"deform", "all"} or array_like of int
+        The joints to turn. "deform": those that may carry weight (`Skeleton.deform`). "all": every
+        joint of the skeleton, as in the paper. Else their numbers.
     count : {"welded", "vertices"}
         See `vertex_shares`.
     progress : callable
@@ -129,7 +134,7 @@ def deformation_error(
     WeightsError
         Weights that do not fit the rig or each other.
     ParameterError
-        An angle out of range, or joints that the skeleton does not have.
+        An angle out of range, an unknown word, or joints that the skeleton does not have.
 
     References
     ----------
@@ -194,9 +199,10 @@ def longest_side(mesh: TriangleMesh) -> float:
     return float((high - low).max())
 
 
-def _checked_joints(joints: ArrayLike | None, skeleton: Skeleton) -> NDArray[np.intp]:
-    if joints is None:
-        return np.flatnonzero(skeleton.deform)
+def _checked_joints(joints: Turned | ArrayLike, skeleton: Skeleton) -> NDArray[np.intp]:
+    if isinstance(joints, str):
+        every = check_choice("joints", joints, TURNED) == "all"
+        return np.flatnonzero(skeleton.deform | every)
     turned = np.atleast_1d(np.asarray(joints))
     whole = np.issubdtype(turned.dtype, np.integer) and turned.ndim == 1 and turned.size > 0
     if not whole or turned.min() < 0 or turned.max() >= len(skeleton.joints):

@@ -6,7 +6,16 @@ import numpy as np
 import pytest
 
 import cutcell
-from benchmarks import crosstalk, graph_construction, gvb, leaks, optimisation, runtime
+from benchmarks import (
+    clean,
+    crosstalk,
+    graph_construction,
+    gvb,
+    leaks,
+    optimisation,
+    paper,
+    runtime,
+)
 from benchmarks.rigs import ROOT
 from tests.bars import bar
 from tests.benchmarks.markdown import read_tables
@@ -18,7 +27,8 @@ DEMO = str(ROOT / "assets" / "rabbit.glb")
 def document(tmp_path):
     """Make a document with marks for every table."""
     path = tmp_path / "paper.md"
-    names = ("gvb", "runtime", "optimisation", "construction", "leaks", "crosstalk")
+    names = ("gvb", "runtime", "optimisation", "construction", "leaks", "crosstalk", "clean")
+    names += ("deformation", "unreachable")
     path.write_text("".join(f"<!-- {name} -->\n<!-- /{name} -->\n" for name in names))
     return path
 
@@ -35,6 +45,20 @@ def test_gvb(document, tmp_path, capsys):
     assert all("**" in "".join(row[name] for name in gvb.SIDES) for row in rows)
     assert len(tables["Cost over R"]) == 2
     assert plot.stat().st_size > 10_000
+
+
+def test_coarse_against_fine(capsys, monkeypatch):
+    monkeypatch.setattr(gvb, "COARSE", 8)
+    monkeypatch.setattr(gvb, "FINE", 16)
+    gvb.main([DEMO, "--resolutions", "8", "16"])
+    tables = read_tables(capsys.readouterr().out)
+    (rows,) = [rows for title, rows in tables.items() if title.startswith("R = 8 against")]
+    assert [row["rig"] for row in rows] == ["rabbit", "ahead of voxel", "ahead of voxel_unirig"]
+    ours, theirs = (
+        np.array(rows[0][head].split(" / "), float) for head in ("cutcell_any, 8", "voxel, 16")
+    )
+    assert rows[1]["cutcell_any, 8"] == " / ".join(str(int(less)) for less in ours < theirs)
+    assert rows[1]["voxel, 16"] == "of 1"
 
 
 def test_runtime(document, tmp_path, capsys):
@@ -112,3 +136,44 @@ def test_without_rigs_there_is_nothing_to_do(script, tmp_path, monkeypatch):
     monkeypatch.setattr(script, "SHARED", tmp_path)
     with pytest.raises(SystemExit, match="there are no rigs"):
         script.main([])
+
+
+def test_parts_of_the_paper(document, tmp_path, capsys, monkeypatch):
+    """The middle joint of the bar carries no weight: turning all joints is another measure."""
+    rig = bar(6)
+    far = rig.mesh.vertices[:, 0] > 0.5
+    weights = np.stack([~far, far], axis=1).astype(float)
+    skeleton = cutcell.Skeleton(
+        [[0.1, 0.1, 0.1], [0.5, 0.1, 0.1], [0.9, 0.1, 0.1]], [-1, 0, 1], deform=[True, False, True]
+    )
+    path = tmp_path / "bar.npz"
+    columns = np.insert(weights, 1, 0.0, axis=1)
+    cutcell.save(path, cutcell.Rig(rig.mesh, skeleton, weights=columns))
+    monkeypatch.setattr(paper, "PAPER", document)
+    paper.main(["deformation", "unreachable", "--rigs", str(path)])
+    text = capsys.readouterr().out
+    both, lost = read_tables(text).values()
+    assert [row["method"] for row in both] == list(paper.SIDES)
+    assert all(float(row["mean all"]) > float(row["mean deform"]) for row in both)
+    assert both[0]["joints turned: deform, all"] == "2, 3"
+    assert lost[0]["with any"] == "0"
+    assert all(part.strip() in document.read_text() for part in text.split("\n\n")[:2])
+    with pytest.raises(SystemExit):
+        paper.main(["wishes"])
+
+
+def test_clean(document, capsys, monkeypatch):
+    monkeypatch.setattr(clean, "files_of", lambda group: [ROOT / "assets" / "biped.glb"])
+    clean.main(["rigs", "--resolution", "24", "--near", "3", "--out", str(document)])
+    text = capsys.readouterr().out
+    assert text[text.index("###") :].strip() in document.read_text()
+    own, kinds, near, each = read_tables(text[text.index("###") :]).values()
+    assert float(own[0]["L1 worst"]) < clean.ALLOWED
+    assert {row["weights"] for row in kinds} <= set(clean.KINDS)
+    for row in kinds:
+        assert float(row["L1 after"]) < float(row["L1 before"])
+        assert float(row["cm² after"]) < float(row["cm² before"])
+    assert float(near[0]["own, worst L1"]) == float(own[0]["L1 worst"])
+    assert [row["character"] for row in each] == ["biped"]
+    with pytest.raises(SystemExit):
+        clean.main(["wishes"])

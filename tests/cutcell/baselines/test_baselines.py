@@ -16,7 +16,7 @@ from cutcell.baselines import METHODS
 from cutcell.baselines.body import Body
 from cutcell.baselines.paths import path_lengths
 from cutcell.baselines.visibility import Blockers
-from cutcell.baselines.voxels import PAD, voxelize
+from cutcell.baselines.voxels import PAD, mark_triangles, voxelize
 from cutcell.metrics import vertex_shares, weight_l1
 from cutcell.skinning.laplacian import cotangent_laplacian, vertex_areas, vertex_normals
 from tests import meshes
@@ -193,6 +193,78 @@ def test_voxels_leak_across_gaps_narrower_than_themselves():
     leaked = METHODS["voxel"](rig, 16).weights[lower, 1].mean()
     assert leaked > 0.1
     assert METHODS["cutcell"](rig, 16).weights[lower, 1].max() == 0
+
+
+def test_spans_fill_what_lies_between_surface_along_two_axes():
+    """A slow loop; what a pipe encloses is filled though its ends are open, a flood runs in."""
+    vertices, faces = open_tube(0.2, 20)
+    rig = Rig(TriangleMesh(vertices, faces), Skeleton([[0.5, 0, 0]], [-1]))
+    body = Body.of(rig, resolution=12)
+    surface = np.zeros((16,) * 3, bool)
+    mark_triangles(body.points[body.faces] * 12 + PAD, surface)
+    expected = surface.copy()
+    for cell in product(range(16), repeat=3):
+        within = 0
+        for axis in range(3):
+            line = [*cell]
+            line[axis] = slice(None)
+            hit = np.flatnonzero(surface[tuple(line)])
+            within += len(hit) > 0 and hit[0] <= cell[axis] <= hit[-1]
+        expected[cell] |= within >= 2
+    found = voxelize(body, fill="spans").solid
+    assert np.array_equal(found, expected)
+    middle = tuple(np.floor(np.array([0.5, 0.5, 0.5]) * 12).astype(int) + PAD)
+    assert found[middle]
+    assert not voxelize(body, fill="flood").solid[middle]
+
+
+def test_six_neighbours_are_those_one_voxel_away():
+    rig = Rig(TriangleMesh(*meshes.torus()), Skeleton([[0.5, 0.5, 0.5]], [-1]))
+    voxels = voxelize(Body.of(rig, resolution=12))
+    links, lengths = voxels.links(connectivity=6)
+    pairs = cKDTree(voxels.centres).query_pairs(1.001 / 12, output_type="ndarray")
+    assert set(map(frozenset, links.tolist())) == set(map(frozenset, pairs.tolist()))
+    assert len(links) == len(pairs)
+    np.testing.assert_allclose(lengths, 1 / 12)
+
+
+def test_unirigs_binding_equals_its_description():
+    """By queries of nearest neighbours and scipy's Dijkstra, in its cube from -1 to 1."""
+    rng = np.random.default_rng(5)
+    vertices, faces = meshes.torus()
+    vertices = vertices + 1e-3 * rng.standard_normal(vertices.shape)  # no two voxels equally near
+    joints = vertices[[3, 30, 60]] + 0.01
+    rig = Rig(TriangleMesh(vertices, faces), Skeleton(joints, [-1, 0, 1]))
+    grid, body = 24, Body.of(rig, resolution=24)
+    points = 2 * body.points - 1
+    centres = 2 * voxelize(body, fill="spans").centres - 1
+    tree, count = cKDTree(centres), len(points)
+    links, lengths = [], []
+
+    def link(start, end, length):
+        links.append(np.stack([start, end], axis=1))
+        lengths.append(length)
+
+    away, near = tree.query(centres, 7)
+    source = np.broadcast_to(np.arange(len(centres))[:, None], near.shape)
+    kept = (away > 0) & (away < 2 / grid * 1.001)
+    link(source[kept] + count, near[kept] + count, 3 * away[kept])
+    away, near = tree.query(points, 1)
+    kept = away < 2 / grid * 1.001
+    link(np.flatnonzero(kept), near[kept] + count, away[kept])
+    for a, b in ((0, 1), (1, 2), (2, 0)):
+        start, end = body.faces[:, a], body.faces[:, b]
+        link(start, end, np.linalg.norm(points[start] - points[end], axis=1))
+    ends, length = np.concatenate(links), np.concatenate(lengths)
+    ends, first = np.unique(np.sort(ends, axis=1), axis=0, return_index=True)
+    nodes = np.concatenate([points, centres])
+    matrix = csr_array((length[first], ends.T), shape=(len(nodes),) * 2)
+    at = cKDTree(nodes).query(2 * body.lattice.to_unit(joints) - 1)[1]
+    distance = np.maximum(dijkstra(matrix, directed=False, indices=at)[:, :count], 1e-6)
+    assert np.isfinite(distance).all()
+    weights = (1 / (0.5 * distance + 0.5 * distance**2)) ** 2
+    expected = (weights / weights.sum(axis=0)).T[body.index]
+    np.testing.assert_allclose(METHODS["voxel_unirig"](rig, grid).weights, expected, atol=1e-9)
 
 
 # Bone heat

@@ -2,6 +2,11 @@
 
 import json
 
+import numpy as np
+
+import cutcell
+from cutcell import Rig, Skeleton, TriangleMesh
+from tests.bars import grid_box
 from tests.cutcell.cli.files import refused
 
 
@@ -17,6 +22,24 @@ def test_measures_each_method_on_each_rig(run, bar, tmp_path):
     table = run("compare", rigged, *options).stdout
     assert table.startswith("rigged: 12 vertices, 2 joints with weight")
     assert "cutcell_rig  0.000" in table
+
+
+def test_all_joints_turn_when_asked(run, tmp_path):
+    """The middle joint of a bar carries no weight; about it the far half moves otherwise."""
+    rig = tmp_path / "bar.npz"
+    vertices, faces = grid_box(8)
+    joints = [[0.1, 0.1, 0.1], [0.5, 0.1, 0.1], [0.9, 0.1, 0.1]]
+    far = vertices[:, 0] > 0.5
+    weights = np.stack([~far, 0 * far, far], axis=1).astype(float)
+    skeleton = Skeleton(joints, [-1, 0, 1], deform=[True, False, True])
+    cutcell.save(rig, Rig(TriangleMesh(vertices, faces), skeleton, weights=weights))
+
+    def measured(*more):
+        result = run("compare", rig, "--methods", "euclidean", "-r", 8, "--json", *more)
+        return json.loads(result.stdout)["summary"]["euclidean"]["deformation"]["median"]
+
+    assert measured("--turned", "all") > measured("--turned", "deform") == measured()
+    assert "turned must be one of" in refused(run("compare", rig, "--turned", "some"))
 
 
 def test_writes_markdown_and_a_figure(run, demo_paths, tmp_path):

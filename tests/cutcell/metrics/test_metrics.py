@@ -1,5 +1,7 @@
 """Errors of weights, against plain loops and numbers that can be checked by hand."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -47,11 +49,11 @@ def split(rig):
     return Rig(mesh, rig.skeleton), corners
 
 
-def slow_deformation_error(rig, ours, theirs, degrees):
+def slow_deformation_error(rig, ours, theirs, degrees, joints=None):
     """Move the whole mesh for each joint and axis, and compare (paper section 4.3.1)."""
     scale = 100 / np.ptp(rig.mesh.vertices, axis=0).max()
     errors = []
-    for joint in np.flatnonzero(rig.skeleton.deform):
+    for joint in np.flatnonzero(rig.skeleton.deform) if joints is None else joints:
         for axis in "xyz":
             pose = rotate_joint(rig.skeleton, joint, axis, degrees)
             apart = linear_blend_skinning(rig.mesh.vertices, ours, pose)
@@ -167,6 +169,25 @@ def test_only_the_turned_joints_count():
     assert not some.turn_mean[[0, 1, 3]].any()
 
 
+def test_all_joints_are_turned_when_asked():
+    """A control that carries no weight turns what hangs on it."""
+    rig = chain()
+    skeleton = replace(rig.skeleton, deform=np.array([True, False, True, True]))
+    rig = replace(rig, skeleton=skeleton)
+    kept = np.array([1.0, 0, 1, 1])
+    ours, theirs = (random_weights(rig, seed) * kept for seed in (1, 2))
+    ours, theirs = (w / w.sum(axis=1, keepdims=True) for w in (ours, theirs))
+    for joints, which in (("deform", [0, 2, 3]), ("all", range(4))):
+        slow = slow_deformation_error(rig, ours, theirs, 30, which)
+        found = deformation_error(rig, ours, theirs, joints=joints)
+        np.testing.assert_allclose(found.vertex, slow.max(axis=0))
+        moved = np.flatnonzero(found.turn_mean.max(axis=1) > 1e-9)
+        assert moved.tolist() == [j for j in which if j != 0]  # the root moves all alike
+    assert deformation_error(rig, ours, theirs).mean == pytest.approx(
+        deformation_error(rig, ours, theirs, joints="deform").mean
+    )
+
+
 def test_units_and_place_do_not_matter():
     rig = chain()
     ours, theirs = random_weights(rig, 1), random_weights(rig, 2)
@@ -260,6 +281,7 @@ def test_the_table_of_joints_adds_up():
         (lambda w: deformation_error(chain(), w, w, joints=[4]), ParameterError, "0 to 3"),
         (lambda w: deformation_error(chain(), w, w, joints=[0.5]), ParameterError, "0 to 3"),
         (lambda w: deformation_error(chain(), w, w, count="?"), ParameterError, "count"),
+        (lambda w: deformation_error(chain(), w, w, joints="?"), ParameterError, "joints must be"),
         (lambda w: clip_error(chain(), w, w, frames=0), ParameterError, "frames"),
         (lambda w: crosstalk(w, [[0, 1, 2]]), ParameterError, "expected \\(p, 2\\)"),
         (lambda w: crosstalk(w, [[0, 99]]), ParameterError, "beyond"),

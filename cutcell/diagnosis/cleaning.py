@@ -1,0 +1,199 @@
+"""Take away weights that cannot be true through the body, and keep the others."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..checks import check_has_joints
+from ..errors import WeightsError
+from ..geodesics import BoneDistances
+from ..inputs import RigLike, as_rig
+from ..method import ANIMATION, check_resolution
+from ..metrics import vertex_shares
+from ..progress import Progress, silent
+from ..rig import Rig
+from ..skinning import bind
+from ..skinning.diffusion import LEAST_CELLS
+from ..skinning.prune import prune
+from ..skinning.rig_falloff import TAIL
+from .subject import Subject
+from .weights import INFLUENCES, measurable
+from .widest import connected_weights
+
+NEAR = 3.0
+"""A joint is near a vertex from which it is at most so many times as far as the nearest one. With
+2.5 to 6 no artist's weights at hand change by 0.01 either; the lower, the more is found."""
+ATTACHED = 0.5
+"""Of the weight of a connected component: what holds more of it was attached to it on purpose."""
+KEPT = 0.5
+"""A vertex that keeps less of its weight than this tells too little about the rest."""
+CHANGED = 1e-9
+"""Shares of weight below this are rounding."""
+
+
+@dataclass(frozen=True, eq=False)
+class JointLoss:
+    """What one joint lost.
+
+    Parameters
+    ----------
+    joint : int
+    name : str
+    share : float
+        Of all weight that the joint had, 0 to 1; every welded vertex counts once.
+    largest : float
+        The greatest weight that one vertex lost.
+    vertices : array of int
+        Those that lost weight of the joint.
+    """
+
+    joint: int
+    name: str
+    share: float
+    largest: float
+    vertices: NDArray[np.intp]
+
+
+@dataclass(frozen=True, eq=False)
+class Cleaned:
+    """Weights without what cannot be true, and what was taken away.
+
+    Parameters
+    ----------
+    weights : array, shape (n, j), float64
+        Rows sum to what they summed to before.
+    share : float
+        Of all weight, what was taken away, 0 to 1; every welded vertex counts once.
+    losses : tuple of JointLoss
+        Of the joints that lost weight, the greatest share first.
+    vertices : array of int
+        Those whose weights changed.
+    bound : array of int
+        Of these, those that lost more than half of their weight: `bind` has weighted that part.
+    """
+
+    weights: NDArray[np.float64]
+    share: float
+    losses: tuple[JointLoss, ...]
+    vertices: NDArray[np.intp]
+    bound: NDArray[np.intp]
+
+
+def clean(rig: RigLike, resolution: int = 64, *, progress: Progress = silent) -> Cleaned:
+    """Take away weights that cannot be true through the body, and keep the others.
+
+    For weights of a network, of another program, or of a file: a hand's weight on the hip, an
+    island of a joint's influence, noise. A weight is judged by two things. The distance through
+    the body: a joint is near a vertex if it is at most three times as far as the nearest. And the
+    skin: weight of a joint that is not near is kept as far as it is connected along mesh edges,
+    at no lower level, with weight where the joint is near; or where the joint holds most of a
+    connected component, as an accessory's does. What is left of a joint that is not near, and less
+    than 5 % of the vertex' largest weight, ends there, as it does in `bind`.
+
+    The other weights of the vertex grow in proportion. Where it lost more than half, the lost part
+    is weighted as `bind` does.
+
+    Parameters
+    ----------
+    rig : Rig, or anything else with weights that `bind` takes
+    resolution : int
+        R, as of `build_graph`.
+    progress : callable
+        See `cutcell.progress`; stages are "graph", "distances" and "weights".
+
+    Returns
+    -------
+    Cleaned
+
+    Raises
+    ------
+    WeightsError
+        The rig has no weights.
+    SkeletonError
+        It has no joints.
+    ParameterError, MeshError
+        See `bind`.
+
+    Examples
+    --------
+    >>> rig = cutcell.load("character.glb")  # doctest: +SKIP
+    >>> cleaned = cutcell.clean(rig)  # doctest: +SKIP
+    >>> for loss in cleaned.losses:  # doctest: +SKIP
+    ...     print(loss.name, f"{loss.share:.1%} on {len(loss.vertices)} vertices")
+    >>> cutcell.save("clean.glb", rig.with_weights(cleaned.weights))  # doctest: +SKIP
+    """
+    rig = as_rig(rig)
+    resolution = check_resolution(resolution)
+    check_has_joints(rig.skeleton)
+    weights = rig.weights
+    if weights is None or not weights.any():
+        raise WeightsError("the rig has no weights that could be cleaned; bind computes some")
+    subject = Subject(rig, resolution, progress=progress)
+    assert subject.distances is not None
+    progress("weights", 0.0)
+    kept = _kept(subject, subject.distances, weights)
+    before, after = weights.sum(axis=1), kept.sum(axis=1)
+    few = np.flatnonzero(after < KEPT * before)
+    scale = np.divide(before, after, out=np.zeros_like(before), where=after > 0)
+    found = np.where((after < before * (1 - CHANGED))[:, None], kept * scale[:, None], weights)
+    if len(few):
+        binding = bind(rig, method=ANIMATION.with_options(resolution=resolution),
+                       graph=subject.graph)  # fmt: skip
+        mixed = kept[few] + (before - after)[few, None] * binding.weights[few]
+        most = max(INFLUENCES, int((weights > 0).sum(axis=1).max()))
+        total = mixed.sum(axis=1, keepdims=True)
+        found[few] = total * prune(mixed / total, most, 0.0, np.arange(mixed.shape[1]))
+    progress("weights", 1.0)
+    changed = np.flatnonzero((found != weights).any(axis=1))
+    return Cleaned(found, *_account(rig, weights - kept), changed, few)
+
+
+def _kept(
+    subject: Subject, distances: BoneDistances, weights: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Return what is kept of each weight, shape (n, j)."""
+    welded, count = subject.welded, len(subject.points)
+    through = distances.all_joints(subject.progress).T
+    at_welded = np.zeros((count, weights.shape[1]))
+    np.maximum.at(at_welded, welded, weights)
+    least = np.maximum(through.min(axis=1, keepdims=True), LEAST_CELLS / subject.resolution)
+    # Where no path leads, or none begins in the body, distances tell nothing.
+    is_near = (through <= NEAR * least) | ~np.isfinite(through)
+    is_near[:, ~measurable(subject, distances)] = True
+    is_near[distances.fallback != 0] = True
+    is_near |= _attached(subject, at_welded)[welded]
+    anchored = np.zeros(at_welded.shape, bool)
+    np.logical_or.at(anchored, welded, is_near)
+    connected = connected_weights(at_welded, anchored, subject.edges.edges)
+    kept = np.where(is_near, weights, np.minimum(weights, connected[welded]))
+    ends = ~is_near & (kept < TAIL * weights.max(axis=1, keepdims=True))
+    kept[ends] = 0.0
+    return kept
+
+
+def _attached(subject: Subject, weights: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Tell which joints hold most of the component of each welded vertex, shape (k, j)."""
+    component = subject.component
+    held = np.zeros((int(component.max()) + 1, weights.shape[1]))
+    np.add.at(held, component, weights)
+    total = held.sum(axis=1, keepdims=True)
+    most: NDArray[np.bool_] = (held > ATTACHED * total)[component]
+    return most
+
+
+def _account(rig: Rig, lost: NDArray[np.float64]) -> tuple[float, tuple[JointLoss, ...]]:
+    """Say which share of all weight is lost, and which joints lost it."""
+    assert rig.weights is not None
+    shares = vertex_shares(rig.mesh)
+    had, gone = shares @ rig.weights, shares @ lost
+    losses = []
+    for j in np.flatnonzero((lost > CHANGED).any(axis=0)):
+        at = np.flatnonzero(lost[:, j] > CHANGED)
+        share = gone[j] / had[j] if had[j] > 0 else 0.0
+        name = rig.skeleton.names[j]
+        losses.append(JointLoss(int(j), name, float(share), float(lost[at, j].max()), at))
+    losses.sort(key=lambda loss: (-loss.share, loss.joint))
+    return float(gone.sum() / had.sum()), tuple(losses)
