@@ -6,11 +6,15 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
+import numpy as np
+
 from cutcell import ANIMATION, Method, bind, build_graph, diagnose
-from cutcell.checks import check_choice, check_has_joints
+from cutcell.checks import check_choice, check_has_joints, check_number
 from cutcell.errors import ParameterError
 from cutcell.progress import Progress, silent
 from cutcell.rig import Rig
+from cutcell_viewers.camera import Camera, framing
+from cutcell_viewers.character import drawn_segments
 from cutcell_viewers.description import Description
 from cutcell_viewers.error_scene import Gap
 from cutcell_viewers.film import Order
@@ -196,6 +200,7 @@ def order(
     view: str = "three-quarter",
     turntable: bool = False,
     legend: bool = True,
+    near: float | None = None,
 ) -> Order:
     """Return what is to be drawn: a picture, or a film where it turns or moves.
 
@@ -212,6 +217,8 @@ def order(
     turntable : bool
         The camera goes once around.
     legend : bool
+    near : float, optional
+        How much is seen around the bone, in parts of the longest side.
 
     Raises
     ------
@@ -224,8 +231,30 @@ def order(
         clip = find_clip(rig, choices.clip)
         motion = clip_in_scene(rig, clip)
     theme = "dark" if choices.dark else "light"
-    camera = camera_on_marks(description, size[0] / size[1]) if choices.finding else None
+    aspect = size[0] / size[1]
+    camera = camera_on_marks(description, aspect) if choices.finding else None
+    if near is not None:
+        camera = _near(
+            rig, description, choices, check_number("near", near, 0.01, 1), aspect, direction
+        )
     return Order(description, theme, size, camera, direction, turntable, motion, legend)
+
+
+def _near(
+    rig: Rig,
+    description: Description,
+    choices: Choices,
+    part: float,
+    aspect: float,
+    direction: tuple[float, float, float],
+) -> Camera:
+    """Return a camera that looks at the middle of the chosen bone, at rest."""
+    start, end, of = drawn_segments(rig)
+    own = of == (first_joint(rig) if choices.bone is None else find_bone(rig, choices.bone))
+    ends = np.concatenate([start[own], end[own]]) if own.any() else description.bounds
+    half = part / 2 * float(np.ptp(description.bounds, axis=0).max())
+    middle = ends.mean(axis=0)
+    return framing(np.stack([middle - half, middle + half]), aspect, direction)
 
 
 def _state(rig: Rig, choices: Choices) -> State:

@@ -30,6 +30,7 @@ from .render_flags import (
     FindingCode,
     Keep,
     Layers,
+    Near,
     PathFrom,
     Plane,
     Slice,
@@ -160,6 +161,7 @@ def render(
             rich_help_panel=HOW,
         ),
     ] = "three-quarter",
+    near: Near = None,
     size: Annotated[
         str | None,
         typer.Option(
@@ -248,7 +250,14 @@ def render(
             loaded, choices, binding=binding, resolution=resolution, progress=progress
         )
         order = scenes.order(
-            loaded, description, choices, size=pixels, view=view, turntable=turntable, legend=legend
+            loaded,
+            description,
+            choices,
+            size=pixels,
+            view=view,
+            turntable=turntable,
+            legend=legend,
+            near=near,
         )
         worker.draw_apart(order, out, progress)
     if not quiet:

@@ -96,3 +96,12 @@ Wave = Annotated[
         rich_help_panel=INSIDE,
     ),
 ]
+Near = Annotated[
+    float | None,
+    typer.Option(
+        "--near",
+        metavar="PART",
+        help="From near the bone: how much around it is seen, of the longest side, from 0.01 to 1.",
+        rich_help_panel="How it is seen",
+    ),
+]

@@ -119,7 +119,7 @@ def test_what_is_seen_inside_reaches_the_picture(drawn, tmp_path):
                    "0.5", "--connectivity", "6")  # fmt: skip
     assert {"sources", "path"} <= scene.actors.keys()
     assert scene.front is not None
-    scene = actors("--panel", "check", "--finding", "unreachable-vertices")
+    scene = actors("--panel", "check", "--finding", "unreachable-vertices", "--near", "0.3")
     assert "finding faces" in scene.actors
     assert drawn[-1].camera is not None
 
@@ -144,6 +144,7 @@ def test_what_is_seen_inside_reaches_the_picture(drawn, tmp_path):
         ("a.png", ("--path", "999999"), "vertex must be one of 0 to"),
         ("a.png", ("--wave", "2"), "front must be a number from 0 to 1"),
         ("a.png", ("--connectivity", "7"), "connectivity"),
+        ("a.png", ("--near", "3"), "near must be"),
         ("a.png", ("--panel", "check", "--finding", "gout"), 'has no finding "gout"'),
         ("a.png", ("--methods", "magic", "--panel", "compare"), "method must be one of"),
         ("a.png", ("--time", "1"), "name the clip"),
@@ -211,6 +212,8 @@ def test_a_notebook_gets_a_picture_or_a_plotter(rig, binding):
 def test_the_documents_commands_are_understood(drawn, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "character.glb").symlink_to(demo_path("biped"))
+    for demo in ("biped", "biped_soup", "biped_cape"):
+        (tmp_path / f"{demo}.glb").symlink_to(demo_path(demo))
     commands = re.findall(r"^cutcell render (.*)$", DOCUMENT.read_text(), re.MULTILINE)
     assert len(commands) >= 5
     for command in commands:
