@@ -2,23 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from difflib import get_close_matches
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Any
 
-from cutcell import bind, build_graph
-from cutcell.checks import check_choice, check_has_joints
+import numpy as np
+
+from cutcell import ANIMATION, Method, bind, build_graph, diagnose
+from cutcell.checks import check_choice, check_has_joints, check_number
 from cutcell.errors import ParameterError
 from cutcell.progress import Progress, silent
-from cutcell.rig import Clip, Rig
+from cutcell.rig import Rig
+from cutcell_viewers.camera import Camera, framing
+from cutcell_viewers.character import drawn_segments
 from cutcell_viewers.description import Description
 from cutcell_viewers.error_scene import Gap
 from cutcell_viewers.film import Order
+from cutcell_viewers.finding_scene import camera_on_marks
 from cutcell_viewers.pose_scene import clip_in_scene, pose_at
 
 from .commands.compare import measured
 from .commands.pose import motion_error
+from .render_names import find_bone, find_clip
+from .render_options import apply, settings_of
 from .scenes import following, resolve
 from .scenes.common import first_joint
 from .scenes.geodesics import wants_field
@@ -26,12 +32,25 @@ from .state import State
 from .state.compare import NOW, standard
 from .state.weights import SHOWN
 
+__all__ = [
+    "PANELS",
+    "VIEWS",
+    "Choices",
+    "check",
+    "describe",
+    "find_bone",
+    "find_clip",
+    "order",
+    "settings_of",
+]
+
 PANELS = {
     "graph": "graph",
     "distance": "geodesics",
     "weights": "weights",
     "pose": "pose",
     "compare": "compare",
+    "check": "diagnosis",
 }
 """What panels are called here, and in the state."""
 
@@ -66,8 +85,13 @@ class Choices:
         Colour by the error against the file's own weights.
     methods : sequence of str
         Side by side on the panel "compare": names in `cutcell.baselines.METHODS`, or "now".
-    cut : str, optional
-        "x", "y" or "z": what the body is cut across.
+    settings : mapping
+        Other choices of the page, by the names that its address has for them, such as
+        `{"cut_axis": "z", "mesh_edges": True}`; `render_options.settings_of` makes them.
+    method : Method
+        How the graph is built and distances are measured.
+    finding : str, optional
+        The code of a finding of `cutcell.diagnose`, shown on the panel "check".
     clip : str, optional
         Name or number, from 1, of a motion of the rig, which poses it.
     time : float, optional
@@ -81,7 +105,9 @@ class Choices:
     turn: tuple[str, float] | None = None
     error: bool = False
     methods: Sequence[str] = ()
-    cut: str | None = None
+    settings: Mapping[str, Any] = field(default_factory=dict)
+    method: Method = ANIMATION
+    finding: str | None = None
     clip: str | None = None
     time: float | None = None
     skeleton: bool = True
@@ -129,9 +155,19 @@ def describe(
     choices = choices or Choices()
     state = _state(rig, choices)
     if state.bare:
-        state.bare_graph = build_graph(rig.mesh, resolution, connectivity="any", progress=progress)
+        state.bare_graph = build_graph(
+            rig.mesh, resolution, method=choices.method, progress=progress
+        )
         return resolve(state)
-    state.binding = bind(rig, resolution, progress=progress) if binding is None else binding
+    if binding is None:
+        binding = bind(rig, resolution, method=choices.method, progress=progress)
+    state.binding = binding
+    if state.panel == "diagnosis":
+        state.diagnosis = diagnose(rig, resolution, progress=progress)
+        state.finding = choices.finding or ""
+        if state.finding and state.found is None:
+            there = ", ".join(one.code for one in state.diagnosis.findings) or "none at all"
+            raise ParameterError(f'{rig.name} has no finding "{state.finding}"; there are {there}')
     if wants_field(state):
         distances = state.binding.distances
         state.field = (distances, state.joint, distances.field(state.joint))
@@ -164,6 +200,7 @@ def order(
     view: str = "three-quarter",
     turntable: bool = False,
     legend: bool = True,
+    near: float | None = None,
 ) -> Order:
     """Return what is to be drawn: a picture, or a film where it turns or moves.
 
@@ -180,6 +217,8 @@ def order(
     turntable : bool
         The camera goes once around.
     legend : bool
+    near : float, optional
+        How much is seen around the bone, in parts of the longest side.
 
     Raises
     ------
@@ -192,49 +231,30 @@ def order(
         clip = find_clip(rig, choices.clip)
         motion = clip_in_scene(rig, clip)
     theme = "dark" if choices.dark else "light"
-    return Order(description, theme, size, None, direction, turntable, motion, legend)
+    aspect = size[0] / size[1]
+    camera = camera_on_marks(description, aspect) if choices.finding else None
+    if near is not None:
+        camera = _near(
+            rig, description, choices, check_number("near", near, 0.01, 1), aspect, direction
+        )
+    return Order(description, theme, size, camera, direction, turntable, motion, legend)
 
 
-def find_bone(rig: Rig, name: str) -> int:
-    """Return the number of the joint of a name; the case of its letters does not matter.
-
-    Raises
-    ------
-    ParameterError
-        There is none; the sentence tells the names that are nearest.
-    """
-    return _find("bone", name, list(rig.skeleton.names), rig)
-
-
-def find_clip(rig: Rig, name: str) -> Clip:
-    """Return the clip of a name or number.
-
-    Raises
-    ------
-    ParameterError
-        There is none; the sentence tells those that there are.
-    """
-    if not rig.clips:
-        raise ParameterError(f"{rig.name} has no clips to play")
-    names = [clip.name for clip in rig.clips]
-    if name not in names and name.isdecimal() and 1 <= int(name) <= len(names):
-        return rig.clips[int(name) - 1]
-    return rig.clips[_find("clip", name, names, rig)]
-
-
-def _find(what: str, name: str, names: list[str], rig: Rig) -> int:
-    if name in names:
-        return names.index(name)
-    folded = [one.casefold() for one in names]
-    if folded.count(name.casefold()) == 1:
-        return folded.index(name.casefold())
-    near = get_close_matches(name.casefold(), folded, 3, 0.5)
-    near += [one for one in folded if name.casefold() in one][: 3 - len(near)]
-    found = [names[folded.index(one)] for one in dict.fromkeys(near)]
-    few = found or names[:8]
-    told = "the nearest names are" if found else "there are" if len(names) <= 8 else "some are"
-    quoted = ", ".join(f'"{one}"' for one in few)
-    raise ParameterError(f'{rig.name} has no {what} "{name}"; {told} {quoted}')
+def _near(
+    rig: Rig,
+    description: Description,
+    choices: Choices,
+    part: float,
+    aspect: float,
+    direction: tuple[float, float, float],
+) -> Camera:
+    """Return a camera that looks at the middle of the chosen bone, at rest."""
+    start, end, of = drawn_segments(rig)
+    own = of == (first_joint(rig) if choices.bone is None else find_bone(rig, choices.bone))
+    ends = np.concatenate([start[own], end[own]]) if own.any() else description.bounds
+    half = part / 2 * float(np.ptp(description.bounds, axis=0).max())
+    middle = ends.mean(axis=0)
+    return framing(np.stack([middle - half, middle + half]), aspect, direction)
 
 
 def _state(rig: Rig, choices: Choices) -> State:
@@ -247,8 +267,13 @@ def _state(rig: Rig, choices: Choices) -> State:
         state.weights_shown = "bone"
     if choices.shown is not None:
         state.weights_shown = check_choice("shown", choices.shown, SHOWN)
-    if choices.cut is not None:
-        state.cut_axis = check_choice("cut", choices.cut, TURN_AXES)
+    method = choices.method
+    state.param.update(
+        connectivity=method.connectivity,
+        winding_threshold=method.winding_threshold,
+        orient=method.orient,
+    )
+    apply(state, choices.settings)
     if choices.turn is not None:
         axis, degrees = choices.turn
         k = TURN_AXES.index(check_choice("axis", axis, TURN_AXES))

@@ -10,9 +10,34 @@ import typer
 
 from cutcell.console import for_people, print_line, print_warnings, progress_bars
 from cutcell.errors import MissingLibraryError, ParameterError
-from cutcell.options import FILES, Resolution, RigFile, SkeletonFile
+from cutcell.options import (
+    FILES,
+    Connectivity,
+    How,
+    Leaf,
+    Orient,
+    Resolution,
+    RigFile,
+    SkeletonFile,
+    WindingThreshold,
+    chosen_method,
+)
 
-WHAT = "What is seen"
+from .render_flags import (
+    WHAT,
+    ColorBy,
+    Face,
+    FindingCode,
+    Keep,
+    Layers,
+    Near,
+    PathFrom,
+    Plane,
+    Slice,
+    Sources,
+    Wave,
+)
+
 HOW = "How it is seen"
 PICTURE_SIZE = (1600, 1200)
 FILM_SIZE = (960, 720)
@@ -46,7 +71,7 @@ def render(
             "--panel",
             "-p",
             metavar="PANEL",
-            help="As on the page: graph, distance, weights, pose or compare.",
+            help="As on the page: graph, distance, weights, pose, compare or check.",
             rich_help_panel=WHAT,
         ),
     ] = "weights",
@@ -95,15 +120,16 @@ def render(
             rich_help_panel=WHAT,
         ),
     ] = "",
-    cut: Annotated[
-        str | None,
-        typer.Option(
-            "--cut",
-            metavar="AXIS",
-            help="Cut the body across x, y or z: graph, distance.",
-            rich_help_panel=WHAT,
-        ),
-    ] = None,
+    finding: FindingCode = None,
+    cut: Plane = None,
+    face: Face = None,
+    keep: Keep = None,
+    layers: Layers = None,
+    color_by: ColorBy = None,
+    slices: Slice = None,
+    sources: Sources = False,
+    path: PathFrom = None,
+    wave: Wave = None,
     clip: Annotated[
         str | None,
         typer.Option(
@@ -135,6 +161,7 @@ def render(
             rich_help_panel=HOW,
         ),
     ] = "three-quarter",
+    near: Near = None,
     size: Annotated[
         str | None,
         typer.Option(
@@ -156,6 +183,11 @@ def render(
         typer.Option("--legend/--no-legend", help="Write the legend on it.", rich_help_panel=HOW),
     ] = True,
     resolution: Resolution = 64,
+    how: How = "animation",
+    connectivity: Connectivity = None,
+    winding_threshold: WindingThreshold = 0.5,
+    orient: Orient = True,
+    leaf: Leaf = None,
     skeleton_file: SkeletonFile = None,
     quiet: Annotated[
         bool,
@@ -173,6 +205,13 @@ def render(
     from cutcell.io import load
     from cutcell.io.files import naming
 
+    method = chosen_method(
+        how,
+        connectivity=connectivity,
+        winding_threshold=winding_threshold,
+        orient=orient,
+        leaf=leaf,
+    )
     loaded = load(rig, skeleton=skeleton_file)
     choices = scenes.Choices(
         panel=panel,
@@ -181,7 +220,19 @@ def render(
         turn=_turn(turn),
         error=error,
         methods=[name.strip() for name in methods.split(",") if name.strip()],
-        cut=cut,
+        settings=scenes.settings_of(
+            layers=layers,
+            color_by=color_by,
+            cut=cut,
+            face=face,
+            keep=keep,
+            slices=slices,
+            sources=sources,
+            path=path,
+            wave=wave,
+        ),
+        method=method,
+        finding=finding,
         clip=clip,
         time=time,
         skeleton=skeleton,
@@ -194,12 +245,19 @@ def render(
 
     bare = not len(loaded.skeleton.joints)
     with progress_bars(quiet) as progress:
-        binding = None if bare else bind(loaded, resolution, progress=progress)
+        binding = None if bare else bind(loaded, resolution, method=method, progress=progress)
         description = scenes.describe(
             loaded, choices, binding=binding, resolution=resolution, progress=progress
         )
         order = scenes.order(
-            loaded, description, choices, size=pixels, view=view, turntable=turntable, legend=legend
+            loaded,
+            description,
+            choices,
+            size=pixels,
+            view=view,
+            turntable=turntable,
+            legend=legend,
+            near=near,
         )
         worker.draw_apart(order, out, progress)
     if not quiet:

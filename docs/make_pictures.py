@@ -5,6 +5,8 @@ Those of the page need a Chromium; see scripts/get_chromium.py.
 
 from __future__ import annotations
 
+import re
+import subprocess
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -45,6 +47,7 @@ def main() -> None:
     """Make all pictures."""
     PICTURES.mkdir(exist_ok=True)
     scenes()
+    figures()
     page()
     for path in sorted(PICTURES.glob("*.png")):
         shrink(path)
@@ -66,6 +69,17 @@ def scenes() -> None:
     transforms = clip.transforms[len(clip.times) // 4]
     pose = pose_scene(walker, bound.weights, transforms)
     write("pose", pose, closer(walker, 0.9), LIGHT)
+
+
+def figures() -> None:
+    """Run the commands of docs/pictures.md whose pictures are shown there."""
+    document = (ROOT / "docs" / "pictures.md").read_text(encoding="utf-8")
+    for command in re.findall(r"^cutcell render (.* figure-.*)$", document, re.MULTILINE):
+        rig, out, *options = command.split()
+        given = [str(demo_path(rig.removesuffix(".glb"))), str(PICTURES / out), *options]
+        size = "x".join(map(str, SIZE))
+        done = [sys.executable, "-m", "cutcell", "render", *given, "--quiet", "--size", size]
+        subprocess.run(done, check=True, cwd=ROOT)
 
 
 def cutaway(rig: Rig, resolution: int) -> Description:

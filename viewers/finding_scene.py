@@ -6,13 +6,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cutcell.diagnosis import Finding
+from cutcell.pose import rotate_joint
 from cutcell.rig import Rig
 
 from .camera import FRONT, Camera, framing
-from .character import to_scene
-from .description import Actor
+from .character import pose_in_scene, to_scene
+from .description import Actor, Description
 from .marks import beads
 from .palette import MARK
+from .skin import Skin, moved, rigid_skin, skin_of_weights
 
 MOST_BEADS = 4000
 """Of many vertices, evenly chosen ones are marked."""
@@ -26,7 +28,7 @@ def finding_marks(rig: Rig, finding: Finding) -> dict[str, Actor]:
     """Return marks of what a finding names, drawn over the body.
 
     Faces, and those of which it names all corners, are painted; other vertices and joints get
-    beads.
+    beads. They follow the joints by the file's weights, which such findings are about.
     """
     actors = {}
     faces, vertices = _painted(rig, finding)
@@ -34,19 +36,49 @@ def finding_marks(rig: Rig, finding: Finding) -> dict[str, Actor]:
         corners = rig.mesh.faces[faces]
         points = to_scene(rig, rig.mesh.vertices[corners.ravel()]).astype(np.float32)
         cells = np.arange(corners.size, dtype=np.int32).reshape(-1, 3)
-        actors["finding faces"] = Actor("surface", points, cells, color=MARK, clipped=False)
+        skin = _skin_of_vertices(rig, corners.ravel())
+        actors["finding faces"] = Actor(
+            "surface", points, cells, color=MARK, clipped=False, skin=skin
+        )
     size = float(np.linalg.norm(np.ptp(to_scene(rig, rig.mesh.vertices), axis=0)))
     vertices = vertices[:: -(-len(vertices) // MOST_BEADS) or 1]
-    for name, places, radius in (
-        ("finding vertices", rig.mesh.vertices[vertices], VERTEX),
-        ("finding joints", rig.skeleton.joints[finding.joints], JOINT),
+    for name, places, radius, skin in (
+        ("finding vertices", rig.mesh.vertices[vertices], VERTEX, _skin_of_vertices(rig, vertices)),
+        (
+            "finding joints",
+            rig.skeleton.joints[finding.joints],
+            JOINT,
+            rigid_skin(finding.joints),
+        ),
     ):
         if len(places):
             points, cells = beads(to_scene(rig, places), radius * size)
             actors[name] = Actor(
-                "surface", points.astype(np.float32), cells, color=MARK, clipped=False, overlay=True
+                "surface",
+                points.astype(np.float32),
+                cells,
+                color=MARK,
+                clipped=False,
+                overlay=True,
+                skin=skin and _repeated(skin, len(points) // len(places)),
             )
     return actors
+
+
+def finding_pose(rig: Rig, finding: Finding) -> NDArray[np.float64] | None:
+    """Return the pose in which a finding is seen, in the scene, (j, 4, 4); None if at rest."""
+    if finding.pose is None or rig.weights is None:
+        return None
+    pose = finding.pose
+    return pose_in_scene(rig, rotate_joint(rig.skeleton, pose.joint, pose.axis, pose.degrees))
+
+
+def _skin_of_vertices(rig: Rig, vertices: NDArray[np.integer]) -> Skin | None:
+    return None if rig.weights is None else skin_of_weights(rig.weights[vertices])
+
+
+def _repeated(skin: Skin, times: int) -> Skin:
+    return Skin(np.repeat(skin.joints, times, axis=0), np.repeat(skin.weights, times, axis=0))
 
 
 def _painted(rig: Rig, finding: Finding) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
@@ -78,6 +110,28 @@ def camera_on(
     if not len(places):
         return None
     points = to_scene(rig, places)
+    pose = finding_pose(rig, finding)
+    if pose is not None and rig.weights is not None:
+        of = np.concatenate([finding.vertices, rig.mesh.faces[finding.faces].ravel()])
+        held = np.concatenate([rig.weights[of], np.eye(len(joints))[finding.joints]])
+        points = moved(points, skin_of_weights(held), pose)
+    return _towards(points, bounds, aspect)
+
+
+def camera_on_marks(description: Description, aspect: float) -> Camera | None:
+    """Return a camera that sees the marks of a scene; None where there are none."""
+    marks = [actor for name, actor in description.actors.items() if name.startswith("finding")]
+    pose = description.pose
+    points = [
+        actor.points
+        if pose is None or actor.skin is None
+        else moved(actor.points, actor.skin, pose)
+        for actor in marks
+    ]
+    return _towards(np.concatenate(points), description.bounds, aspect) if points else None
+
+
+def _towards(points: NDArray[np.floating], bounds: NDArray[np.float64], aspect: float) -> Camera:
     low, high = points.min(axis=0), points.max(axis=0)
     least = NEAREST * float(np.linalg.norm(bounds[1] - bounds[0]))
     more = np.maximum(least - (high - low), 0) / 2

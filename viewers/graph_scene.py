@@ -181,20 +181,27 @@ def depth_field(graph: CutCellGraph) -> NDArray[np.float64]:
     return depth
 
 
-def cut_at(bounds: NDArray[np.float64], axis: str, position: float) -> Cut:
+def cut_at(bounds: NDArray[np.float64], axis: str | ArrayLike, position: float) -> Cut:
     """Return a plane across a box.
 
     Parameters
     ----------
     bounds : array, shape (2, 3)
-    axis : {"x", "y", "z"}
-        What the plane is perpendicular to; the larger side is taken away.
+    axis : {"x", "y", "z"} or array_like, shape (3,)
+        What the plane is perpendicular to, or a direction of length 1; the larger side is taken
+        away.
     position : float
         From 0, the lower end of the box, to 1, the upper.
     """
-    k = AXES[axis]
+    normal = np.eye(3)[AXES[axis]] if isinstance(axis, str) else np.asarray(axis, float)
+    middle, half = box_across(bounds, normal)
+    origin = middle + (2 * position - 1) * half * normal
+    return Cut(tuple(origin.tolist()), tuple(normal.tolist()))
+
+
+def box_across(
+    bounds: NDArray[np.float64], normal: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], float]:
+    """Return the middle of a box, and how far it reaches from there along a direction."""
     low, high = np.asarray(bounds, float)
-    origin = (low + high) / 2
-    origin[k] = low[k] + position * (high[k] - low[k])
-    normal = tuple(float(k == i) for i in range(3))
-    return Cut(tuple(origin.tolist()), normal)  # type: ignore[arg-type]
+    return (low + high) / 2, float(np.abs(normal) @ (high - low)) / 2

@@ -81,7 +81,8 @@ def rods(
 ) -> tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.intp]]:
     """Return one square rod a piece (s, 3): points, triangles, and the piece of each point."""
     along = end - start
-    along = along / np.maximum(np.linalg.norm(along, axis=1, keepdims=True), 1e-300)
+    length = np.linalg.norm(along, axis=1, keepdims=True)
+    along = np.where(length > 0, along / np.where(length > 0, length, 1), [0.0, 1, 0])
     side, other = across(along)
     half = np.broadcast_to(thickness, len(start))[:, None] / 2
     ring = [half * (a * side + b * other) for a, b in ((1, 1), (-1, 1), (-1, -1), (1, -1))]

@@ -137,6 +137,8 @@ _MAPS: dict[str, tuple[tuple[int, int, int], ...]] = {
     "depth": ((176, 214, 108), (235, 200, 90), (255, 140, 40), (214, 66, 14), (120, 24, 20)),
     # winding numbers: outside is grey, inside orange
     "winding": ((150, 158, 172), (176, 172, 168), (226, 158, 110), (255, 108, 12)),
+    # the same on the face of a cut, on which orange edges are to be seen
+    "inside": ((176, 182, 194), (214, 206, 226), (152, 126, 190), (92, 62, 140)),
 }
 TEXELS = 512
 UNREACHED_TEXELS = 8
@@ -151,7 +153,8 @@ def colormap(name: str) -> NDArray[np.uint8]:
 
     Parameters
     ----------
-    name : {"weight", "distance", "reached", "error", "difference", "count", "depth", "winding"}
+    name : {"weight", "distance", "reached", "error", "difference", "count", "depth", "winding",
+        "inside"}
 
     Returns
     -------

@@ -194,6 +194,9 @@ def _paint(drawn: pv.Actor, actor: Actor, front: float | None = None) -> None:
         look.line_width = actor.width * PICTURE_WIDTH
         look.render_lines_as_tubes = True
         look.lighting, look.ambient = True, LINE_AMBIENT
+    if actor.kind == "points" and actor.form != "round":
+        shader = drawn.GetShaderProperty()
+        shader.AddFragmentShaderReplacement("//VTK::Color::Impl", True, _FORMS[actor.form], False)
     look.interpolation = "flat" if actor.normals is None else "phong"
     mapper = drawn.mapper
     mapper.scalar_visibility = actor.colors is not None or actor.scalars is not None
@@ -220,6 +223,20 @@ def _paint(drawn: pv.Actor, actor: Actor, front: float | None = None) -> None:
         # Lines on a surface lie in it: pull them a little towards the eye.
         mapper.SetResolveCoincidentTopologyToPolygonOffset()
         mapper.SetRelativeCoincidentTopologyLineOffsetParameters(0, -4)
+
+
+_RIMMED = """//VTK::Color::Impl
+  vec2 across = vec2(2.0 * gl_PointCoord.x - 1.0, 1.0 - 2.0 * gl_PointCoord.y);
+  float rim = %s;
+  if (rim > %s) { discard; }
+  if (rim > %s) { ambientColor *= 0.72; diffuseColor *= 0.72; }
+"""
+_FORMS = {
+    "square": _RIMMED % ("max(abs(across.x), abs(across.y))", "0.9", "0.62"),
+    "triangle": _RIMMED
+    % ("max(-across.y * 1.25 - 0.1, abs(across.x) * 1.25 + across.y * 0.62)", "0.72", "0.5"),
+}
+"""How points that are no balls are painted: as on the page (scripts/stroke_shaders.js)."""
 
 
 def behind_front(

@@ -11,13 +11,13 @@ from ..scenes.geodesics import field_of, wants_field
 from .session import Session
 
 WAVE_SECONDS = 6.0
+SHOWN = ["panel", "binding", "joint", "edge_colors", "vertex", "cut_axis", "graph_face"]
+"""What a field's being wanted depends on."""
 
 
 def watch(session: Session) -> None:
     """Keep the field up to what is seen."""
-    session.state.param.watch(
-        lambda *events: find_field(session), ["panel", "binding", "joint", "edge_colors", "vertex"]
-    )
+    session.state.param.watch(lambda *events: find_field(session), SHOWN)
     session.view.listen("front", lambda message: halt_wave(session, message["front"]))
     session.state.param.watch(
         lambda *events: run_wave(session), ["panel", "wave", "animating", "field", "joint", "rig"]

@@ -6,6 +6,7 @@ from . import (
     arrival,
     binding,
     compare,
+    cutting,
     diagnosis,
     explain,
     geodesics,
@@ -21,6 +22,6 @@ from .session import Session
 def follow(session: Session) -> None:
     """Let everything follow the state of a new session."""
     # In this order: what is seen comes before what is computed for it.
-    seen = (look, geodesics, pose, compare)
+    seen = (look, cutting, geodesics, pose, compare)
     for one in (*seen, binding, explain, history, keys, rest, diagnosis, arrival):
         one.watch(session)

@@ -8,7 +8,8 @@ import panel_material_ui as pmui
 
 from ..commands.session import Session
 from ..state import State
-from .parts import GAP, caption, cutting, lead, section, slider, weightless, when
+from .cutting import cutting
+from .parts import GAP, caption, choice, lead, section, slider, weightless, when
 
 
 def geodesics(session: Session) -> pmui.Column:
@@ -24,12 +25,18 @@ def geodesics(session: Session) -> pmui.Column:
     )
     return pmui.Column(
         lead("How far it is from the chosen bone, along the shortest path through the body."),
-        section("", idle, *cutting(state), margin=(8, 20, 4, 20)),
+        section("", idle, *cutting(session), _face(state), margin=(8, 20, 4, 20)),
         section("Shown with it", *_more(state)),
         section("Wavefront", *_wave(state)),
         margin=0,
         sizing_mode="stretch_width",
     )
+
+
+def _face(state: State) -> Any:
+    faces = {"Distance": "field", "Winding number": "winding"}
+    seen = when(lambda axis: axis != "off", state.param.cut_axis)
+    return choice(state.param.cut_face, faces, visible=seen)
 
 
 def _more(state: State) -> list[Any]:

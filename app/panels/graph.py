@@ -15,7 +15,8 @@ from cutcell_viewers.palette import to_hex
 from ..commands.binding import bind
 from ..commands.session import Session
 from ..state import LAYERS, State
-from .parts import GAP, caption, choice, cutting, lead, section, slider, weightless, when, words
+from .cutting import cutting
+from .parts import GAP, caption, choice, lead, section, slider, weightless, when, words
 
 KINDS = {"mesh_edges": MESH, "interior_edges": INTERIOR, "surface_edges": SURFACE}
 LAYER_COLORS = {
@@ -41,7 +42,7 @@ def graph(session: Session) -> pmui.Column:
         section(
             "Layers", *[_layer(state, name) for name in LAYERS], _nodes(state), *_colors(state)
         ),
-        section("Look inside", *_inside(state)),
+        section("Look inside", *_inside(session)),
         section("Build", *_build(session)),
         margin=0,
         sizing_mode="stretch_width",
@@ -113,7 +114,8 @@ def _colors(state: State) -> list[Any]:
     return [choice(state.param.edge_colors, options, visible=seen), idle]
 
 
-def _inside(state: State) -> list[Any]:
+def _inside(session: Session) -> list[Any]:
+    state = session.state
     whole = when(lambda slicing: not slicing, state.param.slicing)
     cut = when(lambda axis, slicing: axis != "off" and not slicing, *_cut(state))
     thick = when(
@@ -121,9 +123,13 @@ def _inside(state: State) -> list[Any]:
         *_cut(state),
         state.param.cut_keeps,
     )
+    faces = {"Open": "open", "Distance": "field", "Winding": "winding"}
     keeps = {"Half": "half", "Face only": "face", "Slab": "slab"}
     return [
-        pmui.Column(*cutting(state), margin=0, sizing_mode="stretch_width", visible=whole),
+        pmui.Column(*cutting(session), margin=0, sizing_mode="stretch_width", visible=whole),
+        caption("The face of the cut shows", margin=(2, 0, 0, 0), visible=cut),
+        choice(state.param.graph_face, faces, visible=cut),
+        caption("Behind it are kept", margin=(2, 0, 0, 0), visible=cut),
         choice(state.param.cut_keeps, keeps, visible=cut),
         slider(state.param.slab, "Thickness of the slab", step=0.01, visible=thick),
         pmui.Switch.from_param(

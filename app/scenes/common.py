@@ -103,7 +103,15 @@ def cut_of(state: State) -> Cut | None:
     """Return the cutting plane, across the box of the body."""
     if state.cut_axis == "off":
         return None
-    return cut_at(bounds_of(state), state.cut_axis, state.cut_position)
+    across = cut_normal(state) if state.cut_axis == "free" else state.cut_axis
+    return cut_at(bounds_of(state), across, state.cut_position)
+
+
+def cut_normal(state: State) -> NDArray[np.float64]:
+    """Return where a free plane looks to, shape (3,), of length 1."""
+    yaw, pitch = np.radians([state.cut_yaw, state.cut_pitch])
+    out = [np.cos(pitch) * np.sin(yaw), np.sin(pitch), np.cos(pitch) * np.cos(yaw)]
+    return np.array(out)
 
 
 def cells_of(state: State, count: float) -> float:

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from cutcell.diagnosis import Finding
 from cutcell.diagnosis.finding import count
 from cutcell_viewers.description import Description, Legend
-from cutcell_viewers.finding_scene import finding_marks
-from cutcell_viewers.palette import MARK
+from cutcell_viewers.finding_scene import finding_marks, finding_pose
+from cutcell_viewers.palette import BODY, MARK, Color
+from cutcell_viewers.skin import skin_of_weights
 
 from ..state import State
 from .common import character
@@ -31,5 +34,18 @@ def diagnosis(state: State, memo: Memo) -> Description:
     if not marks:
         return Description(character(state, memo))
     actors = character(state, memo, opacity=SEE_FINDING, behind=True)
-    legend = Legend(finding.title, swatches=((MARK, named(finding)),))
-    return Description({**actors, **marks}, legend=legend)
+    swatches: tuple[tuple[Color, str], ...] = ((MARK, named(finding)),)
+    placed = memo("finding pose", (rig, finding), lambda: finding_pose(rig, finding))
+    if placed is not None:
+        held = memo("file skin", (rig,), lambda: skin_of_weights(rig.weights))
+        actors["body"] = replace(actors["body"], skin=held)
+        actors.pop("vertex", None)  # it stays where it is at rest
+        turned = rig.skeleton.names[finding.pose.joint]
+        swatches += (
+            (
+                BODY,
+                f"posed by the file's weights: {turned} turned by {abs(finding.pose.degrees):g}°",
+            ),
+        )
+    legend = Legend(finding.title, swatches=swatches)
+    return Description({**actors, **marks}, pose=placed, legend=legend)

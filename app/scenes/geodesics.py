@@ -9,17 +9,16 @@ import numpy as np
 
 from cutcell.geodesics import path_length, shortest_path
 from cutcell_viewers.character import to_scene
-from cutcell_viewers.description import Actor, Cut, Description, Legend
+from cutcell_viewers.description import Actor, Description, Legend
 from cutcell_viewers.distance_scene import distance_colors, distance_limits
 from cutcell_viewers.marks import path_tube
 from cutcell_viewers.palette import BODY, MARK, SOURCE
-from cutcell_viewers.section_scene import section, section_rays, section_resolution
-from cutcell_viewers.slice_scene import slice_place
 from cutcell_viewers.start_scene import first_distances, start_scene
 
 from ..state import State
-from .common import character, theme_of
+from .common import character, cut_of, theme_of
 from .memo import Memo
+from .section import field_section, winding_section
 
 SEE_PATH = 0.42
 """How opaque the body is while something inside it is to be seen."""
@@ -29,18 +28,26 @@ def geodesics(state: State, memo: Memo) -> Description:
     """Return the scene of the panel Geodesics: a bone's field, on the surface and inside."""
     if state.binding is None:
         return Description(character(state, memo))
-    normal, index, cut = _cut(state)
-    if not has_field(state):
+    cut = cut_of(state)
+    if cut is not None and state.cut_face == "winding":
+        colors, legend, limits = dict[str, Any](), Legend(""), (0.0, 1.0)
+    elif has_field(state):
+        colors, legend, limits = _surface(state, memo)
+    else:
         return Description(character(state, memo), cut=cut)
-    colors, legend, limits = _surface(state, memo)
     path = path_of(state, memo)
     inside = (path is not None and len(path) > 0) or state.starts
     see = SEE_PATH if inside and cut is None else 1.0
     actors = character(state, memo, **colors, film=state.wave, opacity=see)
     swatches = legend.swatches
-    if cut is not None:
-        actors |= _section(state, memo, normal, index, limits)
-    if state.starts:
+    if cut is not None and state.cut_face == "winding":
+        face, legend = winding_section(state, memo, cut)
+        actors |= face
+        swatches = legend.swatches
+    elif cut is not None:
+        face = field_section(state, memo, cut, field_of(state), limits)
+        actors |= {name: replace(actor, film=state.wave) for name, actor in face.items()}
+    if state.starts and has_field(state):
         parts, swatch = _starts(state, memo)
         actors |= parts
         swatches += (swatch,)
@@ -72,32 +79,6 @@ def _surface(state: State, memo: Memo) -> tuple[dict[str, Any], Legend, tuple[fl
         return *distance_colors(rig, known, joint, limits), limits
 
     return memo("distance", (rig, binding.distances, field, joint), make)
-
-
-def _cut(state: State) -> tuple[int, int, Cut | None]:
-    """Return the cut, along the lattice's own axes, so that rays lie in its plane."""
-    if state.cut_axis == "off":
-        return 0, 0, None
-    return slice_place(
-        state.rig, state.cut_axis, state.cut_position, section_resolution(state.binding.graph)
-    )
-
-
-def _section(
-    state: State, memo: Memo, normal: int, index: int, limits: tuple[float, float]
-) -> dict[str, Actor]:
-    """Return the inside of the cut; nothing before the field is there."""
-    rig, graph, field = state.rig, state.binding.graph, field_of(state)
-    if field is None:
-        return {}
-    tau, orient = state.winding_threshold, state.orient
-    rays = memo(
-        "section rays",
-        (rig, graph, normal, index, tau, orient),
-        lambda: section_rays(rig, graph, normal, index, tau, orient),
-    )
-    inside = memo("section", (rays, field), lambda: section(rig, graph, rays, normal, field))
-    return {"inside": replace(inside, colormap="distance", limits=limits, film=state.wave)}
 
 
 def _starts(state: State, memo: Memo) -> tuple[dict[str, Actor], tuple[Any, str]]:
@@ -139,7 +120,11 @@ def wants_field(state: State) -> bool:
     """Whether the distance is to be known at every node of the graph."""
     wanted = state.panel == "geodesics" or (
         state.panel == "graph"
-        and (state.edge_colors == "distance" or (state.vertex is not None and state.path))
+        and (
+            state.edge_colors == "distance"
+            or (state.vertex is not None and state.path)
+            or (state.cut_axis != "off" and state.graph_face == "field")
+        )
     )
     return wanted and has_field(state)
 

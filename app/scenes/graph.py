@@ -19,7 +19,10 @@ from ..state import LAYERS, State
 from .common import SEE_THROUGH, cells_of, character, cut_of, theme_of
 from .geodesics import field_of, path_of
 from .memo import Memo
+from .section import field_section, winding_section
 
+SEE_FACE = 0.82
+"""How opaque the face of a cut is: the edges behind it are to be seen."""
 FACE_CELLS = 3
 """How many cells behind a cut are its face."""
 KINDS = {
@@ -43,6 +46,9 @@ def graph(state: State, memo: Memo) -> Description:
     actors = character(state, memo, visible=state.body, opacity=body_opacity(state))
     layers, legend = graph_layers(state, memo)
     actors |= layers
+    if cut is not None and state.graph is not None:
+        face, legend = _face(state, memo, cut, legend)
+        actors |= face
     if state.node is not None and state.graph is not None and state.node < len(state.graph.nodes):
         inputs = (state.rig, state.graph, state.node, state.dark)
         actors |= memo("node", inputs, lambda: node_marks(*inputs[:3], theme_of(state)))
@@ -81,6 +87,23 @@ def graph_layers(state: State, memo: Memo) -> tuple[dict[str, Actor], Legend | N
         if nodes in drawn and nodes != name:
             seen[nodes] = replace(drawn[nodes], visible=state.nodes and getattr(state, layer))
     return seen, legend
+
+
+def _face(
+    state: State, memo: Memo, cut: Cut, legend: Legend | None
+) -> tuple[dict[str, Actor], Legend | None]:
+    """Return the face of the cut, if one is wanted, and the legend with how to read it."""
+    swatches = () if legend is None else legend.swatches
+    if state.graph_face == "winding":
+        face, read = winding_section(state, memo, cut)
+        legend = replace(read, swatches=(*swatches, *read.swatches))
+    elif state.graph_face == "field" and (field := field_of(state)) is not None:
+        limits = distance_limits(field)
+        face = field_section(state, memo, cut, field, limits)
+        legend = replace(distance_legend(state.rig, state.joint, limits), swatches=swatches)
+    else:
+        return {}, legend
+    return {**face, "inside": replace(face["inside"], opacity=SEE_FACE)}, legend
 
 
 def sight_of(state: State, memo: Memo) -> Any:

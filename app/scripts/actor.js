@@ -97,7 +97,8 @@ export class Actor {
       this.drawnPose = renderer.poseCount
     }
     const every = renderer.moving ? Math.max(1, Math.ceil(this.count / MANY_LINES)) : 1
-    strokes.draw({...look, cut: this.opened && this.plane, slab: this.slab, every})
+    const quick = renderer.rough
+    strokes.draw({...look, cut: this.opened && this.plane, slab: this.slab, every, quick})
   }
 
   setPoints(points) {

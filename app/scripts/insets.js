@@ -31,6 +31,11 @@ export class Insets {
   make() {
     const box = this.overlay.canvas.getBoundingClientRect()
     if (!box.height) { return }
+    if (this.awaited && this.fitting.rests().length) {
+      this.frame(this.awaited)
+      this.rested()
+      return
+    }
     const {cards} = this
     for (const card of cards) { this.observer.observe(card) }
     const insets = this.free(box, cards)
@@ -147,7 +152,9 @@ export class Insets {
 
   // Begins to look from where the server says, from as far as this window needs; or, for now, from
   // somewhere else. What is told of cameras knows no cards.
-  frame({position, focal_point: target, now}) {
+  frame(camera) {
+    const {position, focal_point: target, now} = camera
+    this.awaited = this.fitting.rests().length ? null : camera  // what is to be fitted comes later
     this.orbit.setHome(position, target)
     this.fitted = null
     this.make()

@@ -4,6 +4,7 @@ import {isCharacter} from "./actor.js"
 import {VIEW_ANGLE} from "./orbit.js"
 import {PoseTexture} from "./skin.js"
 import {Smooth} from "./smooth.js"
+import {Corners} from "./strokes.js"
 import {noCards, shapeOf, tiles} from "./tiles.js"
 
 export function loadVtk(url) {
@@ -107,6 +108,11 @@ export class Renderer {
   get poses() {
     this.texture ??= new PoseTexture(this.context)
     return this.texture
+  }
+
+  get corners() {
+    this.cornered ??= new Corners(this.context)
+    return this.cornered
   }
 
   setPose(pose) {
@@ -264,6 +270,7 @@ export class Renderer {
   remove() {
     for (const actor of this.actors.values()) { actor.remove() }
     this.texture?.remove()
+    this.cornered?.remove()
     this.smooth.remove()
     this.gl.setContainer(null)
     this.gl.delete()

@@ -5,6 +5,7 @@ import {Actor} from "./actor.js"
 import {Animation} from "./animation.js"
 import {plain, plainList} from "./arrays.js"
 import {Connection} from "./connection.js"
+import {CutHandles} from "./cut_handles.js"
 import {Gizmo} from "./gizmo.js"
 import {Insets} from "./insets.js"
 import {Keys} from "./keys.js"
@@ -39,6 +40,10 @@ class View {
       turned: (pose) => { this.pose = pose; this.applyPose(); this.changed() },
       tell: (message) => model.send_msg(message),
       poseNow: () => this.currentPose,
+    })
+    this.handles = new CutHandles(overlay, this.renderer, {
+      moved: (cut) => { this.setCut(cut); this.changed() },
+      tell: (message) => model.send_msg(message),
     })
     this.transport = new Transport(overlay, {
       play: (on) => model.send_msg({type: "play", on}),
@@ -85,9 +90,11 @@ class View {
     if ("dark" in message) { localStorage.setItem("cutcell dark", message.dark ? "1" : "0") }
     if ("legend" in message) { this.overlay.showLegend(message.legend) }
     if ("cut" in message) {
-      this.cut = message.cut
-      for (const actor of renderer.actors.values()) { actor.cut(this.cut) }
+      this.handles.put(message.cut)
+      // While the plane is dragged the hand is ahead of the server.
+      if (!this.handles.held) { this.setCut(message.cut) }
     }
+    if ("handles" in message) { this.handles.show(message.handles) }
     if (message.views) {
       this.views = message.views
       renderer.divide(this.views)
@@ -128,6 +135,11 @@ class View {
     }
     this.messages = message.id
     this.changed()
+  }
+
+  setCut(cut) {
+    this.cut = cut
+    for (const actor of this.renderer.actors.values()) { actor.cut(cut) }
   }
 
   get currentPose() {
@@ -184,6 +196,7 @@ class View {
     }
     this.renderer.draw(moving, resting)
     this.gizmo.draw()
+    this.handles.draw()
     this.overlay.showTarget(this.renderer.target)
     this.overlay.root.classList.toggle("elsewhere", !this.orbit.atHome)
     if (this.address) { setTimeout(() => this.putAddress()) }

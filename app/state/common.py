@@ -10,6 +10,10 @@ PANELS = ("graph", "geodesics", "weights", "pose", "compare", "diagnosis", "lear
 """The ids of the panels, in the order in which they are offered."""
 
 
+CUTS = ("off", "x", "y", "z", "free")
+"""What the body is cut across; a free plane has any direction."""
+
+
 class Common(param.Parameterized):
     """The part of the state that belongs to no panel."""
 
@@ -24,8 +28,18 @@ class Common(param.Parameterized):
     vertex: Any = param.Integer(None, allow_None=True, doc="The clicked vertex, or None.")
     skeleton: Any = param.Boolean(True, label="Skeleton")
 
-    cut_axis: Any = param.Selector(default="off", objects=["off", "x", "y", "z"])
+    cut_axis: Any = param.Selector(default="off", objects=list(CUTS))
     cut_position: Any = param.Number(0.5, bounds=(0, 1))
+    cut_yaw: Any = param.Number(
+        30.0, bounds=(-180, 180), doc="Where a free plane looks to, around the upright axis."
+    )
+    cut_pitch: Any = param.Number(20.0, bounds=(-90, 90), doc="And how far up, in degrees.")
+    cut_face: Any = param.Selector(
+        default="field", objects=["field", "winding"], doc="What is seen on it, of distances."
+    )
+    graph_face: Any = param.Selector(
+        default="open", objects=["open", "field", "winding"], doc="The same, of the graph."
+    )
 
     tour: Any = param.Integer(-1, doc="Which step of the tour is told; -1 for none.")
 

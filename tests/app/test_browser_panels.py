@@ -115,6 +115,16 @@ def test_the_field_its_starts_and_the_way_back(visit):
     visit.button("Cut Z").click()
     visit.page.wait_for_function("__cutcell.report().actors.inside")
     assert changed(whole, visit.look()) > 0.01
+    across = visit.page.evaluate("__cutcell.cut.normal")
+    knob = visit.page.locator(".cut-handles .knob.turn").bounding_box()
+    visit.page.mouse.move(knob["x"] + 6, knob["y"] + 6)
+    visit.page.mouse.down()
+    visit.page.mouse.move(knob["x"] + 66, knob["y"] + 6, steps=3)
+    visit.page.mouse.up()
+    visit.page.wait_for_function("n => __cutcell.cut.normal[0] !== n[0]", arg=across)
+    visit.slide("Tilted", "ArrowRight", 2)
+    visit.button("Winding number").click()
+    visit.expect_text("where the plane meets the mesh")
 
 
 def test_the_wave_runs_and_halts(visit):

@@ -100,6 +100,30 @@ def test_each_choice_of_the_command_reaches_the_picture(drawn, tmp_path):
     assert last.description.legend.high.endswith("cm²")
 
 
+def test_what_is_seen_inside_reaches_the_picture(drawn, tmp_path):
+    def actors(*options):
+        result = run(demo_path("robot"), tmp_path / "a.png", *options)
+        assert result.exit_code == 0, result.stderr
+        return drawn[-1].description
+
+    scene = actors("--panel", "graph", "--layers", "mesh,nodes", "--cut", "30,20=0.4", "--face",
+                   "winding", "--method", "paper", "--color-by", "component")  # fmt: skip
+    seen = {name for name, actor in scene.actors.items() if actor.visible}
+    assert {"mesh edges", "mesh nodes", "inside", "section outline"} <= seen
+    assert not {"body", "interior edges", "surface edges"} & seen
+    assert np.linalg.norm(scene.cut.normal) == pytest.approx(1)
+    scene = actors("--panel", "graph", "--slice", "z=0.4:x")
+    assert "slice rays" in scene.actors
+    bone = cutcell.load(demo_path("robot")).skeleton.names[3]
+    scene = actors("--panel", "distance", "--bone", bone, "--sources", "--path", "10", "--wave",
+                   "0.5", "--connectivity", "6")  # fmt: skip
+    assert {"sources", "path"} <= scene.actors.keys()
+    assert scene.front is not None
+    scene = actors("--panel", "check", "--finding", "unreachable-vertices", "--near", "0.3")
+    assert "finding faces" in scene.actors
+    assert drawn[-1].camera is not None
+
+
 @pytest.mark.parametrize(
     ("out", "options", "words"),
     [
@@ -110,7 +134,18 @@ def test_each_choice_of_the_command_reaches_the_picture(drawn, tmp_path):
         ("a.png", ("--size", "huge"), "such as 1600x1200"),
         ("a.png", ("--size", "9000x9000"), "16 to 8192"),
         ("a.png", ("--turn", "30"), "such as z=30"),
-        ("a.png", ("--cut", "w"), "cut must be one of"),
+        ("a.png", ("--cut", "w"), "cut must be x, y or z"),
+        ("a.png", ("--cut", "z=2"), "number from 0 to 1 after the ="),
+        ("a.png", ("--face", "up"), "face must be one of"),
+        ("a.png", ("--keep", "all"), "cut_keeps must be one of half, face, slab"),
+        ("a.png", ("--layers", "mesh,bones"), "layer must be one of"),
+        ("a.png", ("--color-by", "hue"), "edge_colors must be one of"),
+        ("a.png", ("--slice", "q"), "such as z, z=0.5 or z=0.5:x"),
+        ("a.png", ("--path", "999999"), "vertex must be one of 0 to"),
+        ("a.png", ("--wave", "2"), "front must be a number from 0 to 1"),
+        ("a.png", ("--connectivity", "7"), "connectivity"),
+        ("a.png", ("--near", "3"), "near must be"),
+        ("a.png", ("--panel", "check", "--finding", "gout"), 'has no finding "gout"'),
         ("a.png", ("--methods", "magic", "--panel", "compare"), "method must be one of"),
         ("a.png", ("--time", "1"), "name the clip"),
         ("a.gif", ("--clip", "no such clip"), 'has no clip "no such clip"'),
@@ -177,6 +212,8 @@ def test_a_notebook_gets_a_picture_or_a_plotter(rig, binding):
 def test_the_documents_commands_are_understood(drawn, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "character.glb").symlink_to(demo_path("biped"))
+    for demo in ("biped", "biped_soup", "biped_cape"):
+        (tmp_path / f"{demo}.glb").symlink_to(demo_path(demo))
     commands = re.findall(r"^cutcell render (.*)$", DOCUMENT.read_text(), re.MULTILINE)
     assert len(commands) >= 5
     for command in commands:

@@ -4,15 +4,23 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+import pyvista
 
 import cutcell
 from cutcell.geodesics import shortest_path
 from cutcell.graph import slice_rays
 from cutcell_viewers.character import to_scene
-from cutcell_viewers.graph_scene import depth_field
+from cutcell_viewers.graph_scene import cut_at, depth_field
 from cutcell_viewers.marks import beads, path_tube, rods, tube, vertex_mark
 from cutcell_viewers.palette import EYES, JOINT_COLORS, LIGHT, _srgb_to_oklab, as_seen, joint_colors
-from cutcell_viewers.section_scene import section, section_rays, section_resolution, values_at
+from cutcell_viewers.plane_section import from_scene, part_above, plane_section
+from cutcell_viewers.section_scene import (
+    body_section,
+    field_face,
+    section_lines,
+    values_at,
+    winding_face,
+)
 from cutcell_viewers.slice_scene import file_axis, slice_place, slice_scene
 from cutcell_viewers.start_scene import first_distances, start_scene
 from cutcell_viewers.weights_scene import count_colors, difference_colors, dominant_colors
@@ -70,22 +78,96 @@ def test_a_slices_rays_tell_their_winding_number(rig):
     assert "inding" in legend.title
 
 
-def test_a_section_fills_the_body_with_the_field(rig, binding):
+def scene_bounds(rig):
+    points = to_scene(rig, rig.mesh.vertices)
+    return np.stack([points.min(axis=0), points.max(axis=0)])
+
+
+def area_of(points, faces):
+    corners = points[faces].astype(float)
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    return np.linalg.norm(across, axis=1).sum() / 2
+
+
+OBLIQUE = np.array([0.36, 0.48, 0.8])
+
+
+@pytest.mark.parametrize("axis", ["x", "y", "z", OBLIQUE])
+def test_a_section_is_the_meshs_own(rig, axis):
+    cut = cut_at(scene_bounds(rig), axis, 0.47)
+    found = plane_section(rig, rig.mesh, cut, 40)
+    points, faces, contour = part_above(found, 0.5)
+    away = (np.concatenate([points, found.outline.reshape(-1, 3)]) - cut.origin) @ cut.normal
+    assert np.abs(away).max() < 1e-9
+    whole = pyvista.PolyData.from_regular_faces(to_scene(rig, rig.mesh.vertices), rig.mesh.faces)
+    half = whole.clip(normal=cut.normal, origin=cut.origin).triangulate()
+    corners = half.points[half.regular_faces].astype(float)
+    # The half is open at the section: there its vector area and the section's cancel.
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]).sum(axis=0)
+    assert area_of(points, faces) == pytest.approx(np.linalg.norm(across) / 2, rel=1e-4)
+    assert not len(contour)
+    assert set(np.unique(found.winding)) == {0.0, 1.0}
+    corners = points[faces]
+    out = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]) @ cut.normal
+    assert (out > -1e-12).all()
+
+
+def test_an_open_mesh_is_filled_by_its_winding_number(rig):
+    whole = rig.mesh
+    corners = whole.vertices[whole.faces].mean(axis=1)
+    middle = corners[:, 0].mean()
+    hole = np.abs(corners[:, 0] - middle) < 0.15
+    hole &= corners[:, 1] == corners[:, 1].max()
+    assert hole.any()
+    opened = cutcell.TriangleMesh(whole.vertices, whole.faces[~hole])
+    cut = cut_at(scene_bounds(rig), "y", 0.5)
+    found = plane_section(rig, opened, cut, 40)
+    assert ((found.winding > 0.05) & (found.winding < 0.95)).any()
+    points, faces, contour = part_above(found, 0.5)
+    assert len(contour)
+    ends = contour.reshape(-1, 3)
+    number = cutcell.winding_number(opened, from_scene(rig, ends))
+    assert np.abs(number - 0.5).max() < 0.1
+    closed = part_above(plane_section(rig, whole, cut, 40), 0.5)
+    assert area_of(points, faces) == pytest.approx(area_of(*closed[:2]), rel=0.1)
+    lines, swatches = section_lines(found, 0.5, cut, 3.0, LIGHT, contour=True)
+    assert set(lines) == {"section outline", "section contour"}
+    assert len(swatches) == 2
+
+
+def test_a_plane_beside_the_body_has_no_section(rig):
+    bounds = scene_bounds(rig) + np.array([[0.0], [3.0]])
+    found = plane_section(rig, rig.mesh, cut_at(bounds, "z", 0.99), 40)
+    _, faces, _ = part_above(found, 0.5)
+    assert not len(faces)
+    assert not len(found.outline)
+
+
+def test_a_section_shows_the_field(rig, binding):
     graph, field = binding.graph, binding.distances.field(1)
-    normal, index, _ = slice_place(rig, "z", 0.5, section_resolution(graph))
-    rays = section_rays(rig, graph, normal, index, 0.5)
-    actor = section(rig, graph, rays, normal, field)
-    corners = actor.points[actor.cells].astype(float)
-    area = np.linalg.norm(
-        np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1
-    ).sum()
-    assert area / 2 == pytest.approx(3.0 * 0.6, rel=0.02)
+    cut = cut_at(scene_bounds(rig), "z", 0.5)
+    found = body_section(rig, graph, cut)
+    actor = field_face(rig, graph, found, 0.5, field, (0.0, 1.0), "from b: ")
+    assert len(actor.scalars) == len(actor.points)
+    assert not actor.clipped
     # Along the beam, beyond the elbow, the field is the distance to the elbow's bone.
     unit = graph.lattice.to_unit([[1.4, 0.0, 0.0], [0.5, 0.0, 0.0]])
-    found = values_at(graph, unit, field) * graph.lattice.size
-    np.testing.assert_allclose(found, [0.4, 0.0], atol=0.15)
+    values = values_at(graph, unit, field) * graph.lattice.size
+    np.testing.assert_allclose(values, [0.4, 0.0], atol=0.16)
     nothing = np.full(len(graph.nodes), np.inf)
     assert np.isinf(values_at(graph, unit, nothing)).all()
+    image, legend = winding_face(found)
+    assert image.cells.max() < len(image.points) == len(image.scalars)
+    assert legend.title == "Winding number"
+
+
+def test_a_linear_field_is_shown_as_it_is(binding):
+    graph = binding.graph
+    field = graph.nodes @ [0.5, 0.3, 0.2]
+    rng = np.random.default_rng(3)
+    low, high = graph.nodes.min(axis=0), graph.nodes.max(axis=0)
+    points = low + rng.random((500, 3)) * (high - low)
+    np.testing.assert_allclose(values_at(graph, points, field), points @ [0.5, 0.3, 0.2], atol=1e-3)
 
 
 def test_depth_is_zero_on_the_surface_and_grows_inwards(binding):

@@ -8,8 +8,8 @@ from PIL import Image
 
 import cutcell
 from cutcell_viewers import palette
-from cutcell_viewers.camera import framing
-from cutcell_viewers.description import Description
+from cutcell_viewers.camera import Camera, framing
+from cutcell_viewers.description import Actor, Description
 from cutcell_viewers.distance_scene import distance_scene
 from cutcell_viewers.graph_scene import cut_at, graph_scene
 from cutcell_viewers.pose_scene import joint_turns, pose_scene, turn
@@ -118,3 +118,20 @@ def test_a_scene_can_be_changed_in_place(rig, scenes):
         scene.close()
     fresh = render_png(scenes["graph"], size=SIZE, camera=framing(scenes["graph"].bounds))
     assert np.abs(changed.astype(int) - fresh).mean() < 0.5
+
+
+def test_nodes_have_their_forms_in_pictures():
+    def pixels(form):
+        point = Actor(
+            "points", np.zeros((1, 3), np.float32), np.zeros((1, 1), np.int32),
+            color=(1.0, 0.0, 0.0), width=60, form=form,
+        )  # fmt: skip
+        camera = Camera((0.0, 0.0, 4.0), (0.0, 0.0, 0.0))
+        picture = render_png(Description({"node": point}), size=(200, 200), camera=camera)
+        red = picture.astype(int)
+        return (red[:, :, 0] - red[:, :, 1] > 60).sum(axis=1)
+
+    ball, square, triangle = (pixels(form) for form in ("round", "square", "triangle"))
+    assert square.sum() > ball.sum() > triangle.sum() > 500
+    rows = np.flatnonzero(triangle)
+    assert triangle[rows[-1] - 3] > 2 * triangle[rows[0] + 3]  # it stands on its base

@@ -1,0 +1,65 @@
+"""Move and turn the cutting plane: by its handles in the view, or towards the eye."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from cutcell_viewers.graph_scene import box_across
+
+from ..scenes.common import CUT, bounds_of, cut_of
+from .session import Session
+
+WATCHED = ["panel", "rig", "cut_axis", "slicing"]
+
+
+def watch(session: Session) -> None:
+    """Let the plane follow its handles, which are there while there is a plane."""
+    session.view.listen("cut", lambda message: put(session, message["origin"], message["normal"]))
+    session.state.param.watch(lambda *events: show_handles(session), WATCHED)
+
+
+def show_handles(session: Session) -> None:
+    """Tell the view whether the plane can be dragged, and what box it crosses."""
+    state = session.state
+    sliced = state.panel == "graph" and state.slicing
+    seen = state.rig is not None and state.panel in CUT and state.cut_axis != "off" and not sliced
+    handles = {"box": bounds_of(state).tolist()} if seen else None
+    if session.view.told("handles") != handles:
+        session.view.tell(handles=handles)
+
+
+def put(session: Session, origin: ArrayLike, normal: ArrayLike) -> None:
+    """Lay the plane through a point; one that is turned becomes free."""
+    state = session.state
+    cut = None if state.rig is None else cut_of(state)
+    out = np.asarray(normal, float)
+    length = float(np.linalg.norm(out))
+    if cut is None or not np.isfinite(length) or length < 1e-9:
+        return
+    out /= length
+    turned: dict[str, Any] = {}
+    if float(out @ np.array(cut.normal)) < 1 - 1e-6:
+        turned = {"cut_axis": "free", **angles_of(out)}
+    middle, half = box_across(bounds_of(state), out)
+    along = float((np.asarray(origin, float) - middle) @ out) / max(2 * half, 1e-12)
+    state.param.update(cut_position=float(np.clip(0.5 + along, 0, 1)), **turned)
+
+
+def face_the_eye(session: Session) -> None:
+    """Turn the plane so that one looks straight at its face."""
+    camera = session.view.camera
+    if session.state.rig is None or camera is None:
+        return
+    ahead = np.subtract(camera.position, camera.focal_point)
+    session.state.param.update(cut_axis="free", **angles_of(ahead / np.linalg.norm(ahead)))
+
+
+def angles_of(direction: ArrayLike) -> dict[str, float]:
+    """Return the angles of a plane that looks in a direction of length 1."""
+    x, y, z = np.asarray(direction, float)
+    yaw = float(np.degrees(np.arctan2(x, z)))
+    pitch = float(np.degrees(np.arcsin(np.clip(y, -1, 1))))
+    return {"cut_yaw": round(yaw, 2), "cut_pitch": round(pitch, 2)}

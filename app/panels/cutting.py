@@ -1,0 +1,38 @@
+"""The choice of a cutting plane, and what moves and turns it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import panel_material_ui as pmui
+
+from ..commands import cutting as actions
+from ..commands.session import Session
+from .parts import GAP, caption, choice, slider, when
+
+AXES = {"Whole": "off", "Cut X": "x", "Cut Y": "y", "Cut Z": "z", "Free": "free"}
+
+
+def cutting(session: Session) -> list[Any]:
+    """Return the choice of a plane, where it lies, and where a free one looks to."""
+    state = session.state
+    cut = when(lambda axis: axis != "off", state.param.cut_axis)
+    free = when(lambda axis: axis == "free", state.param.cut_axis)
+    look = {"format": "0°", "step": 1, "visible": free}
+    facing = pmui.Button(
+        label="Face the eye",
+        size="small",
+        variant="outlined",
+        margin=GAP,
+        sizing_mode="stretch_width",
+        on_click=lambda event: actions.face_the_eye(session),
+        visible=free,
+    )
+    return [
+        choice(state.param.cut_axis, AXES),
+        slider(state.param.cut_position, "Where the cut lies", step=0.005, visible=cut),
+        slider(state.param.cut_yaw, "Turned about the upright axis", **look),
+        slider(state.param.cut_pitch, "Tilted", **look),
+        facing,
+        caption("Or drag its handles in the scene.", visible=cut),
+    ]

@@ -1,0 +1,50 @@
+"""Bones and clips by their names, as people write them."""
+
+from __future__ import annotations
+
+from difflib import get_close_matches
+
+from cutcell.errors import ParameterError
+from cutcell.rig import Clip, Rig
+
+
+def find_bone(rig: Rig, name: str) -> int:
+    """Return the number of the joint of a name; the case of its letters does not matter.
+
+    Raises
+    ------
+    ParameterError
+        There is none; the sentence tells the names that are nearest.
+    """
+    return _find("bone", name, list(rig.skeleton.names), rig)
+
+
+def find_clip(rig: Rig, name: str) -> Clip:
+    """Return the clip of a name or number.
+
+    Raises
+    ------
+    ParameterError
+        There is none; the sentence tells those that there are.
+    """
+    if not rig.clips:
+        raise ParameterError(f"{rig.name} has no clips to play")
+    names = [clip.name for clip in rig.clips]
+    if name not in names and name.isdecimal() and 1 <= int(name) <= len(names):
+        return rig.clips[int(name) - 1]
+    return rig.clips[_find("clip", name, names, rig)]
+
+
+def _find(what: str, name: str, names: list[str], rig: Rig) -> int:
+    if name in names:
+        return names.index(name)
+    folded = [one.casefold() for one in names]
+    if folded.count(name.casefold()) == 1:
+        return folded.index(name.casefold())
+    near = get_close_matches(name.casefold(), folded, 3, 0.5)
+    near += [one for one in folded if name.casefold() in one][: 3 - len(near)]
+    found = [names[folded.index(one)] for one in dict.fromkeys(near)]
+    few = found or names[:8]
+    told = "the nearest names are" if found else "there are" if len(names) <= 8 else "some are"
+    quoted = ", ".join(f'"{one}"' for one in few)
+    raise ParameterError(f'{rig.name} has no {what} "{name}"; {told} {quoted}')

@@ -1,0 +1,144 @@
+"""What `cutcell render` is told about the inside, as choices of the page."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from typing import Any
+
+import param
+
+from cutcell.checks import check_choice
+from cutcell.errors import ParameterError
+
+from .state import State
+
+LAYERS = {
+    "body": "body",
+    "mesh": "mesh_edges",
+    "interior": "interior_edges",
+    "surface": "surface_edges",
+    "nodes": "nodes",
+}
+"""What layers of the graph are called here, and in the state."""
+
+FACES = {"open": "open", "distance": "field", "winding": "winding"}
+AXES = ("x", "y", "z")
+
+
+def settings_of(
+    *,
+    layers: str | None = None,
+    color_by: str | None = None,
+    cut: str | None = None,
+    face: str | None = None,
+    keep: str | None = None,
+    slices: str | None = None,
+    sources: bool = False,
+    path: int | None = None,
+    wave: float | None = None,
+) -> dict[str, Any]:
+    """Return the choices of the page that options stand for.
+
+    Raises
+    ------
+    ParameterError
+        One of them cannot be read; the sentence shows how it is written.
+    """
+    said: dict[str, Any] = {}
+    if layers is not None:
+        names = [name.strip() for name in layers.split(",") if name.strip()]
+        for name in names:
+            check_choice("layer", name, LAYERS)
+        said |= {choice: name in names for name, choice in LAYERS.items()}
+    if color_by is not None:
+        said["edge_colors"] = color_by
+    if cut is not None:
+        said |= _cut(cut)
+    if face is not None:
+        shown = FACES[check_choice("face", face, FACES)]
+        said |= {"graph_face": shown, **({} if shown == "open" else {"cut_face": shown})}
+    if keep is not None:
+        said |= _keep(keep)
+    if slices is not None:
+        said |= _slice(slices)
+    if sources:
+        said["starts"] = True
+    if path is not None:
+        said |= {"vertex": path, "path": True}
+    if wave is not None:
+        said |= {"wave": True, "front": wave}
+    return said
+
+
+def apply(state: State, settings: Mapping[str, Any]) -> None:
+    """Set choices of the page.
+
+    Raises
+    ------
+    ParameterError
+        There is no such choice, or it cannot have that value.
+    """
+    for name, value in settings.items():
+        if name not in state.param or name == "name":
+            raise ParameterError(f'the page has no choice "{name}"')
+        try:
+            setattr(state, name, value)
+        except ValueError:
+            raise ParameterError(_refusal(name, value, state.param[name])) from None
+    count = 0 if state.rig is None else len(state.rig.mesh.vertices)
+    if state.vertex is not None and not 0 <= state.vertex < count:
+        raise ParameterError(f"vertex must be one of 0 to {count - 1}, not {state.vertex}")
+
+
+def _refusal(name: str, value: Any, parameter: Any) -> str:
+    if isinstance(parameter, param.Selector):
+        known = ", ".join(str(one) for one in parameter.objects)
+        return f'{name} must be one of {known}, not "{value}"'
+    if isinstance(parameter, param.Number) and parameter.bounds is not None:
+        low, high = parameter.bounds
+        return f"{name} must be a number from {low} to {high}, not {value}"
+    return f'{name} cannot be "{value}"'
+
+
+def _cut(text: str) -> dict[str, Any]:
+    across, _, at = text.partition("=")
+    said: dict[str, Any] = {"cut_position": _part("cut", at, text)} if at else {}
+    if across.lower() in AXES:
+        return {"cut_axis": across.lower(), **said}
+    angles = re.fullmatch(r"([-+]?[\d.]+),([-+]?[\d.]+)", across)
+    if not angles:
+        raise ParameterError(
+            "cut must be x, y or z, or two angles in degrees (around the upright axis, and up), "
+            f'and may tell where, such as z=0.4 or 30,20=0.5, not "{text}"'
+        )
+    yaw, pitch = float(angles[1]), float(angles[2])
+    return {"cut_axis": "free", "cut_yaw": yaw, "cut_pitch": pitch, **said}
+
+
+def _keep(text: str) -> dict[str, Any]:
+    what, _, thick = text.partition("=")
+    return {"cut_keeps": what, **({"slab": _part("keep", thick, text)} if thick else {})}
+
+
+def _slice(text: str) -> dict[str, Any]:
+    found = re.fullmatch(r"([xyz])(?:=([\d.]+))?(?::([xyz]))?", text.lower())
+    if not found:
+        raise ParameterError(
+            "slice must be an axis, and may tell where and along which axis its rays run, such as "
+            f'z, z=0.5 or z=0.5:x, not "{text}"'
+        )
+    said: dict[str, Any] = {"slicing": True, "slice_axis": found[1]}
+    if found[2]:
+        said["slice_position"] = _part("slice", found[2], text)
+    return {**said, **({"slice_rays": found[3]} if found[3] else {})}
+
+
+def _part(name: str, text: str, whole: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = -1.0
+    if not 0 <= value <= 1:
+        raise ParameterError(f'{name} must tell a number from 0 to 1 after the =, not "{whole}"')
+    return value
