@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from cutcell.corrections import Corrections, JointCorrection, PartCorrection
 from cutcell.deform import DeformJoints, deform_joints
+from cutcell.display import shown_name
 from cutcell.errors import CutcellError, ParameterError
 from cutcell.graph import CutCellGraph
 from cutcell.rig import Rig
@@ -105,18 +106,41 @@ def correct_part(session: Session, vertices: Collection[int], part: PartCorrecti
 
 
 def overrule(session: Session, vertex: int, weights: Mapping[int, float] | None) -> None:
-    """Give a vertex weights, by joint; None for those that are computed."""
+    """Give a vertex weights, by joint; None for those that are computed.
+
+    Vertices in the same place get the same: the skin would tear there else.
+    """
     state = session.state
-    held = {v: row for v, row in state.corrections.vertices.items() if v != vertex}
-    names = state.rig.skeleton.names
+    node = state.binding.graph.vertex_node
+    together = np.flatnonzero(node == node[vertex])
+    given = None
     if weights is not None:
-        held[vertex] = {names[joint]: value for joint, value in weights.items() if value}
+        given = {state.rig.skeleton.names[joint]: w for joint, w in weights.items() if w}
+        if state.rig.allowed is not None:
+            stored = state.rig.allowed[together][:, [j for j, w in weights.items() if w]]
+            together = together[stored.all(axis=1) | (together == vertex)]
+    held = {v: row for v, row in state.corrections.vertices.items() if v not in together}
+    if given is not None:
+        held.update(dict.fromkeys(together.tolist(), given))
     try:
         corrections = replace(state.corrections, vertices=held)
     except CutcellError as error:
         session.fail(error)
         return
     correct(session, corrections)
+
+
+def leave_out(session: Session, joints: Collection[int]) -> None:
+    """Let some joints carry no weight, and say so when it is done."""
+    state = session.state
+    names = [shown_name(state.rig.skeleton.names[j]) for j in joints]
+    carrying = set(np.flatnonzero(state.rig.skeleton.deform).tolist())
+    before = state.corrections
+    choose_deform(session, carrying - set(joints))
+    if state.corrections != before:
+        some = names[0] if len(names) == 1 else f"{len(names)} joints"
+        verb = "carries" if len(names) == 1 else "carry"
+        session.notice = f"{some} {verb} no weight any more; undo takes it back."
 
 
 def clear(session: Session) -> None:

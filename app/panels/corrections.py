@@ -31,7 +31,7 @@ def corrections(session: Session) -> pmui.Column:
             disabled=none,
             on_click=lambda event, act=act: act(session),
         )
-        for label, act in (("Save", correct.save), ("Take all back", correct.clear))
+        for label, act in (("Save", correct.save), ("Clear all", correct.clear))
     ]
     opener = OpenFile(
         lambda text: correct.open_text(session, text),

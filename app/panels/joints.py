@@ -40,8 +40,8 @@ def joints(session: Session) -> pmui.Column:
 
     def listed(*events: Any) -> None:
         rig = state.rig
-        if rig is None or state.bare:
-            return
+        if rig is None or state.bare or state.panel != "weights":
+            return  # it is shown when somebody looks
         of = (rig.mesh, rig.skeleton.names)
         if known["of"] != of:
             known.update(of=of, guess=None)
@@ -56,7 +56,7 @@ def joints(session: Session) -> pmui.Column:
 
     # The colours go first.
     later = lambda *events: session.tasks.later(listed)  # noqa: E731
-    state.param.watch(later, ["rig", "binding", "corrections"])
+    state.param.watch(later, ["panel", "rig", "binding", "corrections"])
     state.param.watch(lambda *events: tree.param.update(chosen=state.joint), "joint")
     listed()
     counts = caption(when(_counted, state.param.rig))
@@ -82,8 +82,8 @@ def _chosen(session: Session) -> list[Any]:
         label="Reach", start=-DOUBLINGS, end=DOUBLINGS, step=0.1, value=0.0, size="small",
         margin=GAP, sizing_mode="stretch_width", show_value=False, track=False,
     )  # fmt: skip
-    radius = pmui.FloatInput(
-        label="Radius, in the file's units", value=None, start=0, size="small", margin=(8, 0),
+    radius = pmui.TextInput(
+        label="Radius, in the file's units", value="", size="small", margin=(8, 0),
         sizing_mode="stretch_width", placeholder="measured from the body",
     )  # fmt: skip
     reset = pmui.Button(
@@ -105,7 +105,7 @@ def _chosen(session: Session) -> list[Any]:
             carries.value = bool(rig.skeleton.deform[state.joint])
             locked.param.update(value=one.locked, disabled=rig.weights is None)
             gain.param.update(value=_doublings(one.gain), label=f"Reach ×{one.gain:.2f}")
-            radius.param.update(value=one.radius, visible=state.falloff != "paper")
+            radius.param.update(value=_written(one.radius), visible=state.falloff != "paper")
             reset.disabled = one == JointCorrection()
         finally:
             showing[0] = False
@@ -120,12 +120,24 @@ def _chosen(session: Session) -> list[Any]:
     carries.param.watch(lambda event: changes(deform=event.new), "value")
     locked.param.watch(lambda event: changes(locked=event.new), "value")
     gain.param.watch(reached, "value")
-    radius.param.watch(lambda event: changes(radius=event.new or None), "value")
+    radius.param.watch(lambda event: changes(radius=_read(event.new)), "value")
     reset.on_click(lambda event: changes(deform=None, locked=False, gain=1.0, radius=None))
     watched = ["rig", "joint", "binding", "corrections", "falloff"]
     state.param.watch(lambda *events: show(), watched)
     show()
     return [heading, holds, carries, locked, gain, radius, reset]
+
+
+def _written(radius: float | None) -> str:
+    return "" if radius is None else f"{radius:g}"
+
+
+def _read(text: str) -> Any:
+    """Return the number that a text says; None for none, the text where it is no number."""
+    try:
+        return float(text) if text.strip() else None
+    except ValueError:
+        return text
 
 
 def _switch(label: str) -> MaterialWidget:

@@ -11,6 +11,7 @@ from cutcell.method import FALLOFFS
 
 from ..commands.session import Session
 from ..state import State
+from .components import parts_of_mesh
 from .corrections import corrections
 from .joints import joints
 from .parts import GAP, caption, choice, follow, lead, section, slider, when
@@ -53,6 +54,7 @@ def weights(session: Session) -> pmui.Column:
         section("", shown, *_sides(state), facts, margin=(8, 20, 4, 20)),
         joints(session),
         section("Falloff with distance", *_falloff(state)),
+        parts_of_mesh(session),
         corrections(session),
         margin=0,
         sizing_mode="stretch_width",

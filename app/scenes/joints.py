@@ -16,6 +16,9 @@ from cutcell_viewers.palette import joint_colors, to_hex
 from ..state import State
 from .memo import Memo
 
+STRAY = 0.002
+"""Of the skin: what holds more in the file is no control, whatever its name says."""
+
 
 def shares_of(state: State, memo: Memo) -> tuple[NDArray | None, NDArray | None]:
     """Return which part of the skin each joint holds, shape (j,): as computed, and in the file."""
@@ -58,8 +61,8 @@ def joint_rows(state: State, memo: Memo, guess: DeformJoints | None) -> list[dic
     for joint in in_order(skeleton):
         name = skeleton.names[joint]
         one = state.corrections.joints.get(name, JointCorrection())
-        control = guess is not None and not guess.deform[joint]
-        holds = own is not None and own[joint] > 0
+        holds = 0.0 if own is None else float(own[joint])
+        control = guess is not None and not guess.deform[joint] and holds < STRAY
         rows.append(
             {
                 "joint": joint,

@@ -10,7 +10,8 @@ from playwright.sync_api import expect
 
 import cutcell
 from cutcell import Corrections, JointCorrection
-from tests.app.browser import Visit
+from tests.app.browser import Visit, changed
+from tests.cutcell.diagnosis.test_leaks import soldier
 
 
 @pytest.fixture(scope="module")
@@ -26,8 +27,8 @@ def visit(browser, url):
 @pytest.fixture(autouse=True)
 def anew(visit):
     yield
-    if visit.page.get_by_role("button", name="Take all back").is_enabled():
-        visit.button("Take all back").click()
+    if visit.page.get_by_role("button", name="Clear all").is_enabled():
+        visit.button("Clear all").click()
         visit.settle()
 
 
@@ -87,7 +88,7 @@ def test_joints_are_corrected_by_keys_kept_and_exported(visit, robot, tmp_path):
     weights = exported(visit, tmp_path).weights
     fresh = cutcell.bind(robot, 24, corrections=Corrections(joints=held))
     np.testing.assert_allclose(weights, fresh.weights, atol=1 / 255)
-    visit.button("Take all back").click()
+    visit.button("Clear all").click()
     visit.settle()
     expect(visit.page.get_by_text("Nothing is corrected")).to_be_visible()
     visit.button("Undo").click()
@@ -101,3 +102,76 @@ def test_joints_are_corrected_by_keys_kept_and_exported(visit, robot, tmp_path):
     expect(tree.get_by_text("×2")).to_be_visible()
     visit.settle()
     assert corrected(visit) == Corrections.load(path)
+
+
+def test_a_part_is_glued_to_a_joint(visit, robot, tmp_path):
+    rows = visit.page.get_by_role("list", name="Parts of the mesh")
+    whole = visit.look()
+    ring = rows.get_by_role("button").nth(1)
+    ring.focus()
+    visit.page.keyboard.press("Enter")
+    expect(ring).to_have_attribute("aria-current", "true")
+    assert changed(whole, visit.look()) > 0.02
+    visit.choose("This part is", "Glued to a joint")
+    expect(ring).to_contain_text("glued: ")
+    visit.settle()
+    assert faults(visit) == []
+    (first, part), *_ = corrected(visit).parts.items()
+    joint = robot.skeleton.names.index(part.joint)
+    assert exported(visit, tmp_path).weights[first, joint] == 1
+    visit.button("Undo").click()
+    visit.settle()
+    visit.expect_text("Nothing is corrected")
+
+
+def test_a_vertex_is_overruled_on_its_card_and_undone(visit, robot):
+    vertex = visit.click_vertex()
+    visit.card.get_by_role("button", name="Why these weights?").click()
+    numbers = visit.card.get_by_role("spinbutton")
+    expect(numbers.nth(1)).to_be_visible()
+    for place, number in enumerate(numbers.all()):
+        number.fill({0: "0.25", 1: "0.75"}.get(place, "0"))
+    visit.page.keyboard.press("Enter")
+    expect(visit.card).to_contain_text("Weights, given by you")
+    visit.settle()
+    expect(visit.card.locator("details").first).to_contain_text("corrected0.75")
+    assert faults(visit) == []
+    assert sorted(corrected(visit).vertices[vertex].values()) == [0.25, 0.75]
+    visit.button("Undo").click()
+    expect(visit.card).not_to_contain_text("given by you")
+    visit.button("Redo").click()
+    visit.card.get_by_role("button", name="As computed").click()
+    expect(visit.card).not_to_contain_text("given by you")
+    visit.card.get_by_role("button", name="Hide why").click()
+    visit.close_card()
+    visit.expect_text("Nothing is corrected")
+
+
+def test_the_soldier_is_mended_in_two_clicks_and_stays_so(visit, tmp_path):
+    rig = soldier()
+    root = len(rig.skeleton.joints) - 1
+    torn = cutcell.bind(rig, 24).weights[:, root]
+    path = tmp_path / "soldier.glb"
+    cutcell.save(path, rig)
+    visit.open(path)
+    visit.panel("Check")
+    # The card tells of a vertex of the trousers what the file says, and what ours would be.
+    vertex = visit.click_vertex(f"{np.flatnonzero(torn > 0.5).tolist()}.includes(vertex)")
+    visit.card.get_by_role("button", name="Why these weights?").click()
+    answer = visit.card.locator("details").first
+    expect(answer.locator("summary")).to_contain_text("Root")
+    expect(answer).to_contain_text("in the file")
+    visit.close_card()
+
+    visit.button("Stray weights").click()
+    visit.button("Let Root carry no weight").click()
+    visit.expect_text("Root carries no weight any more")
+    visit.settle()
+    expect(visit.button("Stray weights")).to_have_count(0)
+    mended = exported(visit, tmp_path)
+    assert mended.skeleton.names[root] == "Root"
+    assert not mended.weights[:, root].any()
+    assert cutcell.bind(rig, 24).weights[vertex, root] > 0.5
+    assert not mended.skeleton.deform[root], "so it stays mended when it is bound again"
+    visit.panel("Weights")
+    assert corrected(visit).joints == {"Root": JointCorrection(deform=False)}

@@ -5,15 +5,21 @@ from dataclasses import replace
 import numpy as np
 import panel_material_ui as pmui
 import pytest
+import trimesh
 
 import cutcell
 from cutcell import Corrections, JointCorrection, PartCorrection
-from cutcell_app.commands import arrival, correct, keys, loading
+from cutcell.rig import TriangleMesh
+from cutcell_app.commands import arrival, correct, keys, loading, look
 from cutcell_app.commands.binding import restore
+from cutcell_app.panels.components import parts_of_mesh
 from cutcell_app.panels.joints import joints
+from cutcell_app.scenes import resolve
+from cutcell_app.scenes.facts import vertex_facts
 from cutcell_app.state.corrections import MOST_IN_ADDRESS, from_text, to_text
 from cutcell_app.state.url import from_query
 from cutcell_app.widgets.joint_tree import JointTree
+from cutcell_app.widgets.rows import Rows
 from tests.viewers.arm import arm_rig
 
 ALL = Corrections(
@@ -219,17 +225,84 @@ def test_the_tree_and_what_stands_below_it(bound, loop):
     locked.value = True
     (gain,) = section.select(pmui.FloatSlider)
     gain.value = 1.0
-    (radius,) = section.select(pmui.FloatInput)
-    radius.value = 0.25
+    (radius,) = section.select(pmui.TextInput)
+    radius.value = "0.25"
     expected = {"wrist": JointCorrection(locked=True, gain=2.0, radius=0.25)}
     assert bound.state.corrections.joints == expected
     settled(bound, loop)
     the_same_as_bind(bound)
     bound.state.joint = 0
-    assert (locked.value, gain.value, radius.value) == (False, 0.0, None)
+    assert (locked.value, gain.value, radius.value) == (False, 0.0, "")
     assert bound.state.corrections.joints == expected
     bound.state.joint = 2
+    radius.value = "wide"
+    assert "Radius must be a number" in bound.state.message[1]
+    assert radius.value == "0.25"
     next(b for b in section.select(pmui.Button) if b.label == "As computed").clicks += 1
     assert not bound.state.corrections
     restore(bound, {"corrections": ALL})
     assert gain.value == 0.0
+
+
+def test_a_vertex_is_overruled_with_all_that_lie_in_its_place(bound, loop):
+    node = bound.state.binding.graph.vertex_node
+    together = np.flatnonzero(node == node[7])
+    computed = bound.state.binding.weights[7]
+    correct.overrule(bound, 7, {0: 1.0, 2: 3.0, 1: 0.0})
+    assert np.array_equal(bound.state.binding.weights[together], [[0.25, 0, 0.75]] * len(together))
+    look.pick_vertex(bound, 7)
+    bound.state.explain = True
+    facts = vertex_facts(bound.state, bound.memo)
+    assert facts["overruled"]
+    assert [bone["weight"] for bone in facts["offered"]][:3] == [0.75, 0.25, 0]
+    settled(bound, loop)
+    told = vertex_facts(bound.state, bound.memo)["why"]
+    assert told[0]["steps"][-1] == ["corrected", 0.75]
+    correct.overrule(bound, 7, {0: 0.0})
+    assert "needs a weight above 0" in bound.state.message[1]
+    correct.overrule(bound, 7, None)
+    assert not bound.state.corrections
+    np.testing.assert_allclose(bound.state.binding.weights[7], computed)
+
+
+def test_parts_are_glued_and_seen_apart(session, loop):
+    rig = arm_rig()
+    button = trimesh.creation.icosphere(subdivisions=1, radius=0.1)
+    first = len(rig.mesh.vertices)
+    vertices = np.concatenate([rig.mesh.vertices, button.vertices + np.array([-1, 0, 0.38])])
+    faces = np.concatenate([rig.mesh.faces, button.faces + first])
+    session.state.resolution = 16
+    loading.show_rig(session, cutcell.Rig(TriangleMesh(vertices, faces), rig.skeleton))
+    section = parts_of_mesh(session)
+    loop.run_until(lambda: session.state.binding is not None and not session.tasks.running)
+    loop.run_for(0.05)
+    (rows,) = section.select(Rows)
+    way, glue = section.select(pmui.Select)
+    assert [row[0] for row in rows.rows] == [
+        f"Part 1 · {first}",
+        f"Part 2 · {len(vertices) - first}",
+    ]
+    rows._handle_msg({"row": 1})
+    loop.run_for(0.05)
+    assert (rows.chosen, session.state.part, way.value) == (1, first, "")
+    scene = resolve(session.state)
+    assert len(scene.actors["part"].cells) == len(button.faces)
+    assert scene.actors["body"].opacity < 0.5
+    way.value = "glued"
+    loop.run_until(lambda: not session.tasks.running)
+    loop.run_for(0.05)
+    assert glue.value == "shoulder"
+    glue.value = "wrist"
+    loop.run_for(0.05)
+    assert (session.state.binding.weights[first:, 2] == 1).all()
+    assert rows.rows[1][1] == "glued: wrist"
+    way.value = "itself"
+    loop.run_until(lambda: not session.tasks.running)
+    parts = {first: PartCorrection("itself")}
+    assert session.state.corrections == Corrections(parts=parts)
+    fresh = cutcell.bind(session.state.rig, 16, corrections=session.state.corrections)
+    np.testing.assert_allclose(session.state.binding.weights, fresh.weights, atol=1e-9)
+    way.value = ""
+    assert not session.state.corrections
+    rows._handle_msg({"row": 1})
+    assert session.state.part is None
