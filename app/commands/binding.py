@@ -103,8 +103,10 @@ def _known_graph(session: Session, rig: Rig, wanted: dict[str, Any]) -> Any:
     if session.graph is None:
         return None
     mesh, made, graph = session.graph
-    same = mesh is rig.mesh and all(made[n] == wanted[n] for n in GRAPH if n != "leaf")
-    return graph if same else None
+    if mesh is rig.mesh and all(made[n] == wanted[n] for n in GRAPH if n != "leaf"):
+        return graph
+    session.graph = None  # two of them need not be in memory
+    return None
 
 
 def cancel(session: Session) -> None:
@@ -158,22 +160,22 @@ def _build(session: Session, message: tuple[str, str] | None) -> None:
 
 
 def _go_back(session: Session, wanted: dict[str, Any]) -> None:
-    """Choose what the page holds instead of what no graph came of; at first, the defaults."""
+    """Choose what the page holds instead of what nothing came of; at first, the defaults."""
     state = session.state
-    held = session.built_for if state.graph is not None else asked(State())
-    if asked(state) != wanted or wanted == held:
+    held, corrections = asked(State()), Corrections()
+    if state.graph is not None:
+        held, corrections = session.built_for, session.corrected
+    if asked(state) != wanted or (wanted == held and state.corrections == corrections):
         return
     session.bound_for = held
-    _withdraw(session, {name: held[name] for name in GRAPH})
+    _withdraw(session, {name: held[name] for name in GRAPH}, corrections)
     if state.graph is None:
         bind(session, state.message)
 
 
-def _withdraw(session: Session, choices: dict[str, Any]) -> None:
-    """Choose something again, and the corrections that the page holds."""
-    state = session.state
-    corrections = session.corrected if state.graph is not None else Corrections()
-    rig = applied(state.rig, state.own_deform, corrections)
+def _withdraw(session: Session, choices: dict[str, Any], corrections: Corrections) -> None:
+    """Choose something again, and the corrections that there were."""
+    rig = applied(session.state.rig, session.state.own_deform, corrections)
     history.withdraw(session, {**choices, "corrections": corrections, "rig": rig})
 
 
@@ -278,7 +280,7 @@ def _soon(session: Session, make: Callable[[], NDArray]) -> None:
         if isinstance(weights, CutcellError):
             session.fail(weights)
             if state.corrections == corrections != session.corrected:
-                _withdraw(session, {})
+                _withdraw(session, {}, session.corrected)
         elif now is not None and now.distances is binding.distances:
             session.corrected = corrections
             state.binding = replace(now, weights=weights)

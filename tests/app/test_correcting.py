@@ -120,6 +120,11 @@ def test_what_cannot_be_is_told_and_not_taken(bound, loop):
     assert "None is left" in bound.state.message[1] or "none is left" in bound.state.message[1]
     assert not bound.state.corrections
     assert not bound.history.can_undo
+    alone = to_text(Corrections(parts={0: PartCorrection("touching")}))
+    bound.arrival = {"corrections": alone}
+    loading.show_rig(bound, arm_rig())
+    loop.run_until(lambda: bound.state.binding is not None)
+    assert not bound.state.corrections
     loading.show_rig(bound, rig.with_weights(None))
     loop.run_until(lambda: bound.state.binding is not None)
     correct.correct_joint(bound, 0, locked=True)
