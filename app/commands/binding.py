@@ -14,16 +14,20 @@ from typing import Any
 from numpy.typing import NDArray
 
 import cutcell
+from cutcell.corrections import Corrections
 from cutcell.errors import CutcellError
 from cutcell.method import joints_needed
 from cutcell.progress import Progress
 from cutcell.rig import Rig
 from cutcell.skinning import Binding, keep_strongest, skinning_weights
+from cutcell.skinning.correct import adjustments_of
 
 from ..state import State
+from ..state.corrections import applied, measured
 from ..state.method import GRAPH, WEIGHTS, effective, method_of
 from ..state.weights import MOST
 from . import history
+from .correct import finished
 from .session import Session
 
 QUICK = ("paper",)
@@ -35,6 +39,7 @@ def watch(session: Session) -> None:
     watch, tasks = session.state.param.watch, session.tasks
     watch(lambda *events: tasks.after_a_pause(lambda: _rebind(session)), list(GRAPH))
     watch(lambda *events: weigh(session), list(WEIGHTS))
+    watch(lambda *events: _correct(session), "corrections")
 
 
 def bind(session: Session, message: tuple[str, str] | None = None) -> None:
@@ -53,24 +58,55 @@ def bind(session: Session, message: tuple[str, str] | None = None) -> None:
     if state.bare:
         _build(session, message)
         return
-    graph = session.bound_for = method_of(state, GRAPH)
-    few = kept(state)
+    wanted = session.bound_for = asked(state)
+    few, corrections = kept(state), state.corrections
+    graph = _known_graph(session, rig, wanted)
 
     def work(progress: Progress) -> Any:
-        generous = cutcell.bind(rig, progress=progress, **effective(method))
-        return generous, pruned(generous, few)
+        generous = cutcell.bind(
+            rig,
+            graph=graph,
+            corrections=wanted["corrections"],
+            progress=progress,
+            **effective(method),
+        )
+        return generous, pruned(generous, few, rig, corrections)
 
     def done(bindings: Any) -> None:
-        session.built_for = graph
+        session.built_for, session.corrected = wanted, corrections
+        session.reach = reach_of(method["falloff"])
         generous, binding = bindings
+        session.graph = (rig.mesh, wanted, binding.graph)
         session.falloffs = {method["falloff"]: (generous.distances, generous.weights)}
         notice, session.notice = session.notice, ""
         told = ("info", notice) if notice and message is None else message
         state.param.update(binding=binding, field=None, message=told)
-        if method_of(state, WEIGHTS) != {**{name: method[name] for name in WEIGHTS}, **few}:
+        chosen = {**{name: method[name] for name in WEIGHTS}, **few}
+        if method_of(state, WEIGHTS) != chosen or state.corrections != corrections:
             weigh(session)  # others were chosen in the meantime
 
-    session.start(work, done, failed=lambda: _go_back(session, graph))
+    session.start(work, done, failed=lambda: _go_back(session, wanted))
+
+
+def reach_of(falloff: Any) -> float:
+    """Return how many times as far as the nearest joint distances must be known."""
+    return replace(cutcell.ANIMATION, falloff=falloff).reach_needed
+
+
+def asked(state: State) -> dict[str, Any]:
+    """Return what distances are measured for."""
+    return {**method_of(state, GRAPH), "corrections": measured(state.corrections)}
+
+
+def _known_graph(session: Session, rig: Rig, wanted: dict[str, Any]) -> Any:
+    """Return the graph of the last binding, if this one's is the same: joints do not matter."""
+    if session.graph is None:
+        return None
+    mesh, made, graph = session.graph
+    if mesh is rig.mesh and all(made[n] == wanted[n] for n in GRAPH if n != "leaf"):
+        return graph
+    session.graph = None  # two of them need not be in memory
+    return None
 
 
 def cancel(session: Session) -> None:
@@ -94,9 +130,13 @@ def swap(session: Session, rig: Rig, **more: Any) -> None:
 
 def restore(session: Session, choices: dict[str, Any]) -> None:
     """Choose again what was chosen once; the character that it was chosen of is bound again."""
-    state, rig = session.state, choices.get("rig", session.state.rig)
-    history.restore(session, history.plain(choices))
-    if rig is not state.rig:
+    state, plain = session.state, history.plain(choices)
+    corrections = choices.get("corrections", state.corrections)
+    rig = choices.get("rig") or applied(state.rig, state.own_deform, corrections)
+    if rig.mesh is state.rig.mesh and rig.weights is state.rig.weights:
+        history.restore(session, {**plain, "rig": rig})  # at most other joints deform
+    else:
+        history.restore(session, plain)
         with history.restoring(session):
             swap(session, rig, repair=choices["repair"])
     history.tell(session)
@@ -105,8 +145,8 @@ def restore(session: Session, choices: dict[str, Any]) -> None:
 def _build(session: Session, message: tuple[str, str] | None) -> None:
     """Build the graph of a mesh without a skeleton."""
     rig = session.state.rig
-    wanted = session.bound_for = method_of(session.state, GRAPH)
-    chosen = {name: value for name, value in wanted.items() if name != "leaf"}
+    wanted = session.bound_for = asked(session.state)
+    chosen = {name: wanted[name] for name in GRAPH if name != "leaf"}
 
     def done(graph: Any) -> None:
         session.built_for = wanted
@@ -119,22 +159,41 @@ def _build(session: Session, message: tuple[str, str] | None) -> None:
     )
 
 
-def _go_back(session: Session, graph: dict[str, Any]) -> None:
-    """Choose what the page holds instead of what no graph came of; at first, the defaults."""
+def _go_back(session: Session, wanted: dict[str, Any]) -> None:
+    """Choose what the page holds instead of what nothing came of; at first, the defaults."""
     state = session.state
-    held = session.built_for if state.graph is not None else method_of(State(), GRAPH)
-    if method_of(state, GRAPH) != graph or graph == held:
+    held, corrections = asked(State()), Corrections()
+    if state.graph is not None:
+        held, corrections = session.built_for, session.corrected
+    if asked(state) != wanted or (wanted == held and state.corrections == corrections):
         return
     session.bound_for = held
-    history.withdraw(session, held)
+    _withdraw(session, {name: held[name] for name in GRAPH}, corrections)
     if state.graph is None:
         bind(session, state.message)
 
 
+def _withdraw(session: Session, choices: dict[str, Any], corrections: Corrections) -> None:
+    """Choose something again, and the corrections that there were."""
+    rig = applied(session.state.rig, session.state.own_deform, corrections)
+    history.withdraw(session, {**choices, "corrections": corrections, "rig": rig})
+
+
 def _rebind(session: Session) -> None:
-    """Compute again if the graph's parameters are others than those last computed for."""
-    if method_of(session.state, GRAPH) != session.bound_for:
+    """Compute again if what is measured for is other than what was last computed for."""
+    if asked(session.state) != session.bound_for:
         bind(session)
+
+
+def _correct(session: Session) -> None:
+    """Follow the corrections."""
+    state = session.state
+    if state.rig is None or state.bare:
+        return
+    if asked(state) != session.bound_for:
+        session.tasks.after_a_pause(lambda: _rebind(session))
+    else:
+        weigh(session)
 
 
 # Weights of the distances that are there
@@ -150,37 +209,52 @@ def kept(state: State) -> dict[str, Any]:
     return method_of(state, ("max_influences", "threshold"))
 
 
-def pruned(binding: Binding, kept: dict[str, Any]) -> Binding:
-    """Return what was bound generously with the weights that are chosen."""
-    return replace(binding, weights=keep_strongest(binding.distances, binding.weights, **kept))
+def pruned(binding: Binding, kept: dict[str, Any], rig: Rig, corrections: Corrections) -> Binding:
+    """Return what was bound generously with the weights that are chosen and corrected."""
+    weights = keep_strongest(binding.distances, binding.weights, **kept)
+    most = kept["max_influences"]
+    return replace(binding, weights=finished(rig, binding.graph, weights, corrections, most))
 
 
 def weigh(session: Session) -> None:
     """Turn the distances that are there into weights again."""
     state = session.state
-    if state.binding is None:
-        return
+    if state.binding is None or asked(state)["corrections"] != session.built_for["corrections"]:
+        return  # they are about to be measured
     distances, falloff, few = state.binding.distances, state.falloff, kept(state)
-    chosen = effective({"falloff": falloff, "alpha": state.alpha})
-    make = partial(skinning_weights, distances, **chosen, allowed=state.rig.allowed)
     known = session.falloffs.get(falloff)
-    if not _measured(distances, falloff, few["max_influences"]):
+    if session.reach < reach_of(falloff) or not _measured(
+        distances, falloff, few["max_influences"]
+    ):
         bind(session)
     elif falloff in QUICK:
-        _soon(session, partial(make, **few))
+        _soon(session, partial(_weights, state.still(), **few))
     elif known is not None and known[0] is distances:
         _soon(session, partial(keep_strongest, distances, known[1], **few))
     else:
+        now = state.still()
 
         def work(progress: Progress) -> NDArray:
             progress("weights", 0.0)
-            return make(max_influences=MOST)
+            return _weights(now, max_influences=MOST)
 
         def done(weights: NDArray) -> None:
             session.falloffs[falloff] = (distances, weights)
             weigh(session)
 
         session.start(work, done)
+
+
+def _weights(state: Any, **few: Any) -> NDArray:
+    """Return the weights of the distances that are there, before they are corrected last."""
+    rig, distances = state.rig, state.binding.distances
+    return skinning_weights(
+        distances,
+        **effective({"falloff": state.falloff, "alpha": state.alpha}),
+        allowed=rig.allowed,
+        adjustments=adjustments_of(rig, distances.graph, measured(state.corrections)),
+        **few,
+    )
 
 
 def _measured(distances: Any, falloff: Any, most: int) -> bool:
@@ -191,19 +265,29 @@ def _measured(distances: Any, falloff: Any, most: int) -> bool:
 
 def _soon(session: Session, make: Callable[[], NDArray]) -> None:
     """Show weights that are made in a moment; those of a large character, when they are there."""
-    binding = session.state.binding
+    state = session.state
+    rig, binding, corrections = state.rig, state.binding, state.corrections
+    most = state.max_influences
 
-    def show(weights: NDArray) -> None:
-        now = session.state.binding
-        if now is not None and now.distances is binding.distances:
-            session.state.binding = replace(now, weights=weights)
+    def weights() -> NDArray | CutcellError:
+        try:
+            return finished(rig, binding.graph, make(), corrections, most)
+        except CutcellError as error:
+            return error
+
+    def show(weights: NDArray | CutcellError) -> None:
+        now = state.binding
+        if isinstance(weights, CutcellError):
+            session.fail(weights)
+            if state.corrections == corrections != session.corrected:
+                _withdraw(session, {}, session.corrected)
+        elif now is not None and now.distances is binding.distances:
+            session.corrected = corrections
+            state.binding = replace(now, weights=weights)
 
     newest = session.tasks.newest("weights")
-    if not session.state.quick:
-        newest.do(lambda progress: make(), show)
+    if not state.quick:
+        newest.do(lambda progress: weights(), show)
         return
     newest.cancel()
-    try:
-        show(make())
-    except CutcellError as error:
-        session.fail(error)
+    show(weights())

@@ -11,7 +11,7 @@ from cutcell_viewers.finding_scene import camera_on
 from ..scenes.common import bounds_of
 from ..state.diagnosis import Repair
 from ..state.method import GRAPH, method_of
-from .binding import swap
+from .binding import asked, swap
 from .look import look
 from .session import Session
 
@@ -37,11 +37,14 @@ def _begin_anew(session: Session) -> None:
 def examine(session: Session) -> None:
     """Diagnose what stands there, unless its graph is known to be sound or not."""
     state = session.state
-    if state.graph is None or session.diagnosed is state.graph:
+    distances = None if state.binding is None else state.binding.distances
+    if state.graph is None or asked(state) != session.built_for:
+        return  # what belongs to the choices is not there yet
+    if session.diagnosed is (distances or state.graph):
         return
     rig, resolution = state.rig, state.resolution
-    session.diagnosed = state.graph
-    known = None if state.bare or not _is_standard(state) else state.binding.distances
+    session.diagnosed = distances or state.graph
+    known = distances if _is_standard(state) else None
 
     def work(progress: Progress) -> Diagnosis:
         return diagnose(rig, resolution, distances=known, progress=progress)

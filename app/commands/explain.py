@@ -26,11 +26,18 @@ def explain(session: Session) -> None:
         return
     if explanation_of(state) is not None:
         return
-    method = effective(method_of(state))
+    method, corrections = effective(method_of(state)), state.corrections
 
     def work(progress: Progress) -> Any:
         distances = binding.distances
-        return cutcell.explain(rig, vertex, distances=distances, progress=progress, **method)
+        return cutcell.explain(
+            rig,
+            vertex,
+            distances=distances,
+            corrections=corrections,
+            progress=progress,
+            **method,
+        )
 
     def done(found: Any) -> None:
         state.explanation = (binding, found)

@@ -7,6 +7,9 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
+from cutcell.errors import CutcellError
+
+from ..state.corrections import news
 from ..state.history import History
 from ..state.url import NOTED, simple, taken, to_query
 from .session import Session
@@ -58,7 +61,7 @@ def withdraw(session: Session, choices: dict[str, Any]) -> None:
 def restore(session: Session, choices: dict[str, Any]) -> None:
     """Choose something without noting it."""
     with restoring(session):
-        session.state.param.update(**choices)
+        session.state.param.update(**news(session.state, choices))
 
 
 @contextmanager
@@ -88,7 +91,12 @@ def query(session: Session) -> str:
     view, camera = session.view, None
     if view.camera is not None and not view.at_home:
         camera = [*view.camera.position, *view.camera.focal_point]
-    return to_query(session.state, session.uploads.key, camera)
+    try:
+        corrections = session.kept.said(session.state.corrections)
+    except (CutcellError, OSError) as error:
+        session.fail(error)
+        corrections = ""
+    return to_query(session.state, session.uploads.key, camera, corrections)
 
 
 def _chosen(session: Session) -> None:

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
+from cutcell.corrections import Corrections
+
 from ..scenes.common import first_joint
 from ..state import State
+from ..state.corrections import applied, news
 from ..state.url import defaults
 from .binding import restore
 from .history import RESULT, plain, restoring
@@ -39,7 +42,8 @@ def reset(session: Session) -> None:
     """Choose what one begins with, at rest, on the panel that is open."""
     state = session.state
     first = {**defaults(state), "moving": False, "playing": False}
-    state.param.update(**first, joint=first_joint(state.rig))
+    rig = applied(state.rig, state.own_deform, Corrections())
+    state.param.update(**news(state, {**first, "rig": rig}), joint=first_joint(rig))
     session.view.tell(home=True)
 
 

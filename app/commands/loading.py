@@ -8,7 +8,8 @@ from typing import Any
 
 from param.parameterized import batch_call_watchers
 
-from cutcell.errors import CutcellError, FileError
+from cutcell.corrections import Corrections
+from cutcell.errors import CutcellError, FileError, ParameterError
 from cutcell.progress import Progress
 from cutcell.rig import Rig
 from cutcell_assets import DEMOS
@@ -23,6 +24,7 @@ from ..work.jobs import READING
 from . import history
 from .binding import bind
 from .compare import carry
+from .correct import taken
 from .look import look
 from .session import Session
 
@@ -158,7 +160,8 @@ def show_rig(
     with history.restoring(session), batch_call_watchers(state):
         state.param.update(
             rig=rig, binding=None, bare_graph=None, field=None, turns={}, moving=False,
-            playing=False, repair=None,
+            playing=False, repair=None, corrections=Corrections(), part=None,
+            own_deform=rig.skeleton.deform,
             clip=first_clip(rig), message=None, joint=first_joint(rig), vertex=None,
         )  # fmt: skip
         if state.bare:
@@ -166,6 +169,7 @@ def show_rig(
         _arrive(session, rig, arrival)
         carry(state, before, arrival)
         chosen()
+        _correct(session, arrival.get("corrections", ""))
     view.camera = framing(bounds_of(state), 1.2)
     view.at_home = True
     view.tell(bones=bones_part(state), camera=camera_part(view.camera))
@@ -198,6 +202,21 @@ def _load(
         then()
 
     session.start(work, done, READING, failed)
+
+
+def _correct(session: Session, said: str) -> None:
+    """Take the corrections that an address says, or that are chosen already, if they fit."""
+    state, found = session.state, session.state.corrections
+    try:
+        if said:
+            kept = session.kept.read(said)
+            if kept is None:
+                raise ParameterError("the server no longer has them")
+            found = kept
+        state.param.update(**taken(session, found))
+    except (CutcellError, ValueError) as error:
+        state.corrections = Corrections()
+        session.notice = f"The corrections of this address were not taken: {error}"
 
 
 def _arrive(session: Session, rig: Rig, arrival: dict[str, Any]) -> None:

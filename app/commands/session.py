@@ -12,11 +12,13 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, Protocol
 
+from cutcell.corrections import Corrections
 from cutcell.errors import CutcellError
 from cutcell.progress import Progress
 from cutcell_viewers.camera import Camera
 from cutcell_viewers.description import Description
 
+from ..files.corrections_file import CorrectionsFile
 from ..files.upload_cache import UPLOADS, PageUploads
 from ..scenes import Memo
 from ..state import State
@@ -87,11 +89,20 @@ class Session:
     notice : str
         What is to be told once that is bound; empty for nothing.
     bound_for, built_for : dict
-        The graph's parameters that were last computed for, and those of the graph that is there.
+        What was last computed for, and what is there: the graph's parameters, and the corrections
+        that distances depend on.
+    corrected : Corrections
+        Those that the weights that are there hold.
+    graph : tuple or None
+        The mesh, what was asked, and the graph of the last binding.
+    kept : CorrectionsFile
+        What the address has no room for.
+    reach : float
+        How many times as far as the nearest joint distances are known.
     falloffs : dict
         (distances, weights) of many influences for each falloff that was worked out.
-    diagnosed : CutCellGraph or None
-        The graph that the diagnosis is of.
+    diagnosed : BoneDistances, CutCellGraph or None
+        The distances, or of a mesh without a skeleton the graph, that the diagnosis is of.
     """
 
     def __init__(self, view: View, schedule: Schedule) -> None:
@@ -109,6 +120,10 @@ class Session:
         self.notice = ""
         self.bound_for: dict[str, Any] = {}
         self.built_for: dict[str, Any] = {}
+        self.corrected = Corrections()
+        self.graph: tuple[Any, dict[str, Any], Any] | None = None
+        self.reach = 0.0
+        self.kept = CorrectionsFile(self.uploads)
         self.falloffs: dict[str, tuple[Any, Any]] = {}
         self.diagnosed: Any = None
         self._folder: Path | None = None
@@ -157,6 +172,7 @@ class Session:
     def close(self) -> None:
         """Stop all work and remove what was uploaded."""
         self.tasks.close()
+        self.kept.close()
         self.uploads.close()
         if self._folder is not None:
             shutil.rmtree(self._folder, ignore_errors=True)

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 import panel_material_ui as pmui
 
 from cutcell.diagnosis import SEVERITIES, Finding
+from cutcell.display import shown_name
+from cutcell.rig import Rig
 
+from ..commands.correct import leave_out
 from ..commands.diagnosis import look_at, repair, take_back
 from ..commands.export import export_repaired
 from ..commands.session import Session
@@ -16,6 +20,10 @@ from .parts import GAP, caption, lead, section, when, words
 
 ICONS = {"error": "error", "warning": "warning", "note": "info"}
 MOST_DETAILS = 8
+OF_PARTS = ("boneless-components", "unreachable-vertices")
+"""What can be mended by a choice of what parts of the mesh follow."""
+LEFT_OUT = ("stray-weights", "joints-outside")
+"""What is mended by joints that carry no weight."""
 
 
 def diagnosis(session: Session) -> pmui.Column:
@@ -89,7 +97,22 @@ def _entry(session: Session, finding: Finding) -> pmui.Column:
         if finding.repair:
             lines.append(_line(f"Repair: {finding.repair}.", "text.primary"))
             lines.append(_button("Repair it", "build", lambda: repair(session, [finding.code])))
+        carrying = [j for j in finding.joints if session.state.rig.skeleton.deform[j]]
+        if finding.code in LEFT_OUT and carrying:
+            label = _left_out(session.state.rig, carrying)
+            lines.append(_button(label, "link_off", lambda: leave_out(session, carrying)))
+        if finding.code in OF_PARTS and not session.state.bare:
+            vertex = int(finding.vertices[0])
+            see = partial(session.state.param.update, panel="weights", part=vertex)
+            lines.append(_button("Choose what its parts follow", "category", see))
     return pmui.Column(*lines, margin=(0, 0, 6, 0), sizing_mode="stretch_width")
+
+
+def _left_out(rig: Rig, joints: list[int]) -> str:
+    some = f"these {len(joints)} joints"
+    if len(joints) == 1:
+        some = shown_name(rig.skeleton.names[joints[0]])
+    return f"Let {some} carry no weight"
 
 
 def _repairs(session: Session) -> list[Any]:

@@ -11,7 +11,9 @@ from cutcell.method import FALLOFFS
 
 from ..commands.session import Session
 from ..state import State
-from .deform import deforming
+from .components import parts_of_mesh
+from .corrections import corrections
+from .joints import joints
 from .parts import GAP, caption, choice, follow, lead, section, slider, when
 
 SHOWN = {
@@ -50,8 +52,10 @@ def weights(session: Session) -> pmui.Column:
     return pmui.Column(
         lead("How much each bone moves each point of the skin."),
         section("", shown, *_sides(state), facts, margin=(8, 20, 4, 20)),
+        joints(session),
         section("Falloff with distance", *_falloff(state)),
-        deforming(session),
+        parts_of_mesh(session),
+        corrections(session),
         margin=0,
         sizing_mode="stretch_width",
     )

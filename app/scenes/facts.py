@@ -22,6 +22,7 @@ from .memo import Memo
 
 MOST_WEIGHTS = 6
 MOST_DISTANCES = 5
+LEAST_OFFERED = 4
 NO_WEIGHT = 5e-3
 """Weights that would be shown as 0.00 are not shown."""
 
@@ -35,7 +36,8 @@ def vertex_facts(state: State, memo: Memo) -> dict[str, Any] | None:
         "vertex", "computed"; once it is bound also "weights" and "distances" (a list of bones
         each, the most important first), "component", "reached", "reason"; and "artist",
         whether the file has weights of its own; "explain", whether it is asked why, and "why", the
-        answer for each joint, once it is there (see `explanation_facts`).
+        answer for each joint, once it is there (see `explanation_facts`); "overruled", whether
+        a person gave it its weights, and "offered", joints that it may be given weight of.
     """
     rig, binding, vertex = state.rig, state.binding, state.vertex
     if rig is None or vertex is None or vertex >= len(rig.mesh.vertices):
@@ -76,7 +78,22 @@ def vertex_facts(state: State, memo: Memo) -> dict[str, Any] | None:
         "reason": FALLBACK_REASONS[fallback],
         "explain": state.explain,
         "why": [bone(j, **told) for j, told in explanation_facts(state).items()],
+        "overruled": vertex in state.corrections.vertices,
+        "offered": [bone(j, weight=float(ours[j])) for j in _offered(state, ours, distance)]
+        if state.explain
+        else [],
     }
+
+
+def _offered(state: State, weights: NDArray, distance: NDArray) -> list[int]:
+    """Return what may be given weight: joints with some, the chosen bone, the nearest others."""
+    allowed = np.ones(len(weights), bool)
+    if state.rig.allowed is not None:
+        allowed = state.rig.allowed[state.vertex]
+    held = [j for j in np.argsort(-weights, kind="stable").tolist() if weights[j] > 0]
+    near = [j for j in np.argsort(distance, kind="stable").tolist() if distance[j] < np.inf]
+    found = dict.fromkeys([*held, state.joint, *near])
+    return [j for j in found if allowed[j]][: max(len(held) + 1, LEAST_OFFERED)]
 
 
 MOST_NEIGHBOURS = 26

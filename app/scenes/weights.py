@@ -19,6 +19,7 @@ from cutcell_viewers.weights_scene import (
 
 from ..state import State
 from .common import character
+from .components import seen_apart
 from .explain import explained_paths
 from .memo import Memo
 
@@ -40,6 +41,8 @@ def weights(state: State, memo: Memo) -> Description:
     if paths:
         look = {**look, "opacity": SEE_PATHS}
     actors = character(state, memo, bones_coloured=coloured, **look)
+    if not paths:
+        actors = seen_apart(state, memo, actors)
     return Description({**actors, **paths}, legend=legend)
 
 

@@ -136,6 +136,43 @@ function explained(bone, first) {
   return root
 }
 
+// What a person gives the vertex in place of what is computed; it is scaled to sum to one.
+function overruling(model, facts) {
+  const form = element("form", "overrule")
+  const heading = element("h3", "", "Overrule")
+  heading.append(element("small", "", facts.overruled ? "given by you" : "scaled to sum to one"))
+  form.append(heading)
+  const fields = facts.offered.map(({joint, name, color, weight}) => {
+    const label = element("label")
+    const dot = element("span", "dot")
+    dot.style.background = color
+    const input = element("input")
+    Object.assign(input, {type: "number", min: 0, max: 1, step: 0.05, required: true})
+    input.value = String(Number(weight.toFixed(3)))
+    input.setAttribute("aria-label", `Weight of ${name}`)
+    label.append(dot, element("span", "name", name), input)
+    form.append(label)
+    return [joint, input]
+  })
+  const buttons = element("div", "buttons")
+  const give = element("button", "", "Overrule")
+  give.type = "submit"
+  buttons.append(give)
+  if (facts.overruled) {
+    const reset = element("button", "", "As computed")
+    reset.type = "button"
+    reset.addEventListener("click", () => model.send_msg({type: "overrule", weights: null}))
+    buttons.append(reset)
+  }
+  form.append(buttons)
+  form.addEventListener("submit", (e) => {
+    e.preventDefault()
+    const weights = fields.map(([joint, input]) => [joint, input.valueAsNumber])
+    model.send_msg({type: "overrule", weights})
+  })
+  return form
+}
+
 function card(model, facts) {
   if (facts.node !== undefined) { return nodeCard(model, facts) }
   const root = empty(model, "Vertex", facts.vertex)
@@ -146,9 +183,17 @@ function card(model, facts) {
   const {number, of, vertices} = facts.component
   const part = of === 1 ? "The mesh is one part" : `Part ${number} of ${of} of the mesh`
   const size = `${vertices.toLocaleString("en")} ${vertices === 1 ? "vertex" : "vertices"}`
-  root.append(element("div", "quiet", `${part} · ${size}`))
+  if (of === 1) {
+    root.append(element("div", "quiet", `${part} · ${size}`))
+  } else {
+    const apart = element("button", "quiet part", `${part} · ${size}`)
+    apart.type = "button"
+    apart.title = "See this part apart, and choose how it is bound"
+    apart.addEventListener("click", () => model.send_msg({type: "part"}))
+    root.append(apart)
+  }
 
-  const heading = element("h3", "", "Weights")
+  const heading = element("h3", "", facts.overruled ? "Weights, given by you" : "Weights")
   if (facts.artist) { heading.append(element("small", "", "outlined: the file's own")) }
   root.append(heading)
   for (const bone of facts.weights) {
@@ -178,6 +223,7 @@ function card(model, facts) {
   root.append(why)
   if (facts.explain && !facts.why.length) { root.append(element("div", "quiet", "Tracing its paths …")) }
   root.append(...facts.why.map((bone, number) => explained(bone, number === 0)))
+  if (facts.explain) { root.append(overruling(model, facts)) }
 
   const state = element("div", "state")
   const dot = element("span", "dot")
@@ -192,7 +238,14 @@ function card(model, facts) {
 export function render({model}) {
   const root = document.createElement("div")
   root.style.maxHeight = "inherit"
-  const show = () => root.replaceChildren(styled(), ...(model.facts ? [card(model, model.facts)] : []))
+  const show = () => {
+    const old = root.querySelector(".vertex-card")
+    const [label, top] = [old?.getAttribute("aria-label"), old?.scrollTop ?? 0]
+    root.replaceChildren(styled(), ...(model.facts ? [card(model, model.facts)] : []))
+    // The same vertex with other numbers stays where it was read.
+    const now = root.querySelector(".vertex-card")
+    if (now && now.getAttribute("aria-label") === label) { now.scrollTop = top }
+  }
   const escape = (e) => {
     if (e.key === "Escape" && model.facts) { model.send_msg({type: "close"}) }
   }

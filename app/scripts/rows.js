@@ -7,6 +7,7 @@ const styled = await stylesheet("rows.css")
 export function render({model}) {
   const list = document.createElement("ol")
   const fill = () => {
+    const held = [...list.querySelectorAll("button")].findIndex((button) => button.matches(":focus"))
     list.setAttribute("aria-label", model.label)
     list.replaceChildren(...model.rows.map(([name, note, part], row) => {
       const item = document.createElement("li")
@@ -22,6 +23,7 @@ export function render({model}) {
       return item
     }))
     mark()
+    list.querySelectorAll("button")[held]?.focus()
   }
   const mark = () => list.querySelectorAll("button").forEach((button, row) => {
     button.setAttribute("aria-current", row === model.chosen)

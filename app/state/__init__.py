@@ -10,6 +10,7 @@ from typing import Any
 
 from .common import PANELS, UNSEEN, Common
 from .compare import CompareChoices
+from .corrections import CorrectionsChoices
 from .diagnosis import DiagnosisChoices
 from .geodesics import GeodesicsChoices
 from .graph import LAYERS, GraphChoices
@@ -33,6 +34,7 @@ class State(
     WeightsChoices,
     PoseChoices,
     CompareChoices,
+    CorrectionsChoices,
     DiagnosisChoices,
     Common,
 ):

@@ -68,5 +68,5 @@ class Common(param.Parameterized):
         return None if self.rig is None else self.rig.weights
 
 
-UNSEEN = frozenset({"name", "demo", "tour", "busy", "stage", "fraction", "message"})
+UNSEEN = frozenset({"name", "demo", "tour", "busy", "stage", "fraction", "message", "own_deform"})
 """What the scene does not depend on."""

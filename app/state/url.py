@@ -8,16 +8,18 @@ from urllib.parse import parse_qsl, quote, urlencode
 
 import param
 
+from cutcell.corrections import Corrections
+
 from . import State
 from .compare import FEWEST_VIEWS, MOST_VIEWS, offered, standard
 from .tour import TOUR
 
 OWN = frozenset({"name", "demo", "queued", "joint", "dark", "moving", "playing", "clip", "skipped",
-                 "busy", "stage", "fraction", "message", "tour", "vertex",
+                 "busy", "stage", "fraction", "message", "tour", "vertex", "part",
                  "animating"})  # fmt: skip
 """What goes with one person or one moment, or has a word of its own in the address."""
 
-NOTED = ("joint", "turns", "clip", "methods", "minus")
+NOTED = ("joint", "turns", "clip", "methods", "minus", "corrections")
 """What is chosen, too, but only means something on the character that stands there."""
 
 CAMERA = 6
@@ -39,10 +41,13 @@ def taken(state: State) -> dict[str, Any]:
 def defaults(state: State) -> dict[str, Any]:
     """Return the choices that a person begins with; panel, bone and clip are left alone."""
     plain = {name: p.default for name, p in simple(state).items() if name != "panel"}
-    return {**plain, "turns": {}, "methods": standard(state.rig), "minus": ""}
+    return {**plain, "turns": {}, "methods": standard(state.rig), "minus": "",
+            "corrections": Corrections()}  # fmt: skip
 
 
-def to_query(state: State, kept: str = "", camera: list[float] | None = None) -> str:
+def to_query(
+    state: State, kept: str = "", camera: list[float] | None = None, corrections: str = ""
+) -> str:
     """Return what the address says behind its question mark.
 
     Parameters
@@ -52,6 +57,8 @@ def to_query(state: State, kept: str = "", camera: list[float] | None = None) ->
         The key of an uploaded character, where one stands there.
     camera : list of 6 float, optional
         Where the eye is and what it looks at; left out where it is as at the start.
+    corrections : str
+        As `CorrectionsFile.said` tells them.
     """
     said: dict[str, str] = {}
     if state.demo or kept:
@@ -75,6 +82,8 @@ def to_query(state: State, kept: str = "", camera: list[float] | None = None) ->
     turned = {j: t for j, t in state.turns.items() if any(t)}
     if turned:
         said["turns"] = ";".join(f"{j}:{','.join(f'{a:g}' for a in t)}" for j, t in turned.items())
+    if corrections:
+        said["corrections"] = corrections
     if state.tour >= 0:
         said["step"] = str(state.tour + 1)
     if camera is not None:
@@ -90,8 +99,8 @@ def from_query(query: str, state: State) -> tuple[dict[str, Any], dict[str, Any]
     choices : dict
         Values for the state's parameters that need no character.
     arrival : dict
-        "rig", "bone", "vertex", "turns", "clip", "methods", "minus", "tour" and "camera", as
-        far as they are said.
+        "rig", "bone", "vertex", "turns", "clip", "methods", "minus", "corrections" (as they are
+        said), "tour" and "camera", as far as they are said.
     problems : list of str
         What could not be read, each as the address says it.
     """
@@ -101,7 +110,7 @@ def from_query(query: str, state: State) -> tuple[dict[str, Any], dict[str, Any]
     problems: list[str] = []
     for name, text in parse_qsl(query.lstrip("?"), keep_blank_values=True)[:64]:
         try:
-            if name in ("rig", "bone"):
+            if name in ("rig", "bone", "corrections"):
                 arrival[name] = text
             elif name == "turns":
                 arrival[name] = _turns(text)

@@ -7,6 +7,7 @@ from typing import Any
 import param
 from panel.custom import JSComponent
 
+from ..commands.correct import overrule
 from ..commands.look import pick, pick_node, pick_vertex
 from ..commands.session import Session
 from ..commands.tour import points_out
@@ -26,7 +27,7 @@ class Inspector(JSComponent):
         self._session = session
         self._follow()
         names = ["rig", "binding", "bare_graph", "panel", "vertex", "node", "tour"]
-        names += ["explain", "explanation"]
+        names += ["explain", "explanation", "corrections", "joint"]
         session.state.param.watch(self._follow, names)
 
     def _follow(self, *events: Any) -> None:
@@ -41,10 +42,22 @@ class Inspector(JSComponent):
             pick_vertex(self._session, None)
         elif data.get("type") == "explain":
             self._session.state.explain = not self._session.state.explain
+        elif data.get("type") == "part":
+            self._session.state.param.update(part=self._session.state.vertex, panel="weights")
+        elif data.get("type") == "overrule":
+            self._overrule(data["weights"])
         elif data.get("type") == "node":
             pick_node(self._session, int(data["node"]))
         elif data.get("type") == "bone":
             pick(self._session, int(data["joint"]))
+
+    def _overrule(self, given: list[list[float]] | None) -> None:
+        """Give the vertex weights, pairs of joint and weight; none for those that are computed."""
+        session, vertex = self._session, self._session.state.vertex
+        if vertex is None or session.state.binding is None:
+            return
+        weights = None if given is None else {int(joint): float(w) for joint, w in given}
+        overrule(session, vertex, weights)
 
 
 def inspector(session: Session) -> Inspector:

@@ -6,7 +6,7 @@ import pytest
 
 import cutcell
 from cutcell.rig import TriangleMesh
-from cutcell_app.commands import arrival, deform, keys, loading
+from cutcell_app.commands import arrival, correct, keys, loading
 from cutcell_app.commands.arrival import GONE
 from cutcell_app.commands.compare import choose
 from cutcell_app.commands.diagnosis import repair
@@ -217,7 +217,7 @@ def test_keys(session, loop):
 
 def test_the_choice_of_joints_that_deform_can_be_undone(bound, loop):
     before = bound.state.rig
-    deform.choose(bound, [0, 1])
+    correct.choose_deform(bound, [0, 1])
     loop.run_until(lambda: not bound.tasks.running)
     assert bound.state.binding.weights[:, 2].max() == 0
     keys.act(bound, "undo")

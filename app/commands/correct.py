@@ -1,0 +1,181 @@
+"""Correct the binding: joints, parts and single vertices; save the corrections, open others."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cutcell.corrections import Corrections, JointCorrection, PartCorrection
+from cutcell.deform import DeformJoints, deform_joints
+from cutcell.display import shown_name
+from cutcell.errors import CutcellError, ParameterError
+from cutcell.graph import CutCellGraph
+from cutcell.rig import Rig
+from cutcell.skinning.correct import corrected_parts, corrected_rig, locked_by, overruled
+from cutcell.skinning.locks import lock_joints, locked_joints
+
+from ..files.receive import safe_name
+from ..state.corrections import applied, news, tidy
+from .session import Session
+
+
+def correct(session: Session, corrections: Corrections) -> None:
+    """Take corrections in place of those that there are; what cannot be is told, and not taken."""
+    state, corrections = session.state, tidy(corrections)
+    if corrections == state.corrections:
+        return
+    try:
+        state.param.update(**taken(session, corrections))
+    except CutcellError as error:
+        session.fail(error)
+        state.param.trigger("corrections")  # what offered them shows again what there is
+
+
+def taken(session: Session, corrections: Corrections) -> dict[str, Any]:
+    """Return what of the state changes with corrections of the character that stands there.
+
+    Raises
+    ------
+    CutcellError
+        It cannot be corrected so.
+    """
+    state = session.state
+    corrected_rig(state.rig, corrections)
+    locked_joints(state.rig, locked_by(corrections))
+    rig = applied(state.rig, state.own_deform, corrections)
+    return news(state, {"corrections": corrections, "rig": rig})
+
+
+def correct_joint(session: Session, joint: int, **changes: Any) -> None:
+    """Change some of what is corrected of a joint; see `JointCorrection`."""
+    state = session.state
+    name = state.rig.skeleton.names[joint]
+    if state.rig.skeleton.names.index(name) != joint:
+        session.fail(ParameterError(f'two joints are called "{name}"; rename one to correct it'))
+        state.param.trigger("corrections")
+        return
+    if "deform" in changes and changes["deform"] == bool(state.own_deform[joint]):
+        changes["deform"] = None
+    held = state.corrections.joints
+    try:
+        one = replace(held.get(name, JointCorrection()), **changes)
+    except CutcellError as error:
+        session.fail(error)
+        state.param.trigger("corrections")
+        return
+    correct(session, replace(state.corrections, joints={**held, name: one}))
+
+
+def choose_deform(session: Session, joints: Collection[int]) -> None:
+    """Let some joints carry weight and no others."""
+    state = session.state
+    deform = np.zeros(len(state.rig.skeleton.joints), bool)
+    deform[list(joints)] = True
+    if not deform.any():
+        session.fail(ParameterError("no joint is left that may carry weight; keep at least one"))
+        state.param.trigger("corrections")
+        return
+    held = dict(state.corrections.joints)
+    for joint, name in enumerate(state.rig.skeleton.names):
+        wanted = None if deform[joint] == state.own_deform[joint] else bool(deform[joint])
+        held[name] = replace(held.get(name, JointCorrection()), deform=wanted)
+    correct(session, replace(state.corrections, joints=held))
+
+
+def guess(session: Session, done: Any) -> None:
+    """Guess from names and places which joints deform; `done` is called with what was found."""
+    rig = session.state.rig
+
+    def work(progress: Any) -> DeformJoints:
+        return deform_joints(rig.mesh, rig.skeleton)
+
+    session.tasks.newest("deform").do(work, done)
+
+
+def correct_part(session: Session, vertices: Collection[int], part: PartCorrection | None) -> None:
+    """Bind a connected component, all of its vertices, in another way; None for as computed."""
+    state = session.state
+    held = {v: one for v, one in state.corrections.parts.items() if v not in vertices}
+    if part is not None:
+        held[int(min(vertices))] = part
+    correct(session, replace(state.corrections, parts=held))
+
+
+def overrule(session: Session, vertex: int, weights: Mapping[int, float] | None) -> None:
+    """Give a vertex weights, by joint; None for those that are computed.
+
+    Vertices in the same place get the same: the skin would tear there else.
+    """
+    state = session.state
+    node = state.binding.graph.vertex_node
+    together = np.flatnonzero(node == node[vertex])
+    given = None
+    if weights is not None:
+        given = {state.rig.skeleton.names[joint]: w for joint, w in weights.items() if w}
+        if state.rig.allowed is not None:
+            stored = state.rig.allowed[together][:, [j for j, w in weights.items() if w]]
+            together = together[stored.all(axis=1) | (together == vertex)]
+    held = {v: row for v, row in state.corrections.vertices.items() if v not in together}
+    if given is not None:
+        held.update(dict.fromkeys(together.tolist(), given))
+    try:
+        corrections = replace(state.corrections, vertices=held)
+    except CutcellError as error:
+        session.fail(error)
+        return
+    correct(session, corrections)
+
+
+def leave_out(session: Session, joints: Collection[int]) -> None:
+    """Let some joints carry no weight, and say so when it is done."""
+    state = session.state
+    names = [shown_name(state.rig.skeleton.names[j]) for j in joints]
+    carrying = set(np.flatnonzero(state.rig.skeleton.deform).tolist())
+    before = state.corrections
+    choose_deform(session, carrying - set(joints))
+    if state.corrections != before:
+        some = names[0] if len(names) == 1 else f"{len(names)} joints"
+        verb = "carries" if len(names) == 1 else "carry"
+        session.notice = f"{some} {verb} no weight any more; undo takes it back."
+
+
+def clear(session: Session) -> None:
+    """Correct nothing any more."""
+    correct(session, Corrections())
+
+
+def save(session: Session) -> None:
+    """Hand the corrections over as a file."""
+    state = session.state
+    stem = safe_name(state.rig.name).rsplit(".", 1)[0]
+    session.view.offer(f"{stem}.corrections.json", (state.corrections.to_json() + "\n").encode())
+
+
+def open_text(session: Session, text: str) -> None:
+    """Take the corrections that a file holds."""
+    try:
+        corrections = Corrections.from_json(text)
+    except CutcellError as error:
+        session.fail(error)
+        return
+    correct(session, corrections)
+
+
+def finished(
+    rig: Rig,
+    graph: CutCellGraph,
+    weights: NDArray[np.float64],
+    corrections: Corrections,
+    max_influences: int | None,
+) -> NDArray[np.float64]:
+    """Return weights after what is corrected of them last, as `cutcell.bind` does."""
+    if not corrections:
+        return weights
+    weights = corrected_parts(rig, graph, weights, corrections)
+    weights = lock_joints(rig, weights, locked_by(corrections), max_influences)
+    done: NDArray[np.float64] = overruled(rig, weights, corrections)
+    return done

@@ -1,0 +1,124 @@
+"""Parts of the mesh: each glued to a joint, following the body, or bound by itself."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import panel_material_ui as pmui
+
+from cutcell.corrections import PartCorrection
+from cutcell.display import shown_name
+
+from ..commands import correct
+from ..commands.session import Session
+from ..scenes.components import MOST, Component, chosen, listed, vertices_of
+from ..widgets.rows import Rows
+from .parts import GAP, caption, offer, section, unique_names
+
+WAYS = {
+    "As computed": "",
+    "Glued to a joint": "glued",
+    "Follows the body where it touches": "touching",
+    "Bound by itself": "itself",
+}
+WATCHED = ["panel", "rig", "binding", "corrections", "part"]
+SHORT = {"glued": "glued", "touching": "follows", "itself": "by itself"}
+
+
+def parts_of_mesh(session: Session) -> pmui.Column:
+    """Return the section that lists the connected components; hidden where there is one."""
+    state, memo = session.state, session.memo
+    about = caption()
+    rows = Rows(
+        lambda row: _choose(session, held[row]),
+        label="Parts of the mesh",
+        sizing_mode="stretch_width",
+        margin=0,
+        styles={"--bar": "var(--mui-palette-text-secondary, #667)"},
+    )
+    place = pmui.Column(rows, margin=GAP, sizing_mode="stretch_width", max_height=200, scroll="y")
+    way = pmui.Select(
+        label="This part is", options=WAYS, value="", size="small", margin=(16, 0, 4, 0),
+        sizing_mode="stretch_width",
+    )  # fmt: skip
+    glue = pmui.Select(
+        label="Glued to", options=[], size="small", margin=(12, 0, 4, 0),
+        sizing_mode="stretch_width", searchable=True,
+    )  # fmt: skip
+    held: list[Component] = []
+    whole = section("Parts of the mesh", about, place, way, glue)
+
+    def show() -> None:
+        if state.panel != "weights":
+            return  # it is shown when somebody looks
+        held[:] = listed(state, memo)
+        whole.visible = len(held) > 1
+        if not whole.visible:
+            return
+        number = chosen(state, memo)
+        most = max(one.vertices for one in held)
+        names = state.rig.skeleton.names
+        rows.param.update(
+            rows=[(_title(one), _follows(one, names), one.vertices / most) for one in held],
+            chosen=number,
+        )
+        more = " The largest are listed." if len(held) == MOST else ""
+        about.object = (
+            f"{len(held)} parts share no edge. Choose one to see it apart, again to see all.{more}"
+        )
+        way.visible = 0 <= number < len(held)
+        now = held[number].correction if way.visible else None
+        way.value = "" if now is None else now.how
+        glue.visible = now is not None and now.how == "glued"
+        if now is not None and now.joint is not None:
+            offer(glue, unique_names(names), names.index(now.joint))
+
+    def changed(event: Any) -> None:
+        one = _now(held, chosen(state, memo))
+        if one is None or event.new == ("" if one.correction is None else one.correction.how):
+            return
+        joint = state.rig.skeleton.names[one.joint] if event.new == "glued" else None
+        _bind(session, one, PartCorrection(event.new, joint) if event.new else None)
+
+    def glued(event: Any) -> None:
+        one = _now(held, chosen(state, memo))
+        if one is None or one.correction is None or event.new is None:
+            return
+        joint = state.rig.skeleton.names[glue.options.index(event.new)]
+        if one.correction.how == "glued" and joint != one.correction.joint:
+            _bind(session, one, PartCorrection("glued", joint))
+
+    way.param.watch(changed, "value")
+    glue.param.watch(glued, "value")
+    # The colours go first.
+    state.param.watch(lambda *events: session.tasks.later(show), WATCHED)
+    show()
+    return whole
+
+
+def _now(held: list[Component], number: int) -> Component | None:
+    return held[number] if 0 <= number < len(held) else None
+
+
+def _choose(session: Session, one: Component) -> None:
+    """Look at a component; at the same again, no more."""
+    same = chosen(session.state, session.memo) == one.number
+    session.state.part = None if same else one.first
+
+
+def _bind(session: Session, one: Component, part: PartCorrection | None) -> None:
+    vertices = vertices_of(session.state, session.memo, one.first)
+    correct.correct_part(session, set(vertices.tolist()), part)
+
+
+def _title(one: Component) -> str:
+    name = f" · {one.name}" if one.name else ""
+    return f"Part {one.number + 1}{name} · {one.vertices:,}"
+
+
+def _follows(one: Component, names: tuple[str, ...]) -> str:
+    """Say what a component follows."""
+    joint = shown_name(names[one.joint])
+    if one.correction is None:
+        return f"{joint} {one.share:.0%}"
+    return f"{SHORT[one.correction.how]}: {joint}"

@@ -1,0 +1,58 @@
+"""All corrections: how many there are; save them, open others, take all back."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import panel_material_ui as pmui
+
+from cutcell.corrections import Corrections
+from cutcell.diagnosis.finding import count
+
+from ..commands import correct
+from ..commands.session import Session
+from ..widgets.open_file import OpenFile
+from .parts import caption, section, when
+
+NONE = "Nothing is corrected. What is goes into the exported file, and into files of their own."
+
+
+def corrections(session: Session) -> pmui.Column:
+    """Return the section that saves corrections and opens them."""
+    state = session.state
+    none = when(lambda held: not held, state.param.corrections)
+    buttons = [
+        pmui.Button(
+            label=label,
+            size="small",
+            variant="outlined",
+            margin=(4, 8, 4, 0),
+            sizing_mode="stretch_width",
+            disabled=none,
+            on_click=lambda event, act=act: act(session),
+        )
+        for label, act in (("Save", correct.save), ("Clear all", correct.clear))
+    ]
+    opener = OpenFile(
+        lambda text: correct.open_text(session, text),
+        label="Open",
+        accept=".json",
+        margin=(4, 8, 4, 0),
+        sizing_mode="stretch_width",
+    )
+    return section(
+        "Corrections",
+        caption(when(told, state.param.corrections)),
+        pmui.Row(buttons[0], opener, buttons[1], margin=0, sizing_mode="stretch_width"),
+    )
+
+
+def told(held: Corrections) -> str:
+    """Say how much is corrected."""
+    numbers: list[tuple[Any, str]] = [
+        (held.joints, "joint"), (held.parts, "part"), (held.vertices, "vertex"),
+    ]  # fmt: skip
+    some = [count(len(which), one) for which, one in numbers if which]
+    if not some:
+        return NONE
+    return f"Corrected: {', '.join(some)}. They go into the exported file, too."

@@ -1,0 +1,174 @@
+"""The joints as a tree: which carry weight, keep the file's, and how far each reaches."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import panel_material_ui as pmui
+from panel_material_ui.widgets.base import MaterialWidget
+
+from cutcell.corrections import JointCorrection
+from cutcell.deform import DeformJoints
+from cutcell.display import shown_name
+
+from ..commands import correct
+from ..commands.session import Session
+from ..scenes.joints import joint_rows, shares_of
+from ..state import State
+from ..widgets.joint_tree import JointTree
+from .parts import GAP, as_text, caption, section, when, words
+
+DOUBLINGS = 2.0
+"""The slider goes from as many halvings of a joint's reach to as many doublings."""
+
+
+def joints(session: Session) -> pmui.Column:
+    """Return the section with the tree of joints, and what can be corrected of the chosen one."""
+    state = session.state
+    tree = JointTree(
+        lambda joint: _choose(state, joint),
+        lambda joint, on: correct.correct_joint(session, joint, deform=on),
+        sizing_mode="stretch_width",
+        margin=GAP,
+    )
+    known: dict[str, Any] = {"of": None, "guess": None}
+
+    def guessed(found: DeformJoints) -> None:
+        known["guess"] = found
+        listed()
+
+    def listed(*events: Any) -> None:
+        rig = state.rig
+        if rig is None or state.bare or state.panel != "weights":
+            return  # it is shown when somebody looks
+        of = (rig.mesh, rig.skeleton.names)
+        if known["of"] != of:
+            known.update(of=of, guess=None)
+            correct.guess(session, guessed)
+        tree.param.update(rows=joint_rows(state, session.memo, known["guess"]), chosen=state.joint)
+
+    def anew(event: Any) -> None:
+        correct.guess(
+            session,
+            lambda found: correct.choose_deform(session, np.flatnonzero(found.deform)),
+        )
+
+    # The colours go first.
+    later = lambda *events: session.tasks.later(listed)  # noqa: E731
+    state.param.watch(later, ["panel", "rig", "binding", "corrections"])
+    state.param.watch(lambda *events: tree.param.update(chosen=state.joint), "joint")
+    listed()
+    counts = caption(when(_counted, state.param.rig))
+    guesser = pmui.Button(
+        label="Guess which deform", size="small", variant="text", margin=0, on_click=anew,
+        description="From their names, and where they lie in the body",
+    )  # fmt: skip
+    return section("Joints", counts, tree, guesser, *_chosen(session))
+
+
+def _choose(state: State, joint: int) -> None:
+    state.joint = joint
+
+
+def _chosen(session: Session) -> list[Any]:
+    """Return what can be corrected of the chosen joint."""
+    state = session.state
+    heading = words("", sx={"fontWeight": 600, "fontSize": 13}, margin=(6, 0, 0, 0))
+    holds = caption("", margin=0)
+    carries = _switch("Carries weight")
+    locked = _switch("Keeps the file's weights")
+    gain = pmui.FloatSlider(
+        label="Reach", start=-DOUBLINGS, end=DOUBLINGS, step=0.1, value=0.0, size="small",
+        margin=GAP, sizing_mode="stretch_width", show_value=False, track=False,
+    )  # fmt: skip
+    radius = pmui.TextInput(
+        label="Radius, in the file's units", value="", size="small", margin=(8, 0),
+        sizing_mode="stretch_width", placeholder="measured from the body",
+    )  # fmt: skip
+    reset = pmui.Button(
+        label="As computed", icon="undo", size="small", variant="outlined", margin=GAP,
+        sizing_mode="stretch_width",
+    )  # fmt: skip
+    showing = [False]
+
+    def show() -> None:
+        rig = state.rig
+        if rig is None or state.joint >= len(rig.skeleton.names):
+            return
+        name = rig.skeleton.names[state.joint]
+        one = state.corrections.joints.get(name, JointCorrection())
+        heading.object = as_text(shown_name(name))
+        holds.object = as_text(_held(session))
+        showing[0] = True
+        try:
+            carries.value = bool(rig.skeleton.deform[state.joint])
+            locked.param.update(value=one.locked, disabled=rig.weights is None)
+            gain.param.update(value=_doublings(one.gain), label=f"Reach ×{one.gain:.2f}")
+            radius.param.update(value=_written(one.radius), visible=state.falloff != "paper")
+            reset.disabled = one == JointCorrection()
+        finally:
+            showing[0] = False
+
+    def changes(**wanted: Any) -> None:
+        if not showing[0] and state.rig is not None:
+            correct.correct_joint(session, state.joint, **wanted)
+
+    def reached(event: Any) -> None:
+        changes(gain=round(float(2.0**event.new), 3))
+
+    carries.param.watch(lambda event: changes(deform=event.new), "value")
+    locked.param.watch(lambda event: changes(locked=event.new), "value")
+    gain.param.watch(reached, "value")
+    radius.param.watch(lambda event: changes(radius=_read(event.new)), "value")
+    reset.on_click(lambda event: changes(deform=None, locked=False, gain=1.0, radius=None))
+    watched = ["rig", "joint", "binding", "corrections", "falloff"]
+    state.param.watch(lambda *events: show(), watched)
+    show()
+    return [heading, holds, carries, locked, gain, radius, reset]
+
+
+def _written(radius: float | None) -> str:
+    return "" if radius is None else f"{radius:g}"
+
+
+def _read(text: str) -> Any:
+    """Return the number that a text says; None for none, the text where it is no number."""
+    try:
+        return float(text) if text.strip() else None
+    except ValueError:
+        return text
+
+
+def _switch(label: str) -> MaterialWidget:
+    return pmui.Switch(label=label, size="small", margin=(2, 0), description="")
+
+
+def _doublings(gain: float) -> float:
+    return float(np.clip(round(float(np.log2(gain)), 1), -DOUBLINGS, DOUBLINGS))
+
+
+def _held(session: Session) -> str:
+    """Say how much of the skin the chosen joint holds."""
+    state = session.state
+    ours, own = shares_of(state, session.memo)
+    told = []
+    if ours is not None:
+        told.append(f"Holds {_percent(ours[state.joint])} of the skin")
+    if own is not None:
+        told.append(f"{_percent(own[state.joint])} in the file")
+    text = ", ".join(told)
+    return text[:1].upper() + text[1:] + "." if text else ""
+
+
+def _percent(part: float) -> str:
+    return f"{100 * part:.2g} %" if 0 < part < 0.0995 else f"{part:.0%}".replace("%", " %")
+
+
+def _counted(rig: Any) -> str:
+    if rig is None:
+        return ""
+    chosen = rig.skeleton.deform
+    if chosen.all():
+        return f"All {len(chosen)} joints may carry weight."
+    return f"{chosen.sum()} of {len(chosen)} joints may carry weight."

@@ -1,0 +1,127 @@
+"""The connected components of the mesh: what each follows, and the one that is looked at."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+
+from cutcell.corrections import PartCorrection
+from cutcell.display import shown_name
+from cutcell_viewers.description import Actor
+
+from ..state import State
+from .facts import components
+from .memo import Memo
+
+MOST = 300
+"""Components that are listed, the largest first."""
+SEE_PART = 0.22
+"""How opaque the body is beside a component that is looked at."""
+
+
+@dataclass(frozen=True)
+class Component:
+    """A connected component.
+
+    Parameters
+    ----------
+    number : int
+        The largest is 0.
+    first : int
+        Its first vertex.
+    vertices : int
+        How many it has.
+    name : str
+        Of the file's mesh that it is a part of, where there are several; else empty.
+    joint : int
+        That it follows most.
+    share : float
+        How much of its weight that joint has.
+    correction : PartCorrection or None
+    """
+
+    number: int
+    first: int
+    vertices: int
+    name: str
+    joint: int
+    share: float
+    correction: PartCorrection | None
+
+
+def vertices_of(state: State, memo: Memo, vertex: int) -> NDArray[np.intp]:
+    """Return the vertices of the component that a vertex is of."""
+    which, _ = _components(state, memo)
+    return np.flatnonzero(which == which[vertex])
+
+
+def listed(state: State, memo: Memo) -> list[Component]:
+    """Return the components, the largest first; none until the character is bound."""
+    if state.binding is None:
+        return []
+    which, sizes = _components(state, memo)
+    firsts = memo("first vertices", (which,), lambda: np.unique(which, return_index=True)[1])
+    corrected = {int(which[v]): part for v, part in state.corrections.parts.items()}
+    weights = state.binding.weights
+    held = memo("of parts", (which, weights), lambda: _mean(which, weights, len(sizes)))
+    names = {} if len(state.rig.parts) < 2 else state.rig.parts
+    starts = [part.vertices.start for part in names]
+    return [
+        Component(
+            number=k,
+            first=int(firsts[k]),
+            vertices=int(sizes[k]),
+            name=shown_name(names[np.searchsorted(starts, firsts[k], "right") - 1].name)
+            if names
+            else "",
+            joint=int(held[k].argmax()),
+            share=float(held[k].max()),
+            correction=corrected.get(k),
+        )
+        for k in range(min(len(sizes), MOST))
+    ]
+
+
+def chosen(state: State, memo: Memo) -> int:
+    """Return the number of the component that is looked at; -1 for none."""
+    if state.part is None or state.binding is None:
+        return -1
+    return int(_components(state, memo)[0][state.part])
+
+
+def seen_apart(state: State, memo: Memo, actors: dict[str, Actor]) -> dict[str, Actor]:
+    """Return actors in which the component that is looked at stands out from the body."""
+    if chosen(state, memo) < 0:
+        return actors
+    body = actors["body"]
+    part = memo(
+        "part", (body.cells, state.binding.graph, state.part), lambda: _faces(state, memo, body)
+    )
+    alone = replace(body, cells=part, closed=False, opacity=1.0)
+    dim: dict[str, Any] = {"opacity": SEE_PART, "behind": True}
+    return {**actors, "body": replace(body, **dim), "part": alone}
+
+
+def _faces(state: State, memo: Memo, body: Actor) -> NDArray:
+    mine = np.zeros(len(body.points), np.bool_)
+    mine[vertices_of(state, memo, state.part)] = True
+    assert body.cells is not None
+    return np.ascontiguousarray(body.cells[mine[body.cells].all(axis=1)])
+
+
+def _components(state: State, memo: Memo) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    graph = state.binding.graph
+    found: tuple[NDArray[np.intp], NDArray[np.intp]] = memo(
+        "components", (graph,), lambda: components(graph)
+    )
+    return found
+
+
+def _mean(which: NDArray[np.intp], weights: NDArray, count: int) -> NDArray[np.float64]:
+    member = coo_array((np.ones(len(which)), (which, np.arange(len(which)))), (count, len(which)))
+    mean: NDArray[np.float64] = (member @ weights) / np.bincount(which, minlength=count)[:, None]
+    return mean

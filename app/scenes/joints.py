@@ -1,0 +1,96 @@
+"""The joints of the character as a tree: colours, shares of the skin, corrections."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cutcell.corrections import JointCorrection
+from cutcell.deform import DeformJoints
+from cutcell.display import shown_name
+from cutcell.metrics import vertex_shares
+from cutcell_viewers.palette import joint_colors, to_hex
+
+from ..state import State
+from .memo import Memo
+
+STRAY = 0.002
+"""Of the skin: what holds more in the file is no control, whatever its name says."""
+
+
+def shares_of(state: State, memo: Memo) -> tuple[NDArray | None, NDArray | None]:
+    """Return which part of the skin each joint holds, shape (j,): as computed, and in the file."""
+    rig, binding = state.rig, state.binding
+    count = memo("vertex shares", (rig.mesh,), lambda: vertex_shares(rig.mesh))
+    own = memo(
+        "file's shares",
+        (rig.mesh, rig.weights),
+        lambda: None if rig.weights is None else count @ rig.weights,
+    )
+    if binding is None:
+        return None, own
+    return memo("shares", (rig.mesh, binding.weights), lambda: count @ binding.weights), own
+
+
+def joint_rows(state: State, memo: Memo, guess: DeformJoints | None) -> list[dict[str, Any]]:
+    """Return what the tree shows of each joint, parents before their children.
+
+    Parameters
+    ----------
+    state : State
+        With a rig that has joints.
+    memo : Memo
+    guess : DeformJoints or None
+        What names and places say; None as long as it is not known.
+
+    Returns
+    -------
+    list of dict
+        "joint", "name", "level" (0 for a root), "color", "control" (whether it moves bones, or
+        nothing, rather than skin), "why" it is one, "carries" (whether it may carry weight),
+        "changed" (whether that was corrected), "ours" and "file" (shares of the skin, or None),
+        "locked", "gain" and "radius".
+    """
+    rig = state.rig
+    skeleton = rig.skeleton
+    colors = memo("colors", (rig,), lambda: joint_colors(skeleton.parents))
+    ours, own = shares_of(state, memo)
+    rows = []
+    for joint in in_order(skeleton):
+        name = skeleton.names[joint]
+        one = state.corrections.joints.get(name, JointCorrection())
+        holds = 0.0 if own is None else float(own[joint])
+        control = guess is not None and not guess.deform[joint] and holds < STRAY
+        rows.append(
+            {
+                "joint": joint,
+                "name": shown_name(name),
+                "level": int(skeleton.depth[joint]),
+                "color": to_hex(tuple(colors[joint])),
+                "control": control,
+                "why": guess.reason[joint] if control and guess is not None else "",
+                "carries": bool(skeleton.deform[joint]),
+                "changed": one.deform is not None,
+                "ours": None if ours is None else float(ours[joint]),
+                "file": None if own is None else float(own[joint]),
+                "locked": one.locked,
+                "gain": one.gain,
+                "radius": one.radius,
+            }
+        )
+        if not rows[-1]["why"] and own is not None and not holds and not rows[-1]["carries"]:
+            rows[-1]["why"] = "no weight in the file"
+    return rows
+
+
+def in_order(skeleton: Any) -> list[int]:
+    """Return the joints so that each comes behind its parent, with all that hang on it."""
+    found: list[int] = []
+    waiting = np.flatnonzero(skeleton.parents < 0)[::-1].tolist()
+    while waiting:
+        joint = waiting.pop()
+        found.append(joint)
+        waiting += skeleton.children[joint][::-1].tolist()
+    return found

@@ -1,0 +1,177 @@
+"""Joints, parts and vertices corrected in a browser, as a person does."""
+
+import json
+import re
+
+import numpy as np
+import pytest
+from axe_playwright_python.sync_playwright import Axe
+from playwright.sync_api import expect
+
+import cutcell
+from cutcell import Corrections, JointCorrection
+from tests.app.browser import Visit, changed
+from tests.cutcell.diagnosis.test_leaks import soldier
+
+
+@pytest.fixture(scope="module")
+def visit(browser, url):
+    """Show the robot, coarse: each binding is quick."""
+    visit = Visit(browser, url + "/?rig=robot&resolution=24&bone=hips")
+    visit.wait_until_bound()
+    visit.dismiss()
+    yield visit
+    visit.close()
+
+
+@pytest.fixture(autouse=True)
+def anew(visit):
+    yield
+    if visit.page.get_by_role("button", name="Clear all").is_enabled():
+        visit.button("Clear all").click()
+        visit.settle()
+
+
+def corrected(visit):
+    """Return the corrections that the page saves."""
+    with visit.page.expect_download() as saved:
+        visit.button("Save").click()
+    return Corrections.load(saved.value.path())
+
+
+def exported(visit, tmp_path):
+    """Return the character that the page exports."""
+    with visit.page.expect_download() as saved:
+        visit.button("Download the bound GLB").click()
+    path = tmp_path / "bound.glb"
+    saved.value.save_as(path)
+    return cutcell.load(path)
+
+
+def faults(visit):
+    found = Axe().run(visit.page, options={"resultTypes": ["violations"]})
+    return [
+        f"{fault['id']}: {node['html'][:200]}"
+        for fault in found.response["violations"]
+        if fault["impact"] in ("serious", "critical")
+        for node in fault["nodes"]
+    ]
+
+
+def test_joints_are_corrected_by_keys_kept_and_exported(visit, robot, tmp_path):
+    tree = visit.page.get_by_role("tree", name="Joints")
+    hips = tree.get_by_role("treeitem", name=re.compile("^hips"))
+    expect(hips).to_have_attribute("aria-selected", "true")
+    hips.focus()
+    for key in ("ArrowLeft", "ArrowRight", "End", "Enter"):  # close, open, to the last one
+        visit.page.keyboard.press(key)
+    last = tree.get_by_role("treeitem").last
+    expect(last).to_be_focused()
+    name = robot.skeleton.names[-1]
+    expect(visit.bone).to_have_text(name)
+    visit.page.keyboard.press(" ")
+    expect(last).to_have_attribute("aria-checked", "false")
+    visit.switch("Keeps the file's weights")
+    visit.slide("Reach", "ArrowRight", 5)
+    visit.settle()
+    assert faults(visit) == []
+    expected = {name: JointCorrection(deform=False, locked=True, gain=2**0.5)}
+    held = corrected(visit).joints
+    assert held.keys() == expected.keys()
+    assert held[name].gain == pytest.approx(2**0.5, abs=1e-3)
+    assert (held[name].deform, held[name].locked) == (False, True)
+
+    visit.page.reload()
+    visit.wait_until_bound()
+    visit.dismiss()
+    assert corrected(visit).joints == held
+    weights = exported(visit, tmp_path).weights
+    fresh = cutcell.bind(robot, 24, corrections=Corrections(joints=held))
+    np.testing.assert_allclose(weights, fresh.weights, atol=1 / 255)
+    visit.button("Clear all").click()
+    visit.settle()
+    expect(visit.page.get_by_text("Nothing is corrected")).to_be_visible()
+    visit.button("Undo").click()
+    visit.settle()
+    assert corrected(visit).joints == held
+    path = tmp_path / "mine.json"
+    path.write_text(json.dumps({"joints": {robot.skeleton.names[0]: {"gain": 2}}}))
+    with visit.page.expect_file_chooser() as chooser:
+        visit.button("Open").click()
+    chooser.value.set_files(path)
+    expect(tree.get_by_text("×2")).to_be_visible()
+    visit.settle()
+    assert corrected(visit) == Corrections.load(path)
+
+
+def test_a_part_is_glued_to_a_joint(visit, robot, tmp_path):
+    rows = visit.page.get_by_role("list", name="Parts of the mesh")
+    whole = visit.look()
+    ring = rows.get_by_role("button").nth(1)
+    ring.focus()
+    visit.page.keyboard.press("Enter")
+    expect(ring).to_have_attribute("aria-current", "true")
+    assert changed(whole, visit.look()) > 0.02
+    visit.choose("This part is", "Glued to a joint")
+    expect(ring).to_contain_text("glued: ")
+    visit.settle()
+    assert faults(visit) == []
+    (first, part), *_ = corrected(visit).parts.items()
+    joint = robot.skeleton.names.index(part.joint)
+    assert exported(visit, tmp_path).weights[first, joint] == 1
+    visit.button("Undo").click()
+    visit.settle()
+    visit.expect_text("Nothing is corrected")
+
+
+def test_a_vertex_is_overruled_on_its_card_and_undone(visit, robot):
+    vertex = visit.click_vertex()
+    visit.card.get_by_role("button", name="Why these weights?").click()
+    numbers = visit.card.get_by_role("spinbutton")
+    expect(numbers.nth(1)).to_be_visible()
+    for place, number in enumerate(numbers.all()):
+        number.fill({0: "0.25", 1: "0.75"}.get(place, "0"))
+    visit.page.keyboard.press("Enter")
+    expect(visit.card).to_contain_text("Weights, given by you")
+    visit.settle()
+    expect(visit.card.locator("details").first).to_contain_text("corrected0.75")
+    assert faults(visit) == []
+    assert sorted(corrected(visit).vertices[vertex].values()) == [0.25, 0.75]
+    visit.button("Undo").click()
+    expect(visit.card).not_to_contain_text("given by you")
+    visit.button("Redo").click()
+    visit.card.get_by_role("button", name="As computed").click()
+    expect(visit.card).not_to_contain_text("given by you")
+    visit.card.get_by_role("button", name="Hide why").click()
+    visit.close_card()
+    visit.expect_text("Nothing is corrected")
+
+
+def test_the_soldier_is_mended_in_two_clicks_and_stays_so(visit, tmp_path):
+    rig = soldier()
+    root = len(rig.skeleton.joints) - 1
+    torn = cutcell.bind(rig, 24).weights[:, root]
+    path = tmp_path / "soldier.glb"
+    cutcell.save(path, rig)
+    visit.open(path)
+    visit.panel("Check")
+    # The card tells of a vertex of the trousers what the file says, and what ours would be.
+    vertex = visit.click_vertex(f"{np.flatnonzero(torn > 0.5).tolist()}.includes(vertex)")
+    visit.card.get_by_role("button", name="Why these weights?").click()
+    answer = visit.card.locator("details").first
+    expect(answer.locator("summary")).to_contain_text("Root")
+    expect(answer).to_contain_text("in the file")
+    visit.close_card()
+
+    visit.button("Stray weights").click()
+    visit.button("Let Root carry no weight").click()
+    visit.expect_text("Root carries no weight any more")
+    visit.settle()
+    expect(visit.button("Stray weights")).to_have_count(0)
+    mended = exported(visit, tmp_path)
+    assert mended.skeleton.names[root] == "Root"
+    assert not mended.weights[:, root].any()
+    assert cutcell.bind(rig, 24).weights[vertex, root] > 0.5
+    assert not mended.skeleton.deform[root], "so it stays mended when it is bound again"
+    visit.panel("Weights")
+    assert corrected(visit).joints == {"Root": JointCorrection(deform=False)}

@@ -1,0 +1,313 @@
+"""Corrections on the page: what they make of the weights, and where they are kept."""
+
+from dataclasses import replace
+
+import numpy as np
+import panel_material_ui as pmui
+import pytest
+import trimesh
+
+import cutcell
+from cutcell import Corrections, JointCorrection, PartCorrection
+from cutcell.rig import TriangleMesh
+from cutcell_app.commands import arrival, correct, keys, loading, look
+from cutcell_app.commands.binding import restore
+from cutcell_app.panels.components import parts_of_mesh
+from cutcell_app.panels.joints import joints
+from cutcell_app.scenes import resolve
+from cutcell_app.scenes.facts import vertex_facts
+from cutcell_app.state.corrections import MOST_IN_ADDRESS, from_text, to_text
+from cutcell_app.state.url import from_query
+from cutcell_app.widgets.joint_tree import JointTree
+from cutcell_app.widgets.rows import Rows
+from tests.viewers.arm import arm_rig
+
+ALL = Corrections(
+    joints={
+        "shoulder": JointCorrection(gain=2.0, radius=0.4),
+        "wrist": JointCorrection(locked=True),
+    },
+    vertices={7: {"shoulder": 0.5, "wrist": 0.5}},
+)
+
+
+def settled(session, loop):
+    loop.run_until(lambda: not session.tasks.running)
+    assert session.state.message is None, session.state.message
+
+
+def the_same_as_bind(session):
+    state = session.state
+    fresh = cutcell.bind(arm_rig(), state.resolution, corrections=state.corrections)
+    np.testing.assert_allclose(state.binding.weights, fresh.weights, rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize("falloff", ["rig", "paper"])
+@pytest.mark.parametrize(
+    "corrections",
+    [
+        ALL,
+        Corrections(joints={"elbow": JointCorrection(deform=False)}),
+        Corrections(parts={3: PartCorrection("glued", "elbow")}),
+        Corrections(parts={3: PartCorrection("itself")}),
+    ],
+)
+def test_weights_are_those_of_bind(bound, loop, corrections, falloff):
+    graph = bound.state.binding.graph
+    correct.correct(bound, corrections)
+    settled(bound, loop)
+    the_same_as_bind(bound)
+    assert bound.state.binding.graph is graph
+    bound.state.falloff = falloff
+    settled(bound, loop)
+    alpha = {"alpha": 0.5} if falloff == "paper" else {}
+    options = {"falloff": falloff, "leaf": "fit", **alpha}
+    fresh = cutcell.bind(arm_rig(), 16, corrections=corrections, **options)
+    np.testing.assert_allclose(bound.state.binding.weights, fresh.weights, rtol=0, atol=1e-9)
+
+
+def test_they_stay_with_another_resolution_and_are_undone_in_one_step(bound, loop):
+    plain = bound.state.binding.weights
+    correct.correct(bound, ALL)
+    settled(bound, loop)
+    corrected = bound.state.binding.weights
+    bound.state.resolution = 20
+    settled(bound, loop)
+    the_same_as_bind(bound)
+    keys.act(bound, "undo")
+    settled(bound, loop)
+    assert np.array_equal(bound.state.binding.weights, corrected)
+    keys.act(bound, "undo")
+    settled(bound, loop)
+    assert not bound.state.corrections
+    assert np.array_equal(bound.state.binding.weights, plain)
+    assert not bound.history.can_undo
+    keys.act(bound, "redo")
+    settled(bound, loop)
+    assert bound.state.corrections == ALL
+    keys.act(bound, "reset")
+    settled(bound, loop)
+    assert not bound.state.corrections
+
+
+def test_a_joint_that_is_left_out_comes_back_as_the_file_has_it(bound, loop):
+    first = bound.state.rig
+    correct.correct_joint(bound, 2, deform=False)
+    settled(bound, loop)
+    assert bound.state.corrections.joints == {"wrist": JointCorrection(deform=False)}
+    assert not bound.state.rig.skeleton.deform[2]
+    assert not bound.state.binding.weights[:, 2].any()
+    correct.correct_joint(bound, 2, deform=True)
+    assert not bound.state.corrections
+    assert np.array_equal(bound.state.rig.skeleton.deform, first.skeleton.deform)
+    correct.correct_joint(bound, 0, gain=99)
+    assert "Gain must be" in bound.state.message[1]
+    assert not bound.state.corrections
+
+
+def test_what_cannot_be_is_told_and_not_taken(bound, loop):
+    rig = arm_rig()
+    correct.choose_deform(bound, [])
+    assert "No joint is left" in bound.state.message[1]
+    correct.open_text(bound, '{"joints": {"tail": {"gain": 2}}}')
+    assert 'no joint "tail"' in bound.state.message[1]
+    correct.open_text(bound, "no")
+    assert "no JSON" in bound.state.message[1]
+    assert not bound.state.corrections
+    # What only the weights tell is taken back with the weights that there are.
+    correct.correct(bound, Corrections(parts={0: PartCorrection("touching")}))
+    loop.run_until(lambda: not bound.tasks.running)
+    assert "None is left" in bound.state.message[1] or "none is left" in bound.state.message[1]
+    assert not bound.state.corrections
+    assert not bound.history.can_undo
+    alone = to_text(Corrections(parts={0: PartCorrection("touching")}))
+    bound.arrival = {"corrections": alone}
+    loading.show_rig(bound, arm_rig())
+    loop.run_until(lambda: bound.state.binding is not None)
+    assert not bound.state.corrections
+    loading.show_rig(bound, rig.with_weights(None))
+    loop.run_until(lambda: bound.state.binding is not None)
+    correct.correct_joint(bound, 0, locked=True)
+    assert "no weights of its own" in bound.state.message[1]
+    twice = replace(rig, skeleton=replace(rig.skeleton, names=("a", "b", "a")))
+    loading.show_rig(bound, twice)
+    correct.correct_joint(bound, 2, gain=2.0)
+    assert "two joints are called" in bound.state.message[1].lower()
+
+
+def test_an_address_brings_them_back(bound, loop):
+    correct.correct(bound, ALL)
+    settled(bound, loop)
+    said = from_query(bound.view.told("address"), bound.state)[1]["corrections"]
+    assert from_text(said) == ALL
+    bound.arrival = {"corrections": said}
+    loading.show_rig(bound, arm_rig())
+    assert bound.state.corrections == ALL
+    settled(bound, loop)
+    the_same_as_bind(bound)
+    for wrong in ("nothing", to_text(Corrections(joints={"tail": JointCorrection(gain=2)}))):
+        bound.arrival = {"corrections": wrong}
+        loading.show_rig(bound, arm_rig())
+        loop.run_until(lambda: not bound.tasks.running)
+        assert "were not taken" in bound.state.message[1]
+        assert not bound.state.corrections
+
+
+def test_what_an_address_has_no_room_for_is_kept_by_the_server(bound, loop):
+    rng = np.random.default_rng(1)
+    count = len(arm_rig().mesh.vertices)
+    many = Corrections(
+        vertices={v: dict(zip(("shoulder", "elbow", "wrist"), rng.random(3), strict=True))
+                  for v in range(count)}
+    )  # fmt: skip
+    correct.correct(bound, many)
+    settled(bound, loop)
+    said = from_query(bound.view.told("address"), bound.state)[1]["corrections"]
+    assert said.startswith("~")
+    assert len(to_text(many)) > MOST_IN_ADDRESS > len(said)
+    correct.clear(bound)
+    settled(bound, loop)
+    bound.arrival = {"corrections": said}
+    loading.show_rig(bound, arm_rig())
+    settled(bound, loop)
+    assert bound.state.corrections.vertices[7] == pytest.approx(many.vertices[7])
+    the_same_as_bind(bound)
+    bound.arrival = {"corrections": "~gone"}
+    loading.show_rig(bound, arm_rig())
+    loop.run_until(lambda: not bound.tasks.running)
+    assert "no longer has them" in bound.state.message[1]
+
+
+def test_they_are_saved_and_opened(bound, loop, monkeypatch):
+    offered = []
+    monkeypatch.setattr(bound.view, "offer", lambda *file: offered.append(file))
+    correct.correct(bound, ALL)
+    correct.save(bound)
+    correct.clear(bound)
+    ((name, content),) = offered
+    assert name == "arm.corrections.json"
+    correct.open_text(bound, content.decode())
+    assert bound.state.corrections == ALL
+    settled(bound, loop)
+    the_same_as_bind(bound)
+
+
+def test_going_back_to_a_character_brings_its_corrections(session, loop):
+    session.state.resolution = 16
+    arrival.arrive(session, "?rig=robot&resolution=16", lambda: None)
+    loop.run_until(lambda: session.state.binding is not None and not session.tasks.running)
+    correct.correct_joint(session, 3, deform=False)
+    loop.run_until(lambda: not session.tasks.running)
+    robot = session.state.corrections
+    loading.load_demo(session, "robot")
+    loop.run_until(lambda: not session.tasks.running)
+    assert not session.state.corrections
+    keys.act(session, "undo")
+    loop.run_until(lambda: not session.tasks.running)
+    assert session.state.corrections == robot
+    assert not session.state.rig.skeleton.deform[3]
+
+
+def test_the_tree_and_what_stands_below_it(bound, loop):
+    section = joints(bound)
+    (tree,) = section.select(JointTree)
+    loop.run_until(lambda: not bound.tasks.running)
+    loop.run_for(0.1)
+    assert [(row["name"], row["level"]) for row in tree.rows] == [
+        ("shoulder", 0), ("elbow", 1), ("wrist", 2),
+    ]  # fmt: skip
+    assert sum(row["ours"] for row in tree.rows) == pytest.approx(1)
+    assert sum(row["file"] for row in tree.rows) == pytest.approx(1)
+    assert len({row["color"] for row in tree.rows}) == 3
+    tree._handle_msg({"type": "choose", "joint": 2})
+    assert bound.state.joint == tree.chosen == 2
+    carries, locked = section.select(pmui.Switch)
+    carries.value = False
+    loop.run_for(0.05)
+    assert not tree.rows[2]["carries"]
+    tree._handle_msg({"type": "carry", "joint": 2, "on": True})
+    assert carries.value
+    locked.value = True
+    (gain,) = section.select(pmui.FloatSlider)
+    gain.value = 1.0
+    (radius,) = section.select(pmui.TextInput)
+    radius.value = "0.25"
+    expected = {"wrist": JointCorrection(locked=True, gain=2.0, radius=0.25)}
+    assert bound.state.corrections.joints == expected
+    settled(bound, loop)
+    the_same_as_bind(bound)
+    bound.state.joint = 0
+    assert (locked.value, gain.value, radius.value) == (False, 0.0, "")
+    assert bound.state.corrections.joints == expected
+    bound.state.joint = 2
+    radius.value = "wide"
+    assert "Radius must be a number" in bound.state.message[1]
+    assert radius.value == "0.25"
+    next(b for b in section.select(pmui.Button) if b.label == "As computed").clicks += 1
+    assert not bound.state.corrections
+    restore(bound, {"corrections": ALL})
+    assert gain.value == 0.0
+
+
+def test_a_vertex_is_overruled_with_all_that_lie_in_its_place(bound, loop):
+    node = bound.state.binding.graph.vertex_node
+    together = np.flatnonzero(node == node[7])
+    computed = bound.state.binding.weights[7]
+    correct.overrule(bound, 7, {0: 1.0, 2: 3.0, 1: 0.0})
+    assert np.array_equal(bound.state.binding.weights[together], [[0.25, 0, 0.75]] * len(together))
+    look.pick_vertex(bound, 7)
+    bound.state.explain = True
+    facts = vertex_facts(bound.state, bound.memo)
+    assert facts["overruled"]
+    assert [bone["weight"] for bone in facts["offered"]][:3] == [0.75, 0.25, 0]
+    settled(bound, loop)
+    told = vertex_facts(bound.state, bound.memo)["why"]
+    assert told[0]["steps"][-1] == ["corrected", 0.75]
+    correct.overrule(bound, 7, {0: 0.0})
+    assert "needs a weight above 0" in bound.state.message[1]
+    correct.overrule(bound, 7, None)
+    assert not bound.state.corrections
+    np.testing.assert_allclose(bound.state.binding.weights[7], computed)
+
+
+def test_parts_are_glued_and_seen_apart(session, loop):
+    rig = arm_rig()
+    button = trimesh.creation.icosphere(subdivisions=1, radius=0.1)
+    first = len(rig.mesh.vertices)
+    vertices = np.concatenate([rig.mesh.vertices, button.vertices + np.array([-1, 0, 0.38])])
+    faces = np.concatenate([rig.mesh.faces, button.faces + first])
+    session.state.resolution = 16
+    loading.show_rig(session, cutcell.Rig(TriangleMesh(vertices, faces), rig.skeleton))
+    section = parts_of_mesh(session)
+    loop.run_until(lambda: session.state.binding is not None and not session.tasks.running)
+    loop.run_for(0.05)
+    (rows,) = section.select(Rows)
+    way, glue = section.select(pmui.Select)
+    assert [row[0] for row in rows.rows] == [
+        f"Part 1 · {first}",
+        f"Part 2 · {len(vertices) - first}",
+    ]
+    rows._handle_msg({"row": 1})
+    loop.run_for(0.05)
+    assert (rows.chosen, session.state.part, way.value) == (1, first, "")
+    scene = resolve(session.state)
+    assert len(scene.actors["part"].cells) == len(button.faces)
+    assert scene.actors["body"].opacity < 0.5
+    way.value = "glued"
+    loop.run_until(lambda: not session.tasks.running)
+    loop.run_for(0.05)
+    assert glue.value == "shoulder"
+    glue.value = "wrist"
+    loop.run_for(0.05)
+    assert (session.state.binding.weights[first:, 2] == 1).all()
+    assert rows.rows[1][1] == "glued: wrist"
+    way.value = "itself"
+    loop.run_until(lambda: not session.tasks.running)
+    parts = {first: PartCorrection("itself")}
+    assert session.state.corrections == Corrections(parts=parts)
+    fresh = cutcell.bind(session.state.rig, 16, corrections=session.state.corrections)
+    np.testing.assert_allclose(session.state.binding.weights, fresh.weights, atol=1e-9)
+    way.value = ""
+    assert not session.state.corrections
+    rows._handle_msg({"row": 1})
+    assert session.state.part is None
