@@ -80,7 +80,8 @@ def bones(
         The joint whose bones are highlighted.
     visible : bool
     colors : array_like, shape (j, 3), optional
-        The colour of each joint's bones; the chosen one is then told by its outline.
+        The colour of the bones of each joint that may carry weight; the chosen one is then told
+        by its outline.
     shown : array_like, shape (b,), bool, optional
         Which of the bones of `drawn_segments` there are; all when left out.
 
@@ -100,7 +101,7 @@ def bones(
         color = np.where(rig.skeleton.deform[joint, None], BONE, BONE_IDLE)
         color[of_chosen] = BONE_CHOSEN
     else:
-        color = np.asarray(colors, float)[joint]
+        color = np.where(rig.skeleton.deform[joint, None], np.asarray(colors)[joint], BONE_IDLE)
     thick = np.where(of_chosen & (colors is not None), 3.0, 1.0) * OUTLINE * size
     common: dict[str, Any] = {
         "cells": (_OCTAHEDRON + 6 * np.arange(len(joint))[:, None, None]).reshape(-1, 3),

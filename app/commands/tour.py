@@ -11,6 +11,7 @@ from cutcell_viewers.camera import Camera, framing
 from cutcell_viewers.character import to_scene
 
 from ..scenes.common import bounds_of
+from ..state.corrections import applied, news
 from ..state.tour import TOUR, Look
 from ..state.url import defaults
 from .loading import load_demo
@@ -93,7 +94,10 @@ def show(session: Session, look: Look, said: frozenset[str] = frozenset()) -> No
         **look.choices,
     }
     kept = said - {"panel"} if state.panel == "learn" else said
-    state.param.update(**{name: value for name, value in scene.items() if name not in kept})
+    if "corrections" not in kept:
+        scene["rig"] = applied(state.rig, state.own_deform, scene["corrections"])
+    chosen = {name: value for name, value in scene.items() if name not in kept}
+    state.param.update(**news(state, chosen))
 
 
 def aim(session: Session, look: Look) -> None:

@@ -80,7 +80,7 @@ def _chosen(session: Session) -> list[Any]:
     locked = _switch("Keeps the file's weights")
     gain = pmui.FloatSlider(
         label="Reach", start=-DOUBLINGS, end=DOUBLINGS, step=0.1, value=0.0, size="small",
-        margin=GAP, sizing_mode="stretch_width", show_value=False, track=False,
+        margin=GAP, sizing_mode="stretch_width", show_value=False, track=False, tooltips=False,
     )  # fmt: skip
     radius = pmui.TextInput(
         label="Radius, in the file's units", value="", size="small", margin=(8, 0),

@@ -24,10 +24,14 @@ export function render({model}) {
   const list = element("div", "tree")
   list.setAttribute("role", "tree")
   list.setAttribute("aria-label", "Joints")
+  list.setAttribute("aria-describedby", "how")
   const head = element("div", "head")
-  element("span", "", "Space: carries weight or not", head)
+  element("span", "", "✓ carries weight", head)
   element("span", "", "% of the skin", head)
-  root.append(styled(), head, list)
+  const how = element("div", "", "Enter chooses, Space lets a joint carry weight or not")
+  Object.assign(how, {id: "how", hidden: true})
+  root.append(styled(), head, list, how)
+  head.title = "Space or a click: carries weight or not; the arrows walk, open and close"
   let forest = new Forest([], new Set())
   let names = ""
   let cursor = -1

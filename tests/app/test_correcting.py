@@ -10,13 +10,14 @@ import trimesh
 import cutcell
 from cutcell import Corrections, JointCorrection, PartCorrection
 from cutcell.rig import TriangleMesh
-from cutcell_app.commands import arrival, correct, keys, loading, look
+from cutcell_app.commands import arrival, correct, keys, loading, look, tour
 from cutcell_app.commands.binding import restore
 from cutcell_app.panels.components import parts_of_mesh
 from cutcell_app.panels.joints import joints
 from cutcell_app.scenes import resolve
 from cutcell_app.scenes.facts import vertex_facts
 from cutcell_app.state.corrections import MOST_IN_ADDRESS, from_text, to_text
+from cutcell_app.state.tour import TOUR
 from cutcell_app.state.url import from_query
 from cutcell_app.widgets.joint_tree import JointTree
 from cutcell_app.widgets.rows import Rows
@@ -311,3 +312,14 @@ def test_parts_are_glued_and_seen_apart(session, loop):
     assert not session.state.corrections
     rows._handle_msg({"row": 1})
     assert session.state.part is None
+
+
+def test_a_step_of_the_tour_shows_what_it_speaks_of_uncorrected(session, loop):
+    session.state.resolution = 16
+    loading.load_demo(session, TOUR[1].look.demo)
+    loop.run_until(lambda: session.state.binding is not None and not session.tasks.running)
+    correct.correct_joint(session, 3, deform=False)
+    tour.go(session, 1)
+    loop.run_until(lambda: not session.tasks.running)
+    assert not session.state.corrections
+    assert session.state.rig.skeleton.deform[3]

@@ -91,6 +91,14 @@ def test_the_chosen_bone_stands_out(rig):
     assert not actor.clipped
 
 
+def test_what_carries_no_weight_is_drawn_apart_from_bones(rig):
+    skeleton = replace(rig.skeleton, deform=[True, False, True])
+    colors = np.eye(3)
+    drawn = bones(replace(rig, skeleton=skeleton), 0, colors=colors)["bones"].colors
+    of = drawn.reshape(-1, 6, 3)[:, 0]
+    assert of.tolist() == to_bytes([colors[0], palette.BONE_IDLE, colors[2]]).tolist()
+
+
 def test_bones_have_the_colours_of_their_joints_and_outlines_around_them(rig):
     colors = palette.joint_colors(rig.skeleton.parents)
     drawn = bones(rig, 1, colors=colors)
