@@ -24,8 +24,9 @@ from .weights import INFLUENCES, measurable
 from .widest import connected_weights
 
 NEAR = 3.0
-"""A joint is near a vertex from which it is at most so many times as far as the nearest one. With
-2.5 to 6 no artist's weights at hand change by 0.01 either; the lower, the more is found."""
+"""A joint is near a vertex from which it is at most so many times as far as the nearest one. From
+2.5 to 6 the artists' weights that it was chosen on change by less than 0.01 (docs/clean.md); the
+lower, the more is found."""
 ATTACHED = 0.5
 """Of the weight of a connected component: what holds more of it was attached to it on purpose."""
 KEPT = 0.5
