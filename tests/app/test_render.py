@@ -114,8 +114,9 @@ def test_what_is_seen_inside_reaches_the_picture(drawn, tmp_path):
     assert np.linalg.norm(scene.cut.normal) == pytest.approx(1)
     scene = actors("--panel", "graph", "--slice", "z=0.4:x")
     assert "slice rays" in scene.actors
-    bone = cutcell.load(demo_path("robot")).skeleton.names[3]
-    scene = actors("--panel", "distance", "--bone", bone, "--sources", "--path", "10", "--wave",
+    robot = cutcell.load(demo_path("robot"))
+    bone, vertex = robot.skeleton.names[3], robot.weights[:, 3].argmax()
+    scene = actors("--panel", "distance", "--bone", bone, "--sources", "--path", vertex, "--wave",
                    "0.5", "--connectivity", "6")  # fmt: skip
     assert {"sources", "path"} <= scene.actors.keys()
     assert scene.front is not None
