@@ -19,6 +19,7 @@ ROOMS = (
     {"widgets"},
     {"panels"},
     {"layout"},
+    {"render_flags", "render_names", "render_options"},
     {"serve", "render"},
     {"render_command"},
     {"command_line"},
