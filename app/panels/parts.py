@@ -142,15 +142,3 @@ def slider(parameter: Any, label: str, whole: bool = False, **params: Any) -> An
 def weightless(rig: Any, joint: int) -> bool:
     """Whether a joint is there that carries no weight."""
     return rig is not None and joint < len(rig.skeleton.deform) and not rig.skeleton.deform[joint]
-
-
-def cutting(state: Any) -> list[Any]:
-    """Return the choice of a cutting plane and the slider that moves it."""
-    position = slider(
-        state.param.cut_position,
-        "Where the cut lies",
-        step=0.005,
-        visible=when(lambda axis: axis != "off", state.param.cut_axis),
-    )
-    axes = {"Whole": "off", "Cut X": "x", "Cut Y": "y", "Cut Z": "z"}
-    return [choice(state.param.cut_axis, axes), position]
