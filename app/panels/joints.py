@@ -21,6 +21,7 @@ from .parts import GAP, as_text, caption, section, when, words
 
 DOUBLINGS = 2.0
 """The slider goes from as many halvings of a joint's reach to as many doublings."""
+STEP = 0.1
 
 
 def joints(session: Session) -> pmui.Column:
@@ -79,7 +80,7 @@ def _chosen(session: Session) -> list[Any]:
     carries = _switch("Carries weight")
     locked = _switch("Keeps the file's weights")
     gain = pmui.FloatSlider(
-        label="Reach", start=-DOUBLINGS, end=DOUBLINGS, step=0.1, value=0.0, size="small",
+        label="Reach", start=-DOUBLINGS, end=DOUBLINGS, step=STEP, value=0.0, size="small",
         margin=GAP, sizing_mode="stretch_width", show_value=False, track=False, tooltips=False,
     )  # fmt: skip
     radius = pmui.TextInput(
@@ -104,7 +105,10 @@ def _chosen(session: Session) -> list[Any]:
         try:
             carries.value = bool(rig.skeleton.deform[state.joint])
             locked.param.update(value=one.locked, disabled=rig.weights is None)
-            gain.param.update(value=_doublings(one.gain), label=f"Reach ×{one.gain:.2f}")
+            gain.label = f"Reach ×{one.gain:.2f}"
+            if abs(gain.value - _doublings(one.gain)) > STEP / 2:
+                # Not for what rounds to the same: it would take back what was pressed meanwhile.
+                gain.value = _doublings(one.gain)
             radius.param.update(value=_written(one.radius), visible=state.falloff != "paper")
             reset.disabled = one == JointCorrection()
         finally:
