@@ -138,14 +138,15 @@ def served(*arguments: str) -> Iterator[str]:
 
 
 class Visit:
-    """One person's page."""
+    """One person's page, with smooth edges or without."""
 
-    def __init__(self, browser: Browser, url: str, **context: Any) -> None:
+    def __init__(self, browser: Browser, url: str, smooth: bool = False, **context: Any) -> None:
         self.context = browser.new_context(
             **{"viewport": {"width": 1100, "height": 720}, "accept_downloads": True, **context}
         )
         self.context.set_default_timeout(LOAD_MS)
-        self.context.add_init_script(ONE_SAMPLE)
+        if not smooth:
+            self.context.add_init_script(ONE_SAMPLE)
         self.page: Page = self.context.new_page()
         self.requests: list[str] = []
         self.complaints: list[str] = []
