@@ -120,7 +120,9 @@ def page() -> None:
     chromium = find()
     with sync_playwright() as playwright, served() as url:
         browser = playwright.chromium.launch(executable_path=chromium, args=list(FLAGS))
-        visit = Visit(browser, url, smooth=True, viewport={"width": 1440, "height": 900})
+        visit = Visit(
+            browser, url + "?panel=weights", smooth=True, viewport={"width": 1440, "height": 900}
+        )
         visit.wait_until_bound()
         visit.page.mouse.move(700, 895)
         for name in ("light", "dark"):

@@ -104,8 +104,6 @@ class Scene:
 # A key light from the upper left and a soft fill from the right, both tied to the camera.
 LIGHTS = (((-0.5, 0.7, 1.0), 0.82), ((0.9, -0.1, 0.6), 0.34))
 AMBIENT = 0.16
-LINE_AMBIENT = 0.5
-"""Lines are thin: with less light from all around their colour would not be seen."""
 PICTURE_WIDTH = 1.5
 """How many times as wide lines and points are in a picture, which has more pixels than a page."""
 
@@ -191,9 +189,8 @@ def _paint(drawn: pv.Actor, actor: Actor, front: float | None = None) -> None:
     look.point_size = actor.width * PICTURE_WIDTH
     look.render_points_as_spheres = actor.kind == "points" and actor.form == "round"
     if actor.kind == "lines":
+        # Not as tubes: VTK gets the depth of many wrong, and they vanish behind the body.
         look.line_width = actor.width * PICTURE_WIDTH
-        look.render_lines_as_tubes = True
-        look.lighting, look.ambient = True, LINE_AMBIENT
     if actor.kind == "points" and actor.form != "round":
         shader = drawn.GetShaderProperty()
         shader.AddFragmentShaderReplacement("//VTK::Color::Impl", True, _FORMS[actor.form], False)
