@@ -9,7 +9,7 @@ are damaged in known ways, replaced by those of other methods, and cleaned as th
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -19,14 +19,13 @@ from numpy.typing import NDArray
 import cutcell
 from cutcell.baselines import METHODS
 from cutcell.diagnosis import cleaning
-from cutcell.errors import CutcellError
 from cutcell.metrics import deformation_error, find_gaps, vertex_shares, weight_l1
 from cutcell.rig import Rig
 
 from .document import fill
 from .rigs import SHARED
 from .tables import Table
-from .wild import SETS, files_of
+from .wild import SETS, characters
 
 LEAKED, NOISE = 0.4, 0.3
 """Of a vertex' weight that leaks across a gap, and that noise gives to another joint."""
@@ -126,19 +125,6 @@ def measure(rig: Rig, name: str, resolution: int, kinds: Sequence[str]) -> Found
             cleaned = cutcell.clean(rig.with_weights(weights), resolution).weights
             found.errors[kind] = (*errors(weights), *errors(cleaned))
     return found
-
-
-def characters(group: str) -> Iterator[tuple[str, Rig]]:
-    """Load those of a set that have weights."""
-    for path in files_of(group):
-        name = path.parent.name if path.suffix == ".gltf" else path.stem
-        try:
-            rig = cutcell.load(path)
-        except CutcellError as error:
-            print(f"{name}: {error}", flush=True)
-            continue
-        if rig.weights is not None and rig.weights.any():
-            yield name, rig
 
 
 def own_table(groups: dict[str, list[Found]]) -> Table:

@@ -78,8 +78,8 @@ def _score(rig: Rig, weights: np.ndarray) -> Score:
     return Score(weight_l1(weights, rig.weights, shares), error.mean, float(followed))
 
 
-def results(group: str, resolution: int) -> Iterator[Result]:
-    """Measure a set, telling of each character; those that cannot be measured are told."""
+def characters(group: str) -> Iterator[tuple[str, Rig]]:
+    """Load those of a set that have weights; of the others it is told why they are left out."""
     for path in files_of(group):
         # A glTF in parts is named by its folder: its document is often called scene.
         name = path.parent.name if path.suffix == ".gltf" else path.stem
@@ -91,6 +91,12 @@ def results(group: str, resolution: int) -> Iterator[Result]:
         if rig.weights is None or not rig.weights.any():
             print(f"{name}: no weights to compare with", flush=True)
             continue
+        yield name, rig
+
+
+def results(group: str, resolution: int) -> Iterator[Result]:
+    """Measure a set, telling of each character."""
+    for name, rig in characters(group):
         found = measure(rig, name, resolution)
         known, fresh = (found.scores[mode] for mode in MODES)
         print(

@@ -15,6 +15,7 @@ from benchmarks import (
     optimisation,
     paper,
     runtime,
+    wild,
 )
 from benchmarks.rigs import ROOT
 from tests.bars import bar
@@ -163,7 +164,7 @@ def test_parts_of_the_paper(document, tmp_path, capsys, monkeypatch):
 
 
 def test_clean(document, capsys, monkeypatch):
-    monkeypatch.setattr(clean, "files_of", lambda group: [ROOT / "assets" / "biped.glb"])
+    monkeypatch.setattr(wild, "files_of", lambda group: [ROOT / "assets" / "biped.glb"])
     clean.main(["rigs", "--resolution", "24", "--near", "3", "--out", str(document)])
     text = capsys.readouterr().out
     assert text[text.index("###") :].strip() in document.read_text()
