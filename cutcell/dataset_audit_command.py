@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
@@ -65,16 +66,19 @@ def audit(
     """Find near-duplicates in A, or characters of A that are in B, as the paper does.
 
     Every pair is compared; bounds that are never too high leave out those that cannot be
-    duplicates. FOLDER gets pairs.parquet, clusters.parquet, audit.json and report.html.
+    duplicates. FOLDER gets pairs.parquet, clusters.parquet, audit.json and report.html. Step
+    through the pairs, side by side, and overrule them: cutcell app --pairs FOLDER. What was said
+    of them there still holds when the same FOLDER is audited again.
     """
+    from .dataset.audit_files import read_verdicts, save_audit
     from .dataset.audit_page import write_audit_report
     from .dataset.auditing import audit as compare
-    from .dataset.auditing import save_audit
 
+    verdicts = read_verdicts(out)
+    inputs = [first], [] if second is None else [second]
     with counting("Comparing", quiet or json) as step:
         found = compare(
-            [first],
-            [] if second is None else [second],
+            *inputs,
             joint_threshold=joint_threshold,
             surface_threshold=surface_threshold,
             points=points,
@@ -84,7 +88,8 @@ def audit(
             workers=workers,
             tell=step,
         )
-    save_audit(found, out)
+    found = replace(found, verdicts=verdicts)
+    save_audit(found, out, *inputs)
     write_audit_report(found, out / "report.html")
     document = found.to_dict()
     if json:
@@ -97,6 +102,7 @@ def audit(
             ("near-duplicates", f"{len(found.pairs):,} pairs"),
             *((f"  {tier}", f"{count:,}") for tier, count in document["tiers"].items()),
             ("clusters", f"{len(document['clusters']):,}"),
+            *([("overruled", f"{len(verdicts):,} pairs")] if verdicts else []),
             ("to keep", f"{len(document['keep']):,}"),
             ("report", str(out / "report.html")),
         ]

@@ -2,12 +2,14 @@ from .archive import ArchivedAsset as ArchivedAsset
 from .archive import Split as Split
 from .archive import read_archive as read_archive
 from .archive import split as split
-from .auditing import Audit as Audit
-from .auditing import Pair as Pair
+from .audit_files import load_audit as load_audit
+from .audit_files import save_audit as save_audit
+from .audit_files import save_verdicts as save_verdicts
 from .auditing import audit as audit
-from .auditing import save_audit as save_audit
 from .binding import BindReport as BindReport
 from .binding import bind_all as bind_all
+from .duplicates import Audit as Audit
+from .duplicates import Pair as Pair
 from .export import export as export
 from .generate import KINDS as KINDS
 from .generate import generate as generate

@@ -7,7 +7,7 @@ from collections import defaultdict
 from pathlib import Path
 
 from ..errors import CutcellError
-from .auditing import Audit, Pair
+from .duplicates import Audit, Pair
 from .page import figure, table, write_page
 from .pictures import picture
 from .sources import Source, read_source
@@ -39,6 +39,7 @@ def write_audit_report(audit: Audit, path: Path) -> None:
         **{f"kind: {k}": f"{v:,}" for k, v in document["kinds"].items()},
         "clusters": f"{len(document['clusters']):,}",
         "to keep": f"{len(document['keep']):,}",
+        "overruled by a person": f"{len(audit.verdicts):,}",
         "could not be read": f"{len(audit.failed):,}",
     }
     parts = [table(counts.items())]
@@ -51,7 +52,9 @@ def write_audit_report(audit: Audit, path: Path) -> None:
         figures = [figure(*pictures.of(audit.sources[k], []))]
         for pair in pairs[:MOST_MATCHES]:
             far = "" if pair in audit.posed else f"D {pair.surface:.2g}, {pair.tier}"
-            lines = [line for line in (far, _told(pair)) if line]
+            said = audit.verdict(pair)
+            verdict = f"a person said: {said}" if said else ""
+            lines = [line for line in (far, _told(pair), verdict) if line]
             figures.append(figure(*pictures.of(audit.other_sources[pair.b], lines)))
         parts.append(f"<section>{''.join(figures)}</section>")
     if len(rows) > MOST_ROWS:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import tempfile
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -17,13 +16,12 @@ from numpy.typing import NDArray
 from ..checks import check_integer, check_number
 from ..errors import CutcellError
 from ..io.files import naming
-from ..writing import write_all
 from .chamfer import Block, block_of, close_joints, close_surfaces, reach_of
 from .cluster import Cluster, connected
-from .likeness import TWIN, VARIANT, Likeness, Traits, likeness, same_skeletons, traits_of
+from .duplicates import Audit, Pair
+from .likeness import Traits, likeness, same_skeletons, traits_of
 from .points import Normalised, normalised
 from .sources import Content, Source, find_sources, read_content
-from .store import table_bytes
 
 POINTS = 2048
 """On each surface."""
@@ -32,126 +30,6 @@ BLOCK = 1000
 BATCH = 16
 """Characters that are read as one job."""
 THRESHOLD = 0.01
-EPSILON = 0.5
-TIERS = (("twin", TWIN), ("variant", VARIANT))
-
-
-@dataclass(frozen=True)
-class Pair:
-    """Two near-duplicates.
-
-    Parameters
-    ----------
-    a, b : int
-        Places in the lists of names.
-    joints, surface : float
-        Squared Chamfer distances, of the joints and of the surface.
-    likeness : Likeness
-        The second measure.
-    """
-
-    a: int
-    b: int
-    joints: float
-    surface: float
-    likeness: Likeness
-
-    @property
-    def tier(self) -> str:
-        """How close: "twin" up to 5e-4, "variant" up to 2e-3, "near" up to the threshold."""
-        return next((name for name, most in TIERS if self.surface <= most), "near")
-
-
-@dataclass(frozen=True, eq=False)
-class Audit:
-    """What an audit found.
-
-    Parameters
-    ----------
-    names, others : list of str
-        Of the first set, and of the second; the same where one set was compared with itself.
-    pairs : list of Pair
-        Near-duplicates, nearest first.
-    posed : list of Pair
-        Characters of one skeleton that are too far apart for that; `joints` and `surface` are
-        infinite.
-    labels : array, shape (n,), int64, or None
-        The cluster of each of the first set, -1 for none; None where two sets were compared.
-    candidates : int
-        Pairs that stage 1 kept.
-    failed : dict of str to str
-        Why an asset was left out, by name.
-    sources, other_sources : list of Source
-        Of the names.
-    seconds : dict of str to float
-        "reading", "pairs", "clusters".
-    """
-
-    names: list[str]
-    others: list[str]
-    pairs: list[Pair]
-    posed: list[Pair]
-    labels: NDArray[np.int64] | None
-    candidates: int
-    failed: dict[str, str]
-    sources: list[Source]
-    other_sources: list[Source]
-    seconds: dict[str, float]
-
-    @property
-    def keep(self) -> list[str]:
-        """The first set without duplicates: its unclustered assets, and one of each cluster.
-
-        Where two sets were compared, those of the first without a match in the second.
-        """
-        if self.labels is None:
-            matched = {pair.a for pair in self.pairs}
-            return [name for k, name in enumerate(self.names) if k not in matched]
-        first = {label: k for k, label in reversed(list(enumerate(self.labels.tolist())))}
-        return [
-            name
-            for k, (name, label) in enumerate(zip(self.names, self.labels.tolist(), strict=True))
-            if label < 0 or first[label] == k
-        ]
-
-    def rows(self) -> list[dict[str, Any]]:
-        """Return all pairs as rows of a table; posed ones have the tier "posed"."""
-        rows = []
-        for tier, pairs in (("", self.pairs), ("posed", self.posed)):
-            for pair in pairs:
-                rows.append(
-                    {
-                        "a": self.names[pair.a],
-                        "b": self.others[pair.b],
-                        "tier": tier or pair.tier,
-                        "joints": pair.joints,
-                        "surface": pair.surface,
-                        **vars(pair.likeness),
-                    }
-                )
-        return rows
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return the whole as plain data."""
-        tiers = [row["tier"] for row in self.rows()]
-        kinds = [row["kind"] for row in self.rows()]
-        labels = [] if self.labels is None else self.labels.tolist()
-        clusters = [
-            [self.names[k] for k in np.flatnonzero(np.array(labels) == label)]
-            for label in sorted(set(labels) - {-1})
-        ]
-        return {
-            "assets": len(self.names),
-            "others": len(self.others) if self.labels is None else None,
-            "candidates": self.candidates,
-            "pairs": len(self.pairs),
-            "tiers": {tier: tiers.count(tier) for tier in ("twin", "variant", "near", "posed")},
-            "kinds": {kind: kinds.count(kind) for kind in sorted(set(kinds))},
-            "clusters": clusters,
-            "keep": self.keep,
-            "failed": self.failed,
-            "seconds": {name: round(value, 3) for name, value in self.seconds.items()},
-        }
 
 
 def audit(
@@ -227,20 +105,18 @@ def audit(
     pairs = _pairs(ours, theirs, found)
     posed = _posed(ours, None if two is None else theirs, pairs) if poses else []
     seconds["pairs"] = perf_counter() - begin
-    begin = perf_counter()
-    labels = clusters(len(ours.sources), pairs, limits[1], least) if two is None else None
-    seconds["clusters"] = perf_counter() - begin
     return Audit(
         [source.name for source in ours.sources],
         [source.name for source in theirs.sources],
         pairs,
         posed,
-        labels,
         found.candidates,
         failed,
         ours.sources,
         theirs.sources,
         seconds,
+        limits[1],
+        least,
     )
 
 
@@ -422,66 +298,3 @@ def _posed(ours: Readings, theirs: Readings | None, pairs: list[Pair]) -> list[P
             alike = likeness(ours.traits[a], other.traits[b], np.inf, np.nan)
             posed.append(Pair(a, b, np.inf, np.inf, alike))
     return posed
-
-
-def clusters(count: int, pairs: Sequence[Pair], threshold: float, least: int) -> NDArray[np.int64]:
-    """Cluster characters by DBSCAN on 1 - exp(-D / T_V), eps 0.5; -1 for those in no cluster.
-
-    Parameters
-    ----------
-    count : int
-        Characters.
-    pairs : sequence of Pair
-        Those of less than the threshold; all others have dissimilarity 1.
-    threshold : float
-        T_V.
-    least : int
-        MinPts.
-    """
-    try:
-        from sklearn.cluster import DBSCAN
-    except ImportError:
-        from ..errors import MissingLibraryError
-
-        raise MissingLibraryError(
-            "clusters are found by scikit-learn, which is not installed; try: pip install "
-            "'cutcell[dataset]'"
-        ) from None
-    from scipy.sparse import csr_matrix
-
-    if not count or not pairs:
-        return np.full(count, -1, np.int64)
-    ends = np.array([(pair.a, pair.b) for pair in pairs])
-    apart = -np.expm1(-np.array([pair.surface for pair in pairs]) / threshold)
-    # A stored zero might be taken for a pair that is not there: duplicates must not vanish.
-    apart = np.maximum(apart, np.finfo(float).tiny)
-    rows, columns = np.concatenate([ends, ends[:, ::-1]]).T
-    matrix = csr_matrix((np.tile(apart, 2), (rows, columns)), shape=(count, count))
-    found = DBSCAN(eps=EPSILON, min_samples=least, metric="precomputed").fit(matrix)
-    return found.labels_.astype(np.int64)
-
-
-def save_audit(found: Audit, folder: Path) -> None:
-    """Write `pairs.parquet`, `clusters.parquet` and `audit.json` to a folder.
-
-    Raises
-    ------
-    FileError
-        They cannot be written.
-    MissingLibraryError
-        pyarrow is not installed.
-    """
-    kept = set(found.keep)
-    labels = [None] * len(found.names) if found.labels is None else found.labels.tolist()
-    assets = [
-        {"name": name, "cluster": label, "keep": name in kept}
-        for name, label in zip(found.names, labels, strict=True)
-    ]
-    text = json.dumps(found.to_dict(), indent=1)
-    write_all(
-        {
-            folder / "pairs.parquet": table_bytes(found.rows()),
-            folder / "clusters.parquet": table_bytes(assets),
-            folder / "audit.json": text.encode("utf-8", "replace") + b"\n",
-        }
-    )

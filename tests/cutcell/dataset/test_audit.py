@@ -7,8 +7,10 @@ import pytest
 from scipy.spatial.distance import cdist
 
 import cutcell
-from cutcell.dataset.auditing import Pair, audit, clusters, save_audit
+from cutcell.dataset.audit_files import save_audit
+from cutcell.dataset.auditing import audit
 from cutcell.dataset.chamfer import CELLS, CODE, block_of, close_joints, close_surfaces
+from cutcell.dataset.duplicates import Pair, clusters
 from cutcell.dataset.generate import KINDS, generate
 from cutcell.dataset.likeness import Likeness, likeness, same_skeletons, traits_of
 from cutcell.dataset.points import Normalised, normalised, sample_surface
