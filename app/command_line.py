@@ -43,6 +43,14 @@ def open_page(
             " network: everyone there can use the page, without a password or encryption.",
         ),
     ] = "localhost",
+    pairs: Annotated[
+        Path | None,
+        typer.Option(
+            "--pairs",
+            metavar="FOLDER",
+            help="Step through the pairs that `cutcell dataset audit` found, and overrule them.",
+        ),
+    ] = None,
     show: Annotated[
         bool, typer.Option("--show/--no-show", help="Open a browser on the page.")
     ] = True,
@@ -56,7 +64,7 @@ def open_page(
 
         load(rig)  # a wrong file is told here, not by an empty page
     try:
-        serve(rig, port=port, address=address, show=show)
+        serve(rig, port=port, address=address, show=show, pairs=pairs)
     except OSError as error:
         raise ParameterError(
             f"the page cannot be served at {address}, port {port} ({error.strerror or error}); "

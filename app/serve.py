@@ -17,6 +17,7 @@ from bokeh.settings import settings
 from bokeh.util.browser import view
 
 from cutcell.console import print_warnings
+from cutcell.dataset import load_audit
 from cutcell.skinning import is_compiled, warm_up
 
 from .files.upload_cache import UPLOADS
@@ -24,6 +25,7 @@ from .layout.page import page
 from .server.handlers import guard
 from .server.log import log_to_terminal
 from .server.memory import settle
+from .state.pairs import OpenedAudit
 from .widgets.modules import STATIC, head
 from .work.processes import get_ready
 
@@ -51,6 +53,7 @@ def serve(
     port: int = 5006,
     address: str = "localhost",
     show: bool = True,
+    pairs: Path | None = None,
 ) -> None:
     """Serve the page until the process is stopped.
 
@@ -65,13 +68,18 @@ def serve(
         interface, or "0.0.0.0" for all of them, for everyone in that network.
     show : bool
         Whether to open a browser.
+    pairs : path, optional
+        The folder of an audit whose pairs are looked at.
 
     Raises
     ------
+    CutcellError
+        There is no such audit.
     OSError
         No port is free, or the address is none of this machine's.
     """
     path = None if rig is None else Path(rig)
+    opened = None if pairs is None else OpenedAudit(pairs, load_audit(pairs))
     chosen = free_port(port, address)
     if port and chosen != port:
         print(f"Port {port} is taken.", flush=True)
@@ -83,7 +91,7 @@ def serve(
     sys.setswitchinterval(0.001)
     UPLOADS.sweep_by_the_clock()
     threading.Thread(target=get_ready, daemon=True).start()
-    server = begin(path, chosen, address)
+    server = begin(path, chosen, address, opened)
     if is_compiled():
         # While the browser starts. The first compile ever is left to the page, which tells of it.
         threading.Thread(target=_warm_up, args=(server,), daemon=True).start()
@@ -99,7 +107,13 @@ def serve(
     server.io_loop.start()
 
 
-def begin(path: Path | None, port: int, address: str = "localhost", **more: Any) -> Any:
+def begin(
+    path: Path | None,
+    port: int,
+    address: str = "localhost",
+    opened: OpenedAudit | None = None,
+    **more: Any,
+) -> Any:
     """Return a server of the page that listens, and whose loop is still to be started.
 
     Parameters
@@ -109,11 +123,13 @@ def begin(path: Path | None, port: int, address: str = "localhost", **more: Any)
     port : int
     address : str
         As in `serve`.
+    opened : OpenedAudit, optional
+        An audit whose pairs are looked at.
     **more
         For `panel.serve`.
     """
     server = pn.serve(
-        {"/": lambda: page(path)},
+        {"/": lambda: page(path, opened)},
         port=port,
         address="127.0.0.1" if address == "localhost" else address,
         websocket_max_message_size=MAX_MESSAGE,

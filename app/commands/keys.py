@@ -10,6 +10,7 @@ from ..scenes.common import first_joint
 from ..state import State
 from ..state.corrections import applied, news
 from ..state.url import defaults
+from . import pairs
 from .binding import restore
 from .history import RESULT, plain, restoring
 from .loading import load_again
@@ -29,8 +30,8 @@ def act(session: Session, name: str) -> None:
         "redo": lambda: _go(session, session.history.redo()),
         "reset": lambda: reset(session),
         "play": lambda: play(state),
-        "next": lambda: step(state, 1),
-        "previous": lambda: step(state, -1),
+        "next": lambda: step(session, 1),
+        "previous": lambda: step(session, -1),
         "parent": lambda: to_parent(state),
         "child": lambda: to_child(state),
     }.get(name)
@@ -58,9 +59,12 @@ def play(state: State) -> None:
         state.playing = not state.playing
 
 
-def step(state: State, count: int) -> None:
-    """Choose the next joint of the list, or the one before."""
-    if not state.bare:
+def step(session: Session, count: int) -> None:
+    """Choose the next joint of the list, or the one before; of an audit, the next pair."""
+    state = session.state
+    if state.panel == "pairs":
+        pairs.step(session, count)
+    elif not state.bare:
         state.joint = (state.joint + count) % len(state.rig.skeleton.names)
 
 

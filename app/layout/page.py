@@ -21,6 +21,7 @@ from ..commands.loading import load_demo, load_files
 from ..commands.session import Session
 from ..panels.parts import words
 from ..server.memory import let_go, tidy_soon
+from ..state.pairs import OpenedAudit
 from ..widgets.inspector import inspector
 from ..widgets.modules import style
 from ..widgets.tour_card import tour_card
@@ -35,13 +36,15 @@ NARROW = 600
 """Windows that are less wide than this, in pixels, show the sidebar on demand only."""
 
 
-def page(path: Path | None = None) -> pmui.Page:
+def page(path: Path | None = None, opened: OpenedAudit | None = None) -> pmui.Page:
     """Return a new page, on which a character is about to stand.
 
     Parameters
     ----------
     path : Path, optional
         The character to open; the first demo when left out.
+    opened : OpenedAudit, optional
+        An audit whose pairs are looked at.
     """
     document: Any = pn.state.curdoc
     # Panel sets this as it writes a session's HTML; here that is written once for all of them.
@@ -49,6 +52,7 @@ def page(path: Path | None = None) -> pmui.Page:
     gate = Gate(on_its_thread(document, IOLoop.current()))
     pn.state.onload(gate.open)
     session = begin(gate)
+    session.state.opened = opened
     # Panel keeps its settings per document for as long as the document lives: what they hold
     # must not in turn hold the document.
     fail = weakref.WeakMethod(session.fail)
@@ -56,13 +60,15 @@ def page(path: Path | None = None) -> pmui.Page:
     query = asked()
     first = "" if path is not None else next(demo.id for demo in DEMOS if demo.path.exists())
     arrival.choose(session, query, first)
+    if opened is not None and not query:
+        session.state.panel = "pairs"
     view: Any = session.view
     result = layout(session)
     document.on_session_destroyed(functools.partial(_close, session))
 
     def otherwise() -> None:
         if path is None:
-            if query:
+            if query or opened is not None:
                 load_demo(session, first)
             else:
                 arrival.greet(session, first)

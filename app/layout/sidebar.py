@@ -11,7 +11,7 @@ from ..panels import PANELS
 from ..panels.bone import bone
 from ..panels.character import character
 from ..panels.export import export
-from ..panels.parts import lead
+from ..panels.parts import lead, when
 from ..widgets.tabs import Tabs
 
 BARE = ("graph", "diagnosis", "learn")
@@ -25,7 +25,17 @@ NO_SKELETON = (
 
 def sidebar(session: Session) -> list[Any]:
     """Return what stands in the sidebar, from top to bottom."""
-    return [character(session), bone(session), *panels(session), export(session)]
+    # What concerns one character has no place beside two others.
+    alone = when(
+        lambda panel, opened: panel != "pairs" or opened is None,
+        session.state.param.panel,
+        session.state.param.opened,
+    )
+    one, two = (
+        pmui.Column(*parts, margin=0, visible=alone, sizing_mode="stretch_width")
+        for parts in ((character(session), bone(session)), (export(session),))
+    )
+    return [one, *panels(session), two]
 
 
 def panels(session: Session) -> tuple[Tabs, pmui.Column]:
@@ -36,7 +46,7 @@ def panels(session: Session) -> tuple[Tabs, pmui.Column]:
     state = session.state
     tabs = Tabs(
         value=state.panel,
-        tabs=[(panel.id, panel.title, panel.icon) for panel in PANELS],
+        tabs=[(p.id, p.title, p.icon) for p in PANELS if p.id != "pairs" or state.opened],
         margin=(10, 20, 0, 20),
         sizing_mode="stretch_width",
     )

@@ -8,6 +8,7 @@ import numpy as np
 import panel_material_ui as pmui
 
 from cutcell.graph import INTERIOR, MESH, SURFACE
+from cutcell.rig import Rig
 
 from ..commands.binding import cancel
 from ..commands.diagnosis import go_to
@@ -53,6 +54,8 @@ def status_line(session: Session) -> pmui.Row:
             state.param.rig,
             state.param.binding,
             state.param.bare_graph,
+            state.param.panel,
+            state.param.beside,
         ),
         visible=when(lambda busy: not busy, state.param.busy),
         sx={**small, **_ONE_LINE, "color": "text.secondary"},
@@ -169,13 +172,19 @@ def stage_text(stage: str) -> str:
     return TITLES.get(stage, sentence(stage).rstrip(".") if stage else "Starting")
 
 
+def _counts(rig: Rig) -> str:
+    mesh, joints = rig.mesh, len(rig.skeleton.joints)
+    return f"{len(mesh.vertices):,} vertices · {len(mesh.faces):,} faces · {joints} joints"
+
+
 def summary(state: State) -> str:
     """Return the counts and the seconds, in one line."""
     rig, binding = state.rig, state.binding
+    if state.panel == "pairs" and state.beside is not None:
+        return "  |  ".join(_counts(one) for one in state.beside.rigs)
     if rig is None:
         return ""
-    mesh, joints = rig.mesh, len(rig.skeleton.joints)
-    parts = [f"{len(mesh.vertices):,} vertices · {len(mesh.faces):,} faces · {joints} joints"]
+    parts = [_counts(rig)]
     if state.graph is not None:
         graph = state.graph
         kinds = np.bincount(graph.edge_kind, minlength=3)

@@ -12,6 +12,7 @@ from .diagnosis import diagnosis
 from .geodesics import geodesics
 from .graph import graph
 from .learn import learn
+from .pairs import pairs
 from .pose import pose
 from .weights import weights
 
@@ -85,6 +86,14 @@ PANELS = (
         '<path d="M2.5 9.5L12 5l9.5 4.5L12 14z"/>'
         '<path d="M6.5 11.5v5c3 2.6 8 2.6 11 0v-5M21.5 9.5v6"/>',
         learn,
+    ),
+    Panel(
+        "pairs",
+        "Pairs",
+        '<circle cx="7.5" cy="6" r="2.2"/><path d="M7.5 9v6M4 12h7M7.5 15l-2.5 5M7.5 15l2.5 5"/>'
+        '<circle cx="16.5" cy="6" r="2.2"/><path d="M16.5 9v6M13 12h7M16.5 15l-2.5 5M16.5 15l2.5 '
+        '5"/>',
+        pairs,
     ),
 )
 """In the order in which they are offered; the ids are those of `state.PANELS`."""

@@ -16,6 +16,7 @@ from .diagnosis import diagnosis
 from .geodesics import geodesics
 from .graph import graph
 from .memo import Memo
+from .pairs import pairs
 from .pose import pose
 from .weights import weights
 
@@ -29,6 +30,7 @@ SCENES: dict[str, Callable[[State, Memo], Description]] = {
     "compare": compare,
     "diagnosis": diagnosis,
     "learn": weights,
+    "pairs": pairs,
 }
 """The scene of each panel, for a state with a rig."""
 

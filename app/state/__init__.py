@@ -14,6 +14,7 @@ from .corrections import CorrectionsChoices
 from .diagnosis import DiagnosisChoices
 from .geodesics import GeodesicsChoices
 from .graph import LAYERS, GraphChoices
+from .pairs import PairsChoices
 from .pose import PoseChoices
 from .weights import WeightsChoices
 
@@ -36,6 +37,7 @@ class State(
     CompareChoices,
     CorrectionsChoices,
     DiagnosisChoices,
+    PairsChoices,
     Common,
 ):
     """What the page shows."""

@@ -6,8 +6,8 @@ from typing import Any
 
 import param
 
-PANELS = ("graph", "geodesics", "weights", "pose", "compare", "diagnosis", "learn")
-"""The ids of the panels, in the order in which they are offered."""
+PANELS = ("graph", "geodesics", "weights", "pose", "compare", "diagnosis", "learn", "pairs")
+"""The ids of the panels, in the order in which they are offered; the last for an audit alone."""
 
 
 CUTS = ("off", "x", "y", "z", "free")
@@ -68,5 +68,7 @@ class Common(param.Parameterized):
         return None if self.rig is None else self.rig.weights
 
 
-UNSEEN = frozenset({"name", "demo", "tour", "busy", "stage", "fraction", "message", "own_deform"})
+UNSEEN = frozenset(
+    {"name", "demo", "tour", "busy", "stage", "fraction", "message", "own_deform", "tier"}
+)
 """What the scene does not depend on."""

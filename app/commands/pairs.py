@@ -1,0 +1,82 @@
+"""Step through the pairs of an audit, and overrule them."""
+
+from __future__ import annotations
+
+import tempfile
+from dataclasses import replace
+from pathlib import Path
+
+from cutcell.dataset import save_verdicts
+from cutcell.dataset.audit_files import read_verdicts
+from cutcell.dataset.sources import read_source
+from cutcell.progress import Progress
+from cutcell.rig import Rig
+
+from ..state.pairs import Beside, OpenedAudit
+from .session import Session
+
+
+def watch(session: Session) -> None:
+    """Read the characters of the pair that is looked at."""
+    session.state.param.watch(lambda *events: find(session), ["opened", "pair", "panel"])
+
+
+def find(session: Session) -> None:
+    """Read both characters of the chosen pair, unless they are there."""
+    state, pair = session.state, session.state.chosen_pair
+    if state.panel != "pairs" or pair is None:
+        return
+    if state.beside is not None and state.beside.pair == state.pair:
+        return
+    audit, place = state.opened.audit, state.pair
+    sources = audit.sources[pair.a], audit.other_sources[pair.b]
+    state.beside = None  # not another pair below the names of this one
+
+    def work(progress: Progress) -> Beside:
+        rigs: list[Rig] = []
+        for source in sources:
+            with tempfile.TemporaryDirectory() as folder:
+                rigs.append(read_source(source, Path(folder)))
+        return Beside(place, (rigs[0], rigs[1]))
+
+    def done(beside: Beside) -> None:
+        if state.pair == beside.pair:
+            state.beside = beside
+
+    session.tasks.newest("pair").do(work, done)
+
+
+def step(session: Session, count: int) -> None:
+    """Go to the next pair of the chosen tier, or to the one before."""
+    state = session.state
+    ahead = [k for k in state.stepped if (k > state.pair if count > 0 else k < state.pair)]
+    if ahead:
+        state.pair = ahead[0] if count > 0 else ahead[-1]
+
+
+def choose_tier(session: Session, tier: str) -> None:
+    """Step through the pairs of a tier, from its first."""
+    state = session.state
+    state.tier = tier
+    if state.stepped and state.pair not in state.stepped:
+        state.pair = state.stepped[0]
+
+
+def overrule(session: Session, verdict: str) -> None:
+    """Say what the chosen pair is; an empty verdict leaves it to the figures."""
+    state = session.state
+    opened, pair = state.opened, state.chosen_pair
+    if pair is None or opened.audit.verdict(pair) == verdict:
+        return
+
+    def work(progress: Progress) -> OpenedAudit:
+        # Others may step through the same audit.
+        audit = replace(opened.audit, verdicts=read_verdicts(opened.folder))
+        audit = audit.overrule(pair, verdict)
+        save_verdicts(audit, opened.folder)
+        return OpenedAudit(opened.folder, audit)
+
+    def done(now: OpenedAudit) -> None:
+        state.opened = now
+
+    session.tasks.jobs("verdict").start(work, done, session.fail, lambda stage, fraction: None)

@@ -1,0 +1,171 @@
+"""The pairs of an audit: step through them, see them side by side, say what they are."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import panel_material_ui as pmui
+
+from cutcell.dataset.duplicates import DIFFERENT, DUPLICATE
+from cutcell.display import shown_name
+
+from ..commands import pairs as actions
+from ..commands.session import Session
+from ..state import State
+from .parts import BUTTONS, GAP, caption, lead, section, when
+
+NONE_OPEN = (
+    "Here the near-duplicates of a data set stand side by side. Find them by cutcell dataset "
+    "audit FOLDER, and open what it found by cutcell app --pairs audit."
+)
+TIERS = {
+    "All": "all",
+    "Twins": "twin",
+    "Variants": "variant",
+    "Near": "near",
+    "In another pose": "posed",
+    "Overruled": "overruled",
+}
+VERDICTS = {"As found": "", "Duplicates": DUPLICATE, "Different": DIFFERENT}
+FOUND = {
+    "copy": "A copy: the same surface with as many faces",
+    "remeshed": "Remeshed: the same surface with other faces",
+    "clothes": "The same skeleton in other clothes",
+    "pose": "The same skeleton in another pose",
+    "similar": "Similar characters",
+}
+
+
+def pairs(session: Session) -> pmui.Column:
+    """Return the controls of the panel Pairs."""
+    state = session.state
+    if state.opened is None:
+        return pmui.Column(lead(NONE_OPEN), margin=0, sizing_mode="stretch_width")
+    watched = (state.param.opened, state.param.pair, state.param.tier)
+
+    def button(label: str, icon: str, count: int) -> pmui.Button:
+        return pmui.Button(
+            label=label,
+            icon=icon,
+            size="small",
+            variant="outlined",
+            margin=(4, 8 if count < 0 else 0, 4, 0),
+            sizing_mode="stretch_width",
+            on_click=lambda event: actions.step(session, count),
+            disabled=when(lambda *_: not _ahead(state, count), *watched),
+        )
+
+    steps = pmui.Row(
+        button("Previous", "arrow_back", -1),
+        button("Next", "arrow_forward", 1),
+        margin=0,
+        sizing_mode="stretch_width",
+    )
+    return pmui.Column(
+        lead(when(lambda *_: told(state), *watched)),
+        section(
+            "",
+            _tiers(session),
+            steps,
+            caption(when(lambda *_: facts(state), *watched)),
+            margin=(4, 20, 4, 20),
+        ),
+        section("What they are", _verdict(session)),
+        section(
+            "What is kept",
+            caption(when(lambda *_: kept(state), *watched)),
+            caption(when(lambda opened: f"{opened.folder / 'audit.json'} lists it.", watched[0])),
+        ),
+        margin=0,
+        sizing_mode="stretch_width",
+    )
+
+
+def told(state: State) -> str:
+    """Say which pair is looked at, of how many."""
+    count, stepped = len(state.opened.pairs), state.stepped
+    if not count:
+        return "The audit found no near-duplicates."
+    if not stepped:
+        return "There are none of these."
+    if state.pair not in stepped:
+        return f"{len(stepped):,} of {count:,} pairs."
+    of = f" of {count:,} in all" if len(stepped) < count else ""
+    return f"Pair {stepped.index(state.pair) + 1:,} of {len(stepped):,}{of}."
+
+
+def facts(state: State) -> str:
+    """Return what is known of the pair that is looked at."""
+    pair = state.chosen_pair
+    if pair is None:
+        return ""
+    alike = pair.likeness
+    said = [FOUND[alike.kind]]
+    if pair.surface < float("inf"):
+        said += [
+            f"Chamfer distance of the surfaces {pair.surface:.2g} ({pair.tier}), of the joints "
+            f"{pair.joints:.2g}",
+            f"One surface reaches {alike.reach:.1%} of the longest side beyond the other",
+        ]
+    if alike.degrees is None or alike.bones is None:
+        said.append("The joints form different trees")
+    else:
+        said.append(
+            f"The joints form the same tree; bones differ by {alike.bones:.0%} in length and "
+            f"{alike.degrees:.0f}° in direction"
+        )
+    said.append(f"The smaller mesh has {alike.faces:.0%} of the other's faces")
+    return ". ".join(said) + "."
+
+
+def kept(state: State) -> str:
+    """Say how many characters are kept, and whether those of the pair are."""
+    audit, pair = state.opened.audit, state.chosen_pair
+    counts = f"{len(audit.keep):,} of {len(audit.names):,} characters are kept."
+    if pair is None:
+        return counts
+    ends = [audit.names[pair.a], *([] if audit.crossed else [audit.others[pair.b]])]
+    whole = set(audit.keep)
+    said = [f"{shown_name(name)} is {'kept' if name in whole else 'left out'}" for name in ends]
+    return f"{counts} {'; '.join(said)}."
+
+
+def _ahead(state: State, count: int) -> bool:
+    return any(k > state.pair if count > 0 else k < state.pair for k in state.stepped)
+
+
+def _tiers(session: Session) -> pmui.Select:
+    state = session.state
+    select = pmui.Select(
+        label="Step through", options=TIERS, size="small", margin=GAP, sizing_mode="stretch_width"
+    )
+
+    def shown(*events: Any) -> None:
+        select.value = state.tier
+
+    def chosen(event: Any) -> None:
+        if event.new is not None and event.new != state.tier:
+            actions.choose_tier(session, event.new)
+
+    state.param.watch(shown, "tier")
+    select.param.watch(chosen, "value")
+    shown()
+    return select
+
+
+def _verdict(session: Session) -> pmui.RadioButtonGroup:
+    state = session.state
+    row = pmui.RadioButtonGroup(options=VERDICTS, value="", **BUTTONS)
+
+    def shown(*events: Any) -> None:
+        pair = state.chosen_pair
+        row.value = "" if pair is None else state.opened.audit.verdict(pair)
+
+    def chosen(event: Any) -> None:
+        if event.new is not None:
+            actions.overrule(session, event.new)
+
+    state.param.watch(shown, ["opened", "pair"])
+    row.param.watch(chosen, "value")
+    shown()
+    return row

@@ -1,0 +1,73 @@
+"""What a person can choose on the panel Pairs: which pair of an audit is looked at."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import param
+
+from cutcell.dataset import Audit, Pair
+from cutcell.rig import Rig
+
+TIERS = ("all", "twin", "variant", "near", "posed", "overruled")
+
+
+@dataclass(frozen=True, eq=False)
+class OpenedAudit:
+    """An audit, and the folder that it was read from.
+
+    Parameters
+    ----------
+    folder : Path
+    audit : Audit
+    """
+
+    folder: Path
+    audit: Audit
+
+    @property
+    def pairs(self) -> list[Pair]:
+        """All pairs: near-duplicates, nearest first, then one skeleton in other poses."""
+        return [*self.audit.pairs, *self.audit.posed]
+
+
+@dataclass(frozen=True, eq=False)
+class Beside:
+    """The two characters of a pair, by its place among all."""
+
+    pair: int
+    rigs: tuple[Rig, Rig]
+
+
+class PairsChoices(param.Parameterized):
+    """The audit, and which of its pairs is looked at."""
+
+    opened: Any = param.Parameter(None, doc="An `OpenedAudit`, or None.")
+    pair: Any = param.Integer(0, bounds=(0, None), doc="Its place among all pairs.")
+    tier: Any = param.Selector(default="all", objects=list(TIERS), doc="Which are stepped through.")
+    beside: Any = param.Parameter(None, doc="`Beside`: the characters of the pair, once read.")
+
+    @property
+    def chosen_pair(self) -> Pair | None:
+        """The pair that is looked at; None where there is no audit, or it found none."""
+        if self.opened is None:
+            return None
+        pairs = self.opened.pairs
+        return pairs[min(self.pair, len(pairs) - 1)] if pairs else None
+
+    @property
+    def stepped(self) -> list[int]:
+        """The places of the pairs of the chosen tier."""
+        if self.opened is None:
+            return []
+        audit = self.opened.audit
+        near, count = len(audit.pairs), len(self.opened.pairs)
+        if self.tier == "posed":
+            return list(range(near, count))
+        if self.tier in ("twin", "variant", "near"):
+            return [k for k, pair in enumerate(audit.pairs) if pair.tier == self.tier]
+        if self.tier == "overruled":
+            return [k for k, pair in enumerate(self.opened.pairs) if audit.verdict(pair)]
+        return list(range(count))
