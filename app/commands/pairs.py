@@ -9,6 +9,7 @@ from pathlib import Path
 from cutcell.dataset import save_verdicts
 from cutcell.dataset.audit_files import read_verdicts
 from cutcell.dataset.sources import read_source
+from cutcell.errors import CutcellError
 from cutcell.progress import Progress
 from cutcell.rig import Rig
 
@@ -19,6 +20,16 @@ from .session import Session
 def watch(session: Session) -> None:
     """Read the characters of the pair that is looked at."""
     session.state.param.watch(lambda *events: find(session), ["opened", "pair", "panel"])
+
+
+def look_at(session: Session, opened: OpenedAudit) -> None:
+    """Look at an audit, with all that was said of its pairs since it was opened."""
+    try:
+        audit = replace(opened.audit, verdicts=read_verdicts(opened.folder))
+        session.state.opened = OpenedAudit(opened.folder, audit)
+    except CutcellError as error:
+        session.state.opened = opened
+        session.fail(error)
 
 
 def find(session: Session) -> None:

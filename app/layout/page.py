@@ -16,7 +16,7 @@ from tornado.ioloop import IOLoop
 
 from cutcell_assets import DEMOS
 
-from ..commands import arrival
+from ..commands import arrival, pairs
 from ..commands.loading import load_demo, load_files
 from ..commands.session import Session
 from ..panels.parts import words
@@ -52,7 +52,8 @@ def page(path: Path | None = None, opened: OpenedAudit | None = None) -> pmui.Pa
     gate = Gate(on_its_thread(document, IOLoop.current()))
     pn.state.onload(gate.open)
     session = begin(gate)
-    session.state.opened = opened
+    if opened is not None:
+        pairs.look_at(session, opened)
     # Panel keeps its settings per document for as long as the document lives: what they hold
     # must not in turn hold the document.
     fail = weakref.WeakMethod(session.fail)

@@ -75,7 +75,7 @@ def test_cuts_slices_and_keys_do_no_harm(bare, loop):
     assert resolve(state).actors
     for act in ("play", "parent", "child", "reset"):
         keys.act(bare, act)
-    keys.step(state, 1)
+    keys.step(bare, 1)
     look.pick(bare, 0)
     look.pick_vertex(bare, 0)
     assert state.vertex is None

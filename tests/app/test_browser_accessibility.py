@@ -68,6 +68,8 @@ def test_no_panel_has_a_serious_fault(visit, theme, rules):
         visit.settle()
     told = []
     for panel in PANELS:
+        if panel.id == "pairs":  # of an audit: test_browser_pairs.py
+            continue
         visit.page.get_by_role("tab", name=panel.title).click()
         visit.page.wait_for_function("id => location.search.includes('panel=' + id)", arg=panel.id)
         visit.settle()

@@ -14,12 +14,18 @@ def test_serves_what_it_was_asked_to(run, bar, monkeypatch):
     monkeypatch.setattr(PAGE, lambda: lambda *a, **k: seen.append((a, k)))
     words = ["app", bar, "--port", 5010, "--address", "0.0.0.0", "--no-show"]
     assert run(*words).exit_code == 0
-    assert seen == [((bar,), {"port": 5010, "address": "0.0.0.0", "show": False})]
+    asked = {"port": 5010, "address": "0.0.0.0", "show": False, "pairs": None}
+    assert seen == [((bar,), asked)]
 
 
 def test_a_wrong_file_is_told_before_anything_is_served(run, monkeypatch, tmp_path):
     monkeypatch.setattr(PAGE, lambda: pytest.fail)
     assert "no such file" in refused(run("app", tmp_path / "nope.glb"))
+
+
+def test_an_audit_that_is_not_there_is_told(run, tmp_path):
+    told = refused(run("app", "--pairs", tmp_path, "--no-show", "--port", 0))
+    assert "audit.json: there is no such file" in told
 
 
 def test_says_what_to_install_where_the_page_is_missing(run, monkeypatch):
