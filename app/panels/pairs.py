@@ -30,6 +30,7 @@ VERDICTS = {"As found": "", "Duplicates": DUPLICATE, "Different": DIFFERENT}
 FOUND = {
     "copy": "A copy: the same surface with as many faces",
     "remeshed": "Remeshed: the same surface with other faces",
+    "mirrored": "Mirrored",
     "clothes": "The same skeleton in other clothes",
     "pose": "The same skeleton in another pose",
     "similar": "Similar characters",

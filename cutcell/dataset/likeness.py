@@ -61,7 +61,7 @@ class Likeness:
 
     Parameters
     ----------
-    kind : {"copy", "remeshed", "clothes", "pose", "similar"}
+    kind : {"copy", "remeshed", "mirrored", "clothes", "pose", "similar"}
         What the figures come to.
     same_tree : bool
         Whether their joints hang together alike.
@@ -69,6 +69,8 @@ class Likeness:
         By how much bone lengths differ, as a share of their sum; None for different trees.
     degrees : float or None
         By how much bones point elsewhere, on average by length.
+    mirrored : float or None
+        The same, after one of them is mirrored along the axis that suits best.
     faces : float
         Faces of the smaller mesh over those of the larger.
     reach : float
@@ -80,6 +82,7 @@ class Likeness:
     same_tree: bool
     bones: float | None
     degrees: float | None
+    mirrored: float | None
     faces: float
     reach: float
 
@@ -97,12 +100,19 @@ def likeness(a: Traits, b: Traits, surface: float, reach: float) -> Likeness:
     """
     faces = min(a.faces, b.faces) / max(a.faces, b.faces)
     same = a.tree == b.tree
-    bones, degrees = _of_bones(a.bones, b.bones) if same else (None, None)
-    found = (same, bones, degrees, faces, reach)
+    bones = degrees = mirrored = None
+    if same:
+        bones, degrees = _of_bones(a.bones, b.bones)
+        mirrored = min(_of_bones(a.bones * mirror, b.bones)[1] for mirror in MIRRORS)
+    found = (same, bones, degrees, mirrored, faces, reach)
     return Likeness(_kind(surface, *found), *found)
 
 
+MIRRORS = (1 - 2 * np.eye(3)).astype(np.float32)
+
+
 def _of_bones(a: NDArray, b: NDArray) -> tuple[float, float]:
+    """Return by how much bones differ in length, as a share of all, and in direction, degrees."""
     long_a, long_b = np.linalg.norm(a, axis=1), np.linalg.norm(b, axis=1)
     weight = np.minimum(long_a, long_b)
     cosine = (a * b).sum(axis=1) / np.maximum(long_a * long_b, 1e-30)
@@ -116,12 +126,13 @@ def _kind(
     same: bool,
     bones: float | None,
     degrees: float | None,
+    mirrored: float | None,
     faces: float,
     reach: float,
 ) -> str:
     one_skeleton = same and bones is not None and bones < SAME_BONES
     if one_skeleton and degrees is not None and degrees > TURNED:
-        return "pose"
+        return "mirrored" if mirrored is not None and mirrored < TURNED else "pose"
     if surface <= TWIN and reach < REACH:
         return "copy" if faces >= FACES else "remeshed"
     if one_skeleton and reach >= REACH:

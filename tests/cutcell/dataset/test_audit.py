@@ -18,7 +18,7 @@ from cutcell.dataset.store import read_table
 from cutcell.errors import MeshError, ParameterError
 from cutcell.rig import Rig, Skeleton, TriangleMesh
 
-ALIKE = Likeness("copy", True, 0.0, 0.0, 1.0, 0.0)
+ALIKE = Likeness("copy", True, 0.0, 0.0, 0.0, 1.0, 0.0)
 
 pytestmark = [
     pytest.mark.filterwarnings("ignore::ResourceWarning"),
@@ -180,7 +180,7 @@ def test_planted_duplicates_are_found_each_at_its_tier(found):
     assert of_original["remeshed"][1] == "remeshed"
     assert of_original["clothes"][1] == "clothes"
     assert of_original["pose"][1] == "pose"
-    assert "mirrored" in of_original
+    assert of_original["mirrored"] == ("near", "mirrored")
     assert of_original.get("other", ("", "similar"))[1] == "similar"
     assert list(result.failed) == ["broken"]
 
