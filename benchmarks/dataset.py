@@ -387,7 +387,7 @@ def growth(count: int, folder: Path) -> list[Table]:
         "one kind are too much alike; 2,048 points each. A fifth are an earlier one again with "
         "other points. CPU time of one process; making the characters is not counted.",
     )  # fmt: skip
-    sizes = [size for size in (50, 500, 1000, 2000, 4000, 8000, 16000, 48000) if size <= count]
+    sizes = [size for size in (50, 500, 2000, 8000, 48000) if size <= count]
     for size in sizes:
         characters, spent = [], 0.0
         for k in range(size):
