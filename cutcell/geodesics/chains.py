@@ -26,8 +26,9 @@ ALONG_AXIS = 0.9
 """Cosine: if the rest axis gives the direction, a child within 25 degrees continues the bone."""
 IN_BODY = 0.5
 """Part of a bone that must run through the body for it to be one."""
-BACKWARD = -0.2
-"""Cosine: an inferred bone may bend back by this much, like the hock of a hind leg."""
+BACKWARD = (-0.2, -0.5)
+"""Cosine: an inferred bone may bend back by this much, like the hock of a hind leg; where that
+leaves joints over, by more, like the knee of a machine."""
 REACH = 4.0
 """The length of an inferred bone over that of the bone that it continues, at most."""
 CLEARLY = 1.2
@@ -182,15 +183,18 @@ def _inferred_bones(
     far = np.linalg.norm(away, axis=2)
     onward = np.einsum("tlc,tc->tl", away, direction[leaves])
     fits = (far >= SAME_PLACE) & ~skeleton.subtree[loose][:, leaves].T
-    fits &= (far <= REACH * length[leaves, None]) & (onward >= BACKWARD * far)
+    fits &= (far <= REACH * length[leaves, None]) & (onward >= BACKWARD[-1] * far)
     leaf, goal = fits.nonzero()
     fits[leaf, goal] = probe.inner_part(joints[leaves[leaf]], joints[loose[goal]]) >= IN_BODY
-    distance = np.where(fits, far, np.inf)
-    choice = _clear_choice(distance, joints[loose])
-    suits = np.arange(len(loose)) == choice[:, None]
-    suitor = _clear_choice(np.where(suits, distance, np.inf).T, joints[leaves])
-    for k in np.flatnonzero(suitor >= 0):
-        inferred[leaves[suitor[k]]].append(int(loose[k]))
+    for backward in BACKWARD:
+        distance = np.where(fits & (onward >= backward * far), far, np.inf)
+        choice = _clear_choice(distance, joints[loose])
+        suits = np.arange(len(loose)) == choice[:, None]
+        suitor = _clear_choice(np.where(suits, distance, np.inf).T, joints[leaves])
+        found = np.flatnonzero(suitor >= 0)
+        for k in found:
+            inferred[leaves[suitor[k]]].append(int(loose[k]))
+        fits[suitor[found]], fits[:, found] = False, False
     return inferred
 
 
