@@ -2,6 +2,7 @@
 
 from .bind import Binding, bind
 from .compilation import is_compiled, warm_up
+from .correct import corrected_rig
 from .explain import Explanation, JointShare, Piece, explain
 from .refine import refine_weights
 from .weights import keep_strongest, skinning_weights
@@ -12,6 +13,7 @@ __all__ = [
     "JointShare",
     "Piece",
     "bind",
+    "corrected_rig",
     "explain",
     "is_compiled",
     "keep_strongest",
