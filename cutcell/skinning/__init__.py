@@ -4,6 +4,7 @@ from .bind import Binding, bind
 from .compilation import is_compiled, warm_up
 from .correct import corrected_rig
 from .explain import Explanation, JointShare, Piece, explain
+from .limb import middle_of_limb
 from .refine import refine_weights
 from .weights import keep_strongest, skinning_weights
 
@@ -17,6 +18,7 @@ __all__ = [
     "explain",
     "is_compiled",
     "keep_strongest",
+    "middle_of_limb",
     "refine_weights",
     "skinning_weights",
     "warm_up",
