@@ -9,11 +9,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from cutcell.corrections import Corrections, JointCorrection
-from cutcell.errors import CutcellError, MeshError
-from cutcell.progress import Progress
+from cutcell.errors import CutcellError, SkeletonError
 from cutcell.skinning import middle_of_limb
 from cutcell.skinning.correct import corrected_rig
-from cutcell.skinning.symmetry import Mirror, find_mirror
+from cutcell.skinning.symmetry import Mirror, find_joint_mirror
 from cutcell_viewers.character import to_scene
 
 from ..scenes.common import bones_part
@@ -24,7 +23,7 @@ from .session import Session
 
 DIGITS = 6
 """Of places, beside the longest side of the character: addresses are long enough."""
-SEEN = ["panel", "rig", "binding", "joint", "joint_handle", "mirrored", "mirror"]
+SEEN = ["panel", "rig", "binding", "joint", "joint_handle", "mirrored"]
 
 
 def watch(session: Session) -> None:
@@ -34,7 +33,6 @@ def watch(session: Session) -> None:
     session.view.listen("joint", hand.move)
     follow(lambda *events: hand.let_go(), ["rig", "binding", "panel"])
     follow(lambda *events: tell_bones(session), "rig")
-    follow(lambda *events: look_for_mirror(session), ["panel", "rig", "joint_handle"])
     follow(lambda *events: show_handle(session), SEEN)
 
 
@@ -56,7 +54,7 @@ def show_handle(session: Session) -> None:
     if state.joint_handle and state.panel == "weights" and state.rig is not None and state.binding:
         at = to_scene(state.rig, state.rig.skeleton.joints[[state.joint]])[0]
         part = {"joint": state.joint, "at": at.tolist(), "mirror": None}
-        mirror, partner = mirror_of(state), partner_of(state)
+        mirror, partner = mirror_of(session), moves_along(session)
         if mirror is not None and partner is not None:
             part["mirror"] = _plane_in_scene(state.rig.world, mirror)
     if session.view.told("mover") != part:
@@ -71,41 +69,30 @@ def _plane_in_scene(world: NDArray[np.float64], mirror: Mirror) -> list[float]:
     return [*out.tolist(), float(out @ on)]
 
 
-def look_for_mirror(session: Session) -> None:
-    """Find which joint is whose mirror image in the file, once somebody may move one."""
-    state, rig = session.state, session.state.rig
-    if rig is None or state.bare or state.panel != "weights" or not state.joint_handle:
-        return
-    if state.mirror is not None and state.mirror[0] is rig.mesh:
-        return
-    own = rig.with_joints(state.own_skeleton.joints)
+def mirror_of(session: Session) -> Mirror | None:
+    """Return who is whose mirror image among the joints as the file has them; None if nobody is."""
+    state = session.state
 
-    def work(progress: Progress) -> Any:
+    def find() -> Mirror | None:
         try:
-            return find_mirror(own)
-        except MeshError:
+            return find_joint_mirror(state.rig.with_joints(state.own_skeleton.joints))
+        except SkeletonError:
             return None
 
-    def done(mirror: Any) -> None:
-        if state.rig is not None and state.rig.mesh is rig.mesh:
-            state.mirror = (rig.mesh, mirror)
-
-    session.tasks.jobs("mirror").start(work, done, session.fail, lambda stage, fraction: None)
+    found: Mirror | None = session.memo("mirror", (state.rig.mesh, state.own_skeleton), find)
+    return found
 
 
-def mirror_of(state: Any) -> Mirror | None:
-    """Return the mirror of the character that stands there; None if it has none, or none so far."""
-    known = state.mirror
-    return known[1] if known is not None and known[0] is state.rig.mesh else None
+def partner_of(session: Session) -> int | None:
+    """Return the joint on the other side of the chosen one; None if there is none."""
+    mirror, joint = mirror_of(session), session.state.joint
+    partner = -1 if mirror is None else int(mirror.joint[joint])
+    return None if partner in (-1, joint) else partner
 
 
-def partner_of(state: Any) -> int | None:
-    """Return the joint on the other side that moves along with the chosen one."""
-    mirror = mirror_of(state)
-    if mirror is None or not state.mirrored:
-        return None
-    partner = int(mirror.joint[state.joint])
-    return None if partner in (-1, state.joint) else partner
+def moves_along(session: Session) -> int | None:
+    """Return the joint that moves along with the chosen one, or None."""
+    return partner_of(session) if session.state.mirrored else None
 
 
 def put(session: Session, place: ArrayLike) -> None:
@@ -123,7 +110,7 @@ def put_back(session: Session) -> None:
     """Put the chosen joint, and its partner, where the file has them."""
     state = session.state
     held = dict(state.corrections.joints)
-    for joint in (state.joint, partner_of(state)):
+    for joint in (state.joint, moves_along(session)):
         if joint is not None:
             name = state.rig.skeleton.names[joint]
             held[name] = replace(held.get(name, JointCorrection()), position=None)
@@ -150,7 +137,7 @@ def moved(session: Session, place: ArrayLike) -> Corrections:
     """
     state, joint = session.state, session.state.joint
     places = {joint: np.asarray(place, float)}
-    mirror, partner = mirror_of(state), partner_of(state)
+    mirror, partner = mirror_of(session), moves_along(session)
     if mirror is not None and partner is not None:
         other = places[joint].copy()
         other[mirror.axis] = 2 * mirror.position - other[mirror.axis]

@@ -13,7 +13,7 @@ from cutcell.errors import ParameterError
 from ..commands import moving
 from ..commands.session import Session
 from ..state import State
-from .parts import caption, when
+from .parts import caption
 
 NUMBER = "%.6g"
 
@@ -26,7 +26,6 @@ def place(session: Session) -> list[Any]:
         pmui.Switch.from_param(parameter, label=parameter.label, **look)
         for parameter in (state.param.joint_handle, state.param.mirrored)
     )
-    mirrored.visible = when(_has_partner, state.param.mirror, state.param.rig, state.param.joint)
     fields = [
         pmui.TextInput(
             label=axis.upper(), value="", size="small", margin=(8, 6 * (axis != "z"), 4, 0),
@@ -37,12 +36,10 @@ def place(session: Session) -> list[Any]:
     centre, back = (
         pmui.Button(
             label=label, size="small", variant="outlined", margin=(4, margin, 4, 0),
-            sizing_mode="stretch_width", description=why,
-            on_click=lambda event, act=act: act(session),
+            sizing_mode="stretch_width", on_click=lambda event, act=act: act(session),
         )
-        for label, act, margin, why in (
-            ("Centre in limb", moving.centre, 8, "Into the middle of the body around it"),
-            ("Put back", moving.put_back, 0, "Where the file has it"),
+        for label, act, margin in (
+            ("Centre in limb", moving.centre, 8), ("Put back", moving.put_back, 0),
         )
     )  # fmt: skip
     showing = [False]
@@ -55,6 +52,7 @@ def place(session: Session) -> list[Any]:
         try:
             for field, value in zip(fields, rig.skeleton.joints[state.joint].tolist(), strict=True):
                 field.value = NUMBER % value
+            mirrored.visible = moving.partner_of(session) is not None
             back.disabled = _own(state) == JointCorrection().position
         finally:
             showing[0] = False
@@ -90,9 +88,3 @@ def _own(state: State) -> Any:
     """Return where the chosen joint was put, or None."""
     name = state.rig.skeleton.names[state.joint]
     return state.corrections.joints.get(name, JointCorrection()).position
-
-
-def _has_partner(known: Any, rig: Any, joint: int) -> bool:
-    """Whether a joint has a mirror image."""
-    mirror = known[1] if known is not None and rig is not None and known[0] is rig.mesh else None
-    return mirror is not None and mirror.joint[joint] not in (-1, joint)

@@ -68,6 +68,6 @@ class Common(param.Parameterized):
         return None if self.rig is None else self.rig.weights
 
 
-UNSEEN = frozenset({"name", "demo", "tour", "busy", "stage", "fraction", "message", "own_skeleton",
-                    "mirror"})  # fmt: skip
+UNSEEN = frozenset({"name", "demo", "tour", "busy", "stage", "fraction", "message",
+                    "own_skeleton"})  # fmt: skip
 """What the scene does not depend on."""

@@ -31,9 +31,6 @@ class CorrectionsChoices(param.Parameterized):
     )
     joint_handle: Any = param.Boolean(False, label="Move it in the scene")
     mirrored: Any = param.Boolean(True, label="The other side moves along")
-    mirror: Any = param.Parameter(
-        None, doc="(mesh, Mirror of the joints or None) of the character, once it is looked for."
-    )
     dragged: Any = param.Parameter(
         None, doc="A `Dragged` while joints are on their way, which the corrections do not tell."
     )
