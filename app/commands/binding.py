@@ -21,6 +21,7 @@ from cutcell.progress import Progress
 from cutcell.rig import Rig
 from cutcell.skinning import Binding, keep_strongest, skinning_weights
 from cutcell.skinning.correct import adjustments_of
+from cutcell.skinning.preview import Preview
 
 from ..state import State
 from ..state.corrections import applied, measured
@@ -90,6 +91,20 @@ def binder(
         return found, pruned(found, few, rig, corrections)
 
     return work
+
+
+def previewer(state: State) -> Callable[[Rig], Binding]:
+    """Return what tells about how the rig that is bound is bound with joints elsewhere."""
+    rig, binding, corrections = state.rig, state.binding, measured(state.corrections)
+    method = cutcell.ANIMATION.with_options(**effective(generous(state)))
+    made: list[Preview] = []
+
+    def preview(moved: Rig) -> Binding:
+        if not made:
+            made.append(Preview(rig, binding, method, corrections))
+        return made[0].bind(moved)
+
+    return preview
 
 
 def reach_of(falloff: Any) -> float:

@@ -10,14 +10,15 @@ from numpy.typing import ArrayLike, NDArray
 
 from cutcell.corrections import Corrections, JointCorrection
 from cutcell.errors import CutcellError, SkeletonError
-from cutcell.skinning import middle_of_limb
+from cutcell.progress import Progress
+from cutcell.skinning import Binding, middle_of_limb
 from cutcell.skinning.correct import corrected_rig
 from cutcell.skinning.symmetry import Mirror, find_joint_mirror
 from cutcell_viewers.character import to_scene
 
 from ..scenes.common import bones_part
 from ..state.corrections import Dragged, applied
-from .binding import binder
+from .binding import asked, binder, kept, previewer, pruned
 from .correct import check_alone, correct
 from .session import Session
 
@@ -167,6 +168,8 @@ class Hand:
     def __init__(self, session: Session) -> None:
         self._session = session
         self._holds = False
+        self._bound: Binding | None = None
+        self._preview: Any = None
 
     def move(self, message: dict[str, Any]) -> None:
         """Show the character with the chosen joint somewhere; take it when it is let go.
@@ -186,7 +189,7 @@ class Hand:
         except CutcellError as error:
             self.let_go()
             session.fail(error)
-            show_handle(session)
+            session.view.tell(mover=session.view.told("mover"))  # back from where it was dragged
             return
         if message.get("done"):
             self._take(corrections)
@@ -197,27 +200,45 @@ class Hand:
         """Show again what the corrections tell."""
         if not self._holds and self._session.state.dragged is not None:
             self._session.tasks.newest("moving").cancel()
-            self._session.state.dragged = None
+            self._session.state.dragged = self._bound = self._preview = None
 
     def _take(self, corrections: Corrections) -> None:
         state = self._session.state
-        self._holds = True  # what is seen stays until it is bound
+        before, self._holds = state.corrections, True  # what is seen stays until it is bound
         try:
             correct(self._session, corrections)
         finally:
             self._holds = False
-        if state.corrections != corrections:
+        if state.corrections == before:
             self.let_go()
 
     def _show(self, corrections: Corrections) -> None:
+        """Show about what the weights will be, and when the hand rests what they are."""
         session, state = self._session, self._session.state
+        if asked(state) != session.built_for:
+            return  # what was let go before is about to be bound
         rig = applied(state.rig, state.own_skeleton, corrections)
         before = state.binding if state.dragged is None else state.dragged.binding
         state.dragged = Dragged(rig, before)  # the bones follow at once
-        work = binder(state, rig, corrections, state.binding.graph)
+        newest, few = session.tasks.newest("moving"), kept(state)
+        exact = binder(state, rig, corrections, state.binding.graph)
 
-        def done(bindings: Any) -> None:
+        def done(binding: Binding) -> None:
             if state.dragged is not None:
-                state.dragged = Dragged(state.dragged.rig, bindings[1])
+                state.dragged = Dragged(state.dragged.rig, binding)
 
-        session.tasks.newest("moving").do(work, done)
+        def wholly(progress: Progress) -> Binding:
+            return exact(progress)[1]
+
+        if rig.allowed is not None:  # vertices at one place may follow different joints
+            newest.do(wholly, done)
+            return
+        if self._bound is not state.binding:
+            self._bound, self._preview = state.binding, previewer(state)
+        preview = self._preview
+
+        def roughly(progress: Progress) -> Binding:
+            return pruned(preview(rig), few, rig, corrections)
+
+        newest.do(roughly, done)
+        session.tasks.after_a_pause(lambda: newest.do(wholly, done) if state.dragged else None)
