@@ -27,7 +27,7 @@ WAIT = """() => new Promise((done) => {
     const body = actors instanceof Map ? actors.get("body") : actors?.body
     if (body?.colors === undefined && body?.scalars === undefined) { return }
     view.receive = receive
-    requestAnimationFrame(() => setTimeout(() => done(performance.timeOrigin + performance.now())))
+    requestAnimationFrame(() => setTimeout(() => done(watch.now())))
   }
   setTimeout(() => { view.receive = receive; done(null) }, 5000)
 })"""
@@ -67,13 +67,15 @@ def _dragged(browser: Browser, address: str, joint: str, moves: int) -> list[flo
     page.mouse.down()
     taken: list[float] = []
     for move in range(moves + 2):
-        page.evaluate(f"window.seen = ({WAIT})()")
+        page.evaluate(f"void (window.seen = ({WAIT})())")
         page.evaluate("watch.hear('pointermove')")
         page.mouse.move(x + STEP * (1 + move % 7), y + STEP * (1 + move % 5))
         seen = page.evaluate("window.seen")
         if seen is not None:
             taken.append(seen / 1000 - visitor.wait("watch.heard"))
-        page.wait_for_timeout(700)  # the exact colours follow when the pointer rests
+        # The exact colours follow when the pointer rests.
+        page.wait_for_function("__cutcell.serverRests()")
+        page.wait_for_timeout(300)
     page.mouse.up()
     page.close()
     return taken[2:]  # the first ones prepare what the others use
