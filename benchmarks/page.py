@@ -18,6 +18,7 @@ from playwright.sync_api import Browser, sync_playwright
 from scripts.get_chromium import FLAGS, find
 
 from .document import PAGE_SPEED, fill
+from .page_joints import joints_table
 from .page_subjects import SIZE, Material, material, ours, theirs
 from .page_visitor import Visitor, served
 from .page_weights import weights_table
@@ -35,8 +36,10 @@ def tables(options: argparse.Namespace) -> Iterator[Table]:
     chromium = find()
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=chromium, args=list(FLAGS))
-        yield from _beside(browser, options)
-        yield weights_table(browser, options.vertices, options.weights)
+        if options.only != "joints":
+            yield from _beside(browser, options)
+            yield weights_table(browser, options.vertices, options.weights)
+        yield joints_table(browser, options.vertices, options.joints)
         browser.close()
 
 
@@ -125,6 +128,8 @@ def arguments(given: Sequence[str] | None = None) -> argparse.Namespace:
     parser.add_argument("--rounds", type=int, default=3)
     parser.add_argument("--changes", type=int, default=2, help="of each kind, every round")
     parser.add_argument("--weights", type=int, default=10, help="moves of each slider")
+    parser.add_argument("--joints", type=int, default=40, help="moves of a joint that is dragged")
+    parser.add_argument("--only", choices=["joints"], help="measure nothing else")
     parser.add_argument("--play", type=float, default=4.0, help="seconds of motion")
     parser.add_argument("--resolution", type=int, default=72)
     parser.add_argument("--vertices", type=int, default=20000)

@@ -60,6 +60,7 @@ from .skinning import Binding as Binding
 from .skinning import Explanation as Explanation
 from .skinning import JointShare as JointShare
 from .skinning import bind as bind
+from .skinning import corrected_rig as corrected_rig
 from .skinning import explain as explain
 from .skinning import refine_weights as refine_weights
 from .skinning import skinning_weights as skinning_weights

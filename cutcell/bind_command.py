@@ -112,6 +112,7 @@ def bind(
     from .io import check_output, load, save
     from .io.files import naming
     from .skinning import bind as compute
+    from .skinning import corrected_rig
 
     how = chosen_method(
         method,
@@ -137,6 +138,8 @@ def bind(
     with naming(rig):
         check_has_joints(loaded.skeleton)
         loaded = choose_deform(loaded, deform or (), no_deform or (), fresh=fresh)
+        if corrected is not None:
+            loaded = corrected_rig(loaded, corrected)
     check_output(out, loaded)
     with progress_bars(quiet) as progress:
         binding = compute(loaded, method=how, **touches, corrections=corrected, progress=progress)

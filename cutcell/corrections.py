@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, fields
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, Literal, get_args
+
+import numpy as np
 
 from .checks import check_choice, check_flag, check_integer, check_number, one_line, shown
 from .errors import FileError, ParameterError
@@ -16,6 +18,7 @@ from .writing import write_all
 How = Literal["glued", "touching", "itself"]
 LEAST_GAIN, MOST_GAIN = 0.05, 20.0
 MOST_VERTEX = 2**31 - 2
+FARTHEST = 1e30
 
 
 @dataclass(frozen=True)
@@ -33,12 +36,16 @@ class JointCorrection:
     radius : float, optional
         In the file's units: surface farther from its bones counts as more than proportionally
         far. Measured from the body when left out. The paper's falloff has none.
+    position : sequence of 3 float, optional
+        Where it stands at rest, in the file's units; see `Rig.with_joints`. As in the file when
+        left out.
     """
 
     deform: bool | None = None
     locked: bool = False
     gain: float = 1.0
     radius: float | None = None
+    position: tuple[float, float, float] | None = None
 
     def __post_init__(self) -> None:
         if self.deform is not None:
@@ -50,6 +57,8 @@ class JointCorrection:
             if radius == 0:
                 raise ParameterError("radius must be more than 0; leave it out to have it measured")
             object.__setattr__(self, "radius", radius)
+        if self.position is not None:
+            object.__setattr__(self, "position", _position(self.position))
 
 
 @dataclass(frozen=True)
@@ -100,7 +109,14 @@ class Corrections:
     Examples
     --------
     >>> off = cutcell.Corrections(joints={"Root": cutcell.JointCorrection(deform=False)})
-    >>> cutcell.bind(rig, corrections=off)  # doctest: +SKIP
+    >>> binding = cutcell.bind(rig, corrections=off)  # doctest: +SKIP
+
+    Joints that are moved are saved where they are, by the rig that has them there:
+
+    >>> up = cutcell.Corrections(joints={"Neck": cutcell.JointCorrection(position=(0, 1.5, 0))})
+    >>> binding = cutcell.bind(rig, corrections=up)  # doctest: +SKIP
+    >>> moved = cutcell.corrected_rig(rig, up)  # doctest: +SKIP
+    >>> cutcell.save("bound.glb", moved.with_weights(binding.weights))  # doctest: +SKIP
     """
 
     joints: Mapping[str, JointCorrection] = field(default_factory=dict)
@@ -229,6 +245,13 @@ def _mapping(where: str, value: Any) -> dict[Any, Any]:
     if not isinstance(value, Mapping):
         raise ParameterError(f"{where} must be a mapping of names to values, not {shown(value)}")
     return dict(value)
+
+
+def _position(value: Any) -> tuple[float, ...]:
+    if isinstance(value, str) or not isinstance(value, Sequence | np.ndarray) or len(value) != 3:
+        raise ParameterError(f"position must be three numbers, not {shown(value)}")
+    places = zip("xyz", value, strict=True)
+    return tuple(check_number(f"{axis} of position", x, -FARTHEST, FARTHEST) for axis, x in places)
 
 
 def _weights(vertex: Any, weights: Any) -> dict[str, float]:

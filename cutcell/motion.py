@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -28,6 +28,16 @@ class Motion(Protocol):
 
     def sample(self, seconds: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return the skinning matrices at times (f,) from 0 to `duration`: (f, j, 4, 4)."""
+
+
+@runtime_checkable
+class Movable(Protocol):
+    """A motion that knows by itself how it goes on when joints stand elsewhere at rest."""
+
+    def moved(
+        self, joints: NDArray[np.float64], parents: NDArray[np.int32], by: NDArray[np.float64]
+    ) -> Motion:
+        """Return it for joints that were moved; see `Clip.moved`."""
 
 
 @dataclass(frozen=True, eq=False, init=False)
@@ -124,6 +134,27 @@ class Clip:
         at = np.clip(times.reshape(-1), 0, self.duration)
         return self.motion.sample(at).reshape(*times.shape, self.joints, 4, 4)
 
+    def moved(
+        self, joints: NDArray[np.float64], parents: NDArray[np.int32], by: NDArray[np.float64]
+    ) -> Clip:
+        """Return the same motion of joints that stand elsewhere at rest.
+
+        Each turns as before, about its new place. Where it shifts against its parent it goes on to
+        do so by as much as before.
+
+        Parameters
+        ----------
+        joints : array, shape (j, 3), float64
+            Where they stood.
+        parents : array, shape (j,), int32
+        by : array, shape (j, 3), float64
+            How far each was moved.
+        """
+        given = joints, parents, by
+        motion = self.motion
+        moved = motion.moved(*given) if isinstance(motion, Movable) else Moved(motion, *given)
+        return Clip(self.name, motion=moved)
+
 
 class Frames:
     """A motion given as frames.
@@ -168,3 +199,73 @@ class Frames:
         gone = np.divide(seconds - self.times[left], span, out=0 * span + 1, where=span > 0)
         share = gone.clip(0, 1)[:, None, None, None]
         return (1 - share) * self.transforms[left] + share * self.transforms[right]
+
+
+@dataclass(frozen=True, eq=False)
+class Moved:
+    """Another motion, of joints that stand elsewhere at rest; see `Clip.moved`.
+
+    Parameters
+    ----------
+    motion : Motion
+    before : array, shape (j, 3), float64
+        Where the joints stood.
+    parents : array, shape (j,), int32
+    by : array, shape (j, 3), float64
+        How far each was moved.
+    """
+
+    motion: Motion
+    before: NDArray[np.float64]
+    parents: NDArray[np.int32]
+    by: NDArray[np.float64]
+
+    @property
+    def joints(self) -> int:
+        """How many joints it moves."""
+        return self.motion.joints
+
+    @property
+    def duration(self) -> float:
+        """Length in seconds."""
+        return self.motion.duration
+
+    @property
+    def times(self) -> NDArray[np.float64]:
+        """Times of the frames that show it, shape (f,), seconds, ascending from 0."""
+        return self.motion.times
+
+    def moved(
+        self, joints: NDArray[np.float64], parents: NDArray[np.int32], by: NDArray[np.float64]
+    ) -> Moved:
+        """Return it for joints that were moved again."""
+        return Moved(self.motion, self.before, self.parents, self.by + by)
+
+    def sample(self, seconds: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return skinning matrices at some times, shape (f, j, 4, 4)."""
+        world = self.motion.sample(seconds).copy()
+        world[..., :3, 3] += _rotated(world, self.before)
+        held = np.flatnonzero(self.parents >= 0)
+        local, above = world.copy(), self.parents[held]
+        local[:, held] = _inverses(world[:, above]) @ world[:, held]
+        local[..., :3, 3] += self.by
+        local[:, held, :3, 3] -= self.by[above]
+        done = self.parents < 0
+        while len(ready := np.flatnonzero(~done & done[self.parents])):  # parents first
+            local[:, ready] = local[:, self.parents[ready]] @ local[:, ready]
+            done[ready] = True
+        local[..., :3, 3] -= _rotated(local, self.before + self.by)
+        return local
+
+
+def _rotated(matrices: NDArray[np.float64], points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return points (j, 3), each by the linear part of matrices (f, j, 4, 4): (f, j, 3)."""
+    return np.einsum("fjab,jb->fja", matrices[..., :3, :3], points)
+
+
+def _inverses(matrices: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Invert matrices (..., 4, 4); of a joint that is scaled to nothing, as far as can be."""
+    try:
+        return np.linalg.inv(matrices).astype(np.float64)
+    except np.linalg.LinAlgError:
+        return np.linalg.pinv(matrices).astype(np.float64)

@@ -188,8 +188,8 @@ CorrectionsFile = Annotated[
     typer.Option(
         "--corrections",
         metavar="FILE",
-        help="What is corrected (.json): joints without weight, locked, or of another reach; parts"
-        " glued to joints; weights of single vertices.",
+        help="What is corrected (.json): joints moved, without weight, locked or of another reach; "
+        "parts glued to joints; weights of single vertices.",
         rich_help_panel=TOUCH,
     ),
 ]

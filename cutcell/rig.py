@@ -315,6 +315,25 @@ class Rig:
         """Return the same rig with other weights, shape (n, j), or with none."""
         return replace(self, weights=weights, weight_sums=None)
 
+    def with_joints(self, joints: ArrayLike) -> Rig:
+        """Return the same rig with joints that stand elsewhere at rest, shape (j, 3).
+
+        What hangs on a joint, other joints and attachments, stays where it is. Clips turn each
+        joint as before, about its new place. `cutcell.save` writes it all.
+
+        Raises
+        ------
+        SkeletonError
+            A position that is not finite, or too far from the mesh.
+        """
+        before = self.skeleton
+        skeleton = replace(before, joints=joints)  # type: ignore[arg-type]
+        by = skeleton.joints - before.joints
+        if not by.any():
+            return self
+        clips = tuple(clip.moved(before.joints, before.parents, by) for clip in self.clips)
+        return replace(self, skeleton=skeleton, clips=clips)
+
     def _check_units(self) -> None:
         joints = self.skeleton.joints
         unit = np.abs(self.mesh.bounds).max()  # squares of what is measured must not overflow

@@ -82,11 +82,12 @@ def why(rig: cutcell.Rig) -> dict[str, float]:
 
 def put_right(rig: cutcell.Rig) -> cutcell.Binding:
     corrections = cutcell.Corrections(
-        joints={"Root": cutcell.JointCorrection(deform=False)},
+        joints={"Root": cutcell.JointCorrection(deform=False, position=(0.0, 1.0, 0.0))},
         parts={7: cutcell.PartCorrection("glued", "Head")},
         vertices={3: {"Head": 0.5, "Neck": 0.5}},
     )
     again = cutcell.corrections.Corrections.from_json(corrections.to_json())
+    assert_type(cutcell.corrected_rig(rig, again), cutcell.Rig)
     return cutcell.bind(rig, corrections=again)
 
 

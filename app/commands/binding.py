@@ -21,6 +21,7 @@ from cutcell.progress import Progress
 from cutcell.rig import Rig
 from cutcell.skinning import Binding, keep_strongest, skinning_weights
 from cutcell.skinning.correct import adjustments_of
+from cutcell.skinning.preview import Preview
 
 from ..state import State
 from ..state.corrections import applied, measured
@@ -60,17 +61,7 @@ def bind(session: Session, message: tuple[str, str] | None = None) -> None:
         return
     wanted = session.bound_for = asked(state)
     few, corrections = kept(state), state.corrections
-    graph = _known_graph(session, rig, wanted)
-
-    def work(progress: Progress) -> Any:
-        generous = cutcell.bind(
-            rig,
-            graph=graph,
-            corrections=wanted["corrections"],
-            progress=progress,
-            **effective(method),
-        )
-        return generous, pruned(generous, few, rig, corrections)
+    work = binder(state, rig, corrections, _known_graph(session, rig, wanted))
 
     def done(bindings: Any) -> None:
         session.built_for, session.corrected = wanted, corrections
@@ -86,6 +77,34 @@ def bind(session: Session, message: tuple[str, str] | None = None) -> None:
             weigh(session)  # others were chosen in the meantime
 
     session.start(work, done, failed=lambda: _go_back(session, wanted))
+
+
+def binder(
+    state: State, rig: Rig, corrections: Corrections, graph: Any
+) -> Callable[[Progress], tuple[Binding, Binding]]:
+    """Return what binds as is chosen now: generously, and with the influences that are kept."""
+    method, few = effective(generous(state)), kept(state)
+
+    def work(progress: Progress) -> tuple[Binding, Binding]:
+        known = {"graph": graph, "corrections": measured(corrections)}
+        found = cutcell.bind(rig, **known, progress=progress, **method)
+        return found, pruned(found, few, rig, corrections)
+
+    return work
+
+
+def previewer(state: State) -> Callable[[Rig], Binding]:
+    """Return what tells about how the rig that is bound is bound with joints elsewhere."""
+    rig, binding, corrections = state.rig, state.binding, measured(state.corrections)
+    method = cutcell.ANIMATION.with_options(**effective(generous(state)))
+    made: list[Preview] = []
+
+    def preview(moved: Rig) -> Binding:
+        if not made:
+            made.append(Preview(rig, binding, method, corrections))
+        return made[0].bind(moved)
+
+    return preview
 
 
 def reach_of(falloff: Any) -> float:
@@ -132,7 +151,7 @@ def restore(session: Session, choices: dict[str, Any]) -> None:
     """Choose again what was chosen once; the character that it was chosen of is bound again."""
     state, plain = session.state, history.plain(choices)
     corrections = choices.get("corrections", state.corrections)
-    rig = choices.get("rig") or applied(state.rig, state.own_deform, corrections)
+    rig = choices.get("rig") or applied(state.rig, state.own_skeleton, corrections)
     if rig.mesh is state.rig.mesh and rig.weights is state.rig.weights:
         history.restore(session, {**plain, "rig": rig})  # at most other joints deform
     else:
@@ -175,7 +194,7 @@ def _go_back(session: Session, wanted: dict[str, Any]) -> None:
 
 def _withdraw(session: Session, choices: dict[str, Any], corrections: Corrections) -> None:
     """Choose something again, and the corrections that there were."""
-    rig = applied(session.state.rig, session.state.own_deform, corrections)
+    rig = applied(session.state.rig, session.state.own_skeleton, corrections)
     history.withdraw(session, {**choices, "corrections": corrections, "rig": rig})
 
 

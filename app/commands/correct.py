@@ -14,7 +14,7 @@ from cutcell.deform import DeformJoints, deform_joints
 from cutcell.display import shown_name
 from cutcell.errors import CutcellError, ParameterError
 from cutcell.graph import CutCellGraph
-from cutcell.rig import Rig
+from cutcell.rig import Rig, Skeleton
 from cutcell.skinning.correct import corrected_parts, corrected_rig, locked_by, overruled
 from cutcell.skinning.locks import lock_joints, locked_joints
 
@@ -46,7 +46,7 @@ def taken(session: Session, corrections: Corrections) -> dict[str, Any]:
     state = session.state
     corrected_rig(state.rig, corrections)
     locked_joints(state.rig, locked_by(corrections))
-    rig = applied(state.rig, state.own_deform, corrections)
+    rig = applied(state.rig, state.own_skeleton, corrections)
     return news(state, {"corrections": corrections, "rig": rig})
 
 
@@ -54,20 +54,24 @@ def correct_joint(session: Session, joint: int, **changes: Any) -> None:
     """Change some of what is corrected of a joint; see `JointCorrection`."""
     state = session.state
     name = state.rig.skeleton.names[joint]
-    if state.rig.skeleton.names.index(name) != joint:
-        session.fail(ParameterError(f'two joints are called "{name}"; rename one to correct it'))
-        state.param.trigger("corrections")
-        return
-    if "deform" in changes and changes["deform"] == bool(state.own_deform[joint]):
+    if "deform" in changes and changes["deform"] == bool(state.own_skeleton.deform[joint]):
         changes["deform"] = None
     held = state.corrections.joints
     try:
+        check_alone(state.rig.skeleton, joint)
         one = replace(held.get(name, JointCorrection()), **changes)
     except CutcellError as error:
         session.fail(error)
         state.param.trigger("corrections")
         return
     correct(session, replace(state.corrections, joints={**held, name: one}))
+
+
+def check_alone(skeleton: Skeleton, joint: int) -> None:
+    """Refuse a joint that another one shares its name with: corrections go by names."""
+    name = skeleton.names[joint]
+    if skeleton.names.index(name) != joint:
+        raise ParameterError(f'two joints are called "{name}"; rename one to correct it')
 
 
 def choose_deform(session: Session, joints: Collection[int]) -> None:
@@ -81,7 +85,7 @@ def choose_deform(session: Session, joints: Collection[int]) -> None:
         return
     held = dict(state.corrections.joints)
     for joint, name in enumerate(state.rig.skeleton.names):
-        wanted = None if deform[joint] == state.own_deform[joint] else bool(deform[joint])
+        wanted = None if deform[joint] == state.own_skeleton.deform[joint] else bool(deform[joint])
         held[name] = replace(held.get(name, JointCorrection()), deform=wanted)
     correct(session, replace(state.corrections, joints=held))
 

@@ -43,7 +43,7 @@ def reset(session: Session) -> None:
     """Choose what one begins with, at rest, on the panel that is open."""
     state = session.state
     first = {**defaults(state), "moving": False, "playing": False}
-    rig = applied(state.rig, state.own_deform, Corrections())
+    rig = applied(state.rig, state.own_skeleton, Corrections())
     state.param.update(**news(state, {**first, "rig": rig}), joint=first_joint(rig))
     session.view.tell(home=True)
 

@@ -161,7 +161,7 @@ def show_rig(
         state.param.update(
             rig=rig, binding=None, bare_graph=None, field=None, turns={}, moving=False,
             playing=False, repair=None, corrections=Corrections(), part=None,
-            own_deform=rig.skeleton.deform,
+            own_skeleton=rig.skeleton,
             clip=first_clip(rig), message=None, joint=first_joint(rig), vertex=None,
         )  # fmt: skip
         if state.bare:

@@ -95,7 +95,7 @@ def show(session: Session, look: Look, said: frozenset[str] = frozenset()) -> No
     }
     kept = said - {"panel"} if state.panel == "learn" else said
     if "corrections" not in kept:
-        scene["rig"] = applied(state.rig, state.own_deform, scene["corrections"])
+        scene["rig"] = applied(state.rig, state.own_skeleton, scene["corrections"])
     chosen = {name: value for name, value in scene.items() if name not in kept}
     state.param.update(**news(state, chosen))
 

@@ -13,6 +13,7 @@ from . import (
     history,
     keys,
     look,
+    moving,
     pairs,
     pose,
     rest,
@@ -23,6 +24,6 @@ from .session import Session
 def follow(session: Session) -> None:
     """Let everything follow the state of a new session."""
     # In this order: what is seen comes before what is computed for it.
-    seen = (look, cutting, geodesics, pose, compare, pairs)
+    seen = (look, cutting, moving, geodesics, pose, compare, pairs)
     for one in (*seen, binding, explain, history, keys, rest, diagnosis, arrival):
         one.watch(session)

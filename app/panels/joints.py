@@ -17,6 +17,7 @@ from ..commands.session import Session
 from ..scenes.joints import joint_rows, shares_of
 from ..state import State
 from ..widgets.joint_tree import JointTree
+from .moving import place
 from .parts import GAP, as_text, caption, section, when, words
 
 DOUBLINGS = 2.0
@@ -125,11 +126,13 @@ def _chosen(session: Session) -> list[Any]:
     locked.param.watch(lambda event: changes(locked=event.new), "value")
     gain.param.watch(reached, "value")
     radius.param.watch(lambda event: changes(radius=_read(event.new)), "value")
-    reset.on_click(lambda event: changes(deform=None, locked=False, gain=1.0, radius=None))
+    reset.on_click(
+        lambda event: changes(deform=None, locked=False, gain=1.0, radius=None, position=None)
+    )
     watched = ["rig", "joint", "binding", "corrections", "falloff"]
     state.param.watch(lambda *events: show(), watched)
     show()
-    return [heading, holds, carries, locked, gain, radius, reset]
+    return [heading, holds, carries, locked, gain, radius, *place(session), reset]
 
 
 def _written(radius: float | None) -> str:

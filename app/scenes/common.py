@@ -50,11 +50,11 @@ def character(
         it as well.
     """
     rig = state.rig
-    plain = memo("body", (rig,), lambda: body(rig))
+    plain = memo("body", (rig.mesh, rig.weights, rig.world), lambda: body(rig))
     skin = None
     if state.panel in POSED and state.weights is not None:
         skin = memo("skin", (rig, state.weights), lambda: skin_of_weights(state.weights))
-    hung = memo("attachments", (rig,), lambda: attachments(rig))
+    hung = memo("attachments", (rig.attachments, rig.world), lambda: attachments(rig))
     mark = {}
     if state.vertex is not None and state.vertex < len(rig.mesh.vertices):
         held = state.weights if skin is not None else None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 from typing import Any
 
 from numpy.typing import NDArray
@@ -33,6 +34,7 @@ FILES = "In the file"
 
 def weights(state: State, memo: Memo) -> Description:
     """Return the scene of the panel Weights; plain where there are no weights at all."""
+    state = as_dragged(state)
     held = weights_seen(state)
     if held is None:
         return Description(character(state, memo))
@@ -44,6 +46,16 @@ def weights(state: State, memo: Memo) -> Description:
     if not paths:
         actors = seen_apart(state, memo, actors)
     return Description({**actors, **paths}, legend=legend)
+
+
+def as_dragged(state: Any) -> Any:
+    """Return a state as it is seen while joints are dragged."""
+    if state.dragged is None:
+        return state
+    seen = state.still() if isinstance(state, State) else SimpleNamespace(**vars(state))
+    seen.rig, seen.binding = state.dragged.rig, state.dragged.binding
+    seen.weights = seen.binding.weights
+    return seen
 
 
 def weights_look(
@@ -63,7 +75,16 @@ def weights_look(
     which = state.joint if shown in ("bone", "bone_difference") else -1
     look, legend = memo(
         name,
-        (state.rig, held, state.weights, shown, which, state.truth),
+        (
+            state.rig.mesh,
+            state.rig.weights,
+            state.rig.skeleton.names,
+            held,
+            state.weights,
+            shown,
+            which,
+            state.truth,
+        ),
         lambda: coloring(state, shown, held),
     )
     coloured = shown in ("mix", "dominant")

@@ -16,6 +16,13 @@ export function probe(view) {
       return [left + (a[0] + b[0]) / 2, top + (a[1] + b[1]) / 2]
     },
 
+    // Where on the page the handle of the chosen joint is; undefined where there is none.
+    jointHandle() {
+      const [left, top] = corner()
+      const at = view.mover.seen
+      return at && [left + at[0], top + at[1]]
+    },
+
     // Where on the page a vertex of the body is.
     vertexPoint(vertex) {
       const [left, top] = corner()

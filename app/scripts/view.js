@@ -8,6 +8,7 @@ import {Connection} from "./connection.js"
 import {CutHandles} from "./cut_handles.js"
 import {Gizmo} from "./gizmo.js"
 import {Insets} from "./insets.js"
+import {JointHandle} from "./joint_handle.js"
 import {Keys} from "./keys.js"
 import {Names} from "./names.js"
 import {Orbit} from "./orbit.js"
@@ -43,6 +44,10 @@ class View {
     })
     this.handles = new CutHandles(overlay, this.renderer, {
       moved: (cut) => { this.setCut(cut); this.changed() },
+      tell: (message) => model.send_msg(message),
+    })
+    this.mover = new JointHandle(overlay, this.renderer, {
+      moved: () => this.changed(),
       tell: (message) => model.send_msg(message),
     })
     this.transport = new Transport(overlay, {
@@ -94,6 +99,7 @@ class View {
       // While the plane is dragged the hand is ahead of the server.
       if (!this.handles.held) { this.setCut(message.cut) }
     }
+    if ("mover" in message) { this.mover.show(message.mover) }
     if ("handles" in message) { this.handles.show(message.handles) }
     if (message.views) {
       this.views = message.views
@@ -197,6 +203,7 @@ class View {
     this.renderer.draw(moving, resting)
     this.gizmo.draw()
     this.handles.draw()
+    this.mover.draw()
     this.overlay.showTarget(this.renderer.target)
     this.overlay.root.classList.toggle("elsewhere", !this.orbit.atHome)
     if (this.address) { setTimeout(() => this.putAddress()) }

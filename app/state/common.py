@@ -68,7 +68,6 @@ class Common(param.Parameterized):
         return None if self.rig is None else self.rig.weights
 
 
-UNSEEN = frozenset(
-    {"name", "demo", "tour", "busy", "stage", "fraction", "message", "own_deform", "tier"}
-)
+UNSEEN = frozenset({"name", "demo", "tour", "busy", "stage", "fraction", "message",
+                    "own_skeleton", "tier"})  # fmt: skip
 """What the scene does not depend on."""

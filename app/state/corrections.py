@@ -5,7 +5,7 @@ from __future__ import annotations
 import base64
 import binascii
 import zlib
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -13,7 +13,8 @@ import param
 
 from cutcell.corrections import Corrections, JointCorrection
 from cutcell.errors import CutcellError
-from cutcell.rig import Rig
+from cutcell.rig import Rig, Skeleton
+from cutcell.skinning import Binding
 
 MOST_IN_ADDRESS = 1500
 """Letters: longer addresses are cut by some programs that pass them on."""
@@ -25,30 +26,62 @@ class CorrectionsChoices(param.Parameterized):
     """What is corrected of the character that stands there."""
 
     corrections: Any = param.Parameter(Corrections(), doc="A cutcell.Corrections.")
-    own_deform: Any = param.Parameter(
-        None, doc="Which joints may carry weight where nothing is corrected: an array, or None."
+    own_skeleton: Any = param.Parameter(
+        None, doc="Where the joints are, and which may carry weight, where nothing is corrected."
+    )
+    joint_handle: Any = param.Boolean(False, label="Move it in the scene")
+    mirrored: Any = param.Boolean(True, label="The other side moves along")
+    dragged: Any = param.Parameter(
+        None, doc="A `Dragged` while joints are on their way, which the corrections do not tell."
     )
     part: Any = param.Integer(
         None, allow_None=True, doc="A vertex of the connected component that is looked at."
     )
 
 
-def applied(rig: Rig, own_deform: Any, corrections: Corrections) -> Rig:
-    """Return a rig with the joints that may carry weight by the corrections.
+@dataclass(frozen=True, eq=False)
+class Dragged:
+    """What is seen while joints are dragged.
+
+    Parameters
+    ----------
+    rig : Rig
+        With the joints where the pointer has them.
+    binding : Binding
+        The newest that there is; of joints where they were a moment ago.
+    """
+
+    rig: Rig
+    binding: Binding
+
+
+def applied(rig: Rig, own: Skeleton | None, corrections: Corrections) -> Rig:
+    """Return a rig with joints where the corrections put them, and those that may carry weight.
+
+    Parameters
+    ----------
+    rig : Rig
+        Corrected or not.
+    own : Skeleton or None
+        As it is where nothing is corrected; the rig's when left out.
+    corrections : Corrections
 
     Raises
     ------
     SkeletonError
-        None would be left.
+        None would be left, or one stands too far from the mesh.
     """
-    deform = np.array(rig.skeleton.deform if own_deform is None else own_deform)
+    own = rig.skeleton if own is None else own
+    deform, joints = own.deform.copy(), own.joints.copy()
     for joint, name in enumerate(rig.skeleton.names):
         one = corrections.joints.get(name)
         if one is not None and one.deform is not None:
             deform[joint] = one.deform
-    if np.array_equal(deform, rig.skeleton.deform):
-        return rig
-    return replace(rig, skeleton=replace(rig.skeleton, deform=deform))
+        if one is not None and one.position is not None:
+            joints[joint] = one.position
+    if not np.array_equal(deform, rig.skeleton.deform):
+        rig = replace(rig, skeleton=replace(rig.skeleton, deform=deform))
+    return rig.with_joints(joints)
 
 
 def measured(corrections: Corrections) -> Corrections:

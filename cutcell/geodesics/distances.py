@@ -107,7 +107,7 @@ class BoneDistances:
         mine = self.bones.joint == joint
         bones, sources = self.bones.some(mine), self.sources.some(mine)
         everywhere = np.arange(len(self.graph.nodes), dtype=np.int32)
-        return _paths(self.graph, self.contraction, sources, bones, everywhere)[0]
+        return joint_paths(self.graph, self.contraction, sources, bones, everywhere)[0]
 
     def on_mesh(self, joint: int) -> NDArray[np.float64]:
         """Compute a joint's distance at every vertex, nearest joint or not, shape (n,).
@@ -126,9 +126,9 @@ class BoneDistances:
         """Compute all joints' distances at every vertex, nearest or not, shape (j, n)."""
         if self.nearest_joints is None:
             return self.joint
-        on_mesh = _on_mesh(self.graph)
+        on_mesh = nodes_on_mesh(self.graph)
         known = self.graph, self.contraction, self.sources, self.bones
-        by_node = _paths(*known, on_mesh, progress=progress)
+        by_node = joint_paths(*known, on_mesh, progress=progress)
         joint = self.joint.copy()
         reached = np.flatnonzero(self.fallback == REACHED)
         joint[np.ix_(np.unique(self.bones.joint), reached)] = by_node[
@@ -211,9 +211,9 @@ def bone_distances(
     progress("distances", 0.0)
     if allowed is not None:
         _check_allowed(graph, skeleton, allowed)
-    targets = _on_mesh(graph)
+    targets = nodes_on_mesh(graph)
     contracted = _contracted(graph) if graph.connectivity == "any" else None
-    grid = _grid(graph)
+    grid = sorted_nodes(graph)
     if leaf == "fit":
         bones, aimed = fit_bones(graph, skeleton, grid)
     else:
@@ -230,7 +230,7 @@ def bone_distances(
         of_aimed = find_sources(graph, bones.some(aimed), samples, grid, contraction)
         sources = sources.replaced(aimed, of_aimed)
     given = graph, contraction, sources, bones
-    by_node = _paths(*given, targets, nearest_joints, within, progress)
+    by_node = joint_paths(*given, targets, nearest_joints, within, progress)
     measured, at_welded = np.unique(bones.joint), by_node
     if len(measured) < len(skeleton.joints):
         at_welded = np.full((len(skeleton.joints), len(targets)), np.inf)
@@ -267,19 +267,19 @@ def _contracted(graph: CutCellGraph) -> Callable[[], Contraction]:
     return submit(lambda: contract(graph)) if found is None else lambda: found
 
 
-def _grid(graph: CutCellGraph) -> NodeGrid:
+def sorted_nodes(graph: CutCellGraph) -> NodeGrid:
     """Return the grid of a graph's nodes, which is made once for each graph."""
     if graph not in _grids:
         _grids[graph] = node_grid(graph)
     return _grids[graph]
 
 
-def _on_mesh(graph: CutCellGraph) -> NDArray[np.int32]:
+def nodes_on_mesh(graph: CutCellGraph) -> NDArray[np.int32]:
     """List the welded vertices: the first nodes of the graph."""
     return np.arange(graph.first_point, dtype=np.int32)
 
 
-def _paths(
+def joint_paths(
     graph: CutCellGraph,
     contraction: Contraction | None,
     sources: Sources,
@@ -312,9 +312,9 @@ def _reach_of_leaves(
     progress: Progress,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Compute the distances that `aim_leaf_bones` takes."""
-    targets = _on_mesh(graph)
+    targets = nodes_on_mesh(graph)
     if contraction is None:
-        every = _paths(graph, None, sources, bones, targets, progress=progress)
+        every = joint_paths(graph, None, sources, bones, targets, progress=progress)
         return every[np.isin(np.unique(bones.joint), bones.joint[aimed])], every.min(axis=0)
     # Most of the body is in no leaf bone's region: there only the nearest joint matters.
     least = least_distances(graph, contraction, sources, bones, progress)

@@ -90,7 +90,8 @@ def save(path: str | os.PathLike[str], rig: Rig) -> tuple[Path, ...]:
     """Save a rig.
 
     A rig that was loaded from glTF goes back into its own document, in which only the skin
-    weights change; another one becomes a new GLB. All files are written whole or not at all:
+    weights change, and what joints that were moved take (`Rig.with_joints`); another one becomes
+    a new GLB. All files are written whole or not at all:
     a failure leaves what was there, and a rig may be saved over the file it came from. A file
     that is not named here, such as the mesh or the buffer beside it, is never replaced if
     it is another's; ``docs/formats.md`` says how.
@@ -112,8 +113,9 @@ def save(path: str | os.PathLike[str], rig: Rig) -> tuple[Path, ...]:
     FileError
         Another ending, or the file cannot be written.
     MeshError, SkeletonError
-        The rig has no joints; or its mesh or skeleton is no longer that of its glTF document; or
-        they do not fit in a new GLB, whose numbers have 32 bits.
+        The rig has no joints; or its mesh or joints are no longer those of its glTF document; or
+        joints were moved of a skin without inverse bind matrices; or they do not fit in a new GLB,
+        whose numbers have 32 bits.
     WeightsError
         The rig has no weights, or some that its glTF document cannot hold.
     """

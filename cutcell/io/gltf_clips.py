@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from copy import copy
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,7 @@ from ..motion import Clip
 from .gltf_accessors import Accessor, find_accessor, read_accessor
 from .gltf_container import Document
 from .gltf_interpolation import sample
+from .gltf_moves import node_shifts
 from .gltf_nodes import Nodes, compose
 
 FRAMES_A_SECOND = 30
@@ -139,6 +141,12 @@ class Channels:
             raise FileError(f"{self.label} leads to matrices that are not finite numbers")
         return found
 
+    def moved(
+        self, joints: NDArray[np.float64], parents: NDArray[np.int32], by: NDArray[np.float64]
+    ) -> Channels:
+        """Return it as it is in the file that is written with joints moved; see `Clip.moved`."""
+        return replace(self, tree=self.tree.moved(by))
+
 
 class _Reader:
     """Reads channels, and checks what many of them share once."""
@@ -223,6 +231,18 @@ class _Subtree:
         self.levels = np.split(np.arange(len(order)), deeper)
         self.joints = [self.place[node] for node in joints]
         self.back, self.inverse = back, inverse
+        self.shift = np.zeros((len(order), 3))
+
+    def moved(self, by: NDArray[np.float64]) -> _Subtree:
+        """Return it with joints moved at rest by `by`, shape (j, 3), in the rig's space."""
+        own = np.einsum("jab,jb->ja", self.inverse[:, :3, :3], by)
+        at = np.zeros_like(self.shift)
+        at[self.joints] = own
+        other = copy(self)
+        other.shift = self.shift + node_shifts(self.local, self.parents, at)
+        other.inverse = self.inverse.copy()
+        other.inverse[:, :3, 3] -= own
+        return other
 
     def skinning(self, tracks: list[Track], seconds: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return skinning matrices at some times, shape (f, j, 4, 4)."""
@@ -240,6 +260,7 @@ class _Subtree:
         world[:, moved] = compose(
             posed["translation"][:, moved], posed["rotation"][:, moved], posed["scale"][:, moved]
         )
+        world[..., :3, 3] += self.shift
         for level in self.levels[1:]:
             world[:, level] = world[:, self.parents[level]] @ world[:, level]
         return world

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import CutcellError, FileError, MeshError
-from ..rig import Attachment, Part, Rig, TriangleMesh
+from ..rig import Attachment, Part, Rig, Skeleton, TriangleMesh
 from .deforming import with_deform
 from .gltf_bare import read_bare
 from .gltf_clips import read_clips
@@ -78,7 +78,11 @@ class GltfSource:
 
     document: Document
     parts: list[StoredPart]
-    joints: tuple[str, ...]
+    skeleton: Skeleton
+    nodes: list[int]
+    """The node of each joint."""
+    inverse: NDArray[np.float64]
+    """Inverse bind matrix of each joint, for vertices in the rig's space, shape (j, 4, 4)."""
     faces: tuple[StoredFaces, ...] = ()
 
 
@@ -117,7 +121,8 @@ def read_rig(document: Document, path: Path, world: NDArray | None = None) -> Ri
     weights, sums = _dense(document, parts, stored.weights, len(mesh.vertices), len(bind.nodes))
     skeleton, told = with_deform(mesh, read_skeleton(nodes, bind), weights)
     attached = _read_attachments(document, nodes, bind)
-    clips = read_clips(document, nodes, bind.nodes, np.array(bind.inverse), bind.world)
+    inverse = np.array(bind.inverse)
+    clips = read_clips(document, nodes, bind.nodes, inverse, bind.world)
     document.forget()
     return Rig(
         mesh,
@@ -132,7 +137,7 @@ def read_rig(document: Document, path: Path, world: NDArray | None = None) -> Ri
         left_out=left_out_meshes(document, nodes, skinned, attached),
         warnings=(*document.warnings, *told),
         weight_sums=sums,
-        source=GltfSource(document, parts, skeleton.names, tuple(stored.drawn)),
+        source=GltfSource(document, parts, skeleton, bind.nodes, inverse, tuple(stored.drawn)),
     )
 
 

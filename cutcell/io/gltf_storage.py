@@ -24,7 +24,7 @@ from .gltf_accessors import COMPONENTS
 from .gltf_references import accessors_in, places_in, views_in
 
 ALIGNMENT = 8
-KINDS = {1: pygltflib.SCALAR, 3: pygltflib.VEC3, 4: pygltflib.VEC4}
+KINDS = {1: pygltflib.SCALAR, 3: pygltflib.VEC3, 4: pygltflib.VEC4, 16: pygltflib.MAT4}
 CODES = {dtype: code for code, dtype in COMPONENTS.items()}
 
 
@@ -63,24 +63,26 @@ class Storage:
         """Return the component type of an accessor, if there is one."""
         return None if accessor is None else COMPONENTS[self.accessors[accessor]["componentType"]]
 
-    def store(self, values: NDArray, preferred: int | None) -> int:
+    def store(self, values: NDArray, preferred: int | None, of_mesh: bool = True) -> int:
         """Store an array and return its accessor.
 
         Arrays of one type share a buffer view if those that they replace shared one.
 
         Parameters
         ----------
-        values : array, shape (n, 1), (n, 3) or (n, 4), uint8, uint16, uint32 or float32,
+        values : array, shape (n, 1), (n, 3), (n, 4) or (n, 16), uint8, uint16, uint32 or float32,
             little-endian. A single column holds indices of vertices.
         preferred : int, optional
             A dropped accessor, to become this one.
+        of_mesh : bool
+            Whether a mesh is drawn from it: matrices and motions are not.
         """
         index = preferred
         if index is None or index not in self._free_accessors:
             index = _new(self.accessors)
         self._free_accessors.discard(index)
         accessor = self.accessors[index]
-        view, content = self._array_view(accessor.get("bufferView"), values)
+        view, content = self._array_view(accessor.get("bufferView"), values, of_mesh)
         for key in ("normalized", "sparse", "min", "max"):
             accessor.pop(key, None)
         accessor.update(
@@ -93,18 +95,19 @@ class Storage:
         content += values.tobytes()
         return index
 
-    def _array_view(self, old: int | None, values: NDArray) -> tuple[int, bytearray]:
+    def _array_view(self, old: int | None, values: NDArray, of_mesh: bool) -> tuple[int, bytearray]:
         """Return the buffer view that an array goes to, and the content of that so far."""
-        key = old if old in self._dead else None, values.dtype, values.shape[1]
+        key = old if old in self._dead else None, values.dtype, values.shape[1], of_mesh
         if key not in self._arrays:
             free = self._free_views & {old} or self._free_views
             view = min(free) if free else _new(self.views)
             self._free_views.discard(view)
             # An extension of the old view told of the old bytes, such as how they were compressed.
             own = {k: v for k, v in self.views[view].items() if k in ("name", "extras")}
-            if values.shape[1] == 1:
-                use: dict[str, int] = {"target": pygltflib.ELEMENT_ARRAY_BUFFER}
-            else:
+            use: dict[str, int] = {}
+            if of_mesh and values.shape[1] == 1:
+                use = {"target": pygltflib.ELEMENT_ARRAY_BUFFER}
+            elif of_mesh:
                 stride = values.shape[1] * values.itemsize
                 use = {"byteStride": stride, "target": pygltflib.ARRAY_BUFFER}
             self.views[view] = {**own, **use}

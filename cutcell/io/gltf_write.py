@@ -1,6 +1,6 @@
-"""Writing new weights into a glTF document, and nothing else but faces that were mended.
+"""Writing new weights into a glTF document, joints that were moved, and faces that were mended.
 
-The document's JSON is edited, not made anew: whatever it holds besides the skin weights
+The document's JSON is edited, not made anew: whatever it holds besides these
 stays, and so does the number of every object in it, because extensions and extras may
 refer to them.
 """
@@ -22,6 +22,7 @@ from .gltf_container import Document, json_bytes, pack_glb
 from .gltf_faces import store_faces, take_faces
 from .gltf_images import carry_images
 from .gltf_influences import pack_influences
+from .gltf_moves import store_moves, take_moves
 from .gltf_read import GltfSource, StoredPart
 from .gltf_storage import Storage
 
@@ -32,8 +33,8 @@ def rewritten(rig: Rig, path: Path) -> dict[Path, bytes]:
     Parameters
     ----------
     rig : Rig
-        Loaded from a GLB or glTF file; only its weights may have changed, and its faces by
-        `with_faces`.
+        Loaded from a GLB or glTF file; only its weights may have changed, where its joints are,
+        and its faces by `with_faces`.
     path : Path
         Where the document will stand: ``.glb``, or ``.gltf`` with a ``.bin`` beside it.
 
@@ -51,7 +52,10 @@ def rewritten(rig: Rig, path: Path) -> dict[Path, bytes]:
     dropped = [accessor for old in before for accessor in old.values()]
     faces = take_faces(document, rig)
     dropped += [accessor for new in faces for accessor in new.old.values()]
+    moves = take_moves(document, rig)
+    dropped += [new.old for new in moves]
     storage = Storage(document, source.document.buffers, dropped)
+    store_moves(storage, moves)
     for part, old in zip(source.parts, before, strict=True):
         _store(storage, document, rig, part, old)
     store_faces(storage, faces)
@@ -71,7 +75,8 @@ def _check_same(rig: Rig, source: GltfSource) -> None:
     count = source.faces[-1].rows.stop
     if len(rig.mesh.faces) != count:
         raise MeshError(f"the rig has {len(rig.mesh.faces)} faces, its document {count}; {remedy}")
-    if rig.skeleton.names != source.joints:
+    ours, its = rig.skeleton, source.skeleton
+    if ours.names != its.names or not np.array_equal(ours.parents, its.parents):
         raise SkeletonError(f"the rig's joints are no longer those of its document; {remedy}")
 
 

@@ -2,7 +2,9 @@
 
 from .bind import Binding, bind
 from .compilation import is_compiled, warm_up
+from .correct import corrected_rig
 from .explain import Explanation, JointShare, Piece, explain
+from .limb import middle_of_limb
 from .refine import refine_weights
 from .weights import keep_strongest, skinning_weights
 
@@ -12,9 +14,11 @@ __all__ = [
     "JointShare",
     "Piece",
     "bind",
+    "corrected_rig",
     "explain",
     "is_compiled",
     "keep_strongest",
+    "middle_of_limb",
     "refine_weights",
     "skinning_weights",
     "warm_up",

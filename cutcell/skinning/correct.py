@@ -23,14 +23,25 @@ longer reach it may count although others are nearer."""
 
 
 def corrected_rig(rig: Rig, corrections: Corrections) -> Rig:
-    """Check all names and vertices; return the rig with the joints that may carry weight.
+    """Apply corrections of the skeleton; check all names and vertices.
+
+    Parameters
+    ----------
+    rig : Rig
+    corrections : Corrections
+
+    Returns
+    -------
+    Rig
+        With joints where the corrections put them, and with those that may carry weight: what
+        `cutcell.bind` binds, and `cutcell.save` is to be given.
 
     Raises
     ------
     ParameterError
         A joint or a vertex that the rig does not have, or weights that its file cannot store.
     SkeletonError
-        No joint would be left to carry weight.
+        No joint would be left to carry weight, or one stands too far from the mesh.
     """
     count = len(rig.mesh.vertices)
     for vertex in (*corrections.parts, *corrections.vertices):
@@ -47,15 +58,16 @@ def corrected_rig(rig: Rig, corrections: Corrections) -> Rig:
     for part in corrections.parts.values():
         if part.joint is not None:
             joint_index(rig.skeleton, part.joint)
-    deform = rig.skeleton.deform.copy()
+    deform, joints = rig.skeleton.deform.copy(), rig.skeleton.joints.copy()
     for name, one in corrections.joints.items():
         joint = joint_index(rig.skeleton, name)
         deform[joint] = deform[joint] if one.deform is None else one.deform
+        joints[joint] = joints[joint] if one.position is None else one.position
     if rig.skeleton.deform.any() and not deform.any():
         raise SkeletonError("by the corrections no joint of the skeleton may carry weight")
-    if np.array_equal(deform, rig.skeleton.deform):
-        return rig
-    return replace(rig, skeleton=replace(rig.skeleton, deform=deform))
+    if not np.array_equal(deform, rig.skeleton.deform):
+        rig = replace(rig, skeleton=replace(rig.skeleton, deform=deform))
+    return rig.with_joints(joints)
 
 
 def locked_by(corrections: Corrections) -> list[int | str]:

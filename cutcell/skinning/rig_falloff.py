@@ -50,6 +50,7 @@ def rig_weights(
     tell: Tell = lambda done: None,
     record: Record = lambda step, array: None,
     adjustments: Adjustments | None = None,
+    diffusion: Diffusion | None = None,
 ) -> NDArray[np.float64]:
     """Turn distances into weights for animation.
 
@@ -66,6 +67,8 @@ def rig_weights(
         a share of a joint beyond its radius; and weights (k, j) after the steps "falloff",
         "spread" and "rigid".
     adjustments : Adjustments, optional
+    diffusion : Diffusion, optional
+        To spread by, in place of that of these distances.
 
     Returns
     -------
@@ -97,11 +100,13 @@ def rig_weights(
         return containment
 
     def prepare() -> Diffusion:
+        if diffusion is not None:
+            return diffusion
         return Diffusion.over(surface, distance.min(axis=0), resolution, share_of(tell, 0, 0.5))
 
-    containment, diffusion = run_parallel(divide, prepare)
+    containment, spreading = run_parallel(divide, prepare)
     record("falloff", weights)
-    weights = diffusion.spread(weights, share_of(tell, 0.5, 1))
+    weights = spreading.spread(weights, share_of(tell, 0.5, 1))
     record("spread", weights)
     by_itself = None if adjustments is None else adjustments.by_itself
     if len(containment) > 1:

@@ -10,7 +10,7 @@ from scipy.optimize import linear_sum_assignment
 from scipy.spatial import cKDTree
 from scipy.spatial.distance import cdist
 
-from ..errors import MeshError
+from ..errors import MeshError, SkeletonError
 from ..rig import Rig, Skeleton
 from ..surface.weld import WELD_TOLERANCE, weld
 
@@ -76,6 +76,40 @@ def find_mirror(rig: Rig) -> Mirror:
             f"{rig.name} is not mirrored across x, y or z: at best {matched:.0%} of its vertices "
             "have a partner on the other side of a left and a right joint; bind it without "
             "symmetry"
+        )
+    return best
+
+
+def find_joint_mirror(rig: Rig) -> Mirror:
+    """Find the plane, orthogonal to x, y or z, across which most joints have a partner.
+
+    Unlike for `find_mirror` the mesh need not be mirrored: hair seldom is. No vertex is paired.
+
+    Raises
+    ------
+    SkeletonError
+        Less than half of the joints have a partner across any such plane, or no two joints lie
+        on different sides of it.
+    """
+    diagonal = float(np.linalg.norm(np.ptp(rig.mesh.bounds, axis=0)))
+    joints = rig.skeleton.joints
+    best: Mirror | None = None
+    share = 0.0
+    for axis in range(3):
+        middle = float(rig.mesh.bounds[:, axis].mean())
+        for position in (0.0, middle, float(np.median(joints[:, axis]))):
+            joint = _joint_partners(rig.skeleton, axis, position, JOINT_TOLERANCE * diagonal)
+            if not np.any((joint >= 0) & (joint != np.arange(len(joint)))):
+                continue
+            gap = _reflected(joints, axis, position)[joint >= 0] - joints[joint[joint >= 0]]
+            exact = 1 - float(np.linalg.norm(gap, axis=1).mean()) / (JOINT_TOLERANCE * diagonal)
+            found = float((joint >= 0).mean()) + 0.1 * exact
+            if found > share:
+                best, share = Mirror(axis, position, np.empty(0, np.intp), joint), found
+    if best is None or (best.joint >= 0).mean() < LEAST_SHARE:
+        raise SkeletonError(
+            f"the skeleton of {rig.name} is not mirrored across x, y or z: less than half of its "
+            "joints have a partner on the other side"
         )
     return best
 

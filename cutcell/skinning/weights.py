@@ -14,6 +14,7 @@ from ..method import ANIMATION, Method, MethodName, WeightOptions, method_of
 from ..progress import Progress, share_of, silent
 from ..threads import in_threads, parts, threads
 from .adjustments import Adjustments
+from .diffusion import Diffusion
 from .kernel import paper_kernel, pruned_paper_kernel
 from .prune import A_PART, prune
 from .rig_falloff import permitted, rig_weights
@@ -26,6 +27,7 @@ def skinning_weights(
     method: Method | MethodName = ANIMATION,
     allowed: NDArray[np.bool_] | None = None,
     adjustments: Adjustments | None = None,
+    diffusion: Diffusion | None = None,
     progress: Progress = silent,
     **options: Unpack[WeightOptions],
 ) -> NDArray[np.float64]:
@@ -41,6 +43,9 @@ def skinning_weights(
         Which joints each vertex may follow; see `Rig.allowed`.
     adjustments : Adjustments, optional
         What `bind` makes of `Corrections`.
+    diffusion : Diffusion, optional
+        To spread weights of the falloff "rig" by, in place of that of these distances: where a
+        joint has moved a little since, nearly the same.
     progress : callable
         See `cutcell.progress`; the stage is called "weights".
     **options
@@ -80,8 +85,9 @@ def skinning_weights(
         if alpha is not None:
             weights = paper_kernel(distances.joint, graph.lattice.diagonal, alpha)
         else:
+            surface = SurfaceOperators.of(graph)
             weights = rig_weights(
-                distances, SurfaceOperators.of(graph), tell, adjustments=adjustments
+                distances, surface, tell, adjustments=adjustments, diffusion=diffusion
             )[graph.vertex_node]
         return prune(permitted(weights, distances.joint, allowed), *kept)
     if alpha is not None:
@@ -92,6 +98,7 @@ def skinning_weights(
             SurfaceOperators.of(graph),
             share_of(tell, 0, 0.8),
             adjustments=adjustments,
+            diffusion=diffusion,
         )
         welded = prune(welded, *kept, share_of(tell, 0.8, 0.9))
     weights = np.empty((len(graph.vertex_node), welded.shape[1]))

@@ -104,6 +104,64 @@ def test_joints_are_corrected_by_keys_kept_and_exported(visit, robot, tmp_path):
     assert corrected(visit) == Corrections.load(path)
 
 
+def test_a_joint_is_dragged_and_typed_and_stays_so_in_the_file(visit, robot, tmp_path):
+    joint = robot.skeleton.names.index("forearm.L")
+    visit.choose("Bone", "forearm.L")
+    visit.switch("Move it in the scene")
+    visit.settle()
+    before = visit.look()
+    x, y = visit.page.evaluate("__cutcell.jointHandle()")
+    visit.page.mouse.move(x, y)
+    visit.page.mouse.down()
+    for step in (8, 16, 24):
+        visit.page.mouse.move(x + step, y - 2 * step)
+    visit.settle()
+    bones = visit.page.evaluate(f"__cutcell.bonePoint({joint})")
+    visit.page.mouse.up()
+    visit.settle()
+    assert visit.page.evaluate(f"__cutcell.bonePoint({joint})") != bones, "clicked where it is"
+    assert changed(before, visit.look()) > 0.002
+    held = corrected(visit)
+    assert list(held.joints) == ["forearm.L", "forearm.R"], "the other side moves along"
+    moved = exported(visit, tmp_path)
+    own = robot.skeleton.joints
+    for name, one in held.joints.items():
+        k = robot.skeleton.names.index(name)
+        assert moved.skeleton.joints[k] == pytest.approx(one.position, abs=1e-5)
+        assert np.linalg.norm(moved.skeleton.joints[k] - own[k]) > 0.01
+    fresh = cutcell.bind(robot.with_joints(moved.skeleton.joints), 24)
+    np.testing.assert_allclose(moved.weights, fresh.weights, atol=1e-3)
+
+    visit.page.reload()
+    visit.wait_until_bound()
+    visit.dismiss()
+    assert corrected(visit) == held
+    visit.button("Put back").click()
+    visit.settle()
+    visit.expect_text("Nothing is corrected")
+    visit.button("Undo").click()
+    visit.settle()
+    assert corrected(visit) == held
+    visit.button("Redo").click()
+    visit.settle()
+
+    field = visit.page.get_by_role("textbox", name="X", exact=True)
+    field.focus()
+    field.fill("nonsense")
+    visit.page.keyboard.press("Enter")
+    visit.expect_text("X must be a number")
+    visit.button("Close").click()
+    field.fill("0.3")
+    visit.page.keyboard.press("Enter")
+    visit.settle()
+    assert corrected(visit).joints["forearm.L"].position[0] == 0.3
+    visit.button("Centre in limb").focus()
+    visit.page.keyboard.press("Enter")
+    visit.settle()
+    assert corrected(visit).joints["forearm.L"].position[0] != 0.3
+    assert faults(visit) == []
+
+
 def test_a_part_is_glued_to_a_joint(visit, robot, tmp_path):
     rows = visit.page.get_by_role("list", name="Parts of the mesh")
     whole = visit.look()

@@ -222,7 +222,7 @@ def test_the_tree_and_what_stands_below_it(bound, loop):
     assert len({row["color"] for row in tree.rows}) == 3
     tree._handle_msg({"type": "choose", "joint": 2})
     assert bound.state.joint == tree.chosen == 2
-    carries, locked = section.select(pmui.Switch)
+    carries, locked, *_ = section.select(pmui.Switch)
     carries.value = False
     loop.run_for(0.05)
     assert not tree.rows[2]["carries"]
@@ -231,7 +231,7 @@ def test_the_tree_and_what_stands_below_it(bound, loop):
     locked.value = True
     (gain,) = section.select(pmui.FloatSlider)
     gain.value = 1.0
-    (radius,) = section.select(pmui.TextInput)
+    radius, *_ = section.select(pmui.TextInput)
     radius.value = "0.25"
     expected = {"wrist": JointCorrection(locked=True, gain=2.0, radius=0.25)}
     assert bound.state.corrections.joints == expected

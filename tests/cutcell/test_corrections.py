@@ -17,7 +17,7 @@ HEAD, CHEST = (WORM.skeleton.names.index(name) for name in ("head", "chest"))
 ALL = Corrections(
     joints={
         "neck": JointCorrection(deform=False),
-        "head": JointCorrection(locked=True, gain=1.5, radius=0.25),
+        "head": JointCorrection(locked=True, gain=1.5, radius=0.25, position=(0.5, 0.25, 0)),
     },
     parts={3: PartCorrection("glued", "head"), 4: PartCorrection("touching")},
     vertices={7: {"head": 3.0, "tail": 1.0}},
@@ -56,6 +56,10 @@ def test_json_and_back_is_the_same(tmp_path):
         ('{"joints": {"Head": {"gain": 0}}}', 'the joint "Head": gain must be'),
         ('{"joints": {"Head": {"radius": 0}}}', "radius must be more than 0"),
         ('{"joints": {"Head": {"locked": 1}}}', "locked must be"),
+        ('{"joints": {"Head": {"position": [1, 2]}}}', 'the joint "Head": position must be three'),
+        ('{"joints": {"Head": {"position": "abc"}}}', "position must be three numbers"),
+        ('{"joints": {"Head": {"position": [0, NaN, 0]}}}', "y of position must be a number"),
+        ('{"joints": {"Head": {"position": [0, 0, 1e99]}}}', "z of position must be a number"),
         ('{"parts": {}}', "parts must be a list"),
         ('{"parts": [{"how": "glued"}]}', 'part 0 needs "vertex"'),
         ('{"parts": [{"vertex": 1, "how": "glued"}]}', "part 0: a part that is glued needs"),
@@ -92,6 +96,11 @@ def test_a_file_that_cannot_be_read_is_named(tmp_path):
             "no joint of the skeleton may carry weight",
         ),
         ({"parts": {0: PartCorrection("touching")}}, ParameterError, "none is left"),
+        (
+            {"joints": {"head": JointCorrection(position=(1e6, 0, 0))}},
+            SkeletonError,
+            'joint "head" at .* times the mesh.s size away',
+        ),
     ],
 )
 def test_what_the_rig_does_not_have_is_refused(corrections, error, sentence):
@@ -153,3 +162,20 @@ def test_the_soldier_is_mended_by_one_correction():
     rig = soldier()
     mended = bound(rig, joints={"Root": JointCorrection(deform=False)})
     assert mended[:, -1].max() == 0
+
+
+@pytest.mark.parametrize("method", ["animation", "paper"])
+def test_a_moved_joint_is_bound_as_in_a_rig_that_has_it_there(method):
+    place = WORM.skeleton.joints[HEAD] + [0.03, 0.02, 0]
+    corrections = Corrections({"head": JointCorrection(position=place)})
+    joints = WORM.skeleton.joints.copy()
+    joints[HEAD] = place
+    changed = replace(WORM, skeleton=replace(WORM.skeleton, joints=joints))
+    wanted = cutcell.bind(changed, 24, method=method)
+    graph = cutcell.bind(WORM, 24, method=method).graph
+    found = cutcell.bind(WORM, 24, method=method, corrections=corrections, graph=graph)
+    np.testing.assert_allclose(found.weights, wanted.weights, rtol=0, atol=1e-9)
+    assert not np.allclose(found.weights, cutcell.bind(WORM, 24, method=method).weights)
+    assert np.array_equal(cutcell.corrected_rig(WORM, corrections).skeleton.joints, joints)
+    # One that has it there already stays as it is.
+    assert cutcell.corrected_rig(changed, corrections) is changed

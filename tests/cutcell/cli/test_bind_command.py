@@ -202,5 +202,12 @@ def test_corrections_of_a_file_are_applied(run, bar, tmp_path):
     out = tmp_path / "out.npz"
     run("bind", bar, out, "-r", 16, "--corrections", path)
     assert cutcell.load(out).weights[0].tolist() == [1.0] + [0.0] * (len(rig.skeleton.names) - 1)
+    place = (rig.skeleton.joints[0] + 0.125).tolist()
+    correction = cutcell.JointCorrection(position=place)
+    cutcell.Corrections(joints={name: correction}).save(path)
+    run("bind", bar, tmp_path / "out.glb", "-r", 16, "--corrections", path)
+    moved = cutcell.load(tmp_path / "out.glb").skeleton.joints
+    assert moved[0].tolist() == pytest.approx(place, abs=1e-6)
+    assert moved[1:].tolist() == pytest.approx(rig.skeleton.joints[1:], abs=1e-6)
     path.write_text('{"joints": {"nobody": {"gain": 2}}}')
     assert 'no joint "nobody"' in refused(run("bind", bar, out, "-r", 16, "--corrections", path))

@@ -1,0 +1,244 @@
+"""Move joints: by the handle in the view, by numbers, to the middle of the limb."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from cutcell.corrections import Corrections, JointCorrection
+from cutcell.errors import CutcellError, SkeletonError
+from cutcell.progress import Progress
+from cutcell.skinning import Binding, middle_of_limb
+from cutcell.skinning.correct import corrected_rig
+from cutcell.skinning.symmetry import Mirror, find_joint_mirror
+from cutcell_viewers.character import to_scene
+
+from ..scenes.common import bones_part
+from ..state.corrections import Dragged, applied
+from .binding import asked, binder, kept, previewer, pruned
+from .correct import check_alone, correct
+from .session import Session
+
+DIGITS = 6
+"""Of places, beside the longest side of the character: addresses are long enough."""
+SEEN = ["panel", "rig", "binding", "joint", "joint_handle", "mirrored"]
+
+
+def watch(session: Session) -> None:
+    """Let the handle follow the chosen joint, and joints the handle."""
+    follow = session.state.param.watch
+    hand = Hand(session)
+    session.view.listen("joint", hand.move)
+    follow(lambda *events: hand.let_go(), ["rig", "binding", "panel"])
+    follow(lambda *events: tell_bones(session), "rig")
+    follow(lambda *events: show_handle(session), SEEN)
+
+
+def tell_bones(session: Session) -> None:
+    """Tell the view where bones are to be clicked."""
+    state = session.state
+    if state.rig is None or state.bare:
+        return
+    # Compared by what lies in it: the rig is another one for many reasons.
+    said, bones = session.view.told("bones"), bones_part(state)
+    if said is None or not np.array_equal(said["start"], bones["start"]):
+        session.view.tell(bones=bones)
+
+
+def show_handle(session: Session) -> None:
+    """Tell the view where the chosen joint can be dragged, and where its mirror is."""
+    state = session.state
+    part = None
+    if state.joint_handle and state.panel == "weights" and state.rig is not None and state.binding:
+        at = to_scene(state.rig, state.rig.skeleton.joints[[state.joint]])[0]
+        part = {"joint": state.joint, "at": at.tolist(), "mirror": None}
+        mirror, partner = mirror_of(session), moves_along(session)
+        if mirror is not None and partner is not None:
+            part["mirror"] = _plane_in_scene(state.rig.world, mirror)
+    if session.view.told("mover") != part:
+        session.view.tell(mover=part)
+
+
+def _plane_in_scene(world: NDArray[np.float64], mirror: Mirror) -> list[float]:
+    """Return the unit normal of a mirror's plane, and its distance from 0, in the scene."""
+    on = world[:3, :3] @ (mirror.position * np.eye(3)[mirror.axis]) + world[:3, 3]
+    out = np.linalg.inv(world[:3, :3]).T[:, mirror.axis]
+    out = out / np.linalg.norm(out)
+    return [*out.tolist(), float(out @ on)]
+
+
+def mirror_of(session: Session) -> Mirror | None:
+    """Return who is whose mirror image among the joints as the file has them; None if nobody is."""
+    state = session.state
+
+    def find() -> Mirror | None:
+        try:
+            return find_joint_mirror(state.rig.with_joints(state.own_skeleton.joints))
+        except SkeletonError:
+            return None
+
+    found: Mirror | None = session.memo("mirror", (state.rig.mesh, state.own_skeleton), find)
+    return found
+
+
+def partner_of(session: Session) -> int | None:
+    """Return the joint on the other side of the chosen one; None if there is none."""
+    mirror, joint = mirror_of(session), session.state.joint
+    partner = -1 if mirror is None else int(mirror.joint[joint])
+    return None if partner in (-1, joint) else partner
+
+
+def moves_along(session: Session) -> int | None:
+    """Return the joint that moves along with the chosen one, or None."""
+    return partner_of(session) if session.state.mirrored else None
+
+
+def put(session: Session, place: ArrayLike) -> None:
+    """Put the chosen joint somewhere, in the file's units, and its partner on the other side."""
+    try:
+        corrections = moved(session, place)
+    except CutcellError as error:
+        session.fail(error)
+        session.state.param.trigger("corrections")  # what was written gives way to what there is
+        return
+    correct(session, corrections)
+
+
+def put_back(session: Session) -> None:
+    """Put the chosen joint, and its partner, where the file has them."""
+    state = session.state
+    held = dict(state.corrections.joints)
+    for joint in (state.joint, moves_along(session)):
+        if joint is not None:
+            name = state.rig.skeleton.names[joint]
+            held[name] = replace(held.get(name, JointCorrection()), position=None)
+    correct(session, replace(state.corrections, joints=held))
+
+
+def centre(session: Session) -> None:
+    """Put the chosen joint into the middle of the limb."""
+    try:
+        place = middle_of_limb(session.state.rig, session.state.joint)
+    except CutcellError as error:
+        session.fail(error)
+        return
+    put(session, place)
+
+
+def moved(session: Session, place: ArrayLike) -> Corrections:
+    """Return the corrections with the chosen joint somewhere, and its partner mirrored.
+
+    Raises
+    ------
+    CutcellError
+        It cannot be there.
+    """
+    state, joint = session.state, session.state.joint
+    places = {joint: np.asarray(place, float)}
+    mirror, partner = mirror_of(session), moves_along(session)
+    if mirror is not None and partner is not None:
+        other = places[joint].copy()
+        other[mirror.axis] = 2 * mirror.position - other[mirror.axis]
+        places[partner] = other
+    size = float(np.ptp(state.rig.mesh.bounds, axis=0).max())
+    digits = DIGITS - int(np.floor(np.log10(size)))
+    held = dict(state.corrections.joints)
+    for one, at in places.items():
+        check_alone(state.rig.skeleton, one)
+        name, own = state.rig.skeleton.names[one], state.own_skeleton.joints[one]
+        same = np.array_equal(np.round(at, digits), np.round(own, digits))
+        position = None if same else tuple(round(x, digits) for x in at.tolist())
+        held[name] = replace(held.get(name, JointCorrection()), position=position)
+    corrections = replace(state.corrections, joints=held)
+    corrected_rig(state.rig, corrections)
+    return corrections
+
+
+class Hand:
+    """Moves joints as the handle in the view is dragged.
+
+    Parameters
+    ----------
+    session : Session
+    """
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+        self._holds = False
+        self._bound: Binding | None = None
+        self._preview: Any = None
+
+    def move(self, message: dict[str, Any]) -> None:
+        """Show the character with the chosen joint somewhere; take it when it is let go.
+
+        Parameters
+        ----------
+        message : dict
+            The number of the "joint", its "position" in the scene, and whether it is "done".
+        """
+        session, state = self._session, self._session.state
+        if state.binding is None or int(message["joint"]) != state.joint:
+            return
+        back = np.linalg.inv(state.rig.world)
+        place = back[:3, :3] @ np.asarray(message["position"], float) + back[:3, 3]
+        try:
+            corrections = moved(session, place)
+        except CutcellError as error:
+            self.let_go()
+            session.fail(error)
+            session.view.tell(mover=session.view.told("mover"))  # back from where it was dragged
+            return
+        if message.get("done"):
+            self._take(corrections)
+        else:
+            self._show(corrections)
+
+    def let_go(self) -> None:
+        """Show again what the corrections tell."""
+        if not self._holds and self._session.state.dragged is not None:
+            self._session.tasks.newest("moving").cancel()
+            self._session.state.dragged = self._bound = self._preview = None
+
+    def _take(self, corrections: Corrections) -> None:
+        state = self._session.state
+        before, self._holds = state.corrections, True  # what is seen stays until it is bound
+        try:
+            correct(self._session, corrections)
+        finally:
+            self._holds = False
+        if state.corrections == before:
+            self.let_go()
+
+    def _show(self, corrections: Corrections) -> None:
+        """Show about what the weights will be, and when the hand rests what they are."""
+        session, state = self._session, self._session.state
+        if asked(state) != session.built_for:
+            return  # what was let go before is about to be bound
+        rig = applied(state.rig, state.own_skeleton, corrections)
+        before = state.binding if state.dragged is None else state.dragged.binding
+        state.dragged = Dragged(rig, before)  # the bones follow at once
+        newest, few = session.tasks.newest("moving"), kept(state)
+        exact = binder(state, rig, corrections, state.binding.graph)
+
+        def done(binding: Binding) -> None:
+            if state.dragged is not None:
+                state.dragged = Dragged(state.dragged.rig, binding)
+
+        def wholly(progress: Progress) -> Binding:
+            return exact(progress)[1]
+
+        if rig.allowed is not None:  # vertices at one place may follow different joints
+            newest.do(wholly, done)
+            return
+        if self._bound is not state.binding:
+            self._bound, self._preview = state.binding, previewer(state)
+        preview = self._preview
+
+        def roughly(progress: Progress) -> Binding:
+            return pruned(preview(rig), few, rig, corrections)
+
+        newest.do(roughly, done)
+        session.tasks.after_a_pause(lambda: newest.do(wholly, done) if state.dragged else None)
