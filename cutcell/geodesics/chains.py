@@ -88,6 +88,7 @@ def find_chains(skeleton: Skeleton, joints: NDArray[np.float64], probe: BodyProb
     probe : BodyProbe
     """
     near = probe.near(joints)
+    near |= _leads_in(skeleton, joints, near, probe)
     same = cdist(joints, joints) < SAME_PLACE
     if not _has_bones(skeleton):
         parents = _inferred_tree(skeleton, joints, near, probe)
@@ -97,6 +98,21 @@ def find_chains(skeleton: Skeleton, joints: NDArray[np.float64], probe: BodyProb
     ends = _ends(skeleton, joints, near, same, direction, rest)
     inferred = _inferred_bones(skeleton, joints, direction, length, ends, probe)
     return Chains(joints, near, direction, rest, length, ends, inferred)
+
+
+def _leads_in(
+    skeleton: Skeleton, joints: NDArray[np.float64], near: NDArray[np.bool_], probe: BodyProbe
+) -> NDArray[np.bool_]:
+    """Tell which joints outside the body begin a bone into it, such as one in an open mouth.
+
+    They have one child, which is in the body, unlike a root on the ground, on which feet hang, too.
+    """
+    only = [len(children) == 1 for children in skeleton.children]
+    some = np.flatnonzero(skeleton.deform & ~near & only)
+    child = np.array([skeleton.children[j][0] for j in some], np.intp)
+    leads = np.zeros(len(joints), np.bool_)
+    leads[some] = near[child] & (probe.inner_part(joints[some], joints[child]) >= IN_BODY)
+    return leads
 
 
 def _has_bones(skeleton: Skeleton) -> bool:
