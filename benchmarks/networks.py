@@ -1,7 +1,7 @@
 """Train each head with each prior, and measure all on characters that they never saw.
 
     python -m benchmarks.networks [--epochs 3] [--seeds 3] [--heads A,B] [--priors A,B]
-                                  [--size tiny] [--folder FOLDER] [--out docs/networks.md]
+                                  [--size tiny] [--folder FOLDER] [--print] [--out docs/networks.md]
 
 Trained on ../shared/data/train, by one maker; measured on rigs and wild, parted into characters by
 other makers and by the same. Every network and every result is kept in the folder after it is
@@ -153,7 +153,7 @@ def head_table(results: Results, alone: dict[str, Scores], which: str, after: bo
     if after:
         title += ", small weights dropped"
         note += f" Weights below {PART:.0%} of a point's largest are dropped, as in evaluations."
-    columns = ["head", "prior", "L1", "L1 median", "L1 worst", *MEASURES[1:]]
+    columns = ["head", "prior", "seeds", "L1", "L1 median", "L1 worst", *MEASURES[1:]]
     table = Table(title, columns, note)
 
     def add(head: str, prior: str, found: Sequence[Scores]) -> None:
@@ -161,9 +161,10 @@ def head_table(results: Results, alone: dict[str, Scores], which: str, after: bo
         l1 = np.array([[one[name][at][0] for name in names] for one in found])
         cells = [each[:, 0], np.median(l1, axis=1), l1.max(axis=1), each[:, 1], each[:, 2]]
         if len(found) == 1:
-            table.add(head, prior, *(f"{v[0]:.3f}" for v in cells), f"{each[0, 3]:.2f}")
+            shown = [f"{v[0]:.3f}" for v in cells] + [f"{each[0, 3]:.2f}"]
         else:
-            table.add(head, prior, *(spread(v, 3) for v in cells), spread(each[:, 3], 2))
+            shown = [spread(v, 3) for v in cells] + [spread(each[:, 3], 2)]
+        table.add(head, prior, "-" if head[0] == "(" else len(found), *shown)
 
     for prior, found in alone.items():
         add("(the prior alone)", prior, [found])
@@ -185,11 +186,12 @@ def paper_table(results: Results) -> Table:
         if not before or not after:
             continue
         names = groups(before[0])["other makers"]
+        count = min(len(before), len(after))
+        before, after = before[:count], after[:count]
         one = np.array([means(found, names)[[0, 3]] for found in before])
         other = np.array([means(found, names)[[0, 3]] for found in after])
         better = (other < one).sum(axis=0)
         change = other.mean(axis=0) / one.mean(axis=0) - 1
-        count = len(one)
         table.add(
             head,
             base,
@@ -241,7 +243,7 @@ def tables(kept: dict[str, dict], options: argparse.Namespace, runs: Sequence[Ru
     trained = len(samples("none", ["train"], options))
     about = (
         f"Size {options.size}; {options.epochs} epochs over {trained} characters, "
-        f"{options.points} points each; {options.seeds} seeds; measured at up to "
+        f"{options.points} points each; up to {options.seeds} seeds; measured at up to "
         f"{4 * options.points} vertices of each of {measured} characters. {len(runs)} trainings "
         f"took {seconds / 60:.0f} minutes of CPU time on {machine()}."
     )
@@ -282,6 +284,7 @@ def main(given: Sequence[str] | None = None) -> None:
     parser.add_argument("--priors", type=lambda text: text.split(","), default=list(PRIORS))
     parser.add_argument("--folder", type=Path, default=cache_folder() / "benchmark")
     parser.add_argument("--cache", type=Path, default=cache_folder())
+    parser.add_argument("--print", action="store_true", help="train nothing; print what is there")
     parser.add_argument("--out", type=Path, help="a document with marks for it")
     options = parser.parse_args(given)
     torch.set_num_threads(1)
@@ -291,14 +294,14 @@ def main(given: Sequence[str] | None = None) -> None:
     # All heads and priors by the first seed first: a run that is broken off tells most.
     for run in sorted(runs, key=lambda run: run.seed):
         key = _key(run, options)
-        if key not in kept:
+        if key not in kept and not options.print:
             found, seconds = measure_run(run, options)
             kept[key] = {"scores": found, "seconds": seconds + _before(kept, run, options)}
             options.folder.mkdir(parents=True, exist_ok=True)
             write_all({path: json.dumps(kept).encode()})
             names = groups(found)["other makers"]
             print(key, *(f"{x:.3f}" for x in means(found, names)), f"{seconds:.0f} s", flush=True)
-    text = tables(kept, options, runs)
+    text = tables(kept, options, [run for run in runs if _key(run, options) in kept])
     print(text)
     if options.out:
         fill(options.out, {"networks": text})
