@@ -11,10 +11,10 @@ SCRIPTS := app/scripts tests/app/scripts
 WORKERS := --numprocesses logical --maxprocesses 4
 
 .DEFAULT_GOAL := help
-.PHONY: help app test lint format assets lock clean
+.PHONY: help app test test-networks lint format assets lock clean
 
 help: ## Show this list
-	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## /  make \1|/' \
+	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## /  make \1|/' \
 		| awk -F'|' '{ printf "%-14s %s\n", $$1, $$2 }'
 
 app: $(VENV)/.app ## Open the page; pass options on by ARGS='--no-show --port 5010 rig.glb'
@@ -26,6 +26,13 @@ test: $(VENV)/.tools ## Check style and types, run all tests; ARGS='tests/cutcel
 	@$(PYTHON) -m mypy
 	@$(VENV)/bin/oxlint --quiet $(SCRIPTS)
 	@$(PYTHON) -m pytest $(WORKERS) $(ARGS)
+
+# A tiny head learns first, as people would let it; then all that needs torch is tested.
+test-networks: $(VENV)/.networks ## Install torch, train a tiny network, test networks
+	@rm -rf test-output/networks
+	@$(PYTHON) -m cutcell networks train test-output/networks --cache test-output/networks \
+		--head puppeteer --prior bind --data assets/biped.glb --data assets/robot.glb --epochs 20
+	@$(PYTHON) -m pytest $(ARGS) tests_networks
 
 lint: $(VENV)/.test ## Check style and types only
 	@$(PYTHON) -m ruff check .
@@ -53,6 +60,10 @@ $(VENV)/.app: $(SETUP)
 
 $(VENV)/.test: $(SETUP)
 	@scripts/setup.sh test
+
+$(VENV)/.networks: $(VENV)/.test scripts/get_torch.py
+	@$(PYTHON) scripts/get_torch.py
+	@touch $@
 
 # What the tests need beside Python: a browser, OpenGL to render off-screen, and what Open3D loads.
 $(VENV)/.tools: $(VENV)/.test scripts/get_chromium.py scripts/get_system_libraries.py scripts/debian.py

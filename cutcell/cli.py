@@ -32,6 +32,7 @@ from .graph_command import EPILOG as GRAPH_EPILOG
 from .graph_command import graph
 from .joints_command import EPILOG as JOINTS_EPILOG
 from .joints_command import joints
+from .networks_command import networks
 from .options import Json, Quiet, Resolution
 
 if TYPE_CHECKING:
@@ -167,6 +168,7 @@ app.command(epilog=DIAGNOSE_EPILOG)(diagnose)
 app.command(epilog=EXPLAIN_EPILOG)(explain)
 app.command(epilog=JOINTS_EPILOG)(joints)
 app.add_typer(dataset, name="dataset")
+app.add_typer(networks, name="networks")
 
 
 for above in entry_points(group="cutcell.commands"):

@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
-# Choose again the versions that `make app` and `make test` install, for Python 3.11 and 3.12.
+# Choose again the versions that `make app` and `make test` install, for Python 3.11 and 3.12. The
+# extra `test` has all others but networks: scripts/get_torch.py says which torch is installed.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 .venv/bin/python -m pip --disable-pip-version-check install --quiet uv
 {
     echo '# Versions that make installs. Made by `make lock`; do not edit by hand.'
     echo 'setuptools>=77' | .venv/bin/python -m uv --quiet pip compile --upgrade --universal \
-        --all-extras --no-emit-index-url --no-header --no-annotate pyproject.toml -
+        --extra test --no-emit-index-url --no-header --no-annotate pyproject.toml -
 } >requirements.new
 mv requirements.new requirements.lock

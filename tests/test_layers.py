@@ -2,6 +2,7 @@
 
 import ast
 import json
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -17,6 +18,7 @@ HEAVY = {
     "panel",
     "pyvista",
     "scipy",
+    "torch",
     "trimesh",
     "vtk",
 }
@@ -25,6 +27,12 @@ FOLDERS = {"cutcell": "cutcell", "cutcell_viewers": "viewers", "cutcell_app": "a
 PAGE = {"bokeh", "cutcell_app", "panel", "panel_material_ui"}
 PICTURES = {"cutcell_viewers", "pyvista", "vtk", "vtkmodules"}
 IMPORT_SECONDS = 0.3
+TORCH = [
+    path.relative_to(ROOT).as_posix()
+    for path in sorted((ROOT / "cutcell").rglob("*.py"))
+    if re.search(r"^(import|from) torch\b", path.read_text(encoding="utf-8"), re.MULTILINE)
+]
+"""Files that import torch at once."""
 SHORT_CHAINS = ("surface", "winding", "graph", "geodesics")
 LONGEST_CHAIN = 6
 
@@ -63,6 +71,7 @@ ORDER = [
     {"metrics"},
     {"workers"},
     {"baselines", "diagnosis", "dataset"},
+    {"networks"},
     {"summary", "compare"},
     {
         "options",
@@ -74,6 +83,7 @@ ORDER = [
         "explain_command",
         "dataset_audit_command",
         "dataset_command",
+        "networks_command",
         "graph_command",
         "render_command",
         "joints_command",
@@ -85,10 +95,15 @@ RANK = {part: rank for rank, parts in enumerate(ORDER) for part in parts}
 
 
 def modules_of(package: str) -> list[str]:
-    """Names of all modules of a package here, found by their files."""
+    """Names of all modules of a package here, found by their files, but those that import torch.
+
+    These are the networks' own; tests_networks imports them.
+    """
     names = []
     folder = ROOT / FOLDERS[package]
     for path in sorted(folder.rglob("*.py")):
+        if path.relative_to(ROOT).as_posix() in TORCH:
+            continue
         parts = (package, *path.relative_to(folder).with_suffix("").parts)
         if parts[-1] != "__main__":  # importing it runs the command
             names.append(".".join(parts[:-1] if parts[-1] == "__init__" else parts))
@@ -112,6 +127,12 @@ def loaded_by(modules: list[str]) -> set[str]:
 @pytest.mark.parametrize("module", ["cutcell", "cutcell.cli"])
 def test_importing_the_core_or_its_command_brings_nothing_heavy(module):
     assert not loaded_by([module]) & HEAVY
+
+
+def test_torch_is_imported_by_what_needs_it_alone():
+    assert "torch" not in loaded_by(modules_of("cutcell"))
+    wrong = [name for name in TORCH if not name.startswith("cutcell/networks/")]
+    assert wrong == []
 
 
 def test_importing_the_core_is_quick():

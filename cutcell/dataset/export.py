@@ -18,7 +18,7 @@ from ..io.objects import write_obj
 from ..io.rignet import word_names
 from ..rig import TriangleMesh
 from ..writing import replacing, write_all
-from .points import sample_surface
+from .points import mesh_normals, sample_surface
 from .store import Entry, Store
 from .torch_data import at_points
 
@@ -149,7 +149,7 @@ def _unirig(out: Path, name: str, entry: Entry) -> dict[Path, bytes]:
             tails[joint] = joints[joint] + (joints[joint] - joints[above]) / 2
     local = np.tile(np.eye(4, dtype=np.float32), (len(joints), 1, 1))
     local[:, :3, 3] = joints
-    face_normals, vertex_normals = normals(entry)
+    face_normals, vertex_normals = mesh_normals(entry.vertices, entry.faces)
     raw = {
         "vertices": entry.vertices,
         "vertex_normals": vertex_normals,
@@ -201,7 +201,7 @@ def _puppeteer(entries: Iterator[tuple[str, Entry]], out: Path) -> int:
 
 def _puppeteer_sample(name: str, entry: Entry, seed: int) -> dict[str, Any]:
     points = sample_surface(entry.vertices, entry.faces, POINTS, seed)
-    face_normals, _ = normals(entry)
+    face_normals, _ = mesh_normals(entry.vertices, entry.faces)
     held = np.flatnonzero(entry.parents >= 0)
     bones = np.stack([entry.parents[held], held], axis=1)
     count = len(entry.joints)
@@ -224,18 +224,3 @@ def _puppeteer_sample(name: str, entry: Entry, seed: int) -> dict[str, Any]:
         "prior": entry.weights,
         "prior_points": at_points(entry.weights, entry.faces, points).astype(np.float32),
     }
-
-
-def normals(entry: Entry) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-    """Return unit normals of the faces (m, 3) and of the vertices (n, 3); zero where none is."""
-    a, b, c = (entry.vertices[entry.faces[:, k]].astype(np.float64) for k in range(3))
-    across = np.cross(b - a, c - a)
-    by_vertex = np.zeros((len(entry.vertices), 3))
-    for k in range(3):
-        np.add.at(by_vertex, entry.faces[:, k], across)
-    return _unit(across), _unit(by_vertex)
-
-
-def _unit(vectors: NDArray) -> NDArray[np.float32]:
-    length = np.linalg.norm(vectors, axis=1, keepdims=True)
-    return np.divide(vectors, length, out=np.zeros_like(vectors), where=length > 0).astype("f4")

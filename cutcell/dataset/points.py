@@ -64,6 +64,24 @@ def sample_surface(vertices: ArrayLike, faces: ArrayLike, count: int, seed: int)
     return SurfacePoints(drawn, face, shares)
 
 
+def mesh_normals(
+    vertices: ArrayLike, faces: ArrayLike
+) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    """Return unit normals of the faces (m, 3) and of the vertices (n, 3); zero where none is."""
+    places, corners = np.asarray(vertices, np.float64), np.asarray(faces)
+    a, b, c = (places[corners[:, k]] for k in range(3))
+    across = np.cross(b - a, c - a)
+    by_vertex = np.zeros((len(places), 3))
+    for k in range(3):
+        np.add.at(by_vertex, corners[:, k], across)
+    return _unit(across), _unit(by_vertex)
+
+
+def _unit(vectors: NDArray) -> NDArray[np.float32]:
+    length = np.linalg.norm(vectors, axis=1, keepdims=True)
+    return np.divide(vectors, length, out=np.zeros_like(vectors), where=length > 0).astype("f4")
+
+
 @dataclass(frozen=True, eq=False)
 class Normalised:
     """A character in the unit cube, as the audit compares it.

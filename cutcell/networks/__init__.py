@@ -1,0 +1,71 @@
+"""Networks that learn skinning weights, with a prior of another method or without.
+
+They need torch: ``pip install 'cutcell[networks]'``. Nothing of it is imported before a name below
+is asked for; `docs/networks.md` tells the heads and what they learned.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+from ..errors import MissingLibraryError
+
+if TYPE_CHECKING:
+    from .batches import Batch as Batch
+    from .batches import collate as collate
+    from .heads import create_network as create_network
+    from .heads import parameter_count as parameter_count
+    from .heads import predict as predict
+    from .names import HEADS as HEADS
+    from .names import SIZES as SIZES
+    from .priors import PRIORS as PRIORS
+    from .priors import Samples as Samples
+    from .samples import Sample as Sample
+    from .samples import sample_rig as sample_rig
+    from .training import load_network as load_network
+    from .training import train as train
+
+WITHOUT_TORCH = {
+    "HEADS": "names",
+    "SIZES": "names",
+    "PRIORS": "priors",
+    "Samples": "priors",
+    "Sample": "samples",
+    "sample_rig": "samples",
+}
+WITH_TORCH = {
+    "Batch": "batches",
+    "collate": "batches",
+    "create_network": "heads",
+    "parameter_count": "heads",
+    "predict": "heads",
+    "load_network": "training",
+    "train": "training",
+}
+__all__ = sorted([*WITHOUT_TORCH, *WITH_TORCH])
+
+
+def __getattr__(name: str) -> Any:
+    if name in WITH_TORCH:
+        check_torch()
+    module = {**WITHOUT_TORCH, **WITH_TORCH}.get(name)
+    if module is None:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(f"{__name__}.{module}"), name)
+
+
+def __dir__() -> list[str]:
+    return __all__
+
+
+def check_torch() -> None:
+    """Raise MissingLibraryError, which says what to install, unless torch is there."""
+    try:
+        import torch  # noqa: F401
+    except ImportError:
+        raise MissingLibraryError(
+            "networks are trained and evaluated by torch, which is not installed; try: "
+            "pip install 'cutcell[networks]' (a CPU is enough; for a small build see "
+            "docs/networks.md)"
+        ) from None

@@ -1,0 +1,149 @@
+"""The priors that networks are compared with, computed once for each rig and kept in a folder."""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import tempfile
+from collections.abc import Callable, Iterable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from numba.misc.appdirs import AppDirs
+from numpy.typing import NDArray
+
+from .. import __version__
+from ..baselines import METHODS
+from ..checks import check_choice
+from ..dataset.sources import Source, find_sources, read_source
+from ..errors import CutcellError, WeightsError
+from ..rig import Rig
+from ..skinning import bind
+from ..writing import write_all
+from .samples import Sample, sample_rig
+
+
+def _by(name: str) -> Callable[[Rig, int], NDArray | None]:
+    return lambda rig, resolution: METHODS[name](rig, resolution=resolution).weights
+
+
+PRIORS: dict[str, Callable[[Rig, int], NDArray | None]] = {
+    "none": lambda rig, resolution: None,
+    "voxel_unirig": _by("voxel_unirig"),
+    "voxel": _by("voxel"),
+    "cutcell": _by("cutcell"),
+    "cutcell_any": _by("cutcell_any"),
+    "bind": lambda rig, resolution: bind(rig, resolution).weights,
+}
+"""Weights (n, j) by name: no prior, UniRig's voxels, Dionne's voxels, the paper's cut-cell graph,
+the same with paths at any angle, and what `bind` gives."""
+
+
+def cache_folder() -> Path:
+    """Return where prepared samples are kept if no other folder is named."""
+    return Path(AppDirs(appname="cutcell", appauthor=False).user_cache_dir, "networks")
+
+
+class Samples:
+    """Prepared samples of rigs, one prior each.
+
+    Parameters
+    ----------
+    paths : iterable of Path
+        Files and folders of rigs, or stores; see `cutcell.dataset.find_sources`.
+    prior : str
+        Of `PRIORS`.
+    points : int
+        Points a rig; 0 for all vertices.
+    resolution : int
+        R of the priors.
+    cache : Path, optional
+        Where what was computed is kept; `cache_folder` when left out.
+
+    Raises
+    ------
+    ParameterError
+        There is no such prior.
+    FileError
+        A path holds no rigs.
+    """
+
+    def __init__(
+        self,
+        paths: Iterable[Path],
+        *,
+        prior: str,
+        points: int = 512,
+        resolution: int = 64,
+        cache: Path | None = None,
+    ) -> None:
+        self.prior = check_choice("prior", prior, PRIORS)
+        self.points, self.resolution = points, resolution
+        self.sources = find_sources(paths)
+        self._cache = cache or cache_folder()
+
+    def load(self, tell: Callable[[str], None] = lambda text: None) -> list[Sample]:
+        """Return the samples of all rigs that have weights, computing what is not there yet.
+
+        Parameters
+        ----------
+        tell : callable
+            Called with a sentence for each rig that is left out.
+        """
+        found = []
+        for source in self.sources:
+            try:
+                found.append(self._sample(source))
+            except CutcellError as error:
+                tell(f"{source.name} is left out: {error}")
+        return found
+
+    def _sample(self, source: Source) -> Sample:
+        key = self._key(source)
+        whole = self._cache / f"{key}.npz"
+        weights = self._cache / f"{key}-{self.prior}.npz"
+        rig = None
+        if not whole.exists():
+            rig = _with_weights(source)
+            _write(whole, vars(sample_rig(rig, self.points, seed=0)))
+        sample = _read_sample(whole, source.name)
+        if self.prior == "none":
+            return sample
+        if not weights.exists():
+            rig = rig or _with_weights(source)
+            prior = PRIORS[self.prior](rig, self.resolution)
+            if prior is None:
+                raise WeightsError(f"the method {self.prior} gave no weights")
+            _write(weights, {"prior": sample.of_rig(prior)})
+        with np.load(weights) as arrays:
+            return replace(sample, prior=arrays["prior"])
+
+    def _key(self, source: Source) -> str:
+        digest = hashlib.blake2b(digest_size=12)
+        for name, data in sorted(source.content().files.items()):
+            digest.update(name.encode() + data)
+        digest.update(f"{self.points} {self.resolution} {__version__}".encode())
+        return digest.hexdigest()
+
+
+def _with_weights(source: Source) -> Rig:
+    with tempfile.TemporaryDirectory() as folder:
+        rig = read_source(source, Path(folder))
+    if rig.weights is None or not rig.weights.any():
+        raise WeightsError("it has no weights to learn from")
+    return rig
+
+
+def _write(path: Path, arrays: dict) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    packed = io.BytesIO()
+    kept = {key: value for key, value in arrays.items() if isinstance(value, np.ndarray)}
+    np.savez_compressed(packed, **kept)  # type: ignore[arg-type]
+    write_all({path: packed.getvalue()})
+
+
+def _read_sample(path: Path, name: str) -> Sample:
+    with np.load(path) as arrays:
+        kept = {key: arrays[key] for key in arrays.files}
+    return Sample(**{"name": name, "prior": None, "target": None, **kept})

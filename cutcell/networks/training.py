@@ -1,0 +1,227 @@
+"""Training a head on rigs, kept after each epoch, so that it goes on where it stopped."""
+
+from __future__ import annotations
+
+import io
+import json
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+from torch import nn
+
+from ..checks import check_choice, check_integer
+from ..errors import FileError, ParameterError
+from ..writing import reason, write_all
+from .batches import Batch, collate
+from .heads import create_network
+from .names import HEADS, SIZES
+from .samples import Sample
+
+BATCH = 2
+"""Characters that are looked at together."""
+RATE = 2e-3
+"""AdamW's learning rate, the same all the time, so that any training can be gone on with."""
+LARGEST_GRADIENT = 1.0
+SCALES = 0.8, 1.25
+"""A character is made that much smaller or larger, by chance."""
+
+
+@dataclass(frozen=True)
+class Recipe:
+    """What makes a network; the same recipe gives the same numbers on a CPU.
+
+    Parameters
+    ----------
+    head, size : str
+        See `create_network`.
+    prior : str
+        Of `PRIORS`.
+    seed : int
+        Of the first parameters, the order of characters, the points, and the augmentation.
+    points : int
+        Points a character, drawn anew in each epoch.
+    """
+
+    head: str
+    size: str = "tiny"
+    prior: str = "cutcell"
+    seed: int = 0
+    points: int = 128
+
+    def __post_init__(self) -> None:
+        check_choice("head", self.head, HEADS)
+        check_choice("size", self.size, SIZES)
+        check_integer("seed", self.seed, 0, 2**31 - 1)
+        check_integer("points", self.points, 16, 1_000_000)
+
+
+def train(
+    recipe: Recipe,
+    samples: Sequence[Sample],
+    epochs: int,
+    folder: Path | None = None,
+    tell: Callable[[int, float], Any] = lambda epoch, loss: None,
+) -> nn.Module:
+    """Train a network, or go on with what is in the folder.
+
+    A GPU is used if there is one, with mixed precision; on a CPU the result is the same each time.
+
+    Parameters
+    ----------
+    recipe : Recipe
+    samples : sequence of Sample
+        With the recipe's prior.
+    epochs : int
+        How often each character is looked at, those of earlier runs included.
+    folder : Path, optional
+        Gets `network.pt` after each epoch, and `log.csv`: epoch, loss, seconds.
+    tell : callable
+        Called after each epoch with its number and its mean loss.
+
+    Returns
+    -------
+    torch.nn.Module
+
+    Raises
+    ------
+    ParameterError
+        No samples, or some without weights to learn from.
+    FileError
+        The folder holds a network of another recipe, or cannot be read.
+    """
+    check_integer("epochs", epochs, 1, 1_000_000)
+    if not samples or any(sample.target is None for sample in samples):
+        raise ParameterError("there is nothing to learn from: give rigs that have weights")
+    device = "cuda" if torch.cuda.is_available() else "cpu"
+    network = create_network(recipe.head, recipe.size, recipe.seed).to(device)
+    optimizer = torch.optim.AdamW(network.parameters(), RATE)
+    done = _resume(recipe, network, optimizer, folder) if folder else 0
+    for epoch in range(done, epochs):
+        begin = perf_counter()
+        loss = _epoch(recipe, network, optimizer, samples, epoch, device)
+        if folder:
+            _keep(recipe, network, optimizer, epoch + 1, folder)
+            with (folder / "log.csv").open("a", encoding="utf-8") as log:
+                log.write(f"{epoch + 1},{loss:.6f},{perf_counter() - begin:.3f}\n")
+        tell(epoch + 1, loss)
+    return network
+
+
+def load_network(folder: Path) -> tuple[nn.Module, Recipe]:
+    """Return a trained network and its recipe.
+
+    Raises
+    ------
+    FileError
+        There is none in the folder.
+    """
+    kept = _read(folder / "network.pt")
+    recipe = Recipe(**json.loads(kept["recipe"]))
+    network = create_network(recipe.head, recipe.size, recipe.seed)
+    network.load_state_dict(kept["network"])
+    return network.eval(), recipe
+
+
+def _epoch(
+    recipe: Recipe,
+    network: nn.Module,
+    optimizer: torch.optim.Optimizer,
+    samples: Sequence[Sample],
+    epoch: int,
+    device: str,
+) -> float:
+    network.train()
+    rng = np.random.default_rng([recipe.seed, epoch])
+    losses = []
+    groups = np.array_split(rng.permutation(len(samples)), -(-len(samples) // BATCH))
+    for chosen in groups:
+        batch = collate([drawn(samples[k], recipe.points, rng) for k in chosen]).to(device)
+        loss = _loss(network, batch, device)
+        optimizer.zero_grad()
+        loss.backward()
+        nn.utils.clip_grad_norm_(network.parameters(), LARGEST_GRADIENT)
+        optimizer.step()
+        losses.append(float(loss.detach()))
+    return float(np.mean(losses))
+
+
+def _loss(network: nn.Module, batch: Batch, device: str) -> torch.Tensor:
+    # bfloat16 has the range of float32, so that the loss need not be scaled.
+    with torch.autocast(device, torch.bfloat16, enabled=device == "cuda"):
+        return network.loss(batch)  # type: ignore[operator]
+
+
+def drawn(sample: Sample, points: int, rng: np.random.Generator) -> Sample:
+    """Return some points of a sample, turned about the vertical and scaled by chance."""
+    chosen = rng.permutation(len(sample.points))[:points]
+    angle = rng.uniform(0, 2 * np.pi)
+    cos, sin = np.cos(angle), np.sin(angle)
+    turn = np.array([[cos, 0, sin], [0, 1, 0], [-sin, 0, cos]])
+    scale = np.exp(rng.uniform(*np.log(SCALES)))
+
+    def moved(places: NDArray, by: float) -> NDArray[np.float32]:
+        return (by * places @ turn.T).astype(np.float32)
+
+    part = sample.part(chosen)
+    return replace(
+        part,
+        points=moved(part.points, scale),
+        normals=moved(part.normals, 1),
+        joints=moved(part.joints, scale),
+        tails=moved(part.tails, scale),
+    )
+
+
+def _keep(
+    recipe: Recipe,
+    network: nn.Module,
+    optimizer: torch.optim.Optimizer,
+    epoch: int,
+    folder: Path,
+) -> None:
+    folder.mkdir(parents=True, exist_ok=True)
+    packed = io.BytesIO()
+    torch.save(
+        {
+            "recipe": json.dumps(asdict(recipe)),
+            "epoch": epoch,
+            "network": network.state_dict(),
+            "optimizer": optimizer.state_dict(),
+        },
+        packed,
+    )
+    write_all({folder / "network.pt": packed.getvalue()})
+
+
+def _resume(
+    recipe: Recipe, network: nn.Module, optimizer: torch.optim.Optimizer, folder: Path
+) -> int:
+    """Take over what is in the folder, and return how many epochs it has learned."""
+    path = folder / "network.pt"
+    if not path.exists():
+        folder.mkdir(parents=True, exist_ok=True)
+        write_all({folder / "log.csv": b"epoch,loss,seconds\n"})
+        return 0
+    kept = _read(path)
+    if json.loads(kept["recipe"]) != asdict(recipe):
+        raise FileError(
+            f"{folder}: holds a network of another recipe, {kept['recipe']}; name another folder"
+        )
+    network.load_state_dict(kept["network"])
+    optimizer.load_state_dict(kept["optimizer"])
+    return int(kept["epoch"])
+
+
+def _read(path: Path) -> dict[str, Any]:
+    try:
+        return torch.load(path, map_location="cpu", weights_only=True)
+    except OSError as error:
+        raise FileError(f"{path}: cannot be read ({reason(error)})") from None
+    except Exception:
+        raise FileError(f"{path}: is no network that cutcell trained") from None
