@@ -16,7 +16,7 @@ from ..geodesics.fallback import REACHED
 from ..skinning.symmetry import find_mirror
 from .finding import Finding, Pose, count, share
 from .subject import Subject
-from .weights import NOTICED, through_body
+from .weights import CLEANED, NOTICED, through_body
 
 STRAY = 0.002
 """Of all weight: a joint that holds less in the file was hardly meant to move skin."""
@@ -123,7 +123,8 @@ def _islands(
         "warning",
         f"{count(len(vertices), 'vertex', 'follow')} a joint whose influence is elsewhere: islands "
         "of it lie away from its bones, with other joints between.",
-        "Take this weight away, or bind again.",
+        "Take this weight away, here or of the whole rig (cutcell clean), or bind again.",
+        repair=CLEANED,
         vertices=vertices,
         joints=np.array(joints),
         details=tuple(lines[:MOST_LINES]),

@@ -14,6 +14,7 @@ from ..rig import Rig
 from ..skinning.prune import prune
 from ..surface.lattice import Lattice
 from ..surface.weld import weld
+from .cleaning import clean
 from .finding import Finding
 from .weights import INFLUENCES
 
@@ -117,6 +118,13 @@ def _pruned(rig: Rig, finding: Finding) -> NDArray[np.float64]:
     return prune(weights, INFLUENCES, 0.0, np.arange(weights.shape[1]))
 
 
+def _cleaned(rig: Rig, finding: Finding) -> NDArray[np.float64]:
+    """Take away what cannot be true through the body, where that was found alone."""
+    weights = _weights(rig).copy()
+    weights[finding.vertices] = clean(rig).weights[finding.vertices]
+    return weights
+
+
 def _weights(rig: Rig) -> NDArray[np.float64]:
     assert rig.weights is not None  # findings about weights are of rigs that have some
     return rig.weights
@@ -126,6 +134,8 @@ WEIGHTS: dict[str, Callable[[Rig, Finding], NDArray[np.float64]]] = {
     "invalid-weights": _as_they_are,
     "unweighted-vertices": _filled,
     "unnormalised-weights": _as_they_are,
+    "leaked-weights": _cleaned,
+    "weight-islands": _cleaned,
     "torn-seams": _together,
     "many-influences": _pruned,
 }

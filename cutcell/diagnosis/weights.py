@@ -31,6 +31,8 @@ DIFFERENT = 0.02
 """Weights of vertices in one place may differ by this much in total."""
 SEAMS = 0.05
 """Of all places on the surface: where more of them tear, it is no accident of a few layers."""
+CLEANED = "take away what cannot be true through the body, there alone"
+"""How weight that is too far from its joint is repaired."""
 MOST_LINES = 40
 
 
@@ -147,7 +149,8 @@ def _leaked(
         "warning",
         f"{count(len(found), 'vertex', 'follow')} joints that are far away through the body, past "
         "nearer ones.",
-        "Take this weight away, or bind again.",
+        "Take this weight away, here or of the whole rig (cutcell clean), or bind again.",
+        repair=CLEANED,
         vertices=found,
         joints=joints,
         details=tuple(lines),

@@ -49,6 +49,23 @@ def test_a_repair_removes_its_finding_and_brings_no_other(name, tmp_path):
     assert np.logical_or(np.abs(sums - 1) < 1e-9, sums == 0).all()
 
 
+def test_an_island_is_cleaned_where_it_was_found_alone():
+    weights = WORM.weights.copy()
+    island = np.flatnonzero(WORM.mesh.vertices[:, 0] > 0.93)
+    weights[island] = np.eye(weights.shape[1])[1]  # the head follows the tail
+    before = cutcell.diagnose(WORM.with_weights(weights), 24)
+    codes = [code for code in ("weight-islands", "leaked-weights") if code in before]
+    assert "weight-islands" in codes
+    repaired = before.repaired(codes).rig
+    assert repaired.weights[island, 1].max() < 0.01
+    elsewhere = np.setdiff1d(
+        np.arange(len(weights)), np.concatenate([before[code].vertices for code in codes])
+    )
+    assert len(elsewhere)
+    assert_allclose(repaired.weights[elsewhere], weights[elsewhere], atol=1e-12)
+    assert "weight-islands" not in cutcell.diagnose(repaired, 24)
+
+
 def test_what_is_not_safe_is_not_offered(tmp_path):
     _, before = damaged("a hole torn", tmp_path)
     assert not before["rims"].repair
