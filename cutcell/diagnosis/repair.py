@@ -19,6 +19,8 @@ from .finding import Finding
 from .weights import INFLUENCES
 
 TURNED = ("inverted-faces",)
+NOTHING = "left as it is, for it can be true through the body"
+ROUNDING = 1e-9
 DROPPED = ("duplicate-faces", "degenerate-faces")
 
 
@@ -55,16 +57,23 @@ def repair(rig: Rig, findings: Sequence[Finding]) -> Repaired:
         The rig keeps its glTF document: saving it writes faces and weights, and nothing else.
     """
     before, found = rig, {finding.code: finding for finding in findings}
+    kept = []
     for code, mend in WEIGHTS.items():  # of vertices, whose numbers stay
         if code in found and rig.weights is not None:
-            rig = rig.with_weights(_allowed(rig, mend(rig, found[code])))
+            weights = _allowed(rig, mend(rig, found[code]))
+            if mend is _cleaned and np.abs(weights - rig.weights).max() < ROUNDING:
+                kept.append(code)
+            rig = rig.with_weights(weights)
     turned, dropped = (
         _mask(len(before.mesh.faces), [found[code].faces for code in codes if code in found])
         for codes in (TURNED, DROPPED)
     )
     if turned.any() or dropped.any():
         rig = with_faces(rig, ~dropped, turned)
-    done = tuple(f"{finding.title}: {finding.repair}." for finding in findings)
+    done = tuple(
+        f"{finding.title}: {NOTHING if finding.code in kept else finding.repair}."
+        for finding in findings
+    )
     return Repaired(rig, done, tuple(findings))
 
 
