@@ -79,7 +79,10 @@ def serve(
         No port is free, or the address is none of this machine's.
     """
     path = None if rig is None else Path(rig)
-    opened = None if pairs is None else OpenedAudit(pairs, load_audit(pairs))
+    opened = None
+    if pairs is not None:
+        opened = OpenedAudit(pairs, load_audit(pairs))
+        print(f"{len(opened.pairs):,} pairs, {len(opened.audit.keep):,} characters to keep")
     chosen = free_port(port, address)
     if port and chosen != port:
         print(f"Port {port} is taken.", flush=True)

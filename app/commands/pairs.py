@@ -24,12 +24,15 @@ def watch(session: Session) -> None:
 
 def look_at(session: Session, opened: OpenedAudit) -> None:
     """Look at an audit, with all that was said of its pairs since it was opened."""
+    session.state.opened = opened
     try:
-        audit = replace(opened.audit, verdicts=read_verdicts(opened.folder))
-        session.state.opened = OpenedAudit(opened.folder, audit)
+        verdicts = read_verdicts(opened.folder)
     except CutcellError as error:
-        session.state.opened = opened
         session.fail(error)
+        return
+    if verdicts != opened.audit.verdicts:  # else what follows from them is known
+        audit = replace(opened.audit, verdicts=verdicts)
+        session.state.opened = OpenedAudit(opened.folder, audit)
 
 
 def find(session: Session) -> None:

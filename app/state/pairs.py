@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -27,7 +29,7 @@ class OpenedAudit:
     folder: Path
     audit: Audit
 
-    @property
+    @cached_property
     def pairs(self) -> list[Pair]:
         """All pairs: near-duplicates, nearest first, then one skeleton in other poses."""
         return [*self.audit.pairs, *self.audit.posed]
@@ -58,16 +60,16 @@ class PairsChoices(param.Parameterized):
         return pairs[min(self.pair, len(pairs) - 1)] if pairs else None
 
     @property
-    def stepped(self) -> list[int]:
+    def stepped(self) -> Sequence[int]:
         """The places of the pairs of the chosen tier."""
         if self.opened is None:
             return []
         audit = self.opened.audit
         near, count = len(audit.pairs), len(self.opened.pairs)
         if self.tier == "posed":
-            return list(range(near, count))
+            return range(near, count)
         if self.tier in ("twin", "variant", "near"):
             return [k for k, pair in enumerate(audit.pairs) if pair.tier == self.tier]
         if self.tier == "overruled":
             return [k for k, pair in enumerate(self.opened.pairs) if audit.verdict(pair)]
-        return list(range(count))
+        return range(count)

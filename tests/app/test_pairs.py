@@ -97,7 +97,7 @@ def test_a_verdict_changes_what_is_kept_and_stays_in_the_folder(looking, loop, a
     assert len(state.opened.audit.keep) == 3
     assert load_audit(audited).keep == state.opened.audit.keep
     pairs.choose_tier(looking, "overruled")
-    assert state.stepped == [0, 1, 2]
+    assert list(state.stepped) == [0, 1, 2]
     pairs.overrule(looking, "")
     loop.run_until(lambda: len(state.opened.audit.verdicts) == 2)
     assert len(load_audit(audited).verdicts) == 2
