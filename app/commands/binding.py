@@ -93,16 +93,19 @@ def binder(
     return work
 
 
-def previewer(state: State) -> Callable[[Rig], Binding]:
+def previewer(state: State) -> Callable[[Rig, Corrections], Binding]:
     """Return what tells about how the rig that is bound is bound with joints elsewhere."""
-    rig, binding, corrections = state.rig, state.binding, measured(state.corrections)
-    method = cutcell.ANIMATION.with_options(**effective(generous(state)))
+    rig, binding, before = state.rig, state.binding, measured(state.corrections)
+    method = cutcell.ANIMATION.with_options(**effective({**generous(state), **kept(state)}))
+    most = state.max_influences
     made: list[Preview] = []
 
-    def preview(moved: Rig) -> Binding:
+    def preview(moved: Rig, corrections: Corrections) -> Binding:
         if not made:
-            made.append(Preview(rig, binding, method, corrections))
-        return made[0].bind(moved)
+            made.append(Preview(rig, binding, method, before))
+        found = made[0].bind(moved)
+        weights = finished(moved, found.graph, found.weights, corrections, most)
+        return replace(found, weights=weights)
 
     return preview
 

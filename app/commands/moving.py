@@ -18,7 +18,7 @@ from cutcell_viewers.character import to_scene
 
 from ..scenes.common import bones_part
 from ..state.corrections import Dragged, applied
-from .binding import asked, binder, kept, previewer, pruned
+from .binding import asked, binder, previewer
 from .correct import check_alone, correct
 from .session import Session
 
@@ -168,6 +168,7 @@ class Hand:
     def __init__(self, session: Session) -> None:
         self._session = session
         self._holds = False
+        self._binds = False
         self._bound: Binding | None = None
         self._preview: Any = None
 
@@ -204,6 +205,9 @@ class Hand:
 
     def _take(self, corrections: Corrections) -> None:
         state = self._session.state
+        if state.dragged is not None:
+            rig = applied(state.rig, state.own_skeleton, corrections)
+            state.dragged = replace(state.dragged, rig=rig)
         before, self._holds = state.corrections, True  # what is seen stays until it is bound
         try:
             correct(self._session, corrections)
@@ -220,7 +224,10 @@ class Hand:
         rig = applied(state.rig, state.own_skeleton, corrections)
         before = state.binding if state.dragged is None else state.dragged.binding
         state.dragged = Dragged(rig, before)  # the bones follow at once
-        newest, few = session.tasks.newest("moving"), kept(state)
+        newest = session.tasks.newest("moving")
+        if self._binds:  # the hand did not rest after all, and colours must not wait for that
+            newest.cancel()
+            self._binds = False
         exact = binder(state, rig, corrections, state.binding.graph)
 
         def done(binding: Binding) -> None:
@@ -237,8 +244,9 @@ class Hand:
             self._bound, self._preview = state.binding, previewer(state)
         preview = self._preview
 
-        def roughly(progress: Progress) -> Binding:
-            return pruned(preview(rig), few, rig, corrections)
+        def resting(progress: Progress) -> Binding:
+            self._binds = True
+            return wholly(progress)
 
-        newest.do(roughly, done)
-        session.tasks.after_a_pause(lambda: newest.do(wholly, done) if state.dragged else None)
+        newest.do(lambda progress: preview(rig, corrections), done)
+        session.tasks.after_a_pause(lambda: newest.do(resting, done) if state.dragged else None)

@@ -29,7 +29,7 @@ def place(session: Session) -> list[Any]:
     fields = [
         pmui.TextInput(
             label=axis.upper(), value="", size="small", margin=(8, 6 * (axis != "z"), 4, 0),
-            sizing_mode="stretch_width",
+            sizing_mode="stretch_width", sx={"& input": {"paddingX": "8px"}},
         )
         for axis in "xyz"
     ]  # fmt: skip
@@ -45,7 +45,7 @@ def place(session: Session) -> list[Any]:
     showing = [False]
 
     def show() -> None:
-        rig = state.rig
+        rig = state.rig if state.dragged is None else state.dragged.rig
         if rig is None or state.joint >= len(rig.skeleton.names):
             return
         showing[0] = True
@@ -73,7 +73,7 @@ def place(session: Session) -> list[Any]:
 
     for axis, field in enumerate(fields):
         field.param.watch(lambda event, axis=axis: written(event, axis), "value")
-    state.param.watch(lambda *events: show(), ["rig", "joint", "corrections"])
+    state.param.watch(lambda *events: show(), ["rig", "joint", "corrections", "dragged"])
     show()
     return [
         caption("Where it stands, in the file's units", margin=(8, 0, 0, 0)),

@@ -91,14 +91,7 @@ class Diffusion:
         self, weights: NDArray[np.float64], tell: Tell = lambda done: None
     ) -> NDArray[np.float64]:
         """Return the equilibrium of weights p, shape (k, j); rows sum to one before and after."""
-        used = np.flatnonzero(weights.max(axis=0))
-        spread = np.zeros_like(weights)
-        groups = [used[first : first + RIGHT_SIDES] for first in range(0, len(used), RIGHT_SIDES)]
-        shares = Shares(lambda stage, done: tell(done), "weights", len(groups))
-
-        def solve(group: int) -> None:
-            self._solve(groups[group], weights, spread, lambda done: shares.tell(group, done))
-            shares.tell(group, 1.0)
+        spread = self.equilibrium(weights, tell)
 
         def normalise(part: slice) -> None:
             total = spread[part].sum(axis=1, keepdims=True)
@@ -110,9 +103,31 @@ class Diffusion:
                 own = weights[part].copy()
                 spread[part] = np.divide(spread[part], total, out=own, where=known)
 
-        in_threads(solve, range(len(groups)))
         in_threads(normalise, parts(len(spread)), lambda done: tell(1.0))
         return spread
+
+    def equilibrium(self, weights: NDArray[np.float64], tell: Tell) -> NDArray[np.float64]:
+        """Return the equilibrium, where rounding leaves rows that do not quite sum to one."""
+        spread = np.zeros_like(weights)
+        self.solve(weights, np.flatnonzero(weights.max(axis=0)), spread, tell)
+        return spread
+
+    def solve(
+        self,
+        weights: NDArray[np.float64],
+        joints: NDArray[np.intp],
+        spread: NDArray[np.float64],
+        tell: Tell,
+    ) -> None:
+        """Write the equilibrium of some joints' weights into their columns of `spread`."""
+        groups = [joints[i : i + RIGHT_SIDES] for i in range(0, len(joints), RIGHT_SIDES)]
+        shares = Shares(lambda stage, done: tell(done), "weights", len(groups))
+
+        def solve(group: int) -> None:
+            self._solve(groups[group], weights, spread, lambda done: shares.tell(group, done))
+            shares.tell(group, 1.0)
+
+        in_threads(solve, range(len(groups)))
 
     def _solve(
         self,

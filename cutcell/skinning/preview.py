@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
 
 from ..corrections import Corrections
 from ..geodesics.moved import moved_distances
 from ..method import Method
+from ..progress import Tell
 from ..rig import Rig
 from .bind import Binding
 from .correct import adjustments_of, joints_measured
@@ -14,12 +18,16 @@ from .diffusion import Diffusion
 from .surface_operators import SurfaceOperators
 from .weights import skinning_weights
 
+UNSEEN = 1e-3
+"""Weights that differ by less have colours that differ by less than one of their 256 shades."""
+
 
 class Preview:
     """Weights of a rig whose joints are dragged, from those that were bound before.
 
-    Only the distances of bones that changed are measured, and the matrix of the diffusion is that
-    of the first place. `bind` gives the exact weights.
+    Only the distances of bones that changed are measured. The matrix of the diffusion is that of
+    the first place, and joints whose share of the surface has hardly changed are not spread again.
+    `cutcell.bind` gives the exact weights.
 
     Parameters
     ----------
@@ -41,7 +49,7 @@ class Preview:
         if method.falloff == "rig":
             depth = binding.distances.at_welded.min(axis=0)
             surface = SurfaceOperators.of(binding.graph)
-            self._diffusion = Diffusion.over(surface, depth, binding.graph.lattice.resolution)
+            self._diffusion = _Repeated.over(surface, depth, binding.graph.lattice.resolution)
 
     def bind(self, rig: Rig) -> Binding:
         """Return about what `bind` would for the rig with its joints elsewhere."""
@@ -55,3 +63,20 @@ class Preview:
             diffusion=self._diffusion,
         )
         return replace(self._binding, distances=distances, weights=weights)
+
+
+@dataclass(frozen=True, eq=False)
+class _Repeated(Diffusion):
+    """A diffusion that is solved again only for joints whose part of the right side has changed."""
+
+    _known: list[NDArray[np.float64]] = field(default_factory=list)
+    """Right sides, shape (k, j), and the equilibrium of each column."""
+
+    def equilibrium(self, weights: NDArray[np.float64], tell: Tell) -> NDArray[np.float64]:
+        if not self._known:
+            self._known.extend([weights.copy(), super().equilibrium(weights, tell)])
+        right, spread = self._known
+        changed = np.flatnonzero(np.abs(weights - right).max(axis=0) > UNSEEN)
+        right[:, changed] = weights[:, changed]
+        self.solve(right, changed, spread, tell)
+        return spread.copy()

@@ -56,7 +56,9 @@ def test_the_weights_follow_a_joint_while_it_is_dragged(held, loop):
     before, steps = state.binding.weights, len(held.history._past)
     bones = resolve(state).actors["bones"].points
     assert held.view.told("mover")["at"] == pytest.approx([0, 0, 0])
+    fields = pmui.Column(*place(held)).select(pmui.TextInput)
     drag(held, [0.1, 0.05, 0])
+    assert [field.value for field in fields] == ["0.1", "0.05", "0"]
     assert not np.array_equal(resolve(state).actors["bones"].points, bones)
     assert not state.corrections
     loop.run_until(lambda: not held.tasks.running)
@@ -66,6 +68,7 @@ def test_the_weights_follow_a_joint_while_it_is_dragged(held, loop):
         drag(held, [x, 0.05, 0])
     drag(held, [0.4, 0.1, 0], done=True)
     assert state.corrections == Corrections({"elbow": JointCorrection(position=(0.4, 0.1, 0))})
+    assert [field.value for field in fields] == ["0.4", "0.1", "0"]
     assert held.view.told("mover")["at"] == pytest.approx([0.4, 0, -0.1])
     settled(held, loop)
     the_same_as_bind(held, rig)
