@@ -191,8 +191,12 @@ def _along_surface(places: NDArray, faces: NDArray, chosen: NDArray) -> NDArray[
         rows = np.arange(begin, min(begin + 512, len(chosen)))
         away = dijkstra(graph, directed=False, indices=chosen[rows], limit=FAR)[:, chosen]
         away[np.arange(len(rows)), rows] = np.inf
-        order = np.argsort(away, axis=1, kind="stable")[:, :KNOWN]
-        there = np.isfinite(np.take_along_axis(away, order, axis=1))
+        count = min(KNOWN, len(chosen))
+        order = np.sort(np.argpartition(away, count - 1, axis=1)[:, :count], axis=1)
+        lengths = np.take_along_axis(away, order, axis=1)
+        by_length = np.argsort(lengths, axis=1, kind="stable")
+        order = np.take_along_axis(order, by_length, axis=1)
+        there = np.isfinite(np.take_along_axis(lengths, by_length, axis=1))
         nearest[rows] = rows[:, None]
         nearest[rows, : order.shape[1]] = np.where(there, order, rows[:, None])
     return nearest
