@@ -31,11 +31,11 @@ def sidebar(session: Session) -> list[Any]:
         session.state.param.panel,
         session.state.param.opened,
     )
-    one, two = (
+    chosen, exported = (
         pmui.Column(*parts, margin=0, visible=alone, sizing_mode="stretch_width")
         for parts in ((character(session), bone(session)), (export(session),))
     )
-    return [one, *panels(session), two]
+    return [chosen, *panels(session), exported]
 
 
 def panels(session: Session) -> tuple[Tabs, pmui.Column]:
