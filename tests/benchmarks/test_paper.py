@@ -34,16 +34,6 @@ def document(tmp_path):
     return path
 
 
-@pytest.fixture
-def small(tmp_path):
-    """Save a bar that two joints of three hold: no character, but measured in a moment."""
-    rig = bar(6)
-    far = rig.mesh.vertices[:, :1] > 0.5
-    path = tmp_path / "bar.glb"
-    cutcell.save(path, rig.with_weights(np.hstack([~far, far, 0 * far]).astype(float)))
-    return str(path)
-
-
 def test_gvb(document, small, tmp_path, capsys):
     plot = tmp_path / "gvb.png"
     given = [small, "--resolutions", "8", "16", "--plot", str(plot), "--out", str(document)]

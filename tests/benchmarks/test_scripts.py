@@ -23,33 +23,33 @@ from benchmarks.rigs import ROOT, load_characters
 from tests.benchmarks.markdown import read_tables
 
 DEMO = str(ROOT / "assets" / "robot.glb")
-TINY = [DEMO, "--resolutions", "8", "--repeats", "1", "--mesher-limit", "1"]
+TINY = ["--resolutions", "8", "--repeats", "1", "--mesher-limit", "1"]
 
 # Open3D and its companions warn while they are loaded.
 pytestmark = pytest.mark.filterwarnings("ignore::DeprecationWarning")
 
 
 @pytest.mark.parametrize("name", [name for name in speed.TABLES if name not in ("bind", "start")])
-def test_speed(name, capsys, tmp_path):
+def test_speed(name, small, capsys, tmp_path):
     out = tmp_path / "speed.md"
-    speed.main([*TINY, "--tables", name, "--markdown", str(out)])
+    speed.main([small, *TINY, "--tables", name, "--markdown", str(out)])
     printed = capsys.readouterr().out
     assert out.read_text() == printed
     (rows,) = read_tables(printed).values()
-    assert "robot" in rows[0]["rig"]
+    assert "bar" in rows[0]["rig"]
 
 
-def test_speed_of_binding(capsys):
-    speed.main([*TINY, "--tables", "bind"])
+def test_speed_of_binding(small, capsys):
+    speed.main([small, *TINY, "--tables", "bind"])
     (rows,) = read_tables(capsys.readouterr().out).values()
-    assert [row["rig"][:5] for row in rows] == ["robot", "**med"]
+    assert [row["rig"][:3] for row in rows] == ["bar", "**m"]
     assert rows[0]["Blender bone heat, elsewhere"] == "-"
     assert rows[0]["cutcell vs recipe"].endswith("x")
 
 
-def test_start_up(capsys, monkeypatch):
+def test_start_up(small, capsys, monkeypatch):
     monkeypatch.setattr("benchmarks.start_up.BIND", "import cutcell.rig")
-    speed.main([*TINY, "--tables", "start", "--cold"])
+    speed.main([small, *TINY, "--tables", "start", "--cold"])
     (rows,) = read_tables(capsys.readouterr().out).values()
     assert len(rows) == 4
 
@@ -73,11 +73,11 @@ def test_accuracy(capsys, tmp_path):
     assert {"ball", "box", "L-bar", "**all**"} == {row["shape"] for row in rows}
 
 
-def test_memory(capsys, tmp_path):
+def test_memory(small, capsys, tmp_path):
     out = tmp_path / "memory.md"
-    memory.main([DEMO, "--resolution", "8", "--connectivity", "6", "--markdown", str(out)])
+    memory.main([small, "--resolution", "8", "--connectivity", "6", "--markdown", str(out)])
     (rows,) = read_tables(capsys.readouterr().out).values()
-    assert [row["rig"] for row in rows] == ["robot", "**most**"]
+    assert [row["rig"] for row in rows] == ["bar", "**most**"]
     assert read_tables(out.read_text())["Peak memory"] == rows
 
 
@@ -102,10 +102,10 @@ def test_orientation(capsys):
     assert rows[-1]["mesh"] == "**nothing turned, all the same: 1**"
 
 
-def test_growth(capsys, tmp_path):
+def test_growth(small, capsys, tmp_path):
     out = tmp_path / "growth.md"
     sizes = ["--resolutions", "8", "16", "--faces", "80", "--bones", "2"]
-    growth.main([*sizes, "--rig", DEMO, "--markdown", str(out)])
+    growth.main([*sizes, "--rig", small, "--markdown", str(out)])
     found = read_tables(capsys.readouterr().out)
     assert len(found) == 3
     rows = found["Growth with the resolution"]
@@ -123,8 +123,8 @@ def test_growth_says_what_failed(capsys):
     assert growth.run(case, options) == "over 0.01 s"
 
 
-def test_large_meshes(capsys):
-    large.main(["--rig", DEMO, "--times", "0", "1", "--exact", "0"])
+def test_large_meshes(small, capsys):
+    large.main(["--rig", small, "--times", "0", "1", "--exact", "0"])
     (rows,) = read_tables(capsys.readouterr().out).values()
     assert len(rows) == 2
     assert float(rows[0]["largest difference"]) == 0  # small meshes are solved exactly
@@ -137,9 +137,9 @@ def test_slopes():
     assert np.isnan(growth.slope([1], [1]))
 
 
-def test_report(tmp_path):
+def test_report(small, tmp_path):
     out = tmp_path / "performance.md"
-    report.main(["--quick", "--rigs", DEMO, "--parts", "accuracy", "--out", str(out)])
+    report.main(["--quick", "--rigs", small, "--parts", "accuracy", "--out", str(out)])
     text = out.read_text()
     assert "## Accuracy" in text
     assert "cores" in text
