@@ -62,7 +62,7 @@ def measure(rig: Rig, name: str, resolution: int) -> Result:
     """Bind a character that has weights as known and as fresh, and compare both with them."""
     fresh = cutcell.choose_deform(rig, fresh=True)
     scores = {
-        mode: _score(rig, cutcell.bind(bound, resolution).weights)
+        mode: score_of(rig, cutcell.bind(bound, resolution).weights)
         for mode, bound in zip(MODES, (rig, fresh), strict=True)
     }
     joints = rig.skeleton
@@ -70,7 +70,8 @@ def measure(rig: Rig, name: str, resolution: int) -> Result:
     return Result(name, len(rig.mesh.vertices), len(joints.joints), guessed, scores)
 
 
-def _score(rig: Rig, weights: np.ndarray) -> Score:
+def score_of(rig: Rig, weights: np.ndarray) -> Score:
+    """Compare weights with those that a rig has."""
     assert rig.weights is not None
     shares = vertex_shares(rig.mesh, "welded")
     error = deformation_error(rig, weights, rig.weights, joints="all")
