@@ -26,7 +26,7 @@ from cutcell.graph import build_graph
 from cutcell.method import ANIMATION
 from cutcell.rig import Rig
 from cutcell.skinning import keep_strongest
-from cutcell.skinning.rig_falloff import TAIL, rig_weights
+from cutcell.skinning.rig_falloff import TAIL, permitted, rig_weights
 from cutcell.skinning.surface_operators import SurfaceOperators
 
 from .document import fill
@@ -60,8 +60,6 @@ class Pairs:
         The first is the logarithm of the weight.
     target : array, shape (k, JOINTS), float32
         The artist's weights.
-    area : array, shape (k,)
-        Of the surface about each vertex.
     is_rigid : array, shape (k,), bool
         Of parts that follow one joint, or the body where they touch it: these stay as they are.
     """
@@ -73,7 +71,6 @@ class Pairs:
     is_candidate: NDArray[np.bool_]
     features: NDArray[np.float32]
     target: NDArray[np.float32]
-    area: NDArray[np.float64]
     is_rigid: NDArray[np.bool_]
 
     @property
@@ -108,7 +105,6 @@ def pairs_of(name: str, rig: Rig, resolution: int = ANIMATION.resolution) -> Pai
         is_candidate,
         _features(rig, distances, weights, known["radius"], joint),
         np.where(is_candidate, target, 0).astype(np.float32),
-        surface.areas,
         np.abs(weights - known["spread"]).max(axis=1) > 1e-6,
     )
 
@@ -251,10 +247,8 @@ def fit(learned: Sequence[Pairs], epochs: int, points: int = 500, seed: int = 0)
 
 
 def _draw(pairs: Pairs, count: int, rng: np.random.Generator) -> tuple[NDArray, ...]:
-    """Draw vertices by the surface about them."""
-    among = pairs.learns
-    share = pairs.area[among] / pairs.area[among].sum()
-    chosen = rng.choice(among, count, p=share)
+    """Draw vertices; each counts alike, as in the measure."""
+    chosen = rng.choice(pairs.learns, count)
     return pairs.features[chosen], pairs.is_candidate[chosen], pairs.target[chosen]
 
 
@@ -280,7 +274,10 @@ def corrected(network: Corrector, pairs: Pairs, part: float) -> NDArray[np.float
     weights = np.zeros((len(found), len(pairs.rig.skeleton.joints)))
     np.add.at(weights, (np.arange(len(found))[:, None], pairs.joint), found)
     weights /= weights.sum(axis=1, keepdims=True)
-    return keep_strongest(pairs.distances, weights[pairs.distances.graph.vertex_node])
+    weights = weights[pairs.distances.graph.vertex_node]
+    if pairs.rig.allowed is not None:
+        weights = permitted(weights, pairs.distances.joint, pairs.rig.allowed)
+    return keep_strongest(pairs.distances, weights)
 
 
 def maker(name: str) -> str:
