@@ -58,6 +58,6 @@ def test_each_character_is_listed(tmp_path, monkeypatch, capsys):
         "two is left out",
     ]
     overall, each = read_tables(out.read_text()).values()
-    assert [row["part"] for row in overall] == ["0%", "100%"]
+    assert [row["part"] for row in overall] == ["0%", "100%", "100%, seen"]
     assert [row["character"] for row in each] == ["one_bar", "two_bar"]
     assert each[0]["L1, 0%"] != each[0]["L1, 100%"]  # it learned from the other artist

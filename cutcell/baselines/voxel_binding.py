@@ -105,7 +105,7 @@ def voxel_distances(body: Body, run: Run | None = None) -> NDArray[np.float64]:
     if run is not None:
         run.end("graph")
     sources = [
-        _voxels_of_bone(voxels, start, end)
+        voxels_of_bone(voxels, start, end)
         for start, end in zip(body.bones.start, body.bones.end, strict=True)
     ]
     starts = [np.zeros(len(nodes)) for nodes in sources]
@@ -181,7 +181,7 @@ def voxel_unirig(
     return bind_by(solve, rig, method)
 
 
-def _voxels_of_bone(voxels: Voxels, start: NDArray, end: NDArray) -> NDArray[np.intp]:
+def voxels_of_bone(voxels: Voxels, start: NDArray, end: NDArray) -> NDArray[np.intp]:
     """Return the solid voxels along a bone, or the nearest one where it runs outside."""
     steps = int(np.ceil(4 * voxels.resolution * np.linalg.norm(end - start))) + 1
     points = start + np.linspace(0, 1, steps)[:, None] * (end - start)

@@ -257,6 +257,34 @@ def bone_distances(
     return BoneDistances(joint[:, first], joint, *known, fallback, graph, contraction)
 
 
+def distances_from(graph: CutCellGraph, bones: Bones, samples: int, joints: int) -> BoneDistances:
+    """Compute the distances of given bones to each vertex along a graph.
+
+    Parameters
+    ----------
+    graph : CutCellGraph
+    bones : Bones
+        In the unit cube; of all joints, or of some.
+    samples : int
+        See `find_sources`.
+    joints : int
+        j, with or without bones.
+
+    Returns
+    -------
+    BoneDistances
+        Infinite where no path leads.
+    """
+    contraction = _contracted(graph)() if graph.connectivity == "any" else None
+    sources = find_sources(graph, bones, samples, sorted_nodes(graph), contraction)
+    targets = nodes_on_mesh(graph)
+    at_welded = np.full((joints, len(targets)), np.inf)
+    at_welded[np.unique(bones.joint)] = joint_paths(graph, contraction, sources, bones, targets)
+    is_reached = np.isfinite(at_welded.min(axis=0))[graph.vertex_node]
+    fallback = np.where(is_reached, REACHED, UNREACHED).astype(np.uint8)
+    return BoneDistances(at_welded, None, None, bones, sources, fallback, graph, contraction)
+
+
 _contractions: WeakKeyDictionary[CutCellGraph, Contraction] = WeakKeyDictionary()
 _grids: WeakKeyDictionary[CutCellGraph, NodeGrid] = WeakKeyDictionary()
 

@@ -1,0 +1,227 @@
+"""One joint's distance by several measures, each with its paths, to compare the graph with."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Literal, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import dijkstra
+from scipy.spatial import cKDTree
+
+from ..checks import check_choice
+from ..errors import ParameterError
+from ..geodesics import BoneDistances, Bones, distance_to_segment, shortest_path
+from ..geodesics.distances import distances_from
+from ..graph import build_graph
+from ..method import Method
+from ..rig import Rig
+from .body import Body
+from .voxel_binding import voxels_of_bone
+from .voxels import Voxels, voxelize
+
+Measure = Literal["straight", "surface", "voxel", "6", "26", "any"]
+MEASURES: tuple[Measure, ...] = get_args(Measure)
+
+SIDES = np.array([
+    [[0, 0, 0], [0, 0, 1], [0, 1, 1], [0, 1, 0]],
+    [[0, 0, 0], [1, 0, 0], [1, 0, 1], [0, 0, 1]],
+    [[0, 0, 0], [0, 1, 0], [1, 1, 0], [1, 0, 0]],
+])  # fmt: skip
+"""Corners of the three sides of a voxel at its lowest corner, seen from outside anticlockwise."""
+
+
+@dataclass(frozen=True, eq=False)
+class MeasuredDistance:
+    """How far every vertex is from one joint's bones by one measure.
+
+    Parameters
+    ----------
+    vertices : array, shape (n,), float64
+        In longest sides of the mesh; infinite where no path leads.
+    path_from : callable
+        Takes a vertex, and returns the points of its shortest path to the bones in the file's
+        units, shape (p, 3); no points where none leads.
+    sides : array, shape (s, 4, 3), float64
+        With voxels: their sides that are seen from outside, in the file's units.
+    side_distance : array, shape (s,), float64
+        Of the voxel behind each side.
+    """
+
+    vertices: NDArray[np.float64]
+    path_from: Callable[[int], NDArray[np.float64]]
+    sides: NDArray[np.float64]
+    side_distance: NDArray[np.float64]
+
+
+def measure_distance(
+    rig: Rig, distances: BoneDistances, joint: int, measure: Measure, method: Method
+) -> MeasuredDistance:
+    """Measure how far the skin is from a joint's bones.
+
+    Parameters
+    ----------
+    rig : Rig
+    distances : BoneDistances
+        Of the same rig: where its bones are.
+    joint : int
+        One that may carry weight.
+    measure : {"straight", "surface", "voxel", "6", "26", "any"}
+        Through the air; along the mesh's edges alone; along voxels, through 26 neighbours (Dionne
+        & de Lasa 2013); along the cut-cell graph with 6 or 26 neighbours, or at any angle in it.
+    method : Method
+        Its resolution is that of the voxels and of the graph; its winding threshold and samples
+        count, too.
+
+    Returns
+    -------
+    MeasuredDistance
+
+    Raises
+    ------
+    ParameterError
+        An unknown measure.
+        Or the joint may carry no weight.
+    """
+    check_choice("measure", measure, MEASURES)
+    if joint not in distances.bones.joint:
+        raise ParameterError(f"joint {joint} has no bone: it may not carry weight")
+    bones = distances.bones.some(distances.bones.joint == joint)
+    body = replace(Body.of(rig, resolution=method.resolution), bones=bones)
+    if measure == "straight":
+        return _straight(body)
+    if measure == "surface":
+        return _over_surface(body)
+    if measure == "voxel":
+        return _along_voxels(body)
+    return _in_graph(rig, bones, joint, method.with_options(connectivity=_CONNECTIVITY[measure]))
+
+
+_CONNECTIVITY = {"6": 6, "26": 26, "any": "any"}
+
+
+def _straight(body: Body) -> MeasuredDistance:
+    start, end = body.bones.start, body.bones.end
+
+    def path_from(vertex: int) -> NDArray[np.float64]:
+        point = body.points[body.index[vertex]]
+        nearest = distance_to_segment(point, start, end).argmin()
+        along = end[nearest] - start[nearest]
+        squared = along @ along
+        part = np.clip((point - start[nearest]) @ along / squared, 0, 1) if squared > 0 else 0.0
+        return body.lattice.to_file(np.stack([point, start[nearest] + part * along]))
+
+    return _measured(body.straight().min(axis=0)[body.index], path_from)
+
+
+def _over_surface(body: Body) -> MeasuredDistance:
+    """Go along edges, from the vertices nearest to points on the bones, as in the graph."""
+    points, start, end = body.points, body.bones.start, body.bones.end
+    used = np.unique(body.faces)
+    tree, near, away = cKDTree(points[used]), [], []
+    for one, other in zip(start, end, strict=True):
+        steps = int(np.ceil(body.lattice.resolution * np.linalg.norm(other - one))) + 1
+        found = tree.query(one + np.linspace(0, 1, steps)[:, None] * (other - one))[1]
+        near.append(used[np.unique(found)])
+        away.append(distance_to_segment(points[near[-1]], one, other))
+    ends = np.concatenate([body.faces[:, [0, 1]], body.faces[:, [1, 2]], body.faces[:, [2, 0]]])
+    edges = np.unique(np.sort(ends, axis=1), axis=0)
+    lengths = np.linalg.norm(points[edges[:, 0]] - points[edges[:, 1]], axis=1)
+    reached, before = _search(
+        len(points), edges, lengths, np.concatenate(near), np.concatenate(away)
+    )
+
+    def path_from(vertex: int) -> NDArray[np.float64]:
+        return body.lattice.to_file(points[_walk(before, reached, body.index[vertex])])
+
+    return _measured(reached[body.index], path_from)
+
+
+def _along_voxels(body: Body) -> MeasuredDistance:
+    voxels = voxelize(body)
+    links, lengths = voxels.links()
+    ends = zip(body.bones.start, body.bones.end, strict=True)
+    near = np.unique(np.concatenate([voxels_of_bone(voxels, *pair) for pair in ends]))
+    reached, before = _search(len(voxels.centres), links, lengths, near, np.zeros(len(near)))
+    own = voxels.at(body.points)
+    away = np.linalg.norm(body.points - voxels.centres[own], axis=1)
+
+    def path_from(vertex: int) -> NDArray[np.float64]:
+        welded = body.index[vertex]
+        centres = voxels.centres[_walk(before, reached, own[welded])]
+        whole = np.concatenate([body.points[[welded]], centres]) if len(centres) else centres
+        return body.lattice.to_file(whole)
+
+    sides, behind = _seen_sides(voxels)
+    sides = body.lattice.to_file(sides)
+    return MeasuredDistance((reached[own] + away)[body.index], path_from, sides, reached[behind])
+
+
+def _in_graph(rig: Rig, bones: Bones, joint: int, method: Method) -> MeasuredDistance:
+    graph = build_graph(rig.mesh, method=method)
+    distances = distances_from(graph, bones, method.samples, len(rig.skeleton.joints))
+    field = distances.field(joint)
+
+    def path_from(vertex: int) -> NDArray[np.float64]:
+        return graph.lattice.to_file(shortest_path(distances, joint, vertex, field))
+
+    return _measured(field[graph.vertex_node], path_from)
+
+
+def _measured(
+    vertices: NDArray[np.float64], path_from: Callable[[int], NDArray[np.float64]]
+) -> MeasuredDistance:
+    return MeasuredDistance(vertices, path_from, np.empty((0, 4, 3)), np.empty(0))
+
+
+def _search(
+    count: int,
+    links: NDArray[np.int32],
+    lengths: NDArray[np.float64],
+    sources: NDArray[np.intp],
+    starts: NDArray[np.float64],
+) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
+    """Return how far each node is, and the node before it: none at a source, which is negative.
+
+    All sources hang on one node more, at the distances at which they start.
+    """
+    least = 1e-12  # a sparse matrix has no link of length zero
+    a = np.concatenate([links[:, 0], np.full(len(sources), count)])
+    b = np.concatenate([links[:, 1], sources])
+    along = np.maximum(np.concatenate([lengths, starts]), least)
+    # Of two links between the same nodes the shorter counts: a matrix would add them.
+    order = np.lexsort((along, b, a))
+    pairs = np.stack([a, b])[:, order]
+    first = order[np.diff(pairs, prepend=-1).any(axis=0)]
+    matrix = coo_array((along[first], (a[first], b[first])), shape=(count + 1, count + 1))
+    reached, before = dijkstra(
+        matrix.tocsr(), directed=False, indices=count, return_predecessors=True
+    )
+    before[before == count] = -1
+    return reached[:count], before[:count]
+
+
+def _walk(before: NDArray[np.int32], reached: NDArray[np.float64], node: int) -> NDArray[np.intp]:
+    """List the nodes from one back to a source; none where no path leads."""
+    nodes = []
+    while node >= 0 and np.isfinite(reached[node]):
+        nodes.append(node)
+        node = int(before[node])
+    return np.array(nodes, np.intp)
+
+
+def _seen_sides(voxels: Voxels) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
+    """Return the sides between solid voxels and others, (s, 4, 3), and the voxel behind each."""
+    sides, behind = [], []
+    for axis in range(3):
+        for step in (-1, 1):
+            beside = np.roll(voxels.number, -step, axis=axis)
+            behind.append(voxels.number[(voxels.number >= 0) & (beside < 0)])
+            low = voxels.centres[behind[-1]] - 0.5 / voxels.resolution
+            low[:, axis] += (step > 0) / voxels.resolution
+            corners = SIDES[axis] if step < 0 else SIDES[axis][::-1]
+            sides.append(low[:, None] + corners / voxels.resolution)
+    return np.concatenate(sides), np.concatenate(behind)
