@@ -1,26 +1,33 @@
-"""Compute a bone's whole field when it is to be seen."""
+"""Compute a bone's whole field, and its distance by other measures, when they are to be seen."""
 
 from __future__ import annotations
 
 from typing import Any
 
+import cutcell
+from cutcell.baselines.measures import measure_distance
 from cutcell.progress import Progress
-from cutcell_viewers.distance_scene import distance_limits
 
-from ..scenes.geodesics import field_of, wants_field
+from ..scenes.geodesics import farthest, field_of, has_field, wants_field
+from ..scenes.measures import measured_of
+from ..state.geodesics import MEASURES
 from .session import Session
 
 WAVE_SECONDS = 6.0
 SHOWN = ["panel", "binding", "joint", "edge_colors", "vertex", "cut_axis", "graph_face"]
 """What a field's being wanted depends on."""
+BESIDE = [*(f"beside_{name}" for name in MEASURES), "beside_resolution"]
 
 
 def watch(session: Session) -> None:
     """Keep the field up to what is seen."""
-    session.state.param.watch(lambda *events: find_field(session), SHOWN)
+    session.state.param.watch(lambda *events: find_field(session), [*SHOWN, *BESIDE])
+    measured = ["panel", "binding", "joint", *BESIDE]
+    session.state.param.watch(lambda *events: find_measured(session), measured)
     session.view.listen("front", lambda message: halt_wave(session, message["front"]))
     session.state.param.watch(
-        lambda *events: run_wave(session), ["panel", "wave", "animating", "field", "joint", "rig"]
+        lambda *events: run_wave(session),
+        ["panel", "wave", "animating", "field", "measured", "joint", "rig", *BESIDE],
     )
 
 
@@ -32,9 +39,9 @@ def halt_wave(session: Session, front: float | None) -> None:
 def run_wave(session: Session) -> None:
     """Let the wavefront run in the browser, or halt it; told only when it is another one."""
     state = session.state
-    field = field_of(state)
-    runs = state.panel == "geodesics" and state.wave and state.animating and field is not None
-    animation = {"end": distance_limits(field)[1], "seconds": WAVE_SECONDS} if runs else None
+    end = farthest(state)
+    runs = state.panel == "geodesics" and state.wave and state.animating and end is not None
+    animation = {"end": end, "seconds": WAVE_SECONDS} if runs else None
     if session.view.told("animation") != animation:
         session.view.tell(animation=animation)
 
@@ -54,3 +61,34 @@ def find_field(session: Session) -> None:
         state.field = (distances, joint, field)
 
     session.tasks.jobs("field").start(work, done, session.fail, lambda stage, fraction: None)
+
+
+def find_measured(session: Session) -> None:
+    """Compute the next of the measures side by side that is not there, unless that goes on."""
+    state, jobs = session.state, session.tasks.jobs("measures")
+    if state.panel != "geodesics" or not has_field(state) or jobs.running:
+        return
+    name = next((one for one in state.measures if measured_of(state, one) is None), None)
+    if name is None:
+        return
+    rig, distances, joint = state.rig, state.binding.distances, state.joint
+    resolution = state.beside_resolution
+    method = cutcell.ANIMATION.with_options(
+        resolution=resolution, winding_threshold=state.winding_threshold, orient=state.orient
+    )
+    state.measuring = name
+
+    def work(progress: Progress) -> Any:
+        return measure_distance(rig, distances, joint, name, method)
+
+    def done(found: Any) -> None:
+        kept = {**state.measured, name: (distances, joint, resolution, found)}
+        state.param.update(measured=kept, measuring="")
+        find_measured(session)
+
+    def failed(error: Exception) -> None:
+        state.param.update(measuring="", **{f"beside_{name}": False})
+        session.fail(error)
+        find_measured(session)
+
+    jobs.start(work, done, failed, lambda stage, fraction: None)

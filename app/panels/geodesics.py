@@ -8,6 +8,7 @@ import panel_material_ui as pmui
 
 from ..commands.session import Session
 from ..state import State
+from ..state.geodesics import MEASURES, MOST_MEASURES
 from .cutting import cutting
 from .parts import GAP, caption, choice, lead, section, slider, weightless, when
 
@@ -25,9 +26,10 @@ def geodesics(session: Session) -> pmui.Column:
     )
     return pmui.Column(
         lead("How far it is from the chosen bone, along the shortest path through the body."),
-        section("", idle, *cutting(session), _face(state), margin=(8, 20, 4, 20)),
+        section("", idle, _one(session), margin=(8, 20, 4, 20)),
         section("Shown with it", *_more(state)),
         section("Wavefront", *_wave(state)),
+        section("Measures side by side", *_beside(state)),
         margin=0,
         sizing_mode="stretch_width",
     )
@@ -37,6 +39,44 @@ def _face(state: State) -> Any:
     faces = {"Distance": "field", "Winding number": "winding"}
     seen = when(lambda axis: axis != "off", state.param.cut_axis)
     return choice(state.param.cut_face, faces, visible=seen)
+
+
+def _one(session: Session) -> pmui.Column:
+    """Return what there is with one view only: a cut through the body."""
+    state = session.state
+    return pmui.Column(
+        *cutting(session), _face(state), margin=0, sizing_mode="stretch_width",
+        visible=when(lambda *chosen: not any(chosen), *_switches(state)),
+    )  # fmt: skip
+
+
+def _switches(state: State) -> list[Any]:
+    return [state.param[f"beside_{name}"] for name in MEASURES]
+
+
+def _beside(state: State) -> list[Any]:
+    """Return a switch for each measure, of which four at most can be on, and their R."""
+    switches = []
+    for parameter in _switches(state):
+        one = switch(parameter)
+        full = when(
+            lambda on, *chosen: not on and sum(chosen) >= MOST_MEASURES,
+            parameter,
+            *_switches(state),
+        )
+        one.disabled = full
+        switches.append(one)
+    some = when(lambda *chosen: any(chosen), *_switches(state))
+    rate = choice(
+        state.param.beside_resolution,
+        {f"R = {n}": n for n in state.param.beside_resolution.objects},
+        visible=some,
+    )
+    told = (
+        "Up to four, under one camera and on one scale; the last three go through the cut-cell "
+        "graph. Click the body: each draws its own path."
+    )
+    return [caption(told), *switches, rate]
 
 
 def _more(state: State) -> list[Any]:

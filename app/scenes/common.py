@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from cutcell.display import shown_name
 from cutcell.rig import Rig
 from cutcell_viewers.camera import Camera
-from cutcell_viewers.character import attachments, body, bones, drawn_segments
+from cutcell_viewers.character import attachments, body, bones, drawn_segments, to_scene
 from cutcell_viewers.description import Actor, Cut, Description
 from cutcell_viewers.graph_scene import cut_at
 from cutcell_viewers.marks import vertex_mark
@@ -21,6 +21,9 @@ from cutcell_viewers.skin import skin_of_weights
 
 from ..state import State
 from .memo import Memo
+
+SEE_PATH = 0.42
+"""How opaque the body is while a path inside it is to be seen."""
 
 SEE_THROUGH = 0.22
 """How opaque the body is while what lies inside is looked at."""
@@ -100,11 +103,21 @@ def plain(state: State, memo: Memo) -> Description:
 
 
 def cut_of(state: State) -> Cut | None:
-    """Return the cutting plane, across the box of the body."""
-    if state.cut_axis == "off":
+    """Return the cutting plane, across the box of the body; none through bodies side by side."""
+    if state.cut_axis == "off" or (state.panel == "geodesics" and state.measures):
         return None
     across = cut_normal(state) if state.cut_axis == "free" else state.cut_axis
     return cut_at(bounds_of(state), across, state.cut_position)
+
+
+def has_field(state: State) -> bool:
+    """Whether the chosen bone has distances: it was bound, and may carry weight."""
+    return state.binding is not None and bool(state.rig.skeleton.deform[state.joint])
+
+
+def in_scene(state: State, points: np.ndarray) -> np.ndarray:
+    """Bring points of the graph's unit cube, shape (p, 3), into the scene's space."""
+    return to_scene(state.rig, state.binding.graph.lattice.to_file(points))
 
 
 def cut_normal(state: State) -> NDArray[np.float64]:

@@ -5,10 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-import numpy as np
-
 from cutcell.geodesics import path_length, shortest_path
-from cutcell_viewers.character import to_scene
 from cutcell_viewers.description import Actor, Description, Legend
 from cutcell_viewers.distance_scene import distance_colors, distance_limits
 from cutcell_viewers.marks import path_tube
@@ -16,18 +13,18 @@ from cutcell_viewers.palette import BODY, MARK, SOURCE
 from cutcell_viewers.start_scene import first_distances, start_scene
 
 from ..state import State
-from .common import character, cut_of, theme_of
+from .common import SEE_PATH, character, cut_of, has_field, in_scene, theme_of
+from .measures import measured_of, side_by_side
 from .memo import Memo
 from .section import field_section, winding_section
-
-SEE_PATH = 0.42
-"""How opaque the body is while something inside it is to be seen."""
 
 
 def geodesics(state: State, memo: Memo) -> Description:
     """Return the scene of the panel Geodesics: a bone's field, on the surface and inside."""
     if state.binding is None:
         return Description(character(state, memo))
+    if has_field(state) and state.measures:
+        return side_by_side(state, memo)
     cut = cut_of(state)
     if cut is not None and state.cut_face == "winding":
         colors, legend, limits = dict[str, Any](), Legend(""), (0.0, 1.0)
@@ -55,7 +52,7 @@ def geodesics(state: State, memo: Memo) -> Description:
         swatches += ((MARK, "no path leads from the vertex to the bone"),)
     elif path is not None:
         rig = state.rig
-        actors["path"] = memo("tube", (rig, path), lambda: path_tube(rig, _in_scene(state, path)))
+        actors["path"] = memo("tube", (rig, path), lambda: path_tube(rig, in_scene(state, path)))
         swatches += ((MARK, f"shortest path, {path_length(path):.3f} long"),)
     if state.wave:
         swatches += ((BODY, "not reached yet"),)
@@ -107,18 +104,18 @@ def path_of(state: State, memo: Memo) -> Any:
     )
 
 
-def _in_scene(state: State, path: np.ndarray) -> np.ndarray:
-    return to_scene(state.rig, state.binding.graph.lattice.to_file(path))
-
-
-def has_field(state: State) -> bool:
-    """Whether the chosen bone has distances: it was bound, and may carry weight."""
-    return state.binding is not None and bool(state.rig.skeleton.deform[state.joint])
+def farthest(state: State) -> float | None:
+    """Return the greatest distance that is seen, where the wavefront ends; None if none is yet."""
+    if state.measures:
+        known = [one for name in state.measures if (one := measured_of(state, name)) is not None]
+        return max((distance_limits(one.vertices)[1] for one in known), default=None)
+    field = field_of(state)
+    return None if field is None else distance_limits(field)[1]
 
 
 def wants_field(state: State) -> bool:
     """Whether the distance is to be known at every node of the graph."""
-    wanted = state.panel == "geodesics" or (
+    wanted = (state.panel == "geodesics" and not state.measures) or (
         state.panel == "graph"
         and (
             state.edge_colors == "distance"

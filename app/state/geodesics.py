@@ -6,6 +6,21 @@ from typing import Any
 
 import param
 
+from cutcell.baselines.measures import Measure
+
+MOST_MEASURES = 4
+"""That stand side by side."""
+
+MEASURES: dict[Measure, str] = {
+    "straight": "Straight line",
+    "surface": "Over the surface",
+    "voxel": "Along voxels",
+    "6": "6 neighbours",
+    "26": "26 neighbours",
+    "any": "Any angle",
+}
+"""What measures of a distance are called."""
+
 
 class GeodesicsChoices(param.Parameterized):
     """Which distances are seen."""
@@ -18,3 +33,20 @@ class GeodesicsChoices(param.Parameterized):
         False, label="Wavefront", doc="Whether `front` hides what is farther."
     )
     animating: Any = param.Boolean(False, doc="Whether the wave runs.")
+    beside_straight: Any = param.Boolean(False, label=MEASURES["straight"])
+    beside_surface: Any = param.Boolean(False, label=MEASURES["surface"])
+    beside_voxel: Any = param.Boolean(False, label=MEASURES["voxel"])
+    beside_6: Any = param.Boolean(False, label=MEASURES["6"])
+    beside_26: Any = param.Boolean(False, label=MEASURES["26"])
+    beside_any: Any = param.Boolean(False, label=MEASURES["any"])
+    beside_resolution: Any = param.Selector(
+        default=64, objects=[16, 32, 64, 128], doc="R of voxels and graphs that stand side by side."
+    )
+    measured: Any = param.Dict({}, doc="By measure: (distances, joint, R, MeasuredDistance).")
+    measuring: Any = param.String("", doc="The measure that is being computed; empty for none.")
+
+    @property
+    def measures(self) -> list[Measure]:
+        """The measures that stand side by side; none while there is one view."""
+        chosen = [name for name in MEASURES if getattr(self, f"beside_{name}")]
+        return chosen[:MOST_MEASURES]

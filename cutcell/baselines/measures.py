@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from itertools import product
 from typing import Literal, get_args
 
 import numpy as np
@@ -21,7 +22,7 @@ from ..method import Method
 from ..rig import Rig
 from .body import Body
 from .voxel_binding import voxels_of_bone
-from .voxels import Voxels, voxelize
+from .voxels import PAD, Voxels, voxelize
 
 Measure = Literal["straight", "surface", "voxel", "6", "26", "any"]
 MEASURES: tuple[Measure, ...] = get_args(Measure)
@@ -47,8 +48,8 @@ class MeasuredDistance:
         units, shape (p, 3); no points where none leads.
     sides : array, shape (s, 4, 3), float64
         With voxels: their sides that are seen from outside, in the file's units.
-    side_distance : array, shape (s,), float64
-        Of the voxel behind each side.
+    side_distance : array, shape (s, 4), float64
+        At the corners of the sides, the mean of the voxels about each.
     """
 
     vertices: NDArray[np.float64]
@@ -155,9 +156,9 @@ def _along_voxels(body: Body) -> MeasuredDistance:
         whole = np.concatenate([body.points[[welded]], centres]) if len(centres) else centres
         return body.lattice.to_file(whole)
 
-    sides, behind = _seen_sides(voxels)
+    sides, at_corners = _seen_sides(voxels, reached)
     sides = body.lattice.to_file(sides)
-    return MeasuredDistance((reached[own] + away)[body.index], path_from, sides, reached[behind])
+    return MeasuredDistance((reached[own] + away)[body.index], path_from, sides, at_corners)
 
 
 def _in_graph(rig: Rig, bones: Bones, joint: int, method: Method) -> MeasuredDistance:
@@ -174,7 +175,7 @@ def _in_graph(rig: Rig, bones: Bones, joint: int, method: Method) -> MeasuredDis
 def _measured(
     vertices: NDArray[np.float64], path_from: Callable[[int], NDArray[np.float64]]
 ) -> MeasuredDistance:
-    return MeasuredDistance(vertices, path_from, np.empty((0, 4, 3)), np.empty(0))
+    return MeasuredDistance(vertices, path_from, np.empty((0, 4, 3)), np.empty((0, 4)))
 
 
 def _search(
@@ -213,15 +214,25 @@ def _walk(before: NDArray[np.int32], reached: NDArray[np.float64], node: int) ->
     return np.array(nodes, np.intp)
 
 
-def _seen_sides(voxels: Voxels) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
-    """Return the sides between solid voxels and others, (s, 4, 3), and the voxel behind each."""
-    sides, behind = [], []
+def _seen_sides(
+    voxels: Voxels, distance: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return the corners of the sides between solid voxels and others, (s, 4, 3), and distances.
+
+    A corner, of shape (s, 4), has the mean of the solid voxels that it is one of.
+    """
+    lows, found = np.argwhere(voxels.solid), []  # in the order of their numbers
     for axis in range(3):
         for step in (-1, 1):
             beside = np.roll(voxels.number, -step, axis=axis)
-            behind.append(voxels.number[(voxels.number >= 0) & (beside < 0)])
-            low = voxels.centres[behind[-1]] - 0.5 / voxels.resolution
-            low[:, axis] += (step > 0) / voxels.resolution
-            corners = SIDES[axis] if step < 0 else SIDES[axis][::-1]
-            sides.append(low[:, None] + corners / voxels.resolution)
-    return np.concatenate(sides), np.concatenate(behind)
+            low = lows[voxels.number[(voxels.number >= 0) & (beside < 0)]]
+            low[:, axis] += step > 0
+            found.append(low[:, None] + (SIDES[axis] if step < 0 else SIDES[axis][::-1]))
+    corners = np.concatenate(found)
+    total, count = np.zeros((2, *np.add(voxels.solid.shape, 1)))
+    for corner in product((0, 1), repeat=3):
+        at = tuple((lows + corner).T)
+        total[at] += distance  # no two voxels share this corner
+        count[at] += 1
+    at = tuple(np.moveaxis(corners, 2, 0))
+    return (corners - PAD) / voxels.resolution, total[at] / count[at]

@@ -1,0 +1,115 @@
+"""One bone's distance by several measures side by side, in the same colours, waves in step."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from cutcell.baselines.measures import Measure, MeasuredDistance
+from cutcell.geodesics import path_length
+from cutcell.rig import Rig
+from cutcell_viewers.character import to_scene
+from cutcell_viewers.description import Actor, Description
+from cutcell_viewers.distance_scene import distance_colors, distance_limits, distance_look
+from cutcell_viewers.marks import path_tube
+from cutcell_viewers.palette import BODY
+
+from ..state import State
+from ..state.geodesics import MEASURES
+from .common import SEE_PATH, character
+from .memo import Memo
+
+WAITING = 0.28
+"""How opaque a body is whose distances are not there."""
+INSIDE_VOXELS = 0.06
+"""How opaque a body is in voxels that are seen through."""
+WITH_RESOLUTION = ("voxel", "6", "26", "any")
+
+
+def side_by_side(state: State, memo: Memo) -> Description:
+    """Return the scene of some measures, each in a view of its own."""
+    names, rig, joint = state.measures, state.rig, state.joint
+    found = {name: measured_of(state, name) for name in names}
+    known = [one for one in found.values() if one is not None]
+    limits = (0.0, max((distance_limits(one.vertices)[1] for one in known), default=1.0))
+    shared = character(state, memo)
+    plain = shared.pop("body")
+    actors: dict[str, Actor] = {}
+    legend, captions = None, []
+    for view, name in enumerate(names):
+        body, one = f"body {view}" if view else "body", found[name]
+        title = title_of(name, state.beside_resolution)
+        if one is None:
+            actors[body] = replace(plain, view=view, opacity=WAITING)
+            captions.append(f"{title} · {'computing' if state.measuring == name else 'waiting'}")
+            continue
+        colors, legend = memo(
+            f"measure {name}",
+            (rig, one, joint, limits),
+            partial(distance_colors, rig, one.vertices, joint, limits),
+        )
+        path = _path(state, memo, name, one)
+        if path is not None and len(path):
+            tube = memo(f"tube {name}", (rig, path), partial(path_tube, rig, path))
+            actors[f"path {view}"] = replace(tube, view=view)
+            title += f" · {path_length(path) / _size(rig):.3f}"
+        elif path is not None:
+            title += " · no path"
+        see = 1.0 if path is None else SEE_PATH
+        if len(one.sides):
+            voxels = memo("voxels", (rig, one, limits), partial(_voxels, rig, one, limits))
+            actors["voxels"] = replace(voxels, view=view, film=state.wave, opacity=see)
+            see = see if see == 1 else INSIDE_VOXELS
+        actors[body] = replace(plain, view=view, film=state.wave, opacity=see, **colors)
+        captions.append(title)
+    if legend is not None and state.wave:
+        legend = replace(legend, swatches=(*legend.swatches, (BODY, "not reached yet")))
+    front = state.front * limits[1] if state.wave else None
+    return Description({**actors, **shared}, legend=legend, front=front, views=tuple(captions))
+
+
+def title_of(name: Measure, resolution: int) -> str:
+    """Return what stands over a measure's view."""
+    return f"{MEASURES[name]}, R = {resolution}" if name in WITH_RESOLUTION else MEASURES[name]
+
+
+def measured_of(state: State, name: Measure) -> MeasuredDistance | None:
+    """Return a measure's distances, unless they are of something else than what is chosen."""
+    distances, joint, resolution, one = state.measured.get(name, (None, -1, 0, None))
+    if state.binding is None or distances is not state.binding.distances or joint != state.joint:
+        return None
+    return one if resolution == state.beside_resolution or name not in WITH_RESOLUTION else None
+
+
+def _path(state: State, memo: Memo, name: str, one: MeasuredDistance) -> Any:
+    """Return the path from the clicked vertex in the scene's space, (p, 3), or None."""
+    if not state.path or state.vertex is None:
+        return None
+    rig, vertex = state.rig, state.vertex
+
+    def make() -> np.ndarray:
+        path = one.path_from(vertex)
+        return to_scene(rig, path) if len(path) else path
+
+    return memo(f"path {name}", (rig, one, vertex), make)
+
+
+def _size(rig: Rig) -> float:
+    """Return the longest side in the scene's space, where axes may have changed places."""
+    return float(np.ptp(to_scene(rig, rig.mesh.bounds), axis=0).max())
+
+
+def _voxels(rig: Rig, one: MeasuredDistance, limits: tuple[float, float]) -> Actor:
+    """Return the outside of the voxels, each in the colour of its distance."""
+    points = to_scene(rig, one.sides.reshape(-1, 3)).astype(np.float32)
+    a, b, c, _ = points.reshape(-1, 4, 3).transpose(1, 0, 2)
+    normals = np.cross(b - a, c - a)
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    first = 4 * np.arange(len(one.sides), dtype=np.int32)[:, None]
+    halves = np.array([[0, 1, 2], [0, 2, 3]], np.int32)
+    cells = np.concatenate([first + half for half in halves])
+    look, _ = distance_look(one.side_distance.ravel(), limits)
+    return Actor("surface", points, cells, np.repeat(normals, 4, axis=0), **look)
