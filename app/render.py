@@ -26,8 +26,9 @@ from .commands.pose import motion_error
 from .render_names import find_bone, find_clip
 from .render_options import apply, settings_of
 from .scenes import following, resolve
-from .scenes.common import first_joint
+from .scenes.common import first_joint, has_field
 from .scenes.geodesics import wants_field
+from .scenes.measures import measuring
 from .state import State
 from .state.compare import NOW, standard
 from .state.weights import SHOWN
@@ -171,6 +172,16 @@ def describe(
     if wants_field(state):
         distances = state.binding.distances
         state.field = (distances, state.joint, distances.field(state.joint))
+    if state.panel == "geodesics" and has_field(state) and state.measures:
+        try:
+            state.beside_resolution = resolution
+        except ValueError:
+            known = ", ".join(map(str, state.param.beside_resolution.objects))
+            raise ParameterError(
+                f"measures side by side are drawn at a resolution of {known}, not {resolution}"
+            ) from None
+        for name in state.measures:
+            state.measured = {**state.measured, name: measuring(state, name)()}
     if state.panel == "compare":
         for name in state.methods:
             found = measured(rig, name, state.binding, resolution, progress)

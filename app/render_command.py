@@ -30,6 +30,7 @@ from .render_flags import (
     FindingCode,
     Keep,
     Layers,
+    Measures,
     Near,
     PathFrom,
     Plane,
@@ -130,6 +131,7 @@ def render(
     sources: Sources = False,
     path: PathFrom = None,
     wave: Wave = None,
+    measures: Measures = None,
     clip: Annotated[
         str | None,
         typer.Option(
@@ -230,6 +232,7 @@ def render(
             sources=sources,
             path=path,
             wave=wave,
+            measures=measures,
         ),
         method=method,
         finding=finding,

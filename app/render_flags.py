@@ -96,6 +96,16 @@ Wave = Annotated[
         rich_help_panel=INSIDE,
     ),
 ]
+Measures = Annotated[
+    str | None,
+    typer.Option(
+        "--measures",
+        metavar="A,B",
+        help="The distance by two to four measures side by side, on the panel distance: straight, "
+        "surface, voxel, 6, 26, any. R is that of --resolution.",
+        rich_help_panel=INSIDE,
+    ),
+]
 Near = Annotated[
     float | None,
     typer.Option(

@@ -12,6 +12,7 @@ from cutcell.checks import check_choice
 from cutcell.errors import ParameterError
 
 from .state import State
+from .state.geodesics import MEASURES, MOST_MEASURES
 
 LAYERS = {
     "body": "body",
@@ -37,6 +38,7 @@ def settings_of(
     sources: bool = False,
     path: int | None = None,
     wave: float | None = None,
+    measures: str | None = None,
 ) -> dict[str, Any]:
     """Return the choices of the page that options stand for.
 
@@ -68,6 +70,11 @@ def settings_of(
         said |= {"vertex": path, "path": True}
     if wave is not None:
         said |= {"wave": True, "front": wave}
+    if measures is not None:
+        for name in [name.strip() for name in measures.split(",")]:
+            said[f"beside_{check_choice('measure', name, MEASURES)}"] = True
+        if sum(one.startswith("beside_") for one in said) > MOST_MEASURES:
+            raise ParameterError(f"at most {MOST_MEASURES} measures stand side by side")
     return said
 
 

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
-import cutcell
-from cutcell.baselines.measures import measure_distance
 from cutcell.progress import Progress
 
 from ..scenes.geodesics import farthest, field_of, has_field, wants_field
-from ..scenes.measures import measured_of
+from ..scenes.measures import measured_of, measuring
 from ..state.geodesics import MEASURES
 from .session import Session
 
@@ -71,19 +69,11 @@ def find_measured(session: Session) -> None:
     name = next((one for one in state.measures if measured_of(state, one) is None), None)
     if name is None:
         return
-    rig, distances, joint = state.rig, state.binding.distances, state.joint
-    resolution = state.beside_resolution
-    method = cutcell.ANIMATION.with_options(
-        resolution=resolution, winding_threshold=state.winding_threshold, orient=state.orient
-    )
+    measure = measuring(state, name)
     state.measuring = name
 
-    def work(progress: Progress) -> Any:
-        return measure_distance(rig, distances, joint, name, method)
-
     def done(found: Any) -> None:
-        kept = {**state.measured, name: (distances, joint, resolution, found)}
-        state.param.update(measured=kept, measuring="")
+        state.param.update(measured={**state.measured, name: found}, measuring="")
         find_measured(session)
 
     def failed(error: Exception) -> None:
@@ -91,4 +81,4 @@ def find_measured(session: Session) -> None:
         session.fail(error)
         find_measured(session)
 
-    jobs.start(work, done, failed, lambda stage, fraction: None)
+    jobs.start(lambda progress: measure(), done, failed, lambda stage, fraction: None)

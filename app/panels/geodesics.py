@@ -91,7 +91,11 @@ def _more(state: State) -> list[Any]:
         "with their straight distance to the bone.",
         visible=state.param.starts,
     )
-    return [switch(state.param.path), hint, switch(state.param.starts), explain]
+    starts = pmui.Column(
+        switch(state.param.starts), explain, margin=0, sizing_mode="stretch_width",
+        visible=when(lambda *chosen: not any(chosen), *_switches(state)),
+    )  # fmt: skip
+    return [switch(state.param.path), hint, starts]
 
 
 def _wave(state: State) -> list[Any]:

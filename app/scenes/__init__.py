@@ -74,12 +74,14 @@ def following(state: State, memo: Memo | None = None) -> Description:
     """
     whole = resolve(state, memo)
     actors = dict(whole.actors)
-    if "body" in actors and actors["body"].skin is None:
-        actors["body"] = replace(actors["body"], skin=skin_of_weights(state.weights))
+    bodies = [name for name in actors if name.startswith("body") and actors[name].skin is None]
+    if bodies:
+        skin = skin_of_weights(state.weights)
+        actors |= {name: replace(actors[name], skin=skin) for name in bodies}
     actors = {name: actor for name, actor in actors.items() if actor.skin is not None}
     if state.panel not in POSED:
         for name in actors:
-            if name == "body" or name.startswith("attachment"):
+            if name.startswith(("body", "attachment")):
                 actors[name] = replace(actors[name], visible=True, opacity=1.0)
     return replace(whole, actors=actors, cut=None, legend=_left_of(whole.legend, actors))
 

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from typing import Any
 
 import numpy as np
 
-from cutcell.baselines.measures import Measure, MeasuredDistance
-from cutcell.geodesics import path_length
+import cutcell
+from cutcell.baselines.measures import Measure, MeasuredDistance, measure_distance
+from cutcell.geodesics import BoneDistances, path_length
 from cutcell.rig import Rig
 from cutcell_viewers.character import to_scene
 from cutcell_viewers.description import Actor, Description
@@ -82,6 +84,21 @@ def measured_of(state: State, name: Measure) -> MeasuredDistance | None:
     if state.binding is None or distances is not state.binding.distances or joint != state.joint:
         return None
     return one if resolution == state.beside_resolution or name not in WITH_RESOLUTION else None
+
+
+def measuring(state: State, name: Measure) -> Callable[[], tuple[BoneDistances, int, int, Any]]:
+    """Return what measures what is chosen now, and returns it as `State.measured` keeps it."""
+    rig, distances, joint = state.rig, state.binding.distances, state.joint
+    resolution = state.beside_resolution
+    method = cutcell.ANIMATION.with_options(
+        resolution=resolution, winding_threshold=state.winding_threshold, orient=state.orient
+    )
+
+    def measure() -> tuple[BoneDistances, int, int, Any]:
+        found = measure_distance(rig, distances, joint, name, method)
+        return distances, joint, resolution, found
+
+    return measure
 
 
 def _path(state: State, memo: Memo, name: str, one: MeasuredDistance) -> Any:

@@ -125,6 +125,16 @@ def test_the_field_its_starts_and_the_way_back(visit):
     visit.slide("Tilted", "ArrowRight", 2)
     visit.button("Winding number").click()
     visit.expect_text("where the plane meets the mesh")
+    visit.switch("Straight line")
+    visit.switch("Along voxels")
+    visit.button("R = 16").click()
+    visit.expect_text("Along voxels, R = 16")
+    visit.page.wait_for_function("__cutcell.report().actors.voxels")
+    expect(visit.button("Cut Z")).to_have_count(0)
+    visit.click_vertex("__cutcell.renderer.actors.get('body').values[vertex] > 0.3")
+    visit.expect_text(re.compile(r"^Straight line · \d\.\d+$"))
+    paths = visit.report()["actors"]
+    assert paths["path 0"]["points"] != paths["path 1"]["points"]
 
 
 def test_the_wave_runs_and_halts(visit):

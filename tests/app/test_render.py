@@ -120,9 +120,19 @@ def test_what_is_seen_inside_reaches_the_picture(drawn, tmp_path):
                    "0.5", "--connectivity", "6")  # fmt: skip
     assert {"sources", "path"} <= scene.actors.keys()
     assert scene.front is not None
+    scene = actors(
+        "--panel", "distance", "--bone", bone, "--measures", "straight,surface", "-r", "16"
+    )
+    assert scene.views == ("Straight line", "Over the surface")
     scene = actors("--panel", "check", "--finding", "unreachable-vertices", "--near", "0.3")
     assert "finding faces" in scene.actors
     assert drawn[-1].camera is not None
+
+
+def test_measures_side_by_side_know_some_resolutions():
+    choices = Choices("geodesics", settings={"beside_6": True})
+    with pytest.raises(ParameterError, match="resolution of 16, 32, 64, 128, not 20"):
+        describe(arm_rig(), choices, resolution=20)
 
 
 @pytest.mark.parametrize(
@@ -144,6 +154,8 @@ def test_what_is_seen_inside_reaches_the_picture(drawn, tmp_path):
         ("a.png", ("--slice", "q"), "such as z, z=0.5 or z=0.5:x"),
         ("a.png", ("--path", "999999"), "vertex must be one of 0 to"),
         ("a.png", ("--wave", "2"), "front must be a number from 0 to 1"),
+        ("a.png", ("--measures", "near"), "measure must be one of 'straight', 'surface', 'voxel'"),
+        ("a.png", ("--measures", "straight,surface,voxel,6,26"), "at most 4 measures"),
         ("a.png", ("--connectivity", "7"), "connectivity"),
         ("a.png", ("--near", "3"), "near must be"),
         ("a.png", ("--panel", "check", "--finding", "gout"), 'has no finding "gout"'),

@@ -1,0 +1,144 @@
+"""Measures side by side on the panel Distance, from state to scene."""
+
+import numpy as np
+import pytest
+
+import cutcell
+from cutcell.baselines.measures import MEASURES, measure_distance
+from cutcell.geodesics import path_length
+from cutcell_app.commands import loading
+from cutcell_app.scenes import following, resolve
+from cutcell_app.scenes.geodesics import farthest, wants_field
+from cutcell_app.scenes.measures import WAITING, measured_of, measuring
+from cutcell_app.state import State
+from cutcell_app.state.geodesics import MEASURES as NAMED
+from cutcell_app.state.url import from_query, to_query
+from cutcell_viewers.palette import BODY
+from tests.viewers.arm import arm_rig
+
+
+@pytest.fixture(scope="module")
+def rig():
+    return arm_rig()
+
+
+@pytest.fixture(scope="module")
+def binding(rig):
+    return cutcell.bind(rig, 16)
+
+
+@pytest.fixture
+def state(rig, binding):
+    state = State(rig=rig, binding=binding, joint=1, panel="geodesics", beside_resolution=16)
+    state.param.update(beside_straight=True, beside_voxel=True, beside_any=True)
+    for name in state.measures:
+        state.measured = {**state.measured, name: measuring(state, name)()}
+    return state
+
+
+def test_each_measure_has_a_view_and_all_have_one_scale(state, rig, binding):
+    scene = resolve(state)
+    assert scene.views == ("Straight line", "Along voxels, R = 16", "Any angle, R = 16")
+    bodies = [scene.actors[name] for name in ("body", "body 1", "body 2")]
+    assert [body.view for body in bodies] == [0, 1, 2]
+    assert len({body.limits for body in bodies}) == 1
+    method = cutcell.ANIMATION.with_options(resolution=16)
+    for name, body in zip(("straight", "voxel", "any"), bodies, strict=True):
+        found = measure_distance(rig, binding.distances, 1, name, method).vertices
+        np.testing.assert_allclose(body.scalars, found, rtol=1e-5)
+        assert found.max() <= farthest(state) == body.limits[1]
+    assert scene.actors["voxels"].view == 1
+    assert not wants_field(state)  # of the single view
+
+
+def test_from_a_clicked_vertex_each_draws_its_path(state):
+    state.vertex = 0
+    scene = resolve(state)
+    for view, name in enumerate(state.measures):
+        path = measured_of(state, name).path_from(0)
+        assert scene.actors[f"path {view}"].view == view
+        length = path_length(path) / state.binding.graph.lattice.size
+        assert scene.views[view].endswith(f" · {length:.3f}")
+    state.path = False
+    assert "path 0" not in resolve(state).actors
+
+
+def test_waves_are_in_step(state):
+    state.param.update(wave=True, front=0.5)
+    scene = resolve(state)
+    assert scene.front == 0.5 * farthest(state)
+    films = [scene.actors[name].film for name in ("body", "body 1", "body 2", "voxels")]
+    assert all(films)
+    assert (BODY, "not reached yet") in scene.legend.swatches
+
+
+def test_what_is_not_measured_yet_waits(state):
+    state.param.update(measured={}, measuring="voxel")
+    scene = resolve(state)
+    assert scene.views[:2] == ("Straight line · waiting", "Along voxels, R = 16 · computing")
+    assert scene.actors["body"].opacity == WAITING
+    assert farthest(state) is None
+
+
+def test_what_was_measured_of_something_else_is_not_shown(state):
+    assert measured_of(state, "any") is not None
+    state.beside_resolution = 32
+    assert measured_of(state, "any") is None
+    assert measured_of(state, "straight") is not None  # no R tells it
+    state.joint = 0
+    assert measured_of(state, "straight") is None
+
+
+def test_there_is_no_cut_through_bodies_side_by_side(state):
+    state.cut_axis = "z"
+    assert resolve(state).cut is None
+    state.param.update(beside_straight=False, beside_voxel=False, beside_any=False)
+    assert resolve(state).cut is not None
+    assert wants_field(state)
+
+
+def test_all_bodies_move(state, rig):
+    moving = following(state)
+    assert [name for name in moving.actors if name.startswith("body")] == [
+        "body", "body 1", "body 2"
+    ]  # fmt: skip
+    assert all(actor.skin is not None for actor in moving.actors.values())
+
+
+def test_four_at_most_and_the_address_knows_them(state, rig):
+    assert set(NAMED) == set(MEASURES)
+    state.param.update(beside_6=True, beside_26=True, beside_surface=True)
+    assert len(state.measures) == 4
+    choices = from_query(to_query(state), State())[0]
+    assert choices["beside_26"] is True
+    assert choices["beside_resolution"] == 16
+
+
+def test_they_are_computed_one_after_the_other(session, loop):
+    state = session.state
+    state.param.update(resolution=16, beside_resolution=16)
+    loading.show_rig(session, arm_rig())
+    state.param.update(panel="geodesics", beside_surface=True, beside_6=True)
+    loop.run_until(lambda: len(state.measured) == 2, 60)
+    assert state.measuring == ""
+    assert state.field is None
+    assert all(measured_of(state, name) is not None for name in state.measures)
+
+
+def test_one_that_fails_is_told_and_taken_off(session, loop, monkeypatch):
+    def fails(state, name):
+        raise_it = cutcell.errors.MeshError("the mesh is too large")
+
+        def measure():
+            raise raise_it
+
+        return measure if name == "6" else measuring(state, name)
+
+    monkeypatch.setattr("cutcell_app.commands.geodesics.measuring", fails)
+    state = session.state
+    state.param.update(resolution=16, beside_resolution=16)
+    loading.show_rig(session, arm_rig())
+    state.param.update(panel="geodesics", beside_6=True, beside_straight=True)
+    loop.run_until(lambda: "straight" in state.measured and not state.measuring, 60)
+    assert state.measures == ["straight"]
+    assert state.message == ("error", "The mesh is too large.")
