@@ -130,7 +130,7 @@ def test_what_is_seen_inside_reaches_the_picture(drawn, tmp_path):
 
 
 def test_measures_side_by_side_know_some_resolutions():
-    choices = Choices("geodesics", settings={"beside_6": True})
+    choices = Choices("distance", settings={"beside_6": True})
     with pytest.raises(ParameterError, match="resolution of 16, 32, 64, 128, not 20"):
         describe(arm_rig(), choices, resolution=20)
 
