@@ -29,14 +29,14 @@ TITLES = {
 
 DOORS = {
     "bgcolor": "background.paper",
-    "borderRadius": "0 0 8px 8px",
+    "borderRadius": "8px",
     "boxShadow": "0 4px 18px rgba(10, 20, 40, .16)",
     "flexWrap": "wrap",
     "width": "fit-content",
     "marginLeft": "16px",
     "padding": "2px 4px",
 }
-"""The buttons below a warning, as a tongue of it."""
+"""The buttons below a warning."""
 
 # The line keeps its height whatever it says: the canvas above must not jump.
 _CUT = {"whiteSpace": "nowrap", "overflow": "hidden", "textOverflow": "ellipsis"}
@@ -129,7 +129,7 @@ def messages(session: Session) -> pmui.Column:
 
     state.param.watch(told, ["message", "binding", "bare_graph"])
     alert.param.watch(closed, "closed")
-    doors = pmui.Row(margin=0, visible=False, sx=DOORS)
+    doors = pmui.Row(margin=(6, 0, 0, 0), visible=False, sx=DOORS)
     place = pmui.Column(
         alert, doors, margin=0, sizing_mode="stretch_width", stylesheets=[style("messages_place")]
     )
