@@ -308,9 +308,9 @@ def test_real_characters(tmp_path, rigs):
     expected = {
         path.stem: errors(report) for path, report in zip(rigs, reports(*rigs), strict=True)
     }
-    for most in (4, 8):
-        outs = [tmp_path / path.name for path in rigs]
-        for path, out in zip(rigs, outs, strict=True):
+    for most, some in ((4, rigs), (8, rigs[::4])):
+        outs = [tmp_path / path.name for path in some]
+        for path, out in zip(some, outs, strict=True):
             check_round_trip(path, out, most)
         for out, report in zip(outs, reports(*outs), strict=True):
             assert errors(report) - expected[out.stem] == {}, out.name
