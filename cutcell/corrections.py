@@ -19,6 +19,8 @@ How = Literal["glued", "touching", "itself"]
 LEAST_GAIN, MOST_GAIN = 0.05, 20.0
 MOST_VERTEX = 2**31 - 2
 FARTHEST = 1e30
+ROUNDING = 1e-9
+"""Of weights that sum to one."""
 
 
 @dataclass(frozen=True)
@@ -254,14 +256,25 @@ def _position(value: Any) -> tuple[float, ...]:
     return tuple(check_number(f"{axis} of position", x, -FARTHEST, FARTHEST) for axis, x in places)
 
 
+class _Weights(dict[str, float]):
+    """Weights that are checked: corrections that follow each other share them."""
+
+
 def _weights(vertex: Any, weights: Any) -> dict[str, float]:
     check_integer("a vertex", vertex, 0, MOST_VERTEX)
+    if isinstance(weights, _Weights):
+        return weights
     where = f"vertex {vertex}"
+    for joint in _mapping(where, weights):
+        if not isinstance(joint, str):
+            raise ParameterError(f"joints of {where} go by their names, not by {shown(joint)}")
     held = {
         joint: check_number(f"the weight of {where} for {shown(joint)}", value, 0, 1e9)
-        for joint, value in _mapping(where, weights).items()
+        for joint, value in weights.items()
     }
     total = sum(held.values())
     if not total > 0:
         raise ParameterError(f"{where} needs a weight above 0 for at least one joint")
-    return {joint: value / total for joint, value in held.items()}
+    if abs(total - 1) < ROUNDING:
+        return _Weights(held)  # as they were written
+    return _Weights({joint: value / total for joint, value in held.items()})
