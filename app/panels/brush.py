@@ -15,9 +15,9 @@ from .parts import caption, choice, section, slider, when
 
 MODES = {"Add": "add", "Subtract": "subtract", "Replace": "replace", "Smooth": "smooth"}
 HOW = (
-    "Drag over the body. To turn it, drag beside it or with the right button; with Shift and the "
-    "right button, or the middle one, it moves. Shift while you paint smooths, Ctrl takes away. "
-    "Keys: B, [ ] for the size, { } for the strength, Esc."
+    "Drag over the body to paint, beside it or with the right button to turn it, with the middle "
+    "button to move it; a finger beside it turns, two move. Shift while you paint smooths, Ctrl "
+    "takes away. Keys: B, [ ] for the size, { } for the strength, Esc."
 )
 
 

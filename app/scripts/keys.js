@@ -104,7 +104,7 @@ export class Keys {
       `<dt>${key.split(" ").map((k) => `<kbd>${k}</kbd>`).join("")}</dt><dd>${what}</dd>`).join("")}</dl>`
     // Where fingers are all there is, keys are none.
     const keys = matchMedia("(any-hover: none)").matches ? []
-      : [["Keys", KEYS], ["Keys in the canvas", CANVAS_KEYS], ["Keys of the brush", BRUSH_KEYS]]
+      : [["Keys of the brush", BRUSH_KEYS], ["Keys", KEYS], ["Keys in the canvas", CANVAS_KEYS]]
     const hands = [["In the canvas", POINTER], ["With the brush", BRUSH_POINTER]]
       .map(([title, ways]) => [title, pointer(ways)])
     const sections = [...hands, ...keys].map(([title, all]) =>

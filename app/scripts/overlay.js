@@ -33,7 +33,11 @@ export class Overlay {
     this.angle = make("div", "card angle", this.root)
     this.transport = make("div", "card transport", this.root)
     this.hint = make("div", "card hint", this.root, false)
-    this.showPainting(false)
+    this.hint.textContent = "drag to turn · right-drag to move · scroll to zoom · click a bone or the body"
+    this.painting = make("div", "card painting-hint", this.root)
+    this.painting.textContent = matchMedia("(any-hover: none)").matches
+      ? "one finger paints · beside the body it turns · two move"
+      : "drag over the body to paint · beside it to turn · [ ] size · Esc ends"
     this.waiting = make("div", "card waiting", this.root, false)
     this.waiting.textContent = "The character is on its way …"
     this.failed = make("div", "card failed", this.root)
@@ -100,12 +104,10 @@ export class Overlay {
     })
   }
 
-  // What the pointer does with a brush, or without.
+  // What the pointer does with a brush.
   showPainting(on) {
     this.root.classList.toggle("painting", on)
-    this.hint.textContent = on
-      ? "drag over the body to paint · beside it to turn · [ ] size · Esc ends"
-      : "drag to turn · right-drag to move · scroll to zoom · click a bone or the body"
+    this.painting.hidden = !on
   }
 
   showBone(name, x, y, isBone = true) {

@@ -221,6 +221,10 @@ class View {
     this.brush.draw()
     this.overlay.showTarget(this.renderer.target)
     this.overlay.root.classList.toggle("elsewhere", !this.orbit.atHome)
+    if (this.placing && !moving) {
+      this.placing = false
+      this.insets.legend.put()
+    }
     if (this.address) { setTimeout(() => this.putAddress()) }
     if (this.renderer.rough && !moving) { this.calming = setTimeout(() => this.draw(true), CALM) }
   }
@@ -240,6 +244,7 @@ class View {
 
   rested() {
     this.changed()
+    this.placing = true
     this.model.send_msg({
       type: "camera", home: this.orbit.atHome, position: this.insets.position, focal_point: this.orbit.target,
       aspect: this.overlay.canvas.clientWidth / Math.max(this.overlay.canvas.clientHeight, 1),
