@@ -146,14 +146,20 @@ class Corrections:
         """Whether anything is corrected."""
         return bool(self.joints or self.parts or self.vertices)
 
-    def to_json(self) -> str:
-        """Return them as a JSON document."""
+    def to_json(self, indent: int | None = 2) -> str:
+        """Return them as a JSON document.
+
+        Parameters
+        ----------
+        indent : int or None
+            As of `json.dumps`; None for a single line, which for many vertices takes far less time.
+        """
         data = {
             "joints": {name: _said(one) for name, one in self.joints.items()},
             "parts": [{"vertex": v, **_said(part)} for v, part in self.parts.items()],
             "vertices": {str(v): dict(weights) for v, weights in self.vertices.items()},
         }
-        return json.dumps({k: v for k, v in data.items() if v}, indent=2, ensure_ascii=False)
+        return json.dumps({k: v for k, v in data.items() if v}, indent=indent, ensure_ascii=False)
 
     @classmethod
     def from_json(cls, text: str) -> Corrections:

@@ -12,7 +12,7 @@ from cutcell_app.panels.brush import brush as section_of_brush
 from cutcell_app.scenes import resolve
 from cutcell_app.scenes.weights import painted_colors
 from cutcell_app.state.brush import LEAST_RADIUS, LEAST_STRENGTH
-from cutcell_app.state.corrections import MOST_IN_ADDRESS
+from cutcell_app.state.corrections import MOST_IN_ADDRESS, MOST_VERTICES, to_text
 from cutcell_app.state.url import from_query
 from tests.viewers.arm import arm_rig
 
@@ -201,7 +201,8 @@ def test_what_is_painted_stays_with_the_address_and_after_rebinding(painter, loo
         stroke(painter, vertex)
         settled(painter, loop)
     held = state.corrections
-    assert len(held.to_json()) > MOST_IN_ADDRESS
+    assert len(held.vertices) > MOST_VERTICES
+    assert len(to_text(held)) > MOST_IN_ADDRESS
     said = from_query(painter.view.told("address"), state)[1]["corrections"]
     assert len(said) < MOST_IN_ADDRESS
     painter.arrival = {"corrections": said}

@@ -37,6 +37,8 @@ def bound(rig, **parts):
 
 def test_json_and_back_is_the_same(tmp_path):
     assert Corrections.from_json(ALL.to_json()) == ALL
+    assert Corrections.from_json(ALL.to_json(indent=None)) == ALL
+    assert "\n" not in ALL.to_json(indent=None)
     assert ALL.vertices[7] == {"head": 0.75, "tail": 0.25}
     ALL.save(tmp_path / "c.json")
     assert Corrections.load(tmp_path / "c.json") == ALL
