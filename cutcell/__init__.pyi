@@ -57,11 +57,13 @@ from .rig import Rig as Rig
 from .rig import Skeleton as Skeleton
 from .rig import TriangleMesh as TriangleMesh
 from .skinning import Binding as Binding
+from .skinning import Brush as Brush
 from .skinning import Explanation as Explanation
 from .skinning import JointShare as JointShare
 from .skinning import bind as bind
 from .skinning import corrected_rig as corrected_rig
 from .skinning import explain as explain
+from .skinning import paint_weights as paint_weights
 from .skinning import refine_weights as refine_weights
 from .skinning import skinning_weights as skinning_weights
 from .winding import winding_number as winding_number

@@ -19,6 +19,8 @@ How = Literal["glued", "touching", "itself"]
 LEAST_GAIN, MOST_GAIN = 0.05, 20.0
 MOST_VERTEX = 2**31 - 2
 FARTHEST = 1e30
+ROUNDING = 1e-9
+"""Of weights that sum to one."""
 
 
 @dataclass(frozen=True)
@@ -144,14 +146,20 @@ class Corrections:
         """Whether anything is corrected."""
         return bool(self.joints or self.parts or self.vertices)
 
-    def to_json(self) -> str:
-        """Return them as a JSON document."""
+    def to_json(self, indent: int | None = 2) -> str:
+        """Return them as a JSON document.
+
+        Parameters
+        ----------
+        indent : int or None
+            As of `json.dumps`; None for a single line, which for many vertices takes far less time.
+        """
         data = {
             "joints": {name: _said(one) for name, one in self.joints.items()},
             "parts": [{"vertex": v, **_said(part)} for v, part in self.parts.items()],
             "vertices": {str(v): dict(weights) for v, weights in self.vertices.items()},
         }
-        return json.dumps({k: v for k, v in data.items() if v}, indent=2, ensure_ascii=False)
+        return json.dumps({k: v for k, v in data.items() if v}, indent=indent, ensure_ascii=False)
 
     @classmethod
     def from_json(cls, text: str) -> Corrections:
@@ -254,14 +262,25 @@ def _position(value: Any) -> tuple[float, ...]:
     return tuple(check_number(f"{axis} of position", x, -FARTHEST, FARTHEST) for axis, x in places)
 
 
+class _Weights(dict[str, float]):
+    """Weights that are checked: corrections that follow each other share them."""
+
+
 def _weights(vertex: Any, weights: Any) -> dict[str, float]:
     check_integer("a vertex", vertex, 0, MOST_VERTEX)
+    if isinstance(weights, _Weights):
+        return weights
     where = f"vertex {vertex}"
+    for joint in _mapping(where, weights):
+        if not isinstance(joint, str):
+            raise ParameterError(f"joints of {where} go by their names, not by {shown(joint)}")
     held = {
         joint: check_number(f"the weight of {where} for {shown(joint)}", value, 0, 1e9)
-        for joint, value in _mapping(where, weights).items()
+        for joint, value in weights.items()
     }
     total = sum(held.values())
     if not total > 0:
         raise ParameterError(f"{where} needs a weight above 0 for at least one joint")
-    return {joint: value / total for joint, value in held.items()}
+    if abs(total - 1) < ROUNDING:
+        return _Weights(held)  # as they were written
+    return _Weights({joint: value / total for joint, value in held.items()})

@@ -10,7 +10,7 @@ from ..scenes.common import first_joint
 from ..state import State
 from ..state.corrections import applied, news
 from ..state.url import defaults
-from . import pairs
+from . import brush, pairs
 from .binding import restore
 from .history import RESULT, plain, restoring
 from .loading import load_again
@@ -34,6 +34,12 @@ def act(session: Session, name: str) -> None:
         "previous": lambda: step(session, -1),
         "parent": lambda: to_parent(state),
         "child": lambda: to_child(state),
+        "brush": lambda: brush.turn_over(session),
+        "brush away": lambda: brush.put_down(session),
+        "brush larger": lambda: brush.resize(session, 1),
+        "brush smaller": lambda: brush.resize(session, -1),
+        "brush stronger": lambda: brush.strengthen(session, 1),
+        "brush weaker": lambda: brush.strengthen(session, -1),
     }.get(name)
     if does is not None and state.rig is not None:
         does()

@@ -7,13 +7,14 @@ from cutcell_viewers.camera import Camera, framing
 from ..scenes import resolve
 from ..scenes.common import bounds_of, camera_part, theme_of, theme_part
 from ..state import UNSEEN
+from ..state.brush import BRUSH
 from .session import Session
 
 
 def watch(session: Session) -> None:
     """Let the view follow the state, and the state what is picked in the view."""
     state, view = session.state, session.view
-    seen = [name for name in state.param if name not in UNSEEN]
+    seen = [name for name in state.param if name not in UNSEEN | BRUSH]
     state.param.watch(lambda *events: show(session), seen)
     state.param.watch(lambda *events: show_theme(session), "dark")
     view.listen("pick", lambda message: pick(session, int(message["joint"])))

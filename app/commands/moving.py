@@ -57,12 +57,12 @@ def show_handle(session: Session) -> None:
         part = {"joint": state.joint, "at": at.tolist(), "mirror": None}
         mirror, partner = mirror_of(session), moves_along(session)
         if mirror is not None and partner is not None:
-            part["mirror"] = _plane_in_scene(state.rig.world, mirror)
+            part["mirror"] = plane_in_scene(state.rig.world, mirror)
     if session.view.told("mover") != part:
         session.view.tell(mover=part)
 
 
-def _plane_in_scene(world: NDArray[np.float64], mirror: Mirror) -> list[float]:
+def plane_in_scene(world: NDArray[np.float64], mirror: Mirror) -> list[float]:
     """Return the unit normal of a mirror's plane, and its distance from 0, in the scene."""
     on = world[:3, :3] @ (mirror.position * np.eye(3)[mirror.axis]) + world[:3, 3]
     out = np.linalg.inv(world[:3, :3]).T[:, mirror.axis]

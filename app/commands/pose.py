@@ -36,7 +36,7 @@ def watch(session: Session) -> None:
         lambda *events: tell_motion(session),
         ["panel", "rig", "moving", "playing", "clip", "joint", "axis"],
     )
-    follow(lambda *events: tell_gizmo(session), ["panel", "rig", "moving", "joint"])
+    follow(lambda *events: tell_gizmo(session), ["panel", "rig", "moving", "joint", "brush"])
     follow(lambda *events: find_errors(session), ["panel", "binding"])
     follow(
         lambda *events: find_motion_error(session),

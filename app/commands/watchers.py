@@ -5,6 +5,7 @@ from __future__ import annotations
 from . import (
     arrival,
     binding,
+    brush,
     compare,
     cutting,
     diagnosis,
@@ -24,6 +25,6 @@ from .session import Session
 def follow(session: Session) -> None:
     """Let everything follow the state of a new session."""
     # In this order: what is seen comes before what is computed for it.
-    seen = (look, cutting, moving, geodesics, pose, compare, pairs)
+    seen = (look, cutting, moving, brush, geodesics, pose, compare, pairs)
     for one in (*seen, binding, explain, history, keys, rest, diagnosis, arrival):
         one.watch(session)

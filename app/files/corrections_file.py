@@ -5,7 +5,7 @@ from __future__ import annotations
 from cutcell.corrections import Corrections
 from cutcell.errors import CutcellError
 
-from ..state.corrections import MOST_IN_ADDRESS, from_text, to_text
+from ..state.corrections import MOST_IN_ADDRESS, MOST_VERTICES, from_text, to_text
 from .upload_cache import Group, PageUploads
 
 KEY = "~"
@@ -38,9 +38,10 @@ class CorrectionsFile:
             They cannot be written.
         """
         if corrections is not self._said[0]:
-            text = to_text(corrections) if corrections else ""
-            if len(text) > MOST_IN_ADDRESS:
-                self._said = (corrections, text[:0])  # should it fail, then once
+            few = len(corrections.vertices) <= MOST_VERTICES
+            text = to_text(corrections) if corrections and few else ""
+            if not few or len(text) > MOST_IN_ADDRESS:
+                self._said = (corrections, "")  # should it fail, then once
                 text = self._kept(corrections)
             self._said = (corrections, text)
         return self._said[1]
@@ -80,7 +81,7 @@ class CorrectionsFile:
             self._taken = ""
 
     def _kept(self, corrections: Corrections) -> str:
-        content = corrections.to_json().encode()
+        content = corrections.to_json(indent=None).encode()
         old, self._group = self._group, None
         if old is not None:
             self._uploads.cache.leave(old.key)

@@ -14,6 +14,7 @@ from ..commands.session import Session
 from ..scenes.pose import error_of, has_rival
 from ..state import State
 from ..widgets.rows import Rows
+from .brush import brush
 from .parts import GAP, as_text, caption, choice, lead, offer, section, unique_names, when
 
 AXES = ("x", "y", "z")
@@ -27,15 +28,15 @@ def pose(session: Session) -> pmui.Column:
     """Return the controls of the panel Pose."""
     return pmui.Column(
         lead("How the skin follows when bones turn, by hand or in a motion."),
-        _turning(session), _motion(session), _colours(session), _comparison(session),
-        margin=0, sizing_mode="stretch_width",
+        _turning(session), _motion(session), _colours(session), brush(session),
+        _comparison(session), margin=0, sizing_mode="stretch_width",
     )  # fmt: skip
 
 
 def _turning(session: Session) -> pmui.Column:
     state = session.state
     about = caption(
-        when(_how_to_turn, state.param.rig, state.param.joint),
+        when(_how_to_turn, state.param.rig, state.param.joint, state.param.brush),
         margin=0,
     )
     rest = pmui.Button(
@@ -51,10 +52,13 @@ def _turning(session: Session) -> pmui.Column:
     return section("", about, *angles, rest, margin=(8, 20, 4, 20))
 
 
-def _how_to_turn(rig: Any, joint: int) -> str:
+def _how_to_turn(rig: Any, joint: int, brush: bool) -> str:
     if rig is None or joint >= len(rig.skeleton.names):
         return ""
-    return f"Turn {shown_name(rig.skeleton.names[joint])}: drag its rings, or the sliders."
+    name = shown_name(rig.skeleton.names[joint])
+    if brush:
+        return f"Turn {name}: drag the sliders; the brush takes its rings away."
+    return f"Turn {name}: drag its rings, or the sliders."
 
 
 def _angle(session: Session, axis: int) -> pmui.FloatSlider:

@@ -11,6 +11,7 @@ from cutcell.method import FALLOFFS
 
 from ..commands.session import Session
 from ..state import State
+from .brush import brush
 from .components import parts_of_mesh
 from .corrections import corrections
 from .joints import joints
@@ -52,6 +53,7 @@ def weights(session: Session) -> pmui.Column:
     return pmui.Column(
         lead("How much each bone moves each point of the skin."),
         section("", shown, *_sides(state), facts, margin=(8, 20, 4, 20)),
+        brush(session),
         joints(session),
         section("Falloff with distance", *_falloff(state)),
         parts_of_mesh(session),

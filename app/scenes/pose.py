@@ -185,7 +185,7 @@ def clip_part(state: State, clip: Clip | None) -> dict[str, Any] | None:
 
 def gizmo_part(state: State) -> dict[str, Any] | None:
     """Return what the view needs to turn the chosen joint by hand; None where it cannot be."""
-    if state.rig is None or state.bare or state.panel != "pose" or state.moving:
+    if state.rig is None or state.bare or state.panel != "pose" or state.moving or state.brush:
         return None
     rig, joint = state.rig, state.joint
     centre = rig.world[:3, :3] @ rig.skeleton.joints[joint] + rig.world[:3, 3]

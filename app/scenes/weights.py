@@ -97,6 +97,38 @@ def weights_look(
     return look, legend, coloured
 
 
+def painted_colors(state: State, vertices: NDArray, rows: NDArray) -> dict[str, NDArray]:
+    """Return the colours of some vertices with other weights, as the body's `Actor` has them.
+
+    Parameters
+    ----------
+    state : State
+        With a binding.
+    vertices : array, shape (v,), int
+    rows : array, shape (v, j)
+
+    Returns
+    -------
+    dict
+        "colors", shape (v, 3), or "scalars", shape (v,); nothing where colours tell of no weights
+        that are painted.
+    """
+    posed = state.panel == "pose" and (state.pose_colors != "weights" or state.heat)
+    if posed or weights_seen(state) is not state.weights:
+        return {}
+    own = state.rig.weights
+    few = SimpleNamespace(
+        rig=SimpleNamespace(
+            skeleton=state.rig.skeleton, weights=None if own is None else own[vertices]
+        ),
+        weights=rows,
+        joint=state.joint,
+        truth=state.truth,
+    )
+    look, _ = coloring(few, weights_shown(state), rows)
+    return {name: look[name] for name in ("colors", "scalars") if name in look}
+
+
 def weights_seen(state: State) -> Any:
     """Return the weights that colours tell: the file's own also until others are computed."""
     own = state.rig.weights
@@ -111,7 +143,7 @@ def weights_shown(state: State) -> str:
     return state.weights_shown
 
 
-def coloring(state: State, shown: str, held: NDArray) -> tuple[dict[str, Any], Legend]:
+def coloring(state: Any, shown: str, held: NDArray) -> tuple[dict[str, Any], Legend]:
     """Return the fields of the body's `Actor` that colour it, and how to read them."""
     rig = state.rig
     if shown == "difference":

@@ -55,10 +55,14 @@ export class Actor {
     if (part.normals) { this.setNormals(plain(part.normals)) }
     if (part.cells) { this.setCells(plain(part.cells)) }
     if ("skin" in part || "apart" in part) { this.setSkins(part) }
-    if (part.colors) { this.colours.setColors(plain(part.colors)) }
+    if (part.colors) {
+      this.colors = plain(part.colors)
+      this.colours.setColors(this.colors)
+    }
     if (part.scalars) {
       this.values = plain(part.scalars)
-      this.colours.setValues(this.values, plain(part.table), part.limits)
+      this.looked = [plain(part.table), part.limits]
+      this.colours.setValues(this.values, ...this.looked)
     }
     if (part.paint) { this.paint(part.paint) }
     this.shade()
@@ -74,6 +78,18 @@ export class Actor {
     if ("clipped" in part) { [this.clipped, this.slab] = [part.clipped, part.slab] }
     if ("visible" in part) { this.visible = part.visible }
     this.cut(cut)
+  }
+
+  // Gives some vertices other colours, or other values, than the server's last.
+  recolour({vertices, colors, scalars}) {
+    const {by} = this.colours
+    if (by === "colors" && colors) {
+      this.colors = replaced(this.colors, 3, vertices, colors)
+      this.colours.setColors(this.colors)
+    } else if (by === "values" && scalars) {
+      this.values = replaced(this.values, 1, vertices, scalars)
+      this.colours.setValues(this.values, ...this.looked)
+    }
   }
 
   // Lines and points are drawn by strokes.js, where vtk.js would draw a line without length.
@@ -292,6 +308,15 @@ export class Actor {
     }
     for (const {data} of this.made) { data.delete() }
   }
+}
+
+// A copy of numbers, some at a place, with others at some places.
+export function replaced(numbers, size, places, others) {
+  const made = numbers.slice()
+  places.forEach((place, i) => {
+    for (let k = 0; k < size; k++) { made[size * place + k] = others[size * i + k] }
+  })
+  return made
 }
 
 // What is to be seen whole; bones may reach far out of it, those above all that move nothing.

@@ -2,6 +2,7 @@
 // character to be seen whole in it.
 
 import {Fit} from "./fit.js"
+import {LegendPlace} from "./legend_place.js"
 import {noCards} from "./tiles.js"
 
 const SLIM = 700  // a canvas less wide than this has no room beside its cards
@@ -14,6 +15,7 @@ const GAP = 6
 export class Insets {
   constructor({overlay, renderer, orbit, changed, rested}) {
     Object.assign(this, {overlay, renderer, orbit, changed, rested})
+    this.legend = new LegendPlace(overlay, renderer, () => this.cards)
     this.fitting = new Fit(renderer)
     this.factor = 1  // how many times as far away as without cards
     this.observer = new ResizeObserver(() => this.make())
@@ -82,9 +84,14 @@ export class Insets {
     const narrow = several && this.renderer.tilesIn(insets)[0][2] < NARROW_FEET
     // There they take room whatever stands behind them, and whichever way it is turned.
     for (const part of slim || narrow ? [legend, transport] : []) {
-      if (!part.hidden) { take("bottom", box.bottom - part.getBoundingClientRect().top) }
+      if (!part.hidden) { take("bottom", box.bottom - this.boxOf(part).top) }
     }
     return insets
+  }
+
+  // The legend counts as in its own corner, wherever it stands now.
+  boxOf(part) {
+    return part === this.overlay.legend && !part.hidden ? this.legend.home : part.getBoundingClientRect()
   }
 
   // A wide canvas has room around one character, which then makes no more room than it must.
@@ -111,7 +118,7 @@ export class Insets {
   rise(insets, box, edges) {
     const x = (box.width + insets.left - insets.right) / 2
     const y = (box.height + insets.top - insets.bottom) / 2
-    const parts = edges.map((part) => part.getBoundingClientRect()).filter(({width}) => width)
+    const parts = edges.map((part) => this.boxOf(part)).filter(({width}) => width)
       .map(({left, right, top, bottom}) => ({
         left: left - box.left - GAP - x, right: right - box.left + GAP - x,
         ...top + bottom < box.top + box.bottom

@@ -1,7 +1,6 @@
 // The handle of a joint at rest: a knob that moves it along the screen, and its partner's, which moves too.
 
 import {plainList} from "./arrays.js"
-import {VIEW_ANGLE} from "./orbit.js"
 
 const TELL_EVERY = 33
 
@@ -64,9 +63,7 @@ export class JointHandle {
     e.preventDefault()
     e.stopPropagation()
     e.target.setPointerCapture(e.pointerId)
-    const [, , depth] = this.seen
-    const [, , , height] = this.renderer.tiles[0]
-    const pixel = 2 * depth * Math.tan(VIEW_ANGLE * Math.PI / 360) / height
+    const pixel = this.renderer.pixel(this.seen[2])
     this.held = {
       joint: this.part.joint, from: this.part.at, x: e.clientX, y: e.clientY, pixel, pointer: e.pointerId,
       ...across(this.renderer.camera.getDirectionOfProjection()), told: 0, far: false,
@@ -113,13 +110,13 @@ const CROSS = [[1, 0], [0, 1], [-1, 0], [0, -1]].map(([c, s]) => {
 }).join("")
 
 // The directions to the right and up on the screen, of length 1.
-export function across(ahead) {
+export function across(ahead, above = [0, 1, 0]) {
   const cross = (a, b) => [0, 1, 2].map((k) => {
     const [i, j] = [(k + 1) % 3, (k + 2) % 3]
     return a[i] * b[j] - a[j] * b[i]
   })
   const unit = (v) => v.map((x) => x / Math.hypot(...v))
-  const right = unit(cross(ahead, [0, 1, 0]))
+  const right = unit(cross(ahead, above))
   return {right, up: cross(right, unit(ahead))}
 }
 

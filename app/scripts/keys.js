@@ -20,6 +20,20 @@ const CANVAS_KEYS = [
   ["Enter", "choose the point of the body at the cross"],
 ]
 
+const BRUSH_KEYS = [
+  ["B", "take the brush, or put it down"],
+  ["[ ]", "smaller, larger"],
+  ["{ }", "weaker, stronger"],
+  ["Esc", "put it down"],
+]
+const BRUSH_POINTER = [
+  ["drag over the body", "paint", "drag over the body"],
+  ["Shift drag", "smooth"],
+  ["Ctrl drag", "take away"],
+  ["drag beside it", "turn (or right-drag)", "drag beside it"],
+  ["Shift right-drag", "move (or the middle button)", "two fingers"],
+]
+
 const POINTER = [
   ["drag", "turn", "drag"],
   ["right-drag", "move (or Shift and drag)", "two fingers"],
@@ -41,14 +55,18 @@ const TOOLS = [
 // Elements that have a use of their own for keys.
 const TYPED = "input, textarea, select, [contenteditable], [role=combobox], [role=listbox], "
   + "[role=option], [role=menu], [role=menuitem], [role=slider], [role=spinbutton], [role=tab], dialog"
+// Those that take letters, brackets and Escape; sliders and switches do not.
+const WRITTEN = "input:not([type=range], [type=checkbox], [type=radio]), textarea, select, "
+  + "[contenteditable], [role=combobox], [role=listbox], [role=menu], [role=tree], dialog"
 const BOX = "input[type=text]:not([role])"
 const PRESSED = "button, a, summary, [role=button], [role=switch], [role=checkbox]"
 
 export class Keys {
-  constructor(overlay, {act, turnable}) {
+  constructor(overlay, {act, turnable, painting}) {
     this.overlay = overlay
     this.act = act
     this.turnable = turnable
+    this.painting = painting
       overlay.root.append(styled(), this.makeTools(), this.makeCard())
     this.listener = (e) => this.pressed(e)
     document.addEventListener("keydown", this.listener)
@@ -79,14 +97,17 @@ export class Keys {
     card.className = "keys"
     card.setAttribute("aria-labelledby", "keys-title")
     const touch = matchMedia("(pointer: coarse)").matches
-    const pointer = POINTER.map(([mouse, what, fingers]) =>
-      [(touch ? fingers : mouse).replace(/ /g, "\u00a0"), touch ? what.replace(/ \(.*/, "") : what])
+    const pointer = (ways) => ways.filter(([, , fingers]) => fingers || !touch)
+      .map(([mouse, what, fingers]) =>
+        [(touch ? fingers : mouse).replace(/ /g, "\u00a0"), touch ? what.replace(/ \(.*/, "") : what])
     const list = (keys) => `<dl>${keys.map(([key, what]) =>
       `<dt>${key.split(" ").map((k) => `<kbd>${k}</kbd>`).join("")}</dt><dd>${what}</dd>`).join("")}</dl>`
     // Where fingers are all there is, keys are none.
     const keys = matchMedia("(any-hover: none)").matches ? []
-      : [["Keys", KEYS], ["Keys in the canvas", CANVAS_KEYS]]
-    const sections = [["In the canvas", pointer], ...keys].map(([title, all]) =>
+      : [["Keys of the brush", BRUSH_KEYS], ["Keys", KEYS], ["Keys in the canvas", CANVAS_KEYS]]
+    const hands = [["In the canvas", POINTER], ["With the brush", BRUSH_POINTER]]
+      .map(([title, ways]) => [title, pointer(ways)])
+    const sections = [...hands, ...keys].map(([title, all]) =>
       `<section><h3>${title}</h3>${list(all)}</section>`)
     card.innerHTML = `<h2 id="keys-title">How to get about</h2><div>${sections.join("")}</div>`
       + `<button type="button">Close</button>`
@@ -109,8 +130,15 @@ export class Keys {
   }
 
   pressed(e) {
-    if (e.defaultPrevented || e.altKey) { return }
+    if (e.defaultPrevented) { return }
     const over = e.composedPath().filter((part) => part instanceof Element)
+    const brush = this.brushAct(e)
+    if (brush && !over.some((part) => part.matches(WRITTEN))) {
+      e.preventDefault()
+      this.act(brush)
+      return
+    }
+    if (e.altKey) { return }
     // A number that was entered is done with: its box would not take another one otherwise.
     if (e.key === "Enter") { setTimeout(() => over.find((part) => part.matches(BOX))?.blur()) }
     if (over.some((part) => part.matches(TYPED))) { return }
@@ -131,6 +159,16 @@ export class Keys {
     if (!act) { return }
     e.preventDefault()
     if (act === "keys") { this.toggle() } else { this.act(act) }
+  }
+
+  // Some keyboards have brackets on a third level only, so Alt and Ctrl say nothing.
+  brushAct(e) {
+    if (e.key === "b" && !e.ctrlKey && !e.metaKey && !e.altKey) { return "brush" }
+    if (!this.painting()) { return null }
+    return {
+      "[": "brush smaller", "]": "brush larger", "{": "brush weaker", "}": "brush stronger",
+      Escape: "brush away",
+    }[e.key]
   }
 
   remove() {

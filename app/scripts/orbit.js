@@ -15,6 +15,7 @@ export class Orbit {
     this.reset()
     this.pointers = new Map()
     this.moving = false
+    this.painting = false  // then the left button is the brush's, and the right one turns
     const on = (type, handler) => element.addEventListener(type, handler, {passive: false})
     // Arrow keys turn when the canvas was reached by keys; after a click they change the bone.
     on("blur", () => { this.byMouse = false })
@@ -98,12 +99,17 @@ export class Orbit {
       const after = Math.hypot(e.clientX - other[0], e.clientY - other[1])
       if (before > 0 && after > 0) { this.zoom(before / after) }
       this.pan(dx / 2, dy / 2)
-    } else if (e.shiftKey || e.ctrlKey || (e.buttons & 6)) {
+    } else if (e.shiftKey || (this.painting ? e.buttons & 4 : e.ctrlKey || (e.buttons & 6))) {
       this.pan(dx, dy)
     } else {
       this.turn(-dx * 0.008, dy * 0.008)
     }
     this.pointers.set(e.pointerId, [e.clientX, e.clientY])
+  }
+
+  // Goes on with a pointer that was somebody else's so far.
+  join(id, place) {
+    this.pointers.set(id, place)
   }
 
   release(e) {

@@ -34,6 +34,10 @@ export class Overlay {
     this.transport = make("div", "card transport", this.root)
     this.hint = make("div", "card hint", this.root, false)
     this.hint.textContent = "drag to turn · right-drag to move · scroll to zoom · click a bone or the body"
+    this.painting = make("div", "card painting-hint", this.root)
+    this.painting.textContent = matchMedia("(any-hover: none)").matches
+      ? "one finger paints · beside the body it turns · two move"
+      : "drag over the body to paint · beside it to turn · [ ] size · Esc ends"
     this.waiting = make("div", "card waiting", this.root, false)
     this.waiting.textContent = "The character is on its way …"
     this.failed = make("div", "card failed", this.root)
@@ -98,6 +102,12 @@ export class Overlay {
       if (left > tiles[0][0]) { put("seam", "", {left: px(left), top: px(top), width: "1px", height: px(height)}) }
       if (top > tiles[0][1]) { put("seam", "", {left: px(left), top: px(top), width: px(width), height: "1px"}) }
     })
+  }
+
+  // What the pointer does with a brush.
+  showPainting(on) {
+    this.root.classList.toggle("painting", on)
+    this.painting.hidden = !on
   }
 
   showBone(name, x, y, isBone = true) {

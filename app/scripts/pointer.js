@@ -84,7 +84,7 @@ export class Pointer {
       this.view.overlay.showBone(told(node.actor, node.point), x, y)
       return
     }
-    const found = this.under(x, y)
+    const found = this.view.brush.part ? null : this.under(x, y)
     if (found?.joint !== undefined) {
       this.view.overlay.showBone(this.view.bones.names[found.joint], x, y)
       return

@@ -247,6 +247,11 @@ export class Renderer {
     ]
   }
 
+  // How long a pixel is at a depth, in the scene.
+  pixel(depth) {
+    return 2 * depth * Math.tan(VIEW_ANGLE * Math.PI / 360) / this.tiles[0][3]
+  }
+
   // From pixels of the canvas to a ray of the scene.
   ray(x, y) {
     const [left, top, w, h] = this.tiles[this.viewAt(x, y)]

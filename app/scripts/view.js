@@ -5,6 +5,7 @@ import {Actor} from "./actor.js"
 import {Animation} from "./animation.js"
 import {plain, plainList} from "./arrays.js"
 import {Connection} from "./connection.js"
+import {PaintBrush} from "./brush.js"
 import {CutHandles} from "./cut_handles.js"
 import {Gizmo} from "./gizmo.js"
 import {Insets} from "./insets.js"
@@ -28,6 +29,13 @@ class View {
     this.model = model
     this.overlay = overlay
     this.renderer = new Renderer(vtk, overlay.canvas)
+    // Before the camera: what it takes of the pointer the camera does not hear of.
+    this.brush = new PaintBrush(overlay, this.renderer, {
+      bodyAt: (x, y) => this.playing ? null : this.pointer.bodyAt(x, y),
+      handOver: (id, place) => this.orbit.join(id, place),
+      changed: () => this.changed(),
+      tell: (message) => model.send_msg(message),
+    })
     this.orbit = new Orbit(overlay.canvas, {
       changed: () => this.changed(),
       rested: () => this.rested(),
@@ -63,6 +71,7 @@ class View {
     acceptDrops(overlay.root, over, (files) => uploader.send(files))
     this.keys = new Keys(overlay, {
       act: (act) => model.send_msg({type: "act", act}),
+      painting: () => Boolean(this.brush.part),
       turnable: () => document.activeElement && overlay.canvas.matches(":focus") && !this.orbit.byMouse,
     })
     this.wentBack = () => model.send_msg({type: "visit", query: location.search})
@@ -82,6 +91,7 @@ class View {
     const {renderer} = this
     if (message.download) { save(message.download) }
     if ("rests" in message) { this.answered?.(message.rests) }
+    if (message.painted) { this.brush.painted(message.painted, renderer.actors.get("body")) }
     if (!message.id) { return }
     for (const name of message.remove || []) {
       renderer.actors.get(name)?.remove()
@@ -98,6 +108,10 @@ class View {
       this.handles.put(message.cut)
       // While the plane is dragged the hand is ahead of the server.
       if (!this.handles.held) { this.setCut(message.cut) }
+    }
+    if ("brush" in message) {
+      this.brush.show(message.brush)
+      this.orbit.painting = Boolean(message.brush)
     }
     if ("mover" in message) { this.mover.show(message.mover) }
     if ("handles" in message) { this.handles.show(message.handles) }
@@ -204,8 +218,13 @@ class View {
     this.gizmo.draw()
     this.handles.draw()
     this.mover.draw()
+    this.brush.draw()
     this.overlay.showTarget(this.renderer.target)
     this.overlay.root.classList.toggle("elsewhere", !this.orbit.atHome)
+    if (this.placing && !moving) {
+      this.placing = false
+      this.insets.legend.put()
+    }
     if (this.address) { setTimeout(() => this.putAddress()) }
     if (this.renderer.rough && !moving) { this.calming = setTimeout(() => this.draw(true), CALM) }
   }
@@ -225,6 +244,7 @@ class View {
 
   rested() {
     this.changed()
+    this.placing = true
     this.model.send_msg({
       type: "camera", home: this.orbit.atHome, position: this.insets.position, focal_point: this.orbit.target,
       aspect: this.overlay.canvas.clientWidth / Math.max(this.overlay.canvas.clientHeight, 1),

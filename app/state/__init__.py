@@ -8,6 +8,7 @@ from __future__ import annotations
 from types import SimpleNamespace
 from typing import Any
 
+from .brush import BrushChoices
 from .common import PANELS, UNSEEN, Common
 from .compare import CompareChoices
 from .corrections import CorrectionsChoices
@@ -36,6 +37,7 @@ class State(
     PoseChoices,
     CompareChoices,
     CorrectionsChoices,
+    BrushChoices,
     DiagnosisChoices,
     PairsChoices,
     Common,

@@ -18,6 +18,8 @@ from cutcell.skinning import Binding
 
 MOST_IN_ADDRESS = 1500
 """Letters: longer addresses are cut by some programs that pass them on."""
+MOST_VERTICES = 300
+"""Overruled ones: more are not even tried to be written so short, which takes a while."""
 MOST_BYTES = 4 * 2**20
 """Of corrections as JSON: some characters are overruled vertex by vertex."""
 
@@ -113,7 +115,7 @@ def news(state: Any, choices: dict[str, Any]) -> dict[str, Any]:
 
 def to_text(corrections: Corrections) -> str:
     """Return corrections in letters that an address may hold."""
-    packed = zlib.compress(corrections.to_json().encode(), 9)
+    packed = zlib.compress(corrections.to_json(indent=None).encode(), 9)
     return base64.urlsafe_b64encode(packed).decode().rstrip("=")
 
 

@@ -72,6 +72,10 @@ class History:
         self._future.clear()
         self._now, self._last = now, (changed, time)
 
+    def part(self) -> None:
+        """Let the next change be a step of its own, however soon it follows."""
+        self._last = (frozenset(), -1e9)
+
     def withdraw(self, now: Choices) -> None:
         """Take a choice back that could not be: what is chosen now was so before it."""
         self._now = now

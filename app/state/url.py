@@ -11,12 +11,13 @@ import param
 from cutcell.corrections import Corrections
 
 from . import State
+from .brush import BRUSH
 from .compare import FEWEST_VIEWS, MOST_VIEWS, offered, standard
 from .tour import TOUR
 
 OWN = frozenset({"name", "demo", "queued", "joint", "dark", "moving", "playing", "clip", "skipped",
                  "busy", "stage", "fraction", "message", "tour", "vertex", "part",
-                 "animating", "joint_handle"})  # fmt: skip
+                 "animating", "joint_handle"}) | BRUSH  # fmt: skip
 """What goes with one person or one moment, or has a word of its own in the address."""
 
 NOTED = ("joint", "turns", "clip", "methods", "minus", "corrections")

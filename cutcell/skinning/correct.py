@@ -50,9 +50,12 @@ def corrected_rig(rig: Rig, corrections: Corrections) -> Rig:
                 f"corrections name the vertex {vertex}, but {rig.name} has only {count} "
                 "(numbered from 0); are they of another character?"
             )
+    index = _first_of(rig)
     for vertex, weights in corrections.vertices.items():
         for name in weights:
-            joint = joint_index(rig.skeleton, name)
+            if name not in index:
+                joint_index(rig.skeleton, name)  # tells which sound alike
+            joint = index[name]
             if rig.allowed is not None and not rig.allowed[vertex, joint]:
                 raise ParameterError(f'the file cannot store weight of "{name}" at vertex {vertex}')
     for part in corrections.parts.values():
@@ -142,9 +145,15 @@ def overruled(
     """Put the weights that a person gives to single vertices."""
     if not corrections.vertices:
         return weights
-    weights = weights.copy()
-    for vertex, given in corrections.vertices.items():
-        weights[vertex] = 0
-        for name, value in given.items():
-            weights[vertex, joint_index(rig.skeleton, name)] = value
+    weights, index, given = weights.copy(), _first_of(rig), corrections.vertices
+    weights[list(given)] = 0
+    row = [vertex for vertex, held in given.items() for _ in held]
+    column = [index[name] for held in given.values() for name in held]
+    weights[row, column] = [value for held in given.values() for value in held.values()]
     return weights
+
+
+def _first_of(rig: Rig) -> dict[str, int]:
+    """Return the first joint of each name; a brush may overrule most vertices."""
+    names = rig.skeleton.names
+    return dict(zip(reversed(names), reversed(range(len(names))), strict=True))

@@ -10,7 +10,7 @@ from playwright.sync_api import expect
 
 import cutcell
 from cutcell import Corrections, JointCorrection
-from tests.app.browser import Visit, changed
+from tests.app.browser import IN_SIGHT, Visit, changed
 from tests.cutcell.diagnosis.test_leaks import soldier
 
 
@@ -233,3 +233,68 @@ def test_the_soldier_is_mended_in_two_clicks_and_stays_so(visit, tmp_path):
     assert not mended.skeleton.deform[root], "so it stays mended when it is bound again"
     visit.panel("Weights")
     assert corrected(visit).joints == {"Root": JointCorrection(deform=False)}
+
+
+def test_weights_are_painted_on_a_posed_body_and_stay_so(visit, robot, tmp_path):
+    joint = robot.skeleton.names.index("forearm.L")
+    computed = cutcell.bind(robot, 24).weights[:, joint]
+    shared = np.flatnonzero((computed > 0.2) & (computed < 0.8)).tolist()
+    visit.choose("Bone", "forearm.L")
+    visit.panel("Pose")
+    rest = visit.points()
+    visit.slide("About Z", "PageUp", 3)
+    visit.page.keyboard.press("b")
+    for _ in range(3):
+        visit.page.keyboard.press("]")
+    visit.settle()
+    assert np.abs(visit.points() - rest).max() > 0.05
+    vertex, x, y = visit.page.evaluate(IN_SIGHT, f"{shared}.includes(vertex)")
+    weight = f"__cutcell.renderer.actors.get('body').values[{vertex}]"
+    before = visit.page.evaluate(weight)
+    visit.page.mouse.move(x, y)
+    visit.page.mouse.down()
+    visit.page.mouse.move(x + 4, y + 3)
+    visit.settle()
+    during = visit.page.evaluate(weight)
+    assert during > before + 0.1, "colours follow the stroke"
+    camera = visit.report()["camera"]
+    visit.page.mouse.up()
+    visit.settle()
+    assert visit.page.evaluate(weight) == pytest.approx(during, abs=1e-3)
+    assert visit.report()["camera"] == camera
+
+    visit.panel("Weights")
+    held = corrected(visit)
+    assert vertex in held.vertices
+    assert not held.joints
+    assert faults(visit) == []
+    visit.button("Undo").click()
+    visit.settle()
+    visit.panel("Weights")  # undo goes where the stroke was made
+    visit.expect_text("Nothing is corrected")
+    assert visit.page.evaluate(weight) == before
+    visit.button("Redo").click()
+    visit.settle()
+    assert corrected(visit) == held
+    paints = visit.page.get_by_role("switch", name="Paint", exact=True)
+    expect(paints).to_be_checked()
+    visit.page.keyboard.press("Escape")
+    expect(paints).not_to_be_checked()
+
+    visit.page.reload()
+    visit.wait_until_bound()
+    visit.dismiss()
+    assert corrected(visit) == held
+    weights = exported(visit, tmp_path).weights
+    fresh = cutcell.bind(robot, 24, corrections=held)
+    np.testing.assert_allclose(weights, fresh.weights, atol=1 / 255)
+    visit.button("Clear all").click()
+    visit.expect_text("Nothing is corrected")
+    path = tmp_path / "painted.json"
+    held.save(path)
+    with visit.page.expect_file_chooser() as chooser:
+        visit.button("Open").click()
+    chooser.value.set_files(path)
+    visit.expect_text(f"Corrected: {len(held.vertices)} vert")
+    visit.settle()
+    assert corrected(visit) == held

@@ -62,11 +62,26 @@ def test_nothing_over_a_wide_canvas_hides_a_part_of_the_character(visit):
     assert behind(visit, bar) == 0
 
 
-def test_a_notice_hides_no_head(browser, url):
+def test_a_notice_hides_no_head_and_the_legend_gives_way(browser, url):
     visit = Visit(browser, f"{url}/?rig=biped_cape", viewport=WIDE)
     visit.wait_until_bound()
     assert behind(visit, visit.page.get_by_role("alert")) == 0
     visit.dismiss()
     visit.settle()
     assert visit.page.evaluate("__cutcell.renderer.insets.top") == 20
+    # Moved to where the legend is, the character is seen whole.
+    legend = visit.page.locator(".legend")
+    own = legend.bounding_box()
+    x, y = visit.page.evaluate("__cutcell.vertexPoint(0)")
+    visit.page.keyboard.down("Shift")
+    visit.page.mouse.move(x, y)
+    visit.page.mouse.down()
+    visit.page.mouse.move(own["x"] + 100, own["y"] - 100, steps=3)
+    visit.page.mouse.up()
+    visit.page.keyboard.up("Shift")
+    assert behind(visit, legend) == 0
+    assert legend.bounding_box()["x"] > own["x"] + 100
+    visit.page.get_by_role("application").dblclick(position={"x": 600, "y": 30})
+    visit.settle()
+    assert legend.bounding_box() == own
     visit.close()

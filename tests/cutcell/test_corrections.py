@@ -37,6 +37,8 @@ def bound(rig, **parts):
 
 def test_json_and_back_is_the_same(tmp_path):
     assert Corrections.from_json(ALL.to_json()) == ALL
+    assert Corrections.from_json(ALL.to_json(indent=None)) == ALL
+    assert "\n" not in ALL.to_json(indent=None)
     assert ALL.vertices[7] == {"head": 0.75, "tail": 0.25}
     ALL.save(tmp_path / "c.json")
     assert Corrections.load(tmp_path / "c.json") == ALL
@@ -73,6 +75,23 @@ def test_json_and_back_is_the_same(tmp_path):
 def test_what_is_wrong_is_named(text, sentence):
     with pytest.raises(ParameterError, match=sentence):
         Corrections.from_json(text)
+
+
+def test_joints_of_a_vertex_go_by_names():
+    with pytest.raises(ParameterError, match="joints of vertex 3 go by their names, not by 0"):
+        Corrections(vertices={3: {0: 1.0}})
+
+
+def test_weights_that_were_checked_are_shared_and_stay_as_written():
+    written = {"head": 0.1, "neck": 0.2, "tail": 0.7}
+    first = Corrections(vertices={1: written})
+    written["head"] = 9.0
+    again = replace(first, vertices={**first.vertices, 2: {"head": 2.0, "tail": 2.0}})
+    assert again.vertices[1] is first.vertices[1]
+    assert again.vertices == {
+        1: {"head": 0.1, "neck": 0.2, "tail": 0.7},
+        2: {"head": 0.5, "tail": 0.5},
+    }
 
 
 def test_a_file_that_cannot_be_read_is_named(tmp_path):

@@ -73,3 +73,31 @@ test("nobody gets lost: neither too near nor too far, nor over the top", () => {
   made.turn(0, 99)
   assert.ok(made.pitch < Math.PI / 2)
 })
+
+test("while weights are painted the right button turns, with Shift it moves", () => {
+  const {made, heard} = orbit()
+  made.setHome([0, 0, 4], [0, 0, 0])
+  made.painting = true
+  const drag = (more) => {
+    heard.pointerdown(pointer(100, 100, more))
+    heard.pointermove(pointer(160, 100, more))
+    heard.pointerup(pointer(160, 100, more))
+  }
+  drag({button: 2, buttons: 2})
+  close(made.target, [0, 0, 0])
+  assert.notEqual(made.yaw, made.home.yaw)
+  const {yaw} = made
+  drag({button: 2, buttons: 2, shiftKey: true})
+  drag({button: 1, buttons: 4})
+  assert.equal(made.yaw, yaw)
+  assert.ok(Math.hypot(...made.target) > 0.1)
+})
+
+test("a pointer that joins moves and zooms with the next", () => {
+  const {made, heard} = orbit()
+  made.setHome([0, 0, 4], [0, 0, 0])
+  made.join(1, [100, 100])
+  heard.pointerdown(pointer(200, 100, {pointerId: 2}))
+  heard.pointermove(pointer(300, 100, {pointerId: 2}))
+  close([made.distance], [2])
+})

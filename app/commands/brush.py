@@ -1,0 +1,218 @@
+"""Paint weights: strokes over the body in the view become weights of single vertices."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cutcell.errors import CutcellError
+from cutcell.skinning.correct import locked_by
+from cutcell.skinning.stroke import Brush, PaintSurface, Stroke
+
+from ..scenes.weights import painted_colors
+from ..state import State
+from ..state.brush import LEAST_RADIUS, LEAST_STRENGTH, MOST_RADIUS, PAINTED
+from .correct import check_alone, correct
+from .moving import mirror_of, plane_in_scene
+from .session import Session
+
+STEPS = 10_000
+"""Weights are kept in as many steps from 0 to 1: files of corrections stay short."""
+LARGER = 1.25
+"""How many times as large the next radius is."""
+STRONGER = 0.1
+SEEN = ["panel", "rig", "binding", "joint", "playing", "brush", "brush_mode", "brush_radius",
+        "brush_mirrored"]  # fmt: skip
+
+
+def watch(session: Session) -> None:
+    """Let the view have a brush, and the weights follow it."""
+    follow = session.state.param.watch
+    hand = Hand(session)
+    session.view.listen("brush", hand.paint)
+    follow(lambda *events: take_up(session), "brush")
+    follow(lambda *events: tell_brush(session), SEEN)
+    follow(lambda event: put_down(session) if event.new else None, "joint_handle")
+
+
+def take_up(session: Session) -> None:
+    """Show the weights that are about to be painted, and nothing else that can be dragged."""
+    state = session.state
+    if not state.brush:
+        return
+    shown = state.weights_shown if state.brush_mode == "smooth" else "bone"
+    state.param.update(
+        joint_handle=False, weights_of="ours", weights_shown=shown, pose_colors="weights",
+        heat=False,
+    )  # fmt: skip
+
+
+def put_down(session: Session) -> None:
+    """Paint no more."""
+    session.state.brush = False
+
+
+def turn_over(session: Session) -> None:
+    """Take up the brush where weights are painted, or put it down."""
+    state = session.state
+    if state.panel not in PAINTED:
+        state.panel = PAINTED[0]
+    state.brush = not state.brush
+
+
+def resize(session: Session, steps: int) -> None:
+    """Make the brush larger, or smaller."""
+    radius = session.state.brush_radius * LARGER**steps
+    session.state.brush_radius = min(max(radius, LEAST_RADIUS), MOST_RADIUS)
+
+
+def strengthen(session: Session, steps: int) -> None:
+    """Make the brush stronger, or weaker."""
+    strength = round(session.state.brush_strength + STRONGER * steps, 2)
+    session.state.brush_strength = min(max(strength, LEAST_STRENGTH), 1.0)
+
+
+def paints(state: State) -> bool:
+    """Whether there are weights in sight that the brush can paint."""
+    there = state.rig is not None and not state.bare and state.binding is not None
+    return bool(state.brush and there and state.panel in PAINTED and not state.playing)
+
+
+def radius_of(state: State) -> float:
+    """Return the radius of the brush, in the file's units."""
+    return float(state.brush_radius * np.ptp(state.rig.mesh.bounds, axis=0).max())
+
+
+def tell_brush(session: Session) -> None:
+    """Tell the view how large the brush is, and where its mirror image is; None for no brush."""
+    state = session.state
+    part: dict[str, Any] | None = None
+    if paints(state):
+        scale = abs(np.linalg.det(state.rig.world[:3, :3])) ** (1 / 3)
+        part = {"radius": radius_of(state) * scale, "mirror": None}
+        mirror = mirror_of(session) if state.brush_mirrored else None
+        if mirror is not None and (state.brush_mode == "smooth" or mirror.joint[state.joint] >= 0):
+            part["mirror"] = plane_in_scene(state.rig.world, mirror)
+    if session.view.told("brush") != part:
+        session.view.tell(brush=part)
+
+
+class Hand:
+    """Paints as the pointer passes over the body.
+
+    Parameters
+    ----------
+    session : Session
+    """
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+        self._stroke: Stroke | None = None
+        self._of: Any = None
+
+    def paint(self, message: dict[str, Any]) -> None:
+        """Go on with a stroke, show what it makes of the weights, and take that when it ends.
+
+        Parameters
+        ----------
+        message : dict
+            "points": of each point of the surface the three corners around it and what each counts
+            for; "first" and "done"; "cancelled"; "mode", where it is another than the brush's.
+        """
+        session, state = self._session, self._session.state
+        if message.get("first"):
+            self._begin(message.get("mode"))
+        stroke = self._stroke
+        if stroke is None or self._of is not state.binding:
+            self._stroke = None
+            session.view.answer(painted={"gone": True})
+            return
+        points = np.asarray(message.get("points", ()), float).reshape(-1, 6)
+        corners = points[:, :3].astype(np.intp)
+        if len(points) and 0 <= corners.min() <= corners.max() < len(state.rig.mesh.vertices):
+            stroke.pass_over(corners, points[:, 3:])
+        vertices, rows = stroke.painted()
+        if message.get("cancelled"):
+            self._stroke = None
+            self._show(vertices, state.weights[vertices])
+            return
+        self._show(vertices, rows)
+        if message.get("done"):
+            self._stroke = None
+            self._take(vertices, rows)
+
+    def _begin(self, mode: str | None) -> None:
+        session, state = self._session, self._session.state
+        self._stroke = None
+        if not paints(state):
+            return
+        mesh = state.rig.mesh
+        surface = session.memo("paint surface", (mesh,), lambda: PaintSurface(mesh))
+        wanted: Any = mode or state.brush_mode
+        try:
+            brush = Brush(radius_of(state), wanted, state.brush_strength, state.brush_value)
+            self._stroke = Stroke(
+                surface,
+                state.rig,
+                state.weights,
+                state.joint,
+                brush,
+                mirror=mirror_of(session) if state.brush_mirrored else None,
+                locked=locked_by(state.corrections),
+                max_influences=state.max_influences,
+            )
+        except CutcellError as error:
+            session.fail(error)
+        self._of = state.binding
+
+    def _show(self, vertices: NDArray, rows: NDArray) -> None:
+        colors = painted_colors(self._session.state, vertices, rows)
+        found = {name: np.ascontiguousarray(some).ravel() for name, some in colors.items()}
+        self._session.view.answer(painted={"vertices": vertices.astype(np.uint32), **found})
+
+    def _take(self, vertices: NDArray, rows: NDArray) -> None:
+        session, state = self._session, self._session.state
+        before, corrections = state.weights[vertices], state.corrections
+        changed = np.abs(rows - before).max(axis=1, initial=0) > 0.5 / STEPS
+        if not changed.any():
+            self._show(vertices, before)
+            return
+        try:
+            given = rows_by_name(session, vertices[changed], rows[changed])
+            session.history.part()
+            correct(session, replace(corrections, vertices={**corrections.vertices, **given}))
+        except CutcellError as error:
+            session.fail(error)
+        if state.corrections == corrections:
+            self._show(vertices, before)
+
+
+def rows_by_name(session: Session, vertices: NDArray, rows: NDArray) -> dict[int, dict[str, float]]:
+    """Return weights as corrections have them, in whole steps that sum to one.
+
+    Raises
+    ------
+    ParameterError
+        Two joints share a name.
+    """
+    skeleton = session.state.rig.skeleton
+    for joint in np.flatnonzero(rows.any(axis=0)):
+        check_alone(skeleton, int(joint))
+    found: dict[int, dict[str, float]] = {int(vertex): {} for vertex in vertices}
+    steps = in_steps(rows)
+    for row, joint in zip(*np.nonzero(steps), strict=True):
+        found[int(vertices[row])][skeleton.names[joint]] = int(steps[row, joint]) / STEPS
+    return found
+
+
+def in_steps(rows: NDArray) -> NDArray[np.int64]:
+    """Round rows that sum to one to whole steps that sum to `STEPS` (the largest remainders)."""
+    scaled = rows * STEPS
+    steps = np.floor(scaled).astype(np.int64)
+    order = np.argsort(-(scaled - steps), axis=1, kind="stable")
+    rank = np.argsort(order, axis=1, kind="stable")
+    missing = STEPS - steps.sum(axis=1, keepdims=True)
+    return steps + ((rank < missing) & (rows > 0))

@@ -1,0 +1,64 @@
+"""The brush: what it does to weights, how large and how strong it is."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import panel_material_ui as pmui
+
+from cutcell.display import shown_name
+
+from ..commands.moving import mirror_of
+from ..commands.session import Session
+from ..state.brush import MOST_RADIUS
+from .parts import caption, choice, section, slider, when
+
+MODES = {"Add": "add", "Subtract": "subtract", "Replace": "replace", "Smooth": "smooth"}
+HOW = (
+    "Drag over the body to paint, beside it or with the right button to turn it, with the middle "
+    "button to move it; a finger beside it turns, two move. Shift while you paint smooths, Ctrl "
+    "takes away. Keys: B, [ ] for the size, { } for the strength, Esc."
+)
+
+
+def brush(session: Session) -> pmui.Column:
+    """Return the section of the brush."""
+    state = session.state
+    look: dict[str, Any] = {"size": "small", "margin": (3, 0), "description": ""}
+    switch, mirrored = (
+        pmui.Switch.from_param(parameter, label=parameter.label, **look)
+        for parameter in (state.param.brush, state.param.brush_mirrored)
+    )
+
+    def has_mirror(rig: Any, own: Any) -> bool:
+        return rig is not None and own is not None and mirror_of(session) is not None
+
+    mirrored.visible = when(has_mirror, state.param.rig, state.param.own_skeleton)
+    tools = pmui.Column(
+        choice(state.param.brush_mode, MODES),
+        caption(when(_told, state.param.rig, state.param.joint, state.param.brush_mode)),
+        slider(
+            state.param.brush_radius, "Radius, of the character's longest side", step=0.005,
+            end=MOST_RADIUS, format="0.0 %",
+        ),
+        slider(state.param.brush_strength, "Strength", step=0.05),
+        slider(
+            state.param.brush_value, "Weight to paint", step=0.05,
+            visible=when(lambda mode: mode == "replace", state.param.brush_mode),
+        ),
+        mirrored,
+        caption(HOW),
+        visible=state.param.brush,
+        margin=0,
+        sizing_mode="stretch_width",
+    )  # fmt: skip
+    shown = when(lambda binding: binding is not None, state.param.binding)
+    return section("Brush", switch, tools, visible=shown)
+
+
+def _told(rig: Any, joint: int, mode: str) -> str:
+    if mode == "smooth":
+        return "Evens out the weights of all joints that are not locked."
+    if rig is None or joint >= len(rig.skeleton.names):
+        return ""
+    return f"Paints the weight of {shown_name(rig.skeleton.names[joint])}, the chosen bone."

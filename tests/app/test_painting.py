@@ -1,0 +1,299 @@
+"""The brush on the page: strokes become weights of vertices, and nothing else."""
+
+import numpy as np
+import panel_material_ui as pmui
+import pytest
+
+import cutcell
+from cutcell import Brush, Corrections, paint_weights
+from cutcell_app.commands import brush, correct, keys, loading, pose
+from cutcell_app.commands.brush import STEPS, in_steps, radius_of
+from cutcell_app.panels.brush import brush as section_of_brush
+from cutcell_app.scenes import resolve
+from cutcell_app.scenes.weights import painted_colors
+from cutcell_app.state.brush import LEAST_RADIUS, LEAST_STRENGTH
+from cutcell_app.state.corrections import MOST_IN_ADDRESS, MOST_VERTICES, to_text
+from cutcell_app.state.url import from_query
+from tests.viewers.arm import arm_rig
+
+MIDDLE = 30
+
+
+@pytest.fixture
+def painter(bound, loop, monkeypatch):
+    """Take up the brush; what the browser is answered is kept."""
+    answers = []
+    monkeypatch.setattr(bound.view, "answer", lambda **message: answers.append(message))
+    bound.answers = answers
+    bound.state.joint = 2
+    bound.state.param.update(brush=True, brush_radius=0.2, brush_mirrored=False)
+    loop.run_until(lambda: not bound.tasks.running)
+    return bound
+
+
+def stroke(session, *vertices, **more):
+    """Paint over some vertices as the browser does: in pieces."""
+    act = session.view._listeners["brush"]
+    for place, vertex in enumerate(vertices):
+        point = [vertex, vertex, vertex, 1, 0, 0]
+        last = place == len(vertices) - 1
+        act({"points": point, "first": place == 0, "done": last, "mode": None, **more})
+
+
+def settled(session, loop):
+    loop.run_until(lambda: not session.tasks.running)
+    assert session.state.message is None, session.state.message
+
+
+def the_same_as_bind(session):
+    fresh = cutcell.bind(arm_rig(), session.state.resolution, corrections=session.state.corrections)
+    np.testing.assert_allclose(session.state.binding.weights, fresh.weights, rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize("mode", ["add", "subtract", "replace", "smooth"])
+def test_a_stroke_is_what_the_core_paints_and_one_step_to_undo(painter, loop, mode):
+    state = painter.state
+    state.brush_mode = mode
+    before = state.binding.weights
+    made = Brush(radius_of(state), mode, state.brush_strength, state.brush_value)
+    expected = paint_weights(
+        state.rig, before, 2, [MIDDLE, MIDDLE + 1], made, max_influences=state.max_influences
+    )
+    stroke(painter, MIDDLE, MIDDLE + 1)
+    settled(painter, loop)
+    after = state.binding.weights
+    np.testing.assert_allclose(after, expected, rtol=0, atol=1 / STEPS)
+    np.testing.assert_allclose(after.sum(axis=1), 1, rtol=0, atol=1e-12)
+    changed = (np.abs(expected - before) > 1 / STEPS).any(axis=1)
+    assert changed.any()
+    others = np.delete(np.arange(len(after)), [*state.corrections.vertices])
+    assert np.array_equal(after[others], before[others])
+    the_same_as_bind(painter)
+    keys.act(painter, "undo")
+    settled(painter, loop)
+    assert np.array_equal(state.binding.weights, before)
+    assert not state.corrections
+    assert state.brush, "undo takes the stroke back, not the brush"
+    keys.act(painter, "redo")
+    settled(painter, loop)
+    assert np.array_equal(state.binding.weights, after)
+
+
+def test_strokes_that_follow_at_once_are_steps_of_their_own(painter, loop):
+    state = painter.state
+    held = [state.binding.weights]
+    for vertex in (MIDDLE, MIDDLE + 7, 3):
+        stroke(painter, vertex)
+        settled(painter, loop)
+        held.append(state.binding.weights)
+        assert not np.array_equal(held[-1], held[-2])
+    for before in held[-2::-1]:
+        keys.act(painter, "undo")
+        settled(painter, loop)
+        assert np.array_equal(state.binding.weights, before)
+    assert not state.corrections
+
+
+def test_colours_follow_each_piece_and_are_those_of_the_scene_after(painter, loop):
+    state = painter.state
+    first = resolve(state, painter.memo).actors["body"].scalars
+    stroke(painter, MIDDLE, MIDDLE + 1, MIDDLE + 2)
+    told = [answer["painted"] for answer in painter.answers]
+    assert len(told) == 3
+    sizes = [len(one["vertices"]) for one in told]
+    assert 0 < sizes[0] <= sizes[1] <= sizes[2]
+    settled(painter, loop)
+    last = resolve(state, painter.memo).actors["body"].scalars
+    seen = first.copy()
+    seen[told[-1]["vertices"]] = told[-1]["scalars"]
+    np.testing.assert_allclose(seen, last, rtol=0, atol=1 / STEPS)
+
+
+@pytest.mark.parametrize("shown", ["mix", "dominant", "bone", "count", "difference",
+                                   "bone_difference"])  # fmt: skip
+def test_colours_of_a_few_vertices_are_those_of_the_whole(painter, shown):
+    state = painter.state
+    state.weights_shown = shown
+    some = np.array([3, 20, 41])
+    found = painted_colors(state, some, state.weights[some])
+    body = resolve(state, painter.memo).actors["body"]
+    ((name, few),) = found.items()
+    assert np.array_equal(few, getattr(body, name)[some])
+    state.weights_of = "file"
+    assert painted_colors(state, some, state.weights[some]) == {}
+
+
+def test_a_stroke_that_is_cancelled_or_changes_nothing_leaves_nothing(painter, loop):
+    state = painter.state
+    act = painter.view._listeners["brush"]
+    steps = painter.history.now
+    act({"points": [MIDDLE] * 3 + [1, 0, 0], "first": True, "done": False})
+    act({"cancelled": True})
+    back = painter.answers[-1]["painted"]
+    assert np.array_equal(back["scalars"], state.weights[back["vertices"], 2].astype(np.float32))
+    act({"points": [], "done": True})
+    assert painter.answers[-1] == {"painted": {"gone": True}}
+    act({"points": [10**6] * 3 + [1, 0, 0], "first": True, "done": True})
+    assert not state.corrections
+    state.brush_mode = "replace"
+    state.brush_value = 0.0
+    away = int(state.weights[:, 2].argmin())
+    assert state.weights[away, 2] == 0
+    state.brush_radius = LEAST_RADIUS
+    stroke(painter, away)
+    assert not state.corrections
+    assert painter.history.now is steps, "no step to undo"
+
+
+def test_locked_and_idle_joints_are_told(painter, loop):
+    state = painter.state
+    correct.correct_joint(painter, 2, locked=True)
+    settled(painter, loop)
+    stroke(painter, MIDDLE)
+    assert '"wrist" is locked' in state.message[1]
+    assert painter.answers[-1] == {"painted": {"gone": True}}
+    correct.correct_joint(painter, 2, locked=False, deform=False)
+    loop.run_until(lambda: not painter.tasks.running)
+    stroke(painter, MIDDLE)
+    assert "carries no weight" in state.message[1]
+    assert not state.corrections.vertices
+    correct.correct_joint(painter, 2, deform=True)
+    correct.correct_joint(painter, 0, locked=True)
+    state.message = None
+    settled(painter, loop)
+    before = state.weights
+    stroke(painter, int((before[:, 1] * before[:, 2]).argmax()))
+    settled(painter, loop)
+    assert state.corrections.vertices
+    np.testing.assert_allclose(state.weights[:, 0], before[:, 0], rtol=0, atol=1 / STEPS)
+
+
+def test_it_paints_while_the_character_is_posed(painter, loop):
+    state = painter.state
+    state.panel = "pose"
+    pose.turn_joint(painter, 2, 40.0)
+    assert painter.view.told("gizmo") is None, "rings would be in the way"
+    assert painter.view.told("brush")["radius"] == pytest.approx(radius_of(state))
+    stroke(painter, MIDDLE)
+    settled(painter, loop)
+    assert "scalars" in painter.answers[-1]["painted"]
+    posed = state.binding.weights
+    the_same_as_bind(painter)
+    state.panel = "weights"
+    keys.act(painter, "undo")
+    keys.act(painter, "undo")
+    settled(painter, loop)
+    stroke(painter, MIDDLE)
+    settled(painter, loop)
+    assert np.array_equal(posed, state.binding.weights), "a stroke lies on the surface at rest"
+    state.param.update(panel="pose", moving=True, playing=True)
+    assert painter.view.told("brush") is None
+    state.playing = False
+    assert painter.view.told("brush") is not None
+    state.panel = "graph"
+    assert painter.view.told("brush") is None
+
+
+def test_what_is_painted_stays_with_the_address_and_after_rebinding(painter, loop):
+    state = painter.state
+    state.brush_radius = 0.5
+    for vertex in range(0, len(arm_rig().mesh.vertices), 25):
+        stroke(painter, vertex)
+        settled(painter, loop)
+    held = state.corrections
+    assert len(held.vertices) > MOST_VERTICES
+    assert len(to_text(held)) > MOST_IN_ADDRESS
+    said = from_query(painter.view.told("address"), state)[1]["corrections"]
+    assert len(said) < MOST_IN_ADDRESS
+    painter.arrival = {"corrections": said}
+    loading.show_rig(painter, arm_rig())
+    settled(painter, loop)
+    assert state.corrections == held
+    the_same_as_bind(painter)
+    assert Corrections.from_json(held.to_json()) == held
+    state.resolution = 20
+    settled(painter, loop)
+    the_same_as_bind(painter)
+    for vertex, row in held.vertices.items():
+        given = [row.get(name, 0.0) for name in state.rig.skeleton.names]
+        assert state.binding.weights[vertex].tolist() == given
+
+
+def test_keys_and_switches(painter, loop):
+    state = painter.state
+    keys.act(painter, "brush larger")
+    assert state.brush_radius == pytest.approx(0.25)
+    for _ in range(40):
+        keys.act(painter, "brush smaller")
+        keys.act(painter, "brush weaker")
+    assert (state.brush_radius, state.brush_strength) == (LEAST_RADIUS, LEAST_STRENGTH)
+    for _ in range(20):
+        keys.act(painter, "brush stronger")
+    assert state.brush_strength == 1
+    keys.act(painter, "brush away")
+    assert not state.brush
+    assert painter.view.told("brush") is None
+    state.panel = "graph"
+    keys.act(painter, "brush")
+    assert (state.panel, state.brush) == ("weights", True)
+    keys.act(painter, "brush")
+    state.param.update(weights_shown="mix", weights_of="file", joint_handle=True)
+    keys.act(painter, "brush")
+    assert (state.weights_shown, state.weights_of, state.joint_handle) == ("bone", "ours", False)
+    state.joint_handle = True
+    assert not state.brush
+    assert not {"brush", "brush_radius"} & painter.history.now.keys()
+
+
+def test_the_section_says_what_is_painted(painter, loop):
+    section = section_of_brush(painter)
+    modes = section.select(pmui.RadioButtonGroup)[0]
+    modes.value = "smooth"
+    assert painter.state.brush_mode == "smooth"
+    switch, mirrored = section.select(pmui.Switch)
+    assert switch.value
+    assert not mirrored.visible, "the arm has no other side"
+    switch.value = False
+    assert not painter.state.brush
+    value = section.select(pmui.FloatSlider)[2]
+    assert not value.visible
+    painter.state.brush_mode = "replace"
+    loop.run_for(0.05)
+    assert value.visible
+
+
+def test_whole_steps_sum_to_one():
+    rng = np.random.default_rng(5)
+    rows = (
+        rng.random((200, 7)) * (rng.random((200, 7)) < 0.6) + np.eye(7)[rng.integers(7, size=200)]
+    )
+    rows /= rows.sum(axis=1, keepdims=True)
+    steps = in_steps(rows)
+    assert (steps.sum(axis=1) == STEPS).all()
+    assert np.abs(steps - rows * STEPS).max() < 1
+    assert not steps[rows == 0].any()
+    exact = np.array([[0.25, 0.75, 0], [1, 0, 0], [0.1, 0.2, 0.7]])
+    assert np.array_equal(in_steps(exact), np.round(exact * STEPS))
+
+
+def test_the_other_side_is_painted_where_there_is_one(session, loop):
+    session.state.resolution = 16
+    loading.load_demo(session, "robot")
+    loop.run_until(lambda: session.state.binding is not None and not session.tasks.running)
+    state = session.state
+    names = state.rig.skeleton.names
+    state.param.update(joint=names.index("forearm.L"), brush=True, brush_radius=0.05)
+    part = session.view.told("brush")
+    assert np.linalg.norm(part["mirror"][:3]) == pytest.approx(1)
+    vertex = int(np.abs(state.weights[:, state.joint] - 0.5).argmin())
+    point = [vertex, vertex, vertex, 1, 0, 0]
+    state.brush_mode = "subtract"
+    session.view._listeners["brush"]({"points": point, "first": True, "done": True})
+    loop.run_until(lambda: not session.tasks.running)
+    x = state.rig.mesh.vertices[list(state.corrections.vertices), 0]
+    assert (x > 0).any()
+    assert (x < 0).any()
+    assert state.corrections.joints == {}
+    state.brush_mirrored = False
+    assert session.view.told("brush")["mirror"] is None
+    assert brush.paints(state)
