@@ -15,6 +15,7 @@ from . import pose as pose
 from . import progress as progress
 from . import skinning as skinning
 from . import surface as surface
+from . import templates as templates
 from . import winding as winding
 from .corrections import Corrections as Corrections
 from .corrections import JointCorrection as JointCorrection
@@ -66,6 +67,7 @@ from .skinning import explain as explain
 from .skinning import paint_weights as paint_weights
 from .skinning import refine_weights as refine_weights
 from .skinning import skinning_weights as skinning_weights
+from .templates import fit_skeleton as fit_skeleton
 from .winding import winding_number as winding_number
 
 __version__: str

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from .console import for_people, print_json, print_table, print_warnings, progress_bars
+from .errors import ParameterError
 from .options import (
     Alpha,
     Connectivity,
@@ -30,6 +31,7 @@ from .options import (
     SkeletonFile,
     Smoothing,
     Symmetric,
+    TemplateName,
     Threshold,
     WindingThreshold,
     chosen_method,
@@ -38,9 +40,12 @@ from .report import report_rows
 
 if TYPE_CHECKING:
     from .corrections import Corrections
+    from .graph import CutCellGraph
     from .method import Method
+    from .progress import Progress
     from .rig import Rig
     from .skinning import Binding
+    from .templates import Template
 
 EPILOG = """Examples:
 
@@ -59,6 +64,8 @@ EPILOG = """Examples:
 - `cutcell bind character.glb bound.glb --corrections character.corrections.json`
 
 - `cutcell bind body.obj bound.glb --skeleton body.json`  (a bare mesh)
+
+- `cutcell bind statue.obj bound.glb --template biped`  (a skeleton is fitted into the body)
 
 - `cutcell bind character.glb bound.glb --json | jq .seconds`  (for a script)"""
 
@@ -96,6 +103,7 @@ def bind(
     fresh: Fresh = False,
     corrections: CorrectionsFile = None,
     skeleton: SkeletonFile = None,
+    template: TemplateName = None,
     json: Json = False,
     quiet: Quiet = False,
 ) -> None:
@@ -113,6 +121,7 @@ def bind(
     from .io.files import naming
     from .skinning import bind as compute
     from .skinning import corrected_rig
+    from .templates.names import check_template
 
     how = chosen_method(
         method,
@@ -133,16 +142,24 @@ def bind(
         "locked": lock or [],
     }
     corrected = None if corrections is None else Corrections.load(corrections)
+    fits = None if template is None else check_template(template)
     check_output(out)
-    loaded = load(rig, skeleton=skeleton)
+    loaded, graph = load(rig, skeleton=skeleton), None
     with naming(rig):
+        if fits is not None:
+            with progress_bars(quiet) as progress:
+                loaded, graph = _with_template(loaded, fits, how, progress)
+        if corrected is not None and not len(loaded.skeleton.joints):
+            loaded = corrected_rig(loaded, corrected)  # they may bring a skeleton
         check_has_joints(loaded.skeleton)
         loaded = choose_deform(loaded, deform or (), no_deform or (), fresh=fresh)
         if corrected is not None:
             loaded = corrected_rig(loaded, corrected)
     check_output(out, loaded)
     with progress_bars(quiet) as progress:
-        binding = compute(loaded, method=how, **touches, corrections=corrected, progress=progress)
+        binding = compute(
+            loaded, method=how, **touches, corrections=corrected, graph=graph, progress=progress
+        )
     warnings = [*loaded.warnings, *binding.warnings]
     if max_influences is None and how.max_influences is None and out.suffix.lower() in GLTF:
         how = how.with_options(max_influences=GLTF_INFLUENCES)
@@ -156,6 +173,7 @@ def bind(
         "method": method,
         "parameters": {**asdict(how), **touches},
         "corrections": None if corrections is None else str(corrections),
+        "template": template,
         "mesh": summary.summarize_mesh(loaded.mesh, binding.graph),
         "meshes": summary.summarize_parts(loaded),
         "skeleton": summary.summarize_skeleton(loaded.skeleton),
@@ -171,6 +189,23 @@ def bind(
         print_json(document)
     elif not quiet:
         print_table(f"{rig.name} -> {out}", report_rows(document))
+
+
+def _with_template(
+    rig: Rig, template: Template, method: Method, progress: Progress
+) -> tuple[Rig, CutCellGraph]:
+    """Return a rig with a skeleton that is fitted into its mesh, and the mesh's graph."""
+    from .graph import build_graph
+    from .templates import fit_skeleton
+
+    if len(rig.skeleton.joints):
+        raise ParameterError(
+            f"the rig has a skeleton of {len(rig.skeleton.joints)} joints already; --template is "
+            "for meshes without one"
+        )
+    graph = build_graph(rig.mesh, method=method, progress=progress)
+    skeleton = fit_skeleton(rig.mesh, template, graph=graph)
+    return replace(rig, skeleton=skeleton), graph
 
 
 def _limited(

@@ -41,6 +41,12 @@ class JointCorrection:
     position : sequence of 3 float, optional
         Where it stands at rest, in the file's units; see `Rig.with_joints`. As in the file when
         left out.
+    parent : str, optional
+        The joint that it hangs on, "" for none; as in the file when left out.
+    added : bool
+        Whether the file does not have it. It needs a position and a parent.
+    was : str, optional
+        What the file calls it, where it has another name now.
     """
 
     deform: bool | None = None
@@ -48,6 +54,9 @@ class JointCorrection:
     gain: float = 1.0
     radius: float | None = None
     position: tuple[float, float, float] | None = None
+    parent: str | None = None
+    added: bool = False
+    was: str | None = None
 
     def __post_init__(self) -> None:
         if self.deform is not None:
@@ -61,6 +70,21 @@ class JointCorrection:
             object.__setattr__(self, "radius", radius)
         if self.position is not None:
             object.__setattr__(self, "position", _position(self.position))
+        check_flag("added", self.added)
+        for what in ("parent", "was"):
+            name = getattr(self, what)
+            if name is not None and not isinstance(name, str):
+                raise ParameterError(f"{what} must be the name of a joint, not {shown(name)}")
+        if self.added and (self.position is None or self.parent is None or self.was is not None):
+            raise ParameterError(
+                'a joint that is added needs a position and a parent, "" for none, and no name '
+                "that it had before"
+            )
+
+    @property
+    def structural(self) -> bool:
+        """Whether the skeleton has other joints, names or parents by it."""
+        return self.added or self.parent is not None or self.was is not None
 
 
 @dataclass(frozen=True)
@@ -93,7 +117,7 @@ class PartCorrection:
 
 @dataclass(frozen=True)
 class Corrections:
-    """Corrections of one character's binding. Joints go by their names.
+    """Corrections of one character's binding. Joints go by their names, their new ones if any.
 
     Parameters
     ----------
@@ -102,6 +126,9 @@ class Corrections:
         By any vertex of the connected component.
     vertices : mapping of int to mappings of str to float
         Weights that overrule what is computed for a vertex; they are scaled to sum to one.
+    removed : sequence of str
+        Joints of the file that are taken out, by the file's names. Their children go to their
+        parents.
 
     Raises
     ------
@@ -124,6 +151,7 @@ class Corrections:
     joints: Mapping[str, JointCorrection] = field(default_factory=dict)
     parts: Mapping[int, PartCorrection] = field(default_factory=dict)
     vertices: Mapping[int, Mapping[str, float]] = field(default_factory=dict)
+    removed: Sequence[str] = ()
 
     def __post_init__(self) -> None:
         for name, kind in (("joints", JointCorrection), ("parts", PartCorrection)):
@@ -141,10 +169,16 @@ class Corrections:
             check_integer("the vertex of a part", vertex, 0, MOST_VERTEX)
         found = _mapping("vertices", self.vertices)
         object.__setattr__(self, "vertices", {v: _weights(v, w) for v, w in found.items()})
+        object.__setattr__(self, "removed", _names("removed", self.removed))
 
     def __bool__(self) -> bool:
         """Whether anything is corrected."""
-        return bool(self.joints or self.parts or self.vertices)
+        return bool(self.joints or self.parts or self.vertices or self.removed)
+
+    @property
+    def structural(self) -> bool:
+        """Whether the skeleton has other joints, names or parents by them."""
+        return bool(self.removed) or any(one.structural for one in self.joints.values())
 
     def to_json(self, indent: int | None = 2) -> str:
         """Return them as a JSON document.
@@ -158,6 +192,7 @@ class Corrections:
             "joints": {name: _said(one) for name, one in self.joints.items()},
             "parts": [{"vertex": v, **_said(part)} for v, part in self.parts.items()],
             "vertices": {str(v): dict(weights) for v, weights in self.vertices.items()},
+            "removed": list(self.removed),
         }
         return json.dumps({k: v for k, v in data.items() if v}, indent=indent, ensure_ascii=False)
 
@@ -195,7 +230,7 @@ class Corrections:
             if not (isinstance(key, str) and key.isascii() and key.isdigit()):
                 raise ParameterError(f"vertices go by their numbers, not by {shown(key)}")
             vertices[int(key)] = weights
-        return cls(joints, parts, vertices)
+        return cls(joints, parts, vertices, data.get("removed", ()))
 
     @classmethod
     def load(cls, path: str | Path) -> Corrections:
@@ -253,6 +288,15 @@ def _mapping(where: str, value: Any) -> dict[Any, Any]:
     if not isinstance(value, Mapping):
         raise ParameterError(f"{where} must be a mapping of names to values, not {shown(value)}")
     return dict(value)
+
+
+def _names(where: str, value: Any) -> tuple[str, ...]:
+    if isinstance(value, str) or not isinstance(value, Sequence):
+        raise ParameterError(f"{where} must be a list of names, not {shown(value)}")
+    for name in value:
+        if not isinstance(name, str):
+            raise ParameterError(f"{where} must hold names of joints, not {shown(name)}")
+    return tuple(dict.fromkeys(value))
 
 
 def _position(value: Any) -> tuple[float, ...]:

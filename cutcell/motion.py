@@ -247,7 +247,7 @@ class Moved:
         world[..., :3, 3] += _rotated(world, self.before)
         held = np.flatnonzero(self.parents >= 0)
         local, above = world.copy(), self.parents[held]
-        local[:, held] = _inverses(world[:, above]) @ world[:, held]
+        local[:, held] = inverses(world[:, above]) @ world[:, held]
         local[..., :3, 3] += self.by
         local[:, held, :3, 3] -= self.by[above]
         done = self.parents < 0
@@ -263,7 +263,7 @@ def _rotated(matrices: NDArray[np.float64], points: NDArray[np.float64]) -> NDAr
     return np.einsum("fjab,jb->fja", matrices[..., :3, :3], points)
 
 
-def _inverses(matrices: NDArray[np.float64]) -> NDArray[np.float64]:
+def inverses(matrices: NDArray[np.float64]) -> NDArray[np.float64]:
     """Invert matrices (..., 4, 4); of a joint that is scaled to nothing, as far as can be."""
     try:
         return np.linalg.inv(matrices).astype(np.float64)

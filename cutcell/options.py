@@ -33,6 +33,15 @@ SkeletonFile = Annotated[
         rich_help_panel=FILES,
     ),
 ]
+TemplateName = Annotated[
+    str | None,
+    typer.Option(
+        "--template",
+        metavar="T",
+        help="Fit a skeleton into a mesh that has none: biped, quadruped, hand, snake or chain.",
+        rich_help_panel=FILES,
+    ),
+]
 Json = Annotated[
     bool, typer.Option("--json", help="Print one JSON document.", rich_help_panel=FILES)
 ]

@@ -247,6 +247,9 @@ class Rig:
     weight_sums : array, shape (n,), float64, optional
         What the weights of each vertex summed to in the file, before they were scaled to one;
         NaN where some were negative or no numbers. None where `weights` are not the file's.
+    origin : array_like, shape (j,), int32, optional
+        Which joint of the file each one is, -1 where joints were added; None where the skeleton
+        is the file's. See `corrected_rig`.
     source
         What `cutcell.save` needs to write the same document again; opaque.
 
@@ -271,6 +274,7 @@ class Rig:
     left_out: tuple[LeftOut, ...] = ()
     warnings: tuple[str, ...] = ()
     weight_sums: NDArray[np.float64] | None = None
+    origin: NDArray[np.int32] | None = None
     source: Any = field(default=None, repr=False)
 
     if TYPE_CHECKING:
@@ -289,6 +293,7 @@ class Rig:
             left_out: tuple[LeftOut, ...] = (),
             warnings: tuple[str, ...] = (),
             weight_sums: NDArray[np.float64] | None = None,
+            origin: ArrayLike | None = None,
             source: Any = None,
         ) -> None: ...
 
@@ -307,6 +312,9 @@ class Rig:
         if self.allowed is not None:
             allowed = as_array(self.allowed, np.bool_, shape, "allowed", WeightsError)
             object.__setattr__(self, "allowed", _frozen(allowed))
+        if self.origin is not None:
+            origin = as_array(self.origin, np.int64, shape[1:], "origin", SkeletonError)
+            object.__setattr__(self, "origin", _frozen(origin.astype(np.int32)))
         if not self.parts or self.parts[-1].vertices.stop != shape[0]:  # of another mesh
             object.__setattr__(self, "parts", (Part(self.name, slice(0, shape[0])),))
         self._check_units()

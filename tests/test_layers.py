@@ -66,7 +66,7 @@ ORDER = [
     {"winding"},
     {"graph"},
     {"geodesics"},
-    {"skinning"},
+    {"skinning", "templates"},
     {"pose"},
     {"metrics"},
     {"workers"},

@@ -55,6 +55,15 @@ def of_arrays(
     return cutcell.bind((vertices, faces, joints, parents), leaf="extend", falloff="rig")
 
 
+def of_a_bare_mesh(mesh: cutcell.TriangleMesh) -> cutcell.Rig:
+    skeleton = cutcell.fit_skeleton(mesh, "biped")
+    assert_type(skeleton, cutcell.Skeleton)
+    assert_type(cutcell.templates.TEMPLATES, tuple[cutcell.templates.Template, ...])
+    hat = cutcell.JointCorrection(added=True, position=(0, 2, 0), parent="head")
+    corrections = cutcell.Corrections(joints={"hat": hat}, removed=["toe.L"])
+    return cutcell.corrected_rig(cutcell.Rig(mesh, skeleton), corrections)
+
+
 def look(rig: cutcell.Rig) -> list[str]:
     cleaned = cutcell.clean(rig)
     assert_type(cleaned, cutcell.Cleaned)

@@ -24,7 +24,7 @@ from cutcell.skinning.correct import adjustments_of
 from cutcell.skinning.preview import Preview
 
 from ..state import State
-from ..state.corrections import applied, measured
+from ..state.corrections import applied, changes, measured, same_structure
 from ..state.method import GRAPH, WEIGHTS, effective, method_of
 from ..state.weights import MOST
 from . import history
@@ -144,7 +144,12 @@ def cancel(session: Session) -> None:
 def swap(session: Session, rig: Rig, **more: Any) -> None:
     """Show the same character with other faces or weights, and bind it; all choices stay."""
     session.tasks.jobs("field").cancel()
-    session.state.param.update(
+    state = session.state
+    if rig.origin is None:
+        more = {"own": replace(rig, skeleton=state.own.skeleton, clips=state.own.clips), **more}
+    else:  # whose weights went to other joints
+        more = {"own": replace(state.own, mesh=rig.mesh), **more}
+    state.param.update(
         rig=rig, binding=None, bare_graph=None, field=None, vertex=None, message=None, **more
     )
     bind(session)
@@ -154,13 +159,16 @@ def restore(session: Session, choices: dict[str, Any]) -> None:
     """Choose again what was chosen once; the character that it was chosen of is bound again."""
     state, plain = session.state, history.plain(choices)
     corrections = choices.get("corrections", state.corrections)
-    rig = choices.get("rig") or applied(state.rig, state.own_skeleton, corrections)
-    if rig.mesh is state.rig.mesh and rig.weights is state.rig.weights:
-        history.restore(session, {**plain, "rig": rig})  # at most other joints deform
+    own = choices.get("own") or state.own
+    rig = choices.get("rig") or applied(own, corrections)
+    if not same_structure(rig, state.rig):
+        history.restore(session, {**changes(state, rig, corrections), **plain, "own": own})
+    elif rig.mesh is state.rig.mesh and rig.weights is state.rig.weights:
+        history.restore(session, {**plain, "rig": rig, "own": own})  # at most joints moved
     else:
         history.restore(session, plain)
         with history.restoring(session):
-            swap(session, rig, repair=choices["repair"])
+            swap(session, rig, repair=choices["repair"], own=own)
     history.tell(session)
 
 
@@ -170,12 +178,18 @@ def _build(session: Session, message: tuple[str, str] | None) -> None:
     wanted = session.bound_for = asked(session.state)
     chosen = {name: wanted[name] for name in GRAPH if name != "leaf"}
 
+    known = _known_graph(session, rig, wanted)
+
+    def work(progress: Progress) -> Any:
+        return known or cutcell.build_graph(rig.mesh, progress=progress, **chosen)
+
     def done(graph: Any) -> None:
-        session.built_for = wanted
+        session.built_for, session.corrected = wanted, Corrections()
+        session.graph = (rig.mesh, wanted, graph)
         session.state.param.update(bare_graph=graph, message=message)
 
     session.start(
-        lambda progress: cutcell.build_graph(rig.mesh, progress=progress, **chosen),
+        work,
         done,
         failed=lambda: _go_back(session, wanted),
     )
@@ -197,8 +211,9 @@ def _go_back(session: Session, wanted: dict[str, Any]) -> None:
 
 def _withdraw(session: Session, choices: dict[str, Any], corrections: Corrections) -> None:
     """Choose something again, and the corrections that there were."""
-    rig = applied(session.state.rig, session.state.own_skeleton, corrections)
-    history.withdraw(session, {**choices, "corrections": corrections, "rig": rig})
+    state = session.state
+    found = changes(state, applied(state.own, corrections), corrections)
+    history.withdraw(session, {**choices, **found})
 
 
 def _rebind(session: Session) -> None:
@@ -210,11 +225,11 @@ def _rebind(session: Session) -> None:
 def _correct(session: Session) -> None:
     """Follow the corrections."""
     state = session.state
-    if state.rig is None or state.bare:
+    if state.rig is None:
         return
     if asked(state) != session.bound_for:
         session.tasks.after_a_pause(lambda: _rebind(session))
-    else:
+    elif not state.bare:
         weigh(session)
 
 

@@ -19,7 +19,7 @@ from cutcell.skinning.correct import corrected_parts, corrected_rig, locked_by, 
 from cutcell.skinning.locks import lock_joints, locked_joints
 
 from ..files.receive import safe_name
-from ..state.corrections import applied, news, tidy
+from ..state.corrections import changes, tidy
 from .session import Session
 
 
@@ -44,22 +44,21 @@ def taken(session: Session, corrections: Corrections) -> dict[str, Any]:
         It cannot be corrected so.
     """
     state = session.state
-    corrected_rig(state.rig, corrections)
-    locked_joints(state.rig, locked_by(corrections))
-    rig = applied(state.rig, state.own_skeleton, corrections)
-    return news(state, {"corrections": corrections, "rig": rig})
+    rig = corrected_rig(state.own, corrections)
+    locked_joints(rig, locked_by(corrections))
+    return changes(state, rig, corrections)
 
 
-def correct_joint(session: Session, joint: int, **changes: Any) -> None:
+def correct_joint(session: Session, joint: int, **wanted: Any) -> None:
     """Change some of what is corrected of a joint; see `JointCorrection`."""
     state = session.state
     name = state.rig.skeleton.names[joint]
-    if "deform" in changes and changes["deform"] == bool(state.own_skeleton.deform[joint]):
-        changes["deform"] = None
+    if "deform" in wanted and wanted["deform"] == bool(state.own_skeleton.deform[joint]):
+        wanted["deform"] = None
     held = state.corrections.joints
     try:
         check_alone(state.rig.skeleton, joint)
-        one = replace(held.get(name, JointCorrection()), **changes)
+        one = replace(held.get(name, JointCorrection()), **wanted)
     except CutcellError as error:
         session.fail(error)
         state.param.trigger("corrections")

@@ -14,7 +14,7 @@ from ..state.history import History
 from ..state.url import NOTED, simple, taken, to_query
 from .session import Session
 
-RESULT = ("rig", "repair")
+RESULT = ("rig", "own", "repair")
 """What changes the result beside the choices: other joints that deform, repaired faces."""
 
 
@@ -48,7 +48,9 @@ def begin(session: Session, before: str) -> None:
 
 def plain(choices: dict[str, Any]) -> dict[str, Any]:
     """Return what of some choices the state holds, but for the character."""
-    return {name: value for name, value in choices.items() if name not in ("rig", "character")}
+    return {
+        name: value for name, value in choices.items() if name not in ("rig", "own", "character")
+    }
 
 
 def withdraw(session: Session, choices: dict[str, Any]) -> None:

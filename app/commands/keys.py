@@ -8,7 +8,7 @@ from cutcell.corrections import Corrections
 
 from ..scenes.common import first_joint
 from ..state import State
-from ..state.corrections import applied, news
+from ..state.corrections import applied, changes, news
 from ..state.url import defaults
 from . import brush, pairs
 from .binding import restore
@@ -49,8 +49,9 @@ def reset(session: Session) -> None:
     """Choose what one begins with, at rest, on the panel that is open."""
     state = session.state
     first = {**defaults(state), "moving": False, "playing": False}
-    rig = applied(state.rig, state.own_skeleton, Corrections())
-    state.param.update(**news(state, {**first, "rig": rig}), joint=first_joint(rig))
+    rig = applied(state.own, Corrections())
+    found = {**changes(state, rig, Corrections()), **news(state, first)}
+    state.param.update(**{**found, "joint": first_joint(rig)})
     session.view.tell(home=True)
 
 

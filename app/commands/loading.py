@@ -161,15 +161,16 @@ def show_rig(
         state.param.update(
             rig=rig, binding=None, bare_graph=None, field=None, turns={}, moving=False,
             playing=False, repair=None, corrections=Corrections(), part=None,
-            own_skeleton=rig.skeleton,
+            own=rig,
             clip=first_clip(rig), message=None, joint=first_joint(rig), vertex=None,
         )  # fmt: skip
-        if state.bare:
-            state.panel = "graph"
         _arrive(session, rig, arrival)
         carry(state, before, arrival)
         chosen()
         _correct(session, arrival.get("corrections", ""))
+        _choose_joints(session, arrival)
+        if state.bare:
+            state.panel = "graph"
     view.camera = framing(bounds_of(state), 1.2)
     view.at_home = True
     view.tell(bones=bones_part(state), camera=camera_part(view.camera))
@@ -213,7 +214,12 @@ def _correct(session: Session, said: str) -> None:
             if kept is None:
                 raise ParameterError("the server no longer has them")
             found = kept
-        state.param.update(**taken(session, found))
+        news = taken(session, found)
+        if "joint" in news:  # what is chosen already is of the corrected skeleton
+            news = {k: v for k, v in news.items() if k not in ("joint", "turns")}
+            if said:
+                news["joint"] = first_joint(news["rig"])
+        state.param.update(**news)
     except (CutcellError, ValueError) as error:
         state.corrections = Corrections()
         session.notice = f"The corrections of this address were not taken: {error}"
@@ -221,13 +227,20 @@ def _correct(session: Session, said: str) -> None:
 
 def _arrive(session: Session, rig: Rig, arrival: dict[str, Any]) -> None:
     """Choose what an address says of the character."""
-    names, state = rig.skeleton.names, session.state
-    if arrival.get("bone") in names:
-        state.joint = names.index(arrival["bone"])
-    state.turns = {j: t for j, t in arrival.get("turns", {}).items() if j < len(names)}
+    state = session.state
     if -1 <= arrival.get("clip", -2) < len(rig.clips):
         state.clip = arrival["clip"]
     state.tour = arrival.get("tour", state.tour)
     if 0 <= arrival.get("vertex", -1) < len(rig.mesh.vertices):
         state.vertex = arrival["vertex"]
     session.notice = arrival.get("told", "")
+
+
+def _choose_joints(session: Session, arrival: dict[str, Any]) -> None:
+    """Choose what an address says of joints, which corrections may have brought."""
+    state = session.state
+    names = state.rig.skeleton.names
+    if arrival.get("bone") in names:
+        state.joint = names.index(arrival["bone"])
+    if "turns" in arrival:
+        state.turns = {j: t for j, t in arrival["turns"].items() if j < len(names)}

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from cutcell.corrections import Corrections, JointCorrection
 from cutcell.errors import CutcellError, SkeletonError
 from cutcell.progress import Progress
+from cutcell.rig import Rig
 from cutcell.skinning import Binding, middle_of_limb
 from cutcell.skinning.correct import corrected_rig
 from cutcell.skinning.symmetry import Mirror, find_joint_mirror
@@ -40,11 +41,12 @@ def watch(session: Session) -> None:
 def tell_bones(session: Session) -> None:
     """Tell the view where bones are to be clicked."""
     state = session.state
-    if state.rig is None or state.bare:
+    if state.rig is None:
         return
     # Compared by what lies in it: the rig is another one for many reasons.
     said, bones = session.view.told("bones"), bones_part(state)
-    if said is None or not np.array_equal(said["start"], bones["start"]):
+    same = said is not None and said["names"] == bones["names"]
+    if not same or not np.array_equal(said["start"], bones["start"]):
         session.view.tell(bones=bones)
 
 
@@ -80,7 +82,9 @@ def mirror_of(session: Session) -> Mirror | None:
         except SkeletonError:
             return None
 
-    found: Mirror | None = session.memo("mirror", (state.rig.mesh, state.own_skeleton), find)
+    skeleton = state.own_skeleton
+    known = skeleton.joints.tobytes().hex() + repr(skeleton.parents.tolist())
+    found: Mirror | None = session.memo("mirror", (state.rig.mesh, known), find)
     return found
 
 
@@ -114,7 +118,8 @@ def put_back(session: Session) -> None:
     for joint in (state.joint, moves_along(session)):
         if joint is not None:
             name = state.rig.skeleton.names[joint]
-            held[name] = replace(held.get(name, JointCorrection()), position=None)
+            if not held.get(name, JointCorrection()).added:
+                held[name] = replace(held.get(name, JointCorrection()), position=None)
     correct(session, replace(state.corrections, joints=held))
 
 
@@ -143,18 +148,31 @@ def moved(session: Session, place: ArrayLike) -> Corrections:
         other = places[joint].copy()
         other[mirror.axis] = 2 * mirror.position - other[mirror.axis]
         places[partner] = other
-    size = float(np.ptp(state.rig.mesh.bounds, axis=0).max())
-    digits = DIGITS - int(np.floor(np.log10(size)))
+    digits = digits_of(state.rig)
     held = dict(state.corrections.joints)
     for one, at in places.items():
         check_alone(state.rig.skeleton, one)
         name, own = state.rig.skeleton.names[one], state.own_skeleton.joints[one]
+        before = held.get(name, JointCorrection())
         same = np.array_equal(np.round(at, digits), np.round(own, digits))
-        position = None if same else tuple(round(x, digits) for x in at.tolist())
-        held[name] = replace(held.get(name, JointCorrection()), position=position)
+        position = (
+            None if same and not before.added else tuple(round(x, digits) for x in at.tolist())
+        )
+        held[name] = replace(before, position=position)
     corrections = replace(state.corrections, joints=held)
-    corrected_rig(state.rig, corrections)
+    corrected_rig(state.own, corrections)
     return corrections
+
+
+def rounded(rig: Rig, places: ArrayLike) -> NDArray[np.float64]:
+    """Return places, shape (k, 3), with as many digits as corrections keep."""
+    return np.round(np.asarray(places, float), digits_of(rig))
+
+
+def digits_of(rig: Rig) -> int:
+    """Return how many digits behind the point places of a character have."""
+    size = float(np.ptp(rig.mesh.bounds, axis=0).max())
+    return DIGITS - int(np.floor(np.log10(size)))
 
 
 class Hand:
@@ -206,7 +224,7 @@ class Hand:
     def _take(self, corrections: Corrections) -> None:
         state = self._session.state
         if state.dragged is not None:
-            rig = applied(state.rig, state.own_skeleton, corrections)
+            rig = applied(state.own, corrections)
             state.dragged = replace(state.dragged, rig=rig)
         before, self._holds = state.corrections, True  # what is seen stays until it is bound
         try:
@@ -221,7 +239,7 @@ class Hand:
         session, state = self._session, self._session.state
         if asked(state) != session.built_for:
             return  # what was let go before is about to be bound
-        rig = applied(state.rig, state.own_skeleton, corrections)
+        rig = applied(state.own, corrections)
         before = state.binding if state.dragged is None else state.dragged.binding
         state.dragged = Dragged(rig, before)  # the bones follow at once
         newest = session.tasks.newest("moving")

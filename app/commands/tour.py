@@ -11,7 +11,7 @@ from cutcell_viewers.camera import Camera, framing
 from cutcell_viewers.character import to_scene
 
 from ..scenes.common import bounds_of
-from ..state.corrections import applied, news
+from ..state.corrections import applied, changes, news
 from ..state.tour import TOUR, Look
 from ..state.url import defaults
 from .loading import load_demo
@@ -95,7 +95,8 @@ def show(session: Session, look: Look, said: frozenset[str] = frozenset()) -> No
     }
     kept = said - {"panel"} if state.panel == "learn" else said
     if "corrections" not in kept:
-        scene["rig"] = applied(state.rig, state.own_skeleton, scene["corrections"])
+        rig = applied(state.own, scene["corrections"])
+        scene = {**changes(state, rig, scene["corrections"]), **scene, "rig": rig}
     chosen = {name: value for name, value in scene.items() if name not in kept}
     state.param.update(**news(state, chosen))
 

@@ -12,14 +12,15 @@ from ..panels.bone import bone
 from ..panels.character import character
 from ..panels.export import export
 from ..panels.parts import lead, when
+from ..panels.templates import skeleton_menu
 from ..widgets.tabs import Tabs
 
 BARE = ("graph", "diagnosis", "learn")
 """The panels for a mesh without a skeleton."""
 NO_SKELETON = (
     "This mesh has no skeleton, so it has no bones to measure from, to weigh or to move; its graph "
-    "can be seen. Export it together with its armature, or drop it together with a skeleton in a "
-    "JSON file of the same name."
+    "can be seen. Choose a skeleton above, export it together with its armature, or drop it "
+    "together with a skeleton in a JSON file of the same name."
 )
 
 
@@ -33,7 +34,10 @@ def sidebar(session: Session) -> list[Any]:
     )
     chosen, exported = (
         pmui.Column(*parts, margin=0, visible=alone, sizing_mode="stretch_width")
-        for parts in ((character(session), bone(session)), (export(session),))
+        for parts in (
+            (character(session), skeleton_menu(session), bone(session)),
+            (export(session),),
+        )
     )
     return [chosen, *panels(session), exported]
 

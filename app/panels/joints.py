@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -111,7 +112,7 @@ def _chosen(session: Session) -> list[Any]:
                 # Not for what rounds to the same: it would take back what was pressed meanwhile.
                 gain.value = _doublings(one.gain)
             radius.param.update(value=_written(one.radius), visible=state.falloff != "paper")
-            reset.disabled = one == JointCorrection()
+            reset.disabled = one == replace(JointCorrection(), **_structure(one))
         finally:
             showing[0] = False
 
@@ -127,12 +128,25 @@ def _chosen(session: Session) -> list[Any]:
     gain.param.watch(reached, "value")
     radius.param.watch(lambda event: changes(radius=_read(event.new)), "value")
     reset.on_click(
-        lambda event: changes(deform=None, locked=False, gain=1.0, radius=None, position=None)
+        lambda event: changes(deform=None, locked=False, gain=1.0, radius=None, **_put_back(state))
     )
     watched = ["rig", "joint", "binding", "corrections", "falloff"]
     state.param.watch(lambda *events: show(), watched)
     show()
     return [heading, holds, carries, locked, gain, radius, *place(session), reset]
+
+
+def _structure(one: JointCorrection) -> dict[str, Any]:
+    """Return what makes a correction one of the skeleton's structure, and is no other."""
+    held = {"parent": one.parent, "was": one.was, "added": one.added}
+    return {**held, "position": one.position} if one.added else held
+
+
+def _put_back(state: State) -> dict[str, Any]:
+    """Return where the chosen joint stands as computed: what was added stays where it was put."""
+    name = state.rig.skeleton.names[state.joint]
+    added = state.corrections.joints.get(name, JointCorrection()).added
+    return {} if added else {"position": None}
 
 
 def _written(radius: float | None) -> str:

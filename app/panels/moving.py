@@ -53,7 +53,7 @@ def place(session: Session) -> list[Any]:
             for field, value in zip(fields, rig.skeleton.joints[state.joint].tolist(), strict=True):
                 field.value = NUMBER % value
             mirrored.visible = moving.partner_of(session) is not None
-            back.disabled = _own(state) == JointCorrection().position
+            back.disabled = _moved(state) is None
         finally:
             showing[0] = False
 
@@ -84,7 +84,8 @@ def place(session: Session) -> list[Any]:
     ]
 
 
-def _own(state: State) -> Any:
-    """Return where the chosen joint was put, or None."""
+def _moved(state: State) -> Any:
+    """Return where the chosen joint was put, or None; what was added was put nowhere else."""
     name = state.rig.skeleton.names[state.joint]
-    return state.corrections.joints.get(name, JointCorrection()).position
+    one = state.corrections.joints.get(name, JointCorrection())
+    return None if one.added else one.position

@@ -69,5 +69,5 @@ class Common(param.Parameterized):
 
 
 UNSEEN = frozenset({"name", "demo", "tour", "busy", "stage", "fraction", "message",
-                    "own_skeleton", "tier"})  # fmt: skip
+                    "own", "tier"})  # fmt: skip
 """What the scene does not depend on."""

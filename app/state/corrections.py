@@ -13,8 +13,9 @@ import param
 
 from cutcell.corrections import Corrections, JointCorrection
 from cutcell.errors import CutcellError
-from cutcell.rig import Rig, Skeleton
+from cutcell.rig import Rig
 from cutcell.skinning import Binding
+from cutcell.skinning.restructure import restructured, restructured_skeleton
 
 MOST_IN_ADDRESS = 1500
 """Letters: longer addresses are cut by some programs that pass them on."""
@@ -28,9 +29,7 @@ class CorrectionsChoices(param.Parameterized):
     """What is corrected of the character that stands there."""
 
     corrections: Any = param.Parameter(Corrections(), doc="A cutcell.Corrections.")
-    own_skeleton: Any = param.Parameter(
-        None, doc="Where the joints are, and which may carry weight, where nothing is corrected."
-    )
+    own: Any = param.Parameter(None, doc="The character where nothing is corrected: a cutcell.Rig.")
     joint_handle: Any = param.Boolean(False, label="Move it in the scene")
     mirrored: Any = param.Boolean(True, label="The other side moves along")
     dragged: Any = param.Parameter(
@@ -39,6 +38,13 @@ class CorrectionsChoices(param.Parameterized):
     part: Any = param.Integer(
         None, allow_None=True, doc="A vertex of the connected component that is looked at."
     )
+
+    @property
+    def own_skeleton(self) -> Any:
+        """The skeleton where nothing is corrected of it but which joints there are."""
+        if self.own is None:
+            return None
+        return restructured_skeleton(self.own.skeleton, self.corrections)[0]
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,24 +63,22 @@ class Dragged:
     binding: Binding
 
 
-def applied(rig: Rig, own: Skeleton | None, corrections: Corrections) -> Rig:
-    """Return a rig with joints where the corrections put them, and those that may carry weight.
+def applied(own: Rig, corrections: Corrections) -> Rig:
+    """Return a rig with the joints that corrections tell of, where they put them.
 
     Parameters
     ----------
-    rig : Rig
-        Corrected or not.
-    own : Skeleton or None
-        As it is where nothing is corrected; the rig's when left out.
+    own : Rig
+        As it is where nothing is corrected.
     corrections : Corrections
 
     Raises
     ------
     SkeletonError
-        None would be left, or one stands too far from the mesh.
+        No joint that may carry weight would be left, or one stands too far from the mesh.
     """
-    own = rig.skeleton if own is None else own
-    deform, joints = own.deform.copy(), own.joints.copy()
+    rig = restructured(own, corrections)
+    deform, joints = rig.skeleton.deform.copy(), rig.skeleton.joints.copy()
     for joint, name in enumerate(rig.skeleton.names):
         one = corrections.joints.get(name)
         if one is not None and one.deform is not None:
@@ -86,6 +90,41 @@ def applied(rig: Rig, own: Skeleton | None, corrections: Corrections) -> Rig:
     return rig.with_joints(joints)
 
 
+def changes(state: Any, rig: Rig, corrections: Corrections) -> dict[str, Any]:
+    """Return what of a state changes with corrections and the rig that they make.
+
+    Where the skeleton has other joints, nothing that was computed holds any more, and what was
+    chosen of joints follows them.
+    """
+    found = {"corrections": corrections, "rig": rig}
+    if same_structure(state.rig, rig):
+        return news(state, found)
+    number = _numbers(state.rig, rig)
+    turns = {number[j]: turn for j, turn in state.turns.items() if j in number}
+    joint = number.get(state.joint, 0)
+    computed = dict.fromkeys(("binding", "bare_graph", "field", "dragged"))
+    return news(state, {**found, **computed, "turns": turns, "joint": joint})
+
+
+def same_structure(one: Rig, other: Rig) -> bool:
+    """Whether two rigs have the same joints by name, each with the same parent."""
+    a, b = one.skeleton, other.skeleton
+    return a.names == b.names and np.array_equal(a.parents, b.parents)
+
+
+def _numbers(before: Rig, after: Rig) -> dict[int, int]:
+    """Return the index after of each joint before that stays, by its index."""
+
+    def keys(rig: Rig) -> list[Any]:
+        names, origin = rig.skeleton.names, rig.origin
+        if origin is None:
+            return list(range(len(names)))
+        return [int(o) if o >= 0 else name for o, name in zip(origin, names, strict=True)]
+
+    found = {key: j for j, key in enumerate(keys(after))}
+    return {j: found[key] for j, key in enumerate(keys(before)) if key in found}
+
+
 def measured(corrections: Corrections) -> Corrections:
     """Return the part of corrections that distances, or weights of many joints, depend on.
 
@@ -93,7 +132,7 @@ def measured(corrections: Corrections) -> Corrections:
     """
     joints = {name: replace(one, locked=False) for name, one in corrections.joints.items()}
     parts = {v: part for v, part in corrections.parts.items() if part.how == "itself"}
-    return tidy(Corrections(joints, parts))
+    return tidy(Corrections(joints, parts, removed=corrections.removed))
 
 
 def tidy(corrections: Corrections) -> Corrections:
@@ -105,7 +144,7 @@ def tidy(corrections: Corrections) -> Corrections:
 
 def news(state: Any, choices: dict[str, Any]) -> dict[str, Any]:
     """Return what of some choices the state does not hold; param takes the same for new."""
-    large = {name: getattr(state, name) for name in ("rig", "corrections")}
+    large = {name: getattr(state, name) for name in ("rig", "own", "corrections", "binding")}
     return {
         name: value
         for name, value in choices.items()

@@ -14,6 +14,7 @@ from ..method import Method
 from ..rig import Rig
 from .adjustments import Adjustments
 from .locks import joint_index
+from .restructure import restructured
 from .rigid_accessories import attach
 from .surface_operators import SurfaceOperators
 
@@ -33,16 +34,19 @@ def corrected_rig(rig: Rig, corrections: Corrections) -> Rig:
     Returns
     -------
     Rig
-        With joints where the corrections put them, and with those that may carry weight: what
-        `cutcell.bind` binds, and `cutcell.save` is to be given.
+        With the joints, names and parents that the corrections tell of, where they put them, and
+        with those that may carry weight: what `cutcell.bind` binds, and `cutcell.save` is to be
+        given. The skeleton's structure is not changed a second time.
 
     Raises
     ------
     ParameterError
         A joint or a vertex that the rig does not have, or weights that its file cannot store.
     SkeletonError
-        No joint would be left to carry weight, or one stands too far from the mesh.
+        No joint would be left, or none to carry weight; two would share a name, or hang on each
+        other in a circle; or one stands too far from the mesh.
     """
+    rig = restructured(rig, corrections)
     count = len(rig.mesh.vertices)
     for vertex in (*corrections.parts, *corrections.vertices):
         if vertex >= count:

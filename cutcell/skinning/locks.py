@@ -99,6 +99,8 @@ def joint_index(skeleton: Skeleton, joint: int | str) -> int:
             return names.index(joint)
         close = get_close_matches(joint, names, n=3, cutoff=0.4) or names[:3]
         asked = one_line(joint)[:LONG]
+        if not names:
+            raise ParameterError(f'there is no joint "{asked}": the mesh has no skeleton')
         raise ParameterError(
             f'there is no joint "{asked}" among the {len(names)} of the skeleton; there is '
             + ", ".join(f'"{name}"' for name in close)

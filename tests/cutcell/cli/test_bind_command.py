@@ -211,3 +211,43 @@ def test_corrections_of_a_file_are_applied(run, bar, tmp_path):
     assert moved[1:].tolist() == pytest.approx(rig.skeleton.joints[1:], abs=1e-6)
     path.write_text('{"joints": {"nobody": {"gain": 2}}}')
     assert 'no joint "nobody"' in refused(run("bind", bar, out, "-r", 16, "--corrections", path))
+
+
+def test_a_template_is_fitted_into_a_mesh_without_a_skeleton(run, tmp_path):
+    mesh = write_obj(tmp_path / "bare.obj")
+    out = tmp_path / "bound.glb"
+    document = json.loads(run("bind", mesh, out, "-r", 16, "--template", "chain", "--json").stdout)
+    assert document["template"] == "chain"
+    found = cutcell.load(out)
+    assert found.skeleton.names == tuple(f"bone.{n}" for n in range(1, 6))
+    assert np.ptp(found.skeleton.joints[:, 2]) > 1
+    np.testing.assert_allclose(found.weights.sum(axis=1), 1, atol=1e-5)
+    for ending in ("txt", "npz"):
+        assert (
+            run("bind", mesh, tmp_path / f"b.{ending}", "-r", 16, "--template", "chain").exit_code
+            == 0
+        )
+        again = cutcell.load(tmp_path / f"b.{ending}")
+        np.testing.assert_allclose(again.skeleton.joints, found.skeleton.joints, atol=1e-4)
+
+
+def test_templates_that_cannot_be_are_refused(run, bar, tmp_path):
+    out = tmp_path / "bound.glb"
+    says = refused(run("bind", bar, out, "--template", "chain"))
+    assert "has a skeleton of 2 joints already" in says
+    assert "centaur" in refused(run("bind", bar, out, "--template", "centaur"))
+    bare = write_obj(tmp_path / "bare.obj")
+    assert "no three fingers" in refused(run("bind", bare, out, "-r", 16, "--template", "hand"))
+    assert not out.exists()
+
+
+def test_corrections_may_bring_the_skeleton(run, tmp_path):
+    mesh, held = write_obj(tmp_path / "bare.obj"), tmp_path / "held.json"
+    joints = {
+        "root": {"added": True, "position": [0.5, 0.5, 0.2], "parent": ""},
+        "tip": {"added": True, "position": [0.5, 0.5, 1.8], "parent": "root"},
+    }
+    held.write_text(json.dumps({"joints": joints}))
+    out = tmp_path / "bound.glb"
+    assert run("bind", mesh, out, "-r", 16, "--corrections", held).exit_code == 0
+    assert cutcell.load(out).skeleton.names == ("root", "tip")

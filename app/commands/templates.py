@@ -1,0 +1,58 @@
+"""Give a mesh that has no skeleton one: a template is fitted into it."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+
+import numpy as np
+
+from cutcell.corrections import Corrections, JointCorrection
+from cutcell.progress import Progress
+from cutcell.rig import Rig, Skeleton
+from cutcell.templates import Template, fit_skeleton, names_of
+
+from ..scenes.common import first_joint
+from .correct import taken
+from .moving import rounded
+from .session import Session
+
+
+def fit(session: Session, template: Template) -> None:
+    """Fit a template into the mesh, bind it, and show its weights."""
+    state = session.state
+    mesh, graph = state.rig.mesh, state.graph
+
+    def work(progress: Progress) -> Skeleton:
+        progress("fitting the skeleton", 0.0)
+        return fit_skeleton(mesh, template, graph=graph, progress=progress)
+
+    def done(skeleton: Skeleton) -> None:
+        corrections = Corrections(added(state.own, skeleton))
+        news = taken(session, corrections)
+        state.param.update(
+            **{**news, "joint": first_joint(news["rig"]), "panel": "weights", "joint_handle": True}
+        )
+
+    session.start(work, done)
+
+
+def take_out(session: Session) -> None:
+    """Leave the mesh without a skeleton again."""
+    news = taken(session, Corrections())
+    session.state.param.update(**{**news, "panel": "graph"})
+
+
+def is_template(names: Collection[str], template: Template) -> bool:
+    """Whether joints have just the names that a template gives them."""
+    return set(names) in [set(some) for some in names_of(template)]
+
+
+def added(own: Rig, skeleton: Skeleton) -> dict[str, JointCorrection]:
+    """Return a skeleton as the joints that are added to a mesh."""
+    names = skeleton.names
+    above = [names[parent] if parent >= 0 else "" for parent in skeleton.parents]
+    places = rounded(own, skeleton.joints)
+    return {
+        name: JointCorrection(added=True, position=tuple(place), parent=parent)
+        for name, place, parent in zip(names, np.asarray(places).tolist(), above, strict=True)
+    }

@@ -1,0 +1,119 @@
+"""Fit a template into a mesh: `fit_skeleton`."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import MeshError
+from ..graph import CutCellGraph, build_graph
+from ..inputs import MeshLike, as_mesh
+from ..progress import Progress, silent
+from ..rig import Skeleton
+from . import biped, chain, hand, quadruped
+from .frame import lying, standing
+from .interior import Interior
+from .mirrored import Joints
+from .names import Template, check_template
+
+RESOLUTION = 64
+FEWEST_NODES = 8
+SNAKE = tuple(f"spine.{n}" for n in range(1, 13))
+CHAIN = tuple(f"bone.{n}" for n in range(1, 6))
+
+
+def fit_skeleton(
+    mesh: MeshLike,
+    template: Template,
+    *,
+    graph: CutCellGraph | None = None,
+    progress: Progress = silent,
+) -> Skeleton:
+    """Fit a template skeleton into a mesh that has none.
+
+    The ends of the body, such as hands and feet, are found as the farthest points of paths
+    through its inside. Where such paths part, limbs begin. Joints lie on paths through the middle
+    of the body, at the proportions of the template. Left and right are alike where the body
+    stands alike on both sides. It is a beginning: joints are there to be moved.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh, (vertices, faces), trimesh.Trimesh or pyvista.PolyData
+    template : {"biped", "quadruped", "hand", "snake", "chain"}
+        Bipeds and quadrupeds stand upright, y or z up.
+    graph : CutCellGraph, optional
+        The mesh's, if it is there; built when left out.
+    progress : callable
+        See `cutcell.progress`.
+
+    Returns
+    -------
+    Skeleton
+        In the mesh's space and units; all joints inside where the mesh has an inside there.
+
+    Raises
+    ------
+    ParameterError
+        There is no such template.
+    MeshError
+        The mesh has no inside that joints could be in.
+    SkeletonError
+        The mesh does not have what the template needs, such as fingers.
+
+    Examples
+    --------
+    >>> rig = cutcell.load("statue.obj")  # doctest: +SKIP
+    >>> skeleton = cutcell.fit_skeleton(rig.mesh, "biped")  # doctest: +SKIP
+    >>> binding = cutcell.bind((rig.mesh, skeleton))  # doctest: +SKIP
+    """
+    template = check_template(template)
+    mesh = as_mesh(mesh)
+    if graph is None:
+        graph = build_graph(mesh, RESOLUTION, progress=progress)
+    nodes = graph.nodes[graph.connected]
+    if len(graph.interior) < FEWEST_NODES:
+        raise MeshError(
+            "the mesh has no inside that joints could lie in: it is too thin, or open everywhere"
+        )
+    axes, origin = _frame(nodes, template)
+    body = Interior(graph, axes, origin)
+    joints, parents = _placed(body, template)
+    names = list(parents)
+    inside = body.inward(np.array([joints[name] for name in names]))
+    above = [names.index(parents[name]) if parents[name] else -1 for name in names]
+    return Skeleton(body.to_file(inside), above, names)
+
+
+def _frame(
+    nodes: NDArray[np.float64], template: Template
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return the axes of the body's frame, and its origin: the middle of the bounding box."""
+    axes = np.eye(3)
+    if template in ("biped", "quadruped"):
+        axes = standing(nodes, tall=template == "biped")
+    elif template == "hand":
+        axes = lying(nodes)
+    return axes, (nodes.min(axis=0) + nodes.max(axis=0)) / 2
+
+
+def _placed(body: Interior, template: Template) -> tuple[Joints, dict[str, str]]:
+    if template == "biped":
+        return biped.place(body), biped.PARENTS
+    if template == "quadruped":
+        return quadruped.place(body), quadruped.PARENTS
+    if template == "hand":
+        joints = hand.place(body)
+        return joints, hand.parents_of(joints)
+    names = SNAKE if template == "snake" else CHAIN
+    return chain.place(body, names), dict(zip(names, ("", *names), strict=False))
+
+
+def names_of(template: Template) -> list[tuple[str, ...]]:
+    """Return the names that a template may give its joints: a hand may have fewer fingers."""
+    if template == "biped":
+        return [tuple(biped.PARENTS)]
+    if template == "quadruped":
+        return [tuple(quadruped.PARENTS)]
+    if template == "hand":
+        return hand.names()
+    return [SNAKE if template == "snake" else CHAIN]

@@ -1,0 +1,140 @@
+"""A skeleton for a hand: its fingers are found, and told apart by where the thumb is."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import SkeletonError
+from .interior import Interior, along, cut
+from .mirrored import Joints
+
+NAMES = {
+    2: ("index", "pinky"),
+    3: ("index", "middle", "pinky"),
+    4: ("index", "middle", "ring", "pinky"),
+}
+"""Of the fingers beside the thumb, by how many there are."""
+LEAST_LENGTH = 0.3
+"""Of the longest one: what is shorter is no finger."""
+MOST_ENDS = 16
+CLIMB = 5
+"""Lattice cells: how far is looked for what is still farther from the palm."""
+BACK = -0.3
+"""Cosine of the angle between a finger and all of them: what is less points to the wrist."""
+LEAST_OF_HAND = 0.25
+"""Of the way from the wrist to the farthest tip: as long is the longest finger at least."""
+KNUCKLES = np.array([1.0, 0.58, 0.28])
+"""Of the way from the tip of a finger to the palm."""
+
+
+def place(body: Interior) -> Joints:
+    """Return where the joints are: the hand, and three of each finger, the thumb first.
+
+    Raises
+    ------
+    SkeletonError
+        There are fewer than three fingers.
+    """
+    wrist, tips = _ends(body)
+    lengths = {tip: _length(body, tip, [t for t in tips if t != tip], wrist) for tip in tips}
+    longest = max(lengths.values(), default=0.0)
+    if longest < LEAST_OF_HAND * body.distances(wrist).max():
+        tips = []
+    tips = [tip for tip in tips if lengths[tip] > LEAST_LENGTH * longest]
+    if len(tips) < 3:
+        raise SkeletonError(
+            "no three fingers were found in the mesh; choose another template, such as chain"
+        )
+    tips = sorted(tips, key=lambda tip: -lengths[tip])[:5]
+    tips = _in_order(body, wrist, tips)
+    palm = body.deepest(body.distances(wrist) < 0.6 * min(body.distances(wrist)[tips]))
+    joints: Joints = {"hand": along(body.middle_path(wrist, palm), np.array([0.15]))[0]}
+    for name, tip in zip(("thumb", *NAMES[len(tips) - 1]), tips, strict=True):
+        path = cut(body, tip, palm, lengths[tip])
+        for number, at in enumerate(along(path, KNUCKLES), start=1):
+            joints[f"{name}.{number}"] = at
+    return joints
+
+
+def names() -> list[tuple[str, ...]]:
+    """Return the names of the joints of hands with three, four and five fingers."""
+    numbers = range(1, len(KNUCKLES) + 1)
+    return [
+        ("hand", *(f"{finger}.{n}" for finger in ("thumb", *fingers) for n in numbers))
+        for fingers in NAMES.values()
+    ]
+
+
+def parents_of(joints: Joints) -> dict[str, str]:
+    """Return the parent of each joint, "" for none."""
+    found = {"hand": ""}
+    for name in joints:
+        finger, _, number = name.partition(".")
+        if number:
+            found[name] = "hand" if number == "1" else f"{finger}.{int(number) - 1}"
+    return found
+
+
+def _ends(body: Interior) -> tuple[int, list[int]]:
+    """Return the node at the wrist, and the ends of what may be fingers."""
+    away = np.linalg.norm(body.points - body.points.mean(axis=0), axis=1)
+    centre = body.deepest(away <= away.min() + 0.25 * np.ptp(away))
+    far = body.distances(centre)
+    tips: list[int] = []
+    nearest = far.copy()
+    for _ in range(MOST_ENDS):
+        tip = int(nearest.argmax())
+        nearest = np.minimum(nearest, body.distances(tip))
+        tip = _climbed(body, far, tip)
+        if (body.distances(tip)[tips] > CLIMB * body.cell).all():
+            tips.append(tip)
+    fingers: list[int] = []
+    for tip in sorted(tips, key=lambda tip: -far[tip]):
+        if all(
+            body.branch(tip, other, centre) > LEAST_OF_HAND / 2 * far.max() for other in fingers
+        ):
+            fingers.append(tip)  # none of a finger whose tip is known
+    ways = body.points - body.points[centre]
+    ways = ways / np.maximum(np.linalg.norm(ways, axis=1, keepdims=True), 1e-9)
+    for _ in range(2):  # without what is on the wrist's side
+        out = np.median(ways[fingers], axis=0)  # whatever the thumb does
+        fingers = [tip for tip in fingers if ways[tip] @ out > BACK * np.linalg.norm(out)]
+    along_out = (body.points - body.points[centre]) @ out
+    end = np.flatnonzero(along_out < along_out.min() + 2 * body.cell)
+    return body.nearest(body.points[end].mean(axis=0)), fingers
+
+
+def _climbed(body: Interior, far: NDArray[np.float64], node: int) -> int:
+    """Return the node that is reached by always going to where it is farthest nearby."""
+    while True:
+        near = np.flatnonzero(body.distances(node) < CLIMB * body.cell)
+        best = int(near[far[near].argmax()])
+        if far[best] <= far[node]:
+            return node
+        node = best
+
+
+def _length(body: Interior, tip: int, others: list[int], wrist: int) -> float:
+    """Return how far from its tip a finger parts from the ones beside it."""
+    return min((body.branch(tip, other, wrist) for other in others), default=0.0)
+
+
+def _in_order(body: Interior, wrist: int, tips: list[int]) -> list[int]:
+    """Return the tips from the thumb to the little finger."""
+    points = body.points[tips]
+    start = body.points[wrist]
+    ways = points - start
+    out = ways.mean(axis=0)
+    out /= np.linalg.norm(out)
+    flat = ways - np.outer(ways @ out, out)
+    across = np.linalg.svd(flat - flat.mean(axis=0), full_matrices=False)[2][0]
+    order = [tips[k] for k in np.argsort(flat @ across)]
+    far = body.distances(wrist)
+
+    # The thumb is the outer one that parts from its neighbour nearer to the wrist.
+    first, last = (
+        far[tip] - body.branch(tip, beside, wrist)
+        for tip, beside in ((order[0], order[1]), (order[-1], order[-2]))
+    )
+    return order if first <= last else order[::-1]

@@ -1,0 +1,99 @@
+"""A skeleton for who walks on four legs."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .interior import Interior, along, cut
+from .mirrored import Joints, mirrored
+
+PARENTS = {
+    "hips": "", "spine": "hips", "chest": "spine", "neck": "chest", "head": "neck",
+    "tail.1": "hips", "tail.2": "tail.1", "tail.3": "tail.2",
+    **{
+        f"{name}.{side}": parent if parent in ("chest", "hips") else f"{parent}.{side}"
+        for side in "LR"
+        for name, parent in (
+            ("front_thigh", "chest"), ("front_shin", "front_thigh"), ("front_foot", "front_shin"),
+            ("thigh", "hips"), ("shin", "thigh"), ("foot", "shin"),
+        )
+    },
+}  # fmt: skip
+
+SOLE = 0.08
+"""Of the height: what is lower belongs to the feet."""
+LEG = np.array([0.08, 0.5, 1.05])
+"""Of the way from the ground to the trunk: foot, knee, and where the leg begins."""
+
+
+def place(body: Interior) -> Joints:
+    """Return where the joints of `PARENTS` are in a body."""
+    points = body.points
+    y, z = points[:, 1] - body.floor, points[:, 2]
+    low = y < SOLE * body.height
+    half = (z[low].min() + z[low].max()) / 2
+    feet = {
+        (end, side): _sole(body, low & (before == (z > half)) & (sign * points[:, 0] > 0))
+        for end, before in (("front_", True), ("", False))
+        for side, sign in (("L", 1), ("R", -1))
+    }
+    middle = np.abs(points[:, 0]) < 0.25 * np.abs(points[:, 0]).max() + body.cell
+    trunk = y > 0.3 * body.height
+    belly = body.deepest(middle & trunk & (np.abs(z - half) < 0.2 * np.ptp(z)))
+    away = body.distances(belly)
+    head = _end(z, middle & trunk)  # the nose: ears and antlers reach farther, but not to the front
+    joints: Joints = {}
+    tops = {}
+    for end, other in (("front_", ""), ("", "front_")):
+        for side, beside in ("LR", "RL"):
+            foot = feet[end, side]
+            far = body.branch(foot, feet[end, beside], feet[other, side])
+            far = max(far, 0.25 * away[foot])
+            path = cut(body, foot, belly, min(LEG[-1] * far, 0.9 * away[foot]))
+            ankle, knee, top = along(path, LEG / LEG[-1])
+            joints[f"{end}foot.{side}"] = ankle
+            joints[f"{end}shin.{side}"] = knee
+            joints[f"{end}thigh.{side}"] = top
+        tops[end] = (joints[f"{end}thigh.L"] + joints[f"{end}thigh.R"]) / 2
+    hips, chest = (_inner(body, middle, tops[end]) for end in ("", "front_"))
+    spine = body.middle_path(hips, chest)
+    joints["hips"], joints["chest"] = body.points[hips].copy(), body.points[chest].copy()
+    joints["spine"] = along(spine, np.array([0.5]))[0]
+    neck = body.middle_path(chest, head)
+    joints["neck"], joints["head"] = along(neck, np.array([0.3, 0.7]))
+    between = 0.5 * np.mean([abs(points[foot, 0]) for foot in feet.values()]) + body.cell / 2
+    behind = (np.abs(points[:, 0]) < between) & (z < joints["hips"][2])
+    behind &= (y > 0.25 * body.height) & (body.distances(hips) < body.distances(head))
+    hind = [body.distances(feet["", side]) for side in "LR"]
+    off_legs = body.distances(hips) + np.min([far - far[hips] for far in hind], axis=0)
+    tail = _end(off_legs, behind)  # what is on the way to a foot is no tail
+    path = body.middle_path(hips, tail)
+    joints["tail.1"], joints["tail.2"], joints["tail.3"] = along(path, np.array([0.35, 0.57, 0.78]))
+    for name in ("hips", "spine", "chest", "neck", "head", "tail.1", "tail.2", "tail.3"):
+        joints[name] = joints[name] * [0.0, 1.0, 1.0]
+    return mirrored(joints, float(np.ptp(points, axis=0).max()))
+
+
+def _sole(body: Interior, found: NDArray[np.bool_]) -> int:
+    """Return the node in the middle of what one foot stands on."""
+    if not found.any():
+        found = body.points[:, 1] - body.floor < SOLE * body.height
+    chosen = np.flatnonzero(found)
+    middle = body.points[chosen].mean(axis=0)
+    return int(chosen[np.linalg.norm(body.points[chosen] - middle, axis=1).argmin()])
+
+
+def _end(far: NDArray[np.float64], among: NDArray[np.bool_]) -> int:
+    """Return which of some nodes, or of all where there are none, is the farthest."""
+    chosen = np.flatnonzero(among) if among.any() else np.arange(len(far))
+    return int(chosen[far[chosen].argmax()])
+
+
+def _inner(body: Interior, middle: NDArray[np.bool_], top: NDArray[np.float64]) -> int:
+    """Return the deepest node between two legs, in the middle of the trunk."""
+    near = middle & (np.abs(body.points[:, 2] - top[2]) < 2 * body.cell)
+    near &= body.points[:, 1] > top[1] - 2 * body.cell
+    if not near.any():
+        return body.nearest(top * [0.0, 1.0, 1.0])
+    return body.deepest(near)

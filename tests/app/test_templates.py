@@ -1,0 +1,144 @@
+"""A mesh without a skeleton gets one on the page: chosen, dragged, undone, told in the address."""
+
+import numpy as np
+import panel_material_ui as pmui
+import pytest
+
+import cutcell
+from cutcell.rig import Rig, Skeleton
+from cutcell_app.commands import export, keys, loading, moving, templates
+from cutcell_app.layout.sidebar import sidebar
+from cutcell_app.panels.templates import CHANGED, NONE, chosen_template
+from cutcell_app.scenes import resolve
+from cutcell_app.state.corrections import to_text
+from tests.viewers.arm import arm_rig
+
+
+def bare_arm():
+    return Rig(arm_rig().mesh, Skeleton([], []), name="statue")
+
+
+def settled(session, loop):
+    loop.run_until(lambda: not session.tasks.running)
+    assert session.state.message is None, session.state.message
+
+
+@pytest.fixture
+def bare(session, loop):
+    session.state.resolution = 16
+    loading.show_rig(session, bare_arm())
+    loop.run_until(lambda: session.state.bare_graph is not None)
+    settled(session, loop)
+    return session
+
+
+@pytest.fixture
+def fitted(bare, loop):
+    bare.built = sidebar(bare)
+    (bare.menu,) = [
+        s for s in pmui.Column(*bare.built).select(pmui.Select) if s.label == "Skeleton"
+    ]
+    bare.menu.value = "Chain"
+    loop.run_until(lambda: bare.state.binding is not None)
+    settled(bare, loop)
+    return bare
+
+
+def test_a_template_is_fitted_and_bound(fitted, loop):
+    state = fitted.state
+    assert state.panel == "weights"
+    assert state.joint_handle
+    assert state.rig.skeleton.names == tuple(f"bone.{n}" for n in range(1, 6))
+    assert state.weights.shape == (len(state.rig.mesh.vertices), 5)
+    assert "bones" in resolve(state).actors
+    assert fitted.view.told("bones")["names"][0] == "bone.1"
+    assert chosen_template(state) == fitted.menu.value == "Chain"
+
+
+def test_its_joints_can_be_dragged(fitted, loop):
+    state = fitted.state
+    before = state.binding.weights
+    state.joint = 2
+    moving.put(fitted, [0.1, 0.05, 0.0])
+    loop.run_until(lambda: state.binding is not None and state.binding.weights is not before)
+    settled(fitted, loop)
+    assert state.rig.skeleton.joints[2].tolist() == [0.1, 0.05, 0.0]
+    fresh = cutcell.bind((state.rig.mesh, state.rig.skeleton), state.resolution)
+    np.testing.assert_allclose(state.binding.weights, fresh.weights, rtol=0, atol=1e-9)
+    moving.put_back(fitted)  # there is nowhere that it was before
+    assert state.rig.skeleton.joints[2].tolist() == [0.1, 0.05, 0.0]
+
+
+def test_undo_takes_it_out_and_redo_puts_it_in(fitted, loop):
+    state = fitted.state
+    keys.act(fitted, "undo")
+    loop.run_until(lambda: state.bare_graph is not None)
+    settled(fitted, loop)
+    assert state.bare
+    assert state.binding is None
+    assert fitted.menu.value == NONE
+    keys.act(fitted, "redo")
+    loop.run_until(lambda: state.binding is not None)
+    settled(fitted, loop)
+    assert state.weights.shape[1] == 5
+    assert state.panel == "weights"
+
+
+def test_the_menu_takes_it_out_and_puts_another_in(fitted, loop):
+    state = fitted.state
+    fitted.menu.value = "Snake"
+    loop.run_until(lambda: state.weights is not None and state.weights.shape[1] == 12)
+    settled(fitted, loop)
+    fitted.menu.value = NONE
+    loop.run_until(lambda: state.bare_graph is not None)
+    settled(fitted, loop)
+    assert state.bare
+    assert not state.corrections
+    assert state.panel == "graph"
+
+
+def test_what_cannot_be_fitted_is_told(fitted, loop):
+    fitted.menu.value = "Hand"
+    loop.run_until(lambda: fitted.state.message is not None)
+    assert "three fingers were found" in fitted.state.message[1]
+    assert fitted.menu.value == "Chain"
+    assert fitted.state.weights is not None
+
+
+def test_an_address_brings_it_back(fitted, session, loop):
+    state, joints = fitted.state, fitted.state.rig.skeleton.joints
+    said = to_text(state.corrections)
+    fitted.arrival = {"corrections": said, "bone": "bone.4"}
+    loading.show_rig(fitted, bare_arm())
+    loop.run_until(lambda: state.binding is not None)
+    settled(fitted, loop)
+    np.testing.assert_array_equal(state.rig.skeleton.joints, joints)
+    assert state.joint == 3
+    assert state.panel == "weights"
+
+
+def test_export_writes_it(fitted, loop, tmp_path):
+    got = []
+    export.export_bound(fitted, lambda name, content: got.append((name, content)))
+    loop.run_until(lambda: got)
+    name, content = got[0]
+    (tmp_path / name).write_bytes(content)
+    found = cutcell.load(tmp_path / name)
+    assert name.endswith(".glb")
+    assert found.skeleton.names == fitted.state.rig.skeleton.names
+    np.testing.assert_allclose(found.skeleton.joints, fitted.state.rig.skeleton.joints, atol=1e-5)
+    np.testing.assert_allclose(found.weights.sum(axis=1), 1, atol=1e-5)
+
+
+def test_a_skeleton_of_ones_own_is_called_so(fitted):
+    joints = dict(fitted.state.corrections.joints)
+    joints["tip"] = joints.pop("bone.5")
+    fitted.state.corrections = cutcell.Corrections(joints)
+    assert chosen_template(fitted.state) == fitted.menu.value == CHANGED
+
+
+def test_the_menu_is_only_for_meshes_without_a_skeleton(fitted, loop):
+    loading.show_rig(fitted, arm_rig())
+    loop.run_until(lambda: fitted.state.binding is not None)
+    assert not fitted.built[0][1].visible
+    assert templates.is_template({"hand", *(f"thumb.{n}" for n in (1, 2, 3))}, "hand") is False
