@@ -30,10 +30,10 @@ def brush(session: Session) -> pmui.Column:
         for parameter in (state.param.brush, state.param.brush_mirrored)
     )
 
-    def has_mirror(rig: Any, own: Any) -> bool:
+    def has_mirror(rig: Any, own: Any, corrections: Any) -> bool:
         return rig is not None and own is not None and mirror_of(session) is not None
 
-    mirrored.visible = when(has_mirror, state.param.rig, state.param.own_skeleton)
+    mirrored.visible = when(has_mirror, state.param.rig, state.param.own, state.param.corrections)
     tools = pmui.Column(
         choice(state.param.brush_mode, MODES),
         caption(when(_told, state.param.rig, state.param.joint, state.param.brush_mode)),
