@@ -91,8 +91,10 @@ def find_joint_mirror(rig: Rig) -> Mirror:
         Less than half of the joints have a partner across any such plane, or no two joints lie
         on different sides of it.
     """
-    diagonal = float(np.linalg.norm(np.ptp(rig.mesh.bounds, axis=0)))
     joints = rig.skeleton.joints
+    if not len(joints):
+        raise SkeletonError(f"{rig.name} has no joints, so none has a partner on the other side")
+    diagonal = float(np.linalg.norm(np.ptp(rig.mesh.bounds, axis=0)))
     best: Mirror | None = None
     share = 0.0
     for axis in range(3):

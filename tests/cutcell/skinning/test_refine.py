@@ -269,3 +269,9 @@ def test_the_joints_of_a_character_with_a_parting_in_its_hair_are_mirrored(demo_
     half[:, 0] = np.abs(half[:, 0]) + np.linspace(0, 0.4, len(half))
     with pytest.raises(SkeletonError, match="is not mirrored across x, y or z"):
         find_joint_mirror(rig.with_joints(half))
+
+
+def test_without_joints_there_is_no_partner():
+    rig = Rig(TriangleMesh(*strip()), Skeleton(np.empty((0, 3)), []))
+    with pytest.raises(SkeletonError, match="has no joints"):
+        find_joint_mirror(rig)
