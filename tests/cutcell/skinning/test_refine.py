@@ -272,6 +272,6 @@ def test_the_joints_of_a_character_with_a_parting_in_its_hair_are_mirrored(demo_
 
 
 def test_without_joints_there_is_no_partner():
-    rig = Rig(TriangleMesh(*strip()), Skeleton(np.empty((0, 3)), []))
+    rig = Rig(strip(), Skeleton(np.empty((0, 3)), []))
     with pytest.raises(SkeletonError, match="has no joints"):
         find_joint_mirror(rig)
