@@ -25,7 +25,7 @@ LARGER = 1.25
 """How many times as large the next radius is."""
 STRONGER = 0.1
 SEEN = ["panel", "rig", "binding", "joint", "playing", "brush", "brush_mode", "brush_radius",
-        "brush_mirrored"]  # fmt: skip
+        "brush_mirrored", "turns", "moving"]  # fmt: skip
 
 
 def watch(session: Session) -> None:
@@ -93,7 +93,9 @@ def tell_brush(session: Session) -> None:
     if paints(state):
         scale = abs(np.linalg.det(state.rig.world[:3, :3])) ** (1 / 3)
         part = {"radius": radius_of(state) * scale, "mirror": None}
-        mirror = mirror_of(session) if state.brush_mirrored else None
+        # A pose is seldom mirrored: the other brush is elsewhere then than its image.
+        posed = state.panel == "pose" and state.posed
+        mirror = mirror_of(session) if state.brush_mirrored and not posed else None
         if mirror is not None and (state.brush_mode == "smooth" or mirror.joint[state.joint] >= 0):
             part["mirror"] = plane_in_scene(state.rig.world, mirror)
     if session.view.told("brush") != part:

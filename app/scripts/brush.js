@@ -102,6 +102,17 @@ export class PaintBrush {
     this.say()
   }
 
+  // By keys: a stroke of one point, where the cross is.
+  dab([x, y]) {
+    const hit = this.stroke ? null : this.bodyAt(x, y)
+    if (!hit) { return }
+    this.stroke = {points: [], first: true, mode: null}
+    this.aim(hit)
+    this.pass(hit)
+    this.send(true)
+    this.stroke = null
+  }
+
   // Pixels between two points of a stroke: close enough that nothing is left out between them.
   get spacing() {
     const depth = this.aimed ? this.renderer.project(this.aimed.at)?.[2] : null

@@ -24,6 +24,7 @@ const BRUSH_KEYS = [
   ["B", "take the brush, or put it down"],
   ["[ ]", "smaller, larger"],
   ["{ }", "weaker, stronger"],
+  ["Enter", "in the canvas: paint at the cross"],
   ["Esc", "put it down"],
 ]
 const BRUSH_POINTER = [

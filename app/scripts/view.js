@@ -41,7 +41,7 @@ class View {
       rested: () => this.rested(),
       clicked: (e) => this.pointer.clicked(e),
       hovered: (e) => this.pointer.hovered(e),
-      chosen: () => this.pointer.chosen(),
+      chosen: () => this.brush.part ? this.brush.dab(this.renderer.target) : this.pointer.chosen(),
     })
     this.pointer = new Pointer(this)
     this.animation = new Animation(this)

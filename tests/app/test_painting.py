@@ -294,6 +294,12 @@ def test_the_other_side_is_painted_where_there_is_one(session, loop):
     assert (x > 0).any()
     assert (x < 0).any()
     assert state.corrections.joints == {}
+    state.panel = "pose"
+    assert session.view.told("brush") == part
+    pose.turn_joint(session, 0, 20.0)
+    assert session.view.told("brush")["mirror"] is None, "its image is not where it paints"
+    state.panel = "weights"
+    assert session.view.told("brush") == part
     state.brush_mirrored = False
     assert session.view.told("brush")["mirror"] is None
     assert brush.paints(state)

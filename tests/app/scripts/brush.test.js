@@ -106,6 +106,16 @@ test("beside the body, with other buttons and with Alt the camera has the pointe
   assert.deepEqual(told, [])
 })
 
+test("a key paints one point, where the cross is", () => {
+  const {made, told} = brush()
+  made.show(ON)
+  made.dab([150, 10])
+  assert.deepEqual(told, [])
+  made.dab([10, 10])
+  assert.deepEqual([told[0].first, told[0].done, told[0].points.length], [true, true, 6])
+  assert.ok(!made.held)
+})
+
 test("Shift smooths, Ctrl takes away", () => {
   for (const [more, mode] of [[{shiftKey: true}, "smooth"], [{ctrlKey: true}, "subtract"]]) {
     const {made, told, send} = brush()
