@@ -19,7 +19,7 @@ from cutcell.skinning.correct import corrected_parts, corrected_rig, locked_by, 
 from cutcell.skinning.locks import lock_joints, locked_joints
 
 from ..files.receive import safe_name
-from ..state.corrections import changes, tidy
+from ..state.corrections import changes, renamed, tidy
 from .session import Session
 
 
@@ -64,6 +64,27 @@ def correct_joint(session: Session, joint: int, **wanted: Any) -> None:
         state.param.trigger("corrections")
         return
     correct(session, replace(state.corrections, joints={**held, name: one}))
+
+
+def rename(session: Session, joint: int, name: str) -> None:
+    """Call a joint otherwise."""
+    state, name = session.state, name.strip()
+    old = state.rig.skeleton.names[joint]
+    if name == old:
+        return
+    try:
+        check_alone(state.rig.skeleton, joint)
+        if not name:
+            raise ParameterError("a joint needs a name")
+        if name in state.rig.skeleton.names:
+            raise ParameterError(
+                f'another joint is called "{shown_name(name)}" already; choose another name'
+            )
+    except CutcellError as error:
+        session.fail(error)
+        state.param.trigger("corrections")
+        return
+    correct(session, renamed(state.corrections, old, name))
 
 
 def check_alone(skeleton: Skeleton, joint: int) -> None:

@@ -79,6 +79,9 @@ def _chosen(session: Session) -> list[Any]:
     state = session.state
     heading = words("", sx={"fontWeight": 600, "fontSize": 13}, margin=(6, 0, 0, 0))
     holds = caption("", margin=0)
+    called = pmui.TextInput(
+        label="Name", value="", size="small", margin=(8, 0), sizing_mode="stretch_width"
+    )
     carries = _switch("Carries weight")
     locked = _switch("Keeps the file's weights")
     gain = pmui.FloatSlider(
@@ -105,6 +108,7 @@ def _chosen(session: Session) -> list[Any]:
         holds.object = as_text(_held(session))
         showing[0] = True
         try:
+            called.value = name
             carries.value = bool(rig.skeleton.deform[state.joint])
             locked.param.update(value=one.locked, disabled=rig.weights is None)
             gain.label = f"Reach ×{one.gain:.2f}"
@@ -123,6 +127,12 @@ def _chosen(session: Session) -> list[Any]:
     def reached(event: Any) -> None:
         changes(gain=round(float(2.0**event.new), 3))
 
+    def rename(event: Any) -> None:
+        if not showing[0] and state.rig is not None:
+            correct.rename(session, state.joint, event.new)
+            show()
+
+    called.param.watch(rename, "value")
     carries.param.watch(lambda event: changes(deform=event.new), "value")
     locked.param.watch(lambda event: changes(locked=event.new), "value")
     gain.param.watch(reached, "value")
@@ -133,7 +143,7 @@ def _chosen(session: Session) -> list[Any]:
     watched = ["rig", "joint", "binding", "corrections", "falloff"]
     state.param.watch(lambda *events: show(), watched)
     show()
-    return [heading, holds, carries, locked, gain, radius, *place(session), reset]
+    return [heading, holds, called, carries, locked, gain, radius, *place(session), reset]
 
 
 def _structure(one: JointCorrection) -> dict[str, Any]:

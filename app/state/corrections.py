@@ -121,6 +121,9 @@ def _numbers(before: Rig, after: Rig) -> dict[int, int]:
             return list(range(len(names)))
         return [int(o) if o >= 0 else name for o, name in zip(origin, names, strict=True)]
 
+    a, b = before.skeleton, after.skeleton
+    if np.array_equal(a.parents, b.parents) and np.array_equal(a.joints, b.joints):
+        return {j: j for j in range(len(a.names))}  # some are called otherwise
     found = {key: j for j, key in enumerate(keys(after))}
     return {j: found[key] for j, key in enumerate(keys(before)) if key in found}
 
@@ -133,6 +136,27 @@ def measured(corrections: Corrections) -> Corrections:
     joints = {name: replace(one, locked=False) for name, one in corrections.joints.items()}
     parts = {v: part for v, part in corrections.parts.items() if part.how == "itself"}
     return tidy(Corrections(joints, parts, removed=corrections.removed))
+
+
+def renamed(corrections: Corrections, name: str, new: str) -> Corrections:
+    """Return corrections with a joint called otherwise, wherever they name it."""
+
+    def now(joint: Any) -> Any:
+        return new if joint == name else joint
+
+    one = corrections.joints.get(name, JointCorrection())
+    was = None if one.added else one.was or name
+    one = replace(one, was=None if was == new else was)
+    held = {now(key): other for key, other in {**corrections.joints, name: one}.items()}
+    return replace(
+        corrections,
+        joints={key: replace(other, parent=now(other.parent)) for key, other in held.items()},
+        parts={v: replace(part, joint=now(part.joint)) for v, part in corrections.parts.items()},
+        vertices={
+            v: {now(joint): weight for joint, weight in weights.items()}
+            for v, weights in corrections.vertices.items()
+        },
+    )
 
 
 def tidy(corrections: Corrections) -> Corrections:

@@ -33,8 +33,8 @@ def rewritten(rig: Rig, path: Path) -> dict[Path, bytes]:
     Parameters
     ----------
     rig : Rig
-        Loaded from a GLB or glTF file; only its weights may have changed, where its joints are,
-        and its faces by `with_faces`.
+        Loaded from a GLB or glTF file; only its weights may have changed, where its joints are
+        and what they are called, and its faces by `with_faces`.
     path : Path
         Where the document will stand: ``.glb``, or ``.gltf`` with a ``.bin`` beside it.
 
@@ -48,6 +48,7 @@ def rewritten(rig: Rig, path: Path) -> dict[Path, bytes]:
     source: GltfSource = rig.source
     _check_same(rig, source)
     document = json.loads(json.dumps(source.document.json))  # a copy, and quicker than deepcopy
+    _rename(document, rig)
     before = [_take_influences(document, part) for part in source.parts]
     dropped = [accessor for old in before for accessor in old.values()]
     faces = take_faces(document, rig)
@@ -76,8 +77,21 @@ def _check_same(rig: Rig, source: GltfSource) -> None:
     if len(rig.mesh.faces) != count:
         raise MeshError(f"the rig has {len(rig.mesh.faces)} faces, its document {count}; {remedy}")
     ours, its = rig.skeleton, source.skeleton
-    if ours.names != its.names or not np.array_equal(ours.parents, its.parents):
-        raise SkeletonError(f"the rig's joints are no longer those of its document; {remedy}")
+    same = np.array_equal(ours.parents, its.parents)
+    renamed = rig.origin is not None and np.array_equal(rig.origin, np.arange(len(its.names)))
+    if not same or (ours.names != its.names and not renamed):
+        raise SkeletonError(
+            "the rig's joints are no longer those of its document; save it as .npz or .txt, or "
+            f"{remedy}"
+        )
+
+
+def _rename(document: dict[str, Any], rig: Rig) -> None:
+    """Give nodes the names of joints that were renamed."""
+    names = zip(rig.source.nodes, rig.skeleton.names, rig.source.skeleton.names, strict=True)
+    for node, name, was in names:
+        if name != was:
+            document["nodes"][node]["name"] = name
 
 
 def _take_influences(document: dict[str, Any], part: StoredPart) -> dict[str, int]:

@@ -17,6 +17,7 @@ from .mirrored import Joints
 from .names import Template, check_template
 
 RESOLUTION = 64
+"""With half of it arms are narrower than a lattice cell, and no path runs through them."""
 FEWEST_NODES = 8
 SNAKE = tuple(f"spine.{n}" for n in range(1, 13))
 CHAIN = tuple(f"bone.{n}" for n in range(1, 6))
@@ -42,7 +43,8 @@ def fit_skeleton(
     template : {"biped", "quadruped", "hand", "snake", "chain"}
         Bipeds and quadrupeds stand upright, y or z up.
     graph : CutCellGraph, optional
-        The mesh's, if it is there; built when left out.
+        The mesh's, if it is there. It is built when left out, and where this one is too coarse to
+        tell limbs apart, or finer than is needed.
     progress : callable
         See `cutcell.progress`.
 
@@ -68,7 +70,7 @@ def fit_skeleton(
     """
     template = check_template(template)
     mesh = as_mesh(mesh)
-    if graph is None:
+    if graph is None or not RESOLUTION <= graph.lattice.resolution <= 2 * RESOLUTION:
         graph = build_graph(mesh, RESOLUTION, progress=progress)
     nodes = graph.nodes[graph.connected]
     if len(graph.interior) < FEWEST_NODES:

@@ -231,7 +231,7 @@ def test_the_tree_and_what_stands_below_it(bound, loop):
     locked.value = True
     (gain,) = section.select(pmui.FloatSlider)
     gain.value = 1.0
-    radius, *_ = section.select(pmui.TextInput)
+    _, radius, *_ = section.select(pmui.TextInput)
     radius.value = "0.25"
     expected = {"wrist": JointCorrection(locked=True, gain=2.0, radius=0.25)}
     assert bound.state.corrections.joints == expected

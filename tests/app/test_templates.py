@@ -6,8 +6,9 @@ import pytest
 
 import cutcell
 from cutcell.rig import Rig, Skeleton
-from cutcell_app.commands import export, keys, loading, moving, templates
+from cutcell_app.commands import correct, export, keys, loading, moving, templates
 from cutcell_app.layout.sidebar import sidebar
+from cutcell_app.panels.joints import joints
 from cutcell_app.panels.templates import CHANGED, NONE, chosen_template
 from cutcell_app.scenes import resolve
 from cutcell_app.state.corrections import to_text
@@ -142,3 +143,52 @@ def test_the_menu_is_only_for_meshes_without_a_skeleton(fitted, loop):
     loop.run_until(lambda: fitted.state.binding is not None)
     assert not fitted.built[0][1].visible
     assert templates.is_template({"hand", *(f"thumb.{n}" for n in (1, 2, 3))}, "hand") is False
+
+
+def joint_fields(session):
+    return {field.label: field for field in pmui.Column(joints(session)).select(pmui.TextInput)}
+
+
+def test_a_joint_is_renamed(fitted, loop):
+    state, weights = fitted.state, fitted.state.weights
+    loop.run_for(0.8)  # what follows at once would be one step with what was before
+    state.joint = 1
+    field = joint_fields(fitted)["Name"]
+    assert field.value == "bone.2"
+    field.value = "elbow"
+    loop.run_until(lambda: state.binding is not None)
+    settled(fitted, loop)
+    assert state.rig.skeleton.names[1] == field.value == "elbow"
+    assert state.rig.skeleton.parents.tolist() == [-1, 0, 1, 2, 3]
+    np.testing.assert_array_equal(state.weights, weights)
+    assert fitted.view.told("bones")["names"][1] == "elbow"
+    for wrong, says in (("bone.1", "already"), (" ", "needs a name")):
+        field.value = wrong
+        assert says in state.message[1]
+        assert field.value == "elbow"
+    keys.act(fitted, "undo")
+    loop.run_until(lambda: state.binding is not None)
+    loop.run_until(lambda: not fitted.tasks.running)
+    assert state.rig.skeleton.names[1] == "bone.2"
+
+
+def test_a_joint_of_a_file_is_renamed(bound, loop):
+    state = bound.state
+    correct.correct(
+        bound,
+        cutcell.Corrections(
+            {"elbow": cutcell.JointCorrection(gain=2.0)},
+            {0: cutcell.PartCorrection("glued", "elbow")},
+            {3: {"elbow": 1.0}},
+        ),
+    )
+    loop.run_until(lambda: not bound.tasks.running)
+    correct.rename(bound, 1, "bend")
+    loop.run_until(lambda: state.binding is not None and not bound.tasks.running)
+    assert state.rig.skeleton.names == ("shoulder", "bend", "wrist")
+    assert state.corrections.joints == {"bend": cutcell.JointCorrection(gain=2.0, was="elbow")}
+    assert state.corrections.parts[0].joint == "bend"
+    assert state.corrections.vertices[3] == {"bend": 1.0}
+    assert state.rig.weights is not None
+    correct.rename(bound, 1, "elbow")
+    assert state.corrections.joints == {"elbow": cutcell.JointCorrection(gain=2.0)}

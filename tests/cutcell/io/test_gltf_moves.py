@@ -9,6 +9,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 import cutcell
 from cutcell.errors import SkeletonError
+from cutcell_assets import demo_path
 from tests.cutcell.io.gltf_builder import REST, column, moved, two_skins
 from tests.cutcell.io.test_gltf_clips import animate, quaternions, scene_vertices
 from tests.gltf_validator.validator import errors, reports
@@ -208,3 +209,22 @@ def test_what_cannot_be_moved_is_refused(loaded, tmp_path):
     with pytest.raises(SkeletonError, match="no longer those of its document"):
         cutcell.save(tmp_path / "a.glb", other)
     assert rig.with_joints(REST) is rig
+
+
+def test_joints_that_were_renamed_are_called_so(tmp_path):
+    rig = cutcell.load(demo_path("robot"))
+    name = rig.skeleton.names[2]
+    new = cutcell.JointCorrection(was=name, position=tuple(rig.skeleton.joints[2] + 0.01))
+    other = cutcell.corrected_rig(rig, cutcell.Corrections({"new name": new}))
+    cutcell.save(tmp_path / "renamed.glb", other)
+    again = cutcell.load(tmp_path / "renamed.glb")
+    assert again.skeleton.names[2] == "new name"
+    assert again.skeleton.names[3:] == rig.skeleton.names[3:]
+    assert_allclose(again.skeleton.joints, other.skeleton.joints, atol=1e-6)
+    assert_allclose(again.weights, rig.weights, atol=2e-7)
+    assert not errors(reports(tmp_path / "renamed.glb")[0])
+    gone = cutcell.corrected_rig(rig, cutcell.Corrections(removed=[name]))
+    with pytest.raises(SkeletonError, match="no longer those of its document; save it as"):
+        cutcell.save(tmp_path / "gone.glb", gone)
+    cutcell.save(tmp_path / "gone.npz", gone)
+    assert name not in cutcell.load(tmp_path / "gone.npz").skeleton.names
