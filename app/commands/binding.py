@@ -218,8 +218,15 @@ def _withdraw(session: Session, choices: dict[str, Any], corrections: Correction
 
 def _rebind(session: Session) -> None:
     """Compute again if what is measured for is other than what was last computed for."""
-    if asked(session.state) != session.bound_for:
+    if asked(session.state) != session.bound_for or _nothing_comes(session):
         bind(session)
+
+
+def _nothing_comes(session: Session) -> bool:
+    """Whether what was computed was dropped, with the joints it was of, and is not on its way."""
+    state = session.state
+    there = state.bare_graph if state.bare else state.binding
+    return there is None and not session.tasks.jobs("main").running
 
 
 def _correct(session: Session) -> None:
@@ -227,7 +234,7 @@ def _correct(session: Session) -> None:
     state = session.state
     if state.rig is None:
         return
-    if asked(state) != session.bound_for:
+    if asked(state) != session.bound_for or _nothing_comes(session):
         session.tasks.after_a_pause(lambda: _rebind(session))
     elif not state.bare:
         weigh(session)

@@ -20,6 +20,7 @@ from ..state import State
 from ..widgets.joint_tree import JointTree
 from .moving import place
 from .parts import GAP, as_text, caption, section, when, words
+from .structure import structure
 
 DOUBLINGS = 2.0
 """The slider goes from as many halvings of a joint's reach to as many doublings."""
@@ -143,7 +144,8 @@ def _chosen(session: Session) -> list[Any]:
     watched = ["rig", "joint", "binding", "corrections", "falloff"]
     state.param.watch(lambda *events: show(), watched)
     show()
-    return [heading, holds, called, carries, locked, gain, radius, *place(session), reset]
+    given = [heading, holds, called, structure(session), carries, locked, gain, radius]
+    return [*given, *place(session), reset]
 
 
 def _structure(one: JointCorrection) -> dict[str, Any]:

@@ -1,0 +1,149 @@
+"""Add joints to a skeleton that was fitted into a mesh, remove them, hang them on others.
+
+Corrections hold such a skeleton whole: each joint with its place and its parent.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from cutcell.corrections import Corrections, JointCorrection, PartCorrection
+from cutcell.errors import CutcellError, ParameterError
+from cutcell.rig import Rig
+
+from ..state import State
+from .correct import check_alone, correct, taken
+from .moving import moves_along, rounded
+from .session import Session
+
+BEYOND = 0.5
+"""Of the bone before it: how far behind a last joint the next one is added."""
+
+
+def is_fitted(state: State) -> bool:
+    """Whether the skeleton is not the file's: only then may it have other joints when saved."""
+    return state.own is not None and not len(state.own.skeleton.joints) and not state.bare
+
+
+def add(session: Session) -> None:
+    """Add a joint behind the chosen one, in the middle of its bone if it has one, and choose it."""
+    rig = session.state.rig
+    _change(session, lambda corrections, name: with_child(rig, corrections, name))
+
+
+def remove(session: Session) -> None:
+    """Remove the chosen joint; what hung on it hangs on its parent, which is chosen then."""
+    _change(session, without)
+
+
+def hang_on(session: Session, parent: str) -> None:
+    """Hang the chosen joint on another, by its name; "" for none."""
+    state = session.state
+    name = state.rig.skeleton.names[state.joint]
+    held = state.corrections.joints
+    if parent != held[name].parent:
+        joints = {**held, name: replace(held[name], parent=parent)}
+        correct(session, replace(state.corrections, joints=joints))
+
+
+def may_hang_on(rig: Rig, joint: int) -> list[str]:
+    """List the joints that one may hang on: all that do not hang on it."""
+    below = rig.skeleton.subtree[joint]
+    return [name for name, own in zip(rig.skeleton.names, below, strict=True) if not own]
+
+
+def with_child(rig: Rig, corrections: Corrections, name: str) -> tuple[Corrections, str]:
+    """Return corrections with a joint more, and its name.
+
+    On a joint with a single child it divides the bone, and the child hangs on it.
+    """
+    skeleton = rig.skeleton
+    joint = skeleton.names.index(name)
+    children, parent = skeleton.children[joint], int(skeleton.parents[joint])
+    here = skeleton.joints[joint]
+    if len(children) == 1:
+        place = (here + skeleton.joints[children[0]]) / 2
+    elif parent >= 0:
+        place = here + BEYOND * (here - skeleton.joints[parent])
+    else:
+        place = here + BEYOND * (rig.mesh.bounds.mean(axis=0) - here)
+    new = _unused(name, corrections)
+    put = tuple(np.asarray(rounded(rig, place)).tolist())
+    joints: dict[str, JointCorrection] = {}
+    for key, one in corrections.joints.items():
+        between = len(children) == 1 and key == skeleton.names[children[0]]
+        joints[key] = replace(one, parent=new) if between else one
+        if key == name:
+            joints[new] = JointCorrection(added=True, position=put, parent=name)
+    return replace(corrections, joints=joints), new
+
+
+def without(corrections: Corrections, name: str) -> tuple[Corrections, str]:
+    """Return corrections without a joint that they add, and its parent, which takes over.
+
+    Raises
+    ------
+    ParameterError
+        It is the only one.
+    """
+    if sum(one.added for one in corrections.joints.values()) < 2:
+        raise ParameterError(f'"{name}" is the only joint; take the skeleton out by its menu')
+    heir = corrections.joints[name].parent
+
+    def now(joint: Any) -> Any:
+        return heir if joint == name else joint
+
+    joints = {
+        key: replace(one, parent=now(one.parent))
+        for key, one in corrections.joints.items()
+        if key != name
+    }
+    parts: dict[int, PartCorrection] = {
+        vertex: replace(part, joint=now(part.joint))
+        for vertex, part in corrections.parts.items()
+        if heir or part.joint != name
+    }
+    vertices: dict[int, dict[str, float]] = {}
+    for vertex, weights in corrections.vertices.items():
+        found: dict[str, float] = {}
+        for joint, weight in weights.items():
+            if heir or joint != name:
+                found[now(joint)] = found.get(now(joint), 0.0) + weight
+        if any(found.values()):
+            vertices[vertex] = found
+    return replace(corrections, joints=joints, parts=parts, vertices=vertices), heir or ""
+
+
+def _unused(name: str, corrections: Corrections) -> str:
+    """Return a name that no joint has, after that of the joint before it."""
+    stem, _, number = name.rpartition("_")
+    stem = stem if stem and number.isdigit() else name
+    count = 1
+    while f"{stem}_{count}" in corrections.joints:
+        count += 1
+    return f"{stem}_{count}"
+
+
+def _change(
+    session: Session, change: Callable[[Corrections, str], tuple[Corrections, str]]
+) -> None:
+    """Change the chosen joint and the one on the other side; choose what the first leads to."""
+    state = session.state
+    names, partner = state.rig.skeleton.names, moves_along(session)
+    corrections, chosen = state.corrections, []
+    try:
+        for joint in (state.joint, *([] if partner is None else [partner])):
+            check_alone(state.rig.skeleton, joint)
+            corrections, leads_to = change(corrections, names[joint])
+            chosen.append(leads_to)
+        news = taken(session, corrections)
+    except CutcellError as error:
+        session.fail(error)
+        return
+    found = news["rig"].skeleton.names
+    news["joint"] = found.index(chosen[0]) if chosen[0] in found else 0
+    state.param.update(**news)  # at once: it is one step to undo

@@ -1,0 +1,61 @@
+"""Joints that are added, removed and hung on others, where the skeleton is not the file's."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import panel_material_ui as pmui
+
+from ..commands import structure as actions
+from ..commands.session import Session
+from .parts import GAP, caption, unique_names, when
+
+NOTHING = "Nothing: it is a root"
+
+
+def structure(session: Session) -> pmui.Column:
+    """Return what changes which joints there are."""
+    state = session.state
+    on = pmui.Select(
+        label="Hangs on", options=[NOTHING], value=NOTHING, size="small", margin=(8, 0),
+        sizing_mode="stretch_width",
+    )  # fmt: skip
+    look: dict[str, Any] = {"size": "small", "variant": "outlined", "sizing_mode": "stretch_width"}
+    add, remove = (
+        pmui.Button(label=label, icon=icon, margin=margin, on_click=done, **look)
+        for label, icon, margin, done in (
+            ("Add a joint", "add", (4, 4, 4, 0), lambda event: actions.add(session)),
+            ("Remove it", "remove", (4, 0, 4, 4), lambda event: actions.remove(session)),
+        )
+    )
+    known: dict[str, list[str]] = {"names": []}
+
+    def shown(*events: Any) -> None:
+        if not actions.is_fitted(state) or state.joint >= len(state.rig.skeleton.names):
+            return
+        skeleton = state.rig.skeleton
+        names = actions.may_hang_on(state.rig, state.joint)
+        titles, parent = unique_names(names), int(skeleton.parents[state.joint])
+        known["names"] = names
+        value = titles[names.index(skeleton.names[parent])] if parent >= 0 else NOTHING
+        on.param.update(options=[NOTHING, *titles], value=value)
+
+    def chosen(event: Any) -> None:
+        if event.new is None or not actions.is_fitted(state):
+            return
+        titles = unique_names(known["names"])
+        if event.new == NOTHING or event.new in titles:
+            parent = "" if event.new == NOTHING else known["names"][titles.index(event.new)]
+            actions.hang_on(session, parent)
+
+    on.param.watch(chosen, "value")
+    state.param.watch(shown, ["rig", "joint", "corrections"])
+    shown()
+    return pmui.Column(
+        on,
+        pmui.Row(add, remove, margin=0, sizing_mode="stretch_width"),
+        caption("It divides a bone with one joint behind it, else it begins a new one."),
+        margin=GAP,
+        sizing_mode="stretch_width",
+        visible=when(lambda *_: actions.is_fitted(state), state.param.own, state.param.rig),
+    )

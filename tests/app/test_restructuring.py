@@ -1,0 +1,184 @@
+"""Joints of a fitted skeleton are added, removed and hung on others on the page."""
+
+import numpy as np
+import panel_material_ui as pmui
+import pytest
+
+import cutcell
+from cutcell.corrections import JointCorrection
+from cutcell.rig import Rig, Skeleton
+from cutcell_app.commands import correct, export, keys, loading, structure
+from cutcell_app.panels.structure import NOTHING
+from cutcell_app.panels.structure import structure as controls
+from tests.viewers.arm import arm_rig
+
+
+def chain(names=("a", "b", "c")):
+    """Corrections that give a mesh a chain of joints along x."""
+    above = ["", *names[:-1]]
+    return cutcell.Corrections(
+        {
+            name: JointCorrection(added=True, parent=parent, position=(0.3 * k, 0.0, 0.0))
+            for k, (name, parent) in enumerate(zip(names, above, strict=True))
+        }
+    )
+
+
+@pytest.fixture
+def fitted(session, loop):
+    session.state.resolution = 16
+    loading.show_rig(session, Rig(arm_rig().mesh, Skeleton([], []), name="statue"))
+    loop.run_until(lambda: session.state.bare_graph is not None)
+    correct.correct(session, chain())
+    rebound(session, loop)
+    session.state.mirrored = False
+    loop.run_for(0.8)  # what follows at once would be one step with what was before
+    return session
+
+
+def rebound(session, loop):
+    loop.run_until(lambda: session.state.binding is not None and not session.tasks.running)
+
+
+def hierarchy(session):
+    skeleton = session.state.rig.skeleton
+    return {
+        name: skeleton.names[parent] if parent >= 0 else ""
+        for name, parent in zip(skeleton.names, skeleton.parents, strict=True)
+    }
+
+
+def test_a_joint_is_added_in_the_middle_of_a_bone(fitted, loop):
+    state = fitted.state
+    state.joint = 0
+    structure.add(fitted)
+    rebound(fitted, loop)
+    assert hierarchy(fitted) == {"a": "", "a_1": "a", "b": "a_1", "c": "b"}
+    names = state.rig.skeleton.names
+    assert names[state.joint] == "a_1"
+    np.testing.assert_allclose(state.rig.skeleton.joints[state.joint], [0.15, 0, 0], atol=1e-6)
+    fresh = cutcell.bind((state.rig.mesh, state.rig.skeleton), state.resolution)
+    np.testing.assert_allclose(state.weights, fresh.weights, atol=1e-9)
+    keys.act(fitted, "undo")
+    rebound(fitted, loop)
+    assert hierarchy(fitted) == {"a": "", "b": "a", "c": "b"}
+
+
+def test_behind_a_last_joint_another_one_begins(fitted, loop):
+    state = fitted.state
+    state.joint = 2
+    structure.add(fitted)
+    structure.add(fitted)
+    rebound(fitted, loop)
+    assert hierarchy(fitted) == {"a": "", "b": "a", "c": "b", "c_1": "c", "c_2": "c_1"}
+    x = [joint[0] for joint in state.rig.skeleton.joints]
+    np.testing.assert_allclose(x, [0, 0.3, 0.6, 0.75, 0.825], atol=1e-6)
+
+
+def test_what_hung_on_a_removed_joint_hangs_on_its_parent(fitted, loop):
+    state = fitted.state
+    held = {0: cutcell.PartCorrection("glued", "b")}
+    vertices = {3: {"a": 0.25, "b": 0.75}, 4: {"c": 1.0}}
+    correct.correct(fitted, cutcell.Corrections(chain().joints, held, vertices))
+    state.joint = 1
+    structure.remove(fitted)
+    rebound(fitted, loop)
+    assert hierarchy(fitted) == {"a": "", "c": "a"}
+    assert state.rig.skeleton.names[state.joint] == "a"
+    assert state.corrections.parts[0].joint == "a"
+    assert state.corrections.vertices == {3: {"a": 1.0}, 4: {"c": 1.0}}
+    assert state.weights.shape[1] == 2
+
+
+def test_a_root_leaves_roots_and_the_last_joint_stays(fitted, loop):
+    state = fitted.state
+    vertices = {3: {"a": 1.0}, 4: {"a": 0.5, "c": 0.5}}
+    parts = {0: cutcell.PartCorrection("glued", "a")}
+    correct.correct(fitted, cutcell.Corrections(chain().joints, parts, vertices))
+    state.joint = 0
+    structure.remove(fitted)
+    rebound(fitted, loop)
+    assert hierarchy(fitted) == {"b": "", "c": "b"}
+    assert state.corrections.vertices == {4: {"c": 1.0}}  # nobody takes over what it had
+    assert not state.corrections.parts
+    state.joint = 1
+    structure.remove(fitted)
+    structure.remove(fitted)
+    assert '"b" is the only joint' in state.message[1]
+    assert hierarchy(fitted) == {"b": ""}
+
+
+def test_a_joint_hangs_on_another_but_never_on_what_hangs_on_it(fitted, loop):
+    state = fitted.state
+    state.joint = 2
+    assert structure.may_hang_on(state.rig, 2) == ["a", "b"]
+    assert structure.may_hang_on(state.rig, 0) == []
+    structure.hang_on(fitted, "a")
+    rebound(fitted, loop)
+    assert hierarchy(fitted) == {"a": "", "b": "a", "c": "a"}
+    structure.hang_on(fitted, "")
+    rebound(fitted, loop)
+    assert hierarchy(fitted)["c"] == ""
+    state.joint = 0
+    before = state.corrections
+    structure.hang_on(fitted, "b")  # no menu offers that
+    assert "has a cycle" in state.message[1]
+    assert state.corrections == before
+
+
+def test_the_other_side_gets_the_same(fitted, loop):
+    state = fitted.state
+    middle = state.rig.mesh.bounds.mean(axis=0)
+    places = {"hips": 0.0, "left": 0.2, "right": -0.2}
+    sides = {
+        name: JointCorrection(
+            added=True,
+            parent="" if name == "hips" else "hips",
+            position=tuple((middle + np.array([aside, abs(aside) / 4, 0])).tolist()),
+        )
+        for name, aside in places.items()
+    }
+    correct.correct(fitted, cutcell.Corrections(sides))
+    state.param.update(mirrored=True, joint=1)
+    structure.add(fitted)
+    assert set(hierarchy(fitted)) == {"hips", "left", "left_1", "right", "right_1"}
+    one, other = (state.rig.skeleton.names.index(name) for name in ("left_1", "right_1"))
+    gap = state.rig.skeleton.joints[[one, other]] - middle
+    np.testing.assert_allclose(gap[0] * [-1, 1, 1], gap[1], atol=1e-5)
+    structure.remove(fitted)
+    assert set(hierarchy(fitted)) == {"hips", "left", "right"}
+
+
+def test_the_controls_show_and_change_it(fitted, loop, tmp_path):
+    state = fitted.state
+    state.joint = 2
+    panel = controls(fitted)
+    (menu,) = panel.select(pmui.Select)
+    add, remove = panel.select(pmui.Button)
+    assert menu.options == [NOTHING, "a", "b"]
+    assert menu.value == "b"
+    menu.value = "a"
+    rebound(fitted, loop)
+    assert hierarchy(fitted)["c"] == "a"
+    add.clicks += 1
+    assert hierarchy(fitted)["c_1"] == "c"
+    assert menu.value == "c"
+    remove.clicks += 1
+    assert menu.value == "a"  # of the joint that it hung on, which is chosen now
+    rebound(fitted, loop)
+    got = []
+    export.export_bound(fitted, lambda name, content: got.append((name, content)))
+    loop.run_until(lambda: got)
+    (tmp_path / got[0][0]).write_bytes(got[0][1])
+    found = cutcell.load(tmp_path / got[0][0]).skeleton
+    assert found.names == state.rig.skeleton.names
+    np.testing.assert_array_equal(found.parents, state.rig.skeleton.parents)
+
+
+def test_a_files_own_skeleton_has_no_such_controls(fitted, loop):
+    panel = controls(fitted)
+    assert panel.visible
+    loading.show_rig(fitted, arm_rig())
+    rebound(fitted, loop)
+    assert not panel.visible
+    assert not structure.is_fitted(fitted.state)
