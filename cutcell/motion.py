@@ -248,8 +248,9 @@ class Moved:
         held = np.flatnonzero(self.parents >= 0)
         local, above = world.copy(), self.parents[held]
         local[:, held] = inverses(world[:, above]) @ world[:, held]
-        local[..., :3, 3] += self.by
-        local[:, held, :3, 3] -= self.by[above]
+        place = local[..., :3, 3]
+        place += self.by
+        place[:, held] -= self.by[above]
         done = self.parents < 0
         while len(ready := np.flatnonzero(~done & done[self.parents])):  # parents first
             local[:, ready] = local[:, self.parents[ready]] @ local[:, ready]

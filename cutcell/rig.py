@@ -361,6 +361,21 @@ class Rig:
             )
 
 
+def with_origin(skeleton: Skeleton, origin: NDArray[np.integer]) -> NDArray[np.int_]:
+    """Return for each joint the nearest one, it or above it, that the file has; else the first.
+
+    Parameters
+    ----------
+    skeleton : Skeleton
+    origin : array, shape (j,)
+        See `Rig.origin`.
+    """
+    found = np.arange(len(origin))
+    while len(open_ := np.flatnonzero((origin[found] < 0) & (skeleton.parents[found] >= 0))):
+        found[open_] = skeleton.parents[found[open_]]
+    return found
+
+
 def _frozen(array: NDArray) -> NDArray:
     array.flags.writeable = False
     return array

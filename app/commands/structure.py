@@ -1,11 +1,8 @@
-"""Add joints to a skeleton that was fitted into a mesh, remove them, hang them on others.
-
-Corrections hold such a skeleton whole: each joint with its place and its parent.
-"""
+"""Add joints to the skeleton, remove them, hang them on others."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import replace
 from typing import Any
 
@@ -15,7 +12,6 @@ from cutcell.corrections import Corrections, JointCorrection, PartCorrection
 from cutcell.errors import CutcellError, ParameterError
 from cutcell.rig import Rig
 
-from ..state import State
 from .correct import check_alone, correct, taken
 from .moving import moves_along, rounded
 from .session import Session
@@ -24,15 +20,9 @@ BEYOND = 0.5
 """Of the bone before it: how far behind a last joint the next one is added."""
 
 
-def is_fitted(state: State) -> bool:
-    """Whether the skeleton is not the file's: only then may it have other joints when saved."""
-    return state.own is not None and not len(state.own.skeleton.joints) and not state.bare
-
-
 def add(session: Session) -> None:
     """Add a joint behind the chosen one, in the middle of its bone if it has one, and choose it."""
-    rig = session.state.rig
-    _change(session, lambda corrections, name: with_child(rig, corrections, name))
+    _change(session, with_child)
 
 
 def remove(session: Session) -> None:
@@ -44,10 +34,17 @@ def hang_on(session: Session, parent: str) -> None:
     """Hang the chosen joint on another, by its name; "" for none."""
     state = session.state
     name = state.rig.skeleton.names[state.joint]
+    above = int(state.rig.skeleton.parents[state.joint])
+    if parent == (state.rig.skeleton.names[above] if above >= 0 else ""):
+        return
+    try:
+        check_alone(state.rig.skeleton, state.joint)
+    except CutcellError as error:
+        session.fail(error)
+        return
     held = state.corrections.joints
-    if parent != held[name].parent:
-        joints = {**held, name: replace(held[name], parent=parent)}
-        correct(session, replace(state.corrections, joints=joints))
+    one = replace(held.get(name, JointCorrection()), parent=parent)
+    correct(session, replace(state.corrections, joints={**held, name: one}))
 
 
 def may_hang_on(rig: Rig, joint: int) -> list[str]:
@@ -71,35 +68,36 @@ def with_child(rig: Rig, corrections: Corrections, name: str) -> tuple[Correctio
         place = here + BEYOND * (here - skeleton.joints[parent])
     else:
         place = here + BEYOND * (rig.mesh.bounds.mean(axis=0) - here)
-    new = _unused(name, corrections)
+    new = _unused(name, {*skeleton.names, *corrections.joints})
     put = tuple(np.asarray(rounded(rig, place)).tolist())
-    joints: dict[str, JointCorrection] = {}
-    for key, one in corrections.joints.items():
-        between = len(children) == 1 and key == skeleton.names[children[0]]
-        joints[key] = replace(one, parent=new) if between else one
-        if key == name:
-            joints[new] = JointCorrection(added=True, position=put, parent=name)
+    joints = {**corrections.joints, new: JointCorrection(added=True, position=put, parent=name)}
+    if len(children) == 1:
+        child = skeleton.names[children[0]]
+        joints[child] = replace(joints.get(child, JointCorrection()), parent=new)
     return replace(corrections, joints=joints), new
 
 
-def without(corrections: Corrections, name: str) -> tuple[Corrections, str]:
-    """Return corrections without a joint that they add, and its parent, which takes over.
+def without(rig: Rig, corrections: Corrections, name: str) -> tuple[Corrections, str]:
+    """Return corrections without a joint, and its parent, which takes over.
 
     Raises
     ------
     ParameterError
         It is the only one.
     """
-    if sum(one.added for one in corrections.joints.values()) < 2:
-        raise ParameterError(f'"{name}" is the only joint; take the skeleton out by its menu')
-    heir = corrections.joints[name].parent
+    skeleton = rig.skeleton
+    if len(skeleton.names) < 2:
+        raise ParameterError(f'"{name}" is the only joint; at least one has to stay')
+    above = int(skeleton.parents[skeleton.names.index(name)])
+    heir = skeleton.names[above] if above >= 0 else ""
 
     def now(joint: Any) -> Any:
         return heir if joint == name else joint
 
+    one = corrections.joints.get(name, JointCorrection())
     joints = {
-        key: replace(one, parent=now(one.parent))
-        for key, one in corrections.joints.items()
+        key: replace(other, parent=now(other.parent))
+        for key, other in corrections.joints.items()
         if key != name
     }
     parts: dict[int, PartCorrection] = {
@@ -115,21 +113,23 @@ def without(corrections: Corrections, name: str) -> tuple[Corrections, str]:
                 found[now(joint)] = found.get(now(joint), 0.0) + weight
         if any(found.values()):
             vertices[vertex] = found
-    return replace(corrections, joints=joints, parts=parts, vertices=vertices), heir or ""
+    removed = corrections.removed if one.added else (*corrections.removed, one.was or name)
+    left = replace(corrections, joints=joints, parts=parts, vertices=vertices, removed=removed)
+    return left, heir
 
 
-def _unused(name: str, corrections: Corrections) -> str:
+def _unused(name: str, names: Collection[str]) -> str:
     """Return a name that no joint has, after that of the joint before it."""
     stem, _, number = name.rpartition("_")
     stem = stem if stem and number.isdigit() else name
     count = 1
-    while f"{stem}_{count}" in corrections.joints:
+    while f"{stem}_{count}" in names:
         count += 1
     return f"{stem}_{count}"
 
 
 def _change(
-    session: Session, change: Callable[[Corrections, str], tuple[Corrections, str]]
+    session: Session, change: Callable[[Rig, Corrections, str], tuple[Corrections, str]]
 ) -> None:
     """Change the chosen joint and the one on the other side; choose what the first leads to."""
     state = session.state
@@ -138,7 +138,7 @@ def _change(
     try:
         for joint in (state.joint, *([] if partner is None else [partner])):
             check_alone(state.rig.skeleton, joint)
-            corrections, leads_to = change(corrections, names[joint])
+            corrections, leads_to = change(state.rig, corrections, names[joint])
             chosen.append(leads_to)
         news = taken(session, corrections)
     except CutcellError as error:

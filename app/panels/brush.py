@@ -61,4 +61,4 @@ def _told(rig: Any, joint: int, mode: str) -> str:
         return "Evens out the weights of all joints that are not locked."
     if rig is None or joint >= len(rig.skeleton.names):
         return ""
-    return f"Paints the weight of {shown_name(rig.skeleton.names[joint])}, the chosen bone."
+    return f"Paints for {shown_name(rig.skeleton.names[joint])}, the chosen bone."

@@ -1,4 +1,4 @@
-"""Joints that are added, removed and hung on others, where the skeleton is not the file's."""
+"""Joints that are added, removed and hung on others."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import panel_material_ui as pmui
 
 from ..commands import structure as actions
 from ..commands.session import Session
-from .parts import GAP, caption, unique_names, when
+from .parts import GAP, caption, unique_names
 
 NOTHING = "Nothing: it is a root"
 
@@ -31,7 +31,7 @@ def structure(session: Session) -> pmui.Column:
     known: dict[str, list[str]] = {"names": []}
 
     def shown(*events: Any) -> None:
-        if not actions.is_fitted(state) or state.joint >= len(state.rig.skeleton.names):
+        if state.rig is None or state.joint >= len(state.rig.skeleton.names):
             return
         skeleton = state.rig.skeleton
         names = actions.may_hang_on(state.rig, state.joint)
@@ -41,8 +41,6 @@ def structure(session: Session) -> pmui.Column:
         on.param.update(options=[NOTHING, *titles], value=value)
 
     def chosen(event: Any) -> None:
-        if event.new is None or not actions.is_fitted(state):
-            return
         titles = unique_names(known["names"])
         if event.new == NOTHING or event.new in titles:
             parent = "" if event.new == NOTHING else known["names"][titles.index(event.new)]
@@ -57,5 +55,4 @@ def structure(session: Session) -> pmui.Column:
         caption("It divides a bone with one joint behind it, else it begins a new one."),
         margin=GAP,
         sizing_mode="stretch_width",
-        visible=when(lambda *_: actions.is_fitted(state), state.param.own, state.param.rig),
     )

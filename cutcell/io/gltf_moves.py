@@ -23,6 +23,9 @@ from .gltf_container import Document
 from .gltf_nodes import Nodes
 from .gltf_storage import Storage
 
+BINDS = "inverseBindMatrices"
+"""What a skin calls them."""
+
 
 def node_shifts(
     local: NDArray[np.float64], parents: ArrayLike, own: NDArray[np.float64]
@@ -75,18 +78,28 @@ def take_moves(document: dict[str, Any], rig: Rig) -> list[NewValues]:
     SkeletonError
         A skin without inverse bind matrices, whose joints are where the nodes are.
     """
-    source = rig.source
-    by = rig.skeleton.joints - source.skeleton.joints
+    source, by = rig.source, own_moves(rig)
     if not by.any():
         return []
     nodes = Nodes(source.document)
     own = np.zeros((len(nodes.raw), 3))
-    own[source.nodes] = np.einsum("jab,jb->ja", source.inverse[:, :3, :3], by)
+    own[source.nodes] = by
     shifts = node_shifts(nodes.local, nodes.parents, own)
     for i in np.flatnonzero(shifts.any(axis=1)).tolist():
         _shift(document["nodes"][i], shifts[i])
     found = _binds(document, source.document, own)
     return found + _translations(document, source.document, shifts)
+
+
+def own_moves(rig: Rig) -> NDArray[np.float64]:
+    """Return how far each joint of a rig's file has moved, shape (j, 3), in its own frame."""
+    source = rig.source
+    by = np.zeros_like(source.skeleton.joints)
+    origin = np.arange(len(by)) if rig.origin is None else rig.origin
+    there = origin >= 0
+    by[origin[there]] = rig.skeleton.joints[there] - source.skeleton.joints[origin[there]]
+    moved: NDArray[np.float64] = np.einsum("jab,jb->ja", source.inverse[:, :3, :3], by)
+    return moved
 
 
 def store_moves(storage: Storage, found: list[NewValues]) -> None:
@@ -107,6 +120,14 @@ def _shift(node: dict[str, Any], shift: NDArray[np.float64]) -> None:
         node["translation"] = np.add(node.get("translation", [0, 0, 0]), shift).tolist()
 
 
+def no_binds(label: str) -> SkeletonError:
+    """Return the refusal of a skin whose joints are where the nodes are."""
+    return SkeletonError(
+        f"{label} has no inverse bind matrices, so that its joints cannot be moved within "
+        "its mesh; set the rig's source to None to write a new file instead"
+    )
+
+
 def _binds(document: dict[str, Any], loaded: Document, own: NDArray[np.float64]) -> list[NewValues]:
     found = []
     for i, skin in enumerate(document.get("skins", [])):
@@ -114,15 +135,12 @@ def _binds(document: dict[str, Any], loaded: Document, own: NDArray[np.float64])
         if not shift.any():
             continue
         label = loaded.label("skins", i)
-        if "inverseBindMatrices" not in skin:
-            raise SkeletonError(
-                f"{label} has no inverse bind matrices, so that its joints cannot be moved within "
-                "its mesh; set the rig's source to None to write a new file instead"
-            )
-        old = skin.pop("inverseBindMatrices")
+        if BINDS not in skin:
+            raise no_binds(label)
+        old = skin.pop(BINDS)
         values = read_accessor(loaded, old, "MAT4", label).astype(np.float64)
         values[: len(shift), 12:15] -= shift
-        found.append(NewValues(skin, "inverseBindMatrices", values.astype("<f4"), old))
+        found.append(NewValues(skin, BINDS, values.astype("<f4"), old))
     return found
 
 

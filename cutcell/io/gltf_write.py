@@ -25,6 +25,7 @@ from .gltf_influences import pack_influences
 from .gltf_moves import store_moves, take_moves
 from .gltf_read import GltfSource, StoredPart
 from .gltf_storage import Storage
+from .gltf_structure import take_structure
 
 
 def rewritten(rig: Rig, path: Path) -> dict[Path, bytes]:
@@ -33,8 +34,8 @@ def rewritten(rig: Rig, path: Path) -> dict[Path, bytes]:
     Parameters
     ----------
     rig : Rig
-        Loaded from a GLB or glTF file; only its weights may have changed, where its joints are
-        and what they are called, and its faces by `with_faces`.
+        Loaded from a GLB or glTF file; only its weights may have changed, its joints, as
+        corrections change them, and its faces by `with_faces`.
     path : Path
         Where the document will stand: ``.glb``, or ``.gltf`` with a ``.bin`` beside it.
 
@@ -53,11 +54,11 @@ def rewritten(rig: Rig, path: Path) -> dict[Path, bytes]:
     dropped = [accessor for old in before for accessor in old.values()]
     faces = take_faces(document, rig)
     dropped += [accessor for new in faces for accessor in new.old.values()]
-    moves = take_moves(document, rig)
+    parts, moves = take_structure(document, rig, take_moves(document, rig))
     dropped += [new.old for new in moves]
     storage = Storage(document, source.document.buffers, dropped)
     store_moves(storage, moves)
-    for part, old in zip(source.parts, before, strict=True):
+    for part, old in zip(parts, before, strict=True):
         _store(storage, document, rig, part, old)
     store_faces(storage, faces)
     carried = carry_images(storage, source.document, path)
@@ -77,9 +78,8 @@ def _check_same(rig: Rig, source: GltfSource) -> None:
     if len(rig.mesh.faces) != count:
         raise MeshError(f"the rig has {len(rig.mesh.faces)} faces, its document {count}; {remedy}")
     ours, its = rig.skeleton, source.skeleton
-    same = np.array_equal(ours.parents, its.parents)
-    renamed = rig.origin is not None and np.array_equal(rig.origin, np.arange(len(its.names)))
-    if not same or (ours.names != its.names and not renamed):
+    same = ours.names == its.names and np.array_equal(ours.parents, its.parents)
+    if not same and rig.origin is None:
         raise SkeletonError(
             "the rig's joints are no longer those of its document; save it as .npz or .txt, or "
             f"{remedy}"
@@ -88,10 +88,11 @@ def _check_same(rig: Rig, source: GltfSource) -> None:
 
 def _rename(document: dict[str, Any], rig: Rig) -> None:
     """Give nodes the names of joints that were renamed."""
-    names = zip(rig.source.nodes, rig.skeleton.names, rig.source.skeleton.names, strict=True)
-    for node, name, was in names:
-        if name != was:
-            document["nodes"][node]["name"] = name
+    source, origin = rig.source, rig.origin
+    for j, name in enumerate(rig.skeleton.names):
+        was = j if origin is None else int(origin[j])
+        if was >= 0 and name != source.skeleton.names[was]:
+            document["nodes"][source.nodes[was]]["name"] = name
 
 
 def _take_influences(document: dict[str, Any], part: StoredPart) -> dict[str, int]:

@@ -11,7 +11,7 @@ from ..corrections import Corrections
 from ..display import shown_name
 from ..errors import ParameterError, SkeletonError
 from ..motion import Motion, inverses
-from ..rig import Clip, Rig, Skeleton
+from ..rig import Clip, Rig, Skeleton, with_origin
 from .locks import joint_index
 
 
@@ -50,14 +50,17 @@ def restructured(rig: Rig, corrections: Corrections) -> Rig:
         weights = moved
     allowed = rig.allowed
     if allowed is not None:
-        allowed = allowed[:, [max(int(origin[j]), 0) for j in _with_origin(skeleton, origin)]]
+        allowed = allowed[:, [max(int(origin[j]), 0) for j in with_origin(skeleton, origin)]]
     return replace(
         rig,
         skeleton=skeleton,
         weights=weights,
         allowed=allowed,
         clips=tuple(
-            Clip(clip.name, motion=Restructured(clip.motion, old.parents, skeleton.parents, origin))
+            Clip(
+                clip.name,
+                motion=Restructured(clip.motion, old.joints, old.parents, skeleton.parents, origin),
+            )
             for clip in rig.clips
         ),
         attachments=tuple(
@@ -163,18 +166,10 @@ def _skeleton(
     if old.orientations is None:
         return plain
     axes = np.tile(np.eye(3), (count, 1, 1))
-    like = _with_origin(plain, origin)
+    like = with_origin(plain, origin)
     known = origin[like] >= 0
     axes[known] = old.orientations[origin[like[known]]]
     return replace(plain, orientations=axes)
-
-
-def _with_origin(skeleton: Skeleton, origin: NDArray[np.int_]) -> NDArray[np.int_]:
-    """Return for each joint the nearest one, it or above it, that the file has; else the first."""
-    found = np.arange(len(origin))
-    while len(open_ := np.flatnonzero((origin[found] < 0) & (skeleton.parents[found] >= 0))):
-        found[open_] = skeleton.parents[found[open_]]
-    return found
 
 
 def _heirs(old: Skeleton, removed: NDArray[np.bool_]) -> NDArray[np.int_]:
@@ -198,8 +193,10 @@ class Restructured:
     Parameters
     ----------
     motion : Motion
+    places : array, shape (i, 3)
+        Where the joints that it moves stand.
     before : array, shape (i,), int
-        Parents of the joints that it moves.
+        Their parents.
     parents : array, shape (j,), int
         Parents now.
     origin : array, shape (j,), int
@@ -207,6 +204,7 @@ class Restructured:
     """
 
     motion: Motion
+    places: NDArray[np.float64]
     before: NDArray[np.int32]
     parents: NDArray[np.int32]
     origin: NDArray[np.int_]
@@ -225,6 +223,15 @@ class Restructured:
     def times(self) -> NDArray[np.float64]:
         """Times of the frames that show it, shape (f,), seconds, ascending from 0."""
         return self.motion.times
+
+    def moved(
+        self, joints: NDArray[np.float64], parents: NDArray[np.int32], by: NDArray[np.float64]
+    ) -> Restructured:
+        """Return it for joints that were moved: those that the motion knows are in it, too."""
+        own, known = np.zeros_like(self.places), self.origin >= 0
+        own[self.origin[known]] = by[known]
+        moved = Clip("", motion=self.motion).moved(self.places, self.before, own).motion
+        return replace(self, motion=moved, places=self.places + own)
 
     def sample(self, seconds: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return skinning matrices at some times, shape (f, j, 4, 4)."""

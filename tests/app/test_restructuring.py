@@ -175,10 +175,38 @@ def test_the_controls_show_and_change_it(fitted, loop, tmp_path):
     np.testing.assert_array_equal(found.parents, state.rig.skeleton.parents)
 
 
-def test_a_files_own_skeleton_has_no_such_controls(fitted, loop):
-    panel = controls(fitted)
-    assert panel.visible
-    loading.show_rig(fitted, arm_rig())
-    rebound(fitted, loop)
-    assert not panel.visible
-    assert not structure.is_fitted(fitted.state)
+def test_joints_of_a_file_are_added_removed_and_hung_elsewhere(bound, loop):
+    state = bound.state
+    state.param.update(mirrored=False, joint=1)
+    assert hierarchy(bound) == {"shoulder": "", "elbow": "shoulder", "wrist": "elbow"}
+    structure.add(bound)
+    rebound(bound, loop)
+    assert hierarchy(bound)["wrist"] == "elbow_1"
+    assert state.corrections.joints["wrist"] == JointCorrection(parent="elbow_1")
+    state.joint = state.rig.skeleton.names.index("elbow")
+    correct.rename(bound, state.joint, "bend")
+    structure.remove(bound)
+    rebound(bound, loop)
+    assert hierarchy(bound) == {"shoulder": "", "elbow_1": "shoulder", "wrist": "elbow_1"}
+    assert state.corrections.removed == ("elbow",)
+    assert state.rig.skeleton.names[state.joint] == "shoulder"
+    state.joint = state.rig.skeleton.names.index("wrist")
+    structure.hang_on(bound, "shoulder")
+    rebound(bound, loop)
+    assert hierarchy(bound)["wrist"] == "shoulder"
+    got = []
+    export.export_bound(bound, lambda name, content: got.append(content))
+    loop.run_until(lambda: got)
+
+
+def test_joints_that_share_a_name_are_refused(bound, loop):
+    state = bound.state
+    twice = state.rig.skeleton.names[:2] + state.rig.skeleton.names[:1]
+    rig = Rig(state.rig.mesh, Skeleton(state.rig.skeleton.joints, [-1, 0, 1], twice))
+    loading.show_rig(bound, rig)
+    rebound(bound, loop)
+    state.joint = 2
+    structure.hang_on(bound, twice[0])
+    assert "two joints are called" in state.message[1]
+    structure.remove(bound)
+    assert not state.corrections

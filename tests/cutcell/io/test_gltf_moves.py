@@ -224,7 +224,6 @@ def test_joints_that_were_renamed_are_called_so(tmp_path):
     assert_allclose(again.weights, rig.weights, atol=2e-7)
     assert not errors(reports(tmp_path / "renamed.glb")[0])
     gone = cutcell.corrected_rig(rig, cutcell.Corrections(removed=[name]))
-    with pytest.raises(SkeletonError, match="no longer those of its document; save it as"):
-        cutcell.save(tmp_path / "gone.glb", gone)
-    cutcell.save(tmp_path / "gone.npz", gone)
-    assert name not in cutcell.load(tmp_path / "gone.npz").skeleton.names
+    for ending in ("glb", "npz"):
+        cutcell.save(tmp_path / f"gone.{ending}", gone)
+        assert name not in cutcell.load(tmp_path / f"gone.{ending}").skeleton.names
