@@ -207,6 +207,6 @@ def test_joints_that_share_a_name_are_refused(bound, loop):
     rebound(bound, loop)
     state.joint = 2
     structure.hang_on(bound, twice[0])
-    assert "two joints are called" in state.message[1]
+    assert "wo joints are called" in state.message[1]
     structure.remove(bound)
     assert not state.corrections
