@@ -218,15 +218,8 @@ def _withdraw(session: Session, choices: dict[str, Any], corrections: Correction
 
 def _rebind(session: Session) -> None:
     """Compute again if what is measured for is other than what was last computed for."""
-    if asked(session.state) != session.bound_for or _nothing_comes(session):
+    if asked(session.state) != session.bound_for:
         bind(session)
-
-
-def _nothing_comes(session: Session) -> bool:
-    """Whether what was computed was dropped, with the joints it was of, and is not on its way."""
-    state = session.state
-    there = state.bare_graph if state.bare else state.binding
-    return there is None and not session.tasks.jobs("main").running
 
 
 def _correct(session: Session) -> None:
@@ -234,7 +227,10 @@ def _correct(session: Session) -> None:
     state = session.state
     if state.rig is None:
         return
-    if asked(state) != session.bound_for or _nothing_comes(session):
+    there = state.bare_graph if state.bare else state.binding
+    if there is None and not session.tasks.jobs("main").running:
+        session.bound_for = {}  # it was dropped with the joints that it was of
+    if asked(state) != session.bound_for:
         session.tasks.after_a_pause(lambda: _rebind(session))
     elif not state.bare:
         weigh(session)
