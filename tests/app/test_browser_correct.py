@@ -205,36 +205,6 @@ def test_a_vertex_is_overruled_on_its_card_and_undone(visit, robot):
     visit.expect_text("Nothing is corrected")
 
 
-def test_the_soldier_is_mended_in_two_clicks_and_stays_so(visit, tmp_path):
-    rig = soldier()
-    root = len(rig.skeleton.joints) - 1
-    torn = cutcell.bind(rig, 24).weights[:, root]
-    path = tmp_path / "soldier.glb"
-    cutcell.save(path, rig)
-    visit.open(path)
-    visit.panel("Check")
-    # The card tells of a vertex of the trousers what the file says, and what ours would be.
-    vertex = visit.click_vertex(f"{np.flatnonzero(torn > 0.5).tolist()}.includes(vertex)")
-    visit.card.get_by_role("button", name="Why these weights?").click()
-    answer = visit.card.locator("details").first
-    expect(answer.locator("summary")).to_contain_text("Root")
-    expect(answer).to_contain_text("in the file")
-    visit.close_card()
-
-    visit.button("Stray weights").click()
-    visit.button("Let Root carry no weight").click()
-    visit.expect_text("Root carries no weight any more")
-    visit.settle()
-    expect(visit.button("Stray weights")).to_have_count(0)
-    mended = exported(visit, tmp_path)
-    assert mended.skeleton.names[root] == "Root"
-    assert not mended.weights[:, root].any()
-    assert cutcell.bind(rig, 24).weights[vertex, root] > 0.5
-    assert not mended.skeleton.deform[root], "so it stays mended when it is bound again"
-    visit.panel("Weights")
-    assert corrected(visit).joints == {"Root": JointCorrection(deform=False)}
-
-
 def test_weights_are_painted_on_a_posed_body_and_stay_so(visit, robot, tmp_path):
     joint = robot.skeleton.names.index("forearm.L")
     computed = cutcell.bind(robot, 24).weights[:, joint]
@@ -298,3 +268,33 @@ def test_weights_are_painted_on_a_posed_body_and_stay_so(visit, robot, tmp_path)
     visit.expect_text(f"Corrected: {len(held.vertices)} vert")
     visit.settle()
     assert corrected(visit) == held
+
+
+def test_the_soldier_is_mended_in_two_clicks_and_stays_so(visit, tmp_path):
+    rig = soldier()
+    root = len(rig.skeleton.joints) - 1
+    torn = cutcell.bind(rig, 24).weights[:, root]
+    path = tmp_path / "soldier.glb"
+    cutcell.save(path, rig)
+    visit.open(path)
+    visit.panel("Check")
+    # The card tells of a vertex of the trousers what the file says, and what ours would be.
+    vertex = visit.click_vertex(f"{np.flatnonzero(torn > 0.5).tolist()}.includes(vertex)")
+    visit.card.get_by_role("button", name="Why these weights?").click()
+    answer = visit.card.locator("details").first
+    expect(answer.locator("summary")).to_contain_text("Root")
+    expect(answer).to_contain_text("in the file")
+    visit.close_card()
+
+    visit.button("Stray weights").click()
+    visit.button("Let Root carry no weight").click()
+    visit.expect_text("Root carries no weight any more")
+    visit.settle()
+    expect(visit.button("Stray weights")).to_have_count(0)
+    mended = exported(visit, tmp_path)
+    assert mended.skeleton.names[root] == "Root"
+    assert not mended.weights[:, root].any()
+    assert cutcell.bind(rig, 24).weights[vertex, root] > 0.5
+    assert not mended.skeleton.deform[root], "so it stays mended when it is bound again"
+    visit.panel("Weights")
+    assert corrected(visit).joints == {"Root": JointCorrection(deform=False)}
