@@ -52,7 +52,7 @@ def structure(session: Session) -> pmui.Column:
     return pmui.Column(
         on,
         pmui.Row(add, remove, margin=0, sizing_mode="stretch_width"),
-        caption("It divides a bone with one joint behind it, else it begins a new one."),
+        caption("A new joint divides the bone; on a last joint, or a fork, it begins another one."),
         margin=GAP,
         sizing_mode="stretch_width",
     )
