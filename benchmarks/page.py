@@ -147,7 +147,7 @@ def main(given: Sequence[str] | None = None) -> None:
         told.append(table.markdown())
         print("", told[-1], sep="\n", flush=True)
     if options.write:
-        fill(PAGE_SPEED, {"page": "\n\n".join(told)})
+        fill(PAGE_SPEED, {options.only or "page": "\n\n".join(told)})
 
 
 if __name__ == "__main__":
