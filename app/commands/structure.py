@@ -41,6 +41,7 @@ def hang_on(session: Session, parent: str) -> None:
         check_alone(state.rig.skeleton, state.joint)
     except CutcellError as error:
         session.fail(error)
+        state.param.trigger("corrections")  # the menu shows again what there is
         return
     held = state.corrections.joints
     one = replace(held.get(name, JointCorrection()), parent=parent)

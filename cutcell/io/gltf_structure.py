@@ -48,7 +48,8 @@ def take_structure(
         A skin without inverse bind matrices, or of whose joints none is left.
     """
     source: GltfSource = rig.source
-    if rig.origin is None or np.array_equal(rig.origin, np.arange(len(source.nodes))):
+    has_its_joints = rig.origin is None or np.array_equal(rig.origin, np.arange(len(source.nodes)))
+    if has_its_joints and np.array_equal(rig.skeleton.parents, source.skeleton.parents):
         return source.parts, moves
     edit = _Edit(document, rig)
     edit.still_removed()

@@ -86,6 +86,16 @@ def test_real_characters(rigs, tmp_path, name):
     check_saved(rigs[0].with_name(name), tmp_path / "out.glb", tolerance=2e-4)
 
 
+def test_a_joint_that_only_hangs_elsewhere(demo_paths, tmp_path):
+    path = demo_paths[0].with_name("robot.glb")
+    names = cutcell.load(path).skeleton.names
+    elsewhere = Corrections({"hand.L": JointCorrection(parent="head")})
+    _, again = check_saved(path, tmp_path / "out.glb", elsewhere)
+    above = again.skeleton.parents[again.skeleton.names.index("hand.L")]
+    assert again.skeleton.names[above] == "head"
+    assert sorted(again.skeleton.names) == sorted(names)
+
+
 def test_nodes_keep_their_numbers_and_no_key_of_a_motion_changes(demo_paths, tmp_path):
     path = demo_paths[0].with_name("biped.glb")
     _, again = check_saved(path, tmp_path / "out.glb")
