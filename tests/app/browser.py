@@ -29,13 +29,14 @@ expect.set_options(timeout=LOAD_MS)  # a loaded machine is slow, and patience co
 ANSWER_MS = 10_000
 
 # What was clicked is in the server's hands before it is asked; twice, since what it then does may
-# let a person's choice begin the next thing.
+# let a person's choice begin the next thing. The widgets show what arrived a frame later.
 SETTLED = """async (limit) => {
   const within = (promise) => Promise.race([promise, new Promise((no) => setTimeout(no, limit))])
   const view = window.__cutcell
   let before = null
   for (let calm = 0; calm < 2; calm++) {
     if (!await within(view.serverRests()) || !view.messages) return false
+    await new Promise((drawn) => requestAnimationFrame(() => setTimeout(drawn)))
     const now = JSON.stringify(view.report())
     if (before !== null && now !== before || !view.report().idle) return false
     before = now
