@@ -43,9 +43,10 @@ def sidebar(session: Session) -> list[Any]:
 
 
 def panels(session: Session) -> tuple[Tabs, pmui.Column]:
-    """Return the tabs, and the place that holds the chosen panel.
+    """Return the tabs, and the place that holds the panels, of which the chosen one is seen.
 
-    A panel is built when it is first looked at.
+    A panel is built when it is first looked at, and stays: to build it again in the browser takes
+    longer than all that is computed for it.
     """
     state = session.state
     tabs = Tabs(
@@ -54,19 +55,20 @@ def panels(session: Session) -> tuple[Tabs, pmui.Column]:
         margin=(10, 20, 0, 20),
         sizing_mode="stretch_width",
     )
-    place = pmui.Column(margin=0, sizing_mode="stretch_width")
+    missing = pmui.Column(lead(NO_SKELETON), margin=0, visible=False, sizing_mode="stretch_width")
+    place = pmui.Column(missing, margin=0, sizing_mode="stretch_width")
     built: dict[str, Any] = {}
 
     def shown(*events: Any) -> None:
         tabs.value = state.panel
-        if state.bare and state.panel not in BARE:
-            place.objects = [lead(NO_SKELETON)]
-            return
+        missing.visible = state.bare and state.panel not in BARE
         for panel in PANELS:
-            if panel.id == state.panel:
-                place.objects = [
-                    built.get(panel.id) or built.setdefault(panel.id, panel.build(session))
-                ]
+            seen = panel.id == state.panel and not missing.visible
+            if panel.id in built:
+                built[panel.id].visible = seen
+            elif seen:
+                built[panel.id] = panel.build(session)
+                place.append(built[panel.id])
 
     def chosen(event: Any) -> None:
         state.panel = event.new

@@ -90,6 +90,11 @@ SAME_RIG = """query => {
   return now === then
 }"""
 
+GO = """query => {
+  history.pushState(history.state, "", location.pathname + query)
+  dispatchEvent(new PopStateEvent("popstate"))
+}"""
+
 # What a browser says of its own software rendering, never of the page.
 OF_THE_BROWSER = re.compile(r"GL Driver Message|GroupMarkerNotSet|software WebGL|SwiftShader")
 
@@ -182,33 +187,35 @@ class Visit:
         counts = self.status.inner_text().rpartition("|")[0]
         return self.page.evaluate("location.search"), counts
 
-    @property
-    def character(self) -> str:
-        """The demo that is chosen, or "Your own"."""
-        return self.page.get_by_role("combobox", name="Character").inner_text()
-
     def remember_beginning(self) -> None:
         """Note what `begin_anew` goes back to."""
-        self.first = self.character, self.beginning
+        self.first = self.beginning
+        self.first_bone = self.bone.inner_text()
 
     def begin_anew(self) -> bool:
-        """Undo all that was chosen; return whether the page is as it was."""
+        """Go back to how the page began; return whether it is as it was."""
         try:
-            demo, beginning = self.first
-            self.page.keyboard.press("Escape")
-            if self.character != demo:
-                self.choose("Character", demo)
-                self.page.wait_for_function(SAME_RIG, arg=beginning[0])
-                self.settle()
-            self.button("Reset all choices").click(timeout=ANSWER_MS)
-            self.page.get_by_role("tab", name="Weights", exact=True).click(timeout=ANSWER_MS)
+            for _ in range(2):  # a card, and what it stands on
+                self.page.keyboard.press("Escape")
             self.page.mouse.move(2, 2)
-            self.settle()
+            if self.page.evaluate(SAME_RIG, self.first[0]):
+                self.button("Reset all choices").click(timeout=ANSWER_MS)
+                self.panel("Weights")
+                if self.bone.inner_text() != self.first_bone:
+                    self.choose("Bone", self.first_bone)
+                    self.settle()
+            if self.beginning != self.first:
+                self.go(self.first[0])
             if self.button("Close").is_visible():
                 self.dismiss()
-            return self.beginning == beginning
+            return self.beginning == self.first
         except (Error, AssertionError):
             return False
+
+    def go(self, query: str) -> None:
+        """Go to another address of this page, as by the browser's Back: nothing is loaded anew."""
+        self.page.evaluate(GO, query)
+        self.settle()
 
     @property
     def status(self) -> Locator:
@@ -331,7 +338,7 @@ class Visit:
 
     def expect_text(self, text: str | re.Pattern[str]) -> None:
         """Wait until some text is seen."""
-        expect(self.page.get_by_text(text).first).to_be_visible()
+        expect(self.page.get_by_text(text).filter(visible=True).first).to_be_visible()
 
 
 def changed(before: np.ndarray, after: np.ndarray) -> float:

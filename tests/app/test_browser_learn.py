@@ -52,17 +52,15 @@ def test_a_link_to_a_step_shows_its_scene_and_the_tour_goes_on(browser, url):
         box = notice.bounding_box()
         assert box["x"] + box["width"] <= beside["x"] or box["y"] + box["height"] <= beside["y"]
     assert visit.page.evaluate("[...document.fonts].some((f) => f.family.includes('cutcell math'))")
-    visit.check()
-    visit.page.goto(url + "?rig=biped&panel=graph&bone=chest&step=5")
-    visit.wait_until_bound()
+    visit.go("?rig=biped&panel=graph&bone=chest&step=5")
     visit.button("Leave").click()
     expect(card(visit)).to_be_hidden()
     visit.close()
 
 
-def test_another_person_sees_the_same_comparison(browser, url):
-    one = Visit(browser, url + "?rig=robot&panel=compare&resolution=24")
-    one.wait_until_bound()
+def test_another_person_sees_the_same_comparison(browser, visit):
+    one = visit
+    one.go("?rig=robot&panel=compare&resolution=24")
     one.page.get_by_role("checkbox", name="The file's own").uncheck()
     one.choose("Difference to", "Euclidean")
     one.expect_text("difference")
@@ -79,4 +77,3 @@ def test_another_person_sees_the_same_comparison(browser, url):
     one.button("Undo").click()
     one.page.wait_for_function("!location.search.includes('methods')", timeout=LOAD_MS)
     other.close()
-    one.close()

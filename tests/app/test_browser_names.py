@@ -5,7 +5,6 @@ import pytest
 
 import cutcell
 from cutcell.rig import Clip, Rig, Skeleton
-from tests.app.browser import Visit
 from tests.viewers.arm import arm_rig
 
 SCRIPT = '<img src=x onerror="window.owned=1">'
@@ -27,8 +26,8 @@ def nasty(tmp_path):
     return path
 
 
-def test_names_are_text(browser, url, nasty):
-    visit = Visit(browser, url + "/?rig=robot&resolution=16")
+def test_names_are_text(visit, nasty):
+    visit.go("?rig=robot&resolution=16")
     visit.open(nasty)
     visit.expect_text("_a_ `c`")
     for panel in ("Weights", "Distance", "Graph", "Pose", "Compare"):
@@ -45,4 +44,3 @@ def test_names_are_text(browser, url, nasty):
     assert not {"\x1b", "\u202e"} & {*seen}
     assert visit.page.evaluate("window.owned") is None
     assert not [url for url in visit.requests if url.endswith("/x")]
-    visit.close()

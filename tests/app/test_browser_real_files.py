@@ -1,4 +1,4 @@
-"""Each panel on files from elsewhere, used as a person uses it: a visit each.
+"""Each panel on files from elsewhere, used as a person uses it.
 
 Where the files are absent, since they are not part of the project, demo characters stand in.
 """
@@ -13,7 +13,7 @@ import cutcell
 from cutcell_assets import demo_path
 from cutcell_viewers.character import pose_in_scene
 from cutcell_viewers.pose_scene import joint_turns, turn
-from tests.app.browser import Visit, changed
+from tests.app.browser import changed
 from tests.conftest import SHARED_RIGS
 
 RESOLUTION = 24
@@ -22,13 +22,6 @@ FILES = {
     "a robot of many parts": ("quaternius_mech_george", "robot"),
     "a hand whose joints hang on nothing": ("webxr_hand_right", "rabbit"),
 }
-
-
-@pytest.fixture
-def visit(browser, url):
-    visit = Visit(browser, f"{url}/?rig=robot&resolution={RESOLUTION}")
-    yield visit
-    visit.close()
 
 
 @pytest.fixture(params=FILES)
@@ -41,6 +34,7 @@ def path(request):
 def test_every_panel_on_a_file_from_elsewhere(visit, path):
     rig = cutcell.load(path)
     binding = cutcell.bind(rig, RESOLUTION)
+    visit.go(f"?rig=robot&resolution={RESOLUTION}")
     visit.open(path)
     if visit.button("Close").is_visible():
         visit.dismiss()
