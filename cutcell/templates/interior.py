@@ -50,10 +50,11 @@ class Interior:
         self.points = self.to_frame(graph.nodes[kept])
         self._lengths = _bridged(csr_array(graph.csr()[kept][:, kept]), self.points)
         kind = graph.node_kind[kept]
-        skin = self.points[kind == (SURFACE if (kind == SURFACE).any() else MESH)]
-        self._skin = cKDTree(skin)
+        # In the unit cube, where it lies along the lattice: a tree of that is quicker to search.
+        in_cube = graph.nodes[kept]
+        self._skin = cKDTree(in_cube[kind == (SURFACE if (kind == SURFACE).any() else MESH)])
         # Mesh vertices count as skin wherever they are: a cape has nothing but them.
-        self.depth = np.where(kind == INTERIOR, self._skin.query(self.points)[0], 0.0)
+        self.depth = np.where(kind == INTERIOR, self._skin.query(in_cube)[0], 0.0)
         self._found: dict[int, NDArray[np.float64]] = {}
 
     def to_frame(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -74,9 +75,13 @@ class Interior:
         """The lowest y."""
         return float(self.points[:, 1].min())
 
+    @cached_property
+    def _tree(self) -> cKDTree:
+        return cKDTree(self.points)
+
     def nearest(self, point: NDArray[np.float64]) -> int:
         """Return the node nearest to a point."""
-        return int(np.linalg.norm(self.points - point, axis=1).argmin())
+        return int(self._tree.query(point)[1])
 
     def deepest(self, among: NDArray[np.bool_]) -> int:
         """Return the deepest of some nodes."""
@@ -117,7 +122,7 @@ class Interior:
         """Return points (k, 3) with those that are not inside moved to a deep node nearby."""
         in_cube = points @ self.axes + self.origin
         inside = self.graph.winding_numbers.at(in_cube) >= self.graph.winding_threshold
-        inside &= self._skin.query(points)[0] > AT_SKIN * self.cell
+        inside &= self._skin.query(in_cube)[0] > AT_SKIN * self.cell
         moved = points.copy()
         deep = np.flatnonzero(self.depth > 0)
         for k in np.flatnonzero(~inside):
