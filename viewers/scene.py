@@ -125,7 +125,9 @@ class Scene:
 
 # A key light from the upper left and a soft fill from the right, both tied to the camera.
 LIGHTS = (((-0.5, 0.7, 1.0), 0.82), ((0.9, -0.1, 0.6), 0.34))
-AMBIENT = 0.16
+AMBIENT, DIFFUSE = 0.16, 1.0
+SOFT_AMBIENT, SOFT_DIFFUSE = 0.36, 0.75
+"""Of materials: images have shadows of their own, and would be dark where light is, too."""
 PICTURE_WIDTH = 1.5
 """How many times as wide lines and points are in a picture, which has more pixels than a page."""
 
@@ -146,6 +148,11 @@ def render_png(
         return scene.render_png(path)
     finally:
         scene.close()
+
+
+def shading(actor: Actor) -> tuple[float, float]:
+    """Return how much of its colour an actor has without light, and how much by light."""
+    return (AMBIENT, DIFFUSE) if actor.materials is None else (SOFT_AMBIENT, SOFT_DIFFUSE)
 
 
 def cut_planes(cut: Cut, slab: float) -> list[dict[str, tuple[float, ...]]]:
@@ -212,7 +219,7 @@ def _values(actor: Actor, pose: NDArray[np.float64] | None) -> Any:
 def _paint(drawn: pv.Actor, actor: Actor, front: float | None = None) -> None:
     look = drawn.prop
     look.color, look.opacity, look.line_width = actor.color, actor.opacity, actor.width
-    look.ambient, look.diffuse = AMBIENT, 1.0
+    look.ambient, look.diffuse = shading(actor)
     look.lighting = actor.kind == "surface" and not actor.hull
     look.point_size = actor.width * PICTURE_WIDTH
     look.render_points_as_spheres = actor.kind == "points" and actor.form == "round"

@@ -147,7 +147,7 @@ def _colours(session: Session) -> pmui.Column:
 
     def offered() -> tuple[dict[str, str], str]:
         names = {"Weights": "weights", "Plain": "plain"}
-        if state.rig is not None and has_materials(state.rig):
+        if state.rig is None or has_materials(state.rig):
             names["Materials"] = "materials"
         known = state.pose_colors in names.values()
         return names, state.pose_colors if known else "weights"

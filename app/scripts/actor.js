@@ -219,7 +219,7 @@ export class Actor {
     this.colours.front = this.animation ? front ?? ALL : ALL
   }
 
-  paint({color, opacity, width, thick, dash, form, ambient, coloured, behind, closed, hull}) {
+  paint({color, opacity, width, thick, dash, form, ambient, diffuse, coloured, behind, closed, hull}) {
     this.closed = closed
     this.hull = hull
     this.coloured = coloured
@@ -233,6 +233,7 @@ export class Actor {
     look.setColor(...color)
     look.setOpacity(opacity)
     look.setAmbient(ambient)
+    look.setDiffuse(diffuse)
     look.setLighting(!hull)
     look.setFrontfaceCulling(hull)
     if (!this.restNormals) { look.setInterpolationToFlat() }

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from cutcell.display import printable, shown_name
 from cutcell_viewers.description import Actor, Apart, Description, Legend, Reading
 from cutcell_viewers.palette import colormap, to_hex
-from cutcell_viewers.scene import AMBIENT
+from cutcell_viewers.scene import shading
 from cutcell_viewers.skin import Skin
 
 
@@ -122,6 +122,7 @@ def _colouring(old: Actor | None, new: Actor) -> dict[str, Any]:
 
 
 def _settings(actor: Actor) -> dict[str, Any]:
+    ambient, diffuse = shading(actor)
     paint = {
         "color": actor.color,
         "opacity": actor.opacity,
@@ -129,7 +130,8 @@ def _settings(actor: Actor) -> dict[str, Any]:
         "thick": actor.thick,
         "dash": actor.dash,
         "form": actor.form,
-        "ambient": AMBIENT,
+        "ambient": ambient,
+        "diffuse": diffuse,
         "behind": actor.behind,
         "closed": actor.closed and actor.opacity == 1,
         "hull": actor.hull,
