@@ -153,7 +153,11 @@ def _colours(session: Session) -> pmui.Column:
         return names, state.pose_colors if known else "weights"
 
     follow(colours, state, "pose_colors", offered, ["rig"])
-    notes = caption(when(lambda *_: notes_text(state), state.param.materials, state.param.rig))
+    told = state.param.materials
+    notes = caption(
+        when(lambda *_: notes_text(state), told),
+        visible=when(lambda *_: bool(notes_text(state)), told),
+    )
     return section("Colours of the body", colours, notes)
 
 
