@@ -187,7 +187,9 @@ class _Reading:
             if rows.start != end or rows.stop > len(faces):
                 return None
             end = rows.stop
-            self._paint(primitive, faces[rows] - first, corners[rows], tints[rows])
+            with np.errstate(all="ignore"):  # a file may hold any number
+                self._paint(primitive, faces[rows] - first, corners[rows], tints[rows])
+        np.nan_to_num(corners, copy=False)
         return FaceColors(corners, tints) if end == len(faces) else None
 
     def _paint(

@@ -263,3 +263,52 @@ def test_reading_leaves_the_document_as_it_was(loaded):
     rig = loaded(with_image(column()))
     read_materials(rig)
     assert rig.source.document.decoded == {}
+
+
+ODD = [None, -1, 0, 3, 5125, 10**18, 0.5, 1e300, True, "", "x", [], [1], [None], {}, {"a": 1}]
+
+
+def paths(value, path=()):
+    """Return the way to each field below a value."""
+    if not isinstance(value, dict | list):
+        return
+    for key in value if isinstance(value, dict) else range(len(value)):
+        yield (*path, key)
+        yield from paths(value[key], (*path, key))
+
+
+def test_no_odd_field_is_an_error(loaded):
+    def whole():
+        transform = {"offset": [0, 1], "rotation": 1, "scale": [2, 2], "texCoord": 0}
+        info = {"texCoord": 0, "extensions": {"KHR_texture_transform": transform}}
+        material = {"alphaMode": "MASK", "alphaCutoff": 0.5, "name": "cloth"}
+        sampler = {"wrapS": 33071, "magFilter": 9728}
+        builder = with_image(column(), sampler=sampler, info=info, **material)
+        attributes = primitive(builder)["attributes"]
+        attributes["COLOR_0"] = builder.accessor(np.ones((12, 4), "f4"))
+        return builder
+
+    sound = whole().json
+    kinds = ("materials", "textures", "images", "samplers")
+    found = [path for kind in kinds for path in [(kind,), *paths(sound[kind], (kind,))]]
+    part = ("meshes", 0, "primitives", 0)
+    found += [
+        (*part, "material"),
+        *((*part, "attributes", f"{n}_0") for n in ("COLOR", "TEXCOORD")),
+    ]
+    assert len(found) > 25
+    rig = loaded(whole())
+    document = rig.source.document
+    for path in found:
+        *above, last = path
+        owner = document.json
+        for key in above:
+            owner = owner[key]
+        kept = owner[last]
+        for value in ODD:
+            owner[last] = value
+            has_materials(rig)
+            materials = read_materials(rig)
+            assert np.isfinite(materials.body.corners).all(), (path, value)
+        owner[last] = kept
+    assert read_materials(rig).notes == ()
