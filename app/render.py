@@ -11,6 +11,7 @@ import numpy as np
 from cutcell import ANIMATION, Method, bind, build_graph, diagnose
 from cutcell.checks import check_choice, check_has_joints, check_number
 from cutcell.errors import ParameterError
+from cutcell.io.gltf_materials import has_materials
 from cutcell.progress import Progress, silent
 from cutcell.rig import Rig
 from cutcell_viewers.camera import Camera, framing
@@ -19,6 +20,7 @@ from cutcell_viewers.description import Description
 from cutcell_viewers.error_scene import Gap
 from cutcell_viewers.film import Order
 from cutcell_viewers.finding_scene import camera_on_marks
+from cutcell_viewers.materials import Painted, painted_rig
 from cutcell_viewers.pose_scene import clip_in_scene, pose_at
 
 from .commands.compare import measured
@@ -42,6 +44,7 @@ __all__ = [
     "find_bone",
     "find_clip",
     "order",
+    "painted_for",
     "settings_of",
 ]
 
@@ -120,6 +123,7 @@ def describe(
     choices: Choices | None = None,
     *,
     binding: Any = None,
+    painted: Painted | None = None,
     resolution: int = 64,
     progress: Progress = silent,
 ) -> Description:
@@ -131,6 +135,8 @@ def describe(
     choices : Choices, optional
     binding : Binding, optional
         Of the rig; computed when left out.
+    painted : Painted, optional
+        What shows it in its file's materials, where these are chosen; read when left out.
     resolution : int
         For that.
     progress : callable
@@ -163,6 +169,7 @@ def describe(
     if binding is None:
         binding = bind(rig, resolution, method=choices.method, progress=progress)
     state.binding = binding
+    state.materials = (rig.mesh, painted or painted_for(rig, choices))
     if state.panel == "diagnosis":
         state.diagnosis = diagnose(rig, resolution, progress=progress)
         state.finding = choices.finding or ""
@@ -194,6 +201,18 @@ def describe(
         state.motion_error = (state.binding, state.motion, motion_error(rig, clip, gap, progress))
     time = choices.time or 0.0
     return replace(following(state), pose=pose_at(rig, clip, time))
+
+
+def painted_for(rig: Rig, choices: Choices) -> Painted | None:
+    """Return what shows a rig in its file's materials, if these are chosen; `notes` tell the rest.
+
+    Parameters
+    ----------
+    rig : Rig
+    choices : Choices
+    """
+    chosen = choices.settings.get("pose_colors") == "materials"
+    return painted_rig(rig) if chosen and choices.panel == "pose" else None
 
 
 def check(rig: Rig, choices: Choices, view: str = "three-quarter") -> None:
@@ -285,6 +304,8 @@ def _state(rig: Rig, choices: Choices) -> State:
         orient=method.orient,
     )
     apply(state, choices.settings)
+    if state.pose_colors == "materials" and not has_materials(rig):
+        raise ParameterError(f"the file of {rig.name} has no materials with colours of their own")
     if choices.turn is not None:
         axis, degrees = choices.turn
         k = TURN_AXES.index(check_choice("axis", axis, TURN_AXES))

@@ -26,6 +26,7 @@ from cutcell.options import (
 from .render_flags import (
     WHAT,
     ColorBy,
+    Colors,
     Face,
     FindingCode,
     Keep,
@@ -121,6 +122,7 @@ def render(
             rich_help_panel=WHAT,
         ),
     ] = "",
+    colors: Colors = None,
     finding: FindingCode = None,
     cut: Plane = None,
     face: Face = None,
@@ -223,6 +225,7 @@ def render(
         error=error,
         methods=[name.strip() for name in methods.split(",") if name.strip()],
         settings=scenes.settings_of(
+            colors=colors,
             layers=layers,
             color_by=color_by,
             cut=cut,
@@ -247,10 +250,16 @@ def render(
     from cutcell.skinning import bind
 
     bare = not len(loaded.skeleton.joints)
+    painted = scenes.painted_for(loaded, choices)
     with progress_bars(quiet) as progress:
         binding = None if bare else bind(loaded, resolution, method=method, progress=progress)
         description = scenes.describe(
-            loaded, choices, binding=binding, resolution=resolution, progress=progress
+            loaded,
+            choices,
+            binding=binding,
+            painted=painted,
+            resolution=resolution,
+            progress=progress,
         )
         order = scenes.order(
             loaded,
@@ -264,7 +273,13 @@ def render(
         )
         worker.draw_apart(order, out, progress)
     if not quiet:
-        print_warnings([*loaded.warnings, *(binding.warnings if binding else ())])
+        print_warnings(
+            [
+                *loaded.warnings,
+                *(binding.warnings if binding else ()),
+                *(painted.notes if painted else ()),
+            ]
+        )
         print_line(f"{out}: {pixels[0]} x {pixels[1]} pixels, {_kilobytes(out)}")
 
 

@@ -18,6 +18,15 @@ FindingCode = Annotated[
         rich_help_panel=WHAT,
     ),
 ]
+Colors = Annotated[
+    str | None,
+    typer.Option(
+        "--colors",
+        metavar="WHAT",
+        help="What colours the body on the panel pose: weights, plain, or materials (the file's).",
+        rich_help_panel=WHAT,
+    ),
+]
 Plane = Annotated[
     str | None,
     typer.Option(

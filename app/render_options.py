@@ -29,6 +29,7 @@ AXES = ("x", "y", "z")
 
 def settings_of(
     *,
+    colors: str | None = None,
     layers: str | None = None,
     color_by: str | None = None,
     cut: str | None = None,
@@ -48,6 +49,8 @@ def settings_of(
         One of them cannot be read; the sentence shows how it is written.
     """
     said: dict[str, Any] = {}
+    if colors is not None:
+        said["pose_colors"] = colors
     if layers is not None:
         names = [name.strip() for name in layers.split(",") if name.strip()]
         for name in names:

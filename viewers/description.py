@@ -8,6 +8,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from cutcell.io.gltf_materials import FaceColors
+
 from .palette import BODY, Color
 from .skin import Skin
 
@@ -69,6 +71,8 @@ class Actor:
         A colour for each point.
     scalars : array, shape (n,), float32, optional
         A value for each point, shown through `colormap` between `limits`.
+    materials : FaceColors, optional
+        What colours the faces of a surface instead, by the description's `images`.
     skin : Skin, optional
         How the points follow the joints; without it they stand still.
     apart : Apart, optional
@@ -111,6 +115,7 @@ class Actor:
     scalars: NDArray[np.float32] | None = None
     colormap: str = "weight"
     limits: tuple[float, float] = (0.0, 1.0)
+    materials: FaceColors | None = None
     opacity: float = 1.0
     width: float = 1.0
     thick: float = 0.0
@@ -168,6 +173,8 @@ class Description:
         none.
     front : float, optional
         Scalars above it are left grey on the actors that are part of the film.
+    images : array, shape (k, s, s, 4), uint8, optional
+        What the actors' `materials` take their colours from; see `materials.Painted`.
     """
 
     actors: dict[str, Actor] = field(default_factory=dict)
@@ -176,6 +183,7 @@ class Description:
     legend: Legend | None = None
     views: tuple[str, ...] = ()
     front: float | None = None
+    images: NDArray[np.uint8] | None = None
 
     @property
     def bounds(self) -> NDArray[np.float64]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +21,7 @@ from .camera import VIEW_ANGLE, Camera, framing
 from .description import Actor, Cut, Description
 from .palette import BODY, LIGHT, Theme, colormap, to_bytes
 from .skin import moved, squared_apart, turned
+from .textured import CUT_OUT, pieces, texture
 
 
 class Scene:
@@ -41,7 +43,9 @@ class Scene:
             light = pv.Light(position=position, light_type="camera light", intensity=intensity)
             self.plotter.add_light(light)
             self._overlay.AddLight(light)
-        self._names: dict[str, pv.Actor] = {}
+        self._names: dict[str, list[pv.Actor]] = {}
+        self._images: Any = None
+        self._textures: dict[tuple[int, int], pv.Texture] = {}
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -50,11 +54,13 @@ class Scene:
 
     def show(self, description: Description) -> None:
         """Make the scene what a description says, actors that are hidden left out."""
-        for name, actor in self._names.items():
-            self._renderer(actor).RemoveActor(actor)
-            del name
+        for drawn in self._names.values():
+            for one in drawn:
+                self._renderer(one).RemoveActor(one)
+        if description.images is not self._images:
+            self._images, self._textures = description.images, {}
         self._names = {
-            name: self._add(actor, description)
+            name: [self._add(one, actor, description) for one in self._parts(actor, description)]
             for name, actor in description.actors.items()
             if actor.visible and len(actor.cells)
         }
@@ -90,9 +96,25 @@ class Scene:
     def _renderer(self, actor: pv.Actor) -> pv.Renderer:
         return self._overlay if self._overlay.HasViewProp(actor) else self.plotter.renderer
 
-    def _add(self, actor: Actor, description: Description) -> pv.Actor:
-        mapper = pv.DataSetMapper(_dataset(actor, description.pose))
-        drawn = pv.Actor(mapper=mapper)
+    def _parts(self, actor: Actor, description: Description) -> Iterator[pv.Actor]:
+        """Return what an actor is drawn as: in materials, a part for each image."""
+        if actor.materials is None:
+            yield pv.Actor(mapper=pv.DataSetMapper(_dataset(actor, description.pose)))
+            return
+        points, normals = _posed(actor, description.pose)
+        for data, kind in pieces(points, normals, actor.cells, actor.materials):
+            drawn = pv.Actor(mapper=pv.DataSetMapper(data))
+            if kind[0] >= 0 and description.images is not None:
+                if kind not in self._textures:
+                    self._textures[kind] = texture(description.images[kind[0]], kind[1])
+                drawn.texture = self._textures[kind]
+                drawn.ForceOpaqueOn()
+                shader = drawn.GetShaderProperty()
+                shader.AddFragmentShaderReplacement("//VTK::TCoord::Impl", False, CUT_OUT, False)
+            yield drawn
+
+    def _add(self, drawn: pv.Actor, actor: Actor, description: Description) -> pv.Actor:
+        mapper = drawn.mapper
         _paint(drawn, actor, description.front)
         if actor.clipped and description.cut is not None:
             for plane in cut_planes(description.cut, actor.slab):
@@ -103,7 +125,9 @@ class Scene:
 
 # A key light from the upper left and a soft fill from the right, both tied to the camera.
 LIGHTS = (((-0.5, 0.7, 1.0), 0.82), ((0.9, -0.1, 0.6), 0.34))
-AMBIENT = 0.16
+AMBIENT, DIFFUSE = 0.16, 1.0
+SOFT_AMBIENT, SOFT_DIFFUSE = 0.36, 0.75
+"""Of materials: images have shadows of their own, and would be dark where light is, too."""
 PICTURE_WIDTH = 1.5
 """How many times as wide lines and points are in a picture, which has more pixels than a page."""
 
@@ -126,6 +150,11 @@ def render_png(
         scene.close()
 
 
+def shading(actor: Actor) -> tuple[float, float]:
+    """Return how much of its colour an actor has without light, and how much by light."""
+    return (AMBIENT, DIFFUSE) if actor.materials is None else (SOFT_AMBIENT, SOFT_DIFFUSE)
+
+
 def cut_planes(cut: Cut, slab: float) -> list[dict[str, tuple[float, ...]]]:
     """Return the planes that keep what lies behind a cut, each as origin and normal.
 
@@ -139,12 +168,18 @@ def cut_planes(cut: Cut, slab: float) -> list[dict[str, tuple[float, ...]]]:
     return planes
 
 
-def _dataset(actor: Actor, pose: NDArray[np.float64] | None) -> pv.PolyData:
-    points, normals, cells = actor.points, actor.normals, actor.cells
+def _posed(actor: Actor, pose: NDArray[np.float64] | None) -> tuple[NDArray, NDArray | None]:
+    """Return an actor's points and normals in a pose."""
+    points, normals = actor.points, actor.normals
     if pose is not None and actor.skin is not None:
         points = moved(points, actor.skin, pose).astype(np.float32)
         if normals is not None:
             normals = turned(normals, actor.skin, pose).astype(np.float32)
+    return points, normals
+
+
+def _dataset(actor: Actor, pose: NDArray[np.float64] | None) -> pv.PolyData:
+    (points, normals), cells = _posed(actor, pose), actor.cells
     if actor.dash > 0 and actor.scalars is None and actor.colors is None:
         points, cells = _dashes(points[cells], actor.dash)
     data: Any = pv.PolyData()
@@ -184,7 +219,7 @@ def _values(actor: Actor, pose: NDArray[np.float64] | None) -> Any:
 def _paint(drawn: pv.Actor, actor: Actor, front: float | None = None) -> None:
     look = drawn.prop
     look.color, look.opacity, look.line_width = actor.color, actor.opacity, actor.width
-    look.ambient, look.diffuse = AMBIENT, 1.0
+    look.ambient, look.diffuse = shading(actor)
     look.lighting = actor.kind == "surface" and not actor.hull
     look.point_size = actor.width * PICTURE_WIDTH
     look.render_points_as_spheres = actor.kind == "points" and actor.form == "round"
@@ -196,8 +231,9 @@ def _paint(drawn: pv.Actor, actor: Actor, front: float | None = None) -> None:
         shader.AddFragmentShaderReplacement("//VTK::Color::Impl", True, _FORMS[actor.form], False)
     look.interpolation = "flat" if actor.normals is None else "phong"
     mapper = drawn.mapper
-    mapper.scalar_visibility = actor.colors is not None or actor.scalars is not None
-    if actor.colors is not None:
+    by_color = actor.colors is not None or actor.materials is not None
+    mapper.scalar_visibility = by_color or actor.scalars is not None
+    if by_color:
         mapper.SetScalarModeToUsePointFieldData()
         mapper.SelectColorArray("colors")
         mapper.SetColorModeToDirectScalars()

@@ -14,6 +14,7 @@ from . import (
     history,
     keys,
     look,
+    materials,
     moving,
     pairs,
     pose,
@@ -25,6 +26,6 @@ from .session import Session
 def follow(session: Session) -> None:
     """Let everything follow the state of a new session."""
     # In this order: what is seen comes before what is computed for it.
-    seen = (look, cutting, moving, brush, geodesics, pose, compare, pairs)
+    seen = (look, cutting, moving, brush, geodesics, pose, materials, compare, pairs)
     for one in (*seen, binding, explain, history, keys, rest, diagnosis, arrival):
         one.watch(session)

@@ -16,7 +16,7 @@ from cutcell_assets import demo_path
 
 from ..work.processes import in_process
 
-COMPANIONS = {".txt", ".json", ".mtl", ".bin", ".png", ".jpg", ".jpeg"}
+COMPANIONS = {".txt", ".json", ".mtl", ".bin", ".png", ".jpg", ".jpeg", ".webp", ".ktx2"}
 """Files that come along with the one that is opened."""
 
 

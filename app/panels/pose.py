@@ -8,6 +8,7 @@ import panel_material_ui as pmui
 from bokeh.models import PrintfTickFormatter
 
 from cutcell.display import shown_name
+from cutcell.io.gltf_materials import has_materials
 
 from ..commands import pose as actions
 from ..commands.session import Session
@@ -15,11 +16,25 @@ from ..scenes.pose import error_of, has_rival
 from ..state import State
 from ..widgets.rows import Rows
 from .brush import brush
-from .parts import GAP, as_text, caption, choice, lead, offer, section, unique_names, when
+from .parts import (
+    BUTTONS,
+    GAP,
+    as_text,
+    caption,
+    choice,
+    follow,
+    lead,
+    offer,
+    section,
+    unique_names,
+    when,
+)
 
 AXES = ("x", "y", "z")
 RING_COLORS = ("#e5484d", "#30a46c", "#3e83f8")
 SWING = "Swing the bone"
+FEW_NOTES = 3
+"""Of what could not be read of materials, told one by one."""
 WORST = 8
 """How many of the worst turns are listed."""
 
@@ -128,8 +143,31 @@ def _motion(session: Session) -> pmui.Column:
 
 def _colours(session: Session) -> pmui.Column:
     state = session.state
-    names = {"Weights": "weights", "Plain": "plain"}
-    return section("Colours of the body", choice(state.param.pose_colors, names))
+    colours = pmui.RadioButtonGroup(**BUTTONS)
+
+    def offered() -> tuple[dict[str, str], str]:
+        names = {"Weights": "weights", "Plain": "plain"}
+        if state.rig is None or has_materials(state.rig):
+            names["Materials"] = "materials"
+        known = state.pose_colors in names.values()
+        return names, state.pose_colors if known else "weights"
+
+    follow(colours, state, "pose_colors", offered, ["rig"])
+    told = state.param.materials
+    notes = caption(
+        when(lambda *_: notes_text(state), told),
+        visible=when(lambda *_: bool(notes_text(state)), told),
+    )
+    return section("Colours of the body", colours, notes)
+
+
+def notes_text(state: State) -> str:
+    """Return what could not be read of the materials that are seen, in sentences."""
+    if state.materials is None or state.materials[1] is None:
+        return ""
+    notes = state.materials[1].notes
+    more = [f"and {len(notes) - FEW_NOTES} more"] if len(notes) > FEW_NOTES else []
+    return " ".join(f"{note.rstrip('.')}." for note in [*notes[:FEW_NOTES], *more])
 
 
 def _comparison(session: Session) -> pmui.Column:

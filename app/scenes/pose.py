@@ -11,6 +11,7 @@ from cutcell.rig import Clip
 from cutcell_viewers.character import body, pose_in_scene
 from cutcell_viewers.description import Actor, Apart, Description, Legend
 from cutcell_viewers.error_scene import Gap, error_legend, error_limits, error_look, squared_unit
+from cutcell_viewers.materials import Painted
 from cutcell_viewers.palette import GHOST
 from cutcell_viewers.pose_scene import joint_turns, swing, turn
 from cutcell_viewers.skin import skin_of_weights
@@ -32,11 +33,9 @@ VIEWS = ("cutcell", "The file's own weights")
 def pose(state: State, memo: Memo) -> Description:
     """Return the scene of the panel Pose."""
     placed = pose_of(state)
+    painted = painted_of(state)
     look, legend, coloured = _colours(state, memo, weights_seen(state), "weights")
-    if not has_rival(state):
-        actors = character(state, memo, bones_coloured=coloured, **look)
-        return Description(actors, pose=placed, legend=legend)
-    if state.heat:
+    if state.heat and has_rival(state):
         limits = error_limits_of(state, placed, memo)
         apart = memo(
             "apart",
@@ -50,23 +49,52 @@ def pose(state: State, memo: Memo) -> Description:
         )
         legend, coloured = error_legend(limits), False
     actors = character(state, memo, bones_coloured=coloured, **look)
-    if state.rival == "alone":
-        return Description(actors, pose=placed, legend=legend)
+    if painted is not None:
+        actors |= _hung_in_materials(actors, painted)
+    seen = Description(
+        actors, pose=placed, legend=legend, images=None if painted is None else painted.images
+    )
+    if state.rival == "alone" or not has_rival(state):
+        return seen
     rival = rival_of(state, memo)
     if state.rival == "ghost":
         rival = replace(rival, color=GHOST, opacity=GHOST_OPACITY, behind=True)
-        return Description({**actors, "rival": rival}, pose=placed, legend=legend)
+        return replace(seen, actors={**actors, "rival": rival})
     actors["body"] = replace(actors["body"], view=0)
     own = {} if state.heat else _colours(state, memo, state.rig.weights, "file weights")[0]
     rival = replace(rival, view=1, **own)
-    return Description({**actors, "rival": rival}, pose=placed, legend=legend, views=VIEWS)
+    return replace(seen, actors={**actors, "rival": rival}, views=VIEWS)
+
+
+def painted_of(state: State) -> Painted | None:
+    """Return what shows the character in its file's materials, where it is to be seen so."""
+    if state.pose_colors != "materials" or state.materials is None:
+        return None
+    if state.heat and has_rival(state):
+        return None
+    mesh, painted = state.materials
+    return painted if mesh is state.rig.mesh else None
+
+
+def _hung_in_materials(actors: dict[str, Actor], painted: Painted) -> dict[str, Actor]:
+    names = [f"attachment {i}" for i in range(len(painted.attachments))]
+    return {
+        name: replace(actors[name], materials=colors)
+        for name, colors in zip(names, painted.attachments, strict=True)
+    }
 
 
 def _colours(
     state: State, memo: Memo, held: Any, name: str
 ) -> tuple[dict[str, Any], Legend | None, bool]:
-    """Return the look of a body that keeps the colours of its weights as it moves."""
-    if state.pose_colors != "weights" or held is None:
+    """Return the look of a body as it moves, by its materials or by the weights that are given.
+
+    Without materials, or before they are read, it keeps the colours of its weights.
+    """
+    painted = painted_of(state)
+    if painted is not None:
+        return {"materials": painted.body}, None, False
+    if state.pose_colors == "plain" or held is None:
         return {}, None, False
     return weights_look(state, memo, held, name)
 

@@ -2,6 +2,7 @@
 
 import {plain, plainList} from "./arrays.js"
 import {ALL, Colours, pointIds} from "./colour.js"
+import {Materials} from "./materials.js"
 import {shaderSwaps} from "./shade.js"
 import {skinArrays, skinned} from "./skin.js"
 import {Strokes} from "./strokes.js"
@@ -63,6 +64,11 @@ export class Actor {
       this.values = plain(part.scalars)
       this.looked = [plain(part.table), part.limits]
       this.colours.setValues(this.values, ...this.looked)
+    }
+    if (part.materials) {
+      this.materials ??= new Materials(this.renderer.context)
+      this.materials.set(part.materials)
+      this.colours.by = "materials"
     }
     if (part.paint) { this.paint(part.paint) }
     this.shade()
@@ -200,7 +206,12 @@ export class Actor {
   use(primitive) {
     const program = primitive.getProgram()
     this.renderer.poses.use(program, primitive.getCABO(), this.apart?.unit)
-    this.colours.use(program)
+    if (this.coloured && this.colours.by === "materials") {
+      this.materials.use(program, this.renderer.images)
+    } else {
+      this.colours.use(program)
+    }
+    this.renderer.context.activeTexture(this.renderer.context.TEXTURE0)
   }
 
   // Values beyond the front are left grey.
@@ -208,7 +219,7 @@ export class Actor {
     this.colours.front = this.animation ? front ?? ALL : ALL
   }
 
-  paint({color, opacity, width, thick, dash, form, ambient, coloured, behind, closed, hull}) {
+  paint({color, opacity, width, thick, dash, form, ambient, diffuse, coloured, behind, closed, hull}) {
     this.closed = closed
     this.hull = hull
     this.coloured = coloured
@@ -222,6 +233,7 @@ export class Actor {
     look.setColor(...color)
     look.setOpacity(opacity)
     look.setAmbient(ambient)
+    look.setDiffuse(diffuse)
     look.setLighting(!hull)
     look.setFrontfaceCulling(hull)
     if (!this.restNormals) { look.setInterpolationToFlat() }
@@ -301,6 +313,7 @@ export class Actor {
   remove() {
     this.leave()
     this.strokes?.remove()
+    this.materials?.remove()
     this.colours.remove()
     for (const {actor, mapper} of this.made) {
       actor.delete()

@@ -3,7 +3,7 @@
 
 const TABLE_UNIT = 13  // vtk.js takes the first units
 const POINT_UNIT = 14
-const POINTS_WIDE = 2048
+export const POINTS_WIDE = 2048
 const QUIET = [201, 206, 214]  // the body's own grey
 export const ALL = 1e38
 

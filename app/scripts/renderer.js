@@ -1,6 +1,7 @@
 // The vtk.js window: two layers (the scene, and what is drawn over it), lights, frames.
 
 import {isCharacter} from "./actor.js"
+import {ImageLayers} from "./materials.js"
 import {VIEW_ANGLE} from "./orbit.js"
 import {PoseTexture} from "./skin.js"
 import {Smooth} from "./smooth.js"
@@ -108,6 +109,11 @@ export class Renderer {
   get poses() {
     this.texture ??= new PoseTexture(this.context)
     return this.texture
+  }
+
+  get images() {
+    this.imageLayers ??= new ImageLayers(this.context)
+    return this.imageLayers
   }
 
   get corners() {
@@ -275,6 +281,7 @@ export class Renderer {
   remove() {
     for (const actor of this.actors.values()) { actor.remove() }
     this.texture?.remove()
+    this.imageLayers?.remove()
     this.cornered?.remove()
     this.smooth.remove()
     this.gl.setContainer(null)

@@ -1,13 +1,14 @@
 // vtk.js' own shaders, changed where an actor needs it: joints move its points (skin.js), and
-// textures colour them (colour.js).
+// textures colour them (colour.js, materials.js).
 
 import {colourShader} from "./colour.js"
+import {MATERIAL_SHADER} from "./materials.js"
 import {skinVertex} from "./skin.js"
 
 // `needs`: how many sets of four influences, how many of a second skin, and what colours it.
 export function shaderSwaps({sets, otherSets, by}) {
   const skin = skinVertex(sets, otherSets)
-  const colour = colourShader(by, otherSets > 0)
+  const colour = by === "materials" ? MATERIAL_SHADER : colourShader(by, otherSets > 0)
   const swap = (shaderType) => ([originalValue, replacementValue]) =>
     ({shaderType, originalValue, replacementValue, replaceFirst: false, replaceAll: false})
   const begin = `${skin.declared}\n${colour.declared}\nvoid main()\n{\n${skin.main}\n${colour.main}`

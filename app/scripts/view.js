@@ -119,6 +119,7 @@ class View {
       this.views = message.views
       renderer.divide(this.views)
     }
+    if ("images" in message) { renderer.images.set(message.images) }
     if (message.actors) { this.overlay.waiting.hidden = true }
     for (const [name, part] of entries(message.actors)) {
       if (!renderer.actors.has(name)) {

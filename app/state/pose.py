@@ -20,7 +20,12 @@ class PoseChoices(param.Parameterized):
     playing: Any = param.Boolean(False, doc="Whether that motion runs, or is halted.")
 
     pose_colors: Any = param.Selector(
-        default="weights", objects=["weights", "plain"], doc="What the moving body's colours tell."
+        default="weights",
+        objects=["weights", "plain", "materials"],
+        doc="What the moving body's colours tell.",
+    )
+    materials: Any = param.Parameter(
+        None, doc="(mesh, what shows it in its file's materials or None), or None so far."
     )
     rival: Any = param.Selector(
         default="alone",

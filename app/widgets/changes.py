@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from cutcell.display import printable, shown_name
 from cutcell_viewers.description import Actor, Apart, Description, Legend, Reading
 from cutcell_viewers.palette import colormap, to_hex
-from cutcell_viewers.scene import AMBIENT
+from cutcell_viewers.scene import shading
 from cutcell_viewers.skin import Skin
 
 
@@ -43,6 +43,8 @@ def changes(old: Description, new: Description, sent: set[str]) -> dict[str, Any
         message["cut"] = new.cut and {"origin": new.cut.origin, "normal": new.cut.normal}
     if old.front != new.front:
         message["front"] = new.front
+    if old.images is not new.images:
+        message["images"] = _images(new.images)
     if old.legend != new.legend:
         message["legend"] = _legend(new.legend)
     if old.views != new.views:
@@ -78,6 +80,12 @@ def _part(old: Actor | None, new: Actor) -> dict[str, Any]:
     return part
 
 
+def _images(images: NDArray[np.uint8] | None) -> dict[str, Any] | None:
+    if images is None:
+        return None
+    return {"count": len(images), "side": images.shape[1], "pixels": _flat(images, np.uint8)}
+
+
 def _apart(apart: Apart | None) -> dict[str, Any] | None:
     if apart is None:
         return None
@@ -93,6 +101,13 @@ def _skin(skin: Skin) -> dict[str, Any]:
 
 
 def _colouring(old: Actor | None, new: Actor) -> dict[str, Any]:
+    """Return what colours an actor, if it is not what colours it already."""
+    if new.materials is not None:
+        if old is not None and old.materials is new.materials:
+            return {}
+        corners = _flat(new.materials.corners, np.float32)
+        return {"materials": {"corners": corners, "tints": _flat(new.materials.tints, np.uint8)}}
+    old = None if old is not None and old.materials is not None else old
     if new.colors is not None:
         if old is None or not _same(old.colors, new.colors):
             return {"colors": _flat(new.colors, np.uint8)}
@@ -107,6 +122,7 @@ def _colouring(old: Actor | None, new: Actor) -> dict[str, Any]:
 
 
 def _settings(actor: Actor) -> dict[str, Any]:
+    ambient, diffuse = shading(actor)
     paint = {
         "color": actor.color,
         "opacity": actor.opacity,
@@ -114,11 +130,12 @@ def _settings(actor: Actor) -> dict[str, Any]:
         "thick": actor.thick,
         "dash": actor.dash,
         "form": actor.form,
-        "ambient": AMBIENT,
+        "ambient": ambient,
+        "diffuse": diffuse,
         "behind": actor.behind,
         "closed": actor.closed and actor.opacity == 1,
         "hull": actor.hull,
-        "coloured": actor.colors is not None or actor.scalars is not None,
+        "coloured": any(x is not None for x in (actor.colors, actor.scalars, actor.materials)),
     }
     place = {"overlay": actor.overlay, "view": actor.view}
     return {"paint": paint, "place": place, "visible": actor.visible}

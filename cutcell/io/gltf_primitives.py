@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import pygltflib
@@ -18,6 +18,15 @@ BYTES_PER_CORNER = 24
 BYTES_PER_SET = 4 * (8 + 8)
 """Of a vertex' joints and weights, as a list of influences."""
 DRAWS_TRIANGLES = (pygltflib.TRIANGLES, pygltflib.TRIANGLE_STRIP, pygltflib.TRIANGLE_FAN)
+
+
+class Drawn(NamedTuple):
+    """One of the triangle primitives of a mesh whose vertices and faces were put together."""
+
+    primitive: dict[str, Any]
+    first_vertex: int
+    rows: slice
+    """Its faces."""
 
 
 def primitives(document: Document, mesh: Any, user: str) -> list[dict[str, Any]]:
@@ -94,7 +103,7 @@ def read_faces(document: Document, primitive: dict[str, Any], count: int, user: 
 
 def read_triangles(
     document: Document, mesh: Any, user: str
-) -> tuple[NDArray, NDArray, list[dict[str, Any]]]:
+) -> tuple[NDArray, NDArray, list[Drawn]]:
     """Return vertices, faces and triangle primitives of a whole mesh, buffers counted once."""
     document.item("meshes", mesh, user)
     if mesh not in document.triangles:
@@ -102,13 +111,12 @@ def read_triangles(
     return document.triangles[mesh]
 
 
-def _triangles(
-    document: Document, mesh: int, user: str
-) -> tuple[NDArray, NDArray, list[dict[str, Any]]]:
+def _triangles(document: Document, mesh: int, user: str) -> tuple[NDArray, NDArray, list[Drawn]]:
     vertices: list[NDArray] = []
     faces: list[NDArray] = []
+    drawn: list[Drawn] = []
     start: dict[Any, int] = {}
-    total = 0
+    total = triangles = 0
     found = [p for p in primitives(document, mesh, user) if draws_triangles(p)]
     for k, primitive in enumerate(found):
         name = f"{document.label('meshes', mesh)}, primitive {k}"
@@ -118,10 +126,13 @@ def _triangles(
             start[key] = total
             total += len(positions)
             vertices.append(positions)
-        faces.append(read_faces(document, primitive, len(positions), name) + start[key])
-    if not found:
-        return np.zeros((0, 3)), np.zeros((0, 3), int), found
-    return np.concatenate(vertices), np.concatenate(faces), found
+        corners = read_faces(document, primitive, len(positions), name)
+        rows = slice(triangles, triangles := triangles + len(corners))
+        drawn.append(Drawn(primitive, start[key], rows))
+        faces.append(corners + start[key])
+    if not drawn:
+        return np.zeros((0, 3)), np.zeros((0, 3), int), drawn
+    return np.concatenate(vertices), np.concatenate(faces), drawn
 
 
 def influence_sets(found: dict[str, Any]) -> list[int]:

@@ -84,6 +84,8 @@ class GltfSource:
     inverse: NDArray[np.float64]
     """Inverse bind matrix of each joint, for vertices in the rig's space, shape (j, 4, 4)."""
     faces: tuple[StoredFaces, ...] = ()
+    attached: tuple[int, ...] = ()
+    """The node of each attachment."""
 
 
 def read_gltf(path: Path) -> Rig:
@@ -137,7 +139,9 @@ def read_rig(document: Document, path: Path, world: NDArray | None = None) -> Ri
         left_out=left_out_meshes(document, nodes, skinned, attached),
         warnings=(*document.warnings, *told),
         weight_sums=sums,
-        source=GltfSource(document, parts, skeleton, bind.nodes, inverse, tuple(stored.drawn)),
+        source=GltfSource(
+            document, parts, skeleton, bind.nodes, inverse, tuple(stored.drawn), tuple(attached)
+        ),
     )
 
 

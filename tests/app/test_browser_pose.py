@@ -12,6 +12,7 @@ from cutcell_viewers.character import pose_in_scene
 from cutcell_viewers.pose_scene import joint_turns, turn
 from tests.app.browser import Visit, changed
 from tests.conftest import SHARED_RIGS
+from tests.viewers.painted import png, seen, squares, wall
 
 REAL = SHARED_RIGS / "quaternius_wizard.glb"
 SOURCE = REAL if REAL.exists() else demo_path("rabbit")
@@ -195,3 +196,30 @@ def test_a_film_and_the_numbers_come_out(visit, tmp_path):
         path = tmp_path / download.value.suggested_filename
         download.value.save_as(path)
         assert start in path.read_bytes()[:16]
+
+
+def test_the_files_materials_are_seen_as_it_moves(visit, tmp_path):
+    visit.open(wall(png(squares())).save(tmp_path / "wall.glb"))
+    coloured = visit.look()
+    visit.button("Materials").click()
+    assert changed(coloured, visit.look()) > 0.1
+    assert visit.page.locator(".legend").is_hidden()
+    for turned in (False, True):
+        if turned:
+            visit.slide("About Z", "PageUp", 2)
+        pixels = visit.look()
+        corners = visit.points()[:4]
+        for near, (u, v) in enumerate([(0.1, 0.1), (0.9, 0.1), (0.9, 0.9), (0.1, 0.9)]):
+            share = np.full(4, 0.1)
+            share[near], share[near - 2] = 0.8, 0
+            point = (share @ corners).tolist()
+            x, y, _ = visit.page.evaluate("at => __cutcell.renderer.project(at)", point)
+            found, expected = pixels[round(y), round(x)], seen(u, v).astype(int)
+            np.testing.assert_array_equal(
+                found > 0.6 * found.max(), expected > 0.6 * expected.max(), f"{near} {turned}"
+            )
+    visit.button("Plain").click()
+    grey = visit.look()
+    assert changed(pixels, grey) > 0.1
+    visit.button("Materials").click()
+    assert changed(pixels, visit.look()) < 0.01

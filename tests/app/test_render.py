@@ -16,6 +16,7 @@ from cutcell.io.numbers import save_numbers
 from cutcell_app.render import VIEWS, Choices, check, describe, find_bone, find_clip, order
 from cutcell_assets import demo_path
 from tests.viewers.arm import arm_rig
+from tests.viewers.painted import wall
 
 DOCUMENT = Path(__file__).resolve().parents[2] / "docs" / "pictures.md"
 
@@ -129,6 +130,24 @@ def test_what_is_seen_inside_reaches_the_picture(drawn, tmp_path):
     assert drawn[-1].camera is not None
 
 
+def test_the_files_materials_reach_the_picture(drawn, tmp_path):
+    options = ("--panel", "pose", "--colors", "materials")
+    result = run(demo_path("robot"), tmp_path / "a.png", *options)
+    assert result.exit_code == 0, result.stderr
+    scene = drawn[-1].description
+    assert len(np.unique(scene.actors["body"].materials.tints.reshape(-1, 3), axis=0)) == 6
+    assert scene.legend is None
+    broken = wall(b"no image", pbr={"baseColorFactor": [1, 0, 0, 1]}).save(tmp_path / "wall.glb")
+    result = run(broken, tmp_path / "a.png", *options)
+    assert result.exit_code == 0, result.stderr
+    assert 'image "wall" cannot be shown' in " ".join((result.stdout + result.stderr).split())
+    cutcell.save(tmp_path / "plain.glb", arm_rig())
+    result = run(tmp_path / "plain.glb", tmp_path / "b.png", *options)
+    assert result.exit_code == 2
+    assert "has no materials with colours of their own" in " ".join(result.stderr.split())
+    assert not (tmp_path / "b.png").exists()
+
+
 def test_measures_side_by_side_know_some_resolutions():
     choices = Choices("distance", settings={"beside_6": True})
     with pytest.raises(ParameterError, match="resolution of 16, 32, 64, 128, not 20"):
@@ -156,6 +175,7 @@ def test_measures_side_by_side_know_some_resolutions():
         ("a.png", ("--wave", "2"), "front must be a number from 0 to 1"),
         ("a.png", ("--measures", "near"), "measure must be one of 'straight', 'surface', 'voxel'"),
         ("a.png", ("--measures", "straight,surface,voxel,6,26"), "at most 4 measures"),
+        ("a.png", ("--panel", "pose", "--colors", "paint"), "pose_colors must be one of weights"),
         ("a.png", ("--connectivity", "7"), "connectivity"),
         ("a.png", ("--near", "3"), "near must be"),
         ("a.png", ("--panel", "check", "--finding", "gout"), 'has no finding "gout"'),

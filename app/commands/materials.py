@@ -1,0 +1,57 @@
+"""The materials of a character's file, once somebody wants to see them."""
+
+from __future__ import annotations
+
+from cutcell.errors import FileError
+from cutcell.io.gltf_materials import has_materials, read_materials
+from cutcell.progress import Progress
+from cutcell.rig import Rig
+from cutcell_viewers.materials import Painted, decoded, none_decoded, painted
+
+from ..work.processes import in_process
+from .session import Session
+
+ENDED = "decoding its images came to a sudden end"
+
+
+def watch(session: Session) -> None:
+    """Read a file's materials as soon as the body is to be seen in them."""
+    session.state.param.watch(lambda *events: find(session), ["panel", "rig", "pose_colors"])
+
+
+def find(session: Session) -> None:
+    """Read the materials of the character that stands there, if they are wanted and not known."""
+    state = session.state
+    rig = state.rig
+    known = state.materials is not None and rig is not None and state.materials[0] is rig.mesh
+    if not known:
+        state.materials = None  # of another character, or as it was before a repair
+    wanted = state.panel == "pose" and state.pose_colors == "materials"
+    if known or not wanted or rig is None or not has_materials(rig):
+        session.tasks.jobs("materials").cancel()
+        return
+
+    def done(found: Painted | None) -> None:
+        if state.rig is not None and state.rig.mesh is rig.mesh:
+            state.materials = (rig.mesh, found)
+
+    session.tasks.jobs("materials").start(
+        lambda progress: read(rig, progress), done, session.fail, lambda stage, fraction: None
+    )
+
+
+def read(rig: Rig, progress: Progress) -> Painted | None:
+    """Return what shows a rig in its materials; images are decoded in a process of its own."""
+    materials = read_materials(rig)
+    if materials is None:
+        return None
+    given = materials.images, materials.layers
+
+    def wanted() -> None:
+        progress("materials", 0.0)
+
+    try:
+        pixels, problems = in_process(decoded, *given, wanted=wanted, ended=ENDED)
+    except FileError as error:
+        pixels, problems = none_decoded(materials.layers, str(error))
+    return painted(rig, materials, pixels, problems)

@@ -1,0 +1,176 @@
+"""The images of a file's materials, all of one size: what a graphics card takes as layers."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Sequence
+from dataclasses import dataclass
+from io import BytesIO
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image
+
+from cutcell.io.gltf_materials import FaceColors, Materials, read_materials
+from cutcell.io.gltf_textures import Layer, StoredImage
+from cutcell.rig import Rig
+
+FORMATS = ("PNG", "JPEG", "WEBP")
+LARGEST = 2**26
+"""Pixels of an image that is decoded: 8192 by 8192."""
+SIDES = (1024, 512, 256, 128)
+MOST_PIXELS = 2**23
+"""Of all layers together: 32 MB."""
+MOST_LAYERS = 64
+OPAQUE = 255
+HALF = 128
+"""The alpha at which layers are cut."""
+
+
+@dataclass(frozen=True, eq=False)
+class Painted:
+    """What shows a rig in its file's materials.
+
+    Parameters
+    ----------
+    images : array, shape (k, s, s, 4), uint8
+        The layers, sRGB; nothing is there where alpha is less than a half.
+    body : FaceColors
+        In the order of the faces of the body's `Actor`.
+    attachments : tuple of FaceColors
+    notes : tuple of str
+        What could not be read, in sentences.
+    """
+
+    images: NDArray[np.uint8]
+    body: FaceColors
+    attachments: tuple[FaceColors, ...]
+    notes: tuple[str, ...] = ()
+
+
+def painted_rig(rig: Rig) -> Painted | None:
+    """Return what shows a rig in its file's materials; None where `read_materials` does."""
+    materials = read_materials(rig)
+    if materials is None:
+        return None
+    return painted(rig, materials, *decoded(materials.images, materials.layers))
+
+
+def decoded(
+    images: Sequence[StoredImage], layers: Sequence[Layer]
+) -> tuple[NDArray[np.uint8], dict[int, str]]:
+    """Decode images into layers of one size.
+
+    Parameters
+    ----------
+    images : sequence of StoredImage
+    layers : sequence of Layer
+
+    Returns
+    -------
+    images : array, shape (k, s, s, 4), uint8
+        White where an image cannot be shown.
+    problems : dict of int to str
+        Why some layers cannot be.
+    """
+    shown, more = layers[:MOST_LAYERS], range(MOST_LAYERS, len(layers))
+    problems = dict.fromkeys(more, f"{MOST_LAYERS} images of a file are shown, it has more")
+    opened = [_opened(image) for image in images]
+    side = _side(opened, len(shown))
+    pixels = np.full((len(shown), side, side, 4), OPAQUE, np.uint8)
+    for k, layer in enumerate(shown):
+        found = opened[layer.image]
+        problem = found if isinstance(found, str) else _fill(pixels[k], images[layer.image], layer)
+        if problem:
+            problems[k] = problem
+    return pixels, problems
+
+
+def none_decoded(layers: Sequence[Layer], why: str) -> tuple[NDArray[np.uint8], dict[int, str]]:
+    """Return what `decoded` does where no image can be shown."""
+    return np.zeros((0, 1, 1, 4), np.uint8), dict.fromkeys(range(len(layers)), why)
+
+
+def painted(
+    rig: Rig, materials: Materials, images: NDArray[np.uint8], problems: dict[int, str]
+) -> Painted:
+    """Return what shows a rig in its file's materials.
+
+    Parameters
+    ----------
+    rig : Rig
+    materials : Materials
+        Of this rig.
+    images : array, shape (k, s, s, 4), uint8
+    problems : dict of int to str
+        From `decoded`. Where a layer cannot be shown its material's colour is.
+    """
+    notes = {
+        f"{materials.images[materials.layers[k].image].name} cannot be shown: {problem}": None
+        for k, problem in problems.items()
+    }
+    shown = np.array([-1.0 if k in problems else k for k in range(len(materials.layers))] + [-1.0])
+    is_mirrored = bool(np.linalg.det(rig.world[:3, :3]) < 0)
+
+    def turned(colors: FaceColors) -> FaceColors:
+        corners = colors.corners.copy()
+        corners[..., 2] = shown[corners[..., 2].astype(int)]
+        way = slice(None, None, -1 if is_mirrored else 1)  # as the faces, see `character`
+        return FaceColors(
+            np.ascontiguousarray(corners[:, way]), np.ascontiguousarray(colors.tints[:, way])
+        )
+
+    return Painted(
+        images,
+        turned(materials.body),
+        tuple(map(turned, materials.attachments)),
+        (*materials.notes, *notes),
+    )
+
+
+def _opened(image: StoredImage) -> tuple[int, int] | str:
+    """Return the size of an image, of which the head alone is read; else what is wrong with it."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", Image.DecompressionBombWarning)
+            with Image.open(BytesIO(image.content), formats=FORMATS) as found:
+                width, height = found.size
+    except (Image.DecompressionBombWarning, Image.DecompressionBombError):
+        return _TOO_LARGE
+    except Exception:  # whatever Pillow's readers make of it
+        return "it is no PNG, JPEG or WebP, or damaged"
+    return _TOO_LARGE if width * height > LARGEST else (width, height)
+
+
+_TOO_LARGE = "it has more than 67 million pixels"
+
+
+def _side(opened: Sequence[tuple[int, int] | str], layers: int) -> int:
+    """Return the side of all layers: no more than the largest needs, and all of them may take."""
+    largest = max((max(one) for one in opened if not isinstance(one, str)), default=1)
+    fitting = [side for side in SIDES if layers * side * side <= MOST_PIXELS]
+    enough = [side for side in fitting if side >= largest]
+    return min(enough, default=fitting[0]) if layers else 1
+
+
+def _fill(pixels: NDArray[np.uint8], image: StoredImage, layer: Layer) -> str:
+    """Decode an image into a layer, shape (s, s, 4); return what is wrong with it, or nothing."""
+    side = len(pixels)
+    try:
+        with Image.open(BytesIO(image.content), formats=FORMATS) as found:
+            found.draft("RGB", (side, side))
+            whole = found.convert("RGBA")
+    except Exception:  # whatever Pillow's readers make of it
+        return "it is damaged"
+    squares = layer.nearest and max(whole.size) < side
+    how = Image.Resampling.NEAREST if squares else Image.Resampling.BILINEAR
+    # Apart from each other: colours would fade to black where alpha is none.
+    pixels[..., :3] = np.asarray(whole.convert("RGB").resize((side, side), how))
+    if layer.cutoff is None:
+        return ""
+    alpha = np.asarray(whole.getchannel("A").resize((side, side), how), float)
+    scaled = np.clip(alpha * HALF / (OPAQUE * max(layer.cutoff, 1 / OPAQUE)), 0, OPAQUE)
+    if layer.blended and (scaled < HALF).all():
+        return ""  # as glass: rather seen than not
+    pixels[..., 3] = scaled.round()
+    return ""

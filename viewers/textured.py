@@ -1,0 +1,74 @@
+"""Surfaces in a file's materials, as VTK draws them: one piece for each image."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import pyvista as pv
+from numpy.typing import NDArray
+
+from cutcell.io.gltf_materials import FaceColors
+from cutcell.io.gltf_textures import CLAMP, MIRROR, REPEAT
+
+WRAPPING = {
+    REPEAT: pv.Texture.WrapType.REPEAT,
+    CLAMP: pv.Texture.WrapType.CLAMP_TO_EDGE,
+    MIRROR: pv.Texture.WrapType.MIRRORED_REPEAT,
+}
+OPAQUE = 255
+
+
+def pieces(
+    points: NDArray[np.float32],
+    normals: NDArray[np.float32] | None,
+    faces: NDArray[np.int32],
+    colors: FaceColors,
+) -> Iterator[tuple[pv.PolyData, tuple[int, int]]]:
+    """Part a surface by what colours it.
+
+    Parameters
+    ----------
+    points, normals : array, shape (n, 3)
+    faces : array, shape (m, 3)
+    colors : FaceColors
+        Of these faces.
+
+    Yields
+    ------
+    data : pyvista.PolyData
+        Corners, each with its tint ("colors"), and where it lies in the image.
+    kind : (int, int)
+        The layer, -1 for none, and how the image goes on; see `FaceColors`.
+    """
+    kinds = colors.corners[:, 0, 2:].astype(int)
+    for layer, wrap in np.unique(kinds, axis=0).tolist():
+        rows = np.flatnonzero((kinds == (layer, wrap)).all(axis=1))
+        corners = faces[rows].ravel()
+        cells = np.arange(len(corners)).reshape(-1, 3)
+        data: Any = pv.PolyData(points[corners], np.insert(cells, 0, 3, axis=1).ravel())
+        if normals is not None:
+            data.point_data.active_normals = normals[corners]
+        data.point_data["colors"] = colors.tints[rows].reshape(-1, 3)
+        if layer >= 0:
+            across, down = colors.corners[rows, :, :2].reshape(-1, 2).T
+            # VTK counts from the lower left corner.
+            data.active_texture_coordinates = np.stack([across, 1 - down], axis=1)
+        yield data, (layer, wrap)
+
+
+def texture(image: NDArray[np.uint8], wrap: int) -> pv.Texture:
+    """Return a layer (s, s, 4) as a texture; VTK wraps both ways alike, as it does across."""
+    opaque = (image[..., 3] == OPAQUE).all()
+    made: Any = pv.Texture(np.ascontiguousarray(image[..., :3] if opaque else image))
+    made.interpolate = made.mipmap = True
+    made.SetWrap(WRAPPING[wrap // 3])
+    return made
+
+
+CUT_OUT = """//VTK::TCoord::Impl
+  if (gl_FragData[0].a < 0.5) { discard; }
+  gl_FragData[0].a = 1.0;
+"""
+"""Nothing is drawn where an image is less than half there."""
