@@ -2,6 +2,7 @@
 
     python -m benchmarks.networks [--epochs 3] [--seeds 3] [--heads A,B] [--priors A,B]
                                   [--size tiny] [--folder FOLDER] [--print] [--out docs/networks.md]
+                                  [--figure docs/pictures/networks.png]
 
 Trained on ../shared/data/train, by one maker; measured on rigs and wild, parted into characters by
 other makers and by the same. Every network and every result is kept in the folder after it is
@@ -32,6 +33,7 @@ from cutcell.rig import Skeleton, TriangleMesh
 from cutcell.writing import write_all
 
 from .document import fill
+from .network_figure import draw
 from .rigs import SHARED
 from .tables import Table
 
@@ -224,8 +226,28 @@ def read_results(path: Path) -> dict[str, dict]:
     return json.loads(path.read_text()) if path.exists() else {}
 
 
-def tables(kept: dict[str, dict], options: argparse.Namespace, runs: Sequence[Run]) -> str:
-    """Return all tables as Markdown."""
+@dataclass(frozen=True)
+class Comparison:
+    """What all runs found.
+
+    Parameters
+    ----------
+    results : Results
+    alone : dict of str to Scores
+        By prior, of the prior itself.
+    runs : int
+    seconds : float
+        CPU seconds of all trainings.
+    """
+
+    results: Results
+    alone: dict[str, Scores]
+    runs: int
+    seconds: float
+
+
+def compared(kept: dict[str, dict], options: argparse.Namespace, runs: Sequence[Run]) -> Comparison:
+    """Put together what earlier runs kept."""
     results: Results = {}
     seconds = 0.0
     for run in runs:
@@ -239,13 +261,19 @@ def tables(kept: dict[str, dict], options: argparse.Namespace, runs: Sequence[Ru
         for prior in options.priors
         if prior != "none"
     }
+    return Comparison(results, alone, len(runs), seconds)
+
+
+def tables(found: Comparison, options: argparse.Namespace) -> str:
+    """Return all tables as Markdown."""
+    results, alone = found.results, found.alone
     measured = len(next(iter(results.values()))[0])
     trained = len(samples("none", ["train"], options))
     about = (
         f"Size {options.size}; {options.epochs} epochs over {trained} characters, "
         f"{options.points} points each; up to {options.seeds} seeds; measured at up to "
-        f"{4 * options.points} vertices of each of {measured} characters. {len(runs)} trainings "
-        f"took {seconds / 60:.0f} minutes of CPU time on {machine()}."
+        f"{4 * options.points} vertices of each of {measured} characters. {found.runs} trainings "
+        f"took {found.seconds / 60:.0f} minutes of CPU time on {machine()}."
     )
     listed = [
         paper_table(results),
@@ -253,6 +281,24 @@ def tables(kept: dict[str, dict], options: argparse.Namespace, runs: Sequence[Ru
         head_table(results, alone, "other makers", True),
     ]
     return "\n\n".join([about, *(table.markdown() for table in listed)])
+
+
+def draw_figure(found: Comparison, path: Path) -> None:
+    """Draw L1 and the deformation error on characters by other makers."""
+    names = groups(next(iter(found.results.values()))[0])["other makers"]
+
+    def shown(one: Scores) -> tuple[float, float]:
+        l1, _, _, moved = means(one, names).tolist()
+        return l1, moved
+
+    networks = {which: [shown(one) for one in runs] for which, runs in found.results.items()}
+    alone = {prior: shown(one) for prior, one in found.alone.items()}
+    paper = {
+        (head, prior): (l1[k], moved[k])
+        for head, (base, l1, moved) in PAPER.items()
+        for k, prior in enumerate((base, "cutcell"))
+    }
+    draw(networks, alone, paper, path)
 
 
 def _rows(prior: NDArray | None) -> NDArray[np.float64]:
@@ -286,6 +332,7 @@ def main(given: Sequence[str] | None = None) -> None:
     parser.add_argument("--cache", type=Path, default=cache_folder())
     parser.add_argument("--print", action="store_true", help="train nothing; print what is there")
     parser.add_argument("--out", type=Path, help="a document with marks for it")
+    parser.add_argument("--figure", type=Path, help="a picture, such as docs/pictures/networks.png")
     options = parser.parse_args(given)
     torch.set_num_threads(1)
     path = options.folder / "results.json"
@@ -295,14 +342,17 @@ def main(given: Sequence[str] | None = None) -> None:
     for run in sorted(runs, key=lambda run: run.seed):
         key = _key(run, options)
         if key not in kept and not options.print:
-            found, seconds = measure_run(run, options)
-            kept[key] = {"scores": found, "seconds": seconds + _before(kept, run, options)}
+            scored, seconds = measure_run(run, options)
+            kept[key] = {"scores": scored, "seconds": seconds + _before(kept, run, options)}
             options.folder.mkdir(parents=True, exist_ok=True)
             write_all({path: json.dumps(kept).encode()})
-            names = groups(found)["other makers"]
-            print(key, *(f"{x:.3f}" for x in means(found, names)), f"{seconds:.0f} s", flush=True)
-    text = tables(kept, options, [run for run in runs if _key(run, options) in kept])
+            names = groups(scored)["other makers"]
+            print(key, *(f"{x:.3f}" for x in means(scored, names)), f"{seconds:.0f} s", flush=True)
+    found = compared(kept, options, [run for run in runs if _key(run, options) in kept])
+    text = tables(found, options)
     print(text)
+    if options.figure:
+        draw_figure(found, options.figure)
     if options.out:
         fill(options.out, {"networks": text})
 

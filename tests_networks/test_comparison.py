@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import numpy as np
+from PIL import Image
 
 import cutcell
 from benchmarks.networks import Run, dropped, groups, main, means, scores
@@ -61,7 +62,10 @@ def test_it_goes_on_where_it_stopped(tmp_path, monkeypatch, capsys):
     assert "4 trainings" in text
     assert "of each of 2 characters" in text
     assert "±" in text
-    main([*words, "--epochs", "1"])
+    figure = tmp_path / "networks.png"
+    main([*words, "--epochs", "1", "--figure", str(figure)])
+    with Image.open(figure) as drawn:
+        assert len(drawn.convert("RGB").getcolors(2**24)) > 20
     assert "tiny 16" not in capsys.readouterr().out
     log = tmp_path / "kept" / "tiny" / Run("puppeteer", "cutcell", 1).name / "log.csv"
     assert len(log.read_text().splitlines()) == 2
