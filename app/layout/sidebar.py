@@ -55,7 +55,7 @@ def panels(session: Session) -> tuple[Tabs, pmui.Column]:
         margin=(10, 20, 0, 20),
         sizing_mode="stretch_width",
     )
-    missing = pmui.Column(lead(NO_SKELETON), margin=0, visible=False, sizing_mode="stretch_width")
+    missing = lead(NO_SKELETON)
     place = pmui.Column(missing, margin=0, sizing_mode="stretch_width")
     built: dict[str, Any] = {}
 

@@ -58,7 +58,7 @@ def test_every_panel_can_be_looked_at(bare, loop, panel):
     assert bare.state.message is None
     assert "body" in resolve(bare.state).actors
     _, place = bare.built[0]
-    told = [one.object for one in place.objects if hasattr(one, "object")]
+    told = [one.object for one in place.objects if one.visible and hasattr(one, "object")]
     assert (told == [NO_SKELETON]) == (panel not in ("graph", "diagnosis", "learn"))
 
 
