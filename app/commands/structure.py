@@ -13,7 +13,7 @@ from cutcell.errors import CutcellError, ParameterError
 from cutcell.rig import Rig
 
 from .correct import check_alone, correct, taken
-from .moving import moves_along, rounded
+from .moving import mirror_of, moves_along, rounded
 from .session import Session
 
 BEYOND = 0.5
@@ -31,21 +31,31 @@ def remove(session: Session) -> None:
 
 
 def hang_on(session: Session, parent: str) -> None:
-    """Hang the chosen joint on another, by its name; "" for none."""
+    """Hang the chosen joint on another, by its name, and its partner alike; "" for none."""
     state = session.state
-    name = state.rig.skeleton.names[state.joint]
-    above = int(state.rig.skeleton.parents[state.joint])
-    if parent == (state.rig.skeleton.names[above] if above >= 0 else ""):
+    skeleton, joint = state.rig.skeleton, state.joint
+    on = skeleton.names.index(parent) if parent else -1
+    if on == int(skeleton.parents[joint]):
         return
+    hung = {joint: on}
+    mirror, partner = mirror_of(session), moves_along(session)
+    # Where one side hangs on the other, the other cannot hang on it.
+    apart = partner is not None and not (on >= 0 and skeleton.subtree[partner][on])
+    if mirror is not None and partner is not None and apart:
+        across = int(mirror.joint[on]) if on >= 0 else -1
+        hung[partner] = across if across >= 0 else on
+    held = dict(state.corrections.joints)
     try:
-        check_alone(state.rig.skeleton, state.joint)
+        for one, above in hung.items():
+            check_alone(skeleton, one)
+            name = skeleton.names[one]
+            to = skeleton.names[above] if above >= 0 else ""
+            held[name] = replace(held.get(name, JointCorrection()), parent=to)
     except CutcellError as error:
         session.fail(error)
         state.param.trigger("corrections")  # the menu shows again what there is
         return
-    held = state.corrections.joints
-    one = replace(held.get(name, JointCorrection()), parent=parent)
-    correct(session, replace(state.corrections, joints={**held, name: one}))
+    correct(session, replace(state.corrections, joints=held))
 
 
 def may_hang_on(rig: Rig, joint: int) -> list[str]:

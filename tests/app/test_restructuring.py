@@ -145,8 +145,16 @@ def test_the_other_side_gets_the_same(fitted, loop):
     one, other = (state.rig.skeleton.names.index(name) for name in ("left_1", "right_1"))
     gap = state.rig.skeleton.joints[[one, other]] - middle
     np.testing.assert_allclose(gap[0] * [-1, 1, 1], gap[1], atol=1e-5)
+    for on, across in (("hips", "hips"), ("right", "left"), ("left", "right"), ("", "")):
+        structure.hang_on(fitted, on)
+        assert hierarchy(fitted)["left_1"] == on
+        assert hierarchy(fitted)["right_1"] == across
     structure.remove(fitted)
     assert set(hierarchy(fitted)) == {"hips", "left", "right"}
+    state.joint = state.rig.skeleton.names.index("left")
+    structure.hang_on(fitted, "right")
+    assert state.message is None
+    assert hierarchy(fitted) == {"hips": "", "left": "right", "right": "hips"}
 
 
 def test_the_controls_show_and_change_it(fitted, loop, tmp_path):
