@@ -20,7 +20,7 @@ from cutcell_viewers.description import Description
 from cutcell_viewers.error_scene import Gap
 from cutcell_viewers.film import Order
 from cutcell_viewers.finding_scene import camera_on_marks
-from cutcell_viewers.materials import Painted, painted_rig
+from cutcell_viewers.materials import Textures, load_textures
 from cutcell_viewers.pose_scene import clip_in_scene, pose_at
 
 from .commands.compare import measured
@@ -44,8 +44,8 @@ __all__ = [
     "find_bone",
     "find_clip",
     "order",
-    "painted_for",
     "settings_of",
+    "textures_for",
 ]
 
 PANELS = {
@@ -123,7 +123,7 @@ def describe(
     choices: Choices | None = None,
     *,
     binding: Any = None,
-    painted: Painted | None = None,
+    textures: Textures | None = None,
     resolution: int = 64,
     progress: Progress = silent,
 ) -> Description:
@@ -135,7 +135,7 @@ def describe(
     choices : Choices, optional
     binding : Binding, optional
         Of the rig; computed when left out.
-    painted : Painted, optional
+    textures : Textures, optional
         What shows it in its file's materials, where these are chosen; read when left out.
     resolution : int
         For that.
@@ -169,7 +169,7 @@ def describe(
     if binding is None:
         binding = bind(rig, resolution, method=choices.method, progress=progress)
     state.binding = binding
-    state.materials = (rig.mesh, painted or painted_for(rig, choices))
+    state.materials = (rig.mesh, textures or textures_for(rig, choices))
     if state.panel == "diagnosis":
         state.diagnosis = diagnose(rig, resolution, progress=progress)
         state.finding = choices.finding or ""
@@ -203,8 +203,8 @@ def describe(
     return replace(following(state), pose=pose_at(rig, clip, time))
 
 
-def painted_for(rig: Rig, choices: Choices) -> Painted | None:
-    """Return what shows a rig in its file's materials, if these are chosen; `notes` tell the rest.
+def textures_for(rig: Rig, choices: Choices) -> Textures | None:
+    """Return the materials of a rig's file, if these are chosen; `notes` say what could not be read.
 
     Parameters
     ----------
@@ -212,7 +212,7 @@ def painted_for(rig: Rig, choices: Choices) -> Painted | None:
     choices : Choices
     """
     chosen = choices.settings.get("pose_colors") == "materials"
-    return painted_rig(rig) if chosen and choices.panel == "pose" else None
+    return load_textures(rig) if chosen and choices.panel == "pose" else None
 
 
 def check(rig: Rig, choices: Choices, view: str = "three-quarter") -> None:

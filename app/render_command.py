@@ -250,14 +250,14 @@ def render(
     from cutcell.skinning import bind
 
     bare = not len(loaded.skeleton.joints)
-    painted = scenes.painted_for(loaded, choices)
+    textures = scenes.textures_for(loaded, choices)
     with progress_bars(quiet) as progress:
         binding = None if bare else bind(loaded, resolution, method=method, progress=progress)
         description = scenes.describe(
             loaded,
             choices,
             binding=binding,
-            painted=painted,
+            textures=textures,
             resolution=resolution,
             progress=progress,
         )
@@ -277,7 +277,7 @@ def render(
             [
                 *loaded.warnings,
                 *(binding.warnings if binding else ()),
-                *(painted.notes if painted else ()),
+                *(textures.notes if textures else ()),
             ]
         )
         print_line(f"{out}: {pixels[0]} x {pixels[1]} pixels, {_kilobytes(out)}")

@@ -174,7 +174,7 @@ class Description:
     front : float, optional
         Scalars above it are left grey on the actors that are part of the film.
     images : array, shape (k, s, s, 4), uint8, optional
-        What the actors' `materials` take their colours from; see `materials.Painted`.
+        What the actors' `materials` take their colours from; see `materials.Textures`.
     """
 
     actors: dict[str, Actor] = field(default_factory=dict)

@@ -28,8 +28,8 @@ HALF = 128
 
 
 @dataclass(frozen=True, eq=False)
-class Painted:
-    """What shows a rig in its file's materials.
+class Textures:
+    """A rig's materials, decoded: its images, and what of them each face shows.
 
     Parameters
     ----------
@@ -48,12 +48,12 @@ class Painted:
     notes: tuple[str, ...] = ()
 
 
-def painted_rig(rig: Rig) -> Painted | None:
-    """Return what shows a rig in its file's materials; None where `read_materials` does."""
+def load_textures(rig: Rig) -> Textures | None:
+    """Read and decode the materials of a rig's file; None where `read_materials` returns that."""
     materials = read_materials(rig)
     if materials is None:
         return None
-    return painted(rig, materials, *decoded(materials.images, materials.layers))
+    return as_textures(rig, materials, *decoded(materials.images, materials.layers))
 
 
 def decoded(
@@ -91,9 +91,9 @@ def none_decoded(layers: Sequence[Layer], why: str) -> tuple[NDArray[np.uint8], 
     return np.zeros((0, 1, 1, 4), np.uint8), dict.fromkeys(range(len(layers)), why)
 
 
-def painted(
+def as_textures(
     rig: Rig, materials: Materials, images: NDArray[np.uint8], problems: dict[int, str]
-) -> Painted:
+) -> Textures:
     """Return what shows a rig in its file's materials.
 
     Parameters
@@ -120,7 +120,7 @@ def painted(
             np.ascontiguousarray(corners[:, way]), np.ascontiguousarray(colors.tints[:, way])
         )
 
-    return Painted(
+    return Textures(
         images,
         turned(materials.body),
         tuple(map(turned, materials.attachments)),

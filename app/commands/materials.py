@@ -6,7 +6,7 @@ from cutcell.errors import FileError
 from cutcell.io.gltf_materials import has_materials, read_materials
 from cutcell.progress import Progress
 from cutcell.rig import Rig
-from cutcell_viewers.materials import Painted, decoded, none_decoded, painted
+from cutcell_viewers.materials import Textures, as_textures, decoded, none_decoded
 
 from ..work.processes import in_process
 from .session import Session
@@ -31,7 +31,7 @@ def find(session: Session) -> None:
         session.tasks.jobs("materials").cancel()
         return
 
-    def done(found: Painted | None) -> None:
+    def done(found: Textures | None) -> None:
         if state.rig is not None and state.rig.mesh is rig.mesh:
             state.materials = (rig.mesh, found)
 
@@ -40,7 +40,7 @@ def find(session: Session) -> None:
     )
 
 
-def read(rig: Rig, progress: Progress) -> Painted | None:
+def read(rig: Rig, progress: Progress) -> Textures | None:
     """Return what shows a rig in its materials; images are decoded in a process of its own."""
     materials = read_materials(rig)
     if materials is None:
@@ -54,4 +54,4 @@ def read(rig: Rig, progress: Progress) -> Painted | None:
         pixels, problems = in_process(decoded, *given, wanted=wanted, ended=ENDED)
     except FileError as error:
         pixels, problems = none_decoded(materials.layers, str(error))
-    return painted(rig, materials, pixels, problems)
+    return as_textures(rig, materials, pixels, problems)

@@ -11,7 +11,7 @@ from cutcell.rig import Clip
 from cutcell_viewers.character import body, pose_in_scene
 from cutcell_viewers.description import Actor, Apart, Description, Legend
 from cutcell_viewers.error_scene import Gap, error_legend, error_limits, error_look, squared_unit
-from cutcell_viewers.materials import Painted
+from cutcell_viewers.materials import Textures
 from cutcell_viewers.palette import GHOST
 from cutcell_viewers.pose_scene import joint_turns, swing, turn
 from cutcell_viewers.skin import skin_of_weights
@@ -33,7 +33,7 @@ VIEWS = ("cutcell", "The file's own weights")
 def pose(state: State, memo: Memo) -> Description:
     """Return the scene of the panel Pose."""
     placed = pose_of(state)
-    painted = painted_of(state)
+    textures = textures_of(state)
     look, legend, coloured = _colours(state, memo, weights_seen(state), "weights")
     if state.heat and has_rival(state):
         limits = error_limits_of(state, placed, memo)
@@ -49,10 +49,10 @@ def pose(state: State, memo: Memo) -> Description:
         )
         legend, coloured = error_legend(limits), False
     actors = character(state, memo, bones_coloured=coloured, **look)
-    if painted is not None:
-        actors |= _hung_in_materials(actors, painted)
+    if textures is not None:
+        actors |= _attachments_in_materials(actors, textures)
     seen = Description(
-        actors, pose=placed, legend=legend, images=None if painted is None else painted.images
+        actors, pose=placed, legend=legend, images=None if textures is None else textures.images
     )
     if state.rival == "alone" or not has_rival(state):
         return seen
@@ -66,21 +66,21 @@ def pose(state: State, memo: Memo) -> Description:
     return replace(seen, actors={**actors, "rival": rival}, views=VIEWS)
 
 
-def painted_of(state: State) -> Painted | None:
+def textures_of(state: State) -> Textures | None:
     """Return what shows the character in its file's materials, where it is to be seen so."""
     if state.pose_colors != "materials" or state.materials is None:
         return None
     if state.heat and has_rival(state):
         return None
-    mesh, painted = state.materials
-    return painted if mesh is state.rig.mesh else None
+    mesh, textures = state.materials
+    return textures if mesh is state.rig.mesh else None
 
 
-def _hung_in_materials(actors: dict[str, Actor], painted: Painted) -> dict[str, Actor]:
-    names = [f"attachment {i}" for i in range(len(painted.attachments))]
+def _attachments_in_materials(actors: dict[str, Actor], textures: Textures) -> dict[str, Actor]:
+    names = [f"attachment {i}" for i in range(len(textures.attachments))]
     return {
         name: replace(actors[name], materials=colors)
-        for name, colors in zip(names, painted.attachments, strict=True)
+        for name, colors in zip(names, textures.attachments, strict=True)
     }
 
 
@@ -91,9 +91,9 @@ def _colours(
 
     Without materials, or before they are read, it keeps the colours of its weights.
     """
-    painted = painted_of(state)
-    if painted is not None:
-        return {"materials": painted.body}, None, False
+    textures = textures_of(state)
+    if textures is not None:
+        return {"materials": textures.body}, None, False
     if state.pose_colors == "plain" or held is None:
         return {}, None, False
     return weights_look(state, memo, held, name)

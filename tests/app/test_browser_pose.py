@@ -12,7 +12,7 @@ from cutcell_viewers.character import pose_in_scene
 from cutcell_viewers.pose_scene import joint_turns, turn
 from tests.app.browser import Visit, changed
 from tests.conftest import SHARED_RIGS
-from tests.viewers.painted import png, seen, squares, wall
+from tests.viewers.textures import png, seen, squares, wall
 
 REAL = SHARED_RIGS / "quaternius_wizard.glb"
 SOURCE = REAL if REAL.exists() else demo_path("rabbit")

@@ -14,7 +14,7 @@ from cutcell_app.state.url import from_query, to_query
 from cutcell_app.widgets.changes import changes
 from cutcell_viewers.description import Description
 from tests.viewers.arm import arm_rig
-from tests.viewers.painted import png, squares, wall
+from tests.viewers.textures import png, squares, wall
 
 
 @pytest.fixture
@@ -134,9 +134,9 @@ def test_a_repaired_mesh_gets_its_own(posing, loop, rig):
     kept[3] = False
     posing.state.rig = with_faces(rig, kept, ~kept)
     loop.run_until(lambda: not posing.tasks.running)
-    mesh, painted = posing.state.materials
+    mesh, textures = posing.state.materials
     assert mesh is posing.state.rig.mesh
-    assert len(painted.body.corners) == len(rig.mesh.faces) - 1
+    assert len(textures.body.corners) == len(rig.mesh.faces) - 1
 
 
 def test_a_broken_image_is_told_below_the_choice_and_is_no_error(posing, loop, tmp_path):

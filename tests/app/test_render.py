@@ -16,7 +16,7 @@ from cutcell.io.numbers import save_numbers
 from cutcell_app.render import VIEWS, Choices, check, describe, find_bone, find_clip, order
 from cutcell_assets import demo_path
 from tests.viewers.arm import arm_rig
-from tests.viewers.painted import wall
+from tests.viewers.textures import wall
 
 DOCUMENT = Path(__file__).resolve().parents[2] / "docs" / "pictures.md"
 

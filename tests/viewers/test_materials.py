@@ -16,13 +16,13 @@ from cutcell_viewers.description import Description
 from cutcell_viewers.materials import (
     MOST_LAYERS,
     MOST_PIXELS,
+    as_textures,
     decoded,
+    load_textures,
     none_decoded,
-    painted,
-    painted_rig,
 )
 from cutcell_viewers.scene import Scene
-from tests.viewers.painted import png, seen, squares, wall
+from tests.viewers.textures import png, seen, squares, wall
 
 FRONT = Camera((0, 0, 4), (0, 0, 0))
 
@@ -118,7 +118,7 @@ def huge():
 )
 def test_an_image_that_cannot_be_shown_leaves_the_factor_and_is_told(rig_of, content, why):
     rig = rig_of(wall(content, pbr={"baseColorFactor": [0, 1, 0, 1]}))
-    found = painted_rig(rig)
+    found = load_textures(rig)
     (note,) = found.notes
     assert note.startswith('image "wall" cannot be shown: ')
     assert why in note
@@ -129,7 +129,7 @@ def test_an_image_that_cannot_be_shown_leaves_the_factor_and_is_told(rig_of, con
 def test_where_decoding_ends_all_layers_are_told(rig_of):
     rig = rig_of(wall(png(squares())))
     materials = read_materials(rig)
-    found = painted(rig, materials, *none_decoded(materials.layers, "it ended"))
+    found = as_textures(rig, materials, *none_decoded(materials.layers, "it ended"))
     assert found.notes == ('image "wall" cannot be shown: it ended',)
     assert (found.body.corners[..., 2] == -1).all()
 
@@ -137,13 +137,13 @@ def test_where_decoding_ends_all_layers_are_told(rig_of):
 def test_corners_turn_with_the_faces_of_a_mirrored_space(rig_of):
     rig = rig_of(wall(png(squares())))
     mirrored = replace(rig, world=np.diag([-1.0, 1, 1, 1]))
-    given, turned = painted_rig(rig).body, painted_rig(mirrored).body
+    given, turned = load_textures(rig).body, load_textures(mirrored).body
     np.testing.assert_array_equal(turned.corners, given.corners[:, ::-1])
     np.testing.assert_array_equal(body(mirrored).cells, body(rig).cells[:, ::-1])
 
 
 def picture(rig, pose=None):
-    found = painted_rig(rig)
+    found = load_textures(rig)
     scene = Scene(size=(200, 200))
     try:
         actors = {"body": body(rig, materials=found.body)}
