@@ -204,7 +204,7 @@ def describe(
 
 
 def textures_for(rig: Rig, choices: Choices) -> Textures | None:
-    """Return the materials of a rig's file, if these are chosen; `notes` say what could not be read.
+    """Return the materials of a rig's file, if these are chosen; `notes` say what is missing.
 
     Parameters
     ----------

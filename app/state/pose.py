@@ -24,9 +24,7 @@ class PoseChoices(param.Parameterized):
         objects=["weights", "plain", "materials"],
         doc="What the moving body's colours tell.",
     )
-    materials: Any = param.Parameter(
-        None, doc="(mesh, what shows it in its file's materials or None), or None so far."
-    )
+    materials: Any = param.Parameter(None, doc="(mesh, its `Textures` or None), or None so far.")
     rival: Any = param.Selector(
         default="alone",
         objects=["alone", "ghost", "beside"],
