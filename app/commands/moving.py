@@ -236,12 +236,17 @@ class Hand:
 
     def _show(self, corrections: Corrections) -> None:
         """Show about what the weights will be, and when the hand rests what they are."""
-        session, state = self._session, self._session.state
-        if asked(state) != session.built_for:
+        state = self._session.state
+        if asked(state) != self._session.built_for:
             return  # what was let go before is about to be bound
         rig = applied(state.own, corrections)
         before = state.binding if state.dragged is None else state.dragged.binding
+        self._begin(rig, corrections)
         state.dragged = Dragged(rig, before)  # the bones follow at once
+
+    def _begin(self, rig: Rig, corrections: Corrections) -> None:
+        """Bind off the page's thread: first nearly, and exactly after a pause."""
+        session, state = self._session, self._session.state
         newest = session.tasks.newest("moving")
         if self._binds:  # the hand did not rest after all, and colours must not wait for that
             newest.cancel()

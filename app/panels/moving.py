@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import panel_material_ui as pmui
+from panel.io import hold
 
 from cutcell.checks import shown
 from cutcell.corrections import JointCorrection
@@ -50,8 +51,10 @@ def place(session: Session) -> list[Any]:
             return
         showing[0] = True
         try:
-            for field, value in zip(fields, rig.skeleton.joints[state.joint].tolist(), strict=True):
-                field.value = NUMBER % value
+            place = rig.skeleton.joints[state.joint].tolist()
+            with hold():  # one message for all three: each alone keeps a dragged joint waiting
+                for field, value in zip(fields, place, strict=True):
+                    field.value = NUMBER % value
             mirrored.visible = moving.partner_of(session) is not None
             back.disabled = _moved(state) is None
         finally:

@@ -230,7 +230,7 @@ def bone_distances(
         of_aimed = find_sources(graph, bones.some(aimed), samples, grid, contraction)
         sources = sources.replaced(aimed, of_aimed)
     given = graph, contraction, sources, bones
-    by_node = joint_paths(*given, targets, nearest_joints, within, progress)
+    by_node = joint_paths(*given, targets, nearest_joints, within, progress=progress)
     measured, at_welded = np.unique(bones.joint), by_node
     if len(measured) < len(skeleton.joints):
         at_welded = np.full((len(skeleton.joints), len(targets)), np.inf)
@@ -315,12 +315,13 @@ def joint_paths(
     targets: NDArray[np.int32],
     nearest_joints: int | None = None,
     within: float = np.inf,
+    least: NDArray[np.float64] | None = None,
     progress: Progress = silent,
 ) -> NDArray[np.float64]:
     """Compute distances of the joints that have bones, in ascending order, to target nodes."""
     if contraction is not None:
-        known = graph, contraction, sources, bones, targets, nearest_joints, within
-        return any_angle_paths(*known, progress=progress)
+        known = graph, contraction, sources, bones, targets, nearest_joints, within, least
+        return any_angle_paths(*known, progress)
     joints, rank = np.unique(bones.joint, return_inverse=True)
     owner = rank[sources.bone].astype(np.int32)
     # Sources of a joint are those of all its bones; if bones share a node, of the nearest one.

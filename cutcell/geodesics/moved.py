@@ -5,68 +5,94 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..method import Method
 from ..rig import Skeleton
-from .any_angle import ON_BONE
+from .any_angle import ON_BONE, least_distances
 from .bone_extents import fit_bones
 from .bones import Bones, bone_segments, find_sources
 from .distances import BoneDistances, bone_distances, joint_paths, nodes_on_mesh, sorted_nodes
 from .fallback import REACHED
 
 
-def moved_distances(
-    known: BoneDistances, skeleton: Skeleton, method: Method, within: float
-) -> BoneDistances:
-    """Measure distances again from joints whose bones are elsewhere; the others keep theirs.
+class MovedDistances:
+    """Measures distances again from joints whose bones are elsewhere; the others keep theirs.
 
     With connectivity 6 and 26 they are those of `bone_distances`, but for leaf bones, which are
     carried along as they are and not aimed again, and for vertices that no path reaches, which keep
-    what they had. With any angle, a vertex that a joint left keeps
-    to the others that it had, where there may be one that is nearer now.
+    what they had. With any angle, paths end where the distance of the nearest joint was `within`
+    times smaller; a vertex that a joint left keeps to the others that it had, where there may be
+    one that is nearer now, and one that comes must be nearer than one that was there.
 
     Parameters
     ----------
     known : BoneDistances
-        Of the same graph, method, and joints that may carry weight; not of vertices that may
-        follow different joints at one place.
-    skeleton : Skeleton
+        Before anything moved; not of vertices that may follow different joints at one place.
     method : Method
+        What they were measured by.
     within : float
         As of `bone_distances`.
-
-    Returns
-    -------
-    BoneDistances
     """
-    graph = known.graph
-    bones = _carried(known, skeleton, method)
-    if bones is None:  # some continue others now that did not
-        return bone_distances(
-            graph, skeleton, method=method, nearest_joints=known.nearest_joints, within=within
+
+    def __init__(self, known: BoneDistances, method: Method, within: float) -> None:
+        self._known, self._method, self._within = known, method, within
+        self._least: NDArray[np.float64] | None = None
+        if known.contraction is not None:
+            before = known.contraction, known.sources, known.bones
+            self._least = least_distances(known.graph, *before)
+        self._farthest = np.where(np.isinf(known.at_welded), 0, known.at_welded).max(axis=0)
+        self._reached = np.zeros(known.graph.first_point, np.bool_)
+        self._reached[known.graph.vertex_node] = known.fallback == REACHED
+
+    def measure(self, skeleton: Skeleton) -> BoneDistances:
+        """Return the distances with the joints where they are in a skeleton.
+
+        Joints that may carry weight are the same ones as before.
+        """
+        known, method, within = self._known, self._method, self._within
+        graph = known.graph
+        bones = _carried(known, skeleton, method)
+        if bones is None:  # some continue others now that did not
+            nearest = known.nearest_joints
+            return bone_distances(
+                graph, skeleton, method=method, nearest_joints=nearest, within=within
+            )
+        old = known.bones
+        changed = ((bones.start != old.start) | (bones.end != old.end)).any(axis=1)
+        joints = np.unique(bones.joint[changed])
+        if not len(joints):
+            return known
+        some = np.isin(bones.joint, joints)
+        found = find_sources(
+            graph, bones.some(some), method.samples, sorted_nodes(graph), known.contraction
         )
-    old = known.bones
-    changed = ((bones.start != old.start) | (bones.end != old.end)).any(axis=1)
-    joints = np.unique(bones.joint[changed])
-    if not len(joints):
-        return known
-    some = np.isin(bones.joint, joints)
-    grid = sorted_nodes(graph)
-    found = find_sources(graph, bones.some(some), method.samples, grid, known.contraction)
-    targets = nodes_on_mesh(graph)
-    fresh = joint_paths(graph, known.contraction, found, bones.some(some), targets)
-    node = graph.vertex_node
-    reached = np.zeros(len(targets), np.bool_)
-    reached[node] = known.fallback == REACHED
-    at_welded = known.at_welded.copy()
-    at_welded[np.ix_(joints, reached)] = fresh[:, reached]
-    if known.nearest_joints is not None:
-        least = np.maximum(at_welded.min(axis=0), ON_BONE / graph.lattice.resolution)
-        rows = at_welded[joints]
-        rows[(rows > within * least) & reached] = np.inf
-        at_welded[joints] = rows
-    sources = known.sources.replaced(some, found)
-    return replace(known, at_welded=at_welded, bones=bones, sources=sources)
+        given = graph, known.contraction, found, bones.some(some), nodes_on_mesh(graph)
+        nearest = known.nearest_joints and min(known.nearest_joints, len(joints))
+        fresh = joint_paths(*given, nearest, within, self._least)
+        return replace(
+            known,
+            at_welded=self._merged(joints, fresh),
+            bones=bones,
+            sources=known.sources.replaced(some, found),
+        )
+
+    def _merged(self, joints: NDArray[np.intp], fresh: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the distances of all joints, from what was known and what was measured of some."""
+        known, merged = self._known, self._known.at_welded.copy()
+        before = merged[joints]
+        after = np.where(self._reached, fresh, before)
+        if known.nearest_joints is not None:
+            after[(after > self._farthest) & np.isinf(before)] = np.inf
+        merged[joints] = after
+        if known.nearest_joints is not None:
+            least = merged.min(axis=0)
+            alone = np.isinf(least)
+            after[:, alone] = before[:, alone]
+            least = np.maximum(least, ON_BONE / known.graph.lattice.resolution)
+            after[(after > self._within * least) & self._reached] = np.inf
+            merged[joints] = after
+        return merged
 
 
 def _carried(known: BoneDistances, skeleton: Skeleton, method: Method) -> Bones | None:

@@ -92,6 +92,12 @@ class Diffusion:
     ) -> NDArray[np.float64]:
         """Return the equilibrium of weights p, shape (k, j); rows sum to one before and after."""
         spread = self.equilibrium(weights, tell)
+        self.normalise(spread, weights)
+        tell(1.0)
+        return spread
+
+    def normalise(self, spread: NDArray[np.float64], weights: NDArray[np.float64]) -> None:
+        """Let the rows of an equilibrium of weights sum to one, in place."""
 
         def normalise(part: slice) -> None:
             total = spread[part].sum(axis=1, keepdims=True)
@@ -103,10 +109,11 @@ class Diffusion:
                 own = weights[part].copy()
                 spread[part] = np.divide(spread[part], total, out=own, where=known)
 
-        in_threads(normalise, parts(len(spread)), lambda done: tell(1.0))
-        return spread
+        in_threads(normalise, parts(len(spread)))
 
-    def equilibrium(self, weights: NDArray[np.float64], tell: Tell) -> NDArray[np.float64]:
+    def equilibrium(
+        self, weights: NDArray[np.float64], tell: Tell = lambda done: None
+    ) -> NDArray[np.float64]:
         """Return the equilibrium, where rounding leaves rows that do not quite sum to one."""
         spread = np.zeros_like(weights)
         self.solve(weights, np.flatnonzero(weights.max(axis=0)), spread, tell)
@@ -117,7 +124,7 @@ class Diffusion:
         weights: NDArray[np.float64],
         joints: NDArray[np.intp],
         spread: NDArray[np.float64],
-        tell: Tell,
+        tell: Tell = lambda done: None,
     ) -> None:
         """Write the equilibrium of some joints' weights into their columns of `spread`."""
         groups = [joints[i : i + RIGHT_SIDES] for i in range(0, len(joints), RIGHT_SIDES)]

@@ -33,9 +33,10 @@ from .correct import (
     locked_by,
     overruled,
 )
+from .division import facing
 from .kernel import paper_kernel
 from .locks import lock_joints
-from .rig_falloff import facing, permitted, rig_weights
+from .rig_falloff import permitted, rig_weights
 from .surface_operators import SurfaceOperators
 from .weights import keep_strongest, skinning_weights
 

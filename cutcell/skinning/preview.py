@@ -2,21 +2,23 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..corrections import Corrections
-from ..geodesics.moved import moved_distances
+from ..geodesics import BoneDistances
+from ..geodesics.moved import MovedDistances
 from ..method import Method
-from ..progress import Tell
 from ..rig import Rig
+from .adjustments import Adjustments
 from .bind import Binding
 from .correct import adjustments_of, joints_measured
-from .diffusion import Diffusion
+from .division import Division
+from .rig_falloff import diffusion_of, subtract_tail, with_rigid_parts
 from .surface_operators import SurfaceOperators
-from .weights import skinning_weights
+from .weights import keep_strongest, of_vertices, skinning_weights
 
 UNSEEN = 1e-3
 """Weights that differ by less have colours that differ by less than one of their 256 shades."""
@@ -25,8 +27,8 @@ UNSEEN = 1e-3
 class Preview:
     """Weights of a rig whose joints are dragged, from those that were bound before.
 
-    Only the distances of bones that changed are measured. The matrix of the diffusion is that of
-    the first place, and joints whose share of the surface has hardly changed are not spread again.
+    Only the distances of bones that changed are measured; with the falloff "rig" only the surface
+    that they reach is divided again, and only joints whose share of it has changed are spread.
     `cutcell.bind` gives the exact weights.
 
     Parameters
@@ -44,39 +46,53 @@ class Preview:
     ) -> None:
         self._binding, self._method = binding, method
         self._adjustments = adjustments_of(rig, binding.graph, corrections)
-        self._within = joints_measured(corrections, method)[1]
-        self._diffusion: Diffusion | None = None
+        within = joints_measured(corrections, method)[1]
+        self._distances = MovedDistances(binding.distances, method, within)
+        self._falloff: _NearlyAsBefore | None = None
         if method.falloff == "rig":
-            depth = binding.distances.at_welded.min(axis=0)
-            surface = SurfaceOperators.of(binding.graph)
-            self._diffusion = _Repeated.over(surface, depth, binding.graph.lattice.resolution)
+            self._falloff = _NearlyAsBefore(binding.distances, self._adjustments)
 
     def bind(self, rig: Rig) -> Binding:
         """Return about what `bind` would for the rig with its joints elsewhere."""
-        distances = moved_distances(
-            self._binding.distances, rig.skeleton, self._method, self._within
-        )
-        weights = skinning_weights(
-            distances,
-            method=self._method,
-            adjustments=self._adjustments,
-            diffusion=self._diffusion,
-        )
+        distances = self._distances.measure(rig.skeleton)
+        if self._falloff is None:
+            weights = skinning_weights(
+                distances, method=self._method, adjustments=self._adjustments
+            )
+        else:
+            kept = self._method.max_influences, self._method.threshold
+            welded = keep_strongest(distances, self._falloff.weights(distances), *kept)
+            weights = of_vertices(distances.graph, welded)
         return replace(self._binding, distances=distances, weights=weights)
 
 
-@dataclass(frozen=True, eq=False)
-class _Repeated(Diffusion):
-    """A diffusion that is solved again only for joints whose part of the right side has changed."""
+class _NearlyAsBefore:
+    """The falloff for rigs where few distances have changed a little.
 
-    _known: list[NDArray[np.float64]] = field(default_factory=list)
-    """Right sides, shape (k, j), and the equilibrium of each column."""
+    The matrix of the diffusion is as it was, and joints whose share of the surface has hardly
+    changed are not spread again.
 
-    def equilibrium(self, weights: NDArray[np.float64], tell: Tell) -> NDArray[np.float64]:
-        if not self._known:
-            self._known.extend([weights.copy(), super().equilibrium(weights, tell)])
-        right, spread = self._known
-        changed = np.flatnonzero(np.abs(weights - right).max(axis=0) > UNSEEN)
-        right[:, changed] = weights[:, changed]
-        self.solve(right, changed, spread, tell)
-        return spread.copy()
+    Parameters
+    ----------
+    distances : BoneDistances
+        As they were.
+    adjustments : Adjustments or None
+    """
+
+    def __init__(self, distances: BoneDistances, adjustments: Adjustments | None) -> None:
+        self._surface = surface = SurfaceOperators.of(distances.graph)
+        self._adjustments = adjustments
+        self._division = Division.by(distances, surface, adjustments)
+        self._diffusion = diffusion_of(distances, surface)
+        self._spread = self._diffusion.equilibrium(self._division.weights)
+
+    def weights(self, distances: BoneDistances) -> NDArray[np.float64]:
+        """Return the weights (k, j) of welded vertices by the distances of now."""
+        before, spread = self._division, self._spread.copy()
+        division = Division.by(distances, self._surface, self._adjustments, before)
+        change = np.abs(division.weights - before.weights).max(axis=0)
+        self._diffusion.solve(division.weights, np.flatnonzero(change > UNSEEN), spread)
+        self._diffusion.normalise(spread, division.weights)
+        weights = with_rigid_parts(division, spread, self._adjustments)
+        subtract_tail(weights)
+        return weights

@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 
 from ..errors import ParameterError
 from ..geodesics import BoneDistances
+from ..graph import CutCellGraph
 from ..method import ANIMATION, Method, MethodName, WeightOptions, method_of
-from ..progress import Progress, share_of, silent
+from ..progress import Progress, Tell, share_of, silent
 from ..threads import in_threads, parts, threads
 from .adjustments import Adjustments
-from .diffusion import Diffusion
 from .kernel import paper_kernel, pruned_paper_kernel
 from .prune import A_PART, prune
 from .rig_falloff import permitted, rig_weights
@@ -27,7 +27,6 @@ def skinning_weights(
     method: Method | MethodName = ANIMATION,
     allowed: NDArray[np.bool_] | None = None,
     adjustments: Adjustments | None = None,
-    diffusion: Diffusion | None = None,
     progress: Progress = silent,
     **options: Unpack[WeightOptions],
 ) -> NDArray[np.float64]:
@@ -43,9 +42,6 @@ def skinning_weights(
         Which joints each vertex may follow; see `Rig.allowed`.
     adjustments : Adjustments, optional
         What `bind` makes of `Corrections`.
-    diffusion : Diffusion, optional
-        To spread weights of the falloff "rig" by, in place of that of these distances: where a
-        joint has moved a little since, nearly the same.
     progress : callable
         See `cutcell.progress`; the stage is called "weights".
     **options
@@ -86,9 +82,8 @@ def skinning_weights(
             weights = paper_kernel(distances.joint, graph.lattice.diagonal, alpha)
         else:
             surface = SurfaceOperators.of(graph)
-            weights = rig_weights(
-                distances, surface, tell, adjustments=adjustments, diffusion=diffusion
-            )[graph.vertex_node]
+            weights = rig_weights(distances, surface, tell, adjustments=adjustments)
+            weights = weights[graph.vertex_node]
         return prune(permitted(weights, distances.joint, allowed), *kept)
     if alpha is not None:
         welded = pruned_paper_kernel(distances.at_welded, graph.lattice.diagonal, alpha, *kept)
@@ -98,14 +93,20 @@ def skinning_weights(
             SurfaceOperators.of(graph),
             share_of(tell, 0, 0.8),
             adjustments=adjustments,
-            diffusion=diffusion,
         )
         welded = prune(welded, *kept, share_of(tell, 0.8, 0.9))
+    return of_vertices(graph, welded, share_of(tell, 0.9, 1))
+
+
+def of_vertices(
+    graph: CutCellGraph, welded: NDArray[np.float64], tell: Tell = lambda done: None
+) -> NDArray[np.float64]:
+    """Return the weights (n, j) of all vertices, from those (k, j) of welded ones."""
     weights = np.empty((len(graph.vertex_node), welded.shape[1]))
     in_threads(
         lambda part: welded.take(graph.vertex_node[part], 0, out=weights[part], mode="clip"),
         parts(len(weights), threads() + weights.size // A_PART),
-        share_of(tell, 0.9, 1),
+        tell,
     )
     return weights
 

@@ -8,7 +8,7 @@ import pytest
 
 import cutcell
 from cutcell import ParameterError
-from cutcell.skinning.rig_falloff import POWER
+from cutcell.skinning.division import POWER
 from cutcell_assets import demo_path
 
 RIG = cutcell.load(demo_path("robot"))

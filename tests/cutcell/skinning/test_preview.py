@@ -2,10 +2,11 @@
 
 import numpy as np
 import pytest
+import trimesh
 
 import cutcell
-from cutcell import Corrections
-from cutcell.geodesics.moved import moved_distances
+from cutcell import Corrections, Rig, Skeleton, TriangleMesh
+from cutcell.geodesics.moved import MovedDistances
 from cutcell.skinning.preview import Preview
 
 
@@ -41,9 +42,20 @@ def test_distances_along_edges_are_those_of_a_measurement_from_all_joints(robot)
     method = cutcell.ANIMATION.with_options(connectivity=6, resolution=24, leaf="point")
     binding = cutcell.bind(robot, method=method)
     other = moved(robot, "forearm.L", [0.02, 0.03, 0]).skeleton
-    within = method.reach_needed
-    found = moved_distances(binding.distances, other, method, within)
+    measured = MovedDistances(binding.distances, method, method.reach_needed)
+    found = measured.measure(other)
     exact = cutcell.bone_distances(binding.graph, other, method=method)
     reached = exact.fallback == 0  # the others keep the straight distances that they had
     np.testing.assert_allclose(found.joint[:, reached], exact.joint[:, reached], rtol=0, atol=1e-12)
-    assert moved_distances(binding.distances, robot.skeleton, method, within) is binding.distances
+    assert measured.measure(robot.skeleton) is binding.distances
+
+
+def test_a_part_keeps_the_only_joint_that_reaches_it():
+    box = trimesh.creation.box((1, 1, 1)).subdivide().subdivide()
+    mesh = trimesh.util.concatenate([box, box.copy().apply_translation([3, 0, 0])])
+    joints = [[0, 0, 0], [3, 0, 0]]
+    rig = Rig(TriangleMesh(mesh.vertices, mesh.faces), Skeleton(joints, [-1, -1]))
+    binding = cutcell.bind(rig, 24)
+    preview = Preview(rig, binding, cutcell.ANIMATION.with_options(resolution=24), Corrections())
+    weights = preview.bind(rig.with_joints([[0, 0, 0], [0.2, 0, 0]])).weights
+    np.testing.assert_allclose(weights[len(box.vertices) :], np.tile([0.0, 1.0], (98, 1)))

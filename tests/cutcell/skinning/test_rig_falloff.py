@@ -7,10 +7,10 @@ import cutcell
 from cutcell import Rig, Skeleton, TriangleMesh, bind
 from cutcell.compare import compare
 from cutcell.metrics import deformation_error, vertex_shares, weight_l1
-from cutcell.skinning import rig_falloff
+from cutcell.skinning import division
 from cutcell.skinning.diffusion import SHARPNESS, Diffusion
+from cutcell.skinning.division import FACING_LEAST, _facing
 from cutcell.skinning.laplacian import cotangent_laplacian, vertex_areas
-from cutcell.skinning.rig_falloff import FACING_LEAST, _facing
 from cutcell.skinning.surface_operators import SurfaceOperators
 from tests import meshes
 from tests.bars import grid_box
@@ -139,6 +139,6 @@ def test_surface_beyond_the_radius_of_a_bone_is_the_next_ones(monkeypatch):
     rig = Rig(TriangleMesh(vertices, faces), skeleton)
     chin = head & (vertices[:, 0] < 0.8) & (vertices[:, 1] > 0.6)
     with_rule = bind(rig, 48).weights[chin, 2]
-    monkeypatch.setattr(rig_falloff, "RADIUS_FACTOR", np.inf)
+    monkeypatch.setattr(division, "RADIUS_FACTOR", np.inf)
     assert with_rule.mean() > bind(rig, 48).weights[chin, 2].mean() + 0.1
     assert with_rule.min() > 0.6
