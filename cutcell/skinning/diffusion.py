@@ -115,7 +115,7 @@ class Diffusion:
         self, weights: NDArray[np.float64], tell: Tell = lambda done: None
     ) -> NDArray[np.float64]:
         """Return the equilibrium, where rounding leaves rows that do not quite sum to one."""
-        spread = np.zeros_like(weights)
+        spread = np.zeros(weights.shape)
         self.solve(weights, np.flatnonzero(weights.max(axis=0)), spread, tell)
         return spread
 
@@ -126,7 +126,7 @@ class Diffusion:
         spread: NDArray[np.float64],
         tell: Tell = lambda done: None,
     ) -> None:
-        """Write the equilibrium of some joints' weights into their columns of `spread`."""
+        """Write the equilibrium of some joints' weights into their columns, zeros before."""
         groups = [joints[i : i + RIGHT_SIDES] for i in range(0, len(joints), RIGHT_SIDES)]
         shares = Shares(lambda stage, done: tell(done), "weights", len(groups))
 
@@ -145,10 +145,10 @@ class Diffusion:
     ) -> None:
         """Solve for the weights of at most `RIGHT_SIDES` joints, into `spread`."""
         if isinstance(self.solver, Multigrid):
-            chosen = np.ix_(self.order, joints)
-            right = np.zeros((len(weights), RIGHT_SIDES))
-            right[:, : len(joints)] = weights[chosen] * self.screening[self.order, None]
-            spread[chosen] = np.maximum(self.solver.solve(right, tell)[:, : len(joints)], 0.0)
+            right = _right_sides(self.order, self.screening, weights, joints)
+            rows, solution = self.solver.solve(right, tell)
+            found = np.maximum(solution[:, : len(joints)], 0.0)
+            spread[self.order[rows][:, None], joints] = found
         else:
             known = *self.solver, self.order, self.screening, weights, joints, spread
             watched(lambda pace: _solve(*known, pace), 2 * len(weights), tell)
@@ -157,12 +157,19 @@ class Diffusion:
 @compiled
 def _solve(begin, rows, values, pivots, order, screening, weights, joints, spread, pace):
     """Solve for the weights of some joints, into `spread`; see `substitute` for `pace`."""
+    right = _right_sides(order, screening, weights, joints)
+    substitute(begin, rows, values, pivots, right, pace)
+    for k in range(len(order)):
+        for i in range(len(joints)):
+            spread[order[k], joints[i]] = max(right[k, i], 0.0)
+
+
+@compiled
+def _right_sides(order, screening, weights, joints):
+    """Return the right sides, shape (k, RIGHT_SIDES), of the equations of some joints' weights."""
     right = np.zeros((len(order), RIGHT_SIDES))
     for k in range(len(order)):
         v = order[k]
         for i in range(len(joints)):
             right[k, i] = screening[v] * weights[v, joints[i]]
-    substitute(begin, rows, values, pivots, right, pace)
-    for k in range(len(order)):
-        for i in range(len(joints)):
-            spread[order[k], joints[i]] = max(right[k, i], 0.0)
+    return right

@@ -35,8 +35,8 @@ FIRST_RATE, SLOWEST_RATE = 0.5, 0.97
 COARSE_TOLERANCE = 10 * TOLERANCE
 """The same for solutions of coarser levels, where a finer one begins."""
 NEGLIGIBLE = TOLERANCE / 2
-"""What is below this in the solution of the coarser level, and would not be changed by more by its
-neighbours, is not improved on a finer one."""
+"""What is below this in the solution of the coarser level, and would be by itself, is zero on the
+finer one."""
 LEAST = 1e-300
 """Instead of zero, where a right side is zero."""
 UNGROUPED = -(2**31)
@@ -157,29 +157,42 @@ class Multigrid:
 
     def solve(
         self, right: NDArray[np.float64], tell: Tell = lambda done: None
-    ) -> NDArray[np.float64]:
+    ) -> tuple[NDArray[np.intp], NDArray[np.float64]]:
         """Solve for right sides, shape (k, RIGHT_SIDES), of solutions with values from 0 to 1.
 
         The coarser levels are solved first, in the same way. Then the solution is improved where
         it is not negligible: weights of a joint are zero on most of a character.
+
+        Returns
+        -------
+        array, shape (r,)
+            The unknowns where it is not negligible.
+        array, shape (r, RIGHT_SIDES)
+            The solution there.
         """
         return self._solve(right, TOLERANCE, tell)
 
     def _solve(
         self, right: NDArray[np.float64], tolerance: float, tell: Tell
-    ) -> NDArray[np.float64]:
+    ) -> tuple[NDArray[np.intp], NDArray[np.float64]]:
         if not self.levels:
-            return self.coarsest.solve(right)
+            return np.arange(len(right)), self.coarsest.solve(right)
         level, *coarser = self.levels
         below = Multigrid(coarser, self.coarsest)
         restricted = _product(level.restriction, right)
-        coarse = below._solve(restricted, COARSE_TOLERANCE, lambda done: tell(0.0))
-        x = _product(level.interpolation, coarse)
-        residual = right - _product(level.matrix, x)
-        change = residual * level.inverse[:, None]
-        rows = np.flatnonzero((np.maximum(np.abs(x), np.abs(change)) > NEGLIGIBLE).any(axis=1))
-        x[rows] += self._some(rows)._improve(residual[rows], tolerance, tell)
-        return x
+        coarse = np.zeros_like(restricted)
+        known, coarse_there = below._solve(restricted, COARSE_TOLERANCE, lambda done: tell(0.0))
+        coarse[known] = coarse_there
+        guess = _product(level.interpolation, coarse)
+        rows = np.flatnonzero(_matters(guess, right, level.inverse))
+        x, there = guess[rows], self._some(rows)
+        residual = right[rows] - _product(there.matrix, x)
+        return rows, x + there._improve(residual, tolerance, tell)
+
+    @property
+    def matrix(self) -> csr_array:
+        """The matrix itself."""
+        return (self.levels or [self.coarsest])[0].matrix
 
     def _some(self, rows: NDArray[np.intp]) -> Multigrid:
         """Return the equation for some unknowns, the others being known."""
@@ -196,7 +209,7 @@ class Multigrid:
 
         Steps become smaller by about the same factor each: so what is left is a geometric series.
         """
-        matrix = self.levels[0].matrix
+        matrix = self.matrix
         x, direction = np.zeros_like(residual), np.zeros_like(residual)
         before, last = np.ones(RIGHT_SIDES), np.inf
         for count in range(MOST_STEPS):
@@ -318,6 +331,17 @@ def _multiply(start, column, value, x, product):
         for e in range(start[v], start[v + 1]):
             here = minus(here, -value[e], row_of(x, column[e]))
         set_row(product, v, here)
+
+
+@compiled
+def _matters(guess, right, inverse):
+    """Tell which rows of a solution, (k,), are not negligible: by a guess, or by their own side."""
+    matters = np.empty(len(guess), np.bool_)
+    for v in range(len(guess)):
+        matters[v] = False
+        for i in range(RIGHT_SIDES):
+            matters[v] |= max(abs(guess[v, i]), abs(right[v, i]) * inverse[v]) > NEGLIGIBLE
+    return matters
 
 
 def _dot(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:

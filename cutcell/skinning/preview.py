@@ -91,7 +91,9 @@ class _NearlyAsBefore:
         before, spread = self._division, self._spread.copy()
         division = Division.by(distances, self._surface, self._adjustments, before)
         change = np.abs(division.weights - before.weights).max(axis=0)
-        self._diffusion.solve(division.weights, np.flatnonzero(change > UNSEEN), spread)
+        changed = np.flatnonzero(change > UNSEEN)
+        spread[:, changed] = 0
+        self._diffusion.solve(division.weights, changed, spread)
         self._diffusion.normalise(spread, division.weights)
         weights = with_rigid_parts(division, spread, self._adjustments)
         subtract_tail(weights)

@@ -45,7 +45,7 @@ def prune(
     array, shape (n, j)
     """
     most = weights.shape[1] if max_influences is None else max_influences
-    pruned = np.zeros_like(weights, order="C")
+    pruned = np.zeros(weights.shape)
     in_threads(
         lambda part: _prune(weights[part], most, threshold, priority, pruned[part]),
         parts(len(weights), threads() + weights.size // A_PART),

@@ -84,14 +84,22 @@ def non_manifold():
     return points, np.concatenate([faces, other, faces[:5_000]])
 
 
+def solution(matrix, right, tell=lambda done: None):
+    """Return what multigrid finds, with zeros where it is negligible."""
+    found = np.zeros_like(right)
+    rows, there = Multigrid.of(matrix).solve(right, tell)
+    found[rows] = there
+    return found
+
+
 def test_three_levels_of_a_large_surface_take_few_steps():
     points, faces = grid(450)
     matrix, _ = equation_of(points, faces)
     x, y, _ = points.T
     known = np.stack([(1 + np.sin(k * x + y)) / 2 for k in range(RIGHT_SIDES)], axis=1)
-    multigrid, told = Multigrid.of(matrix), []
-    assert len(multigrid.levels) == 2
-    assert np.abs(multigrid.solve(matrix @ known, told.append) - known).max() < SAME
+    told = []
+    assert len(Multigrid.of(matrix).levels) == 2
+    assert np.abs(solution(matrix, matrix @ known, told.append) - known).max() < SAME
     assert len(told) < 15, "on all levels together"
 
 
@@ -100,13 +108,13 @@ def test_hard_shapes_are_solved_as_well(shape):
     points, faces = shape()
     assert len(points) > COARSEST
     matrix, right = equation_of(points, faces)
-    difference = Multigrid.of(matrix).solve(right) - Coarsest.of(matrix).solve(right)
+    difference = solution(matrix, right) - Coarsest.of(matrix).solve(right)
     assert np.abs(difference).max() < SAME
 
 
 def test_nothing_to_solve_for_is_zero():
     matrix, right = equation_of(*grid(160))
-    assert not Multigrid.of(matrix).solve(np.zeros_like(right)).any()
+    assert not solution(matrix, np.zeros_like(right)).any()
 
 
 def test_progress_can_stop_it():
