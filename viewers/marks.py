@@ -12,6 +12,10 @@ from .description import Actor
 from .palette import MARK
 from .skin import skin_of_weights
 
+DOT = 4.0
+"""How wide the marks of many vertices are, in pixels of the screen."""
+LIFT = 0.0008
+"""Of the diagonal of the character's box: how far from the surface they are."""
 BALL = 13.0
 """How wide a vertex's mark is, in pixels of the screen."""
 TUBE = 0.0035
@@ -34,6 +38,23 @@ def vertex_mark(rig: Rig, vertex: int, weights: ArrayLike | None = None) -> Acto
         width=BALL,
         skin=skin,
         overlay=True,
+        clipped=False,
+    )
+
+
+def vertex_dots(rig: Rig, vertices: ArrayLike, weights: ArrayLike | None = None) -> Actor:
+    """Return dots on some vertices, shape (v,), that follow their weights (n, j)."""
+    chosen = np.asarray(vertices)
+    skin = None if weights is None else skin_of_weights(np.asarray(weights, float)[chosen])
+    points = to_scene(rig, rig.mesh.vertices)
+    lift = LIFT * _size(rig) * smooth_normals(points, rig.mesh.faces)[chosen]
+    return Actor(
+        "points",
+        (points[chosen] + lift).astype(np.float32),
+        np.arange(len(chosen), dtype=np.int32)[:, None],
+        color=MARK,
+        width=DOT,
+        skin=skin,
         clipped=False,
     )
 

@@ -11,14 +11,24 @@ from numpy.typing import NDArray
 from cutcell.errors import CutcellError
 from cutcell.skinning.correct import locked_by
 from cutcell.skinning.stroke import Brush, PaintSurface, Stroke
+from cutcell_viewers.skin import skin_of_weights
 
 from ..scenes.weights import painted_colors
 from ..state import State
-from ..state.brush import LEAST_RADIUS, LEAST_STRENGTH, MOST_RADIUS, PAINTED
+from ..state.brush import (
+    LEAST_RADIUS,
+    LEAST_STRENGTH,
+    MOST_RADIUS,
+    PAINTED,
+    Selection,
+    selected,
+)
 from .correct import check_alone, correct
 from .moving import mirror_of, plane_in_scene
 from .session import Session
 
+WITHOUT_JOINT = ("smooth", "select")
+"""Modes in which the brush does the same to all joints."""
 STEPS = 10_000
 """Weights are kept in as many steps from 0 to 1: files of corrections stay short."""
 LARGER = 1.25
@@ -43,7 +53,7 @@ def take_up(session: Session) -> None:
     state = session.state
     if not state.brush:
         return
-    shown = state.weights_shown if state.brush_mode == "smooth" else "bone"
+    shown = state.weights_shown if state.brush_mode in WITHOUT_JOINT else "bone"
     state.param.update(
         joint_handle=False, weights_of="ours", weights_shown=shown, pose_colors="weights",
         heat=False,
@@ -96,10 +106,29 @@ def tell_brush(session: Session) -> None:
         # A pose is seldom mirrored: the other brush is elsewhere then than its image.
         posed = state.panel == "pose" and state.posed
         mirror = mirror_of(session) if state.brush_mirrored and not posed else None
-        if mirror is not None and (state.brush_mode == "smooth" or mirror.joint[state.joint] >= 0):
+        alike = state.brush_mode in WITHOUT_JOINT
+        if mirror is not None and (alike or mirror.joint[state.joint] >= 0):
             part["mirror"] = plane_in_scene(state.rig.world, mirror)
     if session.view.told("brush") != part:
         session.view.tell(brush=part)
+
+
+def select(session: Session, chosen: NDArray[np.bool_]) -> None:
+    """Limit strokes to some vertices, shape (n,), bool; not at all where there are none."""
+    state = session.state
+    state.brush_selection = Selection(state.rig.mesh, chosen) if chosen.any() else None
+
+
+def clear_selection(session: Session) -> None:
+    """Let strokes go anywhere."""
+    session.state.brush_selection = None
+
+
+def invert_selection(session: Session) -> None:
+    """Limit strokes to what they could not change."""
+    chosen = selected(session.state)
+    if chosen is not None:
+        select(session, ~chosen)
 
 
 class Hand:
@@ -114,6 +143,8 @@ class Hand:
         self._session = session
         self._stroke: Stroke | None = None
         self._of: Any = None
+        self._selects: bool | None = None
+        self._selected: NDArray[np.bool_] | None = None
 
     def paint(self, message: dict[str, Any]) -> None:
         """Go on with a stroke, show what it makes of the weights, and take that when it ends.
@@ -136,6 +167,9 @@ class Hand:
         corners = points[:, :3].astype(np.intp)
         if len(points) and 0 <= corners.min() <= corners.max() < len(state.rig.mesh.vertices):
             stroke.pass_over(corners, points[:, 3:])
+        if self._selects is not None:
+            self._select(stroke, message)
+            return
         vertices, rows = stroke.painted()
         if message.get("cancelled"):
             self._stroke = None
@@ -153,7 +187,11 @@ class Hand:
             return
         mesh = state.rig.mesh
         surface = session.memo("paint surface", (mesh,), lambda: PaintSurface(mesh))
+        self._selects, within = None, selected(state)
         wanted: Any = mode or state.brush_mode
+        if state.brush_mode == "select":
+            self._selects, self._selected = mode != "subtract", within
+            wanted, within = "smooth", None
         try:
             brush = Brush(radius_of(state), wanted, state.brush_strength, state.brush_value)
             self._stroke = Stroke(
@@ -165,14 +203,32 @@ class Hand:
                 mirror=mirror_of(session) if state.brush_mirrored else None,
                 locked=locked_by(state.corrections),
                 max_influences=state.max_influences,
+                within=within,
             )
         except CutcellError as error:
             session.fail(error)
         self._of = state.binding
 
+    def _select(self, stroke: Stroke, message: dict[str, Any]) -> None:
+        """Add what the stroke touched to the selection as it was before it, or take it away."""
+        session, before = self._session, self._selected
+        count = len(session.state.rig.mesh.vertices)
+        chosen = np.zeros(count, np.bool_) if before is None else before.copy()
+        if not message.get("cancelled"):
+            chosen[stroke.touched()] = self._selects
+        select(session, chosen)
+        session.view.answer(painted={})
+        if message.get("cancelled") or message.get("done"):
+            self._stroke = None
+
     def _show(self, vertices: NDArray, rows: NDArray) -> None:
+        found: dict[str, Any]
         colors = painted_colors(self._session.state, vertices, rows)
         found = {name: np.ascontiguousarray(some).ravel() for name, some in colors.items()}
+        if self._session.state.panel == "pose" and len(vertices):
+            skin = skin_of_weights(rows)
+            influences = {"joints": skin.joints.ravel(), "weights": skin.weights.ravel()}
+            found |= {**influences, "count": skin.joints.shape[1]}
         self._session.view.answer(painted={"vertices": vertices.astype(np.uint32), **found})
 
     def _take(self, vertices: NDArray, rows: NDArray) -> None:

@@ -14,7 +14,8 @@ from .session import Session
 def watch(session: Session) -> None:
     """Let the view follow the state, and the state what is picked in the view."""
     state, view = session.state, session.view
-    seen = [name for name in state.param if name not in UNSEEN | BRUSH]
+    drawn = {"brush", "brush_selection"}
+    seen = [name for name in state.param if name not in UNSEEN | (BRUSH - drawn)]
     state.param.watch(lambda *events: show(session), seen)
     state.param.watch(lambda *events: show_theme(session), "dark")
     view.listen("pick", lambda message: pick(session, int(message["joint"])))

@@ -8,12 +8,14 @@ import panel_material_ui as pmui
 
 from cutcell.display import shown_name
 
+from ..commands.brush import clear_selection, invert_selection
 from ..commands.moving import mirror_of
 from ..commands.session import Session
-from ..state.brush import MOST_RADIUS
+from ..state.brush import MOST_RADIUS, selected
 from .parts import caption, choice, section, slider, when
 
-MODES = {"Add": "add", "Subtract": "subtract", "Replace": "replace", "Smooth": "smooth"}
+MODES = {"Add": "add", "Subtract": "subtract", "Replace": "replace", "Smooth": "smooth",
+         "Select": "select"}  # fmt: skip
 HOW = (
     "Drag over the body to paint, beside it or with the right button to turn it, with the middle "
     "button to move it; a finger beside it turns, two move. Shift while you paint smooths, Ctrl "
@@ -41,12 +43,16 @@ def brush(session: Session) -> pmui.Column:
             state.param.brush_radius, "Radius, of the character's longest side", step=0.005,
             end=MOST_RADIUS, format="0.0 %",
         ),
-        slider(state.param.brush_strength, "Strength", step=0.05),
+        slider(
+            state.param.brush_strength, "Strength", step=0.05,
+            visible=when(lambda mode: mode != "select", state.param.brush_mode),
+        ),
         slider(
             state.param.brush_value, "Weight to paint", step=0.05,
             visible=when(lambda mode: mode == "replace", state.param.brush_mode),
         ),
         mirrored,
+        _selection(session),
         caption(HOW),
         visible=state.param.brush,
         margin=0,
@@ -56,9 +62,42 @@ def brush(session: Session) -> pmui.Column:
     return section("Brush", switch, tools, visible=shown)
 
 
+def _selection(session: Session) -> pmui.Column:
+    """Return what tells of the vertices that strokes are limited to."""
+    state = session.state
+    clear, invert = (
+        pmui.Button(
+            label=label, size="small", variant="outlined", margin=(4, margin, 4, 0),
+            sizing_mode="stretch_width", on_click=lambda event, act=act: act(session),
+        )
+        for label, act, margin in (
+            ("Clear", clear_selection, 8), ("Invert", invert_selection, 0),
+        )
+    )  # fmt: skip
+
+    def told(selection: Any, rig: Any) -> str:
+        chosen = selected(state)
+        if chosen is None:
+            return ""
+        count = int(chosen.sum())
+        which = "one vertex" if count == 1 else f"{count:,} vertices"
+        return f"Strokes stay on {which} of {len(chosen):,}, marked by dots."
+
+    changing = state.param.brush_selection, state.param.rig
+    return pmui.Column(
+        caption(when(told, *changing)),
+        pmui.Row(clear, invert, margin=0, sizing_mode="stretch_width"),
+        visible=when(lambda *which: selected(state) is not None, *changing),
+        margin=0,
+        sizing_mode="stretch_width",
+    )
+
+
 def _told(rig: Any, joint: int, mode: str) -> str:
     if mode == "smooth":
         return "Evens out the weights of all joints that are not locked."
+    if mode == "select":
+        return "Selects what the other tools may paint; Ctrl takes away."
     if rig is None or joint >= len(rig.skeleton.names):
         return ""
     return f"Paints for {shown_name(rig.skeleton.names[joint])}, the chosen bone."

@@ -19,7 +19,7 @@ from cutcell_viewers.skin import skin_of_weights
 from ..state import State
 from .common import POSED, character
 from .memo import Memo
-from .weights import weights_look, weights_seen
+from .weights import selection_marks, weights_look, weights_seen
 
 SWING_DEGREES = 50.0
 GHOST_OPACITY = 0.38
@@ -49,6 +49,7 @@ def pose(state: State, memo: Memo) -> Description:
         )
         legend, coloured = error_legend(limits), False
     actors = character(state, memo, bones_coloured=coloured, **look)
+    actors |= selection_marks(state, memo, state.weights)
     if textures is not None:
         actors |= _attachments_in_materials(actors, textures)
     seen = Description(

@@ -6,9 +6,11 @@ from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 from numpy.typing import NDArray
 
-from cutcell_viewers.description import Description, Legend
+from cutcell_viewers.description import Actor, Description, Legend
+from cutcell_viewers.marks import vertex_dots
 from cutcell_viewers.palette import joint_colors
 from cutcell_viewers.weights_scene import (
     bone_difference_colors,
@@ -19,6 +21,7 @@ from cutcell_viewers.weights_scene import (
 )
 
 from ..state import State
+from ..state.brush import selected
 from .common import character
 from .components import seen_apart
 from .explain import explained_paths
@@ -45,7 +48,17 @@ def weights(state: State, memo: Memo) -> Description:
     actors = character(state, memo, bones_coloured=coloured, **look)
     if not paths:
         actors = seen_apart(state, memo, actors)
-    return Description({**actors, **paths}, legend=legend)
+    marks = selection_marks(state, memo)
+    return Description({**actors, **paths, **marks}, legend=legend)
+
+
+def selection_marks(state: State, memo: Memo, weights: NDArray | None = None) -> dict[str, Actor]:
+    """Return dots on what the brush is limited to, which move by weights if any are given."""
+    chosen = selected(state) if state.brush else None
+    if chosen is None:
+        return {}
+    make = lambda: vertex_dots(state.rig, np.flatnonzero(chosen), weights)  # noqa: E731
+    return {"selection": memo("selection", (state.rig.mesh, chosen, weights), make)}
 
 
 def as_dragged(state: Any) -> Any:

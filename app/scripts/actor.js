@@ -4,7 +4,7 @@ import {plain, plainList} from "./arrays.js"
 import {ALL, Colours, pointIds} from "./colour.js"
 import {Materials} from "./materials.js"
 import {shaderSwaps} from "./shade.js"
-import {skinArrays, skinned} from "./skin.js"
+import {skinArrays, skinned, withRows} from "./skin.js"
 import {Strokes} from "./strokes.js"
 import {TriangleTree} from "./triangle_tree.js"
 
@@ -86,7 +86,12 @@ export class Actor {
     this.cut(cut)
   }
 
-  // Gives some vertices other colours, or other values, than the server's last.
+  // Gives some vertices other weights than the server's last.
+  repaint(painted) {
+    this.recolour(painted)
+    this.reskin(painted)
+  }
+
   recolour({vertices, colors, scalars}) {
     const {by} = this.colours
     if (by === "colors" && colors) {
@@ -96,6 +101,13 @@ export class Actor {
       this.values = replaced(this.values, 1, vertices, scalars)
       this.colours.setValues(this.values, ...this.looked)
     }
+  }
+
+  reskin({vertices, joints, weights, count}) {
+    if (!this.skin || !joints) { return }
+    this.skin = withRows(this.skin, vertices, {joints: plain(joints), weights: plain(weights), count})
+    this.shaded = null
+    this.shade()
   }
 
   // Lines and points are drawn by strokes.js, where vtk.js would draw a line without length.

@@ -137,11 +137,11 @@ export class PaintBrush {
     Object.assign(this.stroke, {points: [], first: false})
   }
 
-  // The server's answer: colours of the vertices that were touched.
+  // The server's answer: colours of the vertices that were touched, and what they follow in a pose.
   painted(answer, actor) {
     this.awaited = false
     if (answer.gone) { this.stroke = null }
-    if (answer.vertices && actor) { actor.recolour(answer) }
+    if (answer.vertices && actor) { actor.repaint(answer) }
     this.say()
     this.changed()
   }

@@ -57,6 +57,23 @@ export class PoseTexture {
   }
 }
 
+// A skin with other influences of some points: `rows` is a skin with a row for each of them.
+export function withRows({joints, weights, count}, points, rows) {
+  const wide = Math.max(count, rows.count)
+  const joined = (own, others) => {
+    const made = new own.constructor(own.length / count * wide)
+    for (let i = 0; i < own.length / count; i++) {
+      made.set(own.subarray(i * count, (i + 1) * count), i * wide)
+    }
+    points.forEach((point, i) => {
+      made.fill(0, point * wide, (point + 1) * wide)
+      made.set(others.subarray(i * rows.count, (i + 1) * rows.count), point * wide)
+    })
+    return made
+  }
+  return {joints: joined(joints, rows.joints), weights: joined(weights, rows.weights), count: wide}
+}
+
 // The arrays that carry a skin to the card, by the name of their attribute: four influences each.
 export function skinArrays(name, {joints, weights, count}) {
   const arrays = []

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any, get_args
 
+import numpy as np
 import param
+from numpy.typing import NDArray
 
+from cutcell.rig import TriangleMesh
 from cutcell.skinning.stroke import BrushMode
 
 LEAST_RADIUS, MOST_RADIUS = 0.005, 0.5
@@ -15,18 +19,44 @@ PAINTED = ("weights", "pose")
 """The panels on which weights are painted: at rest, and posed."""
 
 
+@dataclass(frozen=True, eq=False)
+class Selection:
+    """Vertices of a mesh that strokes are limited to.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+    chosen : array, shape (n,), bool
+    """
+
+    mesh: TriangleMesh
+    chosen: NDArray[np.bool_]
+
+
 class BrushChoices(param.Parameterized):
     """Whether there is a brush, and what it does."""
 
     brush: Any = param.Boolean(False, label="Paint")
-    brush_mode: Any = param.Selector(default="add", objects=list(get_args(BrushMode)))
+    brush_mode: Any = param.Selector(default="add", objects=[*get_args(BrushMode), "select"])
     brush_radius: Any = param.Number(
         0.06, bounds=(LEAST_RADIUS, MOST_RADIUS), doc="Part of the character's longest side."
     )
     brush_strength: Any = param.Number(0.5, bounds=(LEAST_STRENGTH, 1))
     brush_value: Any = param.Number(1.0, bounds=(0, 1), doc="What weights are replaced by.")
     brush_mirrored: Any = param.Boolean(True, label="The other side, too")
+    brush_selection: Any = param.Parameter(
+        None, doc="The `Selection` that strokes are limited to, of whatever mesh; or None."
+    )
 
 
 BRUSH = frozenset(BrushChoices.param) - {"name"}
 """Tools are chosen, but are no choices: undo takes strokes back, not the brush."""
+
+
+def selected(state: Any) -> NDArray[np.bool_] | None:
+    """Return which vertices strokes are limited to, shape (n,); None for no limit."""
+    selection = state.brush_selection
+    if selection is None or state.rig is None or selection.mesh is not state.rig.mesh:
+        return None
+    chosen: NDArray[np.bool_] = selection.chosen
+    return chosen if chosen.any() else None

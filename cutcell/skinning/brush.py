@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..arrays import as_array
 from ..checks import check_flag, check_integer, shown
 from ..errors import ParameterError, WeightsError
 from ..rig import Rig
@@ -26,6 +27,7 @@ def paint_weights(
     mirrored: bool = False,
     locked: Sequence[int | str] = (),
     max_influences: int | None = None,
+    within: ArrayLike | None = None,
 ) -> NDArray[np.float64]:
     """Paint the weight of a joint along a stroke of a brush.
 
@@ -49,6 +51,8 @@ def paint_weights(
     max_influences : int, optional
         Joints that a painted vertex may follow: the painted and the locked ones, then the
         strongest.
+    within : array_like, shape (n,), bool, optional
+        Which vertices may be painted; all of them when left out.
 
     Returns
     -------
@@ -63,7 +67,7 @@ def paint_weights(
     SkeletonError
         The stroke is to be mirrored, and the skeleton is not.
     WeightsError
-        The weights are of another shape.
+        The weights, or `within`, are of another shape.
 
     Examples
     --------
@@ -85,9 +89,11 @@ def paint_weights(
     mirror = find_joint_mirror(rig) if check_flag("mirrored", mirrored) else None
     if max_influences is not None:
         check_integer("max_influences", max_influences, 1, MOST_INFLUENCES)
+    if within is not None:
+        within = as_array(within, np.bool_, (count,), "within", WeightsError)
     begun = Stroke(
         PaintSurface(rig.mesh), rig, given, joint, brush, mirror=mirror,
-        locked=locked, max_influences=max_influences,
+        locked=locked, max_influences=max_influences, within=within,
     )  # fmt: skip
     begun.pass_over(passed[:, None], np.ones((len(passed), 1)))
     vertices, rows = begun.painted()

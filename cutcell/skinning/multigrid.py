@@ -192,7 +192,7 @@ class Multigrid:
     @property
     def matrix(self) -> csr_array:
         """The matrix itself."""
-        return (self.levels or [self.coarsest])[0].matrix
+        return self.levels[0].matrix if self.levels else self.coarsest.matrix
 
     def _some(self, rows: NDArray[np.intp]) -> Multigrid:
         """Return the equation for some unknowns, the others being known."""

@@ -124,7 +124,7 @@ class Stroke:
     brush : Brush
     mirror : Mirror, optional
         Of the joints; what the other side's brush goes by.
-    locked, max_influences
+    locked, max_influences, within
         See `paint_weights`.
 
     Raises
@@ -144,7 +144,9 @@ class Stroke:
         mirror: Mirror | None = None,
         locked: Sequence[int | str] = (),
         max_influences: int | None = None,
+        within: NDArray[np.bool_] | None = None,
     ) -> None:
+        self._within = np.ones(len(weights), bool) if within is None else within
         self._surface, self._rig, self._weights, self._brush = surface, rig, weights, brush
         self._mirror, self._most = mirror, max_influences
         self._locked = np.zeros(len(rig.skeleton.names), bool)
@@ -196,12 +198,16 @@ class Stroke:
         far = self._surface.reach.distances(vertices, begin, self._brush.radius)
         np.minimum(self._far[side], far, out=self._far[side])
 
+    def touched(self) -> NDArray[np.intp]:
+        """Return the vertices that were touched so far, shape (v,)."""
+        near = self._far.min(axis=0) < self._brush.radius
+        return np.flatnonzero(near[self._surface.reach.index] & self._within)
+
     def painted(self) -> tuple[NDArray[np.intp], NDArray[np.float64]]:
         """Return the vertices that were touched so far, shape (v,), and their weights, (v, j)."""
-        brush, index = self._brush, self._surface.reach.index
+        brush, index, vertices = self._brush, self._surface.reach.index, self.touched()
         inside = np.maximum(1 - np.square(self._far / brush.radius), 0)
         covered = brush.strength * np.square(inside)
-        vertices = np.flatnonzero(covered.max(axis=0)[index] > 0)
         if not len(vertices):
             return vertices, self._weights[vertices]
         rows, cover = self._weights[vertices], covered[:, index[vertices]]

@@ -168,11 +168,6 @@ def _middle_at(body: Interior, height: float) -> NDArray[np.float64]:
     return found
 
 
-def _at_distance(body: Interior, tip: int, end: int, far: float) -> NDArray[np.float64]:
-    """Return the point on the middle path to an end that is so far from a tip."""
-    return cut(body, tip, end, far)[-1].copy()
-
-
 def _nearest_of(body: Interior, among: NDArray[np.bool_], point: NDArray[np.float64]) -> int:
     chosen = np.flatnonzero(among)
     return int(chosen[np.linalg.norm(body.points[chosen] - point, axis=1).argmin()])

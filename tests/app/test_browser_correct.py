@@ -218,6 +218,7 @@ def test_weights_are_painted_on_a_posed_body_and_stay_so(visit, robot, tmp_path)
         visit.page.keyboard.press("]")
     visit.settle()
     assert np.abs(visit.points() - rest).max() > 0.05
+    posed = visit.points()
     vertex, x, y = visit.page.evaluate(IN_SIGHT, f"{shared}.includes(vertex)")
     weight = f"__cutcell.renderer.actors.get('body').values[{vertex}]"
     before = visit.page.evaluate(weight)
@@ -227,6 +228,7 @@ def test_weights_are_painted_on_a_posed_body_and_stay_so(visit, robot, tmp_path)
     visit.settle()
     during = visit.page.evaluate(weight)
     assert during > before + 0.1, "colours follow the stroke"
+    assert np.abs(visit.points() - posed).max() > 1e-3, "and so does the posed body"
     camera = visit.report()["camera"]
     visit.page.mouse.up()
     visit.settle()
@@ -248,6 +250,14 @@ def test_weights_are_painted_on_a_posed_body_and_stay_so(visit, robot, tmp_path)
     assert corrected(visit) == held
     paints = visit.page.get_by_role("switch", name="Paint", exact=True)
     expect(paints).to_be_checked()
+    visit.button("Select").click()
+    visit.page.mouse.move(x, y)
+    visit.page.mouse.down()
+    visit.page.mouse.up()
+    visit.expect_text("Strokes stay on")
+    assert visit.page.evaluate("__cutcell.renderer.actors.has('selection')")
+    visit.button("Clear").click()
+    visit.page.wait_for_function("!__cutcell.renderer.actors.has('selection')")
     visit.page.keyboard.press("Escape")
     expect(paints).not_to_be_checked()
 

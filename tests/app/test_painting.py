@@ -11,7 +11,7 @@ from cutcell_app.commands.brush import STEPS, in_steps, radius_of
 from cutcell_app.panels.brush import brush as section_of_brush
 from cutcell_app.scenes import resolve
 from cutcell_app.scenes.weights import painted_colors
-from cutcell_app.state.brush import LEAST_RADIUS, LEAST_STRENGTH
+from cutcell_app.state.brush import LEAST_RADIUS, LEAST_STRENGTH, selected
 from cutcell_app.state.corrections import MOST_IN_ADDRESS, MOST_VERTICES, to_text
 from cutcell_app.state.url import from_query
 from tests.viewers.arm import arm_rig
@@ -303,3 +303,59 @@ def test_the_other_side_is_painted_where_there_is_one(session, loop):
     state.brush_mirrored = False
     assert session.view.told("brush")["mirror"] is None
     assert brush.paints(state)
+
+
+def test_strokes_stay_on_what_is_selected(painter, loop):
+    state = painter.state
+    state.brush_mode = "select"
+    stroke(painter, MIDDLE)
+    settled(painter, loop)
+    chosen = selected(state)
+    assert 1 < chosen.sum() < len(chosen)
+    assert chosen[MIDDLE]
+    assert not state.corrections
+    assert len(resolve(state, painter.memo).actors["selection"].points) == chosen.sum()
+    state.param.update(brush_mode="add", brush_radius=0.4)
+    before = state.binding.weights
+    stroke(painter, MIDDLE)
+    settled(painter, loop)
+    changed = (state.binding.weights != before).any(axis=1)
+    assert changed.any()
+    assert not (changed & ~chosen).any()
+    assert np.array_equal(selected(state), chosen), "it outlives what is bound again"
+    brush.invert_selection(painter)
+    assert np.array_equal(selected(state), ~chosen)
+    brush.clear_selection(painter)
+    assert selected(state) is None
+    assert "selection" not in resolve(state, painter.memo).actors
+
+
+def test_ctrl_takes_away_from_the_selection_and_a_cancelled_stroke_leaves_it(painter, loop):
+    state = painter.state
+    state.brush_mode = "select"
+    stroke(painter, MIDDLE)
+    chosen = selected(state).copy()
+    act = painter.view._listeners["brush"]
+    point = [MIDDLE + 8, MIDDLE + 8, MIDDLE + 8, 1, 0, 0]
+    act({"points": point, "first": True, "done": False, "mode": None})
+    assert selected(state).sum() > chosen.sum()
+    act({"cancelled": True})
+    assert np.array_equal(selected(state), chosen)
+    stroke(painter, MIDDLE, mode="subtract")
+    settled(painter, loop)
+    assert selected(state) is None, "nothing selected limits nothing"
+
+
+def texts(section):
+    return [part for part in section.select(pmui.Typography) if isinstance(part.object, str)]
+
+
+def test_a_selection_is_of_one_mesh(painter, loop):
+    state = painter.state
+    brush.select(painter, np.arange(len(state.rig.mesh.vertices)) < 5)
+    assert selected(state).sum() == 5
+    section = section_of_brush(painter)
+    assert any("Strokes stay on 5 vertices of" in text.object for text in texts(section))
+    loading.load_demo(painter, "octopus")
+    loop.run_until(lambda: not painter.tasks.running)
+    assert selected(state) is None

@@ -55,7 +55,7 @@ function brush() {
     getBoundingClientRect: () => ({left: 0, top: 0}), setPointerCapture() {}, focus() {},
   }
   const overlay = {canvas, root: {append() {}}, showPainting: (on) => shown.push(on), showBone() {}}
-  const actor = {triangles: TRIANGLES, posed: () => POINTS, recolour: (what) => coloured.push(what)}
+  const actor = {triangles: TRIANGLES, posed: () => POINTS, repaint: (what) => coloured.push(what)}
   const [told, handed, coloured] = [[], [], []]
   const made = new PaintBrush(overlay, {project: ([x, y]) => [x, y, 1], pixel: () => 1}, {
     bodyAt: (x, y) => x < 100 ? {actor, triangle: 1, at: [x / 100, y / 100, 0]} : null,

@@ -1,7 +1,7 @@
 import assert from "node:assert/strict"
 import {test} from "node:test"
 
-import {Clip, skinArrays, skinned, skinVertex, transformed} from "../../../app/scripts/skin.js"
+import {Clip, skinArrays, skinned, skinVertex, transformed, withRows} from "../../../app/scripts/skin.js"
 
 const moved = (x, y, z) => [1, 0, 0, x, 0, 1, 0, y, 0, 0, 1, z, 0, 0, 0, 1]
 const quarterTurn = [0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]
@@ -11,6 +11,18 @@ test("points go where their joints take them, in parts", () => {
   const skin = {joints: [0, 1, 0, 1, 0, 1], weights: [1, 0, 0, 1, 0.5, 0.5], count: 2}
   const rest = Float32Array.from([1, 0, 0, 1, 0, 0, 1, 0, 0])
   assert.deepEqual([...skinned(skin, rest, pose)], [3, 0, 0, 0, 1, 0, 1.5, 0.5, 0])
+})
+
+test("some points follow other joints, more of them than before", () => {
+  const skin = {joints: Uint16Array.of(7, 8, 9), weights: Float32Array.of(1, 1, 1), count: 1}
+  const rows = {joints: Uint16Array.of(1, 2), weights: Float32Array.of(0.25, 0.75), count: 2}
+  const found = withRows(skin, [1], rows)
+  assert.equal(found.count, 2)
+  assert.deepEqual([...found.joints], [7, 0, 1, 2, 9, 0])
+  assert.deepEqual([...found.weights], [1, 0, 0.25, 0.75, 1, 0])
+  const narrow = {joints: Uint16Array.of(5), weights: Float32Array.of(1), count: 1}
+  assert.deepEqual([...withRows(found, [1], narrow).joints], [7, 0, 5, 0, 9, 0])
+  assert.deepEqual([...skin.joints], [7, 8, 9], "the one before is as it was")
 })
 
 test("points that nothing holds stay", () => {

@@ -285,3 +285,15 @@ def test_a_mirror_of_joints_is_enough_where_the_mesh_has_no_partner(rig, at):
 
 def test_painting_is_public():
     assert cutcell.paint_weights is paint_weights
+
+
+def test_only_vertices_within_a_selection_are_painted(rig):
+    wide, within = Brush(0.5), rig.mesh.vertices[:, 1] > 0.5
+    middle = int(np.abs(rig.mesh.vertices[:, 1] - 0.5).argmin())
+    free = paint_weights(rig, rig.weights, LEFT, [middle], wide)
+    found = paint_weights(rig, rig.weights, LEFT, [middle], wide, within=within)
+    assert np.array_equal(found[within], free[within])
+    assert np.array_equal(found[~within], rig.weights[~within])
+    assert (free[~within] != rig.weights[~within]).any()
+    with pytest.raises(WeightsError, match="within"):
+        paint_weights(rig, rig.weights, LEFT, [middle], wide, within=[True])
