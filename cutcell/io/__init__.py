@@ -17,6 +17,7 @@ from .files import naming, read_bytes
 from .gltf_container import MAGIC
 from .gltf_fresh import check_fits, new_glb
 from .gltf_read import GltfSource, read_gltf
+from .gltf_skinned import can_be_skinned, skinned
 from .gltf_write import rewritten
 from .rignet import check_mesh_file, read_rignet, rig_file, rignet_files
 from .soup import MESHES, read_soup
@@ -90,8 +91,9 @@ def save(path: str | os.PathLike[str], rig: Rig) -> tuple[Path, ...]:
     """Save a rig.
 
     A rig that was loaded from glTF goes back into its own document, in which only the skin
-    weights change, and what joints that were moved take (`Rig.with_joints`); another one becomes
-    a new GLB. All files are written whole or not at all:
+    weights change, and what joints that were moved take (`Rig.with_joints`). So does a mesh from
+    glTF that had no skeleton, with the one that it was given. Another rig becomes a new GLB. All
+    files are written whole or not at all:
     a failure leaves what was there, and a rig may be saved over the file it came from. A file
     that is not named here, such as the mesh or the buffer beside it, is never replaced if
     it is another's; ``docs/formats.md`` says how.
@@ -151,7 +153,7 @@ def check_output(path: Path, rig: Rig | None = None) -> None:
             return
         if kind == ".txt":
             check_mesh_file(path, rig.mesh)
-        elif isinstance(rig.source, GltfSource):
+        elif isinstance(rig.source, GltfSource) or can_be_skinned(rig):
             none = np.zeros((len(rig.mesh.vertices), len(rig.skeleton.joints)))
             _rewritten(rig.with_weights(none), path)
         else:
@@ -178,7 +180,7 @@ def _files(path: Path, rig: Rig) -> dict[Path, bytes]:
         return rignet_files(path, rig)
     if kind == ".npz":
         return {path: articulation_bytes(rig)}
-    if isinstance(rig.source, GltfSource):
+    if isinstance(rig.source, GltfSource) or can_be_skinned(rig):
         return _rewritten(rig, path)
     _check_new(kind, rig)
     return {path: new_glb(rig)}
@@ -193,7 +195,10 @@ def _check_new(kind: str, rig: Rig) -> None:
 
 def _rewritten(rig: Rig, path: Path) -> dict[Path, bytes]:
     try:
-        return rewritten(rig, path)
+        if isinstance(rig.source, GltfSource):
+            return rewritten(rig, path)
+        check_fits(rig)
+        return skinned(rig, path)
     except CutcellError:
         raise
     except (TypeError, ValueError, KeyError, IndexError, AttributeError) as e:

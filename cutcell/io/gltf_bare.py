@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
+from numpy.typing import NDArray
 
 from ..errors import MeshError
 from ..rig import Part, Rig, Skeleton, TriangleMesh
@@ -12,23 +15,62 @@ from .gltf_parts import hidden_nodes, left_out_meshes, mesh_name, vanishes
 from .gltf_primitives import read_triangles
 
 
+@dataclass(frozen=True, eq=False)
+class StoredMesh:
+    """A mesh of the document, where a node has it.
+
+    Parameters
+    ----------
+    node, mesh : int
+    hidden : bool
+        Whether `KHR_node_visibility` hides it.
+    world : array, shape (4, 4)
+        Of the node.
+    first_vertices : list of int
+        In the rig, of each primitive that draws triangles, in order.
+    """
+
+    node: int
+    mesh: int
+    hidden: bool
+    world: NDArray[np.float64]
+    first_vertices: list[int]
+
+
+@dataclass(frozen=True, eq=False)
+class BareSource:
+    """What a rig remembers of its glTF file without a skin, for saving.
+
+    Parameters
+    ----------
+    document : Document
+    mesh : TriangleMesh
+        As it was read.
+    stored : list of StoredMesh
+    """
+
+    document: Document
+    mesh: TriangleMesh
+    stored: list[StoredMesh]
+
+
 def read_bare(document: Document, nodes: Nodes, name: str) -> Rig:
     """Return the scene's meshes as a rig without joints, in the scene's space and units."""
     here = set(nodes.in_scene())
     shown = [i for i, node in enumerate(nodes.raw) if "mesh" in node and i in here]
     shown = shown or [i for i, node in enumerate(nodes.raw) if "mesh" in node]
     hidden = hidden_nodes(nodes)
-    vertices, faces, parts, kept, total = [], [], [], [], 0
+    vertices, faces, parts, stored, total = [], [], [], [], 0
     for i in shown:
-        points, corners, _ = read_triangles(
-            document, nodes.raw[i]["mesh"], document.label("nodes", i)
-        )
+        mesh = nodes.raw[i]["mesh"]
+        points, corners, drawn = read_triangles(document, mesh, document.label("nodes", i))
         if not len(corners):
             continue
         world = nodes.world[i]
         if np.linalg.det(world[:3, :3]) < 0:
             corners = corners[:, ::-1]  # mirrored: what was outside stays outside
-        kept.append(i)
+        first = [total + one.first_vertex for one in drawn]
+        stored.append(StoredMesh(i, mesh, i in hidden, world, first))
         document.allowance.take(points.nbytes + corners.nbytes, document.label("nodes", i))
         vertices.append(points @ world[:3, :3].T + world[:3, 3])
         faces.append(corners + total)
@@ -37,10 +79,12 @@ def read_bare(document: Document, nodes: Nodes, name: str) -> Rig:
         parts.append(Part(mesh_name(document, nodes, i), rows, hides))
     if not faces:
         raise MeshError("its meshes have no triangles")
+    whole = TriangleMesh(np.concatenate(vertices), np.concatenate(faces))  # type: ignore[arg-type]
     return Rig(
-        TriangleMesh(np.concatenate(vertices), np.concatenate(faces)),  # type: ignore[arg-type]
+        whole,
         Skeleton([], []),  # type: ignore[arg-type]
         name=name,
         parts=tuple(parts),
-        left_out=left_out_meshes(document, nodes, kept, ()),
+        left_out=left_out_meshes(document, nodes, [one.node for one in stored], ()),
+        source=BareSource(document, whole, stored),
     )

@@ -112,7 +112,7 @@ class _File:
             setattr(primitive.attributes, f"JOINTS_{n}", self._array(where.astype(small), target))
             setattr(primitive.attributes, f"WEIGHTS_{n}", self._array(share, target))
         self.gltf.meshes.append(gl.Mesh(name=rig.name, primitives=[primitive]))
-        binds = _inverses(rig.skeleton)
+        binds = inverses(rig.skeleton)
         stored = self._array(binds.transpose(0, 2, 1).reshape(-1, 16).astype(np.float32))
         self.gltf.skins = [gl.Skin(inverseBindMatrices=stored, joints=list(range(joints)))]
         mesh_node = self._node(name=rig.name, mesh=0, skin=0)
@@ -127,15 +127,9 @@ class _File:
 
     def _add_joints(self, rig: Rig) -> None:
         """Add a node a joint, in order, and one above the roots that carries the world."""
-        skeleton = rig.skeleton
-        local = _at_joints(skeleton)
-        held = np.flatnonzero(skeleton.parents >= 0)
-        local[held] = _inverses(skeleton)[skeleton.parents[held]] @ local[held]
-        for j, children in enumerate(skeleton.children):
-            place = _transform(local[j])
-            self._node(name=skeleton.names[j], children=children.tolist(), **place)
-        roots = np.flatnonzero(skeleton.parents < 0).tolist()
-        top = self._node(name="armature", children=roots)
+        for node in joint_nodes(rig.skeleton, 0):
+            self._node(**{"children": [], **node})
+        top = len(self.gltf.nodes) - 1
         if not np.array_equal(rig.world, np.eye(4)):
             self.gltf.nodes[top].matrix = rig.world.T.ravel().tolist()
 
@@ -146,7 +140,7 @@ class _File:
             node = self._node(
                 name=attachment.name,
                 mesh=len(self.gltf.meshes) - 1,
-                **_transform(_inverses(rig.skeleton)[attachment.joint]),
+                **_transform(inverses(rig.skeleton)[attachment.joint]),
             )
             self.gltf.nodes[attachment.joint].children.append(node)
 
@@ -220,7 +214,23 @@ def vertex_normals(mesh: TriangleMesh) -> NDArray[np.float32]:
     return unit[same].astype(np.float32)
 
 
-def _at_joints(skeleton: Skeleton) -> NDArray:
+def joint_nodes(skeleton: Skeleton, first: int) -> list[dict[str, Any]]:
+    """Return a node for each joint, numbered from `first` on, and one above the roots."""
+    local = bind_frames(skeleton)
+    held = np.flatnonzero(skeleton.parents >= 0)
+    local[held] = inverses(skeleton)[skeleton.parents[held]] @ local[held]
+    roots = np.flatnonzero(skeleton.parents < 0)
+    above = [*zip(skeleton.names, skeleton.children, strict=True), ("armature", roots)]
+    nodes: list[dict[str, Any]] = [
+        {"name": name, **({"children": (first + below).tolist()} if len(below) else {})}
+        for name, below in above
+    ]
+    for node, matrix in zip(nodes, local, strict=False):
+        node.update(_transform(matrix))
+    return nodes
+
+
+def bind_frames(skeleton: Skeleton) -> NDArray:
     """Return where each joint is at rest and how it is turned, shape (j, 4, 4)."""
     matrices = np.tile(np.eye(4), (len(skeleton.joints), 1, 1))
     if skeleton.orientations is not None:
@@ -229,9 +239,9 @@ def _at_joints(skeleton: Skeleton) -> NDArray:
     return matrices
 
 
-def _inverses(skeleton: Skeleton) -> NDArray:
+def inverses(skeleton: Skeleton) -> NDArray:
     """Return the inverse bind matrices; their linear parts are orthogonal."""
-    matrices = _at_joints(skeleton)
+    matrices = bind_frames(skeleton)
     matrices[:, :3, :3] = matrices[:, :3, :3].transpose(0, 2, 1)
     matrices[:, :3, 3:] = -matrices[:, :3, :3] @ matrices[:, :3, 3:]
     return matrices
@@ -250,7 +260,7 @@ def _transform(matrix: NDArray) -> dict[str, list[float]]:
 
 def _local_poses(rig: Rig, clip: Clip) -> dict[str, NDArray]:
     """Return what each joint's node does, relative to its parent's node."""
-    world = clip.transforms @ _at_joints(rig.skeleton)
+    world = clip.transforms @ bind_frames(rig.skeleton)
     local = world.copy()
     held = np.flatnonzero(rig.skeleton.parents >= 0)
     local[:, held] = np.linalg.inv(world[:, rig.skeleton.parents[held]]) @ world[:, held]

@@ -62,7 +62,7 @@ def rewritten(rig: Rig, path: Path) -> dict[Path, bytes]:
         _store(storage, document, rig, part, old)
     store_faces(storage, faces)
     carried = carry_images(storage, source.document, path)
-    return {**carried, **_packed(storage, source.document, path, carried)}
+    return {**carried, **packed(storage, source.document, path, carried)}
 
 
 def _check_same(rig: Rig, source: GltfSource) -> None:
@@ -138,9 +138,10 @@ def _check_reachable(weights: NDArray, rig: Rig, part: StoredPart) -> None:
         )
 
 
-def _packed(
+def packed(
     storage: Storage, document: Document, path: Path, carried: dict[Path, bytes]
 ) -> dict[Path, bytes]:
+    """Return the files of a document that was edited, without the images that go along."""
     uris = [buffer.get("uri") for buffer in document.items("buffers")]
     data = storage.finish()
     own = storage.document["buffers"][0] if data else {}

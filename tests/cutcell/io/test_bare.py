@@ -1,5 +1,7 @@
 """Meshes without a skeleton: they load, their graph can be built, and nothing binds them."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import trimesh
@@ -10,6 +12,7 @@ from cutcell.compare import compare
 from cutcell.geodesics import bone_distances, bone_segments
 from cutcell.metrics import clip_error, deformation_error
 from tests.cutcell.io.gltf_builder import COLUMN, FACES, Builder, column
+from tests.gltf_validator.validator import errors, reports
 
 TURN = [0, 0, np.sqrt(0.5), np.sqrt(0.5)]
 """A quarter turn about z: x becomes y."""
@@ -87,6 +90,71 @@ def test_lines_alone_are_no_mesh(loaded):
     builder.json["meshes"][0]["primitives"][0]["mode"] = 1
     with pytest.raises(cutcell.MeshError, match=r"^rig\.glb: its meshes have no triangles"):
         loaded(builder)
+
+
+def column_ends(rig):
+    return rig.mesh.bounds * [0, 1, 0]
+
+
+class TestASkeletonForIt:
+    """A mesh that is given a skeleton goes back into its document, with all else that is there."""
+
+    def dressed(self, loaded, builder, tmp_path, end=".glb"):
+        rig = loaded(builder)
+        bottom, top = (rig.mesh.bounds.mean(axis=0) * [1, 0, 1] + y for y in column_ends(rig))
+        joints = [bottom, (bottom + top) / 2, top]
+        rig = replace(rig, skeleton=cutcell.Skeleton(joints, [-1, 0, 1], ["a", "b", "c"]))
+        rig = rig.with_weights(cutcell.bind(rig, 8).weights)
+        path = tmp_path / f"out{end}"
+        cutcell.save(path, rig)
+        again = cutcell.load(path)
+        assert errors(reports(path)[0]) == {}
+        for ours, its in (
+            (again.mesh.vertices, rig.mesh.vertices),
+            (again.skeleton.joints, rig.skeleton.joints),
+        ):
+            assert_allclose(ours @ again.world[:3, :3].T + again.world[:3, 3], its, atol=1e-5)
+        assert_array_equal(again.mesh.faces, rig.mesh.faces)
+        assert again.skeleton.names == ("a", "b", "c")
+        assert_allclose(again.weights, rig.weights, atol=1e-6)
+        return rig, again
+
+    @pytest.mark.parametrize("end", [".glb", ".gltf"])
+    def test_its_materials_and_nodes_stay(self, loaded, tmp_path, end):
+        builder = bare(name="body", rotation=TURN, translation=[5, 0, 0], scale=[2, 2, 2])
+        material = builder.add("materials", {"name": "red"})
+        builder.json["meshes"][0]["primitives"][0]["material"] = material
+        builder.node(name="lamp")
+        _, again = self.dressed(loaded, builder, tmp_path, end)
+        document = again.source.document.json
+        assert document["materials"] == [{"name": "red"}]
+        assert document["meshes"][0]["primitives"][0]["material"] == material
+        assert "lamp" in {node.get("name") for node in document["nodes"]}
+
+    def test_a_mesh_in_two_places_has_weights_for_each(self, loaded, tmp_path):
+        builder = bare(name="left", translation=[0, 5, 0])
+        builder.node(mesh=0, name="right")
+        _, again = self.dressed(loaded, builder, tmp_path)
+        assert [part.name for part in again.parts] == ["left", "right"]
+        assert len(again.source.document.json["skins"]) == 2
+        assert not np.allclose(again.weights[:12], again.weights[12:])
+
+    def test_hidden_meshes_stay_hidden(self, loaded, tmp_path):
+        builder = bare()
+        off = {"KHR_node_visibility": {"visible": False}}
+        builder.json["extensionsUsed"] = ["KHR_node_visibility"]
+        group = builder.node(name="group", extensions=off)
+        builder.node(
+            group, name="spare", mesh=builder.mesh({"POSITION": builder.positions(COLUMN + 3)})
+        )
+        _, again = self.dressed(loaded, builder, tmp_path)
+        assert [part.hidden for part in again.parts] == [False, True]
+
+    def test_what_a_skin_cannot_take_becomes_a_new_file(self, loaded, tmp_path):
+        builder = bare(scale=[-1, 1, 1])
+        builder.add("materials", {"name": "red"})
+        _, again = self.dressed(loaded, builder, tmp_path)
+        assert [one["name"] for one in again.source.document.json["materials"]] == ["plain"]
 
 
 class TestParts:
