@@ -74,8 +74,9 @@ def _is_plain(source: BareSource, one: StoredMesh) -> bool:
     """Tell whether a skin can take a mesh: all of it is triangles, and its node mirrors nothing."""
     loaded = source.document.json
     of_triangles = all(draws_triangles(p) for p in loaded["meshes"][one.mesh]["primitives"])
-    copied = INSTANCES in loaded["nodes"][one.node].get("extensions", {})
-    return of_triangles and not copied and np.linalg.det(one.world[:3, :3]) > 0
+    extensions = loaded["nodes"][one.node].get("extensions")
+    copied = isinstance(extensions, dict) and INSTANCES in extensions
+    return of_triangles and not copied and bool(np.linalg.det(one.world[:3, :3]) > 0)
 
 
 class _Edit:
