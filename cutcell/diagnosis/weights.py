@@ -125,7 +125,7 @@ def _leaked(
     vertex, joint = np.nonzero((weights > NOTICED) & measurable(subject, distances))
     asked = distances.fallback[vertex] == REACHED
     vertex, joint = vertex[asked], joint[asked]
-    nearest = distances.joint.min(axis=0)
+    nearest = distances.least
     through = through_body(subject, distances, vertex, joint)
     straight = _straight(subject, distances, vertex, joint)
     beyond = through - nearest[vertex]

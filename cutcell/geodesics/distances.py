@@ -74,6 +74,13 @@ class BoneDistances:
             return self.of_vertices
         return self.at_welded.take(self.graph.vertex_node, axis=1)
 
+    @property
+    def least(self) -> NDArray[np.float64]:
+        """Distance of the nearest joint to each vertex, shape (n,), without `joint` in memory."""
+        if self.of_vertices is not None:
+            return self.of_vertices.min(axis=0)
+        return self.at_welded.min(axis=0)[self.graph.vertex_node]
+
     @cached_property
     def inside(self) -> Inside:
         """Tells which straight segments stay inside the body."""

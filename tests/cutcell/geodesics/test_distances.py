@@ -98,6 +98,7 @@ def test_a_joint_is_as_near_as_its_nearest_bone():
     straight = distance_to_segment(unit[:, None], bones.start[:2], bones.end[:2]).min(axis=1)
     np.testing.assert_allclose(distances.joint[0], straight)
     np.testing.assert_array_equal(distances.field(1)[graph.vertex_node], distances.joint[1])
+    np.testing.assert_array_equal(distances.least, distances.joint.min(axis=0))
 
 
 def test_joints_without_weight_have_no_bone():
