@@ -60,7 +60,7 @@ def vertex_facts(state: State, memo: Memo) -> dict[str, Any] | None:
     ours = binding.weights[vertex]
     either = ours if artist is None else np.maximum(ours, artist)
     shown = [j for j in np.argsort(-either, kind="stable")[:MOST_WEIGHTS] if either[j] > NO_WEIGHT]
-    distance = binding.distances.joint[:, vertex]
+    distance = binding.distances.at(slice(None), vertex)
     near = [j for j in np.argsort(distance, kind="stable")[:MOST_DISTANCES]]
     which, sizes = memo("components", (binding.graph,), lambda: components(binding.graph))
     own = int(which[vertex])

@@ -69,7 +69,7 @@ def _surface(state: State, memo: Memo) -> tuple[dict[str, Any], Legend, tuple[fl
 
     def make() -> tuple[dict[str, Any], Legend, tuple[float, float]]:
         if field is None:
-            known = binding.distances.joint[joint]
+            known = binding.distances.at(joint, slice(None))
             limits = distance_limits(known)
         else:
             known, limits = field[binding.graph.vertex_node], distance_limits(field)

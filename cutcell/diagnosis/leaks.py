@@ -49,7 +49,7 @@ def _stray(
 ) -> Iterator[Finding]:
     area = subject.vertex_areas
     held = area @ weights / area.sum()
-    nearest = distances.joint.argmin(axis=0)
+    nearest = distances.nearest_joint
     reached = distances.fallback == REACHED
     owned = np.bincount(nearest[reached], area[reached], len(held)) / area.sum()
     found = np.flatnonzero((held > 0) & (held < STRAY) & (owned > OWNED))

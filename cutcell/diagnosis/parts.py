@@ -203,5 +203,5 @@ def _holder(subject: Subject, vertices: NDArray[np.intp]) -> str:
     if weights is not None and weights[vertices].any():
         return names[int(weights[vertices].sum(axis=0).argmax())]
     assert subject.distances is not None
-    nearest = subject.distances.joint[:, vertices].argmin(axis=0)
+    nearest = subject.distances.nearest_joint[vertices]
     return names[int(np.bincount(nearest).argmax())]

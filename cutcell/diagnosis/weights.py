@@ -168,7 +168,7 @@ def through_body(
     subject: Subject, distances: BoneDistances, vertex: NDArray[np.intp], joint: NDArray[np.intp]
 ) -> NDArray[np.float64]:
     """Return the distances through the body of vertices from joints, measured if not known."""
-    through = distances.joint[joint, vertex]
+    through = distances.at(joint, vertex)
     unknown = np.isinf(through)
     if unknown.any():
         which = np.isin(distances.bones.joint, joint[unknown])

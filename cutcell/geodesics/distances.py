@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Unpack
+from typing import Any, Unpack
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -73,6 +73,19 @@ class BoneDistances:
         if self.of_vertices is not None:
             return self.of_vertices
         return self.at_welded.take(self.graph.vertex_node, axis=1)
+
+    def at(self, joint: Any, vertex: Any) -> NDArray[np.float64]:
+        """Return what `joint[joint, vertex]` is, without all of it in memory."""
+        if self.of_vertices is not None:
+            return np.asarray(self.of_vertices[joint, vertex])
+        return np.asarray(self.at_welded[joint, self.graph.vertex_node[vertex]])
+
+    @property
+    def nearest_joint(self) -> NDArray[np.intp]:
+        """The joint that is nearest to each vertex, shape (n,)."""
+        if self.of_vertices is not None:
+            return self.of_vertices.argmin(axis=0)
+        return self.at_welded.argmin(axis=0)[self.graph.vertex_node]
 
     @property
     def least(self) -> NDArray[np.float64]:

@@ -99,6 +99,9 @@ def test_a_joint_is_as_near_as_its_nearest_bone():
     np.testing.assert_allclose(distances.joint[0], straight)
     np.testing.assert_array_equal(distances.field(1)[graph.vertex_node], distances.joint[1])
     np.testing.assert_array_equal(distances.least, distances.joint.min(axis=0))
+    np.testing.assert_array_equal(distances.nearest_joint, distances.joint.argmin(axis=0))
+    for one in ((slice(None), 3), (1, slice(None)), ([0, 1], [5, 7])):
+        np.testing.assert_array_equal(distances.at(*one), distances.joint[one])
 
 
 def test_joints_without_weight_have_no_bone():
