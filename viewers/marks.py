@@ -10,7 +10,7 @@ from cutcell.rig import Rig
 from .character import across, smooth_normals, to_scene
 from .description import Actor
 from .palette import MARK
-from .skin import skin_of_weights
+from .skin import Skin, skin_of_weights
 
 DOT = 4.0
 """How wide the marks of many vertices are, in pixels of the screen."""
@@ -42,15 +42,17 @@ def vertex_mark(rig: Rig, vertex: int, weights: ArrayLike | None = None) -> Acto
     )
 
 
-def vertex_dots(rig: Rig, vertices: ArrayLike, weights: ArrayLike | None = None) -> Actor:
-    """Return dots on some vertices, shape (v,), that follow their weights (n, j)."""
+def vertex_dots(body: Actor, vertices: ArrayLike) -> Actor:
+    """Return dots on some vertices, shape (v,), of a body, which move with it."""
     chosen = np.asarray(vertices)
-    skin = None if weights is None else skin_of_weights(np.asarray(weights, float)[chosen])
-    points = to_scene(rig, rig.mesh.vertices)
-    lift = LIFT * _size(rig) * smooth_normals(points, rig.mesh.faces)[chosen]
+    assert body.normals is not None
+    size = np.linalg.norm(np.ptp(body.points, axis=0))
+    skin = None
+    if body.skin is not None:
+        skin = Skin(body.skin.joints[chosen], body.skin.weights[chosen])
     return Actor(
         "points",
-        (points[chosen] + lift).astype(np.float32),
+        (body.points[chosen] + LIFT * size * body.normals[chosen]).astype(np.float32),
         np.arange(len(chosen), dtype=np.int32)[:, None],
         color=MARK,
         width=DOT,

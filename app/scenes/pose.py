@@ -49,7 +49,7 @@ def pose(state: State, memo: Memo) -> Description:
         )
         legend, coloured = error_legend(limits), False
     actors = character(state, memo, bones_coloured=coloured, **look)
-    actors |= selection_marks(state, memo, state.weights)
+    actors |= selection_marks(state, memo, actors["body"])
     if textures is not None:
         actors |= _attachments_in_materials(actors, textures)
     seen = Description(

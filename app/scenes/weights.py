@@ -48,17 +48,18 @@ def weights(state: State, memo: Memo) -> Description:
     actors = character(state, memo, bones_coloured=coloured, **look)
     if not paths:
         actors = seen_apart(state, memo, actors)
-    marks = selection_marks(state, memo)
-    return Description({**actors, **paths, **marks}, legend=legend)
+    actors |= selection_marks(state, memo, actors["body"])
+    return Description({**actors, **paths}, legend=legend)
 
 
-def selection_marks(state: State, memo: Memo, weights: NDArray | None = None) -> dict[str, Actor]:
-    """Return dots on what the brush is limited to, which move by weights if any are given."""
+def selection_marks(state: State, memo: Memo, body: Actor) -> dict[str, Actor]:
+    """Return dots on what the brush is limited to."""
     chosen = selected(state) if state.brush else None
     if chosen is None:
         return {}
-    make = lambda: vertex_dots(state.rig, np.flatnonzero(chosen), weights)  # noqa: E731
-    return {"selection": memo("selection", (state.rig.mesh, chosen, weights), make)}
+    known = body.points, body.normals, body.skin, chosen
+    dots = memo("selection", known, lambda: vertex_dots(body, np.flatnonzero(chosen)))
+    return {"selection": dots}
 
 
 def as_dragged(state: Any) -> Any:

@@ -75,7 +75,10 @@ class BoneDistances:
         return self.at_welded.take(self.graph.vertex_node, axis=1)
 
     def at(self, joint: Any, vertex: Any) -> NDArray[np.float64]:
-        """Return what `joint[joint, vertex]` is, without all of it in memory."""
+        """Return the distances from some joints to some vertices, indexed as `joint` would be.
+
+        Unlike `joint` it keeps nothing in memory.
+        """
         if self.of_vertices is not None:
             return np.asarray(self.of_vertices[joint, vertex])
         return np.asarray(self.at_welded[joint, self.graph.vertex_node[vertex]])
@@ -89,7 +92,7 @@ class BoneDistances:
 
     @property
     def least(self) -> NDArray[np.float64]:
-        """Distance of the nearest joint to each vertex, shape (n,), without `joint` in memory."""
+        """The distance of the nearest joint to each vertex, shape (n,)."""
         if self.of_vertices is not None:
             return self.of_vertices.min(axis=0)
         return self.at_welded.min(axis=0)[self.graph.vertex_node]

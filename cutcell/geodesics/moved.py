@@ -87,8 +87,8 @@ class MovedDistances:
         merged[joints] = after
         if known.nearest_joints is not None:
             least = merged.min(axis=0)
-            alone = np.isinf(least)
-            after[:, alone] = before[:, alone]
+            lost = np.isinf(least)
+            after[:, lost] = before[:, lost]
             least = np.maximum(least, ON_BONE / known.graph.lattice.resolution)
             after[(after > self._within * least) & self._reached] = np.inf
             merged[joints] = after

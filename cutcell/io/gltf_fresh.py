@@ -220,10 +220,10 @@ def joint_nodes(skeleton: Skeleton, first: int) -> list[dict[str, Any]]:
     held = np.flatnonzero(skeleton.parents >= 0)
     local[held] = inverses(skeleton)[skeleton.parents[held]] @ local[held]
     roots = np.flatnonzero(skeleton.parents < 0)
-    above = [*zip(skeleton.names, skeleton.children, strict=True), ("armature", roots)]
+    named = [*zip(skeleton.names, skeleton.children, strict=True), ("armature", roots)]
     nodes: list[dict[str, Any]] = [
         {"name": name, **({"children": (first + below).tolist()} if len(below) else {})}
-        for name, below in above
+        for name, below in named
     ]
     for node, matrix in zip(nodes, local, strict=False):
         node.update(_transform(matrix))

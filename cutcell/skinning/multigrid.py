@@ -184,7 +184,7 @@ class Multigrid:
         known, coarse_there = below._solve(restricted, COARSE_TOLERANCE, lambda done: tell(0.0))
         coarse[known] = coarse_there
         guess = _product(level.interpolation, coarse)
-        rows = np.flatnonzero(_matters(guess, right, level.inverse))
+        rows = np.flatnonzero(_is_significant(guess, right, level.inverse))
         x, there = guess[rows], self._some(rows)
         residual = right[rows] - _product(there.matrix, x)
         return rows, x + there._improve(residual, tolerance, tell)
@@ -334,14 +334,14 @@ def _multiply(start, column, value, x, product):
 
 
 @compiled
-def _matters(guess, right, inverse):
+def _is_significant(guess, right, inverse):
     """Tell which rows of a solution, (k,), are not negligible: by a guess, or by their own side."""
-    matters = np.empty(len(guess), np.bool_)
+    significant = np.empty(len(guess), np.bool_)
     for v in range(len(guess)):
-        matters[v] = False
+        significant[v] = False
         for i in range(RIGHT_SIDES):
-            matters[v] |= max(abs(guess[v, i]), abs(right[v, i]) * inverse[v]) > NEGLIGIBLE
-    return matters
+            significant[v] |= max(abs(guess[v, i]), abs(right[v, i]) * inverse[v]) > NEGLIGIBLE
+    return significant
 
 
 def _dot(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -48,9 +48,9 @@ class Preview:
         self._adjustments = adjustments_of(rig, binding.graph, corrections)
         within = joints_measured(corrections, method)[1]
         self._distances = MovedDistances(binding.distances, method, within)
-        self._falloff: _NearlyAsBefore | None = None
+        self._falloff: _IncrementalFalloff | None = None
         if method.falloff == "rig":
-            self._falloff = _NearlyAsBefore(binding.distances, self._adjustments)
+            self._falloff = _IncrementalFalloff(binding.distances, self._adjustments)
 
     def bind(self, rig: Rig) -> Binding:
         """Return about what `bind` would for the rig with its joints elsewhere."""
@@ -66,7 +66,7 @@ class Preview:
         return replace(self._binding, distances=distances, weights=weights)
 
 
-class _NearlyAsBefore:
+class _IncrementalFalloff:
     """The falloff for rigs where few distances have changed a little.
 
     The matrix of the diffusion is as it was, and joints whose share of the surface has hardly
