@@ -12,11 +12,9 @@ from numpy.typing import NDArray
 from cutcell.io.gltf_materials import FaceColors
 from cutcell.io.gltf_textures import CLAMP, MIRROR, REPEAT
 
-WRAPPING = {
-    REPEAT: pv.Texture.WrapType.REPEAT,
-    CLAMP: pv.Texture.WrapType.CLAMP_TO_EDGE,
-    MIRROR: pv.Texture.WrapType.MIRRORED_REPEAT,
-}
+# Members of `pyvista.Texture.WrapType`. By name: the class brings matplotlib, 60 MB of memory,
+# and the page's server imports this long before anybody wants a picture.
+WRAPPING = {REPEAT: "REPEAT", CLAMP: "CLAMP_TO_EDGE", MIRROR: "MIRRORED_REPEAT"}
 OPAQUE = 255
 
 
@@ -63,7 +61,7 @@ def texture(image: NDArray[np.uint8], wrap: int) -> pv.Texture:
     opaque = (image[..., 3] == OPAQUE).all()
     made: Any = pv.Texture(np.ascontiguousarray(image[..., :3] if opaque else image))
     made.interpolate = made.mipmap = True
-    made.SetWrap(WRAPPING[wrap // 3])
+    made.SetWrap(pv.Texture.WrapType[WRAPPING[wrap // 3]])
     return made
 
 
