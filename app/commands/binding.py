@@ -12,6 +12,7 @@ from functools import partial
 from typing import Any
 
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
 
 import cutcell
 from cutcell.corrections import Corrections
@@ -63,12 +64,12 @@ def bind(session: Session, message: tuple[str, str] | None = None) -> None:
     few, corrections = kept(state), state.corrections
     work = binder(state, rig, corrections, _known_graph(session, rig, wanted))
 
-    def done(bindings: Any) -> None:
+    def done(found: tuple[csr_array, Binding]) -> None:
         session.built_for, session.corrected = wanted, corrections
         session.reach = reach_of(method["falloff"])
-        generous, binding = bindings
+        many, binding = found
         session.graph = (rig.mesh, wanted, binding.graph)
-        session.falloffs = {method["falloff"]: (generous.distances, generous.weights)}
+        session.falloffs = {method["falloff"]: (binding.distances, many)}
         notice, session.notice = session.notice, ""
         told = ("info", notice) if notice and message is None else message
         state.param.update(binding=binding, field=None, message=told)
@@ -81,14 +82,17 @@ def bind(session: Session, message: tuple[str, str] | None = None) -> None:
 
 def binder(
     state: State, rig: Rig, corrections: Corrections, graph: Any
-) -> Callable[[Progress], tuple[Binding, Binding]]:
-    """Return what binds as is chosen now: generously, and with the influences that are kept."""
+) -> Callable[[Progress], tuple[csr_array, Binding]]:
+    """Return what binds as is chosen now.
+
+    It returns the weights of many influences, and the binding with those that are kept.
+    """
     method, few = effective(generous(state)), kept(state)
 
-    def work(progress: Progress) -> tuple[Binding, Binding]:
+    def work(progress: Progress) -> tuple[csr_array, Binding]:
         known = {"graph": graph, "corrections": measured(corrections)}
         found = cutcell.bind(rig, **known, progress=progress, **method)
-        return found, pruned(found, few, rig, corrections)
+        return csr_array(found.weights), pruned(found, few, rig, corrections)
 
     return work
 
@@ -270,16 +274,17 @@ def weigh(session: Session) -> None:
     elif falloff in QUICK:
         _soon(session, partial(_weights, state.still(), **few))
     elif known is not None and known[0] is distances:
-        _soon(session, partial(keep_strongest, distances, known[1], **few))
+        many = known[1]
+        _soon(session, lambda: keep_strongest(distances, many.toarray(), **few))
     else:
         now = state.still()
 
-        def work(progress: Progress) -> NDArray:
+        def work(progress: Progress) -> csr_array:
             progress("weights", 0.0)
-            return _weights(now, max_influences=MOST)
+            return csr_array(_weights(now, max_influences=MOST))
 
-        def done(weights: NDArray) -> None:
-            session.falloffs[falloff] = (distances, weights)
+        def done(many: csr_array) -> None:
+            session.falloffs[falloff] = (distances, many)
             weigh(session)
 
         session.start(work, done)

@@ -100,7 +100,8 @@ class Session:
     reach : float
         How many times as far as the nearest joint distances are known.
     falloffs : dict
-        (distances, weights) of many influences for each falloff that was worked out.
+        For each falloff that was worked out the distances, and the weights of many influences:
+        sparse, as most of an (n, j) matrix is zero, and a session has it as long as it lives.
     diagnosed : BoneDistances, CutCellGraph or None
         The distances, or of a mesh without a skeleton the graph, that the diagnosis is of.
     """
