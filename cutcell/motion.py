@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .errors import ParameterError
+from .hierarchy import composed, relative
 
 
 class Motion(Protocol):
@@ -245,28 +246,14 @@ class Moved:
         """Return skinning matrices at some times, shape (f, j, 4, 4)."""
         world = self.motion.sample(seconds).copy()
         world[..., :3, 3] += _rotated(world, self.before)
-        held = np.flatnonzero(self.parents >= 0)
-        local, above = world.copy(), self.parents[held]
-        local[:, held] = inverses(world[:, above]) @ world[:, held]
-        place = local[..., :3, 3]
-        place += self.by
-        place[:, held] -= self.by[above]
-        done = self.parents < 0
-        while len(ready := np.flatnonzero(~done & done[self.parents])):  # parents first
-            local[:, ready] = local[:, self.parents[ready]] @ local[:, ready]
-            done[ready] = True
-        local[..., :3, 3] -= _rotated(local, self.before + self.by)
-        return local
+        own, held = relative(world, self.parents), self.parents >= 0
+        own[..., :3, 3] += self.by
+        own[:, held, :3, 3] -= self.by[self.parents[held]]
+        world = composed(own, self.parents)
+        world[..., :3, 3] -= _rotated(world, self.before + self.by)
+        return world
 
 
 def _rotated(matrices: NDArray[np.float64], points: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return points (j, 3), each by the linear part of matrices (f, j, 4, 4): (f, j, 3)."""
     return np.einsum("fjab,jb->fja", matrices[..., :3, :3], points)
-
-
-def inverses(matrices: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Invert matrices (..., 4, 4); of a joint that is scaled to nothing, as far as can be."""
-    try:
-        return np.linalg.inv(matrices).astype(np.float64)
-    except np.linalg.LinAlgError:
-        return np.linalg.pinv(matrices).astype(np.float64)

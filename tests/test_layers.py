@@ -45,6 +45,7 @@ ORDER = [
         "compiled",
         "display",
         "errors",
+        "hierarchy",
         "inputs",
         "compile_cache",
         "corrections",

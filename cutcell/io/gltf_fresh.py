@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from .. import __version__
 from ..errors import CutcellError, FileError, MeshError, SkeletonError, WeightsError
+from ..hierarchy import relative
 from ..rig import Clip, Rig, Skeleton, TriangleMesh
 from ..triangles import normals
 from .gltf_container import json_bytes, pack_glb, with_whole_names
@@ -216,9 +217,7 @@ def vertex_normals(mesh: TriangleMesh) -> NDArray[np.float32]:
 
 def joint_nodes(skeleton: Skeleton, first: int) -> list[dict[str, Any]]:
     """Return a node for each joint, numbered from `first` on, and one above the roots."""
-    local = bind_frames(skeleton)
-    held = np.flatnonzero(skeleton.parents >= 0)
-    local[held] = inverses(skeleton)[skeleton.parents[held]] @ local[held]
+    local = relative(bind_frames(skeleton), skeleton.parents)
     roots = np.flatnonzero(skeleton.parents < 0)
     named = [*zip(skeleton.names, skeleton.children, strict=True), ("armature", roots)]
     nodes: list[dict[str, Any]] = [
@@ -261,10 +260,7 @@ def _transform(matrix: NDArray) -> dict[str, list[float]]:
 def _local_poses(rig: Rig, clip: Clip) -> dict[str, NDArray]:
     """Return what each joint's node does, relative to its parent's node."""
     world = clip.transforms @ bind_frames(rig.skeleton)
-    local = world.copy()
-    held = np.flatnonzero(rig.skeleton.parents >= 0)
-    local[:, held] = np.linalg.inv(world[:, rig.skeleton.parents[held]]) @ world[:, held]
-    translation, rotation, scale = decompose(local)
+    translation, rotation, scale = decompose(relative(world, rig.skeleton.parents))
     turned = (rotation[1:] * rotation[:-1]).sum(axis=-1) < 0
     flips = np.concatenate([np.zeros((1, turned.shape[1]), bool), turned]).cumsum(axis=0) % 2
     poses = {"translation": translation, "rotation": rotation * np.where(flips, -1, 1)[..., None]}

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import ParameterError
+from ..hierarchy import composed
 from ..rig import Skeleton
 
 AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
@@ -39,7 +40,7 @@ def forward_kinematics(
     own = np.tile(np.eye(4), (count, 1, 1))
     own[:, :3, :3] = turns
     own[:, :3, 3] = skeleton.joints - np.einsum("jab,jb->ja", turns, skeleton.joints)
-    transforms = _down_the_tree(own, skeleton.parents)
+    transforms = composed(own, skeleton.parents)
     if translation is not None:
         transforms[:, :3, 3] += _numbers(translation, (3,), "translation")
     return transforms
@@ -100,19 +101,6 @@ def checked_joint(skeleton: Skeleton, joint: int) -> int:
             f"there is no joint {joint}: the skeleton's are 0 to {len(skeleton.joints) - 1}"
         )
     return int(joint)
-
-
-def _down_the_tree(own: NDArray, parents: NDArray) -> NDArray:
-    """Put every ancestor's transform in front of each joint's own, by doubling.
-
-    After step k each joint holds the product over its nearest 2^k ancestors, so that a
-    chain of n joints takes log2(n) steps, whatever order the joints come in.
-    """
-    transforms, above = own.copy(), parents.copy()
-    while (held := np.flatnonzero(above >= 0)).size:
-        transforms[held] = transforms[above[held]] @ transforms[held]
-        above[held] = above[above[held]]
-    return transforms
 
 
 def _numbers(value: ArrayLike, shape: tuple[int, ...], name: str) -> NDArray[np.float64]:

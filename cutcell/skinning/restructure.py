@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from ..corrections import Corrections
 from ..display import shown_name
 from ..errors import ParameterError, SkeletonError
-from ..motion import Motion, inverses
+from ..hierarchy import composed, relative
+from ..motion import Motion
 from ..rig import Clip, Rig, Skeleton, with_origin
 from .locks import joint_index
 
@@ -235,14 +236,8 @@ class Restructured:
 
     def sample(self, seconds: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return skinning matrices at some times, shape (f, j, 4, 4)."""
-        world = self.motion.sample(seconds)
-        local, held = world.copy(), np.flatnonzero(self.before >= 0)
-        local[:, held] = inverses(world[:, self.before[held]]) @ world[:, held]
-        result = np.tile(np.eye(4), (len(world), len(self.origin), 1, 1))
+        before = relative(self.motion.sample(seconds), self.before)
+        own = np.tile(np.eye(4), (len(before), len(self.origin), 1, 1))
         known = self.origin >= 0
-        result[:, known] = local[:, self.origin[known]]
-        done = self.parents < 0
-        while len(ready := np.flatnonzero(~done & done[self.parents])):  # parents first
-            result[:, ready] = result[:, self.parents[ready]] @ result[:, ready]
-            done[ready] = True
-        return result
+        own[:, known] = before[:, self.origin[known]]
+        return composed(own, self.parents)

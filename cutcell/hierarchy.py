@@ -1,0 +1,57 @@
+"""Transforms of joints: relative to their parents, and put together again."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+def relative(transforms: NDArray, parents: NDArray) -> NDArray[np.float64]:
+    """Return each joint's transform relative to its parent's; a root's stays.
+
+    Parameters
+    ----------
+    transforms : array, shape (..., j, 4, 4)
+    parents : array, shape (j,), int
+        -1 for a root.
+
+    Returns
+    -------
+    array, shape (..., j, 4, 4), float64
+    """
+    own, held = transforms.astype(np.float64), np.flatnonzero(parents >= 0)
+    own[..., held, :, :] = inverses(transforms[..., parents[held], :, :]) @ own[..., held, :, :]
+    return own
+
+
+def composed(own: NDArray, parents: NDArray) -> NDArray[np.float64]:
+    """Put every ancestor's transform in front of each joint's own, by doubling.
+
+    After step k each joint holds the product over its nearest 2^k ancestors, so that a
+    chain of n joints takes log2(n) steps, whatever order the joints come in.
+
+    Parameters
+    ----------
+    own : array, shape (..., j, 4, 4)
+        Relative to the parent.
+    parents : array, shape (j,), int
+        -1 for a root.
+
+    Returns
+    -------
+    array, shape (..., j, 4, 4), float64
+    """
+    transforms, above = own.astype(np.float64), parents.copy()
+    while (held := np.flatnonzero(above >= 0)).size:
+        before = transforms[..., above[held], :, :]
+        transforms[..., held, :, :] = before @ transforms[..., held, :, :]
+        above[held] = above[above[held]]
+    return transforms
+
+
+def inverses(matrices: NDArray) -> NDArray[np.float64]:
+    """Invert matrices (..., 4, 4); of a joint that is scaled to nothing, as far as can be."""
+    try:
+        return np.linalg.inv(matrices).astype(np.float64)
+    except np.linalg.LinAlgError:
+        return np.linalg.pinv(matrices).astype(np.float64)
