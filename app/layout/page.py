@@ -158,6 +158,7 @@ def layout(session: Session) -> pmui.Page:
     result.param.watch(themed, "dark_theme")
     view.param.watch(sized, "window_width")
     session.state.param.watch(told, "message")
+    session.state.param.watch(lambda event: tidy_soon(), "binding")
     view.param.watch(remembered, "dark")
     session.state.dark = result.dark_theme
     return result

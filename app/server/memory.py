@@ -1,4 +1,4 @@
-"""Memory that ended sessions held, given back to the system soon after they ended."""
+"""Memory that ended sessions and finished work held, given back to the system soon after."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import threading
 import panel as pn
 
 AFTER = 2.0
-"""Seconds after a session's end; several that end together are tidied up once."""
+"""Seconds after a session or its work ends; what ends meanwhile is tidied up along with it."""
 
 _LOCK = threading.Lock()
 _WAITING: list[threading.Timer] = []
