@@ -29,11 +29,13 @@ const COLOURED = (by) => by === "colors"
     ? "uniform highp sampler2D points;\nvec3 told(int i) { return vec3(texelFetch(points, ivec2(i % 2048, i / 2048), 0).r); }"
     : "vec3 told(int i) { return vec3(0.0); }"
 
-const LINE = (by) => `#version 300 es
+const HEAD = (by) => `#version 300 es
   precision highp float; precision highp int;
   ${PLACED}
+  ${COLOURED(by)}`
+
+const LINE = (by) => `${HEAD(by)}
   ${WIDE}
-  ${COLOURED(by)}
   out vec3 shown, at; out vec2 across; out float along, away;
   void main() {
     uvec2 ends = ends_(which());
@@ -58,10 +60,7 @@ const LINE = (by) => `#version 300 es
   }`
 
 // A line of one pixel, for a machine that draws in software while something changes.
-const PLAIN = (by) => `#version 300 es
-  precision highp float; precision highp int;
-  ${PLACED}
-  ${COLOURED(by)}
+const PLAIN = (by) => `${HEAD(by)}
   out vec3 shown, at; out float away;
   void main() {
     uvec2 ends = ends_(gl_VertexID / 2 * every);
@@ -71,11 +70,8 @@ const PLAIN = (by) => `#version 300 es
     shown = told(i); away = hazy(gl_Position.w);
   }`
 
-const POINT = (by) => `#version 300 es
-  precision highp float; precision highp int;
-  ${PLACED}
+const POINT = (by) => `${HEAD(by)}
   ${WIDE}
-  ${COLOURED(by)}
   out vec3 shown, at; out vec2 across; out float along, away;
   void main() {
     int ends = int(ends_(which()).x), k = corner();
