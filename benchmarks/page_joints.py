@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 from playwright.sync_api import Browser
 
 import cutcell
@@ -22,16 +23,17 @@ WAIT = """() => new Promise((done) => {
   const [view, begin] = [window.__cutcell, performance.now()]
   const receive = view.receive
   view.receive = function (message) {
+    const arrived = watch.now()
     receive.call(this, message)
     const {actors} = message
     const body = actors instanceof Map ? actors.get("body") : actors?.body
     if (body?.colors === undefined && body?.scalars === undefined) { return }
     view.receive = receive
-    requestAnimationFrame(() => setTimeout(() => done(watch.now())))
+    requestAnimationFrame(() => setTimeout(() => done([arrived, watch.now()])))
   }
   setTimeout(() => { view.receive = receive; done(null) }, 5000)
 })"""
-"""Resolves when the body has been drawn in other colours, with the time."""
+"""Resolves when the body has been drawn in other colours: when these arrived, and when it was."""
 
 
 def joints_table(browser: Browser, vertices: int, moves: int) -> Table:
@@ -49,12 +51,14 @@ def joints_table(browser: Browser, vertices: int, moves: int) -> Table:
         f"page at 1100x720 pixels; {moves} moves by {STEP} pixels. From the pointer's event in the "
         "browser, through the server, to the first frame with other colours.",
     )
-    middle, slow = (f"{1000 * value:.0f} ms" for value in np.percentile(taken, [50, 95]))
-    table.add("until the colours follow", middle, slow)
+    for does, times in zip(("arrive in the browser", "are seen"), taken.T, strict=True):
+        middle, slow = (f"{1000 * value:.0f} ms" for value in np.percentile(times, [50, 95]))
+        table.add(f"until other colours {does}", middle, slow)
     return table
 
 
-def _dragged(browser: Browser, address: str, joint: str, moves: int) -> list[float]:
+def _dragged(browser: Browser, address: str, joint: str, moves: int) -> NDArray:
+    """Return the seconds until other colours arrive and until they are seen, shape (moves, 2)."""
     visitor = Watched(browser, f"{address}/?panel=weights&bone={joint}", 1100, 720)
     page = visitor.page
     page.get_by_text("interior,").first.wait_for(timeout=90_000)
@@ -65,17 +69,17 @@ def _dragged(browser: Browser, address: str, joint: str, moves: int) -> list[flo
     x, y = page.evaluate("__cutcell.jointHandle()")
     page.mouse.move(x, y)
     page.mouse.down()
-    taken: list[float] = []
+    taken = []
     for move in range(moves + 2):
         page.evaluate(f"void (window.seen = ({WAIT})())")
         page.evaluate("watch.hear('pointermove')")
         page.mouse.move(x + STEP * (1 + move % 7), y + STEP * (1 + move % 5))
         seen = page.evaluate("window.seen")
         if seen is not None:
-            taken.append(seen / 1000 - visitor.wait("watch.heard"))
+            taken.append(np.array(seen) / 1000 - visitor.wait("watch.heard"))
         # The exact colours follow when the pointer rests.
         page.wait_for_function("__cutcell.serverRests()")
         page.wait_for_timeout(300)
     page.mouse.up()
     page.close()
-    return taken[2:]  # the first ones prepare what the others use
+    return np.array(taken[2:])  # the first ones prepare what the others use
