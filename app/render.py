@@ -11,7 +11,7 @@ import numpy as np
 from cutcell import ANIMATION, Method, bind, build_graph, diagnose
 from cutcell.checks import check_choice, check_has_joints, check_number
 from cutcell.errors import ParameterError
-from cutcell.io.gltf_materials import has_materials
+from cutcell.io.materials import has_materials
 from cutcell.progress import Progress, silent
 from cutcell.rig import Rig
 from cutcell_viewers.camera import Camera, framing

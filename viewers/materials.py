@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from cutcell.io.gltf_materials import FaceColors, Materials, read_materials
-from cutcell.io.gltf_textures import Layer, StoredImage
+from cutcell.io.face_colors import FaceColors, Layer, Materials, StoredImage
+from cutcell.io.materials import read_materials
 from cutcell.rig import Rig
 
 FORMATS = ("PNG", "JPEG", "WEBP")

@@ -9,8 +9,7 @@ import numpy as np
 import pyvista as pv
 from numpy.typing import NDArray
 
-from cutcell.io.gltf_materials import FaceColors
-from cutcell.io.gltf_textures import CLAMP, MIRROR, REPEAT
+from cutcell.io.face_colors import CLAMP, MIRROR, REPEAT, FaceColors
 
 # Members of `pyvista.Texture.WrapType`. By name: the class brings matplotlib, 60 MB of memory,
 # and the page's server imports this long before anybody wants a picture.

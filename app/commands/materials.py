@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from cutcell.errors import FileError
-from cutcell.io.gltf_materials import has_materials, read_materials
+from cutcell.io.materials import has_materials, read_materials
 from cutcell.progress import Progress
 from cutcell.rig import Rig
 from cutcell_viewers.materials import Textures, as_textures, decoded, none_decoded

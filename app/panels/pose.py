@@ -8,7 +8,7 @@ import panel_material_ui as pmui
 from bokeh.models import PrintfTickFormatter
 
 from cutcell.display import shown_name
-from cutcell.io.gltf_materials import has_materials
+from cutcell.io.materials import has_materials
 
 from ..commands import pose as actions
 from ..commands.session import Session

@@ -12,7 +12,7 @@ from ..rig import Part, Rig, Skeleton, TriangleMesh
 from .gltf_container import Document
 from .gltf_nodes import Nodes
 from .gltf_parts import hidden_nodes, left_out_meshes, mesh_name, vanishes
-from .gltf_primitives import read_triangles
+from .gltf_primitives import StoredFaces, draws_triangles, primitives, read_triangles
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,11 +47,14 @@ class BareSource:
     mesh : TriangleMesh
         As it was read.
     stored : list of StoredMesh
+    faces : tuple of StoredFaces
+        As they are now, if faces were repaired.
     """
 
     document: Document
     mesh: TriangleMesh
     stored: list[StoredMesh]
+    faces: tuple[StoredFaces, ...] = ()
 
 
 def read_bare(document: Document, nodes: Nodes, name: str) -> Rig:
@@ -61,16 +64,24 @@ def read_bare(document: Document, nodes: Nodes, name: str) -> Rig:
     shown = shown or [i for i, node in enumerate(nodes.raw) if "mesh" in node]
     hidden = hidden_nodes(nodes)
     vertices, faces, parts, stored, total = [], [], [], [], 0
+    stored_faces: list[StoredFaces] = []
+    triangles = 0
     for i in shown:
         mesh = nodes.raw[i]["mesh"]
         points, corners, drawn = read_triangles(document, mesh, document.label("nodes", i))
         if not len(corners):
             continue
         world = nodes.world[i]
-        if np.linalg.det(world[:3, :3]) < 0:
-            corners = corners[:, ::-1]  # mirrored: what was outside stays outside
+        is_mirrored = bool(np.linalg.det(world[:3, :3]) < 0)
+        if is_mirrored:
+            corners = corners[:, ::-1]  # what was outside stays outside
         first = [total + one.first_vertex for one in drawn]
         stored.append(StoredMesh(i, mesh, i in hidden, world, first))
+        numbers = _drawing(document, mesh, document.label("nodes", i))
+        for number, one, start in zip(numbers, drawn, first, strict=True):
+            here = slice(triangles + one.rows.start, triangles + one.rows.stop)
+            stored_faces.append(StoredFaces(mesh, number, start, here, is_mirrored))
+        triangles += len(corners)
         document.allowance.take(points.nbytes + corners.nbytes, document.label("nodes", i))
         vertices.append(points @ world[:3, :3].T + world[:3, 3])
         faces.append(corners + total)
@@ -86,5 +97,11 @@ def read_bare(document: Document, nodes: Nodes, name: str) -> Rig:
         name=name,
         parts=tuple(parts),
         left_out=left_out_meshes(document, nodes, [one.node for one in stored], ()),
-        source=BareSource(document, whole, stored),
+        source=BareSource(document, whole, stored, tuple(stored_faces)),
     )
+
+
+def _drawing(document: Document, mesh: int, user: str) -> list[int]:
+    """Return the numbers of a mesh's primitives that draw triangles."""
+    found = enumerate(primitives(document, mesh, user))
+    return [k for k, primitive in found if draws_triangles(primitive)]

@@ -57,6 +57,8 @@ class Document:
     """Memory that may be taken to read it."""
     warnings: list[str] = field(default_factory=list)
     """What a person should know of how it was read, in sentences."""
+    surfaces: Any = None
+    """Of a document that was made of another format: the `Surfaces` that colour its meshes."""
 
     def __post_init__(self) -> None:
         self.allow()

@@ -12,7 +12,9 @@ from numpy.typing import NDArray
 from .. import triangles
 from ..rig import Rig, TriangleMesh
 from .gltf_accessors import read_accessor
-from .gltf_read import GltfSource, StoredFaces
+from .gltf_bare import BareSource
+from .gltf_primitives import StoredFaces
+from .gltf_read import GltfSource
 from .gltf_storage import Storage
 
 
@@ -34,6 +36,7 @@ def with_faces(rig: Rig, kept: NDArray[np.bool_], turned: NDArray[np.bool_]) -> 
         for stored in source.faces:
             if stored.rows.stop > stored.rows.start and not kept[stored.rows].any():
                 kept[stored.rows.start] = True
+    if isinstance(source, GltfSource | BareSource):
         ends = np.concatenate([[0], np.cumsum(kept)])
         source = replace(source, faces=tuple(_edited(s, kept, turned, ends) for s in source.faces))
     return replace(rig, mesh=TriangleMesh(rig.mesh.vertices, faces[kept]), source=source)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -27,6 +28,31 @@ class Drawn(NamedTuple):
     first_vertex: int
     rows: slice
     """Its faces."""
+
+
+@dataclass(frozen=True, eq=False)
+class StoredFaces:
+    """Triangles that are stored together: those of one primitive.
+
+    Parameters
+    ----------
+    mesh, primitive : int
+    first_vertex : int
+        The primitive's first vertex in the rig.
+    rows : slice
+        The triangles in the rig's mesh.
+    is_mirrored : bool
+        Whether they run the other way in the file.
+    turned : array, shape (m,), bool, optional
+        Where they are no longer the file's: which of those that are left were turned round.
+    """
+
+    mesh: int
+    primitive: int
+    first_vertex: int
+    rows: slice
+    is_mirrored: bool
+    turned: NDArray[np.bool_] | None = None
 
 
 def primitives(document: Document, mesh: Any, user: str) -> list[dict[str, Any]]:

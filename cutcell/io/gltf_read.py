@@ -21,6 +21,7 @@ from .gltf_meshopt import decompress_meshopt
 from .gltf_nodes import Nodes
 from .gltf_parts import hidden_nodes, left_out_meshes, mesh_name, vanishes
 from .gltf_primitives import (
+    StoredFaces,
     attributes,
     draws_triangles,
     primitives,
@@ -45,31 +46,6 @@ class StoredPart:
     """Its vertices in the rig."""
     joints: Sequence[int]
     """Joint of the rig for each joint of the skin."""
-
-
-@dataclass(frozen=True, eq=False)
-class StoredFaces:
-    """Triangles that are stored together: those of one primitive.
-
-    Parameters
-    ----------
-    mesh, primitive : int
-    first_vertex : int
-        The primitive's first vertex in the rig.
-    rows : slice
-        The triangles in the rig's mesh.
-    is_mirrored : bool
-        Whether they run the other way in the file.
-    turned : array, shape (m,), bool, optional
-        Where they are no longer the file's: which of those that are left were turned round.
-    """
-
-    mesh: int
-    primitive: int
-    first_vertex: int
-    rows: slice
-    is_mirrored: bool
-    turned: NDArray[np.bool_] | None = None
 
 
 @dataclass(frozen=True, eq=False)

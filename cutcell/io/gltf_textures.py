@@ -2,53 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import FileError
+from .face_colors import CLAMP, CUTOFF, MIRROR, REPEAT, Layer, StoredImage
 from .gltf_accessors import read_accessor
 from .gltf_container import Document, read_uri, whole
 from .gltf_primitives import attributes
 
-REPEAT, CLAMP, MIRROR = 0, 1, 2
-"""How an image goes on beyond its border."""
 WRAPS = {33071: CLAMP, 33648: MIRROR}
 """glTF's numbers for these; any other repeats."""
 NEAREST = 9728
-CUTOFF = 0.5
-"""Where alpha cuts a surface, if the material does not tell; also of those that are blended."""
-
-
-@dataclass(frozen=True)
-class StoredImage:
-    """An image as a file stores it: what people call it, and its bytes."""
-
-    name: str
-    content: bytes
-
-
-@dataclass(frozen=True)
-class Layer:
-    """A way in which an image is used.
-
-    Parameters
-    ----------
-    image : int
-    nearest : bool
-        Whether its pixels are to be seen as squares.
-    cutoff : float, optional
-        Nothing is there where its alpha is less; None where alpha does not count.
-    blended : bool
-        Whether the file would have what is behind shine through.
-    """
-
-    image: int
-    nearest: bool = False
-    cutoff: float | None = None
-    blended: bool = False
 
 
 def extension(owner: dict[str, Any], name: str) -> dict[str, Any]:

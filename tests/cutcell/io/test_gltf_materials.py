@@ -7,9 +7,10 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 import cutcell
+from cutcell.io.face_colors import CLAMP, MIRROR, Layer
 from cutcell.io.gltf_faces import with_faces
-from cutcell.io.gltf_materials import has_materials, read_materials, srgb
-from cutcell.io.gltf_textures import CLAMP, MIRROR, Layer
+from cutcell.io.gltf_materials import srgb
+from cutcell.io.materials import has_materials, read_materials
 from tests.cutcell.io.gltf_builder import COLUMN, FACES, column
 
 UV = np.stack([np.linspace(0, 2, 12), np.linspace(-1, 1, 12)], axis=1).astype("f4")
