@@ -17,7 +17,8 @@ MOST = 2**31 - 2
 def parse_obj(text: str) -> TriangleMesh:
     """Read vertices and faces; polygons are cut into fans of triangles.
 
-    Texture coordinates, normals, groups and materials are passed over.
+    Texture coordinates, normals, groups and materials are passed over; `obj_surfaces` reads what
+    colours the faces.
 
     Raises
     ------

@@ -18,6 +18,7 @@ from ..rig import Rig, Skeleton, TriangleMesh
 from .deforming import with_deform
 from .files import naming, read_text
 from .names import whole_characters
+from .obj_materials import obj_surfaces
 from .objects import numbered_words, numbers, one_number, parse_obj, write_obj
 from .weights import NO_WEIGHTS, ReadWeights, summed
 
@@ -58,7 +59,8 @@ def read_rignet(path: Path) -> Rig:
     text = read_text(path)  # before its mesh is looked for: it may not be there at all
     obj = mesh_file(path)
     with naming(obj):
-        mesh = parse_obj(read_text(obj))
+        lines = read_text(obj)
+        mesh = parse_obj(lines)
     with naming(path):
         said = _parse(text)
         skeleton_names = tuple(said.positions)
@@ -71,6 +73,7 @@ def read_rignet(path: Path) -> Rig:
             name=obj.stem,
             warnings=(*read.warnings, *told),
             weight_sums=read.sums,
+            source=obj_surfaces(obj, lines, mesh),
         )
 
 

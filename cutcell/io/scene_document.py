@@ -8,6 +8,7 @@ A scene comes as arrays by name. Of k nodes, the root being the first: `node_nam
 nodes), `mesh_K_inverse` (j, 4, 4) and its weights as `mesh_K_rows`, `_columns` and `_values`. Of
 clips: `clip_names`; `tracks` (t, 4), ordered by clip: clip, node, what moves (see `PATHS`) and
 number of keys; and `keys` (k, 5) of all tracks, seconds and a value, ascending in each track.
+`scene_surfaces` says what may be there of materials.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ from numpy.typing import NDArray
 from ..errors import FileError, MeshError
 from .gltf_container import Document
 from .scene_joints import SceneSkin, scene_skins
+from .scene_surfaces import scene_surfaces
 
 CODES = {"f4": pygltflib.FLOAT, "u1": pygltflib.UNSIGNED_BYTE, "u2": pygltflib.UNSIGNED_SHORT,
          "u4": pygltflib.UNSIGNED_INT}  # fmt: skip
@@ -55,7 +57,9 @@ def scene_document(scene: Mapping[str, NDArray], path: Path, generator: str) -> 
     for k in range(len(scene["mesh_names"])):
         made.add_mesh(scene, k, skins.get(k))
     made.add_clips(scene)
-    return made.finished(path)
+    document = made.finished(path)
+    document.surfaces = scene_surfaces(scene, path, made.meshes)
+    return document
 
 
 class _Making:
@@ -78,6 +82,8 @@ class _Making:
         }  # fmt: skip
         self.data: list[bytes] = []
         self.size = 0
+        self.meshes: dict[int, int] = {}
+        """In the document, by the scene's numbers."""
 
     def add_nodes(self, scene: Mapping[str, NDArray]) -> None:
         for name, values in zip(scene["node_names"], scene["node_transforms"], strict=True):
@@ -108,6 +114,7 @@ class _Making:
             node["matrix"] = scene[f"mesh_{k}_place"].T.ravel().tolist()
         indices = self._array(faces.reshape(-1, 1).astype("<u4"))
         primitive = {"attributes": attributes, "indices": indices, "material": 0}
+        self.meshes[k] = len(self.json["meshes"])
         self.json["meshes"].append({"name": name, "primitives": [primitive]})
         self._hang(node, scene, int(scene["mesh_nodes"][k]))
 

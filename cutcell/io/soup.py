@@ -13,8 +13,10 @@ from ..errors import FileError, MeshError
 from ..rig import Rig, Skeleton, TriangleMesh
 from .deforming import with_deform
 from .files import one_line, read_bytes, read_text
+from .obj_materials import obj_surfaces
 from .objects import parse_obj
 from .skeleton_json import read_skeleton_json, skeleton_file
+from .surfaces import Surface, Surfaces
 
 logging.getLogger("trimesh").addHandler(logging.NullHandler())  # it writes tracebacks to terminals
 MESHES = (".obj", ".ply", ".stl", ".off")
@@ -30,35 +32,53 @@ def read_soup(path: Path, skeleton: Path | None) -> Rig:
     skeleton : Path, optional
         The skeleton; ``NAME.skeleton.json`` or ``NAME.json`` beside the mesh when left out.
     """
-    mesh = read_mesh(path)
+    mesh, surfaces = read_mesh(path)
     found = skeleton or skeleton_file(path)
     if found is None:
-        return Rig(mesh, Skeleton([], []), name=path.stem)  # type: ignore[arg-type]
+        return Rig(mesh, Skeleton([], []), name=path.stem, source=surfaces)  # type: ignore[arg-type]
     joints, says_deform = read_skeleton_json(found)
     told: list[str] = []
     if not says_deform:
         joints, told = with_deform(mesh, joints, None)
-    return Rig(mesh, joints, name=path.stem, warnings=tuple(told))
+    return Rig(mesh, joints, name=path.stem, warnings=tuple(told), source=surfaces)
 
 
-def read_mesh(path: Path) -> TriangleMesh:
-    """Read a mesh with every vertex in the file's order.
+def read_mesh(path: Path) -> tuple[TriangleMesh, Surfaces | None]:
+    """Read a mesh with every vertex in the file's order, and what colours it, if anything does.
 
     A binary STL has no shared vertices: each triangle brings its own three.
     """
     if path.suffix.lower() == ".obj":
-        return parse_obj(read_text(path))  # names the line that is wrong
-    return _through_trimesh(read_bytes(path), path.suffix.lower()[1:])
+        text = read_text(path)
+        mesh = parse_obj(text)  # names the line that is wrong
+        return mesh, obj_surfaces(path, text, mesh)
+    loaded = _through_trimesh(read_bytes(path), path.suffix.lower()[1:])
+    mesh = TriangleMesh(np.asarray(loaded.vertices), np.asarray(loaded.faces))
+    return mesh, _coloured(path, mesh, loaded.visual)
 
 
-def _through_trimesh(data: bytes, kind: str) -> TriangleMesh:
+def _through_trimesh(data: bytes, kind: str) -> Any:
     import trimesh
 
     try:
         loaded: Any = trimesh.load(io.BytesIO(data), file_type=kind, process=False, force="mesh")
     except Exception as e:  # trimesh's readers raise whatever their parsing runs into
         raise FileError(f"is not a readable {kind.upper()} file ({one_line(e)})") from e
-    faces = getattr(loaded, "faces", np.zeros((0, 3), int))
-    if not len(faces):
+    if not len(getattr(loaded, "faces", ())):
         raise MeshError("has no triangles")
-    return TriangleMesh(np.asarray(loaded.vertices), np.asarray(faces))
+    return loaded
+
+
+def _coloured(path: Path, mesh: TriangleMesh, visual: Any) -> Surfaces | None:
+    """Return the colours that a file gives to vertices or faces."""
+    try:
+        kind = getattr(visual, "kind", None)
+        if kind not in ("vertex", "face"):
+            return None
+        found = np.asarray(visual.vertex_colors if kind == "vertex" else visual.face_colors)
+        faces = mesh.faces if kind == "vertex" else np.arange(len(mesh.faces))[:, None].repeat(3, 1)
+        colors = np.ascontiguousarray(found[faces][..., :3], np.uint8)
+    except Exception:  # trimesh looks at them only now
+        return None
+    none = np.full(len(mesh.faces), -1, np.int32)
+    return Surfaces(path, {0: Surface(mesh.faces, none, colors=colors)})

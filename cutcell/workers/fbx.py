@@ -1,7 +1,7 @@
 """FBX, binary and text, 6.1 to 7.7: read by ufbx, handed on as the arrays of a scene.
 
 `cutcell.io.scene_document` says what the arrays are. ufbx' bindings let go of list elements too
-often: each list is walked once and kept, and the process must end without cleaning up.
+often: each list is walked once and kept (`fbx_kept`), and the process must end without cleaning up.
 """
 
 from __future__ import annotations
@@ -9,10 +9,11 @@ from __future__ import annotations
 import numpy as np
 import ufbx
 
+from .fbx_kept import keep, kept
+from .fbx_materials import Palette, surface
+
 FRAMES_A_SECOND = 30.0
 MOST_TRIANGLES_OF_A_FACE = 10_000
-KEEP: list[list] = []
-"""What must never be released."""
 
 
 def read(data):
@@ -37,7 +38,7 @@ def read(data):
         scene = ufbx.load_memory(data.tobytes(), **options())
     except ufbx.UfbxError as error:
         raise RuntimeError(f"it is damaged ({error})") from None
-    KEEP.append([scene])
+    keep(scene)
     nodes = kept(scene.nodes)
     place = {node.element_id: i for i, node in enumerate(nodes)}
     parents = [place[p.element_id] if (p := node.parent) else -1 for node in nodes]
@@ -50,11 +51,13 @@ def read(data):
     }
     names: list[str] = []
     at: list[int] = []
+    palette = Palette()
     for mesh in kept(scene.meshes):
         places = kept(mesh.instances)
         if not mesh.num_faces or not places:
             continue
-        shape = geometry(mesh)
+        corners, polygons = triangles(mesh)
+        shape = geometry(mesh, corners)
         skins = kept(mesh.skin_deformers)
         # A skin holds for one place of a mesh; other meshes may stand anywhere.
         for node in places[:1] if skins else places:
@@ -62,12 +65,14 @@ def read(data):
             names.append(node.name or mesh.name)
             at.append(place[node.element_id])
             found |= {f"mesh_{k}_{key}": value for key, value in shape.items()}
+            colours = surface(mesh, node, corners, polygons, palette)
+            found |= {f"mesh_{k}_{key}": value for key, value in colours.items()}
             found[f"mesh_{k}_place"] = matrix(node.geometry_to_node)
             if skins:
                 skin = influences(skins, place)
                 found |= {f"mesh_{k}_{key}": value for key, value in skin.items()}
     found |= {"mesh_names": np.array(names, np.str_), "mesh_nodes": np.array(at, int)}
-    return found | clips(scene, place)
+    return found | palette.arrays() | clips(scene, place)
 
 
 def options():
@@ -80,14 +85,7 @@ def options():
         "geometry_transform_handling": ufbx.GeometryTransformHandling.PRESERVE,
         "inherit_mode_handling": ufbx.InheritModeHandling.HELPER_NODES,
         "index_error_handling": ufbx.IndexErrorHandling.ABORT_LOADING,
-        "ignore_embedded": True,
     }
-
-
-def kept(elements):
-    """Return a list's elements; they stay as long as the process."""
-    KEEP.append(list(elements))
-    return KEEP[-1]
 
 
 def matrix(columns):
@@ -102,18 +100,24 @@ def transform(one):
     return [*one.translation, *one.rotation, *one.scale]
 
 
-def geometry(mesh):
-    """Return a mesh's control points, and its polygons as fans of triangles."""
+def triangles(mesh):
+    """Cut polygons into fans; return corners by the mesh's numbers, and the polygon of each."""
     begin, count = np.array([tuple(face) for face in mesh.faces]).T
-    corners = np.array(list(mesh.vertex_indices), int)
     fans = []
     for k in range(1, min(int(count.max()), MOST_TRIANGLES_OF_A_FACE) - 1):
-        start = begin[count > k + 1]
-        fans.append(np.stack([start, start + k, start + k + 1, count[count > k + 1]], axis=1))
-    faces = np.concatenate(fans) if fans else np.zeros((0, 4), int)
-    faces = faces[np.argsort(faces[:, 0], kind="stable"), :3]
+        polygons = np.flatnonzero(count > k + 1)
+        start = begin[polygons]
+        fans.append(np.stack([start, start + k, start + k + 1, polygons], axis=1))
+    found = np.concatenate(fans) if fans else np.zeros((0, 4), int)
+    found = found[np.argsort(found[:, 0], kind="stable")]
+    return found[:, :3], found[:, 3]
+
+
+def geometry(mesh, corners):
+    """Return a mesh's control points, and its triangles."""
+    vertices = np.array(list(mesh.vertex_indices), int)
     points = np.array([tuple(point) for point in mesh.vertices], float).reshape(-1, 3)
-    return {"vertices": points, "faces": corners[faces]}
+    return {"vertices": points, "faces": vertices[corners]}
 
 
 def influences(skins, place):
@@ -155,7 +159,7 @@ def clips(scene, place):
             key_reduction_enabled=True,
             key_reduction_rotation=True,
         )
-        KEEP.append([baked])
+        keep(baked)
         before = len(tracks)
         for node in kept(baked.nodes):
             moves = (node.translation_keys, node.rotation_keys, node.scale_keys)

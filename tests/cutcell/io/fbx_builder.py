@@ -1,5 +1,6 @@
 """FBX files of the column, as text and binary, made from one tree of records."""
 
+import base64
 import struct
 import zlib
 
@@ -84,6 +85,75 @@ def column_scene(
             record("Connections", children=connections)]  # fmt: skip
 
 
+def with_materials(scene, uv, polygons=None, materials=(), colors=None):
+    """Give the column materials, texture coordinates and colours.
+
+    Parameters
+    ----------
+    scene
+        See `column_scene`.
+    uv : array, shape (f, 3, 2)
+        Of each corner.
+    polygons : array, shape (f,), optional
+        The material of each face; the first when left out.
+    materials : sequence of (properties, texture or None)
+        A texture has a `file`, and perhaps `content` and more properties (`look`).
+    colors : array, shape (f, 3, 4), optional
+    """
+    layers = [("UV", uv, "UV", "UVIndex"), ("Color", colors, "Colors", "ColorIndex")]
+    found, named = [], []
+    for kind, values, name, index in layers:
+        if values is None:
+            continue
+        flat = np.asarray(values, float).reshape(-1, np.shape(values)[-1])
+        direct, which = np.unique(flat, axis=0, return_inverse=True)
+        found.append(layer(kind, "ByPolygonVertex", [
+            record(name, direct.ravel()), record(index, which.ravel().astype(np.int32))
+        ]))  # fmt: skip
+        named.append(kind)
+    which = np.zeros(1) if polygons is None else np.asarray(polygons)
+    how = "AllSame" if polygons is None else "ByPolygon"
+    found.append(layer("Material", how, [record("Materials", which.astype(np.int32))]))
+    named.append("Material")
+    elements = [
+        record("LayerElement", children=[record("Type", f"LayerElement{kind}"),
+                                         record("TypedIndex", 0)]) for kind in named
+    ]  # fmt: skip
+    found.append(record("Layer", 0, children=[record("Version", 100), *elements]))
+    head, objects, connections = scene
+    geometry, *others = objects[2]
+    geometry = record(*geometry[:1], *geometry[1], children=[*geometry[2], *found])
+    links = []
+    for k, (look, texture) in enumerate(materials):
+        others.append(record("Material", 900 + k, f"Material::paint {k}", "", children=[
+            record("ShadingModel", "lambert"), properties(*look)]))  # fmt: skip
+        links.append(record("C", "OO", 900 + k, MESH))
+        if texture is not None:
+            others += _texture(920 + k, 940 + k, **texture)
+            links += [record("C", "OP", 920 + k, 900 + k, "DiffuseColor")]
+            links += [record("C", "OO", 940 + k, 920 + k)]
+    return [head, record("Objects", children=[geometry, *others]),
+            record("Connections", children=[*connections[2], *links])]  # fmt: skip
+
+
+def layer(kind, mapping, children):
+    return record(f"LayerElement{kind}", 0, children=[
+        record("Version", 101), record("Name", "map"), record("MappingInformationType", mapping),
+        record("ReferenceInformationType", "IndexToDirect"), *children
+    ])  # fmt: skip
+
+
+def _texture(unique, video, file, content=None, look=()):
+    names = [record("FileName", "C:\\work\\" + file), record("RelativeFilename", file)]
+    inside = [] if content is None else [record("Content", content)]
+    return [
+        record("Texture", unique, "Texture::image", "", children=[
+            record("Type", "TextureVideoClip"), properties(*look), *names]),
+        record("Video", video, "Video::image", "Clip", children=[
+            record("Type", "Clip"), *names, *inside]),
+    ]  # fmt: skip
+
+
 def model(unique, name, kind, found):
     return record("Model", unique, f"Model::{name}", kind, children=[properties(*found)])
 
@@ -140,6 +210,7 @@ def _lines(records, indent):
                 f"{indent}}}",
             ]
             continue
+        values = [base64.b64encode(v).decode() if isinstance(v, bytes) else v for v in values]
         shown = ", ".join(f'"{v}"' if isinstance(v, str) else repr(v) for v in values)
         lines.append(f"{indent}{name}: {shown}" + (" {" if children else ""))
         if children:
@@ -180,6 +251,8 @@ def _value(value):
         kind, _, name = value.partition("::")
         content = f"{name}\0\x01{kind}".encode() if "::" in value else value.encode()
         return b"S" + struct.pack("<I", len(content)) + content
+    if isinstance(value, bytes):
+        return b"R" + struct.pack("<I", len(value)) + value
     if isinstance(value, float):
         return b"D" + struct.pack("<d", value)
     return b"L" + struct.pack("<q", value)
