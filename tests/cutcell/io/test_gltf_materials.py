@@ -313,3 +313,41 @@ def test_no_odd_field_is_an_error(loaded):
             assert np.isfinite(materials.body.corners).all(), (path, value)
         owner[last] = kept
     assert read_materials(rig).notes == ()
+
+
+class TestWithoutASkin:
+    @pytest.fixture
+    def bare(self):
+        """Return the column without its skin, with an image; two nodes show it, one mirrored."""
+        builder = with_image(column())
+        node = next(one for one in builder.json["nodes"] if "mesh" in one)
+        del node["skin"]
+        for name in ("JOINTS_0", "WEIGHTS_0"):
+            del primitive(builder)["attributes"][name]
+        builder.node(mesh=0, scale=[-1, 1, 1], translation=[4, 0, 0])
+        return builder
+
+    def test_its_materials_are_read(self, loaded, bare):
+        rig = loaded(bare)
+        assert len(rig.skeleton.joints) == 0
+        assert has_materials(rig)
+        found = read_materials(rig)
+        expected = np.concatenate([UV[FACES], UV[FACES[:, ::-1]]])
+        assert_allclose(found.body.corners[..., :2], expected)
+        assert len(found.layers) == 1
+
+    def test_a_skeleton_and_a_repair_keep_them(self, loaded, bare):
+        rig = loaded(bare)
+        joints = cutcell.Skeleton([[0.5, 0, 0.5], [0.5, 1, 0.5]], [-1, 0])
+        rig = replace(rig, skeleton=joints)
+        kept, turned = np.ones((2, 2 * len(FACES)), bool)
+        kept[[0, 20]] = False
+        turned[:] = False
+        turned[3] = True
+        repaired = with_faces(rig, kept, turned)
+        expected = np.concatenate([UV[FACES], UV[FACES[:, ::-1]]])
+        expected[3] = expected[3, [0, 2, 1]]
+        found = read_materials(repaired)
+        assert_allclose(found.body.corners[..., :2], expected[kept])
+        whole = with_faces(repaired, np.ones(kept.sum(), bool), np.zeros(kept.sum(), bool))
+        assert_allclose(read_materials(whole).body.corners, found.body.corners)
