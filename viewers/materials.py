@@ -34,7 +34,8 @@ class Textures:
     Parameters
     ----------
     images : array, shape (k, s, s, 4), uint8
-        The layers, sRGB; nothing is there where alpha is less than a half.
+        The layers, sRGB. Nothing is there where alpha is less than a half; where a surface is
+        blended, alpha is how much of it is there.
     body : FaceColors
         In the order of the faces of the body's `Actor`.
     attachments : tuple of FaceColors
@@ -117,7 +118,7 @@ def as_textures(
         corners[..., 2] = shown[corners[..., 2].astype(int)]
         way = slice(None, None, -1 if is_mirrored else 1)  # as the faces, see `character`
         return FaceColors(
-            np.ascontiguousarray(corners[:, way]), np.ascontiguousarray(colors.tints[:, way])
+            *(np.ascontiguousarray(one[:, way]) for one in (corners, colors.tints, colors.opacity))
         )
 
     return Textures(
@@ -166,11 +167,10 @@ def _fill(pixels: NDArray[np.uint8], image: StoredImage, layer: Layer) -> str:
     how = Image.Resampling.NEAREST if squares else Image.Resampling.BILINEAR
     # Apart from each other: colours would fade to black where alpha is none.
     pixels[..., :3] = np.asarray(whole.convert("RGB").resize((side, side), how))
-    if layer.cutoff is None:
+    if layer.cutoff is None and not layer.blended:
         return ""
     alpha = np.asarray(whole.getchannel("A").resize((side, side), how), float)
-    scaled = np.clip(alpha * HALF / (OPAQUE * max(layer.cutoff, 1 / OPAQUE)), 0, OPAQUE)
-    if layer.blended and (scaled < HALF).all():
-        return ""  # as glass: rather seen than not
-    pixels[..., 3] = scaled.round()
+    if layer.cutoff is not None:
+        alpha = alpha * HALF / (OPAQUE * max(layer.cutoff, 1 / OPAQUE))
+    pixels[..., 3] = np.clip(alpha, 0, OPAQUE).round()
     return ""

@@ -17,11 +17,13 @@ if sys.platform == "linux" and not os.environ.get("DISPLAY"):
 
 import pyvista as pv
 
+from cutcell.io.face_colors import BLENDED
+
 from .camera import VIEW_ANGLE, Camera, framing
 from .description import Actor, Cut, Description
 from .palette import BODY, LIGHT, Theme, colormap, to_bytes
 from .skin import moved, squared_apart, turned
-from .textured import CUT_OUT, pieces, texture
+from .textured import ALPHA_KNOWN, CUT_OUT, DITHERED, pieces, texture
 
 
 class Scene:
@@ -108,9 +110,10 @@ class Scene:
                 if kind not in self._textures:
                     self._textures[kind] = texture(description.images[kind[0]], kind[1])
                 drawn.texture = self._textures[kind]
+            if drawn.texture is not None or kind[1] >= BLENDED:
                 drawn.ForceOpaqueOn()
-                shader = drawn.GetShaderProperty()
-                shader.AddFragmentShaderReplacement("//VTK::TCoord::Impl", False, CUT_OUT, False)
+                shader, how = drawn.GetShaderProperty(), DITHERED if kind[1] >= BLENDED else CUT_OUT
+                shader.AddFragmentShaderReplacement(ALPHA_KNOWN, False, how, False)
             yield drawn
 
     def _add(self, drawn: pv.Actor, actor: Actor, description: Description) -> pv.Actor:

@@ -9,7 +9,7 @@ import numpy as np
 import pyvista as pv
 from numpy.typing import NDArray
 
-from cutcell.io.face_colors import CLAMP, MIRROR, REPEAT, FaceColors
+from cutcell.io.face_colors import BLENDED, CLAMP, MIRROR, REPEAT, FaceColors
 
 # Members of `pyvista.Texture.WrapType`. By name: the class brings matplotlib, 60 MB of memory,
 # and the page's server imports this long before anybody wants a picture.
@@ -47,7 +47,10 @@ def pieces(
         data: Any = pv.PolyData(points[corners], np.insert(cells, 0, 3, axis=1).ravel())
         if normals is not None:
             data.point_data.active_normals = normals[corners]
-        data.point_data["colors"] = colors.tints[rows].reshape(-1, 3)
+        tints = colors.tints[rows].reshape(-1, 3)
+        if wrap >= BLENDED:
+            tints = np.column_stack([tints, colors.opacity[rows].reshape(-1)])
+        data.point_data["colors"] = tints
         if layer >= 0:
             across, down = colors.corners[rows, :, :2].reshape(-1, 2).T
             # VTK counts from the lower left corner.
@@ -60,12 +63,25 @@ def texture(image: NDArray[np.uint8], wrap: int) -> pv.Texture:
     opaque = (image[..., 3] == OPAQUE).all()
     made: Any = pv.Texture(np.ascontiguousarray(image[..., :3] if opaque else image))
     made.interpolate = made.mipmap = True
-    made.SetWrap(pv.Texture.WrapType[WRAPPING[wrap // 3]])
+    made.SetWrap(pv.Texture.WrapType[WRAPPING[wrap % BLENDED // 3]])
     return made
 
 
-CUT_OUT = """//VTK::TCoord::Impl
+ALPHA_KNOWN = "//VTK::DepthPeeling::Impl"
+"""Where in VTK's shader the image was looked up; its place for images is gone by then."""
+
+CUT_OUT = """//VTK::DepthPeeling::Impl
   if (gl_FragData[0].a < 0.5) { discard; }
   gl_FragData[0].a = 1.0;
 """
 """Nothing is drawn where an image is less than half there."""
+
+DITHERED = """//VTK::DepthPeeling::Impl
+  vec2 fine = floor(gl_FragCoord.xy);
+  vec2 coarse = floor(0.5 * gl_FragCoord.xy);
+  float least = fract(0.5 * fine.x + 0.75 * fine.y * fine.y) + 0.03125;
+  least += 0.25 * fract(0.5 * coarse.x + 0.75 * coarse.y * coarse.y);
+  if (gl_FragData[0].a < least) { discard; }
+  gl_FragData[0].a = 1.0;
+"""
+"""As many pixels are drawn as alpha says, as on the page (scripts/materials.js)."""

@@ -55,11 +55,12 @@ export class Materials {
   }
 
   // `corners`: of each corner its place in the image (two numbers), the image's layer, or -1, and
-  // how the image goes on, 3 across + down: 0 repeats, 1 clamps, 2 mirrors. `tints`: its colour.
+  // how the image goes on, 3 across + down: 0 repeats, 1 clamps, 2 mirrors; 9 more where what is
+  // behind shines through. `tints`: its colour, and how much of it is there.
   set({corners, tints}) {
     const {gl} = this
     this.corners.put(plain(corners), gl.RGBA32F, gl.RGBA, gl.FLOAT, 4)
-    this.tints.put(plain(tints), gl.RGB8, gl.RGB, gl.UNSIGNED_BYTE, 3)
+    this.tints.put(plain(tints), gl.RGBA8, gl.RGBA, gl.UNSIGNED_BYTE, 4)
   }
 
   // Called before the actor is drawn.
@@ -84,32 +85,41 @@ export const MATERIAL_SHADER = {
     uniform highp sampler2D corners;
     uniform highp sampler2D tints;
     varying vec4 corner;
-    varying vec3 tint;`,
+    varying vec4 tint;`,
   main: `
     ivec2 cornerAt = ivec2(gl_VertexID % ${POINTS_WIDE}, gl_VertexID / ${POINTS_WIDE});
     corner = texelFetch(corners, cornerAt, 0);
-    tint = texelFetch(tints, cornerAt, 0).rgb;`,
+    tint = texelFetch(tints, cornerAt, 0);`,
   fragment: [
     ["void main()\n{", `
       varying vec4 corner;
-      varying vec3 tint;
+      varying vec4 tint;
       uniform highp sampler2DArray images;
       float wrapped(float at, float how, float edge) {
         if (how < 0.5) { return at; }
         return clamp(how < 1.5 ? at : 1.0 - abs(mod(at, 2.0) - 1.0), edge, 1.0 - edge);
       }
+      // Of each two by two, and four by four pixels another share is drawn: nothing has to be sorted
+      // by its distance then.
+      float share(vec2 pixel) {
+        pixel = floor(pixel);
+        return fract(0.5 * pixel.x + 0.75 * pixel.y * pixel.y);
+      }
+      float dither(vec2 pixel) {
+        return 0.25 * share(0.5 * pixel) + share(pixel) + 0.03125;
+      }
       void main()
       {`],
     ["  ambientColor = ambientColorUniform;", `
       float edge = 0.5 / float(textureSize(images, 0).x);
-      float across = floor((corner.w + 0.5) / 3.0);
-      vec3 at = vec3(wrapped(corner.x, across, edge), wrapped(corner.y, corner.w - 3.0 * across, edge), max(corner.z, 0.0));
+      float least = corner.w > 8.5 ? dither(gl_FragCoord.xy) : 0.5;
+      float how = corner.w > 8.5 ? corner.w - 9.0 : corner.w;
+      float across = floor((how + 0.5) / 3.0);
+      vec3 at = vec3(wrapped(corner.x, across, edge), wrapped(corner.y, how - 3.0 * across, edge), max(corner.z, 0.0));
       vec4 texel = texture(images, at);
-      vec3 shown = tint;
-      if (corner.z > -0.5) {
-        if (texel.a < 0.5) { discard; }
-        shown *= texel.rgb;
-      }
+      if (corner.z < -0.5) { texel = vec4(1.0); }
+      if (texel.a * tint.a < least) { discard; }
+      vec3 shown = tint.rgb * texel.rgb;
       ambientColor = shown;`],
     ["  diffuseColor = diffuseColorUniform;", "  diffuseColor = shown;"],
   ],

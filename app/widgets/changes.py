@@ -105,8 +105,13 @@ def _colouring(old: Actor | None, new: Actor) -> dict[str, Any]:
     if new.materials is not None:
         if old is not None and old.materials is new.materials:
             return {}
-        corners = _flat(new.materials.corners, np.float32)
-        return {"materials": {"corners": corners, "tints": _flat(new.materials.tints, np.uint8)}}
+        found = new.materials
+        tints = np.concatenate([found.tints, found.opacity[..., None]], axis=2)
+        return {
+            "materials": {
+                "corners": _flat(found.corners, np.float32), "tints": _flat(tints, np.uint8)
+            }
+        }  # fmt: skip
     old = None if old is not None and old.materials is not None else old
     if new.colors is not None:
         if old is None or not _same(old.colors, new.colors):

@@ -16,8 +16,11 @@ from ..errors import CutcellError
 
 REPEAT, CLAMP, MIRROR = 0, 1, 2
 """How an image goes on beyond its border."""
+BLENDED = 9
+"""Added to how an image goes on, where what is behind shines through by alpha."""
+OPAQUE = 255
 CUTOFF = 0.5
-"""Where alpha cuts a surface, if the material does not tell; also of those that are blended."""
+"""Where alpha cuts a surface, if the material does not tell."""
 
 
 @dataclass(frozen=True)
@@ -38,9 +41,9 @@ class Layer:
     nearest : bool
         Whether its pixels are to be seen as squares.
     cutoff : float, optional
-        Nothing is there where its alpha is less; None where alpha does not count.
+        Nothing is there where its alpha is less; None where alpha cuts nothing.
     blended : bool
-        Whether the file would have what is behind shine through.
+        Whether what is behind shines through by its alpha.
     """
 
     image: int
@@ -57,13 +60,21 @@ class FaceColors:
     ----------
     corners : array, shape (m, 3, 4), float32
         Of each corner: where it lies in the image, from the upper left corner of it; the
-        number of the layer, -1 for none; and how the image goes on, 3 across + down (see `REPEAT`).
+        number of the layer, -1 for none; and how the image goes on, 3 across + down (see `REPEAT`),
+        `BLENDED` added where alpha counts for what is behind.
     tints : array, shape (m, 3, 3), uint8
         What the image is multiplied by, or the colour where there is none; sRGB.
+    opacity : array, shape (m, 3), uint8
+        What the image's alpha is multiplied by; less than 255 only where `BLENDED` is added.
     """
 
     corners: NDArray[np.float32]
     tints: NDArray[np.uint8]
+    opacity: NDArray[np.uint8]
+
+    def of(self, rows: slice) -> FaceColors:
+        """Return those of some faces, as views."""
+        return FaceColors(self.corners[rows], self.tints[rows], self.opacity[rows])
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,9 +139,9 @@ class Collected:
         self._notes[f"{label} is shown without what could not be read of it: {why}"] = None
 
 
-Paint = Callable[[Any, NDArray, NDArray, NDArray], None]
-"""Fills the rows of one piece of a mesh, given what colours it, its faces by the vertices of their
-own numbers, and the rows of `FaceColors.corners` and `tints`."""
+Paint = Callable[[Any, NDArray, FaceColors], None]
+"""Fills the colours of one piece of a mesh, given what colours it, and its faces by the vertices'
+own numbers there."""
 
 
 def face_colors(
@@ -151,15 +162,18 @@ def face_colors(
     FaceColors or None
         None if these are not the faces of the pieces.
     """
-    corners = np.zeros((len(faces), 3, 4), np.float32)
-    corners[..., 2] = -1
-    tints = np.full((len(faces), 3, 3), 255, np.uint8)
+    colors = FaceColors(
+        np.zeros((len(faces), 3, 4), np.float32),
+        np.full((len(faces), 3, 3), OPAQUE, np.uint8),
+        np.full((len(faces), 3), OPAQUE, np.uint8),
+    )
+    colors.corners[..., 2] = -1
     end = 0
     for piece, first, rows in pieces:
         if rows.start != end or rows.stop > len(faces):
             return None
         end = rows.stop
         with np.errstate(all="ignore"):  # a file may hold any number
-            paint(piece, faces[rows] - first, corners[rows], tints[rows])
-    np.nan_to_num(corners, copy=False)
-    return FaceColors(corners, tints) if end == len(faces) else None
+            paint(piece, faces[rows] - first, colors.of(rows))
+    np.nan_to_num(colors.corners, copy=False)
+    return colors if end == len(faces) else None

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import CutcellError, FileError
-from .face_colors import Collected
+from .face_colors import BLENDED, OPAQUE, Collected, FaceColors
 from .gltf_accessors import read_accessor
 from .gltf_container import Document
 from .gltf_primitives import attributes
@@ -33,6 +33,10 @@ class _Base(NamedTuple):
     texture: Any = None
     material: Any = None
     """The whole of it; None where the primitive names none."""
+
+    @property
+    def blended(self) -> bool:
+        return bool(self.material) and self.material.get("alphaMode") == "BLEND"
 
 
 def _base(document: Document, primitive: dict[str, Any]) -> _Base:
@@ -68,31 +72,37 @@ class PrimitivePaint:
     def __init__(self, document: Document, found: Collected) -> None:
         self.document, self.found = document, found
 
-    def __call__(
-        self, primitive: dict[str, Any], at: NDArray, corners: NDArray, tints: NDArray
-    ) -> None:
+    def __call__(self, primitive: dict[str, Any], at: NDArray, colors: FaceColors) -> None:
         """Fill the rows of one primitive; `at` are its vertices by its own numbers."""
         try:
             base = _base(self.document, primitive)
         except (CutcellError, *MALFORMED) as error:
             self._note(primitive, error)
             return
-        tint = np.array(base.factor[:3])
-        tints[:] = srgb(tint)
+        factor = np.array(base.factor)
+        corners = colors.corners
+        self._fill(colors, base, factor)
         try:
             if "COLOR_0" in attributes(primitive, "a primitive"):
-                tints[:] = srgb(tint * self._vertex_colors(primitive)[at])
+                self._fill(colors, base, factor * self._vertex_colors(primitive)[at])
         except (CutcellError, *MALFORMED) as error:
             self._note(primitive, error)
         try:
             if base.texture:
                 texture = self.document.item("textures", base.texture["index"], "a material")
                 uv = places(self.document, primitive, base.texture)[at]
-                corners[..., 3] = wrap(self.document, texture)
+                corners[..., 3] += wrap(self.document, texture)
                 corners[..., 2] = self._layer(texture, base)
                 corners[..., :2] = uv
         except (CutcellError, *MALFORMED) as error:
             self._note(primitive, error)
+
+    def _fill(self, colors: FaceColors, base: _Base, rgba: NDArray) -> None:
+        colors.tints[:] = srgb(rgba[..., :3])
+        if base.blended:
+            alpha = np.clip(np.nan_to_num(rgba[..., 3]), 0, 1)
+            colors.opacity[:] = np.round(OPAQUE * alpha)
+            colors.corners[..., 3] = BLENDED
 
     def _note(self, primitive: dict[str, Any], error: Exception) -> None:
         material = primitive.get("material")
@@ -106,7 +116,8 @@ class PrimitivePaint:
         index = primitive["attributes"]["COLOR_0"]
         kind = self.document.item("accessors", index, "COLOR_0").get("type")
         kind = kind if kind in ("VEC3", "VEC4") else "VEC4"
-        return read_accessor(self.document, index, kind, "COLOR_0")[:, :3]
+        found = read_accessor(self.document, index, kind, "COLOR_0")
+        return found if kind == "VEC4" else np.pad(found, ((0, 0), (0, 1)), constant_values=1)
 
     def _layer(self, texture: dict[str, Any], base: _Base) -> int:
         """Return the number of the use of a texture's image by a material."""

@@ -60,7 +60,7 @@ def layer(
         cutoff = float(material.get("alphaCutoff", CUTOFF)) / max(alpha, 1e-3)
     blended = material.get("alphaMode") == "BLEND"
     nearest = _sampler(document, texture).get("magFilter") == NEAREST
-    return Layer(source, nearest, CUTOFF if blended else cutoff, blended)
+    return Layer(source, nearest, cutoff, blended)
 
 
 def stored_image(document: Document, number: Any) -> StoredImage:

@@ -14,7 +14,7 @@ from .gltf_primitives import primitives, read_triangles
 from .gltf_read import GltfSource
 from .surfaces import SurfacePaint, Surfaces
 
-BYTES_PER_FACE = 3 * (4 * 4 + 3)
+BYTES_PER_FACE = 3 * (4 * 4 + 4)
 
 
 def has_materials(rig: Rig) -> bool:

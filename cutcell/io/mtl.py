@@ -49,16 +49,22 @@ def _material(
     if len(color) == 1:
         color *= 3
     color = color if len(color) == 3 else [1.0] * 3
-    if "map_kd" not in said:
-        return Material(name, tuple(color))
-    file, clamped = _file(said["map_kd"])
+    opacity = _opacity(said)
+    file, clamped = _file(said.get("map_kd", []))
     if not file:
-        return Material(name, tuple(color))
+        return Material(name, tuple(color), opacity=opacity)
     if not any(color):
         color = [1.0] * 3  # some programs write black where there is an image
     wrap = 4 * (CLAMP if clamped else REPEAT)
     image = images.setdefault((file,), len(images))
-    return Material(name, tuple(color), image, wrap, blended="map_d" in said)
+    return Material(name, tuple(color), image, wrap, opacity, blended="map_d" in said)
+
+
+def _opacity(said: dict[str, list[str]]) -> float:
+    """Return how opaque a material is; one that is not there at all was meant the other way."""
+    dissolve, through = (_numbers(said.get(key, [])) for key in ("d", "tr"))
+    found = dissolve[0] if dissolve else 1 - through[0] if through else 1.0
+    return found if 0 < found < 1 else 1.0
 
 
 def _file(words: list[str]) -> tuple[str, bool]:

@@ -34,7 +34,7 @@ def scene_surfaces(
     if not meshes:
         return None
     materials = [
-        Material(str(name), tuple(values[:3]), int(image), int(wrap), bool(cut))
+        Material(str(name), tuple(values[:3]), int(image), int(wrap), values[3], bool(cut))
         for name, values, (image, wrap, cut) in zip(
             scene["material_names"],
             scene["material_values"].tolist(),

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import CutcellError, FileError
-from .face_colors import CUTOFF, REPEAT, Collected, Layer, StoredImage
+from .face_colors import BLENDED, OPAQUE, REPEAT, Collected, FaceColors, Layer, StoredImage
 from .files_beside import read_beside
 
 WHITE = (1.0, 1.0, 1.0)
@@ -52,6 +52,8 @@ class Material:
         -1 for none.
     wrap : int
         How the image goes on, 3 across + down (see `face_colors.REPEAT`).
+    opacity : float
+        From 0 to 1.
     blended : bool
         Whether the image's alpha counts.
     """
@@ -60,6 +62,7 @@ class Material:
     color: tuple[float, ...] = WHITE
     image: int = -1
     wrap: int = 4 * REPEAT
+    opacity: float = 1.0
     blended: bool = False
 
 
@@ -124,9 +127,7 @@ class SurfacePaint:
     def __init__(self, surfaces: Surfaces, found: Collected) -> None:
         self.surfaces, self.found = surfaces, found
 
-    def __call__(
-        self, surface: Surface | None, at: NDArray, corners: NDArray, tints: NDArray
-    ) -> None:
+    def __call__(self, surface: Surface | None, at: NDArray, colors: FaceColors) -> None:
         """Fill the rows of one mesh; `at` are its vertices by its own numbers."""
         where = None if surface is None else stored_corners(surface.faces, at)
         if surface is None or where is None:
@@ -136,17 +137,20 @@ class SurfacePaint:
         for k in np.unique(material[material >= 0]).tolist():
             rows = np.flatnonzero(material == k)
             one = self.surfaces.materials[k]
-            tints[rows] = np.round(255 * np.clip(np.nan_to_num(one.color), 0, 1))
+            colors.tints[rows] = np.round(255 * np.clip(np.nan_to_num(one.color), 0, 1))
+            through = one.blended or one.opacity < 1
+            colors.opacity[rows] = round(OPAQUE * min(max(one.opacity, 0), 1))
+            colors.corners[rows, :, 3] = BLENDED * through
             try:
                 layer = self._layer(one, places)
             except CutcellError as error:
                 self.found.note(f'material "{one.name}"' if one.name else "a material", error)
                 continue
             if layer >= 0 and places is not None:
-                corners[rows, :, 2:] = layer, one.wrap
-                corners[rows, :, :2] = np.where(np.isfinite(places[rows]), places[rows], 0)
+                colors.corners[rows, :, 2:] = layer, one.wrap + BLENDED * through
+                colors.corners[rows, :, :2] = np.where(np.isfinite(places[rows]), places[rows], 0)
         if surface.colors is not None:
-            tints[:] = np.round(tints * (surface.colors.reshape(-1, 3)[where] / 255))
+            colors.tints[:] = np.round(colors.tints * (surface.colors.reshape(-1, 3)[where] / 255))
 
     def _layer(self, material: Material, places: NDArray | None) -> int:
         """Return the number of a material's use of its image; -1 for none."""
@@ -154,8 +158,7 @@ class SurfacePaint:
             return -1
         if places is None:
             raise FileError("its mesh has no texture coordinates")
-        cutoff = CUTOFF if material.blended else None
-        use = Layer(material.image, cutoff=cutoff, blended=material.blended)
+        use = Layer(material.image, blended=material.blended)
         return self.found.layer(use, lambda: self._stored(material.image))
 
     def _stored(self, number: int) -> StoredImage:

@@ -93,7 +93,9 @@ def test_alpha_is_cut_at_a_half_and_colours_do_not_fade_there():
     assert (cut[:, :58, 3] < 128).all()
     assert (cut[..., :3] == (200, 100, 50)).all()
     assert (one(png(pixels), cutoff=0.5)[..., 3] < 128).all()
-    assert (one(png(pixels), cutoff=0.5, blended=True)[..., 3] == 255).all()
+    blended = one(png(pixels), blended=True)[..., 3]
+    assert (blended[:, 70:] == 90).all()
+    assert (blended[:, :58] == 0).all()
 
 
 def huge():
@@ -182,11 +184,41 @@ def test_nothing_is_drawn_where_the_image_is_not_there(rig_of):
     pixels[:, :32, 3] = 0
     rig = rig_of(wall(png(pixels), alphaMode="MASK"))
     drawn = picture(rig).astype(int)
-    empty = drawn[2, 2]
+    empty = drawn[100, 0]
     assert np.abs(at(drawn, 0.5, 0.5) - empty).max() > 60
     # What is seen through it is the wall's back, where that is cut as well.
     assert np.abs(at(drawn, -0.5, 0.0) - at(drawn, -0.5, 0.05)).max() < 5
-    assert np.abs(at(drawn, -0.5, 0.0) - empty).max() < 60
+    assert np.abs(at(drawn, -0.5, 0.0) - empty).max() < 5
+
+
+def test_what_is_cut_has_no_half_transparent_edge(rig_of):
+    pixels = np.full((128, 128, 4), (255, 0, 0, 255), np.uint8)
+    pixels[..., 3] = np.linspace(0, 255, 128)
+    drawn = picture(rig_of(wall(png(pixels), alphaMode="MASK"))).astype(int)[100]
+    red = drawn[6:194, 0] - drawn[6:194, 1] > 60
+    seen = drawn[6:194][red]
+    assert 80 < red.sum() < 110
+    assert np.ptp(seen[3:-3, 1]) < 40, "no lighter towards the edge"
+
+
+@pytest.mark.parametrize("inside", [True, False])
+def test_as_many_pixels_are_drawn_as_alpha_says(rig_of, inside):
+    pixels = np.dstack([squares(), np.full((64, 64), 128 if inside else 255, np.uint8)])
+    alpha = 0.5 if inside else 0.25
+    pbr = {} if inside else {"baseColorFactor": [1, 1, 1, 0.25]}
+    drawn = picture(rig_of(wall(png(pixels), alphaMode="BLEND", pbr=pbr))).astype(int)
+    part = drawn[60:92, 60:92]  # red, in front of the same in the wall's back
+    strong = part[..., 0] - part[..., 1] > 60
+    # The wall's back is drawn at the same pixels: nothing is sorted, nothing adds up.
+    assert abs(strong.mean() - alpha) < 0.1
+
+
+def test_alpha_counts_without_an_image_too(rig_of):
+    builder = wall(png(squares()), alphaMode="BLEND", pbr={"baseColorFactor": [1, 0, 0, 0.5]})
+    del builder.json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]
+    part = picture(rig_of(builder)).astype(int)[60:140, 60:140]
+    strong = part[..., 0] - part[..., 1] > 60
+    assert 0.4 < strong.mean() < 0.8
 
 
 def test_the_image_moves_with_the_body(rig_of):

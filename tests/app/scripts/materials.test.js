@@ -34,10 +34,10 @@ test("images become layers, with all smaller sizes; without any there is one for
 test("each corner has a place and a tint", () => {
   const {gl, puts} = card()
   const corners = Float32Array.from({length: 6 * 4}, (_, i) => i)
-  new Materials(gl).set({corners, tints: Uint8Array.from({length: 6 * 3}, (_, i) => i)})
+  new Materials(gl).set({corners, tints: Uint8Array.from({length: 6 * 4}, (_, i) => i)})
   assert.deepEqual(puts.map(({size}) => size), [[6, 1], [6, 1]])
   assert.equal(puts[0].values.length, 24)
-  assert.equal(puts[1].values.length, 18)
+  assert.equal(puts[1].values.length, 24)
 })
 
 // GLSL's function, read as JavaScript: what the card works out for a place in the image.
@@ -59,6 +59,21 @@ test("an image repeats, ends with its border, or turns back", () => {
   for (const [at, seen] of [[-0.2, 0.2], [0.4, 0.4], [1.1, 0.9], [2.6, 0.6], [-1.3, 0.7]]) {
     assert.ok(Math.abs(wrapped(at, 2, edge) - seen) < 1e-9, at)
   }
+})
+
+test("each of four by four pixels is drawn from another alpha on", () => {
+  const source = MATERIAL_SHADER.fragment[0][1]
+  const share = (x, y) => {
+    [x, y] = [Math.floor(x), Math.floor(y)]
+    return (0.5 * x + 0.75 * y * y) % 1
+  }
+  assert.ok(source.includes("fract(0.5 * pixel.x + 0.75 * pixel.y * pixel.y)"))
+  assert.ok(source.includes("0.25 * share(0.5 * pixel) + share(pixel) + 0.03125"))
+  const found = new Set()
+  for (let x = 0; x < 4; x++) {
+    for (let y = 0; y < 4; y++) { found.add(0.25 * share(x / 2, y / 2) + share(x, y) + 0.03125) }
+  }
+  assert.deepEqual([...found].sort((a, b) => a - b), Array.from({length: 16}, (_, i) => (i + 0.5) / 16))
 })
 
 test("the shader of a surface in materials reads no colours of points", () => {

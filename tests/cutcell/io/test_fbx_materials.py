@@ -8,7 +8,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 import cutcell
-from cutcell.io.face_colors import CLAMP, REPEAT, Layer
+from cutcell.io.face_colors import BLENDED, CLAMP, REPEAT, Layer
 from cutcell.io.gltf_faces import with_faces
 from cutcell.io.materials import has_materials, read_materials
 from tests.cutcell.io.fbx_builder import binary, column_scene, prop, text, vector, with_materials
@@ -129,6 +129,17 @@ class TestBeside:
             file.truncate(2**29)
         found = read_materials(load(scene(materials=[(RED, {"file": "skin.png"})])))
         assert "has 512 MB, more than is read" in found.notes[0]
+
+
+@pytest.mark.parametrize(
+    ("color", "share", "opacity"),
+    [((1, 1, 1), 0.25, 191), ((0, 0, 0), 1, 255), ((1, 1, 1), 1, 255)],
+)
+def test_what_is_behind_may_shine_through(load, color, share, opacity):
+    look = [*RED, vector("TransparentColor", color), prop("TransparencyFactor", share)]
+    body = read_materials(load(scene(materials=[(look, None)]))).body
+    assert (body.opacity == opacity).all()
+    assert (body.corners[..., 3] == (BLENDED if opacity < 255 else 0)).all()
 
 
 def test_faces_that_were_repaired_keep_their_colours(load):

@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 import cutcell
-from cutcell.io.face_colors import CLAMP, MIRROR, Layer
+from cutcell.io.face_colors import BLENDED, CLAMP, MIRROR, Layer
 from cutcell.io.gltf_faces import with_faces
 from cutcell.io.gltf_materials import srgb
 from cutcell.io.materials import has_materials, read_materials
@@ -133,8 +133,25 @@ def test_the_extensions_own_example_shows_the_lower_left_quarter(loaded):
 def test_alpha_cuts_where_the_material_says(loaded):
     mask = {"alphaMode": "MASK", "alphaCutoff": 0.2, "pbr": {"baseColorFactor": [1, 1, 1, 0.4]}}
     assert read_materials(loaded(with_image(column(), **mask))).layers[0].cutoff == 0.5
-    blend = read_materials(loaded(with_image(column(), alphaMode="BLEND"))).layers[0]
-    assert (blend.cutoff, blend.blended) == (0.5, True)
+    pbr = {"baseColorFactor": [1, 1, 1, 0.4]}
+    blend = read_materials(loaded(with_image(column(), alphaMode="BLEND", pbr=pbr)))
+    assert blend.layers == (Layer(0, blended=True),)
+    assert (blend.body.opacity == 102).all()
+    assert (blend.body.corners[..., 3] == BLENDED).all()
+    opaque = read_materials(loaded(with_image(column(), pbr=pbr)))
+    assert opaque.layers == (Layer(0),)
+    assert (opaque.body.opacity == 255).all()
+
+
+def test_alpha_of_vertices_counts_where_it_is_blended(loaded):
+    colors = np.full((12, 4), 255, "u1")
+    colors[:, 3] = np.linspace(0, 255, 12)
+    builder = column()
+    part = primitive(builder)
+    part["attributes"]["COLOR_0"] = builder.accessor(colors, normalized=True)
+    part["material"] = builder.add("materials", {**factor((1, 1, 1, 0.5)), "alphaMode": "BLEND"})
+    found = read_materials(loaded(builder)).body.opacity
+    assert_allclose(found, (colors[:, 3] / 2)[FACES], atol=1)
 
 
 def test_the_same_image_is_listed_once_and_each_use_of_it(loaded):

@@ -8,7 +8,7 @@ import trimesh
 from numpy.testing import assert_allclose, assert_array_equal
 
 import cutcell
-from cutcell.io.face_colors import CLAMP, CUTOFF, Layer
+from cutcell.io.face_colors import BLENDED, CLAMP, Layer
 from cutcell.io.gltf_faces import with_faces
 from cutcell.io.materials import has_materials, read_materials
 from cutcell.io.surfaces import stored_corners
@@ -141,7 +141,15 @@ class TestMtl:
 
     def test_alpha_counts_where_an_image_says_so(self, load):
         found = read_materials(load(lines("skin"), SKIN + "map_d skin.png\n", skin=b"an image"))
-        assert found.layers == (Layer(0, cutoff=CUTOFF, blended=True),)
+        assert found.layers == (Layer(0, blended=True),)
+
+    @pytest.mark.parametrize(
+        ("said", "opacity"), [("d 0.5", 128), ("Tr 0.75", 64), ("d 0", 255), ("d x", 255)]
+    )
+    def test_what_is_behind_may_shine_through(self, load, said, opacity):
+        body = read_materials(load(lines("red"), f"{RED}{said}\n")).body
+        assert (body.opacity == opacity).all()
+        assert (body.corners[..., 3] == (BLENDED if opacity < 255 else 0)).all()
 
     def test_black_with_an_image_is_the_image(self, load):
         mtl = "newmtl skin\nKd 0 0 0\nmap_Kd skin.png\n"
