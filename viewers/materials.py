@@ -15,7 +15,7 @@ from cutcell.io.face_colors import FaceColors, Layer, Materials, StoredImage
 from cutcell.io.materials import read_materials
 from cutcell.rig import Rig
 
-FORMATS = ("PNG", "JPEG", "WEBP")
+FORMATS = ("PNG", "JPEG", "WEBP", "BMP", "TGA")
 LARGEST = 2**26
 """Pixels of an image that is decoded: 8192 by 8192."""
 SIDES = (1024, 512, 256, 128)
@@ -139,7 +139,7 @@ def _opened(image: StoredImage) -> tuple[int, int] | str:
     except (Image.DecompressionBombWarning, Image.DecompressionBombError):
         return _TOO_LARGE
     except Exception:  # whatever Pillow's readers make of it
-        return "it is no PNG, JPEG or WebP, or damaged"
+        return "it is no PNG, JPEG, WebP, BMP or TGA, or damaged"
     return _TOO_LARGE if width * height > LARGEST else (width, height)
 
 

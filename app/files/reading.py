@@ -16,7 +16,20 @@ from cutcell_assets import demo_path
 
 from ..work.processes import in_process
 
-COMPANIONS = {".txt", ".json", ".mtl", ".bin", ".png", ".jpg", ".jpeg", ".webp", ".ktx2"}
+IMAGES = {
+    ".png",
+    ".jpg",
+    ".jpeg",
+    ".webp",
+    ".bmp",
+    ".tga",
+    ".tif",
+    ".tiff",
+    ".dds",
+    ".psd",
+    ".ktx2",
+}
+COMPANIONS = {".txt", ".json", ".mtl", ".bin", *IMAGES}
 """Files that come along with the one that is opened."""
 
 

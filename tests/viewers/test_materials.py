@@ -48,7 +48,7 @@ def hue(color):
     return tuple((color > 0.6 * color.max()).tolist())
 
 
-@pytest.mark.parametrize("kind", ["PNG", "JPEG", "WEBP"])
+@pytest.mark.parametrize("kind", ["PNG", "JPEG", "WEBP", "BMP", "TGA"])
 def test_images_become_layers_of_one_size(kind):
     pixels, problems = decoded(
         images(png(squares(200), kind), png(squares(32), kind)), [Layer(0), Layer(1)]
@@ -112,8 +112,8 @@ def huge():
 @pytest.mark.parametrize(
     ("content", "why"),
     [
-        (b"no image at all", "no PNG, JPEG or WebP, or damaged"),
-        (b"\xabKTX 20\xbb\r\n\x1a\n" + bytes(80), "no PNG, JPEG or WebP"),
+        (b"no image at all", "no PNG, JPEG, WebP, BMP or TGA, or damaged"),
+        (b"\xabKTX 20\xbb\r\n\x1a\n" + bytes(80), "no PNG, JPEG, WebP"),
         (png(squares(64))[:90], "damaged"),
         (huge(), "67 million"),
     ],
