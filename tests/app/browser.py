@@ -297,12 +297,12 @@ class Visit:
         """Give files to the page."""
         self.page.locator("input[type=file]").set_input_files([str(path) for path in paths])
 
-    def open(self, path: Path) -> None:
-        """Give a file of a character to the page; wait until its weights are there."""
+    def open(self, path: Path, *beside: Path) -> None:
+        """Give a file of a character to the page, with others; wait until its weights are there."""
         count = len(cutcell.load(path).mesh.vertices)
         # What is dropped while the page still loads may be opened before what its address names.
         self.page.wait_for_function("window.__cutcell?.report().actors.body")
-        self.drop(path)
+        self.drop(path, *beside)
         self.page.get_by_text(re.compile(f"^{count:,} vertices .* surface")).wait_for()
         self.settle()
 

@@ -223,3 +223,15 @@ def test_the_files_materials_are_seen_as_it_moves(visit, tmp_path):
     assert changed(pixels, grey) > 0.1
     visit.button("Materials").click()
     assert changed(pixels, visit.look()) < 0.01
+
+
+def test_what_is_behind_shines_through_blended_materials(visit, tmp_path):
+    look = {"alphaMode": "BLEND", "pbr": {"baseColorFactor": [1, 1, 1, 0.5]}}
+    visit.open(wall(png(squares()), **look).save(tmp_path / "glass.glb"))
+    visit.button("Materials").click()
+    pixels = visit.look()
+    middle = visit.points()[[0, 2]].mean(axis=0).tolist()
+    x, y, _ = visit.page.evaluate("at => __cutcell.renderer.project(at)", middle)
+    part = pixels[round(y) - 60 : round(y) - 20, round(x) - 60 : round(x) - 20]
+    red = part[..., 0] - part[..., 1] > 60
+    assert abs(red.mean() - 0.5) < 0.1

@@ -1,12 +1,16 @@
 """A statue gets a skeleton in a browser, as a person gives it one, and leaves with it."""
 
 import numpy as np
+import pytest
 from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import expect
 
 import cutcell
 from cutcell_assets import demo_path
+from cutcell_viewers.character import to_scene
+from tests.app.browser import changed
 from tests.cutcell.cli.files import write_obj
+from tests.viewers.textures import COLORS, png, squares
 
 
 def test_from_a_statue_to_a_character(visit, tmp_path):
@@ -46,3 +50,38 @@ def test_from_a_statue_to_a_character(visit, tmp_path):
     visit.open(path)
     visit.wait_until_bound()
     expect(visit.page.get_by_role("combobox", name="Skeleton")).to_be_hidden()
+
+
+@pytest.fixture
+def painted(tmp_path):
+    """Write a statue as OBJ, with a material and its image; return the three files."""
+    own = cutcell.load(demo_path("biped"))
+    points = to_scene(own, own.mesh.vertices)
+    low, high = points.min(axis=0), points.max(axis=0)
+    uv = ((points - low) / (high - low))[:, :2]
+    lines = ["mtllib statue.mtl", "usemtl paint"]
+    lines += [f"v {x} {y} {z}" for x, y, z in points]
+    lines += [f"vt {u} {v}" for u, v in uv]
+    lines += [f"f {a}/{a} {b}/{b} {c}/{c}" for a, b, c in own.mesh.faces + 1]
+    files = [tmp_path / f"statue.{end}" for end in ("obj", "mtl", "png")]
+    files[0].write_text("\n".join(lines))
+    files[1].write_text("newmtl paint\nmap_Kd C:\\art\\statue.png\n")
+    files[2].write_bytes(png(squares()))
+    return files
+
+
+def test_a_statue_is_seen_in_its_materials_as_it_moves(visit, painted):
+    visit.go("?rig=robot&resolution=24")
+    visit.dismiss()
+    visit.open(*painted)
+    visit.choose("Skeleton", "Biped")
+    visit.wait_until_bound()
+    visit.panel("Pose")
+    weights = visit.look()
+    visit.button("Materials").click()
+    pixels = visit.look()
+    assert changed(weights, pixels) > 0.02
+    expect(visit.page.get_by_text("cannot be shown")).to_have_count(0)
+    for color in COLORS.reshape(4, 3).astype(int):
+        near = np.abs(pixels / pixels.max(axis=2, keepdims=True) - color / color.max())
+        assert (near.max(axis=2) < 0.15).sum() > 300, color
