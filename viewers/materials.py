@@ -115,10 +115,14 @@ def as_textures(
 
     def turned(colors: FaceColors) -> FaceColors:
         corners = colors.corners.copy()
-        corners[..., 2] = shown[corners[..., 2].astype(int)]
+        tints, layers = colors.tints.copy(), corners[..., 2].astype(int)
+        for k in problems:
+            if (instead := materials.layers[k].color) is not None:
+                tints[layers == k] = instead
+        corners[..., 2] = shown[layers]
         way = slice(None, None, -1 if is_mirrored else 1)  # as the faces, see `character`
         return FaceColors(
-            *(np.ascontiguousarray(one[:, way]) for one in (corners, colors.tints, colors.opacity))
+            *(np.ascontiguousarray(one[:, way]) for one in (corners, tints, colors.opacity))
         )
 
     return Textures(

@@ -44,12 +44,15 @@ class Layer:
         Nothing is there where its alpha is less; None where alpha cuts nothing.
     blended : bool
         Whether what is behind shines through by its alpha.
+    color : tuple of int, optional
+        What is shown where the image cannot be, red, green and blue; the tints when left out.
     """
 
     image: int
     nearest: bool = False
     cutoff: float | None = None
     blended: bool = False
+    color: tuple[int, ...] | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -79,8 +79,8 @@ def read_bare(document: Document, nodes: Nodes, name: str) -> Rig:
         stored.append(StoredMesh(i, mesh, i in hidden, world, first))
         numbers = _drawing(document, mesh, document.label("nodes", i))
         for number, one, start in zip(numbers, drawn, first, strict=True):
-            here = slice(triangles + one.rows.start, triangles + one.rows.stop)
-            stored_faces.append(StoredFaces(mesh, number, start, here, is_mirrored))
+            drawn_rows = slice(triangles + one.rows.start, triangles + one.rows.stop)
+            stored_faces.append(StoredFaces(mesh, number, start, drawn_rows, is_mirrored))
         triangles += len(corners)
         document.allowance.take(points.nbytes + corners.nbytes, document.label("nodes", i))
         vertices.append(points @ world[:3, :3].T + world[:3, 3])

@@ -123,7 +123,7 @@ def _materials(
     """Return the materials by the numbers that faces have, their images, and what is missing."""
     known: dict[str, Material] = {}
     images: dict[tuple[str, ...], int] = {}
-    notes = {}
+    notes: dict[str, None] = {}
     for label, names in list(_libraries(said.libraries))[:MOST_LIBRARIES]:
         try:
             text = read_beside(path, names, label, LARGEST).decode("utf-8", "replace")
@@ -133,8 +133,8 @@ def _materials(
         known = {**parse_mtl(text, images), **known}
     missing = [name for name in said.names if name not in known]
     if missing and not notes:
-        names = ", ".join(f'"{name[:80]}"' for name in missing[:3])
-        notes[f"no .mtl file tells of the materials that faces have ({names})"] = None
+        named = ", ".join(f'"{name[:80]}"' for name in missing[:3])
+        notes[f"no .mtl file tells of the materials that faces have ({named})"] = None
     found = tuple(known.get(name, Material(name)) for name in said.names)
     return found, tuple(map(ImageFile, images)), tuple(notes)
 

@@ -2,9 +2,10 @@
 
 Of materials: `material_names`, `material_values` (k, 4: red, green, blue, sRGB, and opacity) and
 `material_uses` (k, 3: image or -1, how it goes on (see `face_colors.REPEAT`), and whether its alpha
-counts). Of images: `image_files` (i, names that a file beside may have), and the content of those
-that are inside, `image_I_content`. Of each mesh K that is coloured: `mesh_K_materials` (m,), and
-perhaps `mesh_K_places` and `mesh_K_colors`; see `Surface`.
+counts); the image takes the place of the colour. Of images: `image_files` (i, names that a file
+beside may have), and the content of those that are inside, `image_I_content`. Of each mesh K that
+is coloured: `mesh_K_materials` (m,), and perhaps `mesh_K_places` and
+`mesh_K_colors`; see `Surface`.
 """
 
 from __future__ import annotations
@@ -34,7 +35,7 @@ def scene_surfaces(
     if not meshes:
         return None
     materials = [
-        Material(str(name), tuple(values[:3]), int(image), int(wrap), values[3], bool(cut))
+        Material(str(name), tuple(values[:3]), int(image), int(wrap), values[3], bool(cut), True)
         for name, values, (image, wrap, cut) in zip(
             scene["material_names"],
             scene["material_values"].tolist(),

@@ -47,7 +47,7 @@ class Material:
     ----------
     name : str
     color : tuple of float
-        Red, green and blue from 0 to 1, sRGB: what the image is multiplied by.
+        Red, green and blue from 0 to 1, sRGB.
     image : int
         -1 for none.
     wrap : int
@@ -56,6 +56,8 @@ class Material:
         From 0 to 1.
     blended : bool
         Whether the image's alpha counts.
+    replaced : bool
+        Whether the image takes the place of the colour, and is not multiplied by it.
     """
 
     name: str
@@ -64,6 +66,12 @@ class Material:
     wrap: int = 4 * REPEAT
     opacity: float = 1.0
     blended: bool = False
+    replaced: bool = False
+
+    @property
+    def tint(self) -> tuple[int, ...]:
+        """The colour as bytes."""
+        return tuple(np.round(255 * np.clip(np.nan_to_num(self.color), 0, 1)).astype(int).tolist())
 
 
 @dataclass(frozen=True)
@@ -137,7 +145,7 @@ class SurfacePaint:
         for k in np.unique(material[material >= 0]).tolist():
             rows = np.flatnonzero(material == k)
             one = self.surfaces.materials[k]
-            colors.tints[rows] = np.round(255 * np.clip(np.nan_to_num(one.color), 0, 1))
+            colors.tints[rows] = one.tint
             through = one.blended or one.opacity < 1
             colors.opacity[rows] = round(OPAQUE * min(max(one.opacity, 0), 1))
             colors.corners[rows, :, 3] = BLENDED * through
@@ -147,6 +155,8 @@ class SurfacePaint:
                 self.found.note(f'material "{one.name}"' if one.name else "a material", error)
                 continue
             if layer >= 0 and places is not None:
+                if one.replaced:
+                    colors.tints[rows] = OPAQUE
                 colors.corners[rows, :, 2:] = layer, one.wrap + BLENDED * through
                 colors.corners[rows, :, :2] = np.where(np.isfinite(places[rows]), places[rows], 0)
         if surface.colors is not None:
@@ -158,7 +168,8 @@ class SurfacePaint:
             return -1
         if places is None:
             raise FileError("its mesh has no texture coordinates")
-        use = Layer(material.image, blended=material.blended)
+        instead = material.tint if material.replaced else None
+        use = Layer(material.image, blended=material.blended, color=instead)
         return self.found.layer(use, lambda: self._stored(material.image))
 
     def _stored(self, number: int) -> StoredImage:

@@ -44,9 +44,8 @@ class Palette:
             wrap = 3 * int(texture.wrap_u == ufbx.WrapMode.CLAMP) + int(
                 texture.wrap_v == ufbx.WrapMode.CLAMP
             )
-        color = base_color(material) if texture is None else (1.0, 1.0, 1.0)
         self._names.append(material.name[:NAME])
-        self._values.append((*color, opacity(material)))
+        self._values.append((*base_color(material), opacity(material)))
         self._uses.append((image, wrap, int(is_cut(material))))
         self.textures.append(texture)
         self.materials[material.element_id] = len(self._names) - 1

@@ -11,6 +11,7 @@ import cutcell
 from cutcell.io.face_colors import BLENDED, CLAMP, REPEAT, Layer
 from cutcell.io.gltf_faces import with_faces
 from cutcell.io.materials import has_materials, read_materials
+from cutcell_viewers.materials import load_textures
 from tests.cutcell.io.fbx_builder import binary, column_scene, prop, text, vector, with_materials
 from tests.cutcell.io.gltf_builder import FACES
 
@@ -41,7 +42,7 @@ def test_an_image_inside_lies_where_each_corner_says(load, write):
     found = read_materials(rig)
     assert found.notes == ()
     assert [(one.name, one.content) for one in found.images] == [('image "skin.png"', b"an image")]
-    assert found.layers == (Layer(0),)
+    assert found.layers == (Layer(0, color=(255, 0, 0)),)
     assert_allclose(found.body.corners[..., :2], IN_IMAGE, atol=1e-6)
     assert (found.body.corners[..., 2] == 0).all()
     assert (found.body.corners[..., 3] == 4 * REPEAT).all()
@@ -91,6 +92,15 @@ def test_an_image_is_moved_and_ends_at_its_border_as_the_texture_says(load):
     assert_allclose(found.body.corners[..., :2], expected, atol=1e-6)
 
 
+def test_a_damaged_image_leaves_the_colour(load):
+    found = load_textures(load(scene(materials=[(RED, INSIDE)])))
+    assert found.notes == (
+        'image "skin.png" cannot be shown: it is no PNG, JPEG, WebP, BMP or TGA, or damaged',
+    )
+    assert (found.body.tints == (255, 0, 0)).all()
+    assert (found.body.corners[..., 2] == -1).all()
+
+
 class TestBeside:
     def test_an_image_lies_beside_by_its_name(self, load, tmp_path):
         (tmp_path / "skin.png").write_bytes(b"beside")
@@ -107,6 +117,7 @@ class TestBeside:
             'material "paint 0" is shown without what could not be read of it: image "skin.png" is '
             "not in the folder of column.fbx",
         )
+        assert (found.body.tints == (255, 0, 0)).all()
         (tmp_path / "skin.png").write_bytes(b"beside")
         assert read_materials(rig).images[0].content == b"beside"
 
