@@ -122,7 +122,9 @@ def as_textures(
         corners[..., 2] = shown[layers]
         way = slice(None, None, -1 if is_mirrored else 1)  # as the faces, see `character`
         return FaceColors(
-            *(np.ascontiguousarray(one[:, way]) for one in (corners, tints, colors.opacity))
+            np.ascontiguousarray(corners[:, way]),
+            np.ascontiguousarray(tints[:, way]),
+            np.ascontiguousarray(colors.opacity[:, way]),
         )
 
     return Textures(

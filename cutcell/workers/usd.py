@@ -10,6 +10,8 @@ from pathlib import Path
 import numpy as np
 from pxr import Gf, Tf, Usd, UsdGeom, UsdSkel
 
+from .usd_materials import Palette, surface
+
 
 def read(path):
     """Read a file, and what it refers to in its own folder.
@@ -46,7 +48,7 @@ def read_stage(file):
         real = Path(layer.realPath or file)
         if real != file and file.parent not in real.parents:
             raise RuntimeError(f"it refers to a file outside of its folder ({real.name})")
-    scene = Scene(stage)
+    scene = Scene(stage, file)
     scene.add_skeletons()
     scene.add_meshes()
     return scene.arrays()
@@ -68,8 +70,8 @@ def parts(value):
 class Scene:
     """The arrays of a stage at rest, and its joints' motion."""
 
-    def __init__(self, stage):
-        self.stage = stage
+    def __init__(self, stage, file):
+        self.stage, self.palette = stage, Palette(file)
         scale = UsdGeom.GetStageMetersPerUnit(stage)
         turn = [0, 0, 0, 1.0]
         if UsdGeom.GetStageUpAxis(stage) == UsdGeom.Tokens.z:
@@ -150,7 +152,10 @@ class Scene:
             self.meshes.append((prim.GetName(), len(self.nodes)))
             self.nodes.append((prim.GetName(), 0, [0, 0, 0, 0, 0, 0, 1, 1, 1, 1], hidden, False))
             place = matrix(self.places.GetLocalToWorldTransform(prim))
-            found = {"vertices": np.array(points, float), "faces": triangles(UsdGeom.Mesh(prim))}
+            faces, corners, polygons = triangles(UsdGeom.Mesh(prim))
+            found = {"vertices": np.array(points, float), "faces": faces}
+            if len(faces) and faces.max() < len(points):  # else it is refused
+                found |= surface(prim, corners, polygons, faces, self.palette)
             if prim.GetPath() in self.bound:
                 target, query, first = self.bound[prim.GetPath()]
                 # Joints were bound in their skeleton's own space, and the mesh goes there.
@@ -163,22 +168,34 @@ class Scene:
     def arrays(self):
         """Return what was found."""
         names, parents, transforms, hidden, bones = zip(*self.nodes, strict=True)
-        return self.found | {
-            "node_names": np.array(names, np.str_),
-            "node_parents": np.array(parents),
-            "node_transforms": np.array(transforms, float),
-            "node_hidden": np.array(hidden),
-            "node_bones": np.array(bones),
-            "mesh_names": np.array([name for name, _ in self.meshes], np.str_),
-            "mesh_nodes": np.array([node for _, node in self.meshes], int),
-            "clip_names": np.array(self.clips, np.str_),
-            "tracks": np.array(self.tracks, int).reshape(-1, 4),
-            "keys": np.concatenate(self.keys),
-        }
+        return (
+            self.found
+            | self.palette.arrays()
+            | {
+                "node_names": np.array(names, np.str_),
+                "node_parents": np.array(parents),
+                "node_transforms": np.array(transforms, float),
+                "node_hidden": np.array(hidden),
+                "node_bones": np.array(bones),
+                "mesh_names": np.array([name for name, _ in self.meshes], np.str_),
+                "mesh_nodes": np.array([node for _, node in self.meshes], int),
+                "clip_names": np.array(self.clips, np.str_),
+                "tracks": np.array(self.tracks, int).reshape(-1, 4),
+                "keys": np.concatenate(self.keys),
+            }
+        )
 
 
 def triangles(mesh):
-    """Return a mesh's polygons as fans of triangles, counter-clockwise."""
+    """Cut a mesh's polygons into fans of triangles, counter-clockwise.
+
+    Returns
+    -------
+    faces, corners : array, shape (m, 3)
+        The vertices, and the numbers of the corners in the file.
+    polygons : array, shape (m,)
+        That each triangle is a part of.
+    """
     count = np.array(mesh.GetFaceVertexCountsAttr().Get() or [], int)
     corners = np.array(mesh.GetFaceVertexIndicesAttr().Get() or [], int)
     if len(count) and (count.min() < 0 or count.sum() > len(corners)):
@@ -186,12 +203,15 @@ def triangles(mesh):
     begin = np.cumsum(count) - count
     fans = [np.zeros((0, 4), int)]
     for k in range(1, int(count.max(initial=0)) - 1):
-        start = begin[count > k + 1]
-        fans.append(np.stack([start, start, start + k, start + k + 1], axis=1))
-    faces = np.concatenate(fans)
-    faces = corners[faces[np.argsort(faces[:, 0], kind="stable"), 1:]]
-    turned = mesh.GetOrientationAttr().Get() == UsdGeom.Tokens.leftHanded
-    return faces[:, ::-1] if turned else faces
+        polygons = np.flatnonzero(count > k + 1)
+        start = begin[polygons]
+        fans.append(np.stack([polygons, start, start + k, start + k + 1], axis=1))
+    found = np.concatenate(fans)
+    found = found[np.argsort(found[:, 1], kind="stable")]
+    polygons, at = found[:, 0], found[:, 1:]
+    if mesh.GetOrientationAttr().Get() == UsdGeom.Tokens.leftHanded:
+        at = at[:, ::-1]
+    return corners[at], at, polygons
 
 
 def influences(target, query, first, count):
