@@ -9,6 +9,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from itertools import pairwise
+from math import isfinite
 from pathlib import Path
 
 import numpy as np
@@ -87,8 +88,8 @@ def _read(text: str) -> _Said:
             said.corners += fan
             said.materials += [material] * len(fan)
         elif kind == "vt":
-            u, v, *_ = [*map(_number, words[1:3]), 0.0, 0.0]
-            said.places.append((u, v))
+            u, v, *_ = [*words[1:3], "0", "0"]  # the second may be missing
+            said.places.append((_number(u), _number(v)))
         elif kind == "v" and len(words) in (7, 8):
             said.colors.append([_number(word) for word in words[4:7]])
         elif kind == "usemtl":
@@ -114,7 +115,7 @@ def _number(word: str) -> float:
         value = float(word)
     except ValueError:
         return 0.0
-    return value if np.isfinite(value) else 0.0
+    return value if isfinite(value) else 0.0
 
 
 def _materials(

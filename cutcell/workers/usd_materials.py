@@ -152,12 +152,12 @@ def surface(prim, corners, polygons, faces, palette):
         own = UsdShade.MaterialBindingAPI(subset.GetPrim()).ComputeBoundMaterial()[0]
         members = np.array(subset.GetIndicesAttr().Get() or [], int)
         material[np.isin(polygons, members)] = palette.number(own)
-    found = {"materials": material}
+    found: dict[str, np.ndarray] = {"materials": material}
     primvars = UsdGeom.PrimvarsAPI(prim)
     colors = at_corners(primvars, "displayColor", 3, corners, polygons, faces)
     if colors is not None and (material < 0).all():
-        found["colors"] = np.round(255 * np.array(srgb(colors.ravel()))).astype(np.uint8)
-        found["colors"] = found["colors"].reshape(colors.shape)
+        shades = np.round(255 * np.array(srgb(colors.ravel()))).astype(np.uint8)
+        found["colors"] = shades.reshape(colors.shape)
     places = np.zeros((len(faces), 3, 2), np.float32)
     for k in np.unique(material[material >= 0]).tolist():
         rows = np.flatnonzero(material == k)
@@ -171,9 +171,10 @@ def surface(prim, corners, polygons, faces, palette):
 def at_corners(primvars, name, width, corners, polygons, faces):
     """Return a primvar at corners, shape (m, 3, width); None where it has none that fits."""
     primvar = primvars.FindPrimvarWithInheritance(name) if name else None
-    values = primvar.ComputeFlattened(Usd.TimeCode.EarliestTime()) if primvar else None
-    values = None if values is None else np.array(values, float)
-    if values is None or values.ndim != 2 or values.shape[1] != width:
+    if not primvar:
+        return None
+    values = np.array(primvar.ComputeFlattened(Usd.TimeCode.EarliestTime()) or [], float)
+    if values.ndim != 2 or values.shape[1] != width:
         return None
     how = primvar.GetInterpolation()
     at = {
