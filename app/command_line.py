@@ -12,6 +12,8 @@ import typer
 
 from cutcell.console import for_people
 from cutcell.errors import MissingLibraryError, ParameterError
+from cutcell.networks_command import offer_networks
+from cutcell.options import Networks
 
 from .render_command import EPILOG, render
 
@@ -51,6 +53,7 @@ def open_page(
             help="Step through the pairs that `cutcell dataset audit` found, and overrule them.",
         ),
     ] = None,
+    networks: Networks = None,
     show: Annotated[
         bool, typer.Option("--show/--no-show", help="Open a browser on the page.")
     ] = True,
@@ -63,6 +66,7 @@ def open_page(
         from cutcell.io import load
 
         load(rig)  # a wrong file is told here, not by an empty page
+    offer_networks(networks)
     try:
         serve(rig, port=port, address=address, show=show, pairs=pairs)
     except OSError as error:

@@ -10,11 +10,13 @@ import typer
 
 from cutcell.console import for_people, print_line, print_warnings, progress_bars
 from cutcell.errors import MissingLibraryError, ParameterError
+from cutcell.networks_command import offer_networks
 from cutcell.options import (
     FILES,
     Connectivity,
     How,
     Leaf,
+    Networks,
     Orient,
     Resolution,
     RigFile,
@@ -122,6 +124,7 @@ def render(
             rich_help_panel=WHAT,
         ),
     ] = "",
+    networks: Networks = None,
     colors: Colors = None,
     finding: FindingCode = None,
     cut: Plane = None,
@@ -217,6 +220,7 @@ def render(
         leaf=leaf,
     )
     loaded = load(rig, skeleton=skeleton_file)
+    offer_networks(networks, quiet)
     choices = scenes.Choices(
         panel=panel,
         bone=bone,

@@ -26,9 +26,8 @@ from numpy.typing import NDArray
 
 from cutcell.metrics import deformation_error, precision_recall, weight_l1
 from cutcell.metrics.deformation import longest_side
-from cutcell.networks import HEADS, PRIORS, Sample, Samples, predict, train
+from cutcell.networks import HEADS, PRIORS, Recipe, Sample, Samples, predict, train
 from cutcell.networks.priors import cache_folder
-from cutcell.networks.training import Recipe
 from cutcell.rig import Skeleton, TriangleMesh
 from cutcell.writing import write_all
 

@@ -32,8 +32,9 @@ from .graph_command import EPILOG as GRAPH_EPILOG
 from .graph_command import graph
 from .joints_command import EPILOG as JOINTS_EPILOG
 from .joints_command import joints
-from .networks_command import networks
-from .options import Json, Quiet, Resolution
+from .networks_command import networks as networks_commands
+from .networks_command import offer_networks
+from .options import Json, Networks, Quiet, Resolution
 
 if TYPE_CHECKING:
     from .metrics import Turned
@@ -86,6 +87,8 @@ app.command(epilog=GRAPH_EPILOG)(graph)
 
 - `cutcell compare *.glb --methods cutcell_any,bone_heat`  (medians, means and the worst rig)
 
+- `cutcell compare *.glb --networks trained --methods rignet-cutcell-tiny-0,cutcell`
+
 - `cutcell compare *.glb --plot errors.svg --markdown > errors.md`"""
 )
 @for_people
@@ -99,6 +102,7 @@ def compare(
             "--methods", metavar="A,B,...", help="Which methods; all that there are if left out."
         ),
     ] = None,
+    networks: Networks = None,
     resolution: Resolution = 64,
     turned: Annotated[
         str,
@@ -139,6 +143,7 @@ def compare(
     if plot is not None:
         check_plot(plot)
     which: Turned = check_choice("turned", turned, TURNED)
+    offer_networks(networks, quiet)
     names = None if methods is None else [name.strip() for name in methods.split(",")]
     warnings: list[str] = []
 
@@ -168,7 +173,7 @@ app.command(epilog=DIAGNOSE_EPILOG)(diagnose)
 app.command(epilog=EXPLAIN_EPILOG)(explain)
 app.command(epilog=JOINTS_EPILOG)(joints)
 app.add_typer(dataset, name="dataset")
-app.add_typer(networks, name="networks")
+app.add_typer(networks_commands, name="networks")
 
 
 for above in entry_points(group="cutcell.commands"):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
 
@@ -17,6 +18,19 @@ networks = typer.Typer(
     help="Train networks that predict weights (needs cutcell[networks]).",
     epilog="`docs/networks.md` tells the heads, the priors, and what they learned.",
 )
+
+
+def offer_networks(folders: Sequence[Path] | None, quiet: bool = False) -> None:
+    """Put trained networks among the methods that this command knows; see `trained_networks`."""
+    if not folders:
+        return
+    from .baselines import METHODS
+    from .networks import trained_networks
+
+    warnings: list[str] = []
+    METHODS.update(trained_networks(folders, warnings.append))
+    if not quiet:
+        print_warnings(warnings)
 
 
 @networks.callback()
@@ -86,13 +100,12 @@ def train(
     It is kept after each epoch: a training that was stopped goes on when it is started again. On a
     CPU the same command gives the same network; a GPU is used if there is one.
     """
-    from .networks import Samples, check_torch
+    from .networks import Recipe, Samples, check_torch
 
     check_torch()
-    from .networks.training import Recipe
     from .networks.training import train as learn
 
-    recipe = Recipe(head, size, prior, seed, points)
+    recipe = Recipe(head, size, prior, seed, points, resolution)
     warnings: list[str] = []
     samples = Samples(
         data, prior=prior, points=4 * points, resolution=resolution, cache=cache

@@ -12,8 +12,17 @@ from typer.testing import CliRunner
 
 from cutcell.cli import app
 from cutcell.errors import FileError, ParameterError
-from cutcell.networks import HEADS, Samples, collate, create_network, load_network, predict, train
-from cutcell.networks.training import Recipe, drawn
+from cutcell.networks import (
+    HEADS,
+    Recipe,
+    Samples,
+    collate,
+    create_network,
+    load_network,
+    predict,
+    train,
+)
+from cutcell.networks.training import drawn
 
 ASSETS = Path(__file__).resolve().parent.parent / "assets"
 STEPS = {"rignet": (200, 1e-2), "unirig": (500, 5e-3), "puppeteer": (250, 1e-2)}

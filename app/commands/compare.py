@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from inspect import signature
 from typing import Any
 
 from numpy.typing import NDArray
 
 from cutcell.apart import stoppable
-from cutcell.baselines import METHODS, Baseline
+from cutcell.baselines import METHODS
+from cutcell.baselines.methods import known_options
 from cutcell.errors import CutcellError
 from cutcell.metrics import (
     DeformationError,
@@ -137,7 +137,8 @@ def measured(rig: Rig, name: str, binding: Any, resolution: int, progress: Progr
         try:
             method = METHODS[name]
             with stoppable(lambda: progress(name, 0.0)):
-                found = method(rig, **options_of(method, resolution=resolution, progress=progress))
+                options = known_options(method, resolution=resolution, progress=progress)
+                found = method(rig, **options)
         except CutcellError as error:
             return Compared(rig, None, shown(str(error)))
         if found.weights is None:
@@ -151,13 +152,6 @@ def measured(rig: Rig, name: str, binding: Any, resolution: int, progress: Progr
     errors = deformation_error(rig, weights, rig.weights, progress=lambda *_: progress(name, 0.9))
     l1 = weight_l1(weights, rig.weights, share)
     return Compared(rig, weights, "", total, l1, errors.mean, none, errors, source)
-
-
-def options_of(method: Baseline, **options: Any) -> Mapping[str, Any]:
-    """Return those options that a method knows."""
-    known = signature(method).parameters
-    every = any(one.kind is one.VAR_KEYWORD for one in known.values())
-    return {name: value for name, value in options.items() if every or name in known}
 
 
 def carry(state: State, before: Rig | None, arrival: Mapping[str, Any]) -> None:

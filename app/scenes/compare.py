@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from cutcell.baselines import METHODS
 from cutcell_viewers.description import Actor, Description, Legend
 from cutcell_viewers.error_scene import error_limits
 from cutcell_viewers.skin import skin_of_weights
@@ -30,7 +31,8 @@ TITLES = {
     "voxel": "Voxel binding",
     "voxel_unirig": "Voxel binding, UniRig's",
 }
-"""What methods are called where their names do not say it; others join by themselves."""
+"""What methods are called where their names do not say it; trained networks have
+titles of their own, and others join by themselves."""
 
 WAITING = 0.28
 """How opaque a body is whose weights are not there."""
@@ -60,7 +62,8 @@ def compare(state: State, memo: Memo) -> Description:
 
 def title_of(name: str) -> str:
     """Return what a method is called."""
-    return TITLES.get(name) or name.replace("_", " ").capitalize()
+    own = getattr(METHODS.get(name), "title", None)
+    return TITLES.get(name) or own or name.replace("_", " ").capitalize()
 
 
 def caption_of(state: State, name: str) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from inspect import signature
 from time import perf_counter
 from typing import Any
 
@@ -40,6 +41,13 @@ def cutcell_rig(rig: Rig, resolution: int = 64, **options: Any) -> BaselineBindi
 def _bind(rig: Rig, method: Method, resolution: int, options: dict[str, Any]) -> BaselineBinding:
     binding = bind(rig, resolution, **{"method": method, **options})
     return BaselineBinding(binding.weights, binding.seconds, binding.warnings)
+
+
+def known_options(method: Baseline, **options: Any) -> dict[str, Any]:
+    """Return those options that a method knows."""
+    known = signature(method).parameters
+    every = any(one.kind is one.VAR_KEYWORD for one in known.values())
+    return {name: value for name, value in options.items() if every or name in known}
 
 
 def artist(rig: Rig) -> BaselineBinding:

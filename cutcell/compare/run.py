@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from functools import partial
-from inspect import signature
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..baselines import METHODS, Baseline, BaselineBinding
+from ..baselines.methods import known_options
 from ..checks import check_choice, check_has_joints
 from ..errors import Cancelled, CutcellError, ParameterError, WeightsError
 from ..graph import build_graph
@@ -90,14 +90,10 @@ def _chosen(
         methods = {name: METHODS[check_choice("method", name, METHODS)] for name in methods}
     if not methods:
         raise ParameterError("there are no methods to compare")
-    chosen: dict[str, Baseline] = {}
-    for name, method in methods.items():
-        known = signature(method).parameters
-        every = any(p.kind is p.VAR_KEYWORD for p in known.values())
-        chosen[name] = partial(
-            method, **{key: value for key, value in options.items() if every or key in known}
-        )
-    return chosen
+    return {
+        name: partial(method, **known_options(method, **options))
+        for name, method in methods.items()
+    }
 
 
 def _compare_rig(

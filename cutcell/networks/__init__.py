@@ -7,6 +7,7 @@ is asked for; `docs/networks.md` tells the heads and what they learned.
 from __future__ import annotations
 
 from importlib import import_module
+from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 
 from ..errors import MissingLibraryError
@@ -21,8 +22,11 @@ if TYPE_CHECKING:
     from .names import SIZES as SIZES
     from .priors import PRIORS as PRIORS
     from .priors import Samples as Samples
+    from .recipe import Recipe as Recipe
     from .samples import Sample as Sample
     from .samples import sample_rig as sample_rig
+    from .trained import TrainedNetwork as TrainedNetwork
+    from .trained import trained_networks as trained_networks
     from .training import load_network as load_network
     from .training import train as train
 
@@ -30,9 +34,12 @@ WITHOUT_TORCH = {
     "HEADS": "names",
     "SIZES": "names",
     "PRIORS": "priors",
+    "Recipe": "recipe",
     "Samples": "priors",
     "Sample": "samples",
     "sample_rig": "samples",
+    "TrainedNetwork": "trained",
+    "trained_networks": "trained",
 }
 WITH_TORCH = {
     "Batch": "batches",
@@ -61,11 +68,9 @@ def __dir__() -> list[str]:
 
 def check_torch() -> None:
     """Raise MissingLibraryError, which says what to install, unless torch is there."""
-    try:
-        import torch  # noqa: F401
-    except ImportError:
+    if find_spec("torch") is None:
         raise MissingLibraryError(
             "networks are trained and evaluated by torch, which is not installed; try: "
             "pip install 'cutcell[networks]' (a CPU is enough; for a small build see "
             "docs/networks.md)"
-        ) from None
+        )

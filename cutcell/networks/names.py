@@ -8,3 +8,5 @@ HeadName = Literal["rignet", "unirig", "puppeteer"]
 SizeName = Literal["tiny", "small", "full"]
 HEADS: tuple[HeadName, ...] = get_args(HeadName)
 SIZES: tuple[SizeName, ...] = get_args(SizeName)
+TITLES: dict[str, str] = {"rignet": "RigNet", "unirig": "UniRig", "puppeteer": "Puppeteer"}
+"""What people call the heads."""

@@ -7,37 +7,87 @@ import io
 import tempfile
 from collections.abc import Callable, Iterable
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import numpy as np
 from numba.misc.appdirs import AppDirs
 from numpy.typing import NDArray
 
-from .. import __version__
-from ..baselines import METHODS
+from ..baselines import METHODS, Baseline, BaselineBinding
+from ..baselines.methods import known_options
 from ..checks import check_choice
 from ..dataset.sources import Source, find_sources, read_source
 from ..errors import CutcellError, WeightsError
+from ..progress import Progress, silent
 from ..rig import Rig
 from ..skinning import bind
 from ..writing import write_all
 from .samples import Sample, sample_rig
 
 
-def _by(name: str) -> Callable[[Rig, int], NDArray | None]:
-    return lambda rig, resolution: METHODS[name](rig, resolution=resolution).weights
+def bound(rig: Rig, resolution: int = 64, progress: Progress = silent) -> BaselineBinding:
+    """Bind by `cutcell.bind` as it is, with its limit of influences."""
+    binding = bind(rig, resolution, progress=progress)
+    return BaselineBinding(binding.weights, binding.seconds, binding.warnings)
 
 
-PRIORS: dict[str, Callable[[Rig, int], NDArray | None]] = {
-    "none": lambda rig, resolution: None,
-    "voxel_unirig": _by("voxel_unirig"),
-    "voxel": _by("voxel"),
-    "cutcell": _by("cutcell"),
-    "cutcell_any": _by("cutcell_any"),
-    "bind": lambda rig, resolution: bind(rig, resolution).weights,
+PRIORS: dict[str, Baseline | None] = {
+    "none": None,
+    **{name: METHODS[name] for name in ("voxel_unirig", "voxel", "cutcell", "cutcell_any")},
+    "bind": bound,
 }
-"""Weights (n, j) by name: no prior, UniRig's voxels, Dionne's voxels, the paper's cut-cell graph,
-the same with paths at any angle, and what `bind` gives."""
+"""Methods by name: no prior, UniRig's voxels, Dionne's voxels, the paper's cut-cell graph, the same
+with paths at any angle, and what `bind` gives."""
+
+OWN = ("__init__.py", "priors.py", "samples.py")
+"""Files beside this one that samples and priors depend on; the others are of networks."""
+
+
+def prior_of(
+    name: str, rig: Rig, resolution: int = 64, progress: Progress = silent
+) -> NDArray[np.float64] | None:
+    """Compute a prior of a rig.
+
+    Parameters
+    ----------
+    name : str
+        Of `PRIORS`.
+    rig : Rig
+    resolution : int
+        R, for the methods that have a lattice.
+    progress : callable
+        See `cutcell.progress`; for the methods that tell of theirs.
+
+    Returns
+    -------
+    array, shape (n, j), or None
+        None for the prior "none".
+
+    Raises
+    ------
+    WeightsError
+        The method gives no weights; the sentence says why.
+    """
+    method = PRIORS[check_choice("prior", name, PRIORS)]
+    if method is None:
+        return None
+    options = known_options(method, resolution=resolution, progress=progress)
+    found = method(rig, **options)
+    if found.weights is None:
+        raise WeightsError(f"the prior {name} cannot be computed: {found.failed}")
+    return found.weights
+
+
+@cache
+def code_digest() -> bytes:
+    """Hash the code that samples and priors depend on: all of cutcell but the networks."""
+    package = Path(__file__).resolve().parent.parent
+    digest = hashlib.blake2b(digest_size=12)
+    for path in sorted(package.rglob("*.py")):
+        if path.parent != Path(__file__).resolve().parent or path.name in OWN:
+            digest.update(path.relative_to(package).as_posix().encode() + path.read_bytes())
+    return digest.digest()
 
 
 def cache_folder() -> Path:
@@ -59,7 +109,8 @@ class Samples:
     resolution : int
         R of the priors.
     cache : Path, optional
-        Where what was computed is kept; `cache_folder` when left out.
+        Where what was computed is kept, until the code that computes it changes; `cache_folder`
+        when left out.
 
     Raises
     ------
@@ -112,10 +163,8 @@ class Samples:
             return sample
         if not weights.exists():
             rig = rig or _with_weights(source)
-            prior = PRIORS[self.prior](rig, self.resolution)
-            if prior is None:
-                raise WeightsError(f"the method {self.prior} gave no weights")
-            _write(weights, {"prior": sample.of_rig(prior)})
+            prior = prior_of(self.prior, rig, self.resolution)
+            _write(weights, {"prior": sample.of_rig(prior)})  # type: ignore[arg-type]
         with np.load(weights) as arrays:
             return replace(sample, prior=arrays["prior"])
 
@@ -123,7 +172,7 @@ class Samples:
         digest = hashlib.blake2b(digest_size=12)
         for name, data in sorted(source.content().files.items()):
             digest.update(name.encode() + data)
-        digest.update(f"{self.points} {self.resolution} {__version__}".encode())
+        digest.update(f"{self.points} {self.resolution}".encode() + code_digest())
         return digest.hexdigest()
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -22,6 +23,8 @@ KNOWN = 64
 """Neighbours that are kept, so that enough are left among some of the points."""
 FAR = 0.25
 """Of the longest side: points farther apart along the surface are no neighbours."""
+LENGTHS = 50_000_000
+"""Lengths of paths that are kept at a time, each 8 bytes."""
 MOST_HOPS = 16
 """Bones between two joints are counted up to so many."""
 
@@ -131,40 +134,93 @@ def sample_rig(rig: Rig, count: int = 0, seed: int = 0) -> Sample:
     WeightsError
         The rig has weights, but none on the joints that may carry some.
     """
-    size = longest_side(rig.mesh)
-    middle = rig.mesh.bounds.mean(axis=0)
-    used = np.unique(rig.mesh.faces)
-    _, group = weld(rig.mesh.vertices[used], WELD_TOLERANCE * size)
-    first = np.full(group.max() + 1, len(used))
-    np.minimum.at(first, group, np.arange(len(used)))
-    welded = np.zeros(len(rig.mesh.vertices), np.int32)
-    welded[used] = group
-    places, faces = rig.mesh.vertices[used[first]], welded[rig.mesh.faces]
-    chosen = np.arange(len(places))
-    if 0 < count < len(places):
+    welded = _Welded.of(rig)
+    chosen = np.arange(len(welded.places))
+    if 0 < count < len(chosen):
         chosen = np.sort(np.random.default_rng(seed).choice(chosen, count, replace=False))
-    order = _along_surface(places / size, faces, chosen)
-    deform = np.flatnonzero(rig.skeleton.deform)
-    joints, tails, parents = bones_of(rig.skeleton, deform)
-    sample = Sample(
-        rig.name,
-        ((places[chosen] - middle) / size).astype(np.float32),
-        mesh_normals(places, faces)[1][chosen],
-        ((joints - middle) / size).astype(np.float32),
-        ((tails - middle) / size).astype(np.float32),
-        parents,
-        None,
-        None,
-        order,
-        used[first][chosen].astype(np.int64),
-        deform,
-    )
+    sample = _sample(rig, welded, chosen)
     if rig.weights is None:
         return sample
     target = sample.of_rig(rig.weights)
     if not target.any():
         raise WeightsError(f'rig "{rig.name}": no point that was drawn has weight')
     return replace(sample, target=target)
+
+
+def deal_rig(rig: Rig, count: int) -> Iterator[Sample]:
+    """Deal all welded vertices of a rig into samples as large as those of a training.
+
+    Neighbours are farther apart where fewer points are drawn: to a network a sample of all
+    vertices is not what it learned from.
+
+    Parameters
+    ----------
+    rig : Rig
+    count : int
+        Points of each, about.
+
+    Yields
+    ------
+    Sample
+        Without prior and target.
+    """
+    welded = _Welded.of(rig)
+    order = np.random.default_rng(0).permutation(len(welded.places))
+    for chosen in np.array_split(order, max(1, round(len(order) / count))):
+        yield _sample(rig, welded, np.sort(chosen))
+
+
+@dataclass(frozen=True, eq=False)
+class _Welded:
+    """The welded vertices that faces use, k.
+
+    Parameters
+    ----------
+    places : array, shape (k, 3)
+        In longest sides.
+    faces : array, shape (m, 3), int32
+    normals : array, shape (k, 3), float32
+    vertices : array, shape (k,)
+        The first vertex of the rig at each place.
+    """
+
+    places: NDArray[np.float64]
+    faces: NDArray[np.int32]
+    normals: NDArray
+    vertices: NDArray[np.int64]
+
+    @classmethod
+    def of(cls, rig: Rig) -> _Welded:
+        size = longest_side(rig.mesh)
+        used = np.unique(rig.mesh.faces)
+        _, group = weld(rig.mesh.vertices[used], WELD_TOLERANCE * size)
+        first = np.full(group.max() + 1, len(used))
+        np.minimum.at(first, group, np.arange(len(used)))
+        welded = np.zeros(len(rig.mesh.vertices), np.int32)
+        welded[used] = group
+        vertices = used[first].astype(np.int64)
+        faces, places = welded[rig.mesh.faces], rig.mesh.vertices[vertices]
+        return cls(places / size, faces, mesh_normals(places, faces)[1], vertices)
+
+
+def _sample(rig: Rig, welded: _Welded, chosen: NDArray) -> Sample:
+    size, middle = longest_side(rig.mesh), rig.mesh.bounds.mean(axis=0)
+    deform = np.flatnonzero(rig.skeleton.deform)
+    joints, tails, parents = bones_of(rig.skeleton, deform)
+    vertices = welded.vertices[chosen]
+    return Sample(
+        rig.name,
+        ((rig.mesh.vertices[vertices] - middle) / size).astype(np.float32),
+        welded.normals[chosen],
+        ((joints - middle) / size).astype(np.float32),
+        ((tails - middle) / size).astype(np.float32),
+        parents,
+        None,
+        None,
+        _along_surface(welded.places, welded.faces, chosen),
+        vertices,
+        deform,
+    )
 
 
 def bones_of(skeleton: Skeleton, chosen: NDArray) -> tuple[NDArray, NDArray, NDArray[np.int64]]:
@@ -187,8 +243,9 @@ def _along_surface(places: NDArray, faces: NDArray, chosen: NDArray) -> NDArray[
     length = np.linalg.norm(places[one] - places[other], axis=1)
     graph = coo_array((length, (one, other)), shape=(len(places), len(places))).tocsr()
     nearest = np.empty((len(chosen), KNOWN), np.int64)
-    for begin in range(0, len(chosen), 512):
-        rows = np.arange(begin, min(begin + 512, len(chosen)))
+    step = max(1, min(512, LENGTHS // len(places)))
+    for begin in range(0, len(chosen), step):
+        rows = np.arange(begin, min(begin + step, len(chosen)))
         away = dijkstra(graph, directed=False, indices=chosen[rows], limit=FAR)[:, chosen]
         away[np.arange(len(rows)), rows] = np.inf
         count = min(KNOWN, len(chosen))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 import json
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, replace
 from pathlib import Path
 from time import perf_counter
 from typing import Any
@@ -15,12 +15,12 @@ import torch
 from numpy.typing import NDArray
 from torch import nn
 
-from ..checks import check_choice, check_integer
+from ..checks import check_integer
 from ..errors import FileError, ParameterError
 from ..writing import reason, write_all
 from .batches import Batch, collate
 from .heads import create_network
-from .names import HEADS, SIZES
+from .recipe import Recipe
 from .samples import Sample
 
 BATCH = 2
@@ -30,35 +30,7 @@ RATE = 2e-3
 LARGEST_GRADIENT = 1.0
 SCALES = 0.8, 1.25
 """A character is made that much smaller or larger, by chance."""
-
-
-@dataclass(frozen=True)
-class Recipe:
-    """What makes a network; the same recipe gives the same numbers on a CPU.
-
-    Parameters
-    ----------
-    head, size : str
-        See `create_network`.
-    prior : str
-        Of `PRIORS`.
-    seed : int
-        Of the first parameters, the order of characters, the points, and the augmentation.
-    points : int
-        Points a character, drawn anew in each epoch.
-    """
-
-    head: str
-    size: str = "tiny"
-    prior: str = "cutcell"
-    seed: int = 0
-    points: int = 128
-
-    def __post_init__(self) -> None:
-        check_choice("head", self.head, HEADS)
-        check_choice("size", self.size, SIZES)
-        check_integer("seed", self.seed, 0, 2**31 - 1)
-        check_integer("points", self.points, 16, 1_000_000)
+ANOTHER_VERSION = "is a network of another version of cutcell; train it again"
 
 
 def train(
@@ -119,13 +91,31 @@ def load_network(folder: Path) -> tuple[nn.Module, Recipe]:
     Raises
     ------
     FileError
-        There is none in the folder.
+        There is none in the folder, or one of another version.
     """
-    kept = _read(folder / "network.pt")
-    recipe = Recipe(**json.loads(kept["recipe"]))
+    path = folder / "network.pt"
+    kept, recipe = _read(path, in_parts=True), read_recipe(folder)
     network = create_network(recipe.head, recipe.size, recipe.seed)
-    network.load_state_dict(kept["network"])
+    try:
+        network.load_state_dict(kept["network"])
+    except RuntimeError:
+        raise FileError(f"{path}: {ANOTHER_VERSION}") from None
     return network.eval(), recipe
+
+
+def read_recipe(folder: Path) -> Recipe:
+    """Return the recipe of a trained network; nothing else of it is read.
+
+    Raises
+    ------
+    FileError
+        There is none in the folder, or one of another version.
+    """
+    path = folder / "network.pt"
+    try:
+        return Recipe(**json.loads(_read(path, in_parts=True)["recipe"]))
+    except (TypeError, ParameterError):
+        raise FileError(f"{path}: {ANOTHER_VERSION}") from None
 
 
 def _epoch(
@@ -209,7 +199,7 @@ def _resume(
         write_all({folder / "log.csv": b"epoch,loss,seconds\n"})
         return 0
     kept = _read(path)
-    if json.loads(kept["recipe"]) != asdict(recipe):
+    if read_recipe(folder) != recipe:
         raise FileError(
             f"{folder}: holds a network of another recipe, {kept['recipe']}; name another folder"
         )
@@ -218,10 +208,17 @@ def _resume(
     return int(kept["epoch"])
 
 
-def _read(path: Path) -> dict[str, Any]:
+def _read(path: Path, in_parts: bool = False) -> dict[str, Any]:
+    """Read a file; in parts: only what is asked for, and not what the optimizer remembers."""
     try:
-        return torch.load(path, map_location="cpu", weights_only=True)
+        kept = torch.load(path, map_location="cpu", weights_only=True, mmap=in_parts)
     except OSError as error:
         raise FileError(f"{path}: cannot be read ({reason(error)})") from None
     except Exception:
         raise FileError(f"{path}: is no network that cutcell trained") from None
+    parts = {"recipe": str, "epoch": int, "network": dict, "optimizer": dict}
+    if not isinstance(kept, dict) or any(
+        not isinstance(kept.get(name), kind) for name, kind in parts.items()
+    ):
+        raise FileError(f"{path}: is no network that cutcell trained")
+    return kept

@@ -23,10 +23,19 @@ TASKS = {
     "draco": "draco:decode",
     "fbx": "fbx:read",
     "usd": "usd:read",
+    "network_recipes": ".networks.worker:recipes",
+    "network_weights": ".networks.worker:weights",
 }
-"""Module and function of each task; it takes the job's arrays, and returns the result's."""
+"""Module, of this package or beside it, and function of each task; it takes the job's arrays, and
+returns the result's."""
 
-EXTRAS = {"draco": "cutcell", "fbx": "cutcell", "usd": "cutcell[usd]"}
+EXTRAS = {
+    "draco": "cutcell",
+    "fbx": "cutcell",
+    "usd": "cutcell[usd]",
+    "network_recipes": "cutcell[networks]",
+    "network_weights": "cutcell[networks]",
+}
 """What installs the library of a task, where it is not `cutcell[peers]`."""
 
 
@@ -38,7 +47,7 @@ def main(task: str, job_path: str, result_path: str, memory: str = "0") -> None:
         given = {name: job[name] for name in job.files}
     begin = perf_counter()
     try:
-        result = getattr(import_module(f"cutcell.workers.{module}"), function)(**given)
+        result = getattr(import_module(f".{module}", "cutcell.workers"), function)(**given)
     except ModuleNotFoundError as error:
         extra = EXTRAS.get(task, "cutcell[peers]")
         failed = f"{error.name} is not installed; try: pip install '{extra}'"

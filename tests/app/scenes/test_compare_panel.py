@@ -9,7 +9,7 @@ import cutcell
 from cutcell.baselines import METHODS, BaselineBinding
 from cutcell.metrics import deformation_error, weight_l1
 from cutcell.progress import silent
-from cutcell_app.commands.compare import Compared, choose, measured, options_of, wanted
+from cutcell_app.commands.compare import Compared, choose, measured, wanted
 from cutcell_app.panels.compare import _field, about, rows_of
 from cutcell_app.scenes import Memo, resolve
 from cutcell_app.scenes.compare import WAITING, caption_of, field_shown, title_of
@@ -146,22 +146,6 @@ def test_a_method_that_fails_says_why(rig, binding, monkeypatch):
     assert measured(rig, "raises", binding, 16, silent).failed == "the mesh is open"
     assert {"gives_up", "raises"} <= set(offered(rig))
     assert title_of("gives_up") == "Gives up"
-
-
-def test_options_go_to_methods_that_know_them():
-    def plain(rig):
-        return rig
-
-    def fine(rig, resolution=64):
-        return rig
-
-    def all_of_them(rig, **options):
-        return rig
-
-    options = {"resolution": 8, "progress": silent}
-    assert options_of(plain, **options) == {}
-    assert options_of(fine, **options) == {"resolution": 8}
-    assert options_of(all_of_them, **options) == options
 
 
 def test_two_to_four_methods_stay_chosen(state):

@@ -14,6 +14,7 @@ import cutcell
 from cutcell import ParameterError, Rig, Skeleton, TriangleMesh
 from cutcell.baselines import METHODS
 from cutcell.baselines.body import Body
+from cutcell.baselines.methods import known_options
 from cutcell.baselines.paths import path_lengths
 from cutcell.baselines.visibility import Blockers
 from cutcell.baselines.voxels import PAD, mark_triangles, voxelize
@@ -37,6 +38,22 @@ def open_tube(radius=0.05, along=160, around=24):
 
 
 # All of them
+
+
+def test_options_go_to_methods_that_know_them():
+    def plain(rig):
+        return rig
+
+    def fine(rig, resolution=64):
+        return rig
+
+    def all_of_them(rig, **options):
+        return rig
+
+    options = {"resolution": 8, "threshold": 0.1}
+    assert known_options(plain, **options) == {}
+    assert known_options(fine, **options) == {"resolution": 8}
+    assert known_options(all_of_them, **options) == options
 
 
 @pytest.mark.parametrize("name", sorted(set(METHODS) - {"artist"}))

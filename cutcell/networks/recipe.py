@@ -1,0 +1,52 @@
+"""What makes a network; nothing of torch is needed to know it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ..checks import check_choice, check_integer
+from .names import HEADS, SIZES, TITLES
+
+
+@dataclass(frozen=True)
+class Recipe:
+    """What makes a network; the same recipe gives the same numbers on a CPU.
+
+    Parameters
+    ----------
+    head, size : str
+        See `create_network`.
+    prior : str
+        Of `PRIORS`.
+    seed : int
+        Of the first parameters, the order of characters, the points, and the augmentation.
+    points : int
+        Points a character, drawn anew in each epoch.
+    resolution : int
+        R of the prior.
+    """
+
+    head: str
+    size: str = "tiny"
+    prior: str = "cutcell"
+    seed: int = 0
+    points: int = 128
+    resolution: int = 64
+
+    def __post_init__(self) -> None:
+        check_choice("head", self.head, HEADS)
+        check_choice("size", self.size, SIZES)
+        check_integer("seed", self.seed, 0, 2**31 - 1)
+        check_integer("points", self.points, 16, 1_000_000)
+        check_integer("resolution", self.resolution, 2, 1024)
+
+    @property
+    def name(self) -> str:
+        """What it is called among methods, such as "rignet-cutcell-tiny-0"."""
+        return f"{self.head}-{self.prior}-{self.size}-{self.seed}"
+
+    @property
+    def title(self) -> str:
+        """What people read, such as "RigNet with cutcell, tiny, seed 0"."""
+        prior = "without prior" if self.prior == "none" else f"with {self.prior}"
+        return f"{TITLES[self.head]} {prior}, {self.size}, seed {self.seed}"

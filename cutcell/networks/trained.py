@@ -1,0 +1,207 @@
+"""Trained networks as methods beside the others; torch runs in a process of its own.
+
+A network that crashes, or that nobody waits for any more, ends that process and nothing else.
+"""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from ..apart import run_apart
+from ..baselines import BaselineBinding
+from ..baselines.body import Body
+from ..baselines.frame import Run, bind_by
+from ..errors import FileError
+from ..memory import BYTES_PER_WEIGHT, check_room
+from ..method import PAPER
+from ..progress import Progress, silent
+from ..rig import Rig
+from . import check_torch
+from .priors import prior_of
+from .recipe import Recipe
+from .samples import KNOWN, LENGTHS
+
+LIMIT = 600.0
+"""Seconds that a prediction may take."""
+TORCH_BYTES = 400_000_000
+"""What torch takes before it has done anything."""
+HIDDEN_BYTES = 16_384
+"""Of the widest layers, for each point and joint that are looked at together."""
+
+
+@dataclass(frozen=True)
+class TrainedNetwork:
+    """A trained network as a method: its prior is computed, then it predicts the weights.
+
+    Parameters
+    ----------
+    folder : Path
+        Of `cutcell networks train`; what is in there when the network is asked.
+    recipe : Recipe
+    title : str
+        What people read.
+    """
+
+    folder: Path
+    recipe: Recipe
+    title: str
+
+    def __call__(
+        self,
+        rig: Rig,
+        *,
+        max_influences: int | None = None,
+        threshold: float = 0.0,
+        progress: Progress = silent,
+    ) -> BaselineBinding:
+        """Bind a rig; its resolution is the one that the network was trained with.
+
+        Parameters
+        ----------
+        rig : Rig
+        max_influences, threshold
+            See `skinning_weights`.
+        progress : callable
+            See `cutcell.progress`; of the prior.
+
+        Returns
+        -------
+        BaselineBinding
+            Stages "prior", "network", "weights". `failed` says why torch gave nothing.
+
+        Raises
+        ------
+        TooLargeError
+            It would not fit in memory.
+        WeightsError
+            The prior cannot be computed.
+        MissingLibraryError
+            torch is not installed.
+        """
+        check_torch()
+        self._check_memory(rig)
+        recipe = self.recipe
+
+        def solve(body: Body, run: Run) -> NDArray[np.float64]:
+            prior = prior_of(recipe.prior, rig, recipe.resolution, progress)
+            run.end("prior")
+            found = self._predicted(rig, prior)
+            run.end("network")
+            return found(body)
+
+        method = PAPER.with_options(max_influences=max_influences, threshold=threshold)
+        return bind_by(solve, rig, method)
+
+    def _predicted(
+        self, rig: Rig, prior: NDArray[np.float64] | None
+    ) -> Callable[[Body], NDArray[np.float64]]:
+        job = {
+            "folder": np.array(str(self.folder.resolve())),
+            "vertices": rig.mesh.vertices,
+            "faces": rig.mesh.faces,
+            "joints": rig.skeleton.joints,
+            "parents": rig.skeleton.parents,
+            "deform": rig.skeleton.deform,
+            **({} if prior is None else {"prior": prior}),
+        }
+        found = run_apart("network_weights", job, LIMIT, "the network")
+        return partial(_of_body, found["vertices"], found["weights"])
+
+    def _check_memory(self, rig: Rig) -> None:
+        path = self.folder / "network.pt"
+        size = path.stat().st_size if path.exists() else 0
+        count, joints = len(rig.mesh.vertices), len(rig.skeleton.joints)
+        points = 4 * self.recipe.points
+        check_room(
+            TORCH_BYTES
+            + size
+            + 4 * count * joints * BYTES_PER_WEIGHT
+            + 2 * min(512 * count, max(LENGTHS, count)) * 8
+            + points * KNOWN * 8
+            + self.recipe.points * joints * HIDDEN_BYTES,
+            f"a network that looks at {count:,} vertices and {joints:,} joints",
+            "leave out vertices or joints",
+        )
+
+
+def _of_body(vertices: NDArray, weights: NDArray, body: Body) -> NDArray[np.float64]:
+    """Give weights of some vertices of the rig to all welded vertices, (k, j).
+
+    What no face uses follows what is nearest.
+    """
+    full = np.zeros((len(body.points), weights.shape[1]))
+    at = body.index[vertices]
+    full[at] = weights
+    left = np.setdiff1d(np.arange(len(full)), at)
+    if len(left):
+        full[left] = full[at[cKDTree(body.points[at]).query(body.points[left])[1]]]
+    return full
+
+
+def trained_networks(
+    folders: Iterable[Path], tell: Callable[[str], None] = lambda text: None
+) -> dict[str, TrainedNetwork]:
+    """Find trained networks.
+
+    Parameters
+    ----------
+    folders : iterable of Path
+        Folders of `cutcell networks train`, or folders that hold such.
+    tell : callable
+        Called with a sentence for each that is left out because it cannot be used.
+
+    Returns
+    -------
+    dict of str to TrainedNetwork
+        By name: head, prior, size and seed, such as "rignet-cutcell-tiny-0"; where several have the
+        same, their folders make the difference.
+
+    Raises
+    ------
+    MissingLibraryError
+        torch is not installed.
+    FileError
+        A folder holds no trained network, or none that can be used.
+    """
+    check_torch()
+    runs = [run for folder in folders for run in _runs(Path(folder))]
+    job = {"folders": np.array([str(run.resolve()) for run in runs], np.str_)}
+    read = run_apart("network_recipes", job, LIMIT, "torch")
+    found = []
+    for run, recipe, problem in zip(runs, read["recipes"], read["problems"], strict=True):
+        if recipe:
+            found.append((run, Recipe(**json.loads(str(recipe)))))
+        else:
+            tell(f"left out: {problem}")
+    if runs and not found:
+        raise FileError(f"none of the networks can be used: {read['problems'][0]}")
+    counts = Counter(recipe.name for _, recipe in found)
+    methods: dict[str, TrainedNetwork] = {}
+    for run, recipe in found:
+        name, title = recipe.name, recipe.title
+        if counts[name] > 1:
+            title = f"{title} ({run.name})"
+            name = f"{name}-{sum(one.startswith(recipe.name) for one in methods) + 1}"
+        methods[name] = TrainedNetwork(run, recipe, title)
+    return methods
+
+
+def _runs(folder: Path) -> list[Path]:
+    """List the folders of trained networks: this one, or those in it."""
+    if (folder / "network.pt").is_file():
+        return [folder]
+    if not folder.is_dir():
+        raise FileError(f"{folder}: there is no such folder")
+    runs = sorted(path.parent for path in folder.glob("*/network.pt"))
+    if not runs:
+        raise FileError(f"{folder}: holds no trained network (network.pt), nor do its folders")
+    return runs

@@ -1,0 +1,93 @@
+"""Tasks of `cutcell.workers` that need torch: what goes wrong ends a process of its own.
+
+A task takes arrays and returns arrays; see `trained` for who asks.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..checks import check_choice
+from ..errors import CutcellError
+from ..rig import Rig, Skeleton, TriangleMesh
+from .heads import predict
+from .priors import PRIORS
+from .samples import deal_rig
+from .training import load_network, read_recipe
+
+
+def recipes(folders: NDArray[np.str_]) -> dict[str, NDArray]:
+    """Read the recipes of trained networks.
+
+    Parameters
+    ----------
+    folders : array of str
+
+    Returns
+    -------
+    dict
+        "recipes": array of str, as JSON, or empty where there is none to be had; "problems": array
+        of str, which says why.
+    """
+    found, problems = [], []
+    for folder in folders:
+        recipe, problem = "", ""
+        try:
+            read = read_recipe(Path(str(folder)))
+            check_choice("prior", read.prior, PRIORS)
+            recipe = json.dumps(asdict(read))
+        except CutcellError as error:
+            problem = str(error)
+        found.append(recipe)
+        problems.append(problem)
+    return {"recipes": np.array(found), "problems": np.array(problems)}
+
+
+def weights(
+    folder: NDArray[np.str_],
+    vertices: NDArray[np.float64],
+    faces: NDArray[np.integer],
+    joints: NDArray[np.float64],
+    parents: NDArray[np.integer],
+    deform: NDArray[np.bool_],
+    prior: NDArray[np.float64] | None = None,
+) -> dict[str, NDArray]:
+    """Predict the weights of a rig.
+
+    Parameters
+    ----------
+    folder : array of one str
+        Where the network is.
+    vertices : array, shape (n, 3)
+    faces : array, shape (m, 3)
+    joints : array, shape (j, 3)
+    parents, deform : arrays, shape (j,)
+    prior : array, shape (n, j), optional
+        Where the network learned with one.
+
+    Returns
+    -------
+    dict
+        "vertices": array, shape (p,), the first vertex at each place that a face uses; "weights":
+        array, shape (p, j), of these.
+
+    Raises
+    ------
+    FileError
+        There is no such network.
+    """
+    network, recipe = load_network(Path(str(folder)))
+    rig = Rig(TriangleMesh(vertices, faces), Skeleton(joints, parents, deform=deform))
+    where, found = [], []
+    # Drawn as densely as in training, and then looked at as many together.
+    for sample in deal_rig(rig, 4 * recipe.points):
+        part = np.zeros((len(sample.points), len(joints)))
+        part[:, sample.deform] = predict(network, [sample.with_prior(prior)], recipe.points)[0]
+        where.append(sample.vertices)
+        found.append(part)
+    return {"vertices": np.concatenate(where), "weights": np.concatenate(found)}
