@@ -67,8 +67,8 @@ def train(
         typer.Option(
             "--prior",
             metavar="P",
-            help="What the network gets to see: none, voxel_unirig, voxel, cutcell (the paper's),"
-            " cutcell_any (paths at any angle) or bind.",
+            help="What the network gets to see: none, visibility (RigNet's own), voxel_unirig,"
+            " voxel, cutcell (the paper's), cutcell_any (paths at any angle) or bind.",
         ),
     ] = "cutcell",
     size: Annotated[

@@ -62,6 +62,13 @@ class Body:
         ends = zip(self.bones.start, self.bones.end, strict=True)
         return np.stack([distance_to_segment(self.points, start, end) for start, end in ends])
 
+    def closest_on(self, bone: int) -> NDArray[np.float64]:
+        """Return the point of a bone that is closest to each welded vertex, shape (k, 3)."""
+        start, along = self.bones.start[bone], self.bones.end[bone] - self.bones.start[bone]
+        squared = along @ along
+        travel = (self.points - start) @ along / (squared if squared > 0 else 1.0)
+        return start + np.clip(travel, 0, 1)[:, None] * along
+
     def joint_minimum(self, distance: NDArray[np.float64]) -> NDArray[np.float64]:
         """Take the least over the bones of each joint: (b, k) to (j, k), else infinite."""
         joint = np.full((self.joints, distance.shape[1]), np.inf)

@@ -125,11 +125,8 @@ def _nearness(body: Body) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     normals = vertex_normals(body.points, body.faces)
     nearness = np.empty((len(body.bones.joint), len(body.points)))
     closest = np.empty((*nearness.shape, 3))
-    for b, (start, end) in enumerate(zip(body.bones.start, body.bones.end, strict=True)):
-        along = end - start
-        squared = along @ along
-        travel = (body.points - start) @ along / squared if squared > 0 else np.zeros(1)
-        closest[b] = start + np.clip(travel, 0, 1)[:, None] * along
+    for b in range(len(closest)):
+        closest[b] = body.closest_on(b)
         away = body.points - closest[b]
         length = np.linalg.norm(away, axis=1)
         cosine = (away * normals).sum(axis=1) / np.where(length > 0, length, 1)

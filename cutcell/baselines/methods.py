@@ -14,6 +14,7 @@ from .bone_heat import bone_heat
 from .cage_methods import harmonic, mean_value
 from .euclidean import euclidean
 from .frame import BaselineBinding
+from .visible_geodesics import visibility
 from .volume import bbw, biharmonic, quasi_harmonic
 from .voxel_binding import voxel, voxel_unirig
 
@@ -70,6 +71,7 @@ METHODS: dict[str, Baseline] = {
     "harmonic": harmonic,
     "mean_value": mean_value,
     "quasi_harmonic": quasi_harmonic,
+    "visibility": visibility,
     "voxel": voxel,
     "voxel_unirig": voxel_unirig,
 }

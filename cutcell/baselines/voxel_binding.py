@@ -6,17 +6,16 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from ..geodesics.fallback import straight_to_nearest
 from ..method import PAPER, Leaf
 from ..rig import Rig
 from ..skinning.kernel import paper_kernel
 from .body import Body
 from .frame import BaselineBinding, Run, bind_by
 from .paths import path_lengths
+from .unreached import NEAREST, follow_nearest, unreached
 from .voxels import Voxels, voxelize
 
-NEAREST = 3
-"""Bones that a vertex follows which no path reaches, as in the paper."""
+NO_PATH = "no path along solid voxels leads from a bone to them"
 
 UNIRIG_VOXEL_COST = 3.0
 """UniRig counts a step between voxels three times, and so prefers paths on the surface."""
@@ -78,7 +77,7 @@ def voxel(
 
     def solve(body: Body, run: Run) -> NDArray[np.float64]:
         distance = voxel_distances(body, run)
-        run.warnings += _follow_nearest(body, distance)
+        run.warnings += follow_nearest(body, distance, NO_PATH)
         run.end("distances")
         return paper_kernel(body.joint_minimum(distance), body.lattice.diagonal, alpha)
 
@@ -193,15 +192,6 @@ def voxels_of_bone(voxels: Voxels, start: NDArray, end: NDArray) -> NDArray[np.i
     return nearest[[distance.argmin()]]
 
 
-def _follow_nearest(body: Body, distance: NDArray[np.float64]) -> tuple[str, ...]:
-    """Give vertices that no path reaches straight distances to their nearest bones."""
-    lost = np.flatnonzero(~np.isfinite(distance).any(axis=0))
-    if len(lost) == 0:
-        return ()
-    distance[:, lost] = straight_to_nearest(body.points[lost], body.bones, NEAREST)
-    return (_unreached(lost, body),)
-
-
 def _follow_nearest_joints(
     body: Body, joints: NDArray[np.float64], distance: NDArray[np.float64]
 ) -> tuple[str, ...]:
@@ -212,14 +202,7 @@ def _follow_nearest_joints(
         body.points[lost], k=range(1, min(NEAREST, len(joints)) + 1)
     )
     distance[which, lost[:, None]] = near
-    return (_unreached(lost, body),)
-
-
-def _unreached(lost: NDArray[np.intp], body: Body) -> str:
-    return (
-        f"{len(lost)} of {len(body.points)} welded vertices follow their nearest bones in a "
-        "straight line: no path along solid voxels leads from a bone to them"
-    )
+    return (unreached(lost, body, NO_PATH),)
 
 
 def _unirig_links(body: Body, voxels: Voxels) -> tuple[NDArray, NDArray]:

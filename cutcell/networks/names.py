@@ -1,4 +1,4 @@
-"""The heads and their sizes by name; nothing of torch is needed to know them."""
+"""Heads, sizes and priors by name; nothing of torch is needed to know them."""
 
 from __future__ import annotations
 
@@ -6,7 +6,9 @@ from typing import Literal, get_args
 
 HeadName = Literal["rignet", "unirig", "puppeteer"]
 SizeName = Literal["tiny", "small", "full"]
+PriorName = Literal["none", "visibility", "voxel_unirig", "voxel", "cutcell", "cutcell_any", "bind"]
 HEADS: tuple[HeadName, ...] = get_args(HeadName)
 SIZES: tuple[SizeName, ...] = get_args(SizeName)
+PRIOR_NAMES: tuple[PriorName, ...] = get_args(PriorName)
 TITLES: dict[str, str] = {"rignet": "RigNet", "unirig": "UniRig", "puppeteer": "Puppeteer"}
 """What people call the heads."""

@@ -23,6 +23,7 @@ from ..progress import Progress, silent
 from ..rig import Rig
 from ..skinning import bind
 from ..writing import write_all
+from .names import PRIOR_NAMES
 from .samples import Sample, sample_rig
 
 
@@ -34,11 +35,11 @@ def bound(rig: Rig, resolution: int = 64, progress: Progress = silent) -> Baseli
 
 PRIORS: dict[str, Baseline | None] = {
     "none": None,
-    **{name: METHODS[name] for name in ("voxel_unirig", "voxel", "cutcell", "cutcell_any")},
+    **{name: METHODS[name] for name in PRIOR_NAMES if name in METHODS},
     "bind": bound,
 }
-"""Methods by name: no prior, UniRig's voxels, Dionne's voxels, the paper's cut-cell graph, the same
-with paths at any angle, and what `bind` gives."""
+"""Methods by name: no prior, RigNet's distance, UniRig's voxels, Dionne's voxels, the paper's
+cut-cell graph, the same with paths at any angle, and what `bind` gives."""
 
 OWN = ("__init__.py", "priors.py", "samples.py")
 """Files beside this one that samples and priors depend on; the others are of networks."""

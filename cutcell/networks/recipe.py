@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ..checks import check_choice, check_integer
-from .names import HEADS, SIZES, TITLES
+from .names import HEADS, PRIOR_NAMES, SIZES, TITLES
 
 
 @dataclass(frozen=True)
@@ -36,6 +36,7 @@ class Recipe:
     def __post_init__(self) -> None:
         check_choice("head", self.head, HEADS)
         check_choice("size", self.size, SIZES)
+        check_choice("prior", self.prior, PRIOR_NAMES)
         check_integer("seed", self.seed, 0, 2**31 - 1)
         check_integer("points", self.points, 16, 1_000_000)
         check_integer("resolution", self.resolution, 2, 1024)

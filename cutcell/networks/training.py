@@ -114,7 +114,7 @@ def read_recipe(folder: Path) -> Recipe:
     path = folder / "network.pt"
     try:
         return Recipe(**json.loads(_read(path, in_parts=True)["recipe"]))
-    except (TypeError, ParameterError):
+    except (TypeError, json.JSONDecodeError, ParameterError):
         raise FileError(f"{path}: {ANOTHER_VERSION}") from None
 
 

@@ -12,11 +12,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from ..checks import check_choice
 from ..errors import CutcellError
 from ..rig import Rig, Skeleton, TriangleMesh
 from .heads import predict
-from .priors import PRIORS
 from .samples import deal_rig
 from .training import load_network, read_recipe
 
@@ -38,9 +36,7 @@ def recipes(folders: NDArray[np.str_]) -> dict[str, NDArray]:
     for folder in folders:
         recipe, problem = "", ""
         try:
-            read = read_recipe(Path(str(folder)))
-            check_choice("prior", read.prior, PRIORS)
-            recipe = json.dumps(asdict(read))
+            recipe = json.dumps(asdict(read_recipe(Path(str(folder)))))
         except CutcellError as error:
             problem = str(error)
         found.append(recipe)

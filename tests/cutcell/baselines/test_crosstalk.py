@@ -10,7 +10,7 @@ from cutcell.metrics import crosstalk, find_gaps
 from tests.bars import fork
 
 OURS = sorted(name for name in METHODS if name.startswith("cutcell"))
-TIDY = {"artist", "bbw", "biharmonic", "bone_heat", "quasi_harmonic", *OURS}
+TIDY = {"artist", "bbw", "biharmonic", "bone_heat", "quasi_harmonic", "visibility", *OURS}
 LEAKING = {"euclidean", "harmonic", "mean_value", "voxel", "voxel_unirig"}
 LIMIT = 0.5
 """Of what voxels leak: the paper's kernel never ends, so some weight is shared at any distance."""

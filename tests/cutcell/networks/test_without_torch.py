@@ -90,3 +90,30 @@ def test_neighbours_are_the_nearest_along_the_surface(rig):
         found = sample.ring[place[group[vertex]]]
         known = found[found != place[group[vertex]]]
         np.testing.assert_array_equal(known, order[: len(known)])
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["app", "--no-show", "--port", "0"],
+        ["compare", str(BIPED)],
+        ["render", str(BIPED), "out.png", "--panel", "compare"],
+    ],
+    ids=lambda words: words[0],
+)
+def test_the_option_for_networks_says_what_to_install(words, without_torch, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    done = CliRunner().invoke(app, [*words, "--networks", str(tmp_path)])
+    assert done.exit_code == 2
+    assert "cutcell[networks]" in done.stderr
+    assert not list(tmp_path.iterdir())
+
+
+def test_samples_are_kept_for_as_long_as_the_code_is_the_same(tmp_path, monkeypatch):
+    options = {"prior": "none", "points": 20, "cache": tmp_path}
+    for _ in range(2):
+        cutcell.networks.Samples([BIPED], **options).load()
+        assert len(list(tmp_path.iterdir())) == 1
+    monkeypatch.setattr("cutcell.networks.priors.code_digest", lambda: b"changed since")
+    cutcell.networks.Samples([BIPED], **options).load()
+    assert len(list(tmp_path.iterdir())) == 2

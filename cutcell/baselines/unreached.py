@@ -1,0 +1,43 @@
+"""Vertices that no bone reaches follow their nearest bones, as in the paper."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..geodesics.fallback import straight_to_nearest
+from .body import Body
+
+NEAREST = 3
+"""Bones that a vertex follows which none reaches."""
+
+
+def follow_nearest(body: Body, distance: NDArray[np.float64], why: str) -> tuple[str, ...]:
+    """Give vertices that no bone reaches straight distances to their nearest bones, in place.
+
+    Parameters
+    ----------
+    body : Body
+    distance : array, shape (b, k)
+        Infinite where a bone does not reach a vertex.
+    why : str
+        The end of a sentence that says why none does.
+
+    Returns
+    -------
+    tuple of str
+        A warning where there are such vertices.
+    """
+    lost = np.flatnonzero(~np.isfinite(distance).any(axis=0))
+    if len(lost) == 0:
+        return ()
+    distance[:, lost] = straight_to_nearest(body.points[lost], body.bones, NEAREST)
+    return (unreached(lost, body, why),)
+
+
+def unreached(lost: NDArray[np.intp], body: Body, why: str) -> str:
+    """Say how many vertices follow their nearest bones, and why."""
+    return (
+        f"{len(lost)} of {len(body.points)} welded vertices follow their nearest bones in a "
+        f"straight line: {why}"
+    )

@@ -1,0 +1,156 @@
+"""RigNet's distance: straight to what a bone sees, over the surface to all else."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array, csr_array
+from scipy.sparse.csgraph import dijkstra
+
+from ..checks import check_number
+from ..method import PAPER, Leaf
+from ..rig import Rig
+from ..skinning.kernel import paper_kernel
+from ..surface.edges import find_edges
+from .body import Body
+from .frame import BaselineBinding, Run, bind_by
+from .unreached import follow_nearest
+from .visibility import Blockers
+
+NEAR_SHARE = 15.0
+"""Per cent of the vertices that see a bone: they set how far it is seen from, see `reach`."""
+APART = 8.0
+"""Longest sides that are added to a straight distance to which no path over the surface leads."""
+NO_PATH = "they see no bone, nor does any path over the surface lead to vertices that do"
+
+
+def visibility(
+    rig: Rig,
+    *,
+    reach: float | None = 1.3,
+    alpha: float = 0.5,
+    leaf: Leaf = "point",
+    max_influences: int | None = None,
+    threshold: float = 0.0,
+) -> BaselineBinding:
+    """Bind by RigNet's volumetric geodesic distance, with the paper's falloff.
+
+    A vertex sees a bone if no triangle lies between it and the closest point of the bone: then its
+    distance is straight. A vertex that does not see it goes over the surface to the nearest vertex
+    that does, and from there straight. RigNet goes along a graph of points drawn from the surface;
+    here it is along the edges of the mesh.
+
+    Parameters
+    ----------
+    rig : Rig
+    reach : float or None
+        Vertices that are farther from a bone than this, times the 15th percentile of the distances
+        of those that see it, do not see it; 1.3 in RigNet's published code, 1 to 1e6. None: as far
+        as nothing is between.
+    alpha : float
+        Smoothness of the falloff, 0 to 1.
+    leaf
+        See `bone_segments`.
+    max_influences, threshold
+        See `skinning_weights`.
+
+    Returns
+    -------
+    BaselineBinding
+        Stages "visibility", "distances", "weights".
+
+    Raises
+    ------
+    ParameterError
+        A parameter is out of its range.
+
+    References
+    ----------
+    Xu, Zhou, Kalogerakis, Landreth & Singh 2020, "RigNet: Neural Rigging for Articulated
+    Characters", section 4.3, and the preparation of its data as published.
+    """
+    if reach is not None:
+        reach = check_number("reach", reach, 1, 1e6)
+    method = PAPER.with_options(
+        alpha=alpha, leaf=leaf, max_influences=max_influences, threshold=threshold
+    )
+
+    def solve(body: Body, run: Run) -> NDArray[np.float64]:
+        straight = body.straight()
+        seen = visible(body)
+        if reach is not None:
+            seen &= straight <= _farthest(straight, seen, reach)[:, None]
+        run.end("visibility")
+        distance = over_surface(body, straight, seen)
+        run.warnings += follow_nearest(body, distance, NO_PATH)
+        run.end("distances")
+        return paper_kernel(body.joint_minimum(distance), body.lattice.diagonal, alpha)
+
+    return bind_by(solve, rig, method)
+
+
+def visible(body: Body) -> NDArray[np.bool_]:
+    """Tell which welded vertices see each bone, shape (b, k): nothing is on the way to it."""
+    blockers = Blockers(body.points, body.faces)
+    every = np.arange(len(body.points))
+    rows = [~blockers.blocked(every, body.closest_on(b)) for b in range(len(body.bones.joint))]
+    return np.stack(rows)
+
+
+def over_surface(
+    body: Body, straight: NDArray[np.float64], seen: NDArray[np.bool_]
+) -> NDArray[np.float64]:
+    """Measure from every bone to what it does not see, over the surface.
+
+    Parameters
+    ----------
+    body : Body
+    straight : array, shape (b, k)
+    seen : array, shape (b, k), bool
+        Where the distance is straight. A bone that nothing sees is straight from all.
+
+    Returns
+    -------
+    array, shape (b, k)
+        In the unit cube. `APART` is added to the straight distance where no path over the surface
+        leads from a bone, but from others; infinite where it leads from none.
+    """
+    graph = _along_edges(body)
+    distance = np.where(seen, straight, np.inf)
+    for row, own, sees in zip(distance, straight, seen, strict=True):
+        if not sees.any():
+            row[:] = np.inf
+            continue
+        length, _, nearest = dijkstra(
+            graph,
+            directed=False,
+            indices=np.flatnonzero(sees),
+            min_only=True,
+            return_predecessors=True,
+        )
+        led = np.isfinite(length)
+        row[led] = length[led] + own[nearest[led]]
+    blind = ~seen.any(axis=1)
+    led = np.isfinite(distance).any(axis=0)
+    distance[blind] = np.where(led, straight[blind], np.inf)
+    apart = ~np.isfinite(distance) & led
+    distance[apart] = straight[apart] + APART
+    return distance
+
+
+def _farthest(
+    straight: NDArray[np.float64], seen: NDArray[np.bool_], reach: float
+) -> NDArray[np.float64]:
+    """Return from how far each bone is seen, (b,)."""
+    return np.array(
+        [
+            reach * np.percentile(own[sees], NEAR_SHARE) if sees.any() else 0.0
+            for own, sees in zip(straight, seen, strict=True)
+        ]
+    )
+
+
+def _along_edges(body: Body) -> csr_array:
+    one, other = find_edges(body.faces).edges.T
+    length = np.linalg.norm(body.points[one] - body.points[other], axis=1)
+    return coo_array((length, (one, other)), shape=(len(body.points),) * 2).tocsr()
