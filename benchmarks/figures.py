@@ -14,6 +14,7 @@ METHOD_COLORS = {
     "cutcell": "#eda35f",
     "cutcell_any": "#d9660a",
     "cutcell_rig": "#8f3f00",
+    "visibility": "#7d5ba6",
     "voxel": "#3f6fa3",
     "voxel_unirig": "#93b3d4",
 }
