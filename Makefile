@@ -28,7 +28,7 @@ test: $(VENV)/.tools ## Check style and types, run all tests; ARGS='tests/cutcel
 	@$(PYTHON) -m pytest $(WORKERS) $(ARGS)
 
 # A tiny head learns first, as people would let it; then all that needs torch is tested.
-test-networks: $(VENV)/.networks ## Install torch, train a tiny network, test networks
+test-networks: $(VENV)/.networks $(VENV)/.tools ## Install torch, train a tiny network, test networks
 	@rm -rf test-output/networks
 	@$(PYTHON) -m cutcell networks train test-output/networks --cache test-output/networks \
 		--head puppeteer --prior bind --data assets/biped.glb --data assets/robot.glb --epochs 20

@@ -14,7 +14,7 @@ from __future__ import annotations
 import argparse
 import json
 import platform
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
@@ -24,34 +24,15 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
-from cutcell.metrics import deformation_error, precision_recall, weight_l1
-from cutcell.metrics.deformation import longest_side
 from cutcell.networks import HEADS, PRIORS, Recipe, Sample, Samples, predict, train
 from cutcell.networks.priors import cache_folder
-from cutcell.rig import Skeleton, TriangleMesh
 from cutcell.writing import write_all
 
 from .document import fill
 from .network_figure import draw
+from .network_scores import Scores, groups, means, scores
+from .network_tables import PAPER, Comparison, Results, tables
 from .rigs import SHARED
-from .tables import Table
-
-SAME_MAKER = ("quaternius_", "quat_", "deok_dino_quant", "packt_woman", "m2m_eagle")
-"""Characters of rigs and wild by the maker of train, surely or probably (SOURCES.md)."""
-PART, LOST = 0.15, 0.01
-"""The published evaluation drops weights below this part of a point's largest, but for points that
-lose less than this."""
-MEASURES = ("L1", "precision", "recall", "cm²")
-PAPER = {
-    "rignet": ("voxel", (0.432, 0.367), (8.58, 6.06)),
-    "unirig": ("voxel_unirig", (0.747, 0.386), (21.25, 10.91)),
-    "puppeteer": ("none", (0.335, 0.320), (5.949, 5.333)),
-}
-"""Of each head what the paper has as base, and its L1 and deformation error before and after; of
-RigNet on ModelsResource, of the others on Articulation-XL 2.0."""
-
-Scores = dict[str, list[float]]
-"""By character: L1, precision, recall, cm², and the same after dropping."""
 
 
 @dataclass(frozen=True)
@@ -66,31 +47,6 @@ class Run:
     def name(self) -> str:
         """What its folder is called."""
         return f"{self.head}-{self.prior}-{self.seed}"
-
-
-def scores(sample: Sample, weights: NDArray) -> list[float]:
-    """Measure weights at the points of a character, as they are and after dropping."""
-    return [*_measured(sample, weights), *_measured(sample, dropped(weights))]
-
-
-def dropped(weights: NDArray) -> NDArray[np.float64]:
-    """Return weights without those that the published evaluation drops."""
-    kept = np.where(weights >= PART * weights.max(axis=1, keepdims=True), weights, 0)
-    total = kept.sum(axis=1, keepdims=True)
-    return np.where(weights.sum(axis=1, keepdims=True) - total < LOST, weights, kept / total)
-
-
-def _measured(sample: Sample, weights: NDArray) -> list[float]:
-    there = sample.target.any(axis=1)  # type: ignore[union-attr]
-    points, target = sample.points[there], sample.target[there]  # type: ignore[index]
-    weights = weights[there]
-    corners = np.arange(len(points) - 2)[:, None] + np.arange(3)
-    mesh = TriangleMesh(points, corners)
-    skeleton = Skeleton(sample.joints, sample.parents)
-    error = deformation_error((mesh, skeleton), weights, target, count="vertices")
-    # The longest side of the character is 1, that of the points that were drawn a little less.
-    centimetres = error.mean * longest_side(mesh) ** 2
-    return [weight_l1(weights, target), *precision_recall(weights, target), centimetres]
 
 
 def measure_run(run: Run, options: argparse.Namespace) -> tuple[Scores, float]:
@@ -122,90 +78,6 @@ def _folder(options: argparse.Namespace, run: Run) -> Path:
     return options.folder / options.size / run.name
 
 
-def groups(names: Iterable[str]) -> dict[str, list[str]]:
-    """Part characters by who made them."""
-    parted: dict[str, list[str]] = {"other makers": [], "same maker": []}
-    for name in names:
-        parted["same maker" if name.startswith(SAME_MAKER) else "other makers"].append(name)
-    return parted
-
-
-def means(found: Scores, names: Sequence[str], at: slice = slice(0, 4)) -> NDArray:
-    """Average each measure over characters; nan where a measure has no value is left out."""
-    return np.nanmean([found[name][at] for name in names], axis=0)
-
-
-def spread(values: NDArray, digits: int) -> str:
-    """Format the mean over seeds and their standard deviation."""
-    deviation = values.std(ddof=1) if len(values) > 1 else 0.0
-    return f"{values.mean():.{digits}f} ± {deviation:.{digits}f}"
-
-
-Results = dict[tuple[str, str], list[Scores]]
-"""By head and prior: the scores of each seed."""
-
-
-def head_table(results: Results, alone: dict[str, Scores], which: str, after: bool) -> Table:
-    """List each head with each prior: the four measures over the characters of a group."""
-    at = slice(4, 8) if after else slice(0, 4)
-    names = groups(next(iter(alone.values())))[which]
-    title = f"On {len(names)} characters by {'other makers' if which[0] == 'o' else 'the same'}"
-    note = "Means over the characters; mean over the seeds ± standard deviation."
-    if after:
-        title += ", small weights dropped"
-        note += f" Weights below {PART:.0%} of a point's largest are dropped, as in evaluations."
-    columns = ["head", "prior", "seeds", "L1", "L1 median", "L1 worst", *MEASURES[1:]]
-    table = Table(title, columns, note)
-
-    def add(head: str, prior: str, found: Sequence[Scores]) -> None:
-        each = np.array([means(one, names, at) for one in found])
-        l1 = np.array([[one[name][at][0] for name in names] for one in found])
-        cells = [each[:, 0], np.median(l1, axis=1), l1.max(axis=1), each[:, 1], each[:, 2]]
-        if len(found) == 1:
-            shown = [f"{v[0]:.3f}" for v in cells] + [f"{each[0, 3]:.2f}"]
-        else:
-            shown = [spread(v, 3) for v in cells] + [spread(each[:, 3], 2)]
-        table.add(head, prior, "-" if head[0] == "(" else len(found), *shown)
-
-    for prior, found in alone.items():
-        add("(the prior alone)", prior, [found])
-    for (head, prior), runs in results.items():
-        add(head, prior, runs)
-    return table
-
-
-def paper_table(results: Results) -> Table:
-    """Put what the paper's prior changes beside what the paper says."""
-    note = (
-        "What the paper's prior (cutcell) changes against what each head had before, on characters "
-        "by other makers. `better`: in how many seeds."
-    )
-    columns = ["head", "before", "L1 here", "better", "cm² here", "better", "paper L1", "paper cm²"]
-    table = Table("Beside the paper", columns, note)
-    for head, (base, l1, moved) in PAPER.items():
-        before, after = results.get((head, base)), results.get((head, "cutcell"))
-        if not before or not after:
-            continue
-        names = groups(before[0])["other makers"]
-        count = min(len(before), len(after))
-        before, after = before[:count], after[:count]
-        one = np.array([means(found, names)[[0, 3]] for found in before])
-        other = np.array([means(found, names)[[0, 3]] for found in after])
-        better = (other < one).sum(axis=0)
-        change = other.mean(axis=0) / one.mean(axis=0) - 1
-        table.add(
-            head,
-            base,
-            f"{change[0]:+.1%}",
-            f"{better[0]} of {count}",
-            f"{change[1]:+.1%}",
-            f"{better[1]} of {count}",
-            f"{l1[1] / l1[0] - 1:+.1%}",
-            f"{moved[1] / moved[0] - 1:+.1%}",
-        )
-    return table
-
-
 def machine() -> str:
     """Say what it ran on."""
     cpu = next(
@@ -223,26 +95,6 @@ def _lines(path: str) -> list[str]:
 def read_results(path: Path) -> dict[str, dict]:
     """Return what earlier runs kept."""
     return json.loads(path.read_text()) if path.exists() else {}
-
-
-@dataclass(frozen=True)
-class Comparison:
-    """What all runs found.
-
-    Parameters
-    ----------
-    results : Results
-    alone : dict of str to Scores
-        By prior, of the prior itself.
-    runs : int
-    seconds : float
-        CPU seconds of all trainings.
-    """
-
-    results: Results
-    alone: dict[str, Scores]
-    runs: int
-    seconds: float
 
 
 def compared(kept: dict[str, dict], options: argparse.Namespace, runs: Sequence[Run]) -> Comparison:
@@ -263,10 +115,9 @@ def compared(kept: dict[str, dict], options: argparse.Namespace, runs: Sequence[
     return Comparison(results, alone, len(runs), seconds)
 
 
-def tables(found: Comparison, options: argparse.Namespace) -> str:
-    """Return all tables as Markdown."""
-    results, alone = found.results, found.alone
-    measured = len(next(iter(results.values()))[0])
+def report(found: Comparison, options: argparse.Namespace) -> str:
+    """Return what was compared and all tables, as Markdown."""
+    measured = len(next(iter(found.results.values()))[0])
     trained = len(samples("none", ["train"], options))
     about = (
         f"Size {options.size}; {options.epochs} epochs over {trained} characters, "
@@ -274,12 +125,7 @@ def tables(found: Comparison, options: argparse.Namespace) -> str:
         f"{4 * options.points} vertices of each of {measured} characters. {found.runs} trainings "
         f"took {found.seconds / 60:.0f} minutes of CPU time on {machine()}."
     )
-    listed = [
-        paper_table(results),
-        *(head_table(results, alone, which, False) for which in ("other makers", "same maker")),
-        head_table(results, alone, "other makers", True),
-    ]
-    return "\n\n".join([about, *(table.markdown() for table in listed)])
+    return "\n\n".join([about, *(table.markdown() for table in tables(found))])
 
 
 def draw_figure(found: Comparison, path: Path) -> None:
@@ -348,7 +194,7 @@ def main(given: Sequence[str] | None = None) -> None:
             names = groups(scored)["other makers"]
             print(key, *(f"{x:.3f}" for x in means(scored, names)), f"{seconds:.0f} s", flush=True)
     found = compared(kept, options, [run for run in runs if _key(run, options) in kept])
-    text = tables(found, options)
+    text = report(found, options)
     print(text)
     if options.figure:
         draw_figure(found, options.figure)

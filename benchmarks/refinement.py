@@ -30,7 +30,7 @@ from cutcell.skinning.rig_falloff import TAIL, permitted, rig_weights
 from cutcell.skinning.surface_operators import SurfaceOperators
 
 from .document import fill
-from .networks import SAME_MAKER
+from .network_scores import SAME_MAKER
 from .tables import Table
 from .wild import SETS, Score, characters, score_of
 

@@ -6,7 +6,8 @@ import numpy as np
 from PIL import Image
 
 import cutcell
-from benchmarks.networks import Run, dropped, groups, main, means, scores
+from benchmarks.network_scores import dropped, groups, means, scores
+from benchmarks.networks import Run, main
 from cutcell.metrics import deformation_error, precision_recall, vertex_shares, weight_l1
 from cutcell.networks import sample_rig
 

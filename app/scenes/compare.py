@@ -28,6 +28,7 @@ TITLES = {
     "cutcell": "Cut-cell, the paper's",
     "cutcell_any": "Cut-cell, any angle",
     "cutcell_rig": "Cut-cell, to animate with",
+    "visibility": "RigNet's distance",
     "voxel": "Voxel binding",
     "voxel_unirig": "Voxel binding, UniRig's",
 }
