@@ -1,6 +1,7 @@
 """Tasks of `cutcell.workers` that need torch: what goes wrong ends a process of its own.
 
-A task takes arrays and returns arrays; see `trained` for who asks.
+A task takes arrays and returns arrays; see `trained` for who asks. torch is imported by the task:
+where it is missing, the process says so.
 """
 
 from __future__ import annotations
@@ -14,9 +15,7 @@ from numpy.typing import NDArray
 
 from ..errors import CutcellError
 from ..rig import Rig, Skeleton, TriangleMesh
-from .heads import predict
 from .samples import deal_rig
-from .training import load_network, read_recipe
 
 
 def recipes(folders: NDArray[np.str_]) -> dict[str, NDArray]:
@@ -32,6 +31,8 @@ def recipes(folders: NDArray[np.str_]) -> dict[str, NDArray]:
         "recipes": array of str, as JSON, or empty where there is none to be had; "problems": array
         of str, which says why.
     """
+    from .training import read_recipe
+
     found, problems = [], []
     for folder in folders:
         recipe, problem = "", ""
@@ -77,6 +78,9 @@ def weights(
     FileError
         There is no such network.
     """
+    from .heads import predict
+    from .training import load_network
+
     network, recipe = load_network(Path(str(folder)))
     rig = Rig(TriangleMesh(vertices, faces), Skeleton(joints, parents, deform=deform))
     where, found = [], []
