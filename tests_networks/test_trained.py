@@ -35,6 +35,11 @@ def runs(two, tmp_path_factory) -> Path:
 
 
 @pytest.fixture(scope="module")
+def methods(runs):
+    return trained_networks([runs])
+
+
+@pytest.fixture(scope="module")
 def rig():
     return bar(24, 6)
 
@@ -45,11 +50,10 @@ def change(folder: Path, **changes) -> None:
     torch.save({**kept, **changes}, folder / "network.pt")
 
 
-def test_networks_are_found_and_named(runs):
-    found = trained_networks([runs])
-    assert list(found) == ["unirig-bind-tiny-0", "puppeteer-none-tiny-0"]
-    assert found["unirig-bind-tiny-0"].recipe == RECIPE
-    assert [one.title for one in found.values()] == [
+def test_networks_are_found_and_named(runs, methods):
+    assert list(methods) == ["unirig-bind-tiny-0", "puppeteer-none-tiny-0"]
+    assert methods["unirig-bind-tiny-0"].recipe == RECIPE
+    assert [one.title for one in methods.values()] == [
         "UniRig with bind, tiny, seed 0",
         "Puppeteer without prior, tiny, seed 0",
     ]
@@ -63,8 +67,8 @@ def test_networks_of_one_name_are_told_apart_by_their_folders(runs, tmp_path, tw
     assert [one.title[-8:] for one in found.values()] == [" (first)", " (third)"]
 
 
-def test_the_weights_of_a_whole_rig_are_what_the_network_predicts(runs, rig):
-    method = trained_networks([runs])["unirig-bind-tiny-0"]
+def test_the_weights_of_a_whole_rig_are_what_the_network_predicts(runs, methods, rig):
+    method = methods["unirig-bind-tiny-0"]
     bound = method(rig)
     assert set(bound.seconds) == {"prior", "network", "weights"}
     np.testing.assert_allclose(bound.weights.sum(axis=1), 1, atol=1e-12)
@@ -80,17 +84,17 @@ def test_the_weights_of_a_whole_rig_are_what_the_network_predicts(runs, rig):
         np.testing.assert_allclose(here, expected, atol=1e-5)
 
 
-def test_what_no_face_uses_follows_what_is_nearest(runs, rig):
+def test_what_no_face_uses_follows_what_is_nearest(methods, rig):
     mesh = rig.mesh
     vertices = np.vstack([mesh.vertices, mesh.vertices[:1] + 1e-3])
     loose = replace(rig, mesh=cutcell.TriangleMesh(vertices, mesh.faces), weights=None)
-    found = trained_networks([runs])["puppeteer-none-tiny-0"](loose)
+    found = methods["puppeteer-none-tiny-0"](loose)
     assert found.warnings == ()
     np.testing.assert_array_equal(found.weights[-1], found.weights[0])
 
 
-def test_influences_are_limited(runs, rig):
-    found = trained_networks([runs])["puppeteer-none-tiny-0"](rig, max_influences=1)
+def test_influences_are_limited(methods, rig):
+    found = methods["puppeteer-none-tiny-0"](rig, max_influences=1)
     assert ((found.weights > 0).sum(axis=1) == 1).all()
 
 
@@ -149,25 +153,25 @@ def test_parameters_of_another_version_are_told_when_it_is_asked(rig, runs, tmp_
     assert "cannot be read" in found.failed
 
 
-def test_a_prior_that_cannot_be_computed_is_told(runs, rig, monkeypatch):
-    method = trained_networks([runs])["unirig-bind-tiny-0"]
+def test_a_prior_that_cannot_be_computed_is_told(methods, rig, monkeypatch):
+    method = methods["unirig-bind-tiny-0"]
     monkeypatch.setitem(PRIORS, "bind", lambda rig: BaselineBinding(None, failed="it is flat"))
     with pytest.raises(WeightsError, match="prior bind cannot be computed: it is flat"):
         method(rig)
 
 
-def test_what_does_not_fit_in_memory_is_refused(runs, rig, monkeypatch):
-    method = trained_networks([runs])["unirig-bind-tiny-0"]
+def test_what_does_not_fit_in_memory_is_refused(methods, rig, monkeypatch):
+    method = methods["unirig-bind-tiny-0"]
     monkeypatch.setattr(memory, "available_memory", lambda enough: 10**6)
     with pytest.raises(TooLargeError, match="a network that looks at"):
         method(rig)
 
 
-def test_it_stops_when_nobody_wants_it(runs, rig):
+def test_it_stops_when_nobody_wants_it(methods, rig):
     def unwanted():
         raise Cancelled
 
-    method = trained_networks([runs])["puppeteer-none-tiny-0"]
+    method = methods["puppeteer-none-tiny-0"]
     with pytest.raises(Cancelled), stoppable(unwanted):
         method(rig)
 
