@@ -9,6 +9,7 @@ from scipy.sparse.csgraph import dijkstra
 
 from ..checks import check_number
 from ..method import PAPER, Leaf
+from ..progress import Progress, silent
 from ..rig import Rig
 from ..skinning.kernel import paper_kernel
 from ..surface.edges import find_edges
@@ -32,6 +33,7 @@ def visibility(
     leaf: Leaf = "point",
     max_influences: int | None = None,
     threshold: float = 0.0,
+    progress: Progress = silent,
 ) -> BaselineBinding:
     """Bind by RigNet's volumetric geodesic distance, with the paper's falloff.
 
@@ -53,6 +55,8 @@ def visibility(
         See `bone_segments`.
     max_influences, threshold
         See `skinning_weights`.
+    progress : callable
+        See `cutcell.progress`.
 
     Returns
     -------
@@ -77,11 +81,11 @@ def visibility(
 
     def solve(body: Body, run: Run) -> NDArray[np.float64]:
         straight = body.straight()
-        seen = visible(body)
+        seen = visible(body, progress)
         if reach is not None:
             seen &= straight <= _farthest(straight, seen, reach)[:, None]
         run.end("visibility")
-        distance = over_surface(body, straight, seen)
+        distance = over_surface(body, straight, seen, progress)
         run.warnings += follow_nearest(body, distance, NO_PATH)
         run.end("distances")
         return paper_kernel(body.joint_minimum(distance), body.lattice.diagonal, alpha)
@@ -89,16 +93,22 @@ def visibility(
     return bind_by(solve, rig, method)
 
 
-def visible(body: Body) -> NDArray[np.bool_]:
+def visible(body: Body, progress: Progress = silent) -> NDArray[np.bool_]:
     """Tell which welded vertices see each bone, shape (b, k): nothing is on the way to it."""
     blockers = Blockers(body.points, body.faces)
-    every = np.arange(len(body.points))
-    rows = [~blockers.blocked(every, body.closest_on(b)) for b in range(len(body.bones.joint))]
-    return np.stack(rows)
+    every, count = np.arange(len(body.points)), len(body.bones.joint)
+    seen = np.empty((count, len(every)), bool)
+    for b in range(count):
+        progress("visibility", b / count)
+        seen[b] = ~blockers.blocked(every, body.closest_on(b))
+    return seen
 
 
 def over_surface(
-    body: Body, straight: NDArray[np.float64], seen: NDArray[np.bool_]
+    body: Body,
+    straight: NDArray[np.float64],
+    seen: NDArray[np.bool_],
+    progress: Progress = silent,
 ) -> NDArray[np.float64]:
     """Measure from every bone to what it does not see, over the surface.
 
@@ -108,6 +118,8 @@ def over_surface(
     straight : array, shape (b, k)
     seen : array, shape (b, k), bool
         Where the distance is straight. A bone that nothing sees is straight from all.
+    progress : callable
+        See `cutcell.progress`.
 
     Returns
     -------
@@ -117,9 +129,9 @@ def over_surface(
     """
     graph = _along_edges(body)
     distance = np.where(seen, straight, np.inf)
-    for row, own, sees in zip(distance, straight, seen, strict=True):
+    for b, (row, own, sees) in enumerate(zip(distance, straight, seen, strict=True)):
+        progress("distances", b / len(seen))
         if not sees.any():
-            row[:] = np.inf
             continue
         length, _, nearest = dijkstra(
             graph,
