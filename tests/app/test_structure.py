@@ -19,8 +19,7 @@ ROOMS = (
     {"widgets"},
     {"panels"},
     {"layout"},
-    {"render_flags", "render_names", "render_options"},
-    {"serve", "render"},
+    {"serve", "render", "render_flags"},
     {"render_command"},
     {"command_line"},
 )

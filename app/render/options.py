@@ -11,8 +11,8 @@ import param
 from cutcell.checks import check_choice
 from cutcell.errors import ParameterError
 
-from .state import State
-from .state.geodesics import MEASURES, MOST_MEASURES
+from ..state import State
+from ..state.geodesics import MEASURES, MOST_MEASURES
 
 LAYERS = {
     "body": "body",

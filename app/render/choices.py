@@ -1,0 +1,166 @@
+"""What can be chosen of a scene, and the page's state in which it is."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from cutcell import ANIMATION, Method
+from cutcell.baselines import METHODS
+from cutcell.checks import check_choice, check_has_joints
+from cutcell.errors import ParameterError
+from cutcell.io.materials import has_materials
+from cutcell.rig import Rig
+
+from ..scenes.common import first_joint
+from ..state import State
+from ..state.compare import NOW, standard
+from ..state.weights import SHOWN
+from .names import find_bone, find_clip
+from .options import apply
+
+PANELS = {
+    "graph": "graph",
+    "distance": "geodesics",
+    "weights": "weights",
+    "pose": "pose",
+    "compare": "compare",
+    "check": "diagnosis",
+}
+"""What panels are called here, and in the state."""
+
+VIEWS = {
+    "three-quarter": (0.42, 0.16, 1.0),
+    "front": (0.0, 0.06, 1.0),
+    "left": (1.0, 0.06, 0.0),
+    "right": (-1.0, 0.06, 0.0),
+    "back": (0.0, 0.06, -1.0),
+    "top": (0.0, 1.0, 0.02),
+}
+"""Where one can look from; left and right are the character's own."""
+
+TURN_AXES = ("x", "y", "z")
+
+
+@dataclass(frozen=True)
+class Choices:
+    """What to show of a rig; each field is a choice of the page.
+
+    Parameters
+    ----------
+    panel : str
+        One of `PANELS`.
+    bone : str, optional
+        Whose weights, distance or graph field, or which bone turns.
+    shown : str, optional
+        On the panel "weights": "bone", "mix", "dominant", "count" or "difference".
+    turn : (str, float), optional
+        An axis and degrees, by which the bone turns.
+    error : bool
+        Colour by the error against the file's own weights.
+    methods : sequence of str
+        Side by side on the panel "compare": names in `cutcell.baselines.METHODS`, or "now".
+    settings : mapping
+        Other choices of the page, by the names that its address has for them, such as
+        `{"cut_axis": "z", "mesh_edges": True}`; `render_options.settings_of` makes them.
+    method : Method
+        How the graph is built and distances are measured.
+    finding : str, optional
+        The code of a finding of `cutcell.diagnose`, shown on the panel "check".
+    clip : str, optional
+        Name or number, from 1, of a motion of the rig, which poses it.
+    time : float, optional
+        Of that, only the pose at this second.
+    skeleton, dark : bool
+    """
+
+    panel: str = "weights"
+    bone: str | None = None
+    shown: str | None = None
+    turn: tuple[str, float] | None = None
+    error: bool = False
+    methods: Sequence[str] = ()
+    settings: Mapping[str, Any] = field(default_factory=dict)
+    method: Method = ANIMATION
+    finding: str | None = None
+    clip: str | None = None
+    time: float | None = None
+    skeleton: bool = True
+    dark: bool = False
+
+
+def check(rig: Rig, choices: Choices, view: str = "three-quarter") -> None:
+    """Raise an error for choices that a rig does not offer, before anything is computed.
+
+    Parameters
+    ----------
+    rig : Rig
+    choices : Choices
+    view : str
+        One of `VIEWS`.
+
+    Raises
+    ------
+    ParameterError
+        No such panel, bone, axis, view or method; nothing to compare with.
+    SkeletonError
+        A mesh without a skeleton, on any panel but "graph".
+    """
+    state_of(rig, choices)
+    check_choice("view", view, VIEWS)
+
+
+def state_of(rig: Rig, choices: Choices) -> State:
+    """Return the page's state with what is chosen; nothing is computed yet.
+
+    Parameters
+    ----------
+    rig : Rig
+    choices : Choices
+
+    Raises
+    ------
+    ParameterError
+        See `check`.
+    """
+    panel = PANELS[check_choice("panel", choices.panel, PANELS)]
+    if panel != "graph":
+        check_has_joints(rig.skeleton)
+    state = State(rig=rig, panel=panel, dark=choices.dark, skeleton=choices.skeleton)
+    state.joint = first_joint(rig) if choices.bone is None else find_bone(rig, choices.bone)
+    if choices.bone is not None:
+        state.weights_shown = "bone"
+    if choices.shown is not None:
+        state.weights_shown = check_choice("shown", choices.shown, SHOWN)
+    method = choices.method
+    state.param.update(
+        connectivity=method.connectivity,
+        winding_threshold=method.winding_threshold,
+        orient=method.orient,
+    )
+    apply(state, choices.settings)
+    if state.pose_colors == "materials" and not has_materials(rig):
+        raise ParameterError(f"the file of {rig.name} has no materials with colours of their own")
+    if choices.turn is not None:
+        axis, degrees = choices.turn
+        k = TURN_AXES.index(check_choice("axis", axis, TURN_AXES))
+        state.turns = {state.joint: tuple(degrees * float(i == k) for i in range(3))}
+    if choices.error and rig.weights is None:
+        raise ParameterError(f"{rig.name} has no weights of its own to tell an error against")
+    if choices.clip is not None:
+        clip = find_clip(rig, choices.clip)
+        state.clip = next(k for k, one in enumerate(rig.clips) if one is clip)
+        state.moving = True
+    elif choices.time is not None:
+        raise ParameterError("a time is one in a clip: name the clip, too")
+    state.heat = choices.error
+    state.compare_field = "error" if choices.error else "bone" if choices.bone else "all"
+    state.methods = _methods(rig, choices.methods)
+    return state
+
+
+def _methods(rig: Rig, names: Sequence[str]) -> list[str]:
+    for name in names:
+        check_choice("method", name, [NOW, *METHODS])
+    return list(names) or standard(rig)

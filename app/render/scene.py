@@ -1,0 +1,121 @@
+"""The scene that the page shows for some choices."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+from cutcell import bind, build_graph, diagnose
+from cutcell.errors import ParameterError
+from cutcell.progress import Progress, silent
+from cutcell.rig import Rig
+from cutcell_viewers.description import Description
+from cutcell_viewers.error_scene import Gap
+from cutcell_viewers.materials import Textures, load_textures
+from cutcell_viewers.pose_scene import pose_at
+
+from ..commands.compare import measured
+from ..commands.pose import motion_error
+from ..scenes import following, resolve
+from ..scenes.common import has_field
+from ..scenes.geodesics import wants_field
+from ..scenes.measures import measuring
+from .choices import Choices, state_of
+from .names import find_clip
+
+
+def describe(
+    rig: Rig,
+    choices: Choices | None = None,
+    *,
+    binding: Any = None,
+    textures: Textures | None = None,
+    resolution: int = 64,
+    progress: Progress = silent,
+) -> Description:
+    """Return the scene that the page shows for some choices.
+
+    Parameters
+    ----------
+    rig : Rig
+    choices : Choices, optional
+    binding : Binding, optional
+        Of the rig; computed when left out.
+    textures : Textures, optional
+        What shows it in its file's materials, where these are chosen; read when left out.
+    resolution : int
+        For that.
+    progress : callable
+        See `cutcell.progress`.
+
+    Returns
+    -------
+    Description
+        For `cutcell_viewers.show`.
+
+    Raises
+    ------
+    ParameterError
+        No such panel, bone, axis or method; nothing to compare with.
+    SkeletonError
+        A mesh without a skeleton, on any panel but "graph".
+
+    Examples
+    --------
+    >>> scene = describe(rig, Choices("weights", bone="hand.L"))  # doctest: +SKIP
+    >>> cutcell_viewers.show(scene)  # doctest: +SKIP
+    """
+    choices = choices or Choices()
+    state = state_of(rig, choices)
+    if state.bare:
+        state.bare_graph = build_graph(
+            rig.mesh, resolution, method=choices.method, progress=progress
+        )
+        return resolve(state)
+    if binding is None:
+        binding = bind(rig, resolution, method=choices.method, progress=progress)
+    state.binding = binding
+    state.materials = (rig.mesh, textures or textures_for(rig, choices))
+    if state.panel == "diagnosis":
+        state.diagnosis = diagnose(rig, resolution, progress=progress)
+        state.finding = choices.finding or ""
+        if state.finding and state.found is None:
+            there = ", ".join(one.code for one in state.diagnosis.findings) or "none at all"
+            raise ParameterError(f'{rig.name} has no finding "{state.finding}"; there are {there}')
+    if wants_field(state):
+        distances = state.binding.distances
+        state.field = (distances, state.joint, distances.field(state.joint))
+    if state.panel == "geodesics" and has_field(state) and state.measures:
+        try:
+            state.beside_resolution = resolution
+        except ValueError:
+            known = ", ".join(map(str, state.param.beside_resolution.objects))
+            raise ParameterError(
+                f"measures side by side are drawn at a resolution of {known}, not {resolution}"
+            ) from None
+        for name in state.measures:
+            state.measured = {**state.measured, name: measuring(state, name)()}
+    if state.panel == "compare":
+        for name in state.methods:
+            found = measured(rig, name, state.binding, resolution, progress)
+            state.compared = {**state.compared, name: found}
+    if choices.clip is None:
+        return resolve(state)
+    clip = find_clip(rig, choices.clip)
+    if choices.error and state.panel == "pose":
+        gap = Gap(rig, state.binding.weights, rig.weights)  # type: ignore[arg-type]
+        state.motion_error = (state.binding, state.motion, motion_error(rig, clip, gap, progress))
+    time = choices.time or 0.0
+    return replace(following(state), pose=pose_at(rig, clip, time))
+
+
+def textures_for(rig: Rig, choices: Choices) -> Textures | None:
+    """Return the materials of a rig's file, if these are chosen; `notes` say what is missing.
+
+    Parameters
+    ----------
+    rig : Rig
+    choices : Choices
+    """
+    chosen = choices.settings.get("pose_colors") == "materials"
+    return load_textures(rig) if chosen and choices.panel == "pose" else None
