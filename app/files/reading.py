@@ -11,6 +11,7 @@ import numpy as np
 import cutcell
 from cutcell.errors import FileError
 from cutcell.io.files import naming
+from cutcell.io.materials import has_materials
 from cutcell.rig import Rig
 from cutcell_assets import demo_path
 
@@ -45,7 +46,14 @@ def demo_rig(id: str) -> Rig:
 def read(path: Path, wanted: Callable[[], object] = lambda: None) -> Rig:
     """Load a character in a process of its own; see `apart.in_process`."""
     with naming(path):
-        return frozen(in_process(cutcell.load, path, wanted=wanted, ended=ENDED))
+        return frozen(in_process(load_with_materials, path, wanted=wanted, ended=ENDED))
+
+
+def load_with_materials(path: Path) -> Rig:
+    """Load a character, and look which materials it has: some formats read them when asked."""
+    rig = cutcell.load(path)
+    has_materials(rig)  # the page asks as soon as it shows it, and must not wait then
+    return rig
 
 
 def frozen(rig: Rig) -> Rig:

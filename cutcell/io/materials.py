@@ -12,6 +12,7 @@ from .gltf_container import Document
 from .gltf_materials import PrimitivePaint, is_coloured
 from .gltf_primitives import primitives, read_triangles
 from .gltf_read import GltfSource
+from .obj_materials import ColouredObj
 from .surfaces import SurfacePaint, Surfaces
 
 BYTES_PER_FACE = 3 * (4 * 4 + 4)
@@ -19,7 +20,7 @@ BYTES_PER_FACE = 3 * (4 * 4 + 4)
 
 def has_materials(rig: Rig) -> bool:
     """Tell whether a rig's file colours it: by an image, by vertex, or not in one grey alone."""
-    source = rig.source
+    source = _source(rig)
     if isinstance(source, Surfaces):
         return source.coloured
     if not isinstance(source, GltfSource | BareSource):
@@ -48,7 +49,7 @@ def read_materials(rig: Rig) -> Materials | None:
     Materials or None
         None where the rig's file has none, or its faces are no longer that file's.
     """
-    source = rig.source
+    source = _source(rig)
     if isinstance(source, Surfaces):
         found = Collected(source.notes)
         pieces = [(surface, 0, slice(0, len(rig.mesh.faces))) for surface in source.meshes.values()]
@@ -72,6 +73,10 @@ def read_materials(rig: Rig) -> Materials | None:
         for one, node in zip(rig.attachments, attached, strict=True)
     ]
     return _complete(body, hung, found)
+
+
+def _source(rig: Rig) -> Any:
+    return rig.source.surfaces if isinstance(rig.source, ColouredObj) else rig.source
 
 
 def _complete(

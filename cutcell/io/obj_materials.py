@@ -8,6 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from functools import cached_property
 from itertools import pairwise
 from math import isfinite
 from pathlib import Path
@@ -16,6 +17,7 @@ import numpy as np
 
 from ..errors import FileError
 from ..rig import TriangleMesh
+from .files import read_text
 from .files_beside import read_beside
 from .mtl import parse_mtl
 from .objects import numbered_words
@@ -27,25 +29,36 @@ MOST_LIBRARIES = 64
 COLOURED = re.compile(r"^[ \t]*(usemtl[ \t]|v([ \t]+\S+){6,7}[ \t]*\r?$)", re.MULTILINE)
 
 
-def obj_surfaces(path: Path, text: str, mesh: TriangleMesh) -> Surfaces | None:
-    """Return what colours a mesh.
+@dataclass(frozen=True, eq=False)
+class ColouredObj:
+    """An OBJ with materials or colours; they are read when somebody asks, as few do.
 
     Parameters
     ----------
     path : Path
-        The OBJ; its .mtl files and images lie beside it.
-    text : str
-        What it holds.
+        Its .mtl files and images lie beside it.
     mesh : TriangleMesh
         As `parse_obj` reads it.
-
-    Returns
-    -------
-    Surfaces or None
-        None where it names no materials and its vertices have no colours.
     """
-    if not COLOURED.search(text):
-        return None
+
+    path: Path
+    mesh: TriangleMesh
+
+    @classmethod
+    def of(cls, path: Path, text: str, mesh: TriangleMesh) -> ColouredObj | None:
+        """Return it; None where `text` names no materials and gives vertices no colours."""
+        return cls(path, mesh) if COLOURED.search(text) else None
+
+    @cached_property
+    def surfaces(self) -> Surfaces:
+        """What colours the mesh; nothing if the file has gone meanwhile."""
+        try:
+            return _surfaces(self.path, read_text(self.path), self.mesh)
+        except FileError:
+            return Surfaces(self.path, {})
+
+
+def _surfaces(path: Path, text: str, mesh: TriangleMesh) -> Surfaces:
     said = _read(text)
     materials, images, notes = _materials(path, said)
     count = len(mesh.faces)

@@ -17,7 +17,7 @@ MOST = 2**31 - 2
 def parse_obj(text: str) -> TriangleMesh:
     """Read vertices and faces; polygons are cut into fans of triangles.
 
-    Texture coordinates, normals, groups and materials are passed over; `obj_surfaces` reads what
+    Texture coordinates, normals, groups and materials are passed over; `ColouredObj` reads what
     colours the faces.
 
     Raises

@@ -18,7 +18,7 @@ from ..rig import Rig, Skeleton, TriangleMesh
 from .deforming import with_deform
 from .files import naming, read_text
 from .names import whole_characters
-from .obj_materials import obj_surfaces
+from .obj_materials import ColouredObj
 from .objects import numbered_words, numbers, one_number, parse_obj, write_obj
 from .weights import NO_WEIGHTS, ReadWeights, summed
 
@@ -73,7 +73,7 @@ def read_rignet(path: Path) -> Rig:
             name=obj.stem,
             warnings=(*read.warnings, *told),
             weight_sums=read.sums,
-            source=obj_surfaces(obj, lines, mesh),
+            source=ColouredObj.of(obj, lines, mesh),
         )
 
 

@@ -13,7 +13,7 @@ from ..errors import FileError, MeshError
 from ..rig import Rig, Skeleton, TriangleMesh
 from .deforming import with_deform
 from .files import one_line, read_bytes, read_text
-from .obj_materials import obj_surfaces
+from .obj_materials import ColouredObj
 from .objects import parse_obj
 from .skeleton_json import read_skeleton_json, skeleton_file
 from .surfaces import Surface, Surfaces
@@ -43,7 +43,7 @@ def read_soup(path: Path, skeleton: Path | None) -> Rig:
     return Rig(mesh, joints, name=path.stem, warnings=tuple(told), source=surfaces)
 
 
-def read_mesh(path: Path) -> tuple[TriangleMesh, Surfaces | None]:
+def read_mesh(path: Path) -> tuple[TriangleMesh, Surfaces | ColouredObj | None]:
     """Read a mesh with every vertex in the file's order, and what colours it, if anything does.
 
     A binary STL has no shared vertices: each triangle brings its own three.
@@ -51,7 +51,7 @@ def read_mesh(path: Path) -> tuple[TriangleMesh, Surfaces | None]:
     if path.suffix.lower() == ".obj":
         text = read_text(path)
         mesh = parse_obj(text)  # names the line that is wrong
-        return mesh, obj_surfaces(path, text, mesh)
+        return mesh, ColouredObj.of(path, text, mesh)
     loaded = _through_trimesh(read_bytes(path), path.suffix.lower()[1:])
     mesh = TriangleMesh(np.asarray(loaded.vertices), np.asarray(loaded.faces))
     return mesh, _coloured(path, mesh, loaded.visual)

@@ -13,6 +13,7 @@ import pytest
 
 import cutcell
 from cutcell.errors import Cancelled, CutcellError, FileError, MeshError
+from cutcell_app.files import reading
 from cutcell_app.files.reading import read
 from cutcell_app.work.processes import in_process
 from cutcell_assets import demo_path
@@ -148,7 +149,7 @@ def test_a_bad_file_is_named(tmp_path):
 
 
 def test_a_reader_that_ends_its_process_is_named(monkeypatch, tmp_path):
-    monkeypatch.setattr(cutcell, "load", killed_by)
+    monkeypatch.setattr(reading, "load_with_materials", killed_by)
     with pytest.raises(
         FileError, match=r"bad\.glb: reading it came to a sudden end; .* \(signal 9\)"
     ):
