@@ -21,7 +21,7 @@ WAYS = {
     "Follows the body where it touches": "touching",
     "Bound by itself": "itself",
 }
-WATCHED = ["panel", "rig", "binding", "corrections", "part"]
+WATCHED = ["panel", "rig", "corrections", "part"]
 SHORT = {"glued": "glued", "touching": "follows", "itself": "by itself"}
 
 
@@ -90,8 +90,9 @@ def parts_of_mesh(session: Session) -> pmui.Column:
 
     way.param.watch(changed, "value")
     glue.param.watch(glued, "value")
-    # The colours go first.
     state.param.watch(lambda *events: session.tasks.later(show), WATCHED)
+    # The colours go first.
+    state.param.watch(lambda event: session.tasks.after_a_pause(show, "parts"), "binding")
     show()
     return whole
 

@@ -58,9 +58,10 @@ def joints(session: Session) -> pmui.Column:
             lambda found: correct.choose_deform(session, np.flatnonzero(found.deform)),
         )
 
-    # The colours go first.
-    later = lambda *events: session.tasks.later(listed)  # noqa: E731
-    state.param.watch(later, ["panel", "rig", "binding", "corrections"])
+    state.param.watch(lambda *events: session.tasks.later(listed), ["panel", "rig", "corrections"])
+    # The colours go first, while a slider moves all the time.
+    follow_binding = lambda event: session.tasks.after_a_pause(listed, "joints")  # noqa: E731
+    state.param.watch(follow_binding, "binding")
     state.param.watch(lambda *events: tree.param.update(chosen=state.joint), "joint")
     listed()
     counts = caption(when(_counted, state.param.rig))
@@ -99,6 +100,9 @@ def _chosen(session: Session) -> list[Any]:
     )  # fmt: skip
     showing = [False]
 
+    def tell() -> None:
+        holds.object = as_text(_held(session))
+
     def show() -> None:
         rig = state.rig
         if rig is None or state.joint >= len(rig.skeleton.names):
@@ -106,7 +110,7 @@ def _chosen(session: Session) -> list[Any]:
         name = rig.skeleton.names[state.joint]
         one = state.corrections.joints.get(name, JointCorrection())
         heading.object = as_text(shown_name(name))
-        holds.object = as_text(_held(session))
+        tell()
         showing[0] = True
         try:
             called.value = name
@@ -141,8 +145,8 @@ def _chosen(session: Session) -> list[Any]:
     reset.on_click(
         lambda event: changes(deform=None, locked=False, gain=1.0, radius=None, **_put_back(state))
     )
-    watched = ["rig", "joint", "binding", "corrections", "falloff"]
-    state.param.watch(lambda *events: show(), watched)
+    state.param.watch(lambda *events: show(), ["rig", "joint", "corrections", "falloff"])
+    state.param.watch(lambda event: session.tasks.after_a_pause(tell, "held"), "binding")
     show()
     given = [heading, holds, called, structure(session), carries, locked, gain, radius]
     return [*given, *place(session), reset]

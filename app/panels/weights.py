@@ -49,7 +49,7 @@ def weights(session: Session) -> pmui.Column:
         facts.object = told(state)
 
     # The colours go first.
-    state.param.watch(lambda *events: session.tasks.later(tell), ["binding", "rig"])
+    state.param.watch(lambda *events: session.tasks.after_a_pause(tell, "told"), ["binding", "rig"])
     return pmui.Column(
         lead("How much each bone moves each point of the skin."),
         section("", shown, *_sides(state), facts, margin=(8, 20, 4, 20)),

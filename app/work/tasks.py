@@ -28,8 +28,8 @@ class Tasks:
         self._failed = failed
         self._jobs: dict[str, Jobs] = {}
         self._newest: dict[str, Newest] = {}
-        self._timer: threading.Timer | None = None
-        self._due = False
+        self._timers: dict[str, threading.Timer] = {}
+        self._due: set[str] = set()
         self._closed = False
 
     def later(self, action: Callable[[], Any]) -> None:
@@ -43,19 +43,21 @@ class Tasks:
 
         self._schedule(guarded)
 
-    def after_a_pause(self, action: Callable[[], Any]) -> None:
+    def after_a_pause(self, action: Callable[[], Any], name: str = "choice") -> None:
         """Run an action when a person has paused for a moment; a newer one takes its place."""
-        if self._timer is not None:
-            self._timer.cancel()
+        if self._closed:
+            return
+        if name in self._timers:
+            self._timers[name].cancel()
 
         def act() -> None:
-            self._due = False
+            self._due.discard(name)
             action()
 
-        self._due = True
-        self._timer = threading.Timer(PAUSE, lambda: self.later(act))
-        self._timer.daemon = True
-        self._timer.start()
+        self._due.add(name)
+        timer = self._timers[name] = threading.Timer(PAUSE, lambda: self.later(act))
+        timer.daemon = True
+        timer.start()
 
     def jobs(self, name: str) -> Jobs:
         """Return the work of one name: a newer piece of it stops the one before."""
@@ -75,14 +77,14 @@ class Tasks:
     def running(self) -> bool:
         """Whether there is work that was neither finished nor stopped, or is about to begin."""
         # The timer may have ended, and its action not have begun.
-        waiting = self._timer is not None and self._timer.is_alive()
-        return waiting or self._due or any(jobs.running for jobs in self._jobs.values())
+        waiting = any(timer.is_alive() for timer in self._timers.values())
+        return waiting or bool(self._due) or any(jobs.running for jobs in self._jobs.values())
 
     def close(self) -> None:
         """Stop all work, and start nothing any more."""
         self._closed = True
-        self._due = False
-        if self._timer is not None:
-            self._timer.cancel()
+        self._due.clear()
+        for timer in self._timers.values():
+            timer.cancel()
         for jobs in self._jobs.values():
             jobs.close()
