@@ -7,6 +7,9 @@ from typing import Any
 
 import panel_material_ui as pmui
 
+from cutcell.io import keeps_document
+from cutcell.rig import Rig
+
 from ..commands import export as actions
 from ..commands.session import Session
 from .parts import GAP, caption, section, when
@@ -47,8 +50,17 @@ def export(session: Session) -> pmui.Column:
             margin=0,
             sizing_mode="stretch_width",
         ),
-        caption("The GLB is as it was, but for the weights. Pictures show what you see."),
+        caption(when(_described, state.param.rig)),
     )
+
+
+def _described(rig: Rig | None) -> str:
+    """Say what the bound file holds."""
+    if rig is None or keeps_document(rig):
+        kept = "The GLB is as it was, but for the weights."
+    else:
+        kept = "The GLB is a new one: mesh, skeleton, weights and motions, without materials."
+    return f"{kept} Pictures show what you see."
 
 
 def _menu(

@@ -174,6 +174,14 @@ def binary_ending(rig: Rig) -> str:
     return ".vrm" if avatar else ".glb"
 
 
+def keeps_document(rig: Rig) -> bool:
+    """Tell whether a rig is saved as the glTF document that it came from, materials and all."""
+    source = rig.source
+    if isinstance(source, GltfSource):
+        return source.document.path.suffix.lower() in GLTF  # not made of an FBX or USD file
+    return can_be_skinned(rig)
+
+
 def _files(path: Path, rig: Rig) -> dict[Path, bytes]:
     kind = path.suffix.lower()
     if kind == ".txt":

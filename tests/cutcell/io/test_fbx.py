@@ -7,6 +7,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 import cutcell
+from cutcell.io import keeps_document
 from cutcell.pose import linear_blend_skinning
 from tests.cutcell.io.fbx_builder import (
     MESH,
@@ -180,6 +181,11 @@ def test_bound_and_saved_as_a_glb_that_loads_again(load, tmp_path):
     assert_allclose(again.clips[0].transforms[-1], rig.clips[0].transforms[-1], atol=1e-5)
     (report,) = reports(tmp_path / "out.glb")
     assert not errors(report)
+
+
+def test_what_is_saved_is_no_longer_its_own_document(load, demo_paths):
+    assert not keeps_document(load(WAYS["binary 7.4"]))
+    assert keeps_document(cutcell.load(demo_paths[0]))
 
 
 def test_it_cannot_be_written(load, tmp_path):
