@@ -42,6 +42,7 @@ ORDER = [
         "apart",
         "arrays",
         "checks",
+        "colors",
         "compiled",
         "display",
         "errors",

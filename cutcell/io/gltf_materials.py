@@ -6,8 +6,9 @@ from collections.abc import Iterable
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
+from ..colors import srgb
 from ..errors import CutcellError, FileError
 from .face_colors import BLENDED, OPAQUE, Collected, FaceColors
 from .gltf_accessors import read_accessor
@@ -17,13 +18,6 @@ from .gltf_textures import extension, layer, places, stored_image, wrap
 
 MALFORMED = (TypeError, ValueError, KeyError, IndexError, AttributeError, OverflowError)
 """What reading raises where a document is not what it says."""
-
-
-def srgb(linear: ArrayLike) -> NDArray[np.uint8]:
-    """Return linear colours, from 0 to 1, as they are stored in pictures."""
-    values = np.clip(np.nan_to_num(np.asarray(linear, np.float64)), 0, 1)
-    bent = 1.055 * values ** (1 / 2.4) - 0.055
-    return np.round(255 * np.where(values <= 0.0031308, 12.92 * values, bent)).astype(np.uint8)
 
 
 class _Base(NamedTuple):

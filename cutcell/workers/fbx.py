@@ -10,7 +10,7 @@ import numpy as np
 import ufbx
 
 from .fbx_kept import keep, kept
-from .fbx_materials import Palette, surface
+from .fbx_materials import FbxPalette, surface
 
 FRAMES_A_SECOND = 30.0
 MOST_TRIANGLES_OF_A_FACE = 10_000
@@ -51,7 +51,7 @@ def read(data):
     }
     names: list[str] = []
     at: list[int] = []
-    palette = Palette()
+    palette = FbxPalette()
     for mesh in kept(scene.meshes):
         places = kept(mesh.instances)
         if not mesh.num_faces or not places:

@@ -9,69 +9,43 @@ import numpy as np
 import ufbx
 
 from .fbx_kept import keep, kept
+from .palette import Palette
 
-NAME = 200
-"""Characters of a name that are handed on; of a file's 1000."""
+CLAMPED = ufbx.WrapMode.CLAMP
 LONGEST = 1000
+"""Characters of an image's name that are handed on."""
 UNSEEN = 0.02
 """Opacity of what nobody would model: many programs write 0 and mean 1."""
 
 
-class Palette:
-    """The materials and images of a scene; each is listed once, and only if a mesh has it."""
+class FbxPalette(Palette):
+    """The materials of an FBX, by its elements."""
 
     def __init__(self):
-        self.materials: dict[int, int] = {}
+        super().__init__()
         self.textures: list = []
-        self._names: list[str] = []
-        self._values: list[tuple[float, ...]] = []
-        self._uses: list[tuple[int, ...]] = []
-        self._images: dict[tuple, int] = {}
-        self._contents: list[bytes] = []
+        self._numbers: dict[int, int] = {}
 
     def number(self, material):
         """Return the number of a material, -1 for none."""
         if material is None:
             return -1
-        known = self.materials.get(material.element_id)
+        known = self._numbers.get(material.element_id)
         if known is not None:
             return known
         keep(material)
         texture = base_texture(material)
         image, wrap = -1, 0
         if texture is not None:
-            image = self._image(texture)
-            wrap = 3 * int(texture.wrap_u == ufbx.WrapMode.CLAMP) + int(
-                texture.wrap_v == ufbx.WrapMode.CLAMP
-            )
-        self._names.append(material.name[:NAME])
-        self._values.append((*base_color(material), opacity(material)))
-        self._uses.append((image, wrap, int(is_cut(material))))
+            names = (texture.relative_filename, texture.filename, texture.absolute_filename)
+            image = self.add_image(tuple(name[:LONGEST] for name in names), texture.content)
+            across, down = (way == CLAMPED for way in (texture.wrap_u, texture.wrap_v))
+            wrap = 3 * int(across) + int(down)
+        color, cut = base_color(material), is_cut(material)
+        number = self.add_material(material.name, color, opacity(material), image, wrap, cut)
+        self._numbers[material.element_id] = number
         self.textures.append(texture)
-        self.materials[material.element_id] = len(self._names) - 1
-        return len(self._names) - 1
-
-    def _image(self, texture):
-        names = (texture.relative_filename, texture.filename, texture.absolute_filename)
-        names = tuple(name[:LONGEST] for name in names)
-        content = texture.content
-        key = (names, len(content))
-        if key not in self._images:
-            self._images[key] = len(self._contents)
-            self._contents.append(content)
-        return self._images[key]
-
-    def arrays(self):
-        """Return what the process hands on."""
-        found = {
-            "material_names": np.array(self._names, np.str_),
-            "material_values": np.array(self._values, float).reshape(-1, 4),
-            "material_uses": np.array(self._uses, int).reshape(-1, 3),
-            "image_files": np.array([key[0] for key in self._images], np.str_).reshape(-1, 3),
-        }
-        for k, content in enumerate(self._contents):
-            found[f"image_{k}_content"] = np.frombuffer(content, np.uint8)
-        return found
+        return number
 
 
 def base_texture(material):
@@ -127,7 +101,7 @@ def surface(mesh, node, corners, polygons, palette):
         Of the mesh's polygons, by their numbers in the file.
     polygons : array, shape (m,)
         That each triangle is a part of.
-    palette : Palette
+    palette : FbxPalette
     """
     materials = kept(node.materials) or kept(mesh.materials)
     numbers = np.array([*(palette.number(one) for one in materials), -1])

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from pxr import Gf, Tf, Usd, UsdGeom, UsdSkel
 
-from .usd_materials import Palette, surface
+from .usd_materials import UsdPalette, surface
 
 
 def read(path):
@@ -71,7 +71,7 @@ class Scene:
     """The arrays of a stage at rest, and its joints' motion."""
 
     def __init__(self, stage, file):
-        self.stage, self.palette = stage, Palette(file)
+        self.stage, self.palette = stage, UsdPalette(file)
         scale = UsdGeom.GetStageMetersPerUnit(stage)
         turn = [0, 0, 0, 1.0]
         if UsdGeom.GetStageUpAxis(stage) == UsdGeom.Tokens.z:

@@ -11,25 +11,23 @@ from pathlib import Path
 import numpy as np
 from pxr import Usd, UsdGeom, UsdShade
 
+from ..colors import srgb
+from .palette import Palette
+
 WRAPS = {"clamp": 1, "black": 1, "mirror": 2}
 """By name, the numbers of `cutcell.io.face_colors`; anything else repeats."""
 LARGEST = 2**28
 """Bytes of an image in a package."""
-NAME = 200
 
 
-class Palette:
-    """The materials and images of a stage; each is listed once, and only if a mesh has it."""
+class UsdPalette(Palette):
+    """The materials of a stage, by their paths."""
 
     def __init__(self, file):
+        super().__init__()
         self.file = file
         self.readers: list[str] = []
         self._numbers: dict = {}
-        self._names: list[str] = []
-        self._values: list[tuple[float, ...]] = []
-        self._uses: list[tuple[int, ...]] = []
-        self._images: dict[tuple, int] = {}
-        self._contents: list[bytes] = []
 
     def number(self, material):
         """Return the number of a material, -1 for none that can be shown."""
@@ -47,11 +45,11 @@ class Palette:
             image = self._image(texture.GetInput("file"))
             wrap = 3 * wrapping(texture, "wrapS") + wrapping(texture, "wrapT")
             reader = reader_of(texture)
-        self._names.append(material.GetPrim().GetName()[:NAME])
-        self._values.append((*srgb(color), float(opacity)))
-        self._uses.append((image, wrap, int(bool(cut))))
+        name, color = material.GetPrim().GetName(), srgb(tuple(color)) / 255
+        self._numbers[path] = self.add_material(
+            name, color, float(opacity), image, wrap, cut is not None
+        )
         self.readers.append(reader)
-        self._numbers[path] = len(self._names) - 1
         return self._numbers[path]
 
     def _image(self, given):
@@ -65,22 +63,7 @@ class Palette:
         elif Path(asset.resolvedPath).is_relative_to(self.file.parent):
             beside = Path(asset.resolvedPath).relative_to(self.file.parent)
             names = (beside.as_posix(), asset.path, "")
-        if names not in self._images:
-            self._images[names] = len(self._contents)
-            self._contents.append(content)
-        return self._images[names]
-
-    def arrays(self):
-        """Return what the process hands on."""
-        found = {
-            "material_names": np.array(self._names, np.str_),
-            "material_values": np.array(self._values, float).reshape(-1, 4),
-            "material_uses": np.array(self._uses, int).reshape(-1, 3),
-            "image_files": np.array(list(self._images), np.str_).reshape(-1, 3),
-        }
-        for k, content in enumerate(self._contents):
-            found[f"image_{k}_content"] = np.frombuffer(content, np.uint8)
-        return found
+        return self.add_image(names, content)
 
 
 def packed(file, name):
@@ -126,13 +109,6 @@ def reader_of(texture):
     return "st"
 
 
-def srgb(color):
-    """Return a linear colour as it is stored in pictures."""
-    values = np.clip(np.nan_to_num(np.array(tuple(color), float)), 0, 1)
-    bent = 1.055 * values ** (1 / 2.4) - 0.055
-    return np.where(values <= 0.0031308, 12.92 * values, bent).tolist()
-
-
 def surface(prim, corners, polygons, faces, palette):
     """Return what colours the triangles of a mesh.
 
@@ -144,7 +120,7 @@ def surface(prim, corners, polygons, faces, palette):
     polygons : array, shape (m,)
         That each triangle is a part of.
     faces : array, shape (m, 3)
-    palette : Palette
+    palette : UsdPalette
     """
     binding = UsdShade.MaterialBindingAPI(prim)
     material = np.full(len(faces), palette.number(binding.ComputeBoundMaterial()[0]))
@@ -156,8 +132,7 @@ def surface(prim, corners, polygons, faces, palette):
     primvars = UsdGeom.PrimvarsAPI(prim)
     colors = at_corners(primvars, "displayColor", 3, corners, polygons, faces)
     if colors is not None and (material < 0).all():
-        shades = np.round(255 * np.array(srgb(colors.ravel()))).astype(np.uint8)
-        found["colors"] = shades.reshape(colors.shape)
+        found["colors"] = srgb(colors)
     places = np.zeros((len(faces), 3, 2), np.float32)
     for k in np.unique(material[material >= 0]).tolist():
         rows = np.flatnonzero(material == k)

@@ -7,9 +7,9 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 import cutcell
+from cutcell.colors import srgb
 from cutcell.io.face_colors import BLENDED, CLAMP, MIRROR, Layer
 from cutcell.io.gltf_faces import with_faces
-from cutcell.io.gltf_materials import srgb
 from cutcell.io.materials import has_materials, read_materials
 from tests.cutcell.io.gltf_builder import COLUMN, FACES, column
 

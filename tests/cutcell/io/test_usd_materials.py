@@ -6,8 +6,8 @@ from numpy.testing import assert_allclose, assert_array_equal
 from pxr import Sdf, Usd, UsdGeom, UsdShade, UsdUtils, Vt
 
 import cutcell
+from cutcell.colors import srgb
 from cutcell.io.face_colors import BLENDED, CLAMP, MIRROR, Layer
-from cutcell.io.gltf_materials import srgb
 from cutcell.io.materials import has_materials, read_materials
 from tests.cutcell.io.gltf_builder import FACES
 from tests.cutcell.io.test_usd import text
