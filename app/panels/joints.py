@@ -60,8 +60,7 @@ def joints(session: Session) -> pmui.Column:
 
     state.param.watch(lambda *events: session.tasks.later(listed), ["panel", "rig", "corrections"])
     # The colours go first, while a slider moves all the time.
-    follow_binding = lambda event: session.tasks.after_a_pause(listed, "joints")  # noqa: E731
-    state.param.watch(follow_binding, "binding")
+    state.param.watch(lambda event: session.tasks.after_a_pause(listed, "joints"), "binding")
     state.param.watch(lambda *events: tree.param.update(chosen=state.joint), "joint")
     listed()
     counts = caption(when(_counted, state.param.rig))

@@ -44,7 +44,14 @@ class Tasks:
         self._schedule(guarded)
 
     def after_a_pause(self, action: Callable[[], Any], name: str = "choice") -> None:
-        """Run an action when a person has paused for a moment; a newer one takes its place."""
+        """Run an action when a person has paused for a moment; a newer one takes its place.
+
+        Parameters
+        ----------
+        action : callable
+        name : str
+            Only actions of one name take each other's place.
+        """
         if self._closed:
             return
         if name in self._timers:
