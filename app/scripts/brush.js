@@ -172,7 +172,7 @@ export class PaintBrush {
     if (!seen) { return }
     const ring = circle(aimed.at, aimed.normal, part.radius)
     const outline = (points) => {
-      const pixels = points.map((point) => this.renderer.project(point))
+      const pixels = points.map(this.renderer.projection())
       if (pixels.some((pixel) => !pixel)) { return "" }
       return `M${pixels.map(([x, y]) => `${x.toFixed(1)} ${y.toFixed(1)}`).join("L")}Z`
     }

@@ -40,6 +40,7 @@ export class Insets {
     }
     const {cards} = this
     for (const card of cards) { this.observer.observe(card) }
+    if (!this.differs(box, cards)) { return }
     const insets = this.free(box, cards)
     const seen = JSON.stringify([insets, box.width, box.height, this.renderer.views.length])
     if (seen === this.seen) { return }
@@ -56,6 +57,24 @@ export class Insets {
     this.changed()
   }
 
+  // Whether anything that decides what is free is another than before: to look at all points
+  // takes longer than to draw what a message brought.
+  differs(box, cards) {
+    const rests = this.fitting.rests()
+    const places = [...cards, ...this.edges].map((part) => part.getBoundingClientRect())
+    const now = JSON.stringify([box, places, this.legend.shift, this.orbit.home, this.renderer.views.length])
+    const same = now === this.placed && rests.length === this.rests.length
+      && rests.every((rest, i) => rest === this.rests[i])
+    Object.assign(this, {placed: now, rests})
+    return !same
+  }
+
+  // What always stands over the canvas.
+  get edges() {
+    const {legend, transport, hint, root} = this.overlay
+    return [legend, transport, hint, root.querySelector(".tools")]
+  }
+
   // What cards take, from each edge.
   free(box, cards) {
     const several = this.renderer.views.length > 1
@@ -65,7 +84,7 @@ export class Insets {
     const {legend, transport} = this.overlay
     const take = (edge, pixels, of = insets) => { of[edge] = Math.max(of[edge], pixels + GAP) }
     const beside = {left: 0, right: 0}
-    const edges = [legend, transport, this.overlay.hint, this.overlay.root.querySelector(".tools")]
+    const {edges} = this
     for (const card of cards) {
       const {left, right, top, bottom, width, height} = card.getBoundingClientRect()
       if (!width || !height) { continue }

@@ -35,6 +35,8 @@ export function render({model}) {
   let forest = new Forest([], new Set())
   let names = ""
   let cursor = -1
+  let top = 0  // heard, not asked for: to ask makes the browser lay out the whole page at once
+  list.addEventListener("scroll", () => { top = list.scrollTop })
 
   const item = (i) => {
     const row = forest.rows[i]
@@ -93,10 +95,10 @@ export function render({model}) {
     draw(held)
   }
   const draw = (held) => {
-    const top = list.scrollTop
+    const was = top
     if (!forest.at.has(cursor)) { cursor = forest.at.has(model.chosen) ? model.chosen : forest.rows[0]?.joint ?? -1 }
     list.replaceChildren(...forest.seen().map(item))
-    list.scrollTop = top
+    if (was) { list.scrollTop = was }
     mark()
     if (held) { focus(cursor) }
   }

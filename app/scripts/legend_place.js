@@ -40,9 +40,10 @@ export class LegendPlace {
     const body = this.renderer.actors.get("body")
     const points = body?.visible ? body.posed() : []
     const step = 3 * Math.max(Math.ceil(points.length / 3 / SAMPLE), 1)
+    const project = this.renderer.projection()
     let count = 0
     for (let i = 0; i < points.length; i += step) {
-      const pixel = this.renderer.project([points[i], points[i + 1], points[i + 2]])
+      const pixel = project([points[i], points[i + 1], points[i + 2]])
       if (!pixel) { continue }
       const [x, y] = [pixel[0] + box.left, pixel[1] + box.top]
       if (x > left - GAP && x < right + GAP && y > top - GAP && y < bottom + GAP) { count += 1 }

@@ -8,9 +8,9 @@ export const TOUCH = 6  // over the body, a bone must be met as well as it is dr
 export function pickBone(renderer, bones, pose, x, y, reach = REACH) {
   if (!bones) { return null }
   let best = null
-  const view = renderer.viewAt(x, y)
+  const project = renderer.projection(renderer.viewAt(x, y))
   bones.joint.forEach((joint, i) => {
-    const [a, b] = boneEnds(renderer, bones, pose, i, view)
+    const [a, b] = boneEnds(project, bones, pose, i)
     if (!a || !b) { return }
     const [distance, along] = toSegment(x, y, a, b)
     if (distance > reach) { return }
@@ -22,9 +22,9 @@ export function pickBone(renderer, bones, pose, x, y, reach = REACH) {
   return best && best.joint
 }
 
-export function boneEnds(renderer, bones, pose, i, view = 0) {
+export function boneEnds(project, bones, pose, i) {
   const at = (points) => transformed(points.slice(3 * i, 3 * i + 3), pose, bones.joint[i])
-  return [renderer.project(at(bones.start), view), renderer.project(at(bones.end), view)]
+  return [project(at(bones.start)), project(at(bones.end))]
 }
 
 export function toSegment(x, y, a, b) {

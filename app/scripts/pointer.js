@@ -68,8 +68,9 @@ export class Pointer {
     const [x, y] = renderer.target
     let vertex = this.bodyAt(x, y)?.vertex
     const points = vertex === undefined ? renderer.actors.get("body")?.posed() || [] : []
+    const project = renderer.projection()
     for (let i = 0, least = Infinity; i < points.length; i += 3) {
-      const at = renderer.project([points[i], points[i + 1], points[i + 2]])
+      const at = project([points[i], points[i + 1], points[i + 2]])
       const far = at ? Math.hypot(at[0] - x, at[1] - y) : Infinity
       if (far < least) { [least, vertex] = [far, i / 3] }
     }

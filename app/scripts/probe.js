@@ -12,7 +12,7 @@ export function probe(view) {
     bonePoint(joint) {
       const [left, top] = corner()
       const i = view.bones.joint.indexOf(joint)
-      const [a, b] = boneEnds(view.renderer, view.bones, view.currentPose, i)
+      const [a, b] = boneEnds(view.renderer.projection(), view.bones, view.currentPose, i)
       return [left + (a[0] + b[0]) / 2, top + (a[1] + b[1]) / 2]
     },
 

@@ -240,17 +240,21 @@ export class Renderer {
     return Math.max(this.tiles.findIndex(hit), 0)
   }
 
-  // From the scene to pixels of the canvas, as seen in one of the views; null behind the eye.
-  project(point, view = 0) {
+  // A function from points of the scene to pixels of the canvas and depth, as seen in one of the
+  // views; null behind the eye. It holds while the camera stays.
+  projection(view = 0) {
     const [left, top, w, h] = this.tiles[view]
     const m = this.camera.getCompositeProjectionMatrix(w / h, -1, 1)
-    const [x, y, z] = point
-    const row = (r) => m[4 * r] * x + m[4 * r + 1] * y + m[4 * r + 2] * z + m[4 * r + 3]
-    const depth = row(3)
-    if (depth <= 0) { return null }
-    return [
-      left + (row(0) / depth + 1) / 2 * w, top + (1 - row(1) / depth) / 2 * h, depth,
-    ]
+    return ([x, y, z]) => {
+      const row = (r) => m[4 * r] * x + m[4 * r + 1] * y + m[4 * r + 2] * z + m[4 * r + 3]
+      const depth = row(3)
+      return depth <= 0 ? null
+        : [left + (row(0) / depth + 1) / 2 * w, top + (1 - row(1) / depth) / 2 * h, depth]
+    }
+  }
+
+  project(point, view = 0) {
+    return this.projection(view)(point)
   }
 
   // How long a pixel is at a depth, in the scene.

@@ -20,8 +20,8 @@ function keeps({origin, normal}, slab, at) {
 export function hitLine(renderer, actor, x, y, reach) {
   if (!actor.visible || actor.kind !== "lines" || !actor.pairs) { return null }
   const p = actor.rest
-  const view = renderer.viewAt(x, y)
-  const at = (i) => renderer.project([p[3 * i], p[3 * i + 1], p[3 * i + 2]], view)
+  const project = renderer.projection(renderer.viewAt(x, y))
+  const at = (i) => project([p[3 * i], p[3 * i + 1], p[3 * i + 2]])
   let best = null
   for (let i = 0; i < actor.pairs.length; i += 2) {
     const a = at(actor.pairs[i]), b = at(actor.pairs[i + 1])

@@ -39,7 +39,7 @@ function placed(points, cards = []) {
     legend, canvas: {getBoundingClientRect: () => BOX}, root: {querySelectorAll: () => []},
   }
   const renderer = {
-    views: [1], project: ([x, y]) => [x, y, 1],
+    views: [1], projection: () => ([x, y]) => [x, y, 1],
     actors: new Map([["body", {visible: true, posed: () => points}]]),
   }
   const place = new LegendPlace(overlay, renderer, () => cards.map((box) => ({getBoundingClientRect: () => box})))

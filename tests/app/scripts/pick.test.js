@@ -7,7 +7,7 @@ import {hitLine, told} from "../../../app/scripts/surface.js"
 // A renderer whose canvas has the scene's own x and y as pixels; what is behind z = 0 is not seen.
 const renderer = {
   viewAt: () => 0,
-  project: ([x, y, z]) => z < 0 ? null : [x, y, z],
+  projection: () => ([x, y, z]) => z < 0 ? null : [x, y, z],
   camera: {getDistance: () => 10},
 }
 const bones = {
