@@ -15,11 +15,13 @@ from benchmarks import (
     orientation,
     report,
     speed,
+    start_up,
     tables,
     timing,
     wild,
 )
 from benchmarks.rigs import ROOT, load_characters
+from cutcell.skinning import warm_up
 from tests.benchmarks.markdown import read_tables
 
 DEMO = str(ROOT / "assets" / "robot.glb")
@@ -52,6 +54,14 @@ def test_start_up(small, capsys, monkeypatch):
     speed.main([small, *TINY, "--tables", "start", "--cold"])
     (rows,) = read_tables(capsys.readouterr().out).values()
     assert len(rows) == 4
+
+
+def test_the_first_compile_finds_nothing_compiled(monkeypatch):
+    says = "from cutcell.skinning import is_compiled; assert is_compiled() is {}"
+    warm_up()
+    start_up.run(says.format(True))
+    monkeypatch.setattr("benchmarks.start_up.BIND", says.format(False))
+    assert start_up.first_compile() > 0
 
 
 @pytest.mark.filterwarnings("ignore::ResourceWarning")
