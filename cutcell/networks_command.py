@@ -83,6 +83,13 @@ def train(
         int, typer.Option("--points", help="Points of a rig in each epoch; 16 or more.")
     ] = 256,
     resolution: Resolution = 64,
+    augment: Annotated[
+        bool,
+        typer.Option(
+            "--augment/--no-augment",
+            help="Leave out joints and parts, pose rigs, spread points otherwise, by chance.",
+        ),
+    ] = False,
     cache: Annotated[
         Path | None,
         typer.Option(
@@ -105,7 +112,7 @@ def train(
     check_torch()
     from .networks.training import train as learn
 
-    recipe = Recipe(head, size, prior, seed, points, resolution)
+    recipe = Recipe(head, size, prior, seed, points, resolution, augment)
     warnings: list[str] = []
     samples = Samples(
         data, prior=prior, points=4 * points, resolution=resolution, cache=cache

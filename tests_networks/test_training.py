@@ -22,7 +22,7 @@ from cutcell.networks import (
     predict,
     train,
 )
-from cutcell.networks.training import drawn
+from cutcell.networks.augmentation import drawn
 
 ASSETS = Path(__file__).resolve().parent.parent / "assets"
 STEPS = {"rignet": (200, 1e-2), "unirig": (500, 5e-3), "puppeteer": (250, 1e-2)}
@@ -63,9 +63,10 @@ def test_what_was_stopped_goes_on_as_if_it_had_not(two, tmp_path):
     assert all(float(row["loss"]) > 0 and float(row["seconds"]) > 0 for row in rows)
 
 
+@pytest.mark.parametrize("augment", [False, True])
 @pytest.mark.parametrize("head", HEADS)
-def test_the_same_recipe_gives_the_same_network(head, two):
-    recipe = Recipe(head, points=32)
+def test_the_same_recipe_gives_the_same_network(head, augment, two):
+    recipe = Recipe(head, points=32, augment=augment)
     one, other = (train(recipe, two, 2).state_dict() for _ in range(2))
     assert all(torch.equal(one[key], other[key]) for key in one)
     third = train(replace(recipe, seed=1), two, 2).state_dict()
@@ -84,6 +85,26 @@ def test_another_recipe_does_not_go_on(two, tmp_path):
     train(Recipe("puppeteer", points=16), two, 1, tmp_path)
     with pytest.raises(FileError, match="another recipe"):
         train(Recipe("puppeteer", points=16, seed=1), two, 1, tmp_path)
+
+
+def test_augmentation_is_part_of_the_recipe(two, tmp_path):
+    recipe = Recipe("puppeteer", points=16, augment=True)
+    train(recipe, two, 1, tmp_path)
+    assert load_network(tmp_path)[1] == recipe
+    assert recipe.name == "puppeteer-cutcell-tiny-0-augmented"
+    with pytest.raises(FileError, match="another recipe"):
+        train(replace(recipe, augment=False), two, 2, tmp_path)
+
+
+def test_networks_from_before_augmentation_go_on_without_it(two, tmp_path):
+    recipe = Recipe("puppeteer", points=16)
+    train(recipe, two, 1, tmp_path)
+    kept = torch.load(tmp_path / "network.pt", weights_only=True)
+    before = json.loads(kept["recipe"])
+    del before["augment"]
+    torch.save({**kept, "recipe": json.dumps(before)}, tmp_path / "network.pt")
+    assert load_network(tmp_path)[1] == recipe
+    train(recipe, two, 2, tmp_path)
 
 
 def test_a_folder_without_network_is_named(tmp_path):

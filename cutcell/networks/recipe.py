@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..checks import check_choice, check_integer
+from ..checks import check_choice, check_flag, check_integer
 from .names import HEADS, PRIOR_NAMES, SIZES, TITLES
 
 
@@ -24,6 +24,9 @@ class Recipe:
         Points a character, drawn anew in each epoch.
     resolution : int
         R of the prior.
+    augment : bool
+        Whether joints and parts are left out, other poses taken and points spread otherwise, by
+        chance; see `augmentation.drawn`. Networks of earlier versions were trained without.
     """
 
     head: str
@@ -32,6 +35,7 @@ class Recipe:
     seed: int = 0
     points: int = 128
     resolution: int = 64
+    augment: bool = False
 
     def __post_init__(self) -> None:
         check_choice("head", self.head, HEADS)
@@ -40,14 +44,17 @@ class Recipe:
         check_integer("seed", self.seed, 0, 2**31 - 1)
         check_integer("points", self.points, 16, 1_000_000)
         check_integer("resolution", self.resolution, 2, 1024)
+        check_flag("augment", self.augment)
 
     @property
     def name(self) -> str:
         """What it is called among methods, such as "rignet-cutcell-tiny-0"."""
-        return f"{self.head}-{self.prior}-{self.size}-{self.seed}"
+        name = f"{self.head}-{self.prior}-{self.size}-{self.seed}"
+        return f"{name}-augmented" if self.augment else name
 
     @property
     def title(self) -> str:
         """What people read, such as "RigNet with cutcell, tiny, seed 0"."""
         prior = "without prior" if self.prior == "none" else f"with {self.prior}"
-        return f"{TITLES[self.head]} {prior}, {self.size}, seed {self.seed}"
+        title = f"{TITLES[self.head]} {prior}, {self.size}, seed {self.seed}"
+        return f"{title}, augmented" if self.augment else title

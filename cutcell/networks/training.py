@@ -5,19 +5,19 @@ from __future__ import annotations
 import io
 import json
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, replace
+from dataclasses import asdict
 from pathlib import Path
 from time import perf_counter
 from typing import Any
 
 import numpy as np
 import torch
-from numpy.typing import NDArray
 from torch import nn
 
 from ..checks import check_integer
 from ..errors import FileError, ParameterError
 from ..writing import reason, write_all
+from .augmentation import drawn
 from .batches import Batch, collate
 from .heads import create_network
 from .recipe import Recipe
@@ -28,8 +28,6 @@ BATCH = 2
 RATE = 2e-3
 """AdamW's learning rate, the same all the time, so that any training can be gone on with."""
 LARGEST_GRADIENT = 1.0
-SCALES = 0.8, 1.25
-"""A character is made that much smaller or larger, by chance."""
 ANOTHER_VERSION = "is a network of another version of cutcell; train it again"
 
 
@@ -131,7 +129,8 @@ def _epoch(
     losses = []
     groups = np.array_split(rng.permutation(len(samples)), -(-len(samples) // BATCH))
     for chosen in groups:
-        batch = collate([drawn(samples[k], recipe.points, rng) for k in chosen]).to(device)
+        seen = [drawn(samples[k], recipe.points, rng, recipe.augment) for k in chosen]
+        batch = collate(seen).to(device)
         loss = _loss(network, batch, device)
         optimizer.zero_grad()
         loss.backward()
@@ -145,27 +144,6 @@ def _loss(network: nn.Module, batch: Batch, device: str) -> torch.Tensor:
     # bfloat16 has the range of float32, so that the loss need not be scaled.
     with torch.autocast(device, torch.bfloat16, enabled=device == "cuda"):
         return network.loss(batch)  # type: ignore[operator]
-
-
-def drawn(sample: Sample, points: int, rng: np.random.Generator) -> Sample:
-    """Return some points of a sample, turned about the vertical and scaled by chance."""
-    chosen = rng.permutation(len(sample.points))[:points]
-    angle = rng.uniform(0, 2 * np.pi)
-    cos, sin = np.cos(angle), np.sin(angle)
-    turn = np.array([[cos, 0, sin], [0, 1, 0], [-sin, 0, cos]])
-    scale = np.exp(rng.uniform(*np.log(SCALES)))
-
-    def moved(places: NDArray, by: float) -> NDArray[np.float32]:
-        return (by * places @ turn.T).astype(np.float32)
-
-    part = sample.part(chosen)
-    return replace(
-        part,
-        points=moved(part.points, scale),
-        normals=moved(part.normals, 1),
-        joints=moved(part.joints, scale),
-        tails=moved(part.tails, scale),
-    )
 
 
 def _keep(
