@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+from contextlib import redirect_stdout
 from functools import cache
 from typing import Any
 
@@ -13,10 +15,18 @@ POSED = ("upperarm", "lowerarm", "upperleg", "lowerleg", "spine", "neck")
 """Beginnings of the names of the bones that are turned."""
 DEGREES = 12.0
 """Standard deviation of their turns."""
+UPRIGHT = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
+"""Rows x, y, z where z is up, times this, are rows where y is."""
 
 
 def person(random: np.random.Generator) -> Rig:
-    """Return a person of drawn age, build and pose; z is up."""
+    """Return a person of drawn age, build and pose; y is up, as in all that is generated."""
+    # anny's kernels are compiled by warp, which prints what it does where our results belong.
+    with redirect_stdout(sys.stderr):
+        return _person(random)
+
+
+def _person(random: np.random.Generator) -> Rig:
     import torch
 
     model = _model()
@@ -27,8 +37,8 @@ def person(random: np.random.Generator) -> Rig:
     build = {name: float(random.uniform(0.1, 0.9)) for name in model.phenotype_labels}
     with torch.no_grad():
         made = model(pose_parameters=torch.from_numpy(pose)[None].float(), phenotype_kwargs=build)
-    vertices = made["vertices"][0].double().numpy()
-    joints = made["bone_poses"][0, :, :3, 3].double().numpy()
+    vertices = made["vertices"][0].double().numpy() @ UPRIGHT
+    joints = made["bone_poses"][0, :, :3, 3].double().numpy() @ UPRIGHT
     faces = np.asarray(model.faces)
     if faces.shape[1] == 4:
         faces = np.concatenate([faces[:, [0, 1, 2]], faces[:, [0, 2, 3]]])
