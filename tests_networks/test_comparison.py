@@ -6,8 +6,10 @@ import numpy as np
 from PIL import Image
 
 import cutcell
+from benchmarks import network_data
 from benchmarks.network_scores import dropped, groups, means, scores
 from benchmarks.networks import Run, main
+from cutcell.dataset import generate
 from cutcell.metrics import deformation_error, precision_recall, vertex_shares, weight_l1
 from cutcell.networks import sample_rig
 
@@ -70,3 +72,32 @@ def test_it_goes_on_where_it_stopped(tmp_path, monkeypatch, capsys):
     assert "tiny 16" not in capsys.readouterr().out
     log = tmp_path / "kept" / "tiny" / Run("puppeteer", "cutcell", 1).name / "log.csv"
     assert len(log.read_text().splitlines()) == 2
+
+
+def test_makehuman_s_characters_are_measured_apart():
+    parted = network_data.unseen(["makehuman_default", "khronos_Fox", "quat_wasp"])
+    assert parted == (["khronos_Fox"], ["makehuman_default"])
+
+
+def test_ways_to_learn_are_compared(tmp_path, monkeypatch, capsys):
+    for name, file in {"train": "biped", "rigs": "robot", "wild": "octopus"}.items():
+        (tmp_path / name).mkdir()
+        (tmp_path / name / f"{file}.glb").write_bytes((ASSETS / f"{file}.glb").read_bytes())
+    monkeypatch.setattr(network_data, "SHARED", tmp_path)
+    monkeypatch.setattr(network_data, "GENERATED", 1)
+    monkeypatch.setattr(network_data, "PEOPLE", 1)
+    # People take a package that need not be there.
+    monkeypatch.setattr(network_data, "generate", lambda kind, seed: generate("robot", seed))
+    out = tmp_path / "networks.md"
+    out.write_text("<!-- network-data -->\n<!-- /network-data -->\n")
+    words = ["--prior", "none", "--heads", "puppeteer", "--points", "16", "--epochs", "2"]
+    words += ["--folder", str(tmp_path / "kept"), "--cache", str(tmp_path / "cache")]
+    network_data.main([*words, "--seeds", "2", "--out", str(out)])
+    assert sum(line.startswith("{") for line in capsys.readouterr().out.splitlines()) == 8
+    rows = [line.split("|") for line in out.read_text().splitlines() if "puppeteer" in line]
+    cells = [[cell.strip() for cell in row[1:-1]] for row in rows]
+    assert [row[3] for row in cells] == ["no", "yes", "no", "yes"]
+    assert [row[4:6] for row in cells] == [["1", "2"]] * 2 + [["3", "1"]] * 2
+    assert [row[8] == "-" for row in cells] == [True, False, False, False]
+    network_data.main([*words, "--seeds", "2"])
+    assert "{" not in capsys.readouterr().out
