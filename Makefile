@@ -10,6 +10,9 @@ SCRIPTS := app/scripts tests/app/scripts
 # As many as there are cores; tests/dealing.py says which tests go together to one of them.
 WORKERS := --numprocesses logical --maxprocesses 4
 
+# As `cutcell` has it: idle threads of numpy's would take the cores from what is tested.
+export OPENBLAS_NUM_THREADS := 1
+
 .DEFAULT_GOAL := help
 .PHONY: help app test test-networks lint format assets lock clean
 

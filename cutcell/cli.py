@@ -7,6 +7,7 @@ Nothing heavy is imported before a command runs, so that `--help` answers at onc
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
 from importlib.metadata import entry_points
 from pathlib import Path
@@ -182,4 +183,8 @@ for above in entry_points(group="cutcell.commands"):
 
 def main() -> None:
     """Run the command line."""
+    # Read while numpy is loaded. Its threads for products of matrices, which are small here, wait
+    # for more by running idle: a tenth of a second of a core each time, which kernels and the page
+    # then lack.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     app()

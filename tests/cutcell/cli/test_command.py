@@ -1,6 +1,7 @@
 """The command as a whole: help, bars, JSON, exit codes, real processes, real files."""
 
 import json
+import os
 import subprocess
 import sys
 
@@ -31,6 +32,17 @@ class TestHelp:
     def test_every_falloff_is_explained(self, run):
         shown = run("bind", "--help").stdout
         assert all(f"{name}:" in shown for name in FALLOFFS)
+
+
+@pytest.mark.parametrize(("given", "threads"), [(None, "1"), ("3", "3")])
+def test_numpys_threads_do_not_wait_for_more(given, threads, monkeypatch, capsys):
+    monkeypatch.setenv("OPENBLAS_NUM_THREADS", given or "")
+    if given is None:
+        monkeypatch.delenv("OPENBLAS_NUM_THREADS")
+    monkeypatch.setattr(sys, "argv", ["cutcell", "--version"])
+    with pytest.raises(SystemExit):
+        main()
+    assert os.environ["OPENBLAS_NUM_THREADS"] == threads
 
 
 def test_ctrl_c_stops_with_130(run, bar, monkeypatch, tmp_path):
