@@ -57,8 +57,8 @@ export class Insets {
     this.changed()
   }
 
-  // Whether anything that decides what is free is another than before: to look at all points
-  // takes longer than to draw what a message brought.
+  // Whether anything that decides what is free has changed: to look at all points of the
+  // character takes longer than to draw what a message brought.
   differs(box, cards) {
     const rests = this.fitting.rests()
     const places = [...cards, ...this.edges].map((part) => part.getBoundingClientRect())
