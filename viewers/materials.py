@@ -125,6 +125,7 @@ def as_textures(
             np.ascontiguousarray(corners[:, way]),
             np.ascontiguousarray(tints[:, way]),
             np.ascontiguousarray(colors.opacity[:, way]),
+            colors.materials,
         )
 
     return Textures(

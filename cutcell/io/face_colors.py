@@ -69,15 +69,20 @@ class FaceColors:
         What the image is multiplied by, or the colour where there is none; sRGB.
     opacity : array, shape (m, 3), uint8
         What the image's alpha is multiplied by; less than 255 only where `BLENDED` is added.
+    materials : array, shape (m,), int32
+        The number of each face's material among `Materials.names`, -1 for none.
     """
 
     corners: NDArray[np.float32]
     tints: NDArray[np.uint8]
     opacity: NDArray[np.uint8]
+    materials: NDArray[np.int32]
 
     def of(self, rows: slice) -> FaceColors:
         """Return those of some faces, as views."""
-        return FaceColors(self.corners[rows], self.tints[rows], self.opacity[rows])
+        return FaceColors(
+            self.corners[rows], self.tints[rows], self.opacity[rows], self.materials[rows]
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,6 +99,8 @@ class Materials:
     images : tuple of StoredImage
     notes : tuple of str
         What could not be read, in sentences.
+    names : tuple of str
+        Of the materials; empty where one has no name.
     """
 
     body: FaceColors
@@ -101,6 +108,7 @@ class Materials:
     layers: tuple[Layer, ...]
     images: tuple[StoredImage, ...]
     notes: tuple[str, ...] = ()
+    names: tuple[str, ...] = ()
 
 
 class Collected:
@@ -108,6 +116,7 @@ class Collected:
 
     def __init__(self, notes: Iterable[str] = ()) -> None:
         self.layers: dict[Layer, int] = {}
+        self._materials: dict[Hashable, tuple[int, str]] = {}
         self._images: dict[Hashable, StoredImage] = {}
         self._notes: dict[str, None] = dict.fromkeys(notes)
 
@@ -120,6 +129,15 @@ class Collected:
     def notes(self) -> tuple[str, ...]:
         """What could not be read, in sentences."""
         return tuple(self._notes)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The names of the materials, in the order of their numbers."""
+        return tuple(name for _, name in self._materials.values())
+
+    def material(self, key: Hashable, name: str) -> int:
+        """Return the number of a material; `key` is the file's own."""
+        return self._materials.setdefault(key, (len(self._materials), name))[0]
 
     def layer(self, use: Layer, stored: Callable[[], StoredImage]) -> int:
         """Return the number of a use of an image.
@@ -169,6 +187,7 @@ def face_colors(
         np.zeros((len(faces), 3, 4), np.float32),
         np.full((len(faces), 3, 3), OPAQUE, np.uint8),
         np.full((len(faces), 3), OPAQUE, np.uint8),
+        np.full(len(faces), -1, np.int32),
     )
     colors.corners[..., 2] = -1
     end = 0

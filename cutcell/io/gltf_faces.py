@@ -15,6 +15,7 @@ from .gltf_accessors import read_accessor
 from .gltf_bare import BareSource
 from .gltf_primitives import StoredFaces
 from .gltf_read import GltfSource
+from .gltf_seams import own_corners
 from .gltf_storage import Storage
 
 
@@ -87,6 +88,8 @@ def take_faces(document: dict[str, Any], rig: Rig) -> list[NewFaces]:
             continue
         primitive = document["meshes"][stored.mesh]["primitives"][stored.primitive]
         corners = rig.mesh.faces[stored.rows] - stored.first_vertex
+        own = own_corners(source.document, stored, corners)
+        corners = corners if own is None else own
         if stored.is_mirrored:
             corners = corners[:, ::-1]
         small = corners.max() < np.iinfo(np.uint16).max

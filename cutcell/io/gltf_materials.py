@@ -75,6 +75,10 @@ class PrimitivePaint:
             return
         factor = np.array(base.factor)
         corners = colors.corners
+        if base.material is not None:
+            name = base.material.get("name")
+            named = name if isinstance(name, str) else ""
+            colors.materials[:] = self.found.material(primitive["material"], named)
         self._fill(colors, base, factor)
         try:
             if "COLOR_0" in attributes(primitive, "a primitive"):

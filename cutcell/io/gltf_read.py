@@ -30,6 +30,7 @@ from .gltf_primitives import (
     read_triangles,
     read_weights,
 )
+from .gltf_seams import SPLIT_FROM, merged, read_origin, vertex_count
 from .gltf_skins import Bind, read_bind, read_skeleton
 from .weights import ReadWeights
 
@@ -46,6 +47,8 @@ class StoredPart:
     """Its vertices in the rig."""
     joints: Sequence[int]
     """Joint of the rig for each joint of the skin."""
+    origin: NDArray[np.intp] | None = None
+    """Of the stored vertices, those that they were split from; see `gltf_seams`."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -147,7 +150,7 @@ def _read_parts(document: Document, nodes: Nodes, skinned: list[int], bind: Bind
     draw with the same stored weights.
     """
     parts: dict[Any, StoredPart] = {}
-    _, vertices, weights, faces, drawn, named = read = _Stored([], [], [], [], [], [])
+    _, vertices, weights, faces, drawn, named = stored = _Stored([], [], [], [], [], [])
     hidden = hidden_nodes(nodes)
     seen: set[int] = set()
     total = triangles = 0
@@ -166,11 +169,18 @@ def _read_parts(document: Document, nodes: Nodes, skinned: list[int], bind: Bind
             key = (skin, _vertex_key(primitive, label))
             if key not in parts:
                 document.allowance.take(positions.nbytes, label)
-                rows = slice(total, total := total + len(positions))
-                parts[key] = StoredPart(label, [], skin, rows, bind.skins[skin])
-                vertices.append(_moved(positions, bind.to_rig[skin]))
                 joints = len(bind.skins[skin])
-                weights.append(read_weights(document, primitive, len(positions), joints, label))
+                read = read_weights(document, primitive, len(positions), joints, label)
+                origin, read = merged(read_origin(document, primitive, positions, label), read)
+                if origin is not None:
+                    positions = positions[: vertex_count(origin)]
+                rows = slice(total, total := total + len(positions))
+                parts[key] = StoredPart(label, [], skin, rows, bind.skins[skin], origin)
+                vertices.append(_moved(positions, bind.to_rig[skin]))
+                weights.append(read)
+            origin = parts[key].origin
+            if origin is not None:
+                corners = origin[corners]
             parts[key].primitives.append((mesh, k))
             is_mirrored = bool(np.linalg.det(bind.to_rig[skin][:3, :3]) < 0)
             if is_mirrored:
@@ -180,16 +190,16 @@ def _read_parts(document: Document, nodes: Nodes, skinned: list[int], bind: Bind
                 slice(triangles, triangles := triangles + len(corners)),
             )
             faces.append(corners + start)
-            drawn.append(StoredFaces(mesh, k, start, rows, is_mirrored))
+            drawn.append(StoredFaces(mesh, k, start, rows, is_mirrored, origin=origin))
         if total > first:
             rows = slice(first, total)
             named.append(Part(mesh_name(document, nodes, i), rows, i in hidden))
-    return read._replace(parts=list(parts.values()))
+    return stored._replace(parts=list(parts.values()))
 
 
 def _vertex_key(primitive: dict[str, Any], label: str) -> tuple:
     found = attributes(primitive, label)
-    names = ("POSITION", "JOINTS_", "WEIGHTS_")
+    names = ("POSITION", "JOINTS_", "WEIGHTS_", SPLIT_FROM)
     return tuple(sorted((k, v) for k, v in found.items() if k.startswith(names)))
 
 

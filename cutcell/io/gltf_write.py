@@ -114,6 +114,8 @@ def _store(
 ) -> None:
     weights = rig.weights[part.rows]  # type: ignore[index]
     _check_reachable(weights, rig, part)
+    if part.origin is not None:
+        weights = weights[part.origin]
     for n, (where, share) in enumerate(zip(*pack_influences(weights[:, part.joints]), strict=True)):
         joints, shares = f"JOINTS_{n}", f"WEIGHTS_{n}"
         small = len(part.joints) <= 256 and storage.stored_type(old.get(joints)) != np.uint16

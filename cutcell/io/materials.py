@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
+from numpy.typing import NDArray
+
 from ..rig import Rig
 from .face_colors import Collected, FaceColors, Materials, face_colors
 from .gltf_bare import BareSource
@@ -12,6 +14,7 @@ from .gltf_container import Document
 from .gltf_materials import PrimitivePaint, is_coloured
 from .gltf_primitives import primitives, read_triangles
 from .gltf_read import GltfSource
+from .gltf_seams import own_corners
 from .obj_materials import ColouredObj
 from .surfaces import SurfacePaint, Surfaces
 
@@ -67,7 +70,10 @@ def read_materials(rig: Rig) -> Materials | None:
     found, paint = _paint(document)
     taken = len(rig.mesh.faces) + sum(len(one.mesh.faces) for one in rig.attachments)
     document.allowance.take(taken * BYTES_PER_FACE, "its materials")
-    body = face_colors(rig.mesh.faces, _of_body(document, source), paint)
+    faces = _own_faces(rig, source, document)
+    if faces is None:
+        return None
+    body = face_colors(faces, _of_body(document, source), paint)
     hung = [
         face_colors(one.mesh.faces, _of_node(document, node), paint)
         for one, node in zip(rig.attachments, attached, strict=True)
@@ -85,7 +91,8 @@ def _complete(
     whole = [colors for colors in hung if colors is not None]
     if body is None or len(whole) < len(hung):
         return None
-    return Materials(body, tuple(whole), tuple(found.layers), found.images, found.notes)
+    layers = tuple(found.layers)
+    return Materials(body, tuple(whole), layers, found.images, found.notes, found.names)
 
 
 def _paint(document: Document) -> tuple[Collected, Any]:
@@ -99,6 +106,23 @@ def _paint(document: Document) -> tuple[Collected, Any]:
 
 def _attached(source: GltfSource | BareSource) -> tuple[int, ...]:
     return source.attached if isinstance(source, GltfSource) else ()
+
+
+def _own_faces(rig: Rig, source: GltfSource | BareSource, document: Document) -> NDArray | None:
+    """Return the body's faces by the numbers that their vertices have in the document.
+
+    None where these are not the document's faces.
+    """
+    faces = rig.mesh.faces
+    for one in source.faces:
+        if one.origin is None or one.rows.stop > len(faces):
+            continue
+        own = own_corners(document, one, rig.mesh.faces[one.rows] - one.first_vertex)
+        if own is None:
+            return None
+        faces = faces.copy() if faces is rig.mesh.faces else faces
+        faces[one.rows] = own + one.first_vertex
+    return faces
 
 
 def _of_body(

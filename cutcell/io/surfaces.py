@@ -145,6 +145,7 @@ class SurfacePaint:
         for k in np.unique(material[material >= 0]).tolist():
             rows = np.flatnonzero(material == k)
             one = self.surfaces.materials[k]
+            colors.materials[rows] = self.found.material(k, one.name)
             colors.tints[rows] = one.tint
             through = one.blended or one.opacity < 1
             colors.opacity[rows] = round(OPAQUE * min(max(one.opacity, 0), 1))
