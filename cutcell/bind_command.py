@@ -117,7 +117,7 @@ def bind(
     from .checks import check_has_joints
     from .corrections import Corrections
     from .deform import choose_deform
-    from .io import check_output, load, save
+    from .io import check_output, load, save, saving_notes
     from .io.files import naming
     from .skinning import bind as compute
     from .skinning import corrected_rig
@@ -166,6 +166,7 @@ def bind(
         binding, dropped = _limited(loaded, binding, how, touches, corrected)
         warnings += dropped
     files = save(out, loaded.with_weights(binding.weights))
+    warnings += saving_notes(out, loaded)
     document = {
         "input": str(rig),
         "output": str(out),

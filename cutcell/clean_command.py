@@ -48,7 +48,7 @@ def clean(
     weights keep their proportions. Weights that were painted on purpose stay.
     """
     from .diagnosis import clean as take_away
-    from .io import check_output, load, save
+    from .io import check_output, load, save, saving_notes
     from .io.files import naming
 
     check_output(out)
@@ -57,6 +57,7 @@ def clean(
     with naming(rig), progress_bars(quiet) as progress:
         cleaned = take_away(loaded, resolution, progress=progress)
     files = save(out, loaded.with_weights(cleaned.weights))
+    warnings = [*loaded.warnings, *saving_notes(out, loaded)]
     document = {
         "input": str(rig),
         "output": str(out),
@@ -76,10 +77,10 @@ def clean(
             }
             for loss in cleaned.losses
         ],
-        "warnings": list(loaded.warnings),
+        "warnings": warnings,
     }
     if not quiet:
-        print_warnings(loaded.warnings)
+        print_warnings(warnings)
     if json:
         print_json(document)
     elif not quiet:

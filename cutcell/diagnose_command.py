@@ -54,7 +54,7 @@ def diagnose(
     """
     from .diagnosis import diagnose as examine
     from .diagnosis import unreadable
-    from .io import check_output, load, save
+    from .io import check_output, load, save, saving_notes
 
     if fix is not None:
         check_output(fix)
@@ -72,8 +72,10 @@ def diagnose(
             repaired = before.repaired()
             check_output(fix, repaired.rig)
             after = examine(repaired.rig, resolution, progress=progress)
+    warnings = list(loaded.warnings)
     if repaired is not None and fix is not None:
         save(fix, repaired.rig)
+        warnings += saving_notes(fix, repaired.rig)
     if json:
         print_json(
             {
@@ -81,11 +83,11 @@ def diagnose(
                 "resolution": resolution,
                 **before.to_dict(),
                 "repair": _repair(fix, repaired, after),
-                "warnings": list(loaded.warnings),
+                "warnings": warnings,
             }
         )
         return
-    print_warnings(loaded.warnings)
+    print_warnings(warnings)
     _print(rig.name, before)
     if fix is not None:
         _print_repair(fix, before, repaired, after)

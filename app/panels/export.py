@@ -8,6 +8,7 @@ from typing import Any
 import panel_material_ui as pmui
 
 from cutcell.io import keeps_document
+from cutcell.io.materials import has_materials
 from cutcell.rig import Rig
 
 from ..commands import export as actions
@@ -58,6 +59,8 @@ def _described(rig: Rig | None) -> str:
     """Say what the bound file holds."""
     if rig is None or keeps_document(rig):
         kept = "The GLB is as it was, but for the weights."
+    elif has_materials(rig):
+        kept = "The GLB is a new one: mesh, skeleton, weights, motions and base colours."
     else:
         kept = "The GLB is a new one: mesh, skeleton, weights and motions, without materials."
     return f"{kept} Pictures show what you see."

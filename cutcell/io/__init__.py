@@ -14,6 +14,7 @@ from ..writing import check_place, write_all
 from .articulation import articulation_bytes, read_articulation
 from .fbx import read_fbx
 from .files import naming, read_bytes
+from .gltf_colored import color_notes
 from .gltf_container import MAGIC
 from .gltf_fresh import check_fits, new_glb
 from .gltf_read import GltfSource, read_gltf
@@ -92,7 +93,8 @@ def save(path: str | os.PathLike[str], rig: Rig) -> tuple[Path, ...]:
 
     A rig that was loaded from glTF goes back into its own document, in which only the skin
     weights change, and what joints that were moved take (`Rig.with_joints`). So does a mesh from
-    glTF that had no skeleton, with the one that it was given. Another rig becomes a new GLB. All
+    glTF that had no skeleton, with the one that it was given. Another rig becomes a new GLB, with
+    the base colours of its file (`saving_notes` says what is missing of them). All
     files are written whole or not at all:
     a failure leaves what was there, and a rig may be saved over the file it came from. A file
     that is not named here, such as the mesh or the buffer beside it, is never replaced if
@@ -165,6 +167,20 @@ def _not_written(path: Path) -> str:
     if path.suffix.lower() == ".fbx":
         return f"FBX can be read, not written; save it as {path.stem}.glb, which Blender imports"
     return f'a rig cannot be saved as "{path.suffix}"; end the name in {WRITABLE}'
+
+
+def saving_notes(path: Path, rig: Rig) -> tuple[str, ...]:
+    """Say what `save` leaves out of the colours of a rig's file, in sentences.
+
+    Parameters
+    ----------
+    path : Path
+        The file to be written. Formats that hold no colours at all have no notes.
+    rig : Rig
+    """
+    if path.suffix.lower() not in GLTF or keeps_document(rig):
+        return ()
+    return color_notes(rig)
 
 
 def binary_ending(rig: Rig) -> str:

@@ -19,8 +19,9 @@ SECONDS, SECONDS_A_MEGABYTE = 60.0, 5.0
 LEAST_MEMORY, MEMORY_A_BYTE = 2**30, 100
 """What reading may take. Text takes some 20 bytes for each of its own; arrays may be packed."""
 LOST = (
-    "of an FBX, the meshes, skeleton, weights and clips are read; it is saved as a GLB without its "
-    "materials, texture coordinates and morph targets"
+    "of an FBX, the meshes, skeleton, weights and clips are read, and of its materials the base "
+    "colours with their images; it is saved as a GLB without what else its materials have, and "
+    "without morph targets"
 )
 
 

@@ -14,6 +14,7 @@ from ..errors import CutcellError, FileError, MeshError, SkeletonError, WeightsE
 from ..hierarchy import relative
 from ..rig import Clip, Rig, Skeleton, TriangleMesh
 from ..triangles import normals
+from .gltf_colored import with_rig_colors
 from .gltf_container import json_bytes, pack_glb, with_whole_names
 from .gltf_influences import pack_influences
 from .gltf_nodes import decompose
@@ -28,6 +29,8 @@ KINDS = {1: gl.SCALAR, 3: gl.VEC3, 4: gl.VEC4, 16: gl.MAT4}
 def new_glb(rig: Rig) -> bytes:
     """Return a rig as a GLB file: mesh, normals, skin, joints as nodes, clips, attachments.
 
+    The base colours of the rig's file are taken along; see `materials.read_materials`.
+
     `check_fits` says whether the rig can become one.
 
     Raises
@@ -39,7 +42,11 @@ def new_glb(rig: Rig) -> bytes:
         raise WeightsError("the rig has no weights to save; bind it first")
     file = _File()
     file.add_rig(rig)
-    return file.packed()
+    document, data = file.packed()
+    colored = with_rig_colors(document, data, rig)
+    if colored is not None:
+        data = colored.finish()
+    return pack_glb(json_bytes(document), data, [])
 
 
 def check_fits(rig: Rig) -> None:
@@ -190,14 +197,15 @@ class _File:
         self.gltf.accessors.append(accessor)
         return len(self.gltf.accessors) - 1
 
-    def packed(self) -> bytes:
+    def packed(self) -> tuple[dict[str, Any], bytes]:
+        """Return the document and its buffer."""
         self.data += b"\0" * (-len(self.data) % 4)
         self.gltf.buffers = [gl.Buffer(byteLength=len(self.data))]
         try:
             document = json.loads(self.gltf.gltf_to_json())
         except ValueError as e:  # such as a scale of the scene that is no number
             raise FileError(f"it cannot be written as JSON: {e}") from None
-        return pack_glb(json_bytes(with_whole_names(document)), bytes(self.data), [])
+        return with_whole_names(document), bytes(self.data)
 
 
 def vertex_normals(mesh: TriangleMesh) -> NDArray[np.float32]:

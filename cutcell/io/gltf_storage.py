@@ -24,7 +24,13 @@ from .gltf_accessors import COMPONENTS
 from .gltf_references import accessors_in, places_in, views_in
 
 ALIGNMENT = 8
-KINDS = {1: pygltflib.SCALAR, 3: pygltflib.VEC3, 4: pygltflib.VEC4, 16: pygltflib.MAT4}
+KINDS = {
+    1: pygltflib.SCALAR,
+    2: pygltflib.VEC2,
+    3: pygltflib.VEC3,
+    4: pygltflib.VEC4,
+    16: pygltflib.MAT4,
+}
 CODES = {dtype: code for code, dtype in COMPONENTS.items()}
 
 
@@ -70,8 +76,8 @@ class Storage:
 
         Parameters
         ----------
-        values : array, shape (n, 1), (n, 3), (n, 4) or (n, 16), uint8, uint16, uint32 or float32,
-            little-endian. A single column holds indices of vertices.
+        values : array, shape (n, k), uint8, uint16, uint32 or float32, little-endian
+            k is 1, 2, 3, 4 or 16. A single column of integers holds indices of vertices.
         preferred : int, optional
             A dropped accessor, to become this one.
         of_mesh : bool
@@ -105,7 +111,7 @@ class Storage:
             # An extension of the old view told of the old bytes, such as how they were compressed.
             own = {k: v for k, v in self.views[view].items() if k in ("name", "extras")}
             use: dict[str, int] = {}
-            if of_mesh and values.shape[1] == 1:
+            if of_mesh and values.shape[1] == 1 and values.dtype.kind == "u":
                 use = {"target": pygltflib.ELEMENT_ARRAY_BUFFER}
             elif of_mesh:
                 stride = values.shape[1] * values.itemsize

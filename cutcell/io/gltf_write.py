@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from ..errors import MeshError, SkeletonError, WeightsError
 from ..rig import Rig
 from .gltf_buffer_file import buffer_file, relative_uri
+from .gltf_colored import with_surface_colors
 from .gltf_container import Document, json_bytes, pack_glb
 from .gltf_faces import store_faces, take_faces
 from .gltf_images import carry_images
@@ -61,6 +62,7 @@ def rewritten(rig: Rig, path: Path) -> dict[Path, bytes]:
     for part, old in zip(parts, before, strict=True):
         _store(storage, document, rig, part, old)
     store_faces(storage, faces)
+    storage = with_surface_colors(storage, source.document.surfaces)
     carried = carry_images(storage, source.document, path)
     return {**carried, **packed(storage, source.document, path, carried)}
 

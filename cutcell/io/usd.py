@@ -17,8 +17,9 @@ from .scene_joints import scene_world
 USD = (".usd", ".usda", ".usdc", ".usdz")
 SECONDS, MEMORY = 120.0, 2**32
 LOST = (
-    "of a USD, the meshes, skeletons, weights and motion are read; it is saved as a GLB without "
-    "its materials, texture coordinates and blend shapes"
+    "of a USD, the meshes, skeletons, weights and motion are read, and of its materials the base "
+    "colours with their images; it is saved as a GLB without what else its materials have, and "
+    "without blend shapes"
 )
 
 

@@ -13,12 +13,14 @@ from cutcell.io import SAVED
 from cutcell.pose import swing
 from tests.benchmarks.markdown import read_tables
 from tests.cutcell.cli.files import JOINTS, write_obj
-from tests.cutcell.io.fbx_builder import binary, column_scene
-from tests.cutcell.io.gltf_builder import column, two_skins
+from tests.cutcell.io.fbx_builder import binary, column_scene, vector, with_materials
+from tests.cutcell.io.gltf_builder import REST, column, two_skins
 from tests.cutcell.io.test_gltf_clips import LINEAR, animate
+from tests.cutcell.io.test_gltf_colored import HALVES, IN_FILE, INSIDE, SKIN_PNG
 from tests.cutcell.io.test_gltf_fresh import small_rig
 from tests.cutcell.io.test_gltf_layouts import Layout
 from tests.cutcell.io.test_gltf_save import interleaved, many_joints, sparse_weights
+from tests.cutcell.io.test_obj_materials import RED, SKIN, lines
 from tests.cutcell.io.test_usd import text as usd_text
 
 
@@ -41,6 +43,22 @@ def bare(path):
     return write_obj(path, joints=JOINTS)
 
 
+def coloured(path):
+    joints = [{**joint, "position": list(rest)} for joint, rest in zip(JOINTS, REST, strict=True)]
+    path.with_suffix(".json").write_text(json.dumps({"joints": joints}, default=float))
+    path.with_suffix(".mtl").write_text(RED + SKIN)
+    path.with_name("skin.png").write_bytes(SKIN_PNG)
+    path.write_text(lines("red", "skin", library="mtllib coloured.mtl"))
+    return path
+
+
+def coloured_fbx(path):
+    looks = [([vector("DiffuseColor", (1, 0, 0))], None), ([], INSIDE)]
+    scene = with_materials(column_scene(), IN_FILE, polygons=HALVES, materials=looks)
+    path.write_bytes(binary(scene))
+    return path
+
+
 def rignet(path):
     cutcell.save(path, small_rig())
     return path
@@ -57,6 +75,8 @@ FILES = {
     "bare.obj": bare,
     "rignet.txt": rignet,
     "archive.npz": rignet,
+    "coloured.obj": coloured,
+    "coloured.fbx": coloured_fbx,
     "film.fbx": lambda path: path.write_bytes(binary(column_scene())) and path,
     "stage.usda": lambda path: path.write_text(usd_text()) and path,
 }

@@ -164,12 +164,6 @@ def test_faces_that_were_repaired_keep_their_colours(load):
     assert_allclose(found.body.corners[..., :2], expected[kept], atol=1e-6)
 
 
-def test_what_is_saved_has_the_plain_material(load, tmp_path):
-    rig = load(scene(materials=[(RED, INSIDE)]))
-    cutcell.save(tmp_path / "out.glb", rig)
-    assert not has_materials(cutcell.load(tmp_path / "out.glb"))
-
-
 def test_another_mesh_has_none_of_it(load):
     rig = load(scene(materials=[(RED, INSIDE)]))
     mesh = cutcell.TriangleMesh(rig.mesh.vertices, rig.mesh.faces[:-1])

@@ -1,0 +1,313 @@
+"""Base colours of other formats in a GLB: what is saved is seen again, on the same vertices."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import trimesh
+from numpy.testing import assert_allclose, assert_array_equal
+from PIL import Image
+
+import cutcell
+from cutcell.colors import linear, srgb
+from cutcell.io.face_colors import BLENDED, CLAMP, MIRROR
+from cutcell.io.gltf_container import read_document
+from cutcell.io.gltf_faces import with_faces
+from cutcell.io.materials import has_materials, read_materials
+from tests.cutcell.io.fbx_builder import (
+    END,
+    MESH,
+    ROOT,
+    TIP,
+    binary,
+    column_scene,
+    model,
+    record,
+    vector,
+    with_materials,
+)
+from tests.cutcell.io.gltf_builder import COLUMN, FACES, REST, SHARES, column
+from tests.cutcell.io.test_gltf_materials import with_image
+from tests.cutcell.io.test_obj_materials import IN_IMAGE, RED, SKIN, lines
+from tests.gltf_validator.validator import reports
+
+IN_FILE = IN_IMAGE * (1, -1) + (0, 1)
+OF_SCENES = {"NODE_SKINNED_MESH_NON_ROOT"}
+"""What the validator finds in any file that was made of an FBX: its meshes keep their nodes."""
+HALVES = np.arange(len(FACES)) % 2
+BY_MATERIAL = np.argsort(HALVES, kind="stable")
+
+
+def png(side=4):
+    """Return an image with a red upper half and a blue lower one."""
+    from io import BytesIO
+
+    pixels = np.zeros((side, side, 3), np.uint8)
+    pixels[: side // 2, :, 0] = pixels[side // 2 :, :, 2] = 255
+    packed = BytesIO()
+    Image.fromarray(pixels).save(packed, "PNG")
+    return packed.getvalue()
+
+
+SKIN_PNG = png()
+INSIDE = {"file": "skin.png", "content": SKIN_PNG}
+
+
+def bound(rig):
+    """Return a rig with a skeleton and weights, if it has none."""
+    if rig.weights is not None:
+        return rig
+    size = np.ptp(rig.mesh.vertices[:, 1]) / np.ptp(COLUMN[:, 1])  # an FBX is in centimetres
+    skeleton = cutcell.Skeleton(size * REST, [-1, 0], ("root", "tip"))
+    return replace(rig, skeleton=skeleton, weights=SHARES[:, :2])
+
+
+@pytest.fixture
+def obj(tmp_path):
+    def loaded(text, mtl="", **images):
+        (tmp_path / "column.obj").write_text(text)
+        (tmp_path / "column.mtl").write_text(mtl)
+        for name, content in images.items():
+            (tmp_path / f"{name}.png").write_bytes(content)
+        return bound(cutcell.load(tmp_path / "column.obj"))
+
+    return loaded
+
+
+@pytest.fixture
+def fbx(tmp_path):
+    def loaded(**given):
+        scene = with_materials(column_scene(curves=False), IN_FILE, **given)
+        (tmp_path / "column.fbx").write_bytes(binary(scene))
+        return cutcell.load(tmp_path / "column.fbx")
+
+    return loaded
+
+
+@pytest.fixture
+def again(tmp_path):
+    """Save a rig, see that the file is valid, and load it."""
+
+    def saved(rig, name="out.glb"):
+        cutcell.save(tmp_path / name, rig)
+        (report,) = reports(tmp_path / name)
+        assert {found["code"] for found in report["issues"]["messages"]} <= OF_SCENES
+        return cutcell.load(tmp_path / name)
+
+    return saved
+
+
+def check_same(rig, found, order=slice(None)):
+    """Check vertices, weights and, in the order of their materials, faces with their colours."""
+    assert_array_equal(found.mesh.vertices, rig.mesh.vertices.astype(np.float32))
+    assert_array_equal(found.mesh.faces, rig.mesh.faces[order])
+    assert_allclose(found.weights, rig.weights, atol=1e-7)
+    before, after = read_materials(rig), read_materials(found)
+    assert_array_equal(after.body.tints, before.body.tints[order])
+    assert_array_equal(after.body.opacity, before.body.opacity[order])
+    assert_array_equal(after.body.corners, before.body.corners[order])
+    assert [one.content for one in after.images] == [one.content for one in before.images]
+    return after
+
+
+class TestObj:
+    def test_materials_images_and_coordinates(self, obj, again):
+        rig = obj(lines("red", "skin"), RED + SKIN, skin=SKIN_PNG)
+        found = check_same(rig, again(rig), BY_MATERIAL)
+        assert found.names == ("red", "skin")
+
+    def test_faces_of_one_material_keep_their_order(self, obj, again):
+        rig = obj(lines("skin"), SKIN, skin=SKIN_PNG)
+        check_same(rig, again(rig))
+
+    def test_another_library_sees_the_image_the_same_way_up(self, obj, again, tmp_path):
+        rig = obj(lines("skin"), SKIN, skin=SKIN_PNG)
+        again(rig)
+        scene = trimesh.load(tmp_path / "out.glb", process=False)
+        (mesh,) = scene.geometry.values()
+        uv = mesh.visual.uv[mesh.faces]  # trimesh counts from the lower left corner, as OBJ does
+        assert_allclose(uv, IN_FILE, atol=1e-6)
+        assert_allclose(mesh.vertices[mesh.faces], COLUMN[FACES])
+        assert mesh.visual.material.baseColorTexture.getpixel((0, 0)) == (255, 0, 0)
+
+    def test_what_wraps_and_what_shines_through(self, obj, again):
+        mtl = f"{SKIN}map_d skin.png\n{RED}d 0.5\nnewmtl end\nmap_Kd -clamp on skin.png\n"
+        rig = obj(lines("skin", "red", "end"), mtl, skin=SKIN_PNG)
+        found = check_same(rig, again(rig), np.argsort(np.arange(len(FACES)) % 3, kind="stable"))
+        assert set(found.body.corners[:, 0, 3].astype(int)) == {BLENDED, 4 * CLAMP}
+        assert len(found.images) == 1
+
+    def test_colours_of_vertices(self, obj, again):
+        colors = np.random.default_rng(1).uniform(0, 1, (len(COLUMN), 3)).round(2)
+        points = [
+            f"v {x} {y} {z} {r} {g} {b}"
+            for (x, y, z), (r, g, b) in zip(COLUMN, colors, strict=True)
+        ]
+        rig = obj("\n".join([*points, *(f"f {a} {b} {c}" for a, b, c in FACES + 1)]))
+        found = again(rig)
+        check_same(rig, found)
+        accessors = found.source.document.items("accessors")
+        assert accessors[0]["count"] == len(COLUMN), "there is no seam"
+
+    def test_an_image_that_is_not_there_leaves_the_colour(self, obj, again):
+        rig = obj(lines("skin"), SKIN)
+        found = check_same(rig, again(rig))
+        assert (found.body.tints == (128, 255, 255)).all()
+
+    def test_an_image_of_another_format_leaves_the_colour(self, obj, again):
+        rig = obj(lines("skin"), SKIN, skin=b"an image")
+        found = read_materials(again(rig))
+        assert found.images == ()
+        assert (found.body.tints == (128, 255, 255)).all()
+
+    def test_no_image_from_elsewhere_is_taken_in(self, obj, again, tmp_path):
+        (tmp_path.parent / "secret.png").write_bytes(SKIN_PNG)
+        rig = obj(lines("skin"), SKIN.replace("skin.png", "../secret.png"))
+        assert read_materials(again(rig)).images == ()
+
+    def test_one_grey_is_saved_as_ever(self, obj, again, tmp_path):
+        again(replace(obj(lines("grey"), "newmtl grey\nKd 0.8 0.8 0.8\n"), name="column"))
+        colored = (tmp_path / "out.glb").read_bytes()
+        again(replace(obj("\n".join(lines().splitlines()[1:])), source=None))
+        assert (tmp_path / "out.glb").read_bytes() == colored
+
+    def test_other_formats_are_saved_as_ever(self, obj, tmp_path):
+        rig = obj(lines("skin"), SKIN, skin=SKIN_PNG)
+        for name in ("a.npz", "b.npz"):
+            cutcell.save(tmp_path / name, rig if name == "a.npz" else replace(rig, source=None))
+        assert (tmp_path / "a.npz").read_bytes() == (tmp_path / "b.npz").read_bytes()
+
+
+class TestFbx:
+    def test_materials_images_and_coordinates(self, fbx, again):
+        looks = [([vector("DiffuseColor", (1, 0, 0))], None), ([], INSIDE)]
+        rig = fbx(polygons=HALVES, materials=looks)
+        found = check_same(rig, again(rig), BY_MATERIAL)
+        assert found.names == ("paint 0", "paint 1")
+
+    def test_a_gltf_beside_its_buffer_has_them_too(self, fbx, again):
+        rig = fbx(materials=[([], INSIDE)])
+        check_same(rig, again(rig, "out.gltf"))
+
+    def test_repaired_faces_keep_their_colours(self, fbx, again):
+        rig = fbx(materials=[([], INSIDE)])
+        kept, turned = np.ones(len(FACES), bool), np.zeros(len(FACES), bool)
+        kept[[2, 5]], turned[4] = False, True
+        mended = with_faces(rig, kept, turned)
+        check_same(mended, again(mended))
+
+    def test_what_hangs_on_a_joint_has_them_too(self, again, tmp_path):
+        given = {"materials": [([], INSIDE)]}
+        head, objects, connections = with_materials(column_scene(curves=False), IN_FILE, **given)
+        name, (_, *rest), below = objects[2][0]
+        sword = [(name, (700, *rest), below), model(701, "sword", "Mesh", ())]
+        links = [record("C", "OO", *pair) for pair in ((700, 701), (701, TIP), (900, 701))]
+        scene = [
+            head,
+            record("Objects", children=[*objects[2], *sword]),
+            record("Connections", children=[*connections[2], *links]),
+        ]
+        (tmp_path / "column.fbx").write_bytes(binary(scene))
+        rig = cutcell.load(tmp_path / "column.fbx")
+        found = again(rig)
+        check_same(rig, found)
+        (before,), (after,) = rig.attachments, found.attachments
+        corners = [one.mesh.vertices[one.mesh.faces] for one in (before, after)]
+        assert_allclose(corners[1], corners[0], atol=1e-6)
+        assert_array_equal(
+            read_materials(found).attachments[0].corners, read_materials(rig).attachments[0].corners
+        )
+
+    def test_without_a_skin(self, again, tmp_path):
+        given = {"materials": [([], INSIDE)]}
+        head, objects, _ = with_materials(column_scene(curves=False), IN_FILE, **given)
+        links = [(MESH, 0), (100, MESH), (900, MESH), (940, 920)]
+        made = [record("C", "OO", *pair) for pair in links]
+        made.append(record("C", "OP", 920, 900, "DiffuseColor"))
+        bones = ("Deformer", "NodeAttribute")
+        kept = [
+            one for one in objects[2] if one[0] not in bones and one[1][0] not in (ROOT, TIP, END)
+        ]
+        scene = [head, record("Objects", children=kept), record("Connections", children=made)]
+        (tmp_path / "column.fbx").write_bytes(binary(scene))
+        rig = bound(cutcell.load(tmp_path / "column.fbx"))
+        assert has_materials(rig)
+        check_same(rig, again(rig))
+
+
+def test_a_mesh_without_a_skin_that_becomes_a_new_file_keeps_them(tmp_path, again):
+    builder = column()
+    with_image(builder, SKIN_PNG, {"wrapS": 33648}, alphaMode="MASK", alphaCutoff=0.25)
+    node = next(node for node in builder.json["nodes"] if "mesh" in node)
+    del builder.json["skins"], node["skin"]
+    node["scale"] = [-1, 1, 1]
+    rig = bound(cutcell.load(builder.save(tmp_path / "bare.glb")))
+    found = check_same(rig, again(rig))
+    assert found.layers[0].cutoff == 0.25
+    assert (found.body.corners[..., 3] == 3 * MIRROR).all()
+
+
+class TestSavedAgain:
+    """A file with split vertices is a glTF document like others."""
+
+    @pytest.fixture
+    def first(self, obj, again):
+        rig = obj(lines("red", "skin"), RED + SKIN, skin=SKIN_PNG)
+        found = again(rig)
+        stored = found.source.document.json["accessors"][0]["count"]
+        assert stored > len(found.mesh.vertices)
+        return found
+
+    def test_other_weights(self, first, again):
+        other = first.with_weights(np.eye(2)[np.arange(12) % 2])
+        check_same(other, again(other))
+
+    def test_the_same_weights_give_the_same_bytes(self, first, tmp_path):
+        cutcell.save(tmp_path / "a.glb", first)
+        cutcell.save(tmp_path / "b.glb", cutcell.load(tmp_path / "a.glb"))
+        assert (tmp_path / "a.glb").read_bytes() == (tmp_path / "b.glb").read_bytes()
+
+    def test_repaired_faces_keep_their_colours(self, first, again):
+        kept, turned = np.ones(len(FACES), bool), np.zeros(len(FACES), bool)
+        kept[[2, 15]], turned[[4, 16]] = False, True
+        mended = with_faces(first, kept, turned)
+        check_same(mended, again(mended))
+
+    def test_faces_that_are_not_the_files_have_no_colours(self, first):
+        faces = np.concatenate([first.mesh.faces[1:], first.mesh.faces[1:2]])
+        mesh = cutcell.TriangleMesh(first.mesh.vertices, faces)
+        assert read_materials(replace(first, mesh=mesh)) is None
+
+    @pytest.mark.parametrize("what", ["position", "weight", "number", "not a number", "kind"])
+    def test_copies_that_another_program_changed_count_for_themselves(self, first, tmp_path, what):
+        document = read_document(tmp_path / "out.glb")
+        (one, *_) = document.json["meshes"][0]["primitives"]
+        named = one["attributes"]
+        name = {"position": "POSITION", "weight": "WEIGHTS_0"}.get(what, "_SPLIT_FROM")
+        accessor = document.json["accessors"][named[name]]
+        view = document.json["bufferViews"][accessor["bufferView"]]
+        data = bytearray(document.buffers[0])
+        start = view["byteOffset"] + accessor["byteOffset"]
+        end = start + accessor["count"] * view["byteStride"]
+        values = np.frombuffer(data[start:end], "<f4").copy()
+        if what == "weight":
+            values = values.reshape(-1, 4)
+            values[-1] = np.where(values[-1] == 1, 0, 0.5)
+        else:
+            values[-1] = {"position": 9, "number": 99, "not a number": np.nan}.get(what, 0)
+        if what == "kind":
+            accessor |= {"type": "VEC4", "count": accessor["count"] // 4}
+        data[start:end] = values.tobytes()
+        (tmp_path / "out.bin").write_bytes(data)
+        document.json["buffers"][0]["uri"] = "out.bin"
+        (tmp_path / "out.gltf").write_text(json.dumps(document.json))
+        found = cutcell.load(tmp_path / "out.gltf")
+        assert len(found.mesh.vertices) > len(first.mesh.vertices)
+        assert has_materials(found)
+
+
+def test_linear_colours_are_those_of_pictures():
+    every = np.arange(256)
+    assert_array_equal(srgb(linear(every)), every)
+    assert_array_equal(srgb(np.round(65535 * linear(every)) / 65535), every)
