@@ -157,7 +157,7 @@ class Collected:
     def note(self, label: str, error: Exception) -> None:
         """Keep in mind what could not be read of a material."""
         why = str(error) if isinstance(error, CutcellError) else "it is malformed"
-        self._notes[f"{label} is shown without what could not be read of it: {why}"] = None
+        self._notes[f"{label} is used without what could not be read of it: {why}"] = None
 
 
 Paint = Callable[[Any, NDArray, FaceColors], None]

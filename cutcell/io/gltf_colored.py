@@ -13,7 +13,8 @@ from ..rig import Rig
 from .face_colors import Collected, FaceColors, face_colors
 from .gltf_accessors import find_accessor
 from .gltf_container import Document
-from .gltf_palette import Group, Palette, Uses, attributes_of, image_notes
+from .gltf_embedded import image_notes
+from .gltf_palette import Group, Palette, Uses, attributes_of
 from .gltf_seams import MOST_VERTICES, SPLIT_FROM, split_at_seams
 from .gltf_storage import Storage
 from .materials import has_materials, read_materials

@@ -11,13 +11,11 @@ from numpy.typing import NDArray
 
 from ..colors import linear
 from .face_colors import BLENDED, OPAQUE, FaceColors, Layer, StoredImage
-from .gltf_images import SIGNATURES
+from .gltf_embedded import Embedded, embedded
 from .gltf_storage import Storage
 from .gltf_textures import NEAREST, WRAPS
 from .names import whole_characters
 
-EMBEDDED = ("image/png", "image/jpeg")
-"""What every reader of glTF knows."""
 REPEATED = 10497
 SIDES = {way: number for number, way in WRAPS.items()}
 FULL = 2**16 - 1
@@ -51,23 +49,6 @@ class Group(NamedTuple):
     varied: bool
 
 
-def image_type(image: StoredImage) -> str | None:
-    """Return the media type of an image that can be taken into a GLB as it is, else None."""
-    found = next(
-        (kind for start, kind in SIGNATURES.items() if image.content.startswith(start)), ""
-    )
-    return found if found in EMBEDDED else None
-
-
-def image_notes(images: Sequence[StoredImage]) -> tuple[str, ...]:
-    """Say which images a GLB cannot take."""
-    return tuple(
-        f"{image.name} is not saved: it is neither PNG nor JPEG; its material has its colour alone"
-        for image in images
-        if image_type(image) is None
-    )
-
-
 @dataclass(frozen=True)
 class _Look:
     """What makes a material: number of the name, layer, wrapping, and factor as bytes."""
@@ -88,6 +69,7 @@ class Palette:
 
     def __init__(self, uses: Uses) -> None:
         self._uses = uses
+        self._embedded = embedded(uses.images)
         self._looks: dict[_Look, int] = {}
 
     def groups(self, colors: FaceColors) -> tuple[list[Group], NDArray[np.float32]]:
@@ -140,7 +122,7 @@ class Palette:
         layers = colors.corners[:, 0, 2].astype(int)
         rgba = np.concatenate([colors.tints, colors.opacity[..., None]], axis=2)
         for k, use in enumerate(self._uses.layers):
-            if image_type(self._uses.images[use.image]) is None:
+            if self._embedded[use.image].problem:
                 rows = layers == k
                 layers[rows] = -1
                 if use.color is not None:
@@ -170,7 +152,9 @@ class Palette:
             sampler = None if plainly else samplers.setdefault(key, len(samplers))
             texture = textures.setdefault((image, sampler), len(textures))
             material["pbrMetallicRoughness"]["baseColorTexture"] = {"index": texture}
-        document["images"] = [_image(self._uses.images[k], storage) for k in images]
+        document["images"] = [
+            _image(self._uses.images[k].name, self._embedded[k], storage) for k in images
+        ]
         document["textures"] = [
             {"source": image} if sampler is None else {"source": image, "sampler": sampler}
             for image, sampler in textures
@@ -194,11 +178,10 @@ class Palette:
         return made
 
 
-def _image(image: StoredImage, storage: Storage) -> dict[str, Any]:
-    name = whole_characters(image.name)
-    named = name.partition('"')[2].rpartition('"')[0]
-    made = {"bufferView": storage.add_view(image.content), "mimeType": image_type(image)}
-    return {"name": named, **made} if named else made
+def _image(label: str, image: Embedded, storage: Storage) -> dict[str, Any]:
+    name = whole_characters(label).partition('"')[2].rpartition('"')[0]
+    made = {"bufferView": storage.add_view(image.content), "mimeType": image.kind}
+    return {"name": name, **made} if name else made
 
 
 def _sampler(wrap: int, nearest: bool) -> dict[str, Any]:

@@ -142,7 +142,7 @@ def _materials(
         try:
             text = read_beside(path, names, label, LARGEST).decode("utf-8", "replace")
         except FileError as error:
-            notes[f"the materials of {path.name} are not shown: {error}"] = None
+            notes[f"the materials of {path.name} are not used: {error}"] = None
             continue
         known = {**parse_mtl(text, images), **known}
     missing = [name for name in said.names if name not in known]

@@ -20,9 +20,10 @@ from cutcell_app.commands.export import (
     export_picture,
     export_turntable,
 )
+from cutcell_app.panels.export import _described
 from cutcell_app.state import PANELS
 from cutcell_app.work.jobs import PATIENCE, Jobs
-from tests.cutcell.io.gltf_builder import column
+from tests.cutcell.io.gltf_builder import COLUMN, column
 
 
 def test_the_bound_character_can_be_taken_along(bound, loop, tmp_path):
@@ -202,3 +203,13 @@ def test_a_machine_that_cannot_draw_is_told_so(bound, loop, small, monkeypatch):
     assert "no OpenGL" in bound.state.message[1]
     assert got == []
     assert bound.state.binding is not None
+
+
+def test_the_panel_says_whether_colours_come_along(tmp_path, demo_paths):
+    assert "as it was" in _described(cutcell.load(demo_paths[0]))
+    path = tmp_path / "column.obj"
+    path.write_text("".join(f"v {x} {y} {z}\n" for x, y, z in COLUMN) + "f 1 2 3\nf 2 3 4\n")
+    assert "without materials" in _described(cutcell.load(path))
+    colors = "".join(f"v {x} {y} {z} {x} {y} 0\n" for x, y, z in COLUMN)
+    path.write_text(colors + "f 1 2 3\nf 2 3 4\n")
+    assert "base colours" in _described(cutcell.load(path))

@@ -8,6 +8,7 @@ import pytest
 
 import cutcell
 from cutcell.io import SAVED
+from cutcell.io.materials import read_materials
 from tests.cutcell.cli.files import BAR, JOINTS, bar_faces, refused, write_obj
 
 
@@ -119,6 +120,18 @@ def test_touching_up_reaches_the_library(run, bar, tmp_path):
 def test_quiet_says_nothing(run, bar, tmp_path):
     result = run("bind", bar, tmp_path / "bound.glb", "-r", 8, "--quiet")
     assert (result.exit_code, result.stdout, result.stderr) == (0, "", "")
+
+
+def test_base_colours_are_saved_and_what_is_missing_is_told(run, bar, tmp_path):
+    bar.write_text(f"mtllib bar.mtl\nusemtl red\n{bar.read_text()}")
+    bar.with_suffix(".mtl").write_text("newmtl red\nKd 1 0 0\nmap_Kd skin.png\n")
+    done = run("bind", bar, tmp_path / "bound.glb", "-r", 16, "--json")
+    (sentence,) = json.loads(done.stdout)["warnings"]
+    assert 'material "red" is used without' in sentence
+    assert "its mesh has no texture coordinates" in sentence
+    found = read_materials(cutcell.load(tmp_path / "bound.glb"))
+    assert found.names == ("red",)
+    assert (found.body.tints == (255, 0, 0)).all()
 
 
 def test_takes_a_skeleton_from_elsewhere(run, tmp_path):

@@ -114,7 +114,7 @@ class TestBeside:
         found = read_materials(rig)
         assert found.images == ()
         assert found.notes == (
-            'material "paint 0" is shown without what could not be read of it: image "skin.png" is '
+            'material "paint 0" is used without what could not be read of it: image "skin.png" is '
             "not in the folder of column.fbx",
         )
         assert (found.body.tints == (255, 0, 0)).all()

@@ -2,6 +2,8 @@
 
 import json
 from dataclasses import replace
+from io import BytesIO
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,7 +12,9 @@ from numpy.testing import assert_allclose, assert_array_equal
 from PIL import Image
 
 import cutcell
+from cutcell.apart import WorkFailedError
 from cutcell.colors import linear, srgb
+from cutcell.io import saving_notes
 from cutcell.io.face_colors import BLENDED, CLAMP, MIRROR
 from cutcell.io.gltf_container import read_document
 from cutcell.io.gltf_faces import with_faces
@@ -39,18 +43,16 @@ HALVES = np.arange(len(FACES)) % 2
 BY_MATERIAL = np.argsort(HALVES, kind="stable")
 
 
-def png(side=4):
+def picture(kind, side=4, **how):
     """Return an image with a red upper half and a blue lower one."""
-    from io import BytesIO
-
     pixels = np.zeros((side, side, 3), np.uint8)
     pixels[: side // 2, :, 0] = pixels[side // 2 :, :, 2] = 255
     packed = BytesIO()
-    Image.fromarray(pixels).save(packed, "PNG")
+    Image.fromarray(pixels).save(packed, kind, **how)
     return packed.getvalue()
 
 
-SKIN_PNG = png()
+SKIN_PNG = picture("PNG")
 INSIDE = {"file": "skin.png", "content": SKIN_PNG}
 
 
@@ -154,12 +156,45 @@ class TestObj:
         rig = obj(lines("skin"), SKIN)
         found = check_same(rig, again(rig))
         assert (found.body.tints == (128, 255, 255)).all()
+        (note,) = saving_notes(Path("out.glb"), rig)
+        assert 'image "skin.png" is not in the folder of column.obj' in note
 
-    def test_an_image_of_another_format_leaves_the_colour(self, obj, again):
+    @pytest.mark.parametrize("kind", ["TGA", "BMP", "WEBP"])
+    def test_an_image_of_another_format_becomes_png(self, obj, again, kind):
+        rig = obj(lines("skin"), SKIN, skin=picture(kind, lossless=True))
+        found = read_materials(again(rig))
+        assert saving_notes(Path("out.glb"), rig) == ()
+        with Image.open(BytesIO(found.images[0].content)) as image:
+            assert image.format == "PNG"
+            assert image.getpixel((0, 0)) == (255, 0, 0)
+        assert_array_equal(found.body.corners, read_materials(rig).body.corners)
+
+    def test_a_damaged_image_leaves_the_colour_and_is_told(self, obj, again):
         rig = obj(lines("skin"), SKIN, skin=b"an image")
         found = read_materials(again(rig))
         assert found.images == ()
         assert (found.body.tints == (128, 255, 255)).all()
+        (note,) = saving_notes(Path("out.glb"), rig)
+        assert note == (
+            'image "skin.png" is not saved, and its material has its colour alone: it is no PNG, '
+            "JPEG, WebP, BMP or TGA, or damaged"
+        )
+        assert saving_notes(Path("out.npz"), rig) == ()
+
+    def test_an_image_of_too_many_pixels_is_told(self, obj):
+        huge = bytearray(picture("BMP"))
+        huge[18:26] = np.array([2**14, 2**13], "<u4").tobytes()
+        rig = obj(lines("skin"), SKIN, skin=bytes(huge))
+        assert "more than 67 million pixels" in saving_notes(Path("out.glb"), rig)[0]
+
+    def test_without_a_decoder_the_image_is_left_out(self, obj, again, monkeypatch):
+        def fails(*args):
+            raise WorkFailedError("PIL is not installed; try: pip install 'pillow'")
+
+        monkeypatch.setattr("cutcell.io.gltf_embedded.run_apart", fails)
+        rig = obj(lines("skin"), SKIN, skin=picture("TGA", side=6))
+        assert read_materials(again(rig)).images == ()
+        assert "try: pip install 'pillow'" in saving_notes(Path("out.glb"), rig)[0]
 
     def test_no_image_from_elsewhere_is_taken_in(self, obj, again, tmp_path):
         (tmp_path.parent / "secret.png").write_bytes(SKIN_PNG)

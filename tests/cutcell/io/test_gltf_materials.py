@@ -256,7 +256,7 @@ BROKEN = {
 def test_what_is_broken_is_told_and_leaves_the_factor(loaded, name):
     found = read_materials(loaded(broken(BROKEN[name])))
     (note,) = found.notes
-    assert note.startswith('material "cloth" is shown without')
+    assert note.startswith('material "cloth" is used without')
     assert (found.body.tints == (255, 0, 0)).all()
     assert (found.body.corners[..., 2] == -1).all()
 

@@ -173,7 +173,7 @@ class TestWhatIsMissing:
         rig = load(lines("red"))
         assert not has_materials(rig), "there is nothing to be seen"
         assert read_materials(rig).notes == (
-            "the materials of column.obj are not shown: column.mtl is not in the folder of "
+            "the materials of column.obj are not used: column.mtl is not in the folder of "
             "column.obj",
         )
 

@@ -10,6 +10,7 @@ from cutcell.colors import srgb
 from cutcell.io.face_colors import BLENDED, CLAMP, MIRROR, Layer
 from cutcell.io.materials import has_materials, read_materials
 from tests.cutcell.io.gltf_builder import FACES
+from tests.cutcell.io.test_gltf_colored import SKIN_PNG, check_same
 from tests.cutcell.io.test_usd import text
 
 UV = np.random.default_rng(9).uniform(0, 1, (3 * len(FACES), 2)).round(3)
@@ -129,3 +130,15 @@ def test_colours_to_be_displayed(painted):
 
 def test_without_any_there_is_nothing_to_see(painted):
     assert not has_materials(painted.load())
+
+
+def test_what_is_saved_has_them_too(painted, tmp_path):
+    (tmp_path / "skin.png").write_bytes(SKIN_PNG)
+    painted.bind(painted.material("skin", file="./skin.png"))
+    painted.bind(painted.material("blue", (0, 0, 1), opacity=0.5), [1, 3])
+    rig = painted.load()
+    cutcell.save(tmp_path / "out.glb", rig)
+    some = np.isin(np.arange(len(FACES)), [1, 3])
+    order = np.argsort(some, kind="stable")
+    found = check_same(rig, cutcell.load(tmp_path / "out.glb"), order)
+    assert found.names == ("skin", "blue")
