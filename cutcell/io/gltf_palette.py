@@ -89,18 +89,21 @@ class Palette:
             0 to 65,535, which a factor is multiplied by.
         """
         layers, rgba = self._shown(colors)
-        through = (colors.corners[:, 0, 3].astype(int)) * (
-            (layers >= 0) | (rgba[..., 3] < OPAQUE).any(1)
+        # How an image goes on matters where there is one; blending also where a colour is.
+        counts = (layers >= 0) | (rgba[..., 3] < OPAQUE).any(axis=1)
+        kinds = np.column_stack([colors.materials, layers, colors.corners[:, 0, 3] * counts])
+        found, first, of_face = np.unique(
+            kinds.astype(int), axis=0, return_index=True, return_inverse=True
         )
-        kinds = np.column_stack([colors.materials, layers, through])
-        found, first, of_face = np.unique(kinds, axis=0, return_index=True, return_inverse=True)
         of_face = of_face.reshape(-1)
+        ends = np.cumsum(np.bincount(of_face))
+        faces = np.split(np.argsort(of_face, kind="stable"), ends[:-1])
         values = np.zeros((len(kinds), 3, 6), np.float32)
         values[..., 2:] = FULL
         groups = []
         for k in np.argsort(first).tolist():
             name, layer, wrap = found[k].tolist()
-            rows = np.flatnonzero(of_face == k)
+            rows = faces[k]
             corners = rgba[rows]
             varied = bool((corners != corners[0, 0]).any())
             factor = (OPAQUE,) * 4 if varied else tuple(corners[0, 0].tolist())
