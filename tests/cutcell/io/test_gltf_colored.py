@@ -1,7 +1,7 @@
 """Base colours of other formats in a GLB: what is saved is seen again, on the same vertices."""
 
-import json
 from dataclasses import replace
+from functools import partial
 from io import BytesIO
 from pathlib import Path
 
@@ -16,7 +16,6 @@ from cutcell.apart import WorkFailedError
 from cutcell.colors import linear, srgb
 from cutcell.io import saving_notes
 from cutcell.io.face_colors import BLENDED, CLAMP, MIRROR
-from cutcell.io.gltf_container import read_document
 from cutcell.io.gltf_faces import with_faces
 from cutcell.io.materials import has_materials, read_materials
 from tests.cutcell.io.fbx_builder import (
@@ -65,16 +64,18 @@ def bound(rig):
     return replace(rig, skeleton=skeleton, weights=SHARES[:, :2])
 
 
+def load_obj(folder, text, mtl="", **images):
+    """Write an OBJ with its files and load it."""
+    (folder / "column.obj").write_text(text)
+    (folder / "column.mtl").write_text(mtl)
+    for name, content in images.items():
+        (folder / f"{name}.png").write_bytes(content)
+    return bound(cutcell.load(folder / "column.obj"))
+
+
 @pytest.fixture
 def obj(tmp_path):
-    def loaded(text, mtl="", **images):
-        (tmp_path / "column.obj").write_text(text)
-        (tmp_path / "column.mtl").write_text(mtl)
-        for name, content in images.items():
-            (tmp_path / f"{name}.png").write_bytes(content)
-        return bound(cutcell.load(tmp_path / "column.obj"))
-
-    return loaded
+    return partial(load_obj, tmp_path)
 
 
 @pytest.fixture
@@ -87,17 +88,17 @@ def fbx(tmp_path):
     return loaded
 
 
+def load_again(folder, rig, name="out.glb"):
+    """Save a rig, see that the file is valid, and load it."""
+    cutcell.save(folder / name, rig)
+    (report,) = reports(folder / name)
+    assert {found["code"] for found in report["issues"]["messages"]} <= OF_SCENES
+    return cutcell.load(folder / name)
+
+
 @pytest.fixture
 def again(tmp_path):
-    """Save a rig, see that the file is valid, and load it."""
-
-    def saved(rig, name="out.glb"):
-        cutcell.save(tmp_path / name, rig)
-        (report,) = reports(tmp_path / name)
-        assert {found["code"] for found in report["issues"]["messages"]} <= OF_SCENES
-        return cutcell.load(tmp_path / name)
-
-    return saved
+    return partial(load_again, tmp_path)
 
 
 def check_same(rig, found, order=slice(None)):
@@ -284,65 +285,6 @@ def test_a_mesh_without_a_skin_that_becomes_a_new_file_keeps_them(tmp_path, agai
     found = check_same(rig, again(rig))
     assert found.layers[0].cutoff == 0.25
     assert (found.body.corners[..., 3] == 3 * MIRROR).all()
-
-
-class TestSavedAgain:
-    """A file with split vertices is a glTF document like others."""
-
-    @pytest.fixture
-    def first(self, obj, again):
-        rig = obj(lines("red", "skin"), RED + SKIN, skin=SKIN_PNG)
-        found = again(rig)
-        stored = found.source.document.json["accessors"][0]["count"]
-        assert stored > len(found.mesh.vertices)
-        return found
-
-    def test_other_weights(self, first, again):
-        other = first.with_weights(np.eye(2)[np.arange(12) % 2])
-        check_same(other, again(other))
-
-    def test_the_same_weights_give_the_same_bytes(self, first, tmp_path):
-        cutcell.save(tmp_path / "a.glb", first)
-        cutcell.save(tmp_path / "b.glb", cutcell.load(tmp_path / "a.glb"))
-        assert (tmp_path / "a.glb").read_bytes() == (tmp_path / "b.glb").read_bytes()
-
-    def test_repaired_faces_keep_their_colours(self, first, again):
-        kept, turned = np.ones(len(FACES), bool), np.zeros(len(FACES), bool)
-        kept[[2, 15]], turned[[4, 16]] = False, True
-        mended = with_faces(first, kept, turned)
-        check_same(mended, again(mended))
-
-    def test_faces_that_are_not_the_files_have_no_colours(self, first):
-        faces = np.concatenate([first.mesh.faces[1:], first.mesh.faces[1:2]])
-        mesh = cutcell.TriangleMesh(first.mesh.vertices, faces)
-        assert read_materials(replace(first, mesh=mesh)) is None
-
-    @pytest.mark.parametrize("what", ["position", "weight", "number", "not a number", "kind"])
-    def test_copies_that_another_program_changed_count_for_themselves(self, first, tmp_path, what):
-        document = read_document(tmp_path / "out.glb")
-        (one, *_) = document.json["meshes"][0]["primitives"]
-        named = one["attributes"]
-        name = {"position": "POSITION", "weight": "WEIGHTS_0"}.get(what, "_SPLIT_FROM")
-        accessor = document.json["accessors"][named[name]]
-        view = document.json["bufferViews"][accessor["bufferView"]]
-        data = bytearray(document.buffers[0])
-        start = view["byteOffset"] + accessor["byteOffset"]
-        end = start + accessor["count"] * view["byteStride"]
-        values = np.frombuffer(data[start:end], "<f4").copy()
-        if what == "weight":
-            values = values.reshape(-1, 4)
-            values[-1] = np.where(values[-1] == 1, 0, 0.5)
-        else:
-            values[-1] = {"position": 9, "number": 99, "not a number": np.nan}.get(what, 0)
-        if what == "kind":
-            accessor |= {"type": "VEC4", "count": accessor["count"] // 4}
-        data[start:end] = values.tobytes()
-        (tmp_path / "out.bin").write_bytes(data)
-        document.json["buffers"][0]["uri"] = "out.bin"
-        (tmp_path / "out.gltf").write_text(json.dumps(document.json))
-        found = cutcell.load(tmp_path / "out.gltf")
-        assert len(found.mesh.vertices) > len(first.mesh.vertices)
-        assert has_materials(found)
 
 
 def test_linear_colours_are_those_of_pictures():
