@@ -12,16 +12,16 @@ fail() { printf 'set-up stopped: %s\n' "$*" >&2; exit 1; }
 # True for a Python that runs and that cutcell supports. A command of that name may be there
 # and still not run (a shim of a version manager), so it is asked, not looked up.
 supported() {
-    "$1" -c 'import sys; sys.exit(not (3, 11) <= sys.version_info[:2] <= (3, 12))' 2>/dev/null
+    "$1" -c 'import sys; sys.exit(not (3, 11) <= sys.version_info[:2] <= (3, 14))' 2>/dev/null
 }
 
 find_python() {
     local name
-    for name in python3.12 python3.11 python3 python; do
+    for name in python3.14 python3.13 python3.12 python3.11 python3 python; do
         if supported "$name"; then echo "$name"; return; fi
     done
-    fail "cutcell needs Python 3.11 or 3.12, and none was found. Install one, so that
-\`python3.12\` or \`python3.11\` is on the PATH, and run make again."
+    fail "cutcell needs Python 3.11, 3.12, 3.13 or 3.14, and none was found. Install one, so that
+a command such as \`python3.13\` is on the PATH, and run make again."
 }
 
 # Debian ships Python without ensurepip, which puts pip into a new environment. Then pip comes
