@@ -1,5 +1,6 @@
 """What all tests share: characters to load, a browser, and how several processes run them."""
 
+import os
 from pathlib import Path
 
 import pytest
@@ -22,6 +23,46 @@ def pytest_xdist_make_scheduler(config, log):
     from tests.dealing import Dealing
 
     return Dealing(config, log)
+
+
+class ReversedEntries:
+    """Directory entries in reverse order of their names, used as `os.scandir` is."""
+
+    def __init__(self, entries) -> None:
+        with entries:
+            self.entries = iter(sorted(entries, key=lambda entry: entry.name, reverse=True))
+
+    def __iter__(self):
+        return self.entries
+
+    def __next__(self):
+        return next(self.entries)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *error) -> None:
+        pass
+
+    def close(self) -> None:
+        pass
+
+
+@pytest.fixture(scope="session", autouse=True)
+def reversed_directories():
+    """List directories backwards: nothing may depend on the order that a file system has."""
+    with pytest.MonkeyPatch.context() as patch:
+        listdir, scandir = os.listdir, os.scandir
+        patch.setattr(os, "listdir", lambda *path: sorted(listdir(*path), reverse=True))
+        patch.setattr(os, "scandir", lambda *path: ReversedEntries(scandir(*path)))
+        for name in ("glob", "rglob"):  # some versions of Python list by a function of their own
+            search = getattr(Path, name)
+            patch.setattr(Path, name, _reversed(search))
+        yield
+
+
+def _reversed(search):
+    return lambda *words, **options: iter(sorted(search(*words, **options), reverse=True))
 
 
 @pytest.fixture(scope="session")

@@ -220,8 +220,8 @@ def as_seen(colors: ArrayLike, eye: str) -> NDArray[np.float64]:
 
 def differences(colors: ArrayLike) -> NDArray[np.float64]:
     """Return how far apart colours (n, 3) are in OKLab, to the eye that sees it least, (n, n)."""
-    seen = [_srgb_to_oklab(as_seen(colors, eye)) for eye in EYES]
-    return np.min([np.linalg.norm(lab[:, None] - lab, axis=2) for lab in seen], axis=0)
+    labs = np.stack([_srgb_to_oklab(as_seen(colors, eye)) for eye in EYES])
+    return np.linalg.norm(labs[:, :, None] - labs[:, None], axis=3).min(axis=0)
 
 
 def to_bytes(colors: ArrayLike) -> NDArray[np.uint8]:
