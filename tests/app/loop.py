@@ -14,7 +14,7 @@ class Loop:
     def __call__(self, action: Callable[[], None]) -> None:
         self._actions.put(action)
 
-    def run_until(self, condition: Callable[[], bool], seconds: float = 30.0) -> None:
+    def run_until(self, condition: Callable[[], bool], seconds: float = 120.0) -> None:
         """Run actions until something holds; fail if it never does."""
         end = time.monotonic() + seconds
         while not condition():

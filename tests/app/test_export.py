@@ -22,7 +22,8 @@ from cutcell_app.commands.export import (
 )
 from cutcell_app.panels.export import _described
 from cutcell_app.state import PANELS
-from cutcell_app.work.jobs import PATIENCE, Jobs
+from cutcell_app.work import jobs
+from cutcell_app.work.jobs import Jobs
 from tests.cutcell.io.gltf_builder import COLUMN, column
 
 
@@ -156,16 +157,16 @@ WRITERS = {
 def test_writing_can_be_cancelled_and_others_compute_then(bound, loop, monkeypatch, what):
     writer, act = WRITERS[what]
     monkeypatch.setattr(writer, never_ends)
+    monkeypatch.setattr(jobs, "PATIENCE", 3600)  # so that others run only where it has ended
     more = {"ending": "csv"} if what == "numbers" else {}
     act(bound, done=lambda name, content: pytest.fail("it never ends"), **more)
     loop.run_until(lambda: bound.state.stage.startswith("writing"))
     loop.run_for(0.2)
     binding.cancel(bound)
     assert not bound.state.busy
-    began, got = time.monotonic(), []
+    got: list = []
     Jobs(loop).start(lambda progress: "computed", got.append, got.append, silent)
     loop.run_until(lambda: got == ["computed"])
-    assert time.monotonic() - began < PATIENCE, "it was not only passed by: it has ended"
     assert list(bound.folder.iterdir()) == []
 
 

@@ -39,7 +39,7 @@ def begun(here, monkeypatch):
 
 def get(here, path="/", method="GET", **headers):
     """Ask for a page; return the answer, its text in `text`."""
-    connection = http.client.HTTPConnection("127.0.0.1", here.port, timeout=30)
+    connection = http.client.HTTPConnection("127.0.0.1", here.port, timeout=120)
     try:
         given = {name.replace("_", "-"): value for name, value in headers.items()}
         connection.request(method, path, headers={"Host": here.host, **given})
@@ -59,12 +59,12 @@ def upgrade(here, origin=None, token=None, host=None):
         "Sec-WebSocket-Key: x3JJHMbDL1EzLkh9GBhXDw==", f"Sec-WebSocket-Protocol: bokeh, {token}",
         *([] if origin is None else [f"Origin: {origin}"]), "", "",
     ]  # fmt: skip
-    with socket.create_connection(("127.0.0.1", here.port), 30) as raw:
+    with socket.create_connection(("127.0.0.1", here.port), 120) as raw:
         raw.sendall("\r\n".join(lines).encode())
         return int(raw.recv(100).split()[1])
 
 
-def wait_until(condition, seconds=30):
+def wait_until(condition, seconds=120):
     end = time.monotonic() + seconds
     while not condition():
         assert time.monotonic() < end, "it did not come about in time"
@@ -203,7 +203,7 @@ def test_no_other_site_can_frame_the_page(here):
 
 
 def test_a_large_body_is_refused(here):
-    connection = http.client.HTTPConnection("127.0.0.1", here.port, timeout=30)
+    connection = http.client.HTTPConnection("127.0.0.1", here.port, timeout=120)
     connection.putrequest("POST", "/", skip_host=True)
     connection.putheader("Host", here.host)
     connection.putheader("Content-Length", str(10**9))

@@ -12,26 +12,24 @@ from cutcell.errors import Cancelled
 
 
 def sleepers():
-    return [p for p in psutil.Process().children() if "time.sleep(61)" in " ".join(p.cmdline())]
+    return [p for p in psutil.Process().children() if "time.sleep(601)" in " ".join(p.cmdline())]
 
 
 @pytest.fixture
 def sleeping(monkeypatch):
-    monkeypatch.setattr(apart, "COMMAND", (sys.executable, "-c", "import time; time.sleep(61)"))
+    monkeypatch.setattr(apart, "COMMAND", (sys.executable, "-c", "import time; time.sleep(601)"))
 
 
 def test_what_is_no_longer_wanted_ends_with_its_process(sleeping):
-    begin, asked = time.monotonic(), []
+    begin = time.monotonic()
 
     def wanted():
-        asked.append(len(sleepers()))
-        if time.monotonic() - begin > 0.5:
+        if sleepers():
             raise Cancelled
 
     with apart.stoppable(wanted), pytest.raises(Cancelled):
-        apart.run_apart("bbw", {}, 60.0, "the sleeper")
-    assert time.monotonic() - begin < 20
-    assert max(asked) == 1  # it ran
+        apart.run_apart("bbw", {}, 600.0, "the sleeper")
+    assert time.monotonic() - begin < 300
     assert not sleepers()
 
 

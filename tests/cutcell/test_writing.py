@@ -183,7 +183,7 @@ def test_many_writers_of_one_file_do_not_meet(tmp_path):
         subprocess.Popen([sys.executable, "-c", code, str(path), letter], cwd=ROOT)
         for letter in "xyz"
     ]
-    deadline = time.monotonic() + 60
+    deadline = time.monotonic() + 300
     while any(process.poll() is None for process in running):
         assert time.monotonic() < deadline
         content = path.read_text() if path.exists() else ""
@@ -207,7 +207,7 @@ def test_names_may_be_as_long_as_the_system_takes(tmp_path):
     [
         ("no/where.glb", "where.glb: there is no folder .*no to save it in"),
         (f"{LONG}.glb", "cannot be written .File name too long"),
-        ("a\0b.glb", "cannot be written .embedded null"),
+        ("a\0b.glb", "cannot be written .*embedded null"),
         ("folder.glb", "folder.glb: is a folder; name a file"),
     ],
 )

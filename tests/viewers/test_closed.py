@@ -42,9 +42,9 @@ def test_a_heap_of_vertices_at_one_place_is_soon_done():
     heap = np.zeros((40_000, 3))
     points = np.concatenate([heap, np.eye(3)])
     faces = np.arange(len(points) // 3 * 3).reshape(-1, 3)
-    began = time.monotonic()
+    began = time.process_time()
     normals = smooth_normals(points, faces)
-    assert time.monotonic() - began < 5, "it was quadratic, and took a minute"
+    assert time.process_time() - began < 20, "it was quadratic, and took a minute"
     np.testing.assert_allclose(np.linalg.norm(normals, axis=1), 1)
 
 
