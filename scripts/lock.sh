@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Choose again the versions that `make app` and `make test` install, for Python 3.11 and 3.12. The
+# Choose again the versions that `make app` and `make test` install, for Python 3.11 to 3.14. The
 # extra `test` has all others but networks: scripts/get_torch.py says which torch is installed.
 set -euo pipefail
 cd "$(dirname "$0")/.."
