@@ -52,7 +52,7 @@ class Gap:
         matrices = np.vstack([matrices, np.eye(3, 4, dtype=np.float32).ravel()])
         blended = (self._between @ matrices).reshape(-1, 3, 4)
         apart = (blended[:, :, :3] @ self._points[:, :, None])[:, :, 0] + blended[:, :, 3]
-        return np.float32(self._unit) * (apart * apart).sum(axis=1)
+        return np.asarray(self._unit * (apart * apart).sum(axis=1), np.float32)
 
 
 def error_scene(

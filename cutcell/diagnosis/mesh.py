@@ -166,7 +166,7 @@ def _doubled(subject: Subject) -> Iterator[Finding]:
 def _rolled(faces: NDArray[np.int32]) -> NDArray[np.int32]:
     """Begin each face at its lowest corner; its winding stays."""
     first = faces.argmin(axis=1)
-    return np.take_along_axis(faces, (first[:, None] + [0, 1, 2]) % 3, axis=1)
+    return np.take_along_axis(faces, (first[:, None] + np.arange(3)) % 3, axis=1)
 
 
 def _degenerate(subject: Subject) -> Iterator[Finding]:

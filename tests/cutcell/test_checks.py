@@ -14,7 +14,7 @@ from cutcell.checks import (
     shown,
 )
 
-STRANGE = [None, "5", b"5", 3 + 4j, [], [5], {}, object(), np.array([5]), np.datetime64("NaT")]
+STRANGE = [None, "5", b"5", 3 + 4j, [], [5], {}, object(), np.array([5]), np.datetime64("NaT", "s")]
 """No number, though numpy would take some for one."""
 WIDE = [np.nan, np.inf, -np.inf, 10**400, -(10**5000), 1e308, True]
 

@@ -58,7 +58,7 @@ ODD: list[Any] = [
     {},
     object(),
     np.array([1, 2]),
-    np.datetime64("NaT"),
+    np.datetime64("NaT", "s"),
 ]
 """What no option can be, or hardly."""
 
