@@ -160,14 +160,15 @@ def render(
         typer.Option("--turntable", help="Film it from all around.", rich_help_panel=HOW),
     ] = False,
     view: Annotated[
-        str,
+        str | None,
         typer.Option(
             "--view",
             metavar="VIEW",
-            help="From where: front, three-quarter, left, right, back or top.",
+            help="From where: front, three-quarter, left, right, back or top. If left out: the side"
+            " that a finding is on, else three-quarter.",
             rich_help_panel=HOW,
         ),
-    ] = "three-quarter",
+    ] = None,
     near: Near = None,
     size: Annotated[
         str | None,

@@ -86,7 +86,7 @@ app.command(epilog=GRAPH_EPILOG)(graph)
 
 - `cutcell compare character.glb`
 
-- `cutcell compare *.glb --methods cutcell_any,bone_heat`  (medians, means and the worst rig)
+- `cutcell compare *.glb --methods cutcell_rig,bone_heat`  (medians, means and the worst rig)
 
 - `cutcell compare *.glb --networks trained --methods rignet-cutcell-tiny-0,cutcell`
 

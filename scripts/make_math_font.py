@@ -1,7 +1,7 @@
 """Make the font of the tour's formulas: DejaVu Math TeX Gyre with the characters that they use.
 
-Debian has it in the package `fonts-dejavu-extra`; it is free to be changed and passed on under its
-license (Bitstream Vera, and the GUST Font License), which stays written in the file.
+Debian has it in the package `fonts-dejavu-extra`. Its license, that of Bitstream Vera, allows it to
+be changed and passed on together with the license, which is in NOTICE.
 """
 
 import sys

@@ -82,7 +82,8 @@ def written(tmp_path_factory):
 def test_an_output_is_written_whole_or_not_at_all(written, name):
     folder, told = written
     assert (folder / f"good-{name}").stat().st_size > 700
-    assert told[name] == f"{name}: cannot be written (File too large)"
+    assert told[name].startswith(f"{name}: cannot be written (")
+    assert told[name].endswith("File too large)")
     assert (folder / name).read_text() == "old"
 
 

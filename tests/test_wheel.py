@@ -5,6 +5,7 @@ import re
 import shutil
 import subprocess
 import sys
+import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 from urllib.request import Request, urlopen
@@ -13,9 +14,11 @@ import pytest
 
 ROOT = Path(__file__).resolve().parent.parent
 SOURCES = ("app", "assets", "cutcell", "viewers")
-FILES = ("LICENSE", "README.md", "pyproject.toml", "setup.py")
+FILES = ("LICENSE", "NOTICE", "README.md", "pyproject.toml", "setup.py")
 TRAP = 'raise RuntimeError("imported from the working directory")\n'
 START_SECONDS = 120
+COPYLEFT = {"av", "imageio-ffmpeg", "libigl", "pytetwild", "tetgen"}
+"""Packages whose wheels have parts under the GPL, the LGPL or the AGPL: see NOTICE."""
 
 
 @pytest.fixture(scope="module")
@@ -59,6 +62,21 @@ def test_all_that_it_installs_is_called_cutcell(installed):
     names = {path.name for path in installed.iterdir()} - {"bin"}
     assert names
     assert all(name.startswith("cutcell") for name in names), names
+
+
+def test_it_has_the_licences_of_all_that_it_contains(installed):
+    licenses = next(installed.glob("cutcell-*.dist-info")) / "licenses"
+    assert {path.name for path in licenses.iterdir()} == {"LICENSE", "NOTICE"}
+
+
+def test_copyleft_is_installed_by_extras_of_its_own():
+    settings = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    extras = settings["optional-dependencies"]
+    allowed = {"films": {"imageio-ffmpeg"}, "copyleft": {"libigl", "pytetwild"}, "test": set()}
+    for name, wanted in {"": settings["dependencies"], **extras}.items():
+        packages = {re.match(r"[\w-]+", one)[0] for one in wanted}
+        assert packages & COPYLEFT == allowed.get(name, set()), name
+        assert name == "test" or "cutcell" not in packages
 
 
 def test_it_binds_and_draws(installed, folder):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import zlib
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from io import BytesIO
 from pathlib import Path
@@ -13,14 +13,15 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from cutcell.errors import FileError, MissingLibraryError
+from cutcell.errors import FileError
 from cutcell.motion import Clip
 from cutcell.pose import pose_at
 from cutcell.progress import Progress, silent
-from cutcell.writing import check_place, replacing, write_all
+from cutcell.writing import check_place, write_all
 
 from .camera import Camera, around, sees
 from .description import Description
+from .mp4 import find_ffmpeg, write_mp4
 from .palette import THEMES
 from .skin import moved
 from .studio import Studio
@@ -84,7 +85,7 @@ def draw(order: Order, path: str | Path, progress: Progress = silent) -> None:
         Another ending, a film that does not move, a folder that is not there, or a file that
         cannot be written.
     MissingLibraryError
-        MP4 without the library that writes it.
+        MP4 without ffmpeg.
     """
     path = Path(path)
     kind = check_picture_file(path, moves=order.turntable or order.motion is not None)
@@ -96,7 +97,8 @@ def draw(order: Order, path: str | Path, progress: Progress = silent) -> None:
         if kind in PICTURES:
             _write_picture(path, studio.draw(camera))
         else:
-            _WRITERS[kind](path, _frames(order, studio, camera, FRAMES[kind], progress))
+            write = write_mp4 if kind == ".mp4" else _write_gif
+            write(path, _frames(order, studio, camera, FRAMES[kind], progress), FRAMES[kind])
     progress("drawing", 1.0)
 
 
@@ -107,6 +109,8 @@ def check_picture_file(path: Path, moves: bool = False) -> str:
     ------
     FileError
         It is none that can be drawn, or does not fit what is drawn, or has no folder.
+    MissingLibraryError
+        MP4 without ffmpeg.
     """
     kind = path.suffix.lower()
     fitting = FILMS if moves else PICTURES
@@ -118,6 +122,8 @@ def check_picture_file(path: Path, moves: bool = False) -> str:
             f"{what} as {' or '.join(fitting)}"
             + ("; ask for a turntable or a clip" if other and not moves else "")
         )
+    if kind == ".mp4":
+        find_ffmpeg()
     check_place(path)
     return kind
 
@@ -221,30 +227,7 @@ def _write_picture(path: Path, pixels: NDArray[np.uint8]) -> None:
     write_all({path: written.getvalue()})
 
 
-def _write_mp4(path: Path, frames: Iterator[NDArray[np.uint8]]) -> None:
-    try:
-        import av
-    except ModuleNotFoundError:
-        raise MissingLibraryError(
-            "MP4 needs a library that is not installed; install it by: pip install 'cutcell[app]',"
-            " or save a GIF"
-        ) from None
-    options = {"movflags": "faststart"}  # it is read back to be moved: a file it must be
-    with replacing(path) as (unready,), av.open(str(unready), "w", options=options) as film:
-        stream: Any = None
-        for pixels in frames:
-            if stream is None:
-                options = {"crf": "18", "preset": "fast"}
-                stream = film.add_stream("libx264", rate=FRAMES[".mp4"], options=options)
-                stream.height, stream.width = pixels.shape[:2]
-                stream.pix_fmt = "yuv420p"
-            for packet in stream.encode(av.VideoFrame.from_ndarray(pixels, format="rgb24")):
-                film.mux(packet)
-        for packet in stream.encode(None):
-            film.mux(packet)
-
-
-def _write_gif(path: Path, frames: Iterator[NDArray[np.uint8]]) -> None:
+def _write_gif(path: Path, frames: Iterator[NDArray[np.uint8]], rate: int) -> None:
     # One palette for all frames: what stands still does not flicker, and the file is small.
     # Till it is known the frames are kept packed; most of each is one smooth gradient.
     packed: list[bytes] = []
@@ -271,13 +254,7 @@ def _write_gif(path: Path, frames: Iterator[NDArray[np.uint8]]) -> None:
         format="gif",
         save_all=True,
         append_images=every,
-        duration=1000 // FRAMES[".gif"],
+        duration=1000 // rate,
         loop=0,
     )
     write_all({path: written.getvalue()})
-
-
-_WRITERS: dict[str, Callable[[Path, Iterator[NDArray[np.uint8]]], None]] = {
-    ".mp4": _write_mp4,
-    ".gif": _write_gif,
-}

@@ -118,8 +118,21 @@ def camera_on(
     return _towards(points, bounds, aspect)
 
 
-def camera_on_marks(description: Description, aspect: float) -> Camera | None:
-    """Return a camera that sees the marks of a scene; None where there are none."""
+def camera_on_marks(
+    description: Description,
+    aspect: float,
+    direction: tuple[float, float, float] | None = None,
+) -> Camera | None:
+    """Return a camera that sees the marks of a scene; None where there are none.
+
+    Parameters
+    ----------
+    description : Description
+    aspect : float
+        Width over height of the picture.
+    direction : tuple of float, optional
+        Where to look from; the side that the marks are on when left out.
+    """
     marks = [actor for name, actor in description.actors.items() if name.startswith("finding")]
     pose = description.pose
     points = [
@@ -128,15 +141,24 @@ def camera_on_marks(description: Description, aspect: float) -> Camera | None:
         else moved(actor.points, actor.skin, pose)
         for actor in marks
     ]
-    return _towards(np.concatenate(points), description.bounds, aspect) if points else None
+    if not points:
+        return None
+    return _towards(np.concatenate(points), description.bounds, aspect, direction)
 
 
-def _towards(points: NDArray[np.floating], bounds: NDArray[np.float64], aspect: float) -> Camera:
+def _towards(
+    points: NDArray[np.floating],
+    bounds: NDArray[np.float64],
+    aspect: float,
+    direction: tuple[float, float, float] | None = None,
+) -> Camera:
     low, high = points.min(axis=0), points.max(axis=0)
     least = NEAREST * float(np.linalg.norm(bounds[1] - bounds[0]))
     more = np.maximum(least - (high - low), 0) / 2
     middle = bounds.mean(axis=0)
     side = (low + high) / 2 - middle
-    # From the side that they are on, and still from the front, and never straight from above.
-    direction = np.array(FRONT) + 1.5 * side / max(float(np.ptp(bounds, axis=0).max()), 1e-300)
-    return framing(np.stack([low - more, high + more]), aspect, tuple(direction.tolist()))
+    if direction is None:
+        # From the side that they are on, and still from the front, and never straight from above.
+        towards = np.array(FRONT) + 1.5 * side / max(float(np.ptp(bounds, axis=0).max()), 1e-300)
+        direction = tuple(towards.tolist())
+    return framing(np.stack([low - more, high + more]), aspect, direction)

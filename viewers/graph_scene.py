@@ -82,10 +82,9 @@ def graph_scene(
     """
     nodes = to_scene(rig, graph.lattice.to_file(graph.nodes)).astype(np.float32)
     cell = to_scene_length(rig, graph)
-    inks = (theme.mesh_edge, palette.INTERIOR, theme.surface_edge)
     own = None if colors is None else np.asarray(colors, np.uint8)
     actors = {}
-    for (name, kind), color in zip(LAYERS.items(), inks, strict=True):
+    for (name, kind), color in zip(LAYERS.items(), theme.edges, strict=True):
         edges = graph.edges[graph.edge_kind == kind]
         used, cells = np.unique(edges, return_inverse=True)
         scalars, limits = None, (0.0, 1.0)
@@ -107,7 +106,7 @@ def graph_scene(
             visible=name in layers,
             slab=slab if kind == INTERIOR else 0.0,
         )
-    for (name, kind), color in zip(NODES.items(), inks, strict=True):
+    for (name, kind), color in zip(NODES.items(), theme.edges, strict=True):
         which = np.flatnonzero((graph.node_kind == kind) & graph.connected)
         actors[name] = Actor(
             "points",

@@ -80,6 +80,11 @@ class Theme:
     mesh_edge: Color
     surface_edge: Color
 
+    @property
+    def edges(self) -> tuple[Color, Color, Color]:
+        """Return the colours of mesh, interior and surface edges."""
+        return self.mesh_edge, INTERIOR, self.surface_edge
+
 
 # Blue and green are the paper's hues, as light or dark as every one of `EYES` needs to tell them
 # from each other, from orange, and from what is around.

@@ -9,22 +9,16 @@ import panel_material_ui as pmui
 
 from cutcell.geodesics import LEAVES
 from cutcell.graph import INTERIOR, MESH, SURFACE
-from cutcell_viewers import palette
 from cutcell_viewers.palette import to_hex
 
 from ..commands.binding import bind
 from ..commands.session import Session
+from ..scenes.common import theme_of
 from ..state import LAYERS, State
 from .cutting import cutting
 from .parts import GAP, caption, choice, lead, section, slider, weightless, when, words
 
 KINDS = {"mesh_edges": MESH, "interior_edges": INTERIOR, "surface_edges": SURFACE}
-LAYER_COLORS = {
-    "mesh_edges": "#3a96c0",
-    "interior_edges": to_hex(palette.INTERIOR),
-    "surface_edges": "#5aa02c",
-}
-"""What marks each layer's switch, in the paper's colours."""
 LEAF_TITLES = {"point": "Points", "extend": "Extended", "fit": "Fitted"}
 SEARCHED = (
     "Interior edges only carry the search: a distance runs straight wherever there is line of "
@@ -50,15 +44,12 @@ def graph(session: Session) -> pmui.Column:
 
 
 def _layer(state: State, name: str) -> pmui.Row:
-    color = LAYER_COLORS.get(name)
-    checked = "& .MuiSwitch-switchBase.Mui-checked"
-    look = {checked: {"color": color}, f"{checked} + .MuiSwitch-track": {"bgcolor": color}}
     switch = pmui.Switch.from_param(
         state.param[name],
         label=state.param[name].label,
         size="small",
         margin=(1, 0),
-        sx=look if color else {},
+        sx=when(lambda _: _switch_colors(state, name), state.param.dark) if name in KINDS else {},
     )
     number = words(
         when(lambda *_: count(state, name), *_built(state), state.param.rig),
@@ -75,6 +66,13 @@ def _layer(state: State, name: str) -> pmui.Row:
     # A slice shows rays instead of edges.
     visible = name == "body" or when(lambda slicing: not slicing, state.param.slicing)
     return pmui.Row(switch, spacer, number, sizing_mode="stretch_width", margin=0, visible=visible)
+
+
+def _switch_colors(state: State, layer: str) -> dict[str, Any]:
+    """Return the style of the switch of a layer, in the colour that its edges are drawn in."""
+    color = to_hex(theme_of(state).edges[KINDS[layer]])
+    checked = "& .MuiSwitch-switchBase.Mui-checked"
+    return {checked: {"color": color}, f"{checked} + .MuiSwitch-track": {"bgcolor": color}}
 
 
 def _nodes(state: State) -> pmui.Column:

@@ -90,14 +90,14 @@ class Choices:
     dark: bool = False
 
 
-def check(rig: Rig, choices: Choices, view: str = "three-quarter") -> None:
+def check(rig: Rig, choices: Choices, view: str | None = None) -> None:
     """Raise an error for choices that a rig does not offer, before anything is computed.
 
     Parameters
     ----------
     rig : Rig
     choices : Choices
-    view : str
+    view : str, optional
         One of `VIEWS`.
 
     Raises
@@ -108,7 +108,8 @@ def check(rig: Rig, choices: Choices, view: str = "three-quarter") -> None:
         A mesh without a skeleton, on any panel but "graph".
     """
     state_of(rig, choices)
-    check_choice("view", view, VIEWS)
+    if view is not None:
+        check_choice("view", view, VIEWS)
 
 
 def state_of(rig: Rig, choices: Choices) -> State:

@@ -24,7 +24,7 @@ def order(
     choices: Choices,
     *,
     size: tuple[int, int] = (1600, 1200),
-    view: str = "three-quarter",
+    view: str | None = None,
     turntable: bool = False,
     legend: bool = True,
     near: float | None = None,
@@ -39,8 +39,8 @@ def order(
     choices : Choices
     size : (int, int)
         Width and height in pixels.
-    view : str
-        One of `VIEWS`.
+    view : str, optional
+        One of `VIEWS`. When left out: the side that a finding is on, else three-quarter.
     turntable : bool
         The camera goes once around.
     legend : bool
@@ -52,14 +52,15 @@ def order(
     ParameterError
         No such view.
     """
-    direction = VIEWS[check_choice("view", view, VIEWS)]
+    direction = None if view is None else VIEWS[check_choice("view", view, VIEWS)]
     motion = None
     if choices.clip is not None and choices.time is None:
         clip = find_clip(rig, choices.clip)
         motion = clip_in_scene(rig, clip)
     theme = "dark" if choices.dark else "light"
     aspect = size[0] / size[1]
-    camera = camera_on_marks(description, aspect) if choices.finding else None
+    camera = camera_on_marks(description, aspect, direction) if choices.finding else None
+    direction = direction or VIEWS["three-quarter"]
     if near is not None:
         camera = _near(
             rig, description, choices, check_number("near", near, 0.01, 1), aspect, direction

@@ -11,7 +11,6 @@ from cutcell_viewers.description import Actor, Cut, Description, Legend
 from cutcell_viewers.distance_scene import distance_legend, distance_limits
 from cutcell_viewers.graph_scene import component_colors, depth_field, graph_scene, node_marks
 from cutcell_viewers.marks import path_tube
-from cutcell_viewers.palette import INTERIOR as INTERIOR_COLOR
 from cutcell_viewers.palette import MARK
 from cutcell_viewers.slice_scene import file_axis, slice_place, slice_scene
 
@@ -137,10 +136,8 @@ def _field(state: State, memo: Memo) -> tuple[Any, dict[str, Any], Legend | None
 
 def kinds_legend(state: State) -> Legend | None:
     """Return what the colours of the layers of edges that are seen stand for."""
-    theme = theme_of(state)
-    colors = {"mesh_edges": theme.mesh_edge, "interior_edges": INTERIOR_COLOR,
-              "surface_edges": theme.surface_edge}  # fmt: skip
-    seen = tuple((colors[name], text) for name, text in KINDS.items() if getattr(state, name))
+    colored = zip(theme_of(state).edges, KINDS.items(), strict=True)
+    seen = tuple((color, text) for color, (name, text) in colored if getattr(state, name))
     return Legend("The graph's edges", swatches=seen) if seen else None
 
 

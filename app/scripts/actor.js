@@ -39,6 +39,7 @@ export class Actor {
     this.made = [this.make(this.data)]
     this.colours = new Colours(renderer.context)
     this.visible = true
+    this.skinCount = 0
   }
 
   make(data) {
@@ -106,7 +107,7 @@ export class Actor {
   reskin({vertices, joints, weights, count}) {
     if (!this.skin || !joints) { return }
     this.skin = withRows(this.skin, vertices, {joints: plain(joints), weights: plain(weights), count})
-    this.shaded = null
+    this.skinChanged()
     this.shade()
   }
 
@@ -136,6 +137,8 @@ export class Actor {
   }
 
   setPoints(points) {
+    // A skin of another number of points is one of another mesh; the server does not take it back.
+    if (points.length !== this.rest?.length) { this.setSkins({skin: null, apart: null}) }
     this.rest = points
     if (this.strokes) {
       this.strokes.setPoints(points)
@@ -172,11 +175,16 @@ export class Actor {
   setSkins({skin, apart}) {
     const plainSkin = ({joints, weights, count}) =>
       ({joints: plain(joints), weights: plain(weights), count})
-    if (skin) { this.skin = plainSkin(skin) }
+    if (skin !== undefined) { this.skin = skin && plainSkin(skin) }
     if (apart !== undefined) {
       this.apart = apart && {...plainSkin(apart), unit: apart.unit}
     }
-    this.shaded = null
+    this.skinChanged()
+  }
+
+  skinChanged() {
+    this.skinCount += 1
+    this.drawnPose = null
   }
 
   // Changes the shaders to what moves and colours the points now; nothing while that is the same.
@@ -185,7 +193,7 @@ export class Actor {
     const {skin, apart} = this
     const sets = (of) => of ? Math.ceil(of.count / 4) : 0
     const needs = {sets: sets(skin), otherSets: sets(skin && apart), by: this.coloured ? this.colours.by : ""}
-    const shaded = JSON.stringify([needs, this.made.length])
+    const shaded = JSON.stringify([needs, this.rest.length, this.skinCount])
     if (shaded === this.shaded || !(needs.sets || needs.by || this.shaded)) { return }
     this.shaded = shaded
     const arrays = [

@@ -38,7 +38,7 @@ EXTRAS = {
     "network_recipes": "cutcell[networks]",
     "network_weights": "cutcell[networks]",
 }
-"""What installs the library of a task, where it is not `cutcell[peers]`."""
+"""What installs the library of a task, where it is not `cutcell[copyleft]`."""
 
 
 def main(task: str, job_path: str, result_path: str, memory: str = "0") -> None:
@@ -51,7 +51,7 @@ def main(task: str, job_path: str, result_path: str, memory: str = "0") -> None:
     try:
         result = getattr(import_module(f".{module}", "cutcell.workers"), function)(**given)
     except ModuleNotFoundError as error:
-        extra = EXTRAS.get(task, "cutcell[peers]")
+        extra = EXTRAS.get(task, "cutcell[copyleft]")
         failed = f"{error.name} is not installed; try: pip install '{extra}'"
         result = {"failed": failed}
     except (RuntimeError, ValueError, MemoryError) as error:

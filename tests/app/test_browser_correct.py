@@ -214,6 +214,7 @@ def test_weights_are_painted_on_a_posed_body_and_stay_so(visit, robot, tmp_path)
     rest = visit.points()
     visit.slide("About Z", "PageUp", 3)
     visit.page.keyboard.press("b")
+    visit.page.wait_for_function("__cutcell.brush.part")  # its keys mean nothing before
     for _ in range(3):
         visit.page.keyboard.press("]")
     visit.settle()

@@ -198,3 +198,10 @@ def test_a_finding_is_shown_where_it_is(visit, robot):
     visit.settle()
     assert "finding faces" not in visit.report()["actors"]
     assert changed(far, visit.look()) > 0.005
+
+
+def test_a_larger_character_is_coloured_all_over(visit):
+    visit.choose("Character", "Walker, unwelded and torn")
+    visit.page.wait_for_function("location.search.includes('rig=biped_soup')")
+    visit.wait_until_bound()
+    assert (visit.look().max(axis=2) < 25).mean() < 0.001

@@ -130,6 +130,20 @@ def test_what_is_seen_inside_reaches_the_picture(drawn, tmp_path):
     assert drawn[-1].camera is not None
 
 
+def test_a_finding_is_seen_from_where_it_is_asked_for(drawn, tmp_path):
+    def look(*options):
+        finding = ("--panel", "check", "--finding", "unreachable-vertices")
+        result = run(demo_path("robot"), tmp_path / "a.png", *finding, *options)
+        assert result.exit_code == 0, result.stderr
+        look = np.subtract(drawn[-1].camera.position, drawn[-1].camera.focal_point)
+        return look / np.linalg.norm(look)
+
+    assert look()[2] > 0
+    for view in ("back", "left"):
+        direction = np.array(VIEWS[view])
+        np.testing.assert_allclose(look("--view", view), direction / np.linalg.norm(direction))
+
+
 def test_the_files_materials_reach_the_picture(drawn, tmp_path):
     options = ("--panel", "pose", "--colors", "materials")
     result = run(demo_path("robot"), tmp_path / "a.png", *options)

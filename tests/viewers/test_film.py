@@ -1,9 +1,9 @@
 """Pictures and films of whole scenes: views, captions, legend, files that can be played."""
 
 import subprocess
+import sys
 from dataclasses import replace
 
-import av
 import numpy as np
 import pytest
 from PIL import Image
@@ -14,6 +14,7 @@ from cutcell.errors import Cancelled, FileError, MissingLibraryError
 from cutcell_viewers.camera import Camera, around, framing, sees
 from cutcell_viewers.character import pose_in_scene
 from cutcell_viewers.film import FRAMES, Order, _camera, draw
+from cutcell_viewers.mp4 import find_ffmpeg
 from cutcell_viewers.palette import DARK, LIGHT
 from cutcell_viewers.studio import Studio
 from cutcell_viewers.weights_scene import weights_scene
@@ -21,6 +22,11 @@ from cutcell_viewers.worker import draw_apart
 from tests.viewers.arm import arm_rig
 
 SIZE = (160, 120)
+FFMPEG = """#!/bin/sh
+for out; do :; done
+exec /bin/cat >"${out#file:}"
+"""
+"""A program that stands for ffmpeg: it copies what it is given."""
 
 
 @pytest.fixture(scope="module")
@@ -94,10 +100,10 @@ def test_a_motion_can_be_played_as_mp4(scene, motion, tmp_path):
     path = tmp_path / "motion.mp4"
     told = []
     draw(Order(scene, size=(81, 61), motion=motion), path, lambda *now: told.append(now))
-    with av.open(str(path)) as film:
-        frames = [frame.to_ndarray(format="rgb24").astype(int) for frame in film.decode(video=0)]
+    command = [find_ffmpeg(), "-v", "error", "-i", path, "-f", "rawvideo", "-pix_fmt", "rgb24", "-"]
+    film = subprocess.run(command, check=True, capture_output=True).stdout
+    frames = np.frombuffer(film, np.uint8).reshape(-1, 60, 80, 3).astype(int)
     assert len(frames) == round(0.3 * FRAMES[".mp4"])
-    assert frames[0].shape == (60, 80, 3)
     assert apart(frames[0], frames[-1]) > 0.01
     fractions = [fraction for _, fraction in told]
     assert fractions == sorted(fractions)
@@ -127,10 +133,36 @@ def test_what_cannot_be_stored_is_told_before_it_is_drawn(scene, tmp_path, name,
             act(order, tmp_path / name)
 
 
-def test_without_its_library_mp4_says_how_to_install_it(scene, motion, tmp_path, monkeypatch):
-    monkeypatch.setitem(__import__("sys").modules, "av", None)
-    with pytest.raises(MissingLibraryError, match="pip install"):
+@pytest.fixture
+def without_films(monkeypatch):
+    """Leave out the extra `films`, and what is on the PATH."""
+    monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)
+    monkeypatch.setenv("PATH", "")
+
+
+def test_without_ffmpeg_mp4_says_how_to_install_it(scene, motion, tmp_path, without_films):
+    order = Order(scene, size=(64, 48), motion=motion)
+    for act in (draw, draw_apart):
+        with pytest.raises(MissingLibraryError, match="pip install"):
+            act(order, tmp_path / "a.mp4")
+    draw(order, tmp_path / "a.gif")
+
+
+def test_the_ffmpeg_on_the_path_will_do(scene, motion, tmp_path, monkeypatch, without_films):
+    (tmp_path / "bin").mkdir()
+    ffmpeg = tmp_path / "bin" / "ffmpeg"
+    ffmpeg.write_text(FFMPEG)
+    ffmpeg.chmod(0o755)
+    monkeypatch.setenv("PATH", str(ffmpeg.parent))
+    draw(Order(scene, size=(64, 48), motion=motion), tmp_path / "a.mp4")
+    assert (tmp_path / "a.mp4").stat().st_size == round(0.3 * FRAMES[".mp4"]) * 64 * 48 * 3
+
+
+def test_what_ffmpeg_complains_of_is_told(scene, motion, tmp_path, monkeypatch):
+    monkeypatch.setattr("cutcell_viewers.mp4.ENCODING", ["-c:v", "none"])
+    with pytest.raises(FileError, match="encoder 'none'"):
         draw(Order(scene, size=(64, 48), motion=motion), tmp_path / "a.mp4")
+    assert not list(tmp_path.iterdir())
 
 
 def test_drawing_apart_draws_the_same_and_tells_how_far_it_is(scene, tmp_path):

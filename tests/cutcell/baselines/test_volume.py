@@ -239,7 +239,7 @@ def test_without_a_library_the_result_says_so(monkeypatch, tmp_path):
     np.savez(tmp_path / "job.npz")
     workers.main("bbw", str(tmp_path / "job.npz"), str(tmp_path / "result.npz"))
     failed = str(np.load(tmp_path / "result.npz")["failed"])
-    assert failed.endswith("nowhere is not installed; try: pip install 'cutcell[peers]'")
+    assert failed.endswith("nowhere is not installed; try: pip install 'cutcell[copyleft]'")
 
 
 def test_what_a_task_raises_becomes_words(tmp_path):
