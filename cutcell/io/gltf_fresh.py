@@ -15,6 +15,7 @@ from ..errors import CutcellError, FileError, MeshError, SkeletonError, WeightsE
 from ..hierarchy import relative
 from ..rig import Clip, Rig, Skeleton, TriangleMesh
 from ..triangles import normals
+from .deforming import KEY
 from .gltf_buffer_file import buffer_file, relative_uri
 from .gltf_colored import with_rig_colors
 from .gltf_container import Document, json_bytes, pack_glb, with_whole_names
@@ -134,7 +135,9 @@ class _File:
         self.gltf.meshes.append(gl.Mesh(name=rig.name, primitives=[primitive]))
         binds = inverses(rig.skeleton)
         stored = self._array(binds.transpose(0, 2, 1).reshape(-1, 16).astype(np.float32))
-        self.gltf.skins = [gl.Skin(inverseBindMatrices=stored, joints=list(range(joints)))]
+        deform = {KEY: rig.skeleton.deform.tolist()}
+        skin = gl.Skin(inverseBindMatrices=stored, joints=list(range(joints)), extras=deform)
+        self.gltf.skins = [skin]
         mesh_node = self._node(name=rig.name, mesh=0, skin=0)
         self._add_attachments(rig)
         self.gltf.scenes = [gl.Scene(nodes=[joints, mesh_node])]
