@@ -19,7 +19,7 @@ from pathlib import Path
 import numpy as np
 
 import cutcell
-from cutcell.io import SAVED, keeps_document
+from cutcell.io import SAVED, is_avatar, keeps_document
 from cutcell.io.gltf_accessors import read_accessor
 from cutcell.io.gltf_container import Document
 from cutcell.io.gltf_read import GltfSource
@@ -62,6 +62,8 @@ def differences(rig: cutcell.Rig, again: cutcell.Rig, kind: str) -> Iterator[str
         yield "names and parents"
     if not _same(rig.weights, again.weights, rtol=0, atol=SINGLE if kind in GLTF else 1e-15):
         yield "weights"
+    if kind != ".txt" and not _same(rig.skeleton.deform, again.skeleton.deform):
+        yield "joints that deform"
     if kind in GLTF:
         turned = rig.skeleton.orientations
         if turned is not None and not _same(turned, again.skeleton.orientations, atol=1e-6):
@@ -153,7 +155,7 @@ def round_trip(path: Path, resolution: int, folder: Path) -> dict[str, str]:
     told: dict[str, str] = {}
     saved: list[Path] = []
     for kind in SAVED:
-        if kind == ".gltf" and not isinstance(rig.source, GltfSource):
+        if kind == ".vrm" and not is_avatar(rig):
             continue
         out = folder / kind[1:] / f"{path.stem}{kind}"
         out.parent.mkdir()

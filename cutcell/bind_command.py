@@ -160,11 +160,11 @@ def bind(
         binding = compute(
             loaded, method=how, **touches, corrections=corrected, graph=graph, progress=progress
         )
-    warnings = [*loaded.warnings, *binding.warnings]
+    dropped: list[str] = []
     if max_influences is None and how.max_influences is None and out.suffix.lower() in GLTF:
         how = how.with_options(max_influences=GLTF_INFLUENCES)
         binding, dropped = _limited(loaded, binding, how, touches, corrected)
-        warnings += dropped
+    warnings = [*loaded.warnings, *binding.warnings, *dropped]
     files = save(out, loaded.with_weights(binding.weights))
     warnings += saving_notes(out, loaded)
     document = {
@@ -217,8 +217,10 @@ def _limited(
     corrections: Corrections | None,
 ) -> tuple[Binding, list[str]]:
     """Keep as few influences as a method says, and tell in a sentence what that drops."""
+    from .corrections import Corrections
     from .skinning import bind as compute
     from .skinning import refine_weights, skinning_weights
+    from .skinning.binding_warnings import binding_warnings
 
     every = binding.weights
     most = int((every > 0).sum(axis=1).max())
@@ -235,4 +237,7 @@ def _limited(
         f"glTF files are read; that drops {dropped.mean():.1%} of the weight on average and "
         f"{dropped.max():.1%} at most. --max-influences says how many, or all"
     )
-    return replace(binding, weights=weights), [sentence]
+    warnings = binding_warnings(
+        rig, binding.distances, weights, corrections or Corrections(), touches["locked"]
+    )
+    return replace(binding, weights=weights, warnings=warnings), [sentence]

@@ -8,11 +8,13 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 MOST_LETTERS = 80
 """Of a name."""
+MOST_NAMES = 6
+"""Of a list of names."""
 MOST_OF_A_MESSAGE = 2000
 
 FORMULA = tuple("=+-@\t\r＝＋－＠")
@@ -65,6 +67,12 @@ def printable(text: str, most: int = MOST_OF_A_MESSAGE) -> str:
 def shown_name(name: str) -> str:
     """Return a name as it is shown: printable, and not too long."""
     return printable(name, MOST_LETTERS)
+
+
+def listed(names: Sequence[str]) -> str:
+    """Return the first of some names, and how many more there are."""
+    more = f" and {len(names) - MOST_NAMES} more" if len(names) > MOST_NAMES else ""
+    return ", ".join(names[:MOST_NAMES]) + more
 
 
 def spreadsheet_cell(name: str) -> str:

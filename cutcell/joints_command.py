@@ -46,7 +46,7 @@ def joints(
         reason = guess.reason[j]
         if bool(guess.deform[j]) != carries:
             by_weights = chosen.weights is not None and carries == loaded.skeleton.deform[j]
-            reason = "by the file's weights" if by_weights else "chosen"
+            reason = "by the file" if by_weights else "chosen"
         parent = int(chosen.skeleton.parents[j])
         rows.append({"name": name, "parent": parent, "deform": carries, "reason": reason})
     if json:

@@ -10,7 +10,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
 OUTPUTS = [
-    "rig.glb", "rig.gltf", "rig.vrm", "rig.txt", "rig.npz", "numbers.csv", "numbers.npz",
+    "rig.glb", "rig.gltf", "rig.txt", "rig.npz", "numbers.csv", "numbers.npz",
     "plot.png", "plot.svg", "plot.pdf", "scene.png", "scene.jpg", "turn.mp4", "turn.gif",
 ]  # fmt: skip
 

@@ -21,6 +21,7 @@ from cutcell.method import joints_needed
 from cutcell.progress import Progress
 from cutcell.rig import Rig
 from cutcell.skinning import Binding, keep_strongest, skinning_weights
+from cutcell.skinning.binding_warnings import binding_warnings
 from cutcell.skinning.correct import adjustments_of
 from cutcell.skinning.preview import Preview
 
@@ -257,7 +258,14 @@ def pruned(binding: Binding, kept: dict[str, Any], rig: Rig, corrections: Correc
     """Return what was bound generously with the weights that are chosen and corrected."""
     weights = keep_strongest(binding.distances, binding.weights, **kept)
     most = kept["max_influences"]
-    return replace(binding, weights=finished(rig, binding.graph, weights, corrections, most))
+    return _reweighted(
+        binding, finished(rig, binding.graph, weights, corrections, most), rig, corrections
+    )
+
+
+def _reweighted(binding: Binding, weights: NDArray, rig: Rig, corrections: Corrections) -> Binding:
+    warnings = binding_warnings(rig, binding.distances, weights, corrections)
+    return replace(binding, weights=weights, warnings=warnings)
 
 
 def weigh(session: Session) -> None:
@@ -328,7 +336,7 @@ def _soon(session: Session, make: Callable[[], NDArray]) -> None:
                 _withdraw(session, {}, session.corrected)
         elif now is not None and now.distances is binding.distances:
             session.corrected = corrections
-            state.binding = replace(now, weights=weights)
+            state.binding = _reweighted(now, weights, rig, corrections)
 
     newest = session.tasks.newest("weights")
     if not state.quick:

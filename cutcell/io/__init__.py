@@ -16,7 +16,7 @@ from .fbx import read_fbx
 from .files import naming, read_bytes
 from .gltf_colored import color_notes
 from .gltf_container import MAGIC
-from .gltf_fresh import check_fits, new_glb
+from .gltf_fresh import check_fits, new_files
 from .gltf_read import GltfSource, read_gltf
 from .gltf_skinned import can_be_skinned, skinned
 from .gltf_write import rewritten
@@ -34,6 +34,8 @@ READABLE = (
 WRITABLE = ".glb, .gltf, .vrm, .txt (RigNet, with an .obj) or .npz (Articulation-XL)"
 SAVED = (*GLTF, ".txt", ".npz")
 """The endings that `save` takes."""
+AVATAR = ("VRM", "VRMC_vrm")
+"""Extensions of a document that make it a VRM."""
 
 
 def load(path: str | os.PathLike[str], skeleton: str | os.PathLike[str] | None = None) -> Rig:
@@ -93,8 +95,8 @@ def save(path: str | os.PathLike[str], rig: Rig) -> tuple[Path, ...]:
 
     A rig that was loaded from glTF goes back into its own document, in which only the skin
     weights change, and what joints that were moved take (`Rig.with_joints`). So does a mesh from
-    glTF that had no skeleton, with the one that it was given. Another rig becomes a new GLB, with
-    the base colours of its file (`saving_notes` says what is missing of them). All
+    glTF that had no skeleton, with the one that it was given. Another rig becomes a new document,
+    with the base colours of its file (`saving_notes` says what is missing of them). All
     files are written whole or not at all:
     a failure leaves what was there, and a rig may be saved over the file it came from. A file
     that is not named here, such as the mesh or the buffer beside it, is never replaced if
@@ -115,7 +117,7 @@ def save(path: str | os.PathLike[str], rig: Rig) -> tuple[Path, ...]:
     Raises
     ------
     FileError
-        Another ending, or the file cannot be written.
+        Another ending, ``.vrm`` for a rig that is not from a VRM, or the file cannot be written.
     MeshError, SkeletonError
         The rig has no joints; or its mesh or joints are no longer those of its glTF document; or
         joints were moved of a skin without inverse bind matrices; or they do not fit in a new GLB,
@@ -155,11 +157,11 @@ def check_output(path: Path, rig: Rig | None = None) -> None:
             return
         if kind == ".txt":
             check_mesh_file(path, rig.mesh)
-        elif isinstance(rig.source, GltfSource) or can_be_skinned(rig):
+            return
+        _check_gltf(kind, rig)
+        if isinstance(rig.source, GltfSource) or can_be_skinned(rig):
             none = np.zeros((len(rig.mesh.vertices), len(rig.skeleton.joints)))
-            _rewritten(rig.with_weights(none), path)
-        else:
-            _check_new(kind, rig)
+            _gltf_files(rig.with_weights(none), path)
 
 
 def _not_written(path: Path) -> str:
@@ -185,9 +187,16 @@ def saving_notes(path: Path, rig: Rig) -> tuple[str, ...]:
 
 def binary_ending(rig: Rig) -> str:
     """Return the ending of a rig as one binary glTF file: an avatar stays ".vrm"."""
-    source = rig.source
-    avatar = isinstance(source, GltfSource) and source.document.path.suffix.lower() == ".vrm"
-    return ".vrm" if avatar else ".glb"
+    is_vrm = is_avatar(rig) and rig.source.document.path.suffix.lower() == ".vrm"
+    return ".vrm" if is_vrm else ".glb"
+
+
+def is_avatar(rig: Rig) -> bool:
+    """Tell whether a rig is saved with the extensions that make its document a VRM."""
+    if not isinstance(rig.source, GltfSource):
+        return False
+    extensions = rig.source.document.json.get("extensions")
+    return isinstance(extensions, dict) and not extensions.keys().isdisjoint(AVATAR)
 
 
 def keeps_document(rig: Rig) -> bool:
@@ -204,25 +213,26 @@ def _files(path: Path, rig: Rig) -> dict[Path, bytes]:
         return rignet_files(path, rig)
     if kind == ".npz":
         return {path: articulation_bytes(rig)}
-    if isinstance(rig.source, GltfSource) or can_be_skinned(rig):
-        return _rewritten(rig, path)
-    _check_new(kind, rig)
-    return {path: new_glb(rig)}
+    _check_gltf(kind, rig)
+    return _gltf_files(rig, path)
 
 
-def _check_new(kind: str, rig: Rig) -> None:
-    """Refuse what cannot become a glTF file of its own."""
-    if kind == ".gltf":
-        raise FileError("a rig that did not come from glTF is saved as .glb, not as .gltf")
-    check_fits(rig)
+def _check_gltf(kind: str, rig: Rig) -> None:
+    """Refuse what a rig cannot become: an avatar, or numbers of 32 bits."""
+    if kind == ".vrm" and not is_avatar(rig):
+        raise FileError(
+            f"{rig.name} is no VRM: its file has neither of the extensions {' and '.join(AVATAR)}; "
+            "save it as .glb, and make an avatar of that in a program for VRM"
+        )
+    if not isinstance(rig.source, GltfSource):
+        check_fits(rig)
 
 
-def _rewritten(rig: Rig, path: Path) -> dict[Path, bytes]:
+def _gltf_files(rig: Rig, path: Path) -> dict[Path, bytes]:
     try:
         if isinstance(rig.source, GltfSource):
             return rewritten(rig, path)
-        check_fits(rig)
-        return skinned(rig, path)
+        return skinned(rig, path) if can_be_skinned(rig) else new_files(rig, path)
     except CutcellError:
         raise
     except (TypeError, ValueError, KeyError, IndexError, AttributeError) as e:

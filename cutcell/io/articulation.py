@@ -2,7 +2,8 @@
 
 ``vertices`` (n, 3), ``faces`` (m, 3), ``joints`` (j, 3), ``bones`` (b, 2) as pairs of
 parent and child, ``root_index``, ``joint_names`` (j,), and the weights as a sparse matrix:
-``skinning_weights_value``, ``_row``, ``_col`` (or ``_rows``, ``_cols``) and ``_shape``.
+``skinning_weights_value``, ``_row``, ``_col`` (or ``_rows``, ``_cols``) and ``_shape``. cutcell
+adds which joints deform, ``cutcell_deform`` (j,).
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from numpy.typing import NDArray
 from ..errors import CutcellError, FileError, SkeletonError, WeightsError
 from ..rig import Rig, Skeleton, TriangleMesh
 from .allowance import Allowance
-from .deforming import with_deform
+from .deforming import KEY, with_deform
 from .files import one_line, read_bytes
 from .names import HALVES, has_halves, whole_characters
 from .weights import NO_WEIGHTS, ReadWeights, summed
@@ -58,7 +59,8 @@ def read_articulation(path: Path) -> Rig:
         warnings.append(HALVES)
     names = tuple(map(whole_characters, names))
     skeleton = Skeleton(joints, parents, names)
-    skeleton, told = with_deform(mesh, skeleton, read.weights)
+    stored = _deform(arrays, count, warnings)
+    skeleton, told = with_deform(mesh, skeleton, read.weights, stored)
     return Rig(
         mesh,
         skeleton,
@@ -137,6 +139,15 @@ def _names(arrays: dict[str, NDArray], count: int) -> tuple[str, ...]:
     return tuple(n.decode("utf-8", "replace") if isinstance(n, bytes) else str(n) for n in names)
 
 
+def _deform(arrays: dict[str, NDArray], count: int, warnings: list[str]) -> NDArray[np.int8] | None:
+    """Return which joints deform by an archive that cutcell saved, as `with_deform` takes it."""
+    stored = arrays.get(KEY)
+    if stored is None or (stored.dtype == np.bool_ and stored.shape == (count,)):
+        return None if stored is None else stored.astype(np.int8)
+    warnings.append(f"{KEY} is ignored; it is no array of true or false for each joint")
+    return None
+
+
 def _weights(arrays: dict[str, NDArray], vertices: int, joints: int, owner: str) -> ReadWeights:
     if "skinning_weights_value" not in arrays:
         return NO_WEIGHTS
@@ -180,6 +191,7 @@ def articulation_bytes(rig: Rig) -> bytes:
         "joints": skeleton.joints,
         "bones": np.stack([skeleton.parents[held], held], axis=1).astype(np.int32),
         "root_index": np.array(int(np.flatnonzero(skeleton.parents < 0)[0])),
+        KEY: skeleton.deform,
         "joint_names": np.array([whole_characters(name) for name in skeleton.names], np.str_),
     }
     if rig.weights is not None:

@@ -1,4 +1,4 @@
-"""Which joints of a file may carry weight: its weights say so, else their names and places."""
+"""Which joints of a file deform: cutcell stored it, else weights say so, else names and places."""
 
 from __future__ import annotations
 
@@ -8,16 +8,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..deform import deform_joints
+from ..display import listed
 from ..rig import Skeleton, TriangleMesh
 
+KEY = "cutcell_deform"
+"""Under which a saved file stores for each joint whether it deforms: a joint that got no weight
+still does."""
 STRAY = 1e-3
 """Part of all weight: a control that carries less was given it by mistake."""
-MOST_NAMES = 6
-"""Named in a warning."""
 
 
 def with_deform(
-    mesh: TriangleMesh, skeleton: Skeleton, weights: NDArray[np.float64] | None
+    mesh: TriangleMesh,
+    skeleton: Skeleton,
+    weights: NDArray[np.float64] | None,
+    stored: NDArray[np.int8] | None = None,
 ) -> tuple[Skeleton, list[str]]:
     """Find out which joints may carry weight, and say what a person may want to change.
 
@@ -28,6 +33,9 @@ def with_deform(
         Its `deform` is replaced.
     weights : array, shape (n, j), or None
         What the file has.
+    stored : array, shape (j,), optional
+        Whether each joint deforms by what the file stores under `KEY`, 1 or 0; -1 where it stores
+        nothing.
 
     Returns
     -------
@@ -36,6 +44,21 @@ def with_deform(
     """
     if not len(skeleton.joints):
         return skeleton, []
+    if stored is None or not (stored == 1).any():
+        return _inferred(mesh, skeleton, weights)
+    deform = stored == 1
+    told: list[str] = []
+    if (stored < 0).any():  # such as a skin that another program added
+        inferred, told = _inferred(mesh, skeleton, weights)
+        deform = np.where(stored < 0, inferred.deform, deform)
+    if weights is not None:
+        told += _told_weighted(skeleton, (stored == 0) & (weights > 0).any(axis=0))
+    return replace(skeleton, deform=deform), told
+
+
+def _inferred(
+    mesh: TriangleMesh, skeleton: Skeleton, weights: NDArray[np.float64] | None
+) -> tuple[Skeleton, list[str]]:
     total = 0.0 if weights is None else float(weights.sum())
     if weights is None or total == 0:
         deform = deform_joints(mesh, skeleton).deform
@@ -66,7 +89,14 @@ def _told_stray(skeleton: Skeleton, stray: NDArray[np.bool_]) -> list[str]:
     ]
 
 
+def _told_weighted(skeleton: Skeleton, weighted: NDArray[np.bool_]) -> list[str]:
+    if not weighted.any():
+        return []
+    return [
+        f"{_names(skeleton, weighted)} have weight in the file, but by what it stores do not "
+        "deform: new weights give them none"
+    ]
+
+
 def _names(skeleton: Skeleton, which: NDArray[np.bool_]) -> str:
-    names = [skeleton.names[j] for j in np.flatnonzero(which)]
-    more = f" and {len(names) - MOST_NAMES} more" if len(names) > MOST_NAMES else ""
-    return ", ".join(names[:MOST_NAMES]) + more
+    return listed([skeleton.names[j] for j in np.flatnonzero(which)])

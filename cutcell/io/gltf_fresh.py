@@ -1,8 +1,9 @@
-"""A new GLB for a rig that did not come from one."""
+"""A new glTF file for a rig that did not come from one."""
 
 from __future__ import annotations
 
 import json
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,8 +15,10 @@ from ..errors import CutcellError, FileError, MeshError, SkeletonError, WeightsE
 from ..hierarchy import relative
 from ..rig import Clip, Rig, Skeleton, TriangleMesh
 from ..triangles import normals
+from .deforming import KEY
+from .gltf_buffer_file import buffer_file, relative_uri
 from .gltf_colored import with_rig_colors
-from .gltf_container import json_bytes, pack_glb, with_whole_names
+from .gltf_container import Document, json_bytes, pack_glb, with_whole_names
 from .gltf_influences import pack_influences
 from .gltf_nodes import decompose
 
@@ -26,12 +29,18 @@ MOST_SHIFT = 1e-3
 KINDS = {1: gl.SCALAR, 3: gl.VEC3, 4: gl.VEC4, 16: gl.MAT4}
 
 
-def new_glb(rig: Rig) -> bytes:
-    """Return a rig as a GLB file: mesh, normals, skin, joints as nodes, clips, attachments.
+def new_files(rig: Rig, path: Path) -> dict[Path, bytes]:
+    """Return the files of a rig: mesh, normals, skin, joints as nodes, clips, attachments.
 
     The base colours of the rig's file are taken along; see `materials.read_materials`.
 
     `check_fits` says whether the rig can become one.
+
+    Parameters
+    ----------
+    rig : Rig
+    path : Path
+        Where the document will stand: ``.glb``, or ``.gltf`` with a ``.bin`` beside it.
 
     Raises
     ------
@@ -46,7 +55,11 @@ def new_glb(rig: Rig) -> bytes:
     colored = with_rig_colors(document, data, rig)
     if colored is not None:
         data = colored.finish()
-    return pack_glb(json_bytes(document), data, [])
+    if path.suffix.lower() != ".gltf":
+        return {path: pack_glb(json_bytes(document), data, [])}
+    buffer = buffer_file(path, Document(path, document, [data]))
+    document["buffers"][0]["uri"] = relative_uri(buffer)
+    return {buffer: data, path: json_bytes(document)}
 
 
 def check_fits(rig: Rig) -> None:
@@ -122,7 +135,9 @@ class _File:
         self.gltf.meshes.append(gl.Mesh(name=rig.name, primitives=[primitive]))
         binds = inverses(rig.skeleton)
         stored = self._array(binds.transpose(0, 2, 1).reshape(-1, 16).astype(np.float32))
-        self.gltf.skins = [gl.Skin(inverseBindMatrices=stored, joints=list(range(joints)))]
+        deform = {KEY: rig.skeleton.deform.tolist()}
+        skin = gl.Skin(inverseBindMatrices=stored, joints=list(range(joints)), extras=deform)
+        self.gltf.skins = [skin]
         mesh_node = self._node(name=rig.name, mesh=0, skin=0)
         self._add_attachments(rig)
         self.gltf.scenes = [gl.Scene(nodes=[joints, mesh_node])]

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..checks import LARGEST
 from ..errors import FileError, SkeletonError
 from .gltf_container import Document, indices
 
@@ -37,7 +38,14 @@ class Nodes:
         for depth, level in enumerate(self.levels):
             self.depth[level] = depth
         self._read_transforms()
-        self.world = self.compose_world(self.local[None])[0]
+        with np.errstate(over="ignore", invalid="ignore"):  # refused below
+            self.world = self.compose_world(self.local[None])[0]
+        far = np.flatnonzero(~(np.abs(self.world) <= LARGEST).all(axis=(1, 2)))
+        if len(far):
+            raise FileError(
+                f"{document.label('nodes', int(far[0]))}: its place in the scene has numbers above "
+                f"{LARGEST:g}; give it and the nodes above it smaller transforms"
+            )
 
     def _read_transforms(self) -> None:
         count = len(self.raw)
@@ -66,9 +74,10 @@ class Nodes:
             numbers = np.array(value, np.float64)
         except (TypeError, ValueError, OverflowError):
             numbers = np.zeros(0)
-        if numbers.shape != (count,) or not np.isfinite(numbers).all():
+        if numbers.shape != (count,) or not (np.abs(numbers) <= LARGEST).all():
             raise FileError(
-                f'{self.document.label("nodes", i)}: "{key}" must be {count} finite numbers'
+                f'{self.document.label("nodes", i)}: "{key}" must be {count} finite numbers, '
+                f"{LARGEST:g} at most"
             )
         return numbers
 

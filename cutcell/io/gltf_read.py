@@ -16,6 +16,7 @@ from .deforming import with_deform
 from .gltf_bare import read_bare
 from .gltf_clips import read_clips
 from .gltf_container import Document, read_document
+from .gltf_deform import read_deform
 from .gltf_draco import decompress_draco
 from .gltf_meshopt import decompress_meshopt
 from .gltf_nodes import Nodes
@@ -100,7 +101,8 @@ def read_rig(document: Document, path: Path, world: NDArray | None = None) -> Ri
         raise MeshError("its skinned meshes have no triangles")
     mesh = TriangleMesh(np.concatenate(stored.vertices), np.concatenate(stored.faces))  # type: ignore[arg-type]
     weights, sums = _dense(document, parts, stored.weights, len(mesh.vertices), len(bind.nodes))
-    skeleton, told = with_deform(mesh, read_skeleton(nodes, bind), weights)
+    stored_deform = read_deform(document, bind.skins, len(bind.nodes))
+    skeleton, told = with_deform(mesh, read_skeleton(nodes, bind), weights, stored_deform)
     attached = _read_attachments(document, nodes, bind)
     inverse = np.array(bind.inverse)
     clips = read_clips(document, nodes, bind.nodes, inverse, bind.world)

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from ..errors import WeightsError
 from ..rig import Rig
 from .gltf_bare import BareSource, StoredMesh
+from .gltf_deform import store_deform
 from .gltf_fresh import inverses, joint_nodes
 from .gltf_images import carry_images
 from .gltf_influences import pack_influences
@@ -137,7 +138,9 @@ class _Edit:
             stored = self.storage.store(binds.astype("<f4"), None, of_mesh=False)
             skins = self.document.setdefault("skins", [])
             skins.append({"joints": self._joints, "inverseBindMatrices": stored})
-            self._skins[key] = len(skins) - 1
+            number = self._skins[key] = len(skins) - 1
+            deform = self.rig.skeleton.deform
+            store_deform(self.document, [(number, range(len(deform)))], deform)
         return self._skins[key]
 
     def _stand(self, node: int) -> None:

@@ -20,6 +20,7 @@ from ..rig import Rig
 from .gltf_buffer_file import buffer_file, relative_uri
 from .gltf_colored import with_surface_colors
 from .gltf_container import Document, json_bytes, pack_glb
+from .gltf_deform import store_deform
 from .gltf_faces import store_faces, take_faces
 from .gltf_images import carry_images
 from .gltf_influences import pack_influences
@@ -35,8 +36,8 @@ def rewritten(rig: Rig, path: Path) -> dict[Path, bytes]:
     Parameters
     ----------
     rig : Rig
-        Loaded from a GLB or glTF file; only its weights may have changed, its joints, as
-        corrections change them, and its faces by `with_faces`.
+        Loaded from a GLB or glTF file; only its weights may have changed, which joints deform, its
+        joints, as corrections change them, and its faces by `with_faces`.
     path : Path
         Where the document will stand: ``.glb``, or ``.gltf`` with a ``.bin`` beside it.
 
@@ -57,6 +58,7 @@ def rewritten(rig: Rig, path: Path) -> dict[Path, bytes]:
     dropped += [accessor for new in faces for accessor in new.old.values()]
     parts, moves = take_structure(document, rig, take_moves(document, rig))
     dropped += [new.old for new in moves]
+    store_deform(document, ((part.skin, part.joints) for part in parts), rig.skeleton.deform)
     storage = Storage(document, source.document.buffers, dropped)
     store_moves(storage, moves)
     for part, old in zip(parts, before, strict=True):

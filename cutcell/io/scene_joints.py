@@ -57,7 +57,7 @@ def scene_world(scene: Mapping[str, NDArray]) -> NDArray | None:
     with np.errstate(over="ignore", invalid="ignore"):
         world = _worlds(scene["node_transforms"], scene["node_parents"].tolist())
         stands = world[int(scene["mesh_nodes"][first])] @ scene[f"mesh_{first}_place"]
-    return stands if _inverse(stands)[1] else None
+        return stands if _inverse(stands)[1] else None
 
 
 def _worlds(transforms: NDArray, parents: list[int]) -> NDArray:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from ..checks import check_has_joints, check_positions
 from ..corrections import Corrections
 from ..errors import ParameterError, SkeletonError
-from ..geodesics import FALLBACK_REASONS, BoneDistances, bone_distances
+from ..geodesics import BoneDistances, bone_distances
 from ..graph import CutCellGraph, build_graph
 from ..inputs import RigLike, as_rig
 from ..memory import check_matrix
@@ -22,6 +22,7 @@ from ..method import ANIMATION, Method, MethodName, Options, method_of
 from ..progress import Progress, silent
 from ..rig import Rig
 from ..surface.lattice import Lattice
+from .binding_warnings import binding_warnings
 from .compilation import is_compiled, warm_up
 from .correct import (
     adjustments_of,
@@ -168,7 +169,8 @@ def bind(
         weights = refine_weights(rig, weights, method=method, **touches)
         weights = overruled(rig, weights, corrections)
         progress("weights", 1.0)
-    return Binding(weights, graph, distances, seconds, _warnings(graph, distances))
+    warnings = binding_warnings(rig, distances, weights, corrections, touches["locked"])
+    return Binding(weights, graph, distances, seconds, warnings)
 
 
 def _begin_what_follows(graph: CutCellGraph, method: Method) -> None:
@@ -213,26 +215,3 @@ def _timed(stage: str, seconds: dict[str, float]) -> Iterator[None]:
     begin = perf_counter()
     yield
     seconds[stage] = perf_counter() - begin
-
-
-def _warnings(graph: CutCellGraph, distances: BoneDistances) -> tuple[str, ...]:
-    found = []
-    inverted = int(graph.inverted.sum())
-    if inverted:
-        found.append(
-            f"{inverted} of {len(graph.inverted)} faces are inside out and count as turned round; "
-            "the mesh itself stays as it is"
-        )
-    for reason, text in enumerate(FALLBACK_REASONS[1:], start=1):
-        count = int((distances.fallback == reason).sum())
-        if count:
-            found.append(
-                f"{count} of {len(distances.fallback)} vertices follow their nearest bones "
-                f"in a straight line: {text}"
-            )
-    if not (graph.node_kind == 1).any():
-        found.append(
-            "no lattice point lies inside the mesh, distances run over its surface alone: it is "
-            "open, or thinner than a lattice cell. Try a higher resolution"
-        )
-    return tuple(found)

@@ -30,14 +30,14 @@ def lock_joints(
     locked : sequence of int or str
         Joints by index or by name.
     max_influences : int or None
-        Joints a vertex may follow. Locked ones come first; where they leave no room, or no
-        other joint has weight, they are scaled to sum to one.
+        Joints a vertex may follow. Locked ones come first.
 
     Returns
     -------
     array, shape (n, j)
-        Rows sum to one. A vertex without weight of locked joints in the file, for which weight of
-        locked joints alone was computed, keeps what was computed.
+        Rows sum to one. Locked joints have the file's weights exactly. Where no other joint has
+        computed weight, or `max_influences` leaves no room for one, all joints have the file's. A
+        vertex without any weight in the file keeps what was computed.
 
     Raises
     ------
@@ -53,11 +53,11 @@ def lock_joints(
     free = np.where(is_locked, 0.0, weights)
     if max_influences is not None:
         free = _largest(free, max_influences - (kept > 0).sum(axis=1))
-    share = free.sum(axis=1, keepdims=True)
-    rest = np.maximum(1 - kept.sum(axis=1, keepdims=True), 0)
-    result = kept + np.divide(free * rest, share, out=np.zeros_like(free), where=share > 0)
-    total = result.sum(axis=1, keepdims=True)
-    return np.divide(result, total, out=weights.copy(), where=total > 0)
+    others = np.where(is_locked, 0.0, rig.weights)
+    share, rest = free.sum(axis=1, keepdims=True), others.sum(axis=1, keepdims=True)
+    result = kept + np.divide(free * rest, share, out=others, where=share > 0)
+    has_weight = rig.weights.any(axis=1, keepdims=True)
+    return np.where(has_weight, result, weights)
 
 
 def locked_joints(rig: Rig, locked: Sequence[int | str]) -> NDArray[np.bool_]:

@@ -16,6 +16,7 @@ from cutcell_app.panels.components import parts_of_mesh
 from cutcell_app.panels.joints import joints
 from cutcell_app.scenes import resolve
 from cutcell_app.scenes.facts import vertex_facts
+from cutcell_app.scenes.warnings import warnings
 from cutcell_app.state.corrections import MOST_IN_ADDRESS, from_text, to_text
 from cutcell_app.state.tour import TOUR
 from cutcell_app.state.url import from_query
@@ -134,6 +135,21 @@ def test_what_cannot_be_is_told_and_not_taken(bound, loop):
     loading.show_rig(bound, twice)
     correct.correct_joint(bound, 2, gain=2.0)
     assert "two joints are called" in bound.state.message[1].lower()
+
+
+def test_a_lock_that_overrules_a_part_is_warned_of(bound, loop):
+    glued = Corrections(
+        joints={"wrist": JointCorrection(locked=True)}, parts={3: PartCorrection("glued", "elbow")}
+    )
+    correct.correct(bound, glued)
+    settled(bound, loop)
+    told = [door.text for door in warnings(bound.state) if "vertex 3 " in door.text]
+    assert len(told) == 1
+    assert "elbow" in told[0]
+    assert "wrist" in told[0]
+    correct.correct(bound, replace(glued, joints={}))
+    settled(bound, loop)
+    assert not any("vertex 3 " in door.text for door in warnings(bound.state))
 
 
 def test_an_address_brings_them_back(bound, loop):

@@ -24,7 +24,8 @@ from cutcell_app.panels.export import _described
 from cutcell_app.state import PANELS
 from cutcell_app.work import jobs
 from cutcell_app.work.jobs import Jobs
-from tests.cutcell.io.gltf_builder import COLUMN, column
+from tests.cutcell.io.gltf_builder import COLUMN
+from tests.cutcell.io.test_vrm import VRM1, avatar
 
 
 def test_the_bound_character_can_be_taken_along(bound, loop, tmp_path):
@@ -60,7 +61,7 @@ def test_a_name_that_no_file_can_have_is_no_hindrance(bound, loop, name, taken_a
 
 
 def test_an_avatar_keeps_its_ending(session, loop, tmp_path):
-    path = column().save(tmp_path / "avatar.glb").rename(tmp_path / "avatar.vrm")
+    path = avatar(VRM1).save(tmp_path / "avatar.glb").rename(tmp_path / "avatar.vrm")
     session.state.resolution = 16
     loading.show_rig(session, cutcell.load(path))
     loop.run_until(lambda: session.state.binding is not None)

@@ -155,6 +155,37 @@ def test_joints_lose_weight_keep_the_files_and_reach_farther():
     assert small[:, CHEST].sum() < plain[:, CHEST].sum()
 
 
+@pytest.mark.parametrize("how", [PartCorrection("glued", "tail"), PartCorrection("touching")])
+def test_a_lock_overrules_a_part_and_a_warning_names_both(how):
+    rig, first = with_button()
+    artist = np.zeros((len(rig.mesh.vertices), len(rig.skeleton.names)))
+    artist[:, CHEST] = 1
+    artist[first:, [HEAD, CHEST]] = 0.5
+    rig = rig.with_weights(artist)
+    corrections = Corrections(joints={"head": JointCorrection(locked=True)}, parts={first: how})
+    binding = cutcell.bind(rig, 24, corrections=corrections)
+    np.testing.assert_array_equal(binding.weights[:, HEAD], artist[:, HEAD])
+    (warning,) = [text for text in binding.warnings if f"vertex {first}" in text]
+    assert "head" in warning
+    assert how.joint is None or how.joint in warning
+    for harmless in (
+        replace(corrections, parts={}),
+        replace(corrections, joints={"neck": JointCorrection(locked=True)}),
+        replace(corrections, joints={}),
+    ):
+        found = cutcell.bind(rig, 24, corrections=harmless).warnings
+        assert not any(f"vertex {first}" in text for text in found)
+
+
+def test_vertices_set_by_hand_that_change_locked_joints_are_warned_of():
+    locked = {"head": JointCorrection(locked=True)}
+    own = {name: w for name, w in zip(WORM.skeleton.names, WORM.weights[0], strict=True) if w}
+    for weights, changes in (({"head": 1.0}, True), (own, False)):
+        corrections = Corrections(joints=locked, vertices={0: weights})
+        found = cutcell.bind(WORM, 24, corrections=corrections).warnings
+        assert any("by hand" in text and "head" in text for text in found) == changes
+
+
 def test_parts_are_glued_follow_or_are_bound_by_themselves():
     rig, first = with_button()
     plain = cutcell.bind(rig, 24).weights[first:]

@@ -238,6 +238,10 @@ class TestDamage:
         with pytest.raises(cutcell.MeshError, match=r"^column\.fbx: .*not a finite number"):
             load(binary(scene))
 
+    def test_a_transform_that_is_too_large(self, load):
+        with pytest.raises(cutcell.FileError, match=r'^column\.fbx: node "body": "scale" must be'):
+            load(binary(column_scene(node=[vector("Lcl Scaling", (1e160,) * 3)])))
+
     def test_a_reader_that_crashes_is_a_sentence(self, load, monkeypatch):
         code = "import os, signal; os.kill(os.getpid(), signal.SIGSEGV)"
         monkeypatch.setattr("cutcell.apart.COMMAND", (sys.executable, "-c", code))

@@ -117,6 +117,11 @@ def flat_strip(b):
     primitive(b).update(mode=5, indices=b.accessor(np.zeros(3, "u1")))
 
 
+def large_together(builder):
+    for node in builder.json["nodes"][:2]:
+        node["scale"] = [1e59] * 3
+
+
 CASES = {
     "no asset": (drop("asset"), F, 'no "asset"'),
     "version 1": (put(["asset", "version"], "1.0"), F, "is glTF 1.0; only glTF 2.0"),
@@ -137,6 +142,15 @@ CASES = {
         F,
         'node "tip": "translation" must be 3 finite numbers',
     ),
+    **{
+        f"large {key}": (
+            put(["nodes", 1, key], [1e200] * count),
+            F,
+            f'node "tip": "{key}" must be {count} finite numbers',
+        )
+        for key, count in (("translation", 3), ("rotation", 4), ("scale", 3), ("matrix", 16))
+    },
+    "large together": (large_together, F, 'node "tip": its place in the scene has numbers above'),
     "no joints": (put(["skins", 0, "joints"], []), S, r"skins\[0\] has no joints"),
     "joint missing": (put(["skins", 0, "joints"], [0, 8]), F, r"skins\[0\] refers to nodes\[8\]"),
     "joint twice": (put(["skins", 0, "joints"], [0, 0]), S, 'names node "root" twice'),

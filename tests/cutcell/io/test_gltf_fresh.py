@@ -100,8 +100,18 @@ def test_another_library_reads_it(tmp_path):
 def test_without_weights_there_is_nothing_to_save(tmp_path):
     with pytest.raises(cutcell.WeightsError, match=r"new\.glb: the rig has no weights"):
         cutcell.save(tmp_path / "new.glb", small_rig().with_weights(None))
-    with pytest.raises(cutcell.FileError, match=r"saved as \.glb, not as \.gltf"):
-        cutcell.save(tmp_path / "new.gltf", small_rig())
+
+
+def test_text_with_its_buffer_beside_it(tmp_path):
+    (tmp_path / "new.bin").write_text("of something else")
+    files = tmp_path / "new-2.bin", tmp_path / "new.gltf"
+    for _ in range(2):  # its own buffer is replaced
+        assert cutcell.save(tmp_path / "new.gltf", small_rig()) == files
+    check_valid(tmp_path / "new.gltf")
+    again = cutcell.load(tmp_path / "new.gltf")
+    assert_array_equal(again.mesh.vertices, small_rig().mesh.vertices)
+    assert_allclose(again.weights, small_rig().weights, atol=1e-7)
+    assert (tmp_path / "new.bin").read_text() == "of something else"
 
 
 def test_real_characters_can_be_made_anew(tmp_path, rigs):

@@ -8,6 +8,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 import cutcell
+from cutcell.io import check_output
 from cutcell.io.names import whole_characters
 from tests.cutcell.io.gltf_builder import COLUMN, FACES, REST, column
 from tests.cutcell.io.test_gltf_fresh import check_valid, small_rig
@@ -29,7 +30,7 @@ def sized(scale, offset=0.0):
 @pytest.mark.parametrize(
     ("scale", "offset"), [(1e300, 0), (1.7e38, 1e38), (1e-44, 0), (1e-300, 0), (1, 100000.003)]
 )
-@pytest.mark.parametrize("end", [".glb", ".vrm"])
+@pytest.mark.parametrize("end", [".glb", ".gltf"])
 def test_what_32_bits_cannot_hold_is_refused_and_saved_elsewhere(tmp_path, scale, offset, end):
     rig = sized(scale, offset)
     with pytest.raises(
@@ -74,10 +75,8 @@ def test_more_joints_than_gltf_can_number_are_refused(tmp_path, monkeypatch):
 
 
 def test_what_cannot_be_saved_is_told_before_the_work(tmp_path):
-    from cutcell.io import check_output
-
-    for name, rig in (("a.glb", sized(1e300)), ("a.gltf", small_rig())):
-        with pytest.raises(cutcell.CutcellError, match=r"32 bits|did not come from glTF"):
+    for name, rig in (("a.glb", sized(1e300)), ("a.vrm", small_rig())):
+        with pytest.raises(cutcell.CutcellError, match=r"32 bits|no VRM"):
             check_output(tmp_path / name, rig)
         check_output(tmp_path / name)
     layout = Layout()
@@ -186,7 +185,15 @@ def test_an_avatar_stays_one(tmp_path):
     assert_allclose(again.weights, rig.weights)
 
 
-def test_a_new_file_under_that_ending_is_a_binary_one(tmp_path):
-    cutcell.save(tmp_path / "new.vrm", small_rig())
-    assert (tmp_path / "new.vrm").read_bytes()[:4] == b"glTF"
-    assert_allclose(cutcell.load(tmp_path / "new.vrm").weights, small_rig().weights)
+@pytest.mark.parametrize("extensions", [None, 5, [], {}, {"KHR_lights_punctual": {}}])
+def test_what_is_no_avatar_is_not_saved_as_one(tmp_path, extensions):
+    builder = column()
+    if extensions is not None:
+        builder.json["extensions"] = extensions
+    stored = cutcell.load(builder.save(tmp_path / "in.glb"))
+    for rig in (stored, small_rig()):
+        with pytest.raises(cutcell.FileError, match=r"^new\.vrm: .*\.glb"):
+            cutcell.save(tmp_path / "new.vrm", rig)
+        with pytest.raises(cutcell.FileError, match=r"^new\.vrm: .*\.glb"):
+            check_output(tmp_path / "new.vrm", rig)
+    assert not (tmp_path / "new.vrm").exists()

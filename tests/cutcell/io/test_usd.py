@@ -205,3 +205,9 @@ def test_without_the_library_it_says_what_to_install(load, tmp_path, monkeypatch
         match=r"^column\.usda: .*pxr is not installed; try: pip install 'cutcell\[usd\]'",
     ):
         load(text())
+
+
+def test_a_mesh_bound_in_a_place_that_is_too_large_is_refused(load):
+    place = "( (1e160, 0, 0, 0), (0, 1e160, 0, 0), (0, 0, 1e160, 0), (0, 0, 0, 1) )"
+    with pytest.raises(cutcell.SkeletonError, match=r"^column\.usda: .* cannot be inverted"):
+        load(text(place=place))

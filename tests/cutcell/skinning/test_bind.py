@@ -201,3 +201,17 @@ def test_rotation_changes_less_on_a_finer_lattice(connectivity):
     assert coarse > middle > fine
     # Along lattice edges something remains at every resolution: their paths are too long.
     assert fine < {6: 0.1, 26: 0.05, "any": 0.01}[connectivity]
+
+
+def test_joints_that_get_no_weight_are_named():
+    rig = figure()
+    joints = np.concatenate([rig.skeleton.joints, rig.skeleton.joints[-1:]])
+    names = ["first", "second", "third", "fourth", "twin"]
+    twins = Rig(rig.mesh, Skeleton(joints, [-1, 0, 1, 2, 2], names))
+    for skeleton, is_named in (
+        (twins.skeleton, True),
+        (Skeleton(joints, [-1, 0, 1, 2, 2], names, [True] * 4 + [False]), False),
+    ):
+        found = bind(Rig(rig.mesh, skeleton), 16, max_influences=1)
+        assert not found.weights[:, 4].any()
+        assert any("twin" in warning for warning in found.warnings) == is_named

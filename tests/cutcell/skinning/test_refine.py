@@ -186,9 +186,19 @@ def test_locked_joints_come_first_among_the_influences(influences):
     artist = random_weights(40, 5, kept=2)
     found = lock_joints(rig_of(artist), random_weights(40, 5), ["a", "b"], influences)
     locked = (artist[:, :2] > 0).sum(axis=1)
-    assert ((found > 0).sum(axis=1) <= np.maximum(influences, locked)).all()
-    np.testing.assert_array_equal((found[:, :2] > 0)[locked > 0], (artist[:, :2] > 0)[locked > 0])
+    has_room = locked < influences
+    assert ((found > 0).sum(axis=1) <= np.maximum(influences, locked))[has_room].all()
+    np.testing.assert_array_equal(found[~has_room], artist[~has_room])
+    np.testing.assert_array_equal(found[:, :2], artist[:, :2])
     np.testing.assert_allclose(found.sum(axis=1), 1)
+
+
+def test_where_only_locked_joints_were_computed_all_joints_keep_the_files_weights():
+    artist = random_weights(40, 5)
+    artist[:10] = one_hot([0] * 10, 5)  # wholly a joint that is free
+    computed = one_hot([1] * 20 + [3] * 20, 5)
+    found = lock_joints(rig_of(artist), computed, ["b", "d"])
+    np.testing.assert_array_equal(found, artist)
 
 
 def rig_of(weights):
