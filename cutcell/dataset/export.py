@@ -205,8 +205,7 @@ def _puppeteer_sample(name: str, entry: Entry, seed: int) -> dict[str, Any]:
     held = np.flatnonzero(entry.parents >= 0)
     bones = np.stack([entry.parents[held], held], axis=1)
     count = len(entry.joints)
-    ends = bones.astype(np.int32).T  # SciPy 1.14 takes no others
-    links = coo_array((np.ones(len(held)), tuple(ends)), shape=(count, count))
+    links = coo_array((np.ones(len(held)), (bones[:, 0], bones[:, 1])), shape=(count, count))
     hops = shortest_path(links.tocsr(), directed=False, unweighted=True)
     sides = np.sort(np.concatenate([entry.faces[:, [0, 1]], entry.faces[:, [1, 2]],
                                     entry.faces[:, [2, 0]]]), axis=1)  # fmt: skip
