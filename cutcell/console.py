@@ -19,9 +19,12 @@ from rich.text import Text
 from .display import json_safe, printable
 from .errors import CutcellError
 from .progress import Progress, silent
+from .standard_output import OutputError, checked_output
 
 WRONG_INPUT = 2
 INTERRUPTED = 130
+READER_GONE = 141
+"""What a shell gives for a program that a closed pipe ends."""
 
 STAGES = {
     "compile": "Compiling, once on this machine",
@@ -54,6 +57,25 @@ def for_people(command: Command) -> Command:
             raise typer.Exit(INTERRUPTED) from None
 
     return run  # type: ignore[return-value]
+
+
+def exit_by_output(run: Callable[[], Any]) -> None:
+    """Run a program; turn a full or closed standard output into one sentence and an exit code.
+
+    Whoever reads a pipe may stop when it has read enough: that needs no sentence.
+
+    Raises
+    ------
+    SystemExit
+    """
+    try:
+        with checked_output():
+            run()
+    except OutputError as error:
+        if error.reader_is_gone:
+            sys.exit(READER_GONE)
+        _to_stderr("error", f"standard output cannot be written to ({error})", "bold red")
+        sys.exit(WRONG_INPUT)
 
 
 @contextmanager
