@@ -17,7 +17,7 @@ from rich.table import Table
 from rich.text import Text
 
 from .display import json_safe, printable
-from .errors import CutcellError
+from .errors import CutcellError, comes_from_ctrl_c
 from .progress import Progress, silent
 from .standard_output import OutputError, checked_output
 
@@ -52,7 +52,9 @@ def for_people(command: Command) -> Command:
             advice = "choose a lower resolution, or close other programs"
             _to_stderr("error", f"there is not enough memory{why}; {advice}", "bold red")
             raise typer.Exit(WRONG_INPUT) from None
-        except KeyboardInterrupt:
+        except (KeyboardInterrupt, SystemError) as error:
+            if not comes_from_ctrl_c(error):
+                raise
             _to_stderr("stopped", "by Ctrl-C", "bold yellow")
             raise typer.Exit(INTERRUPTED) from None
 

@@ -45,8 +45,11 @@ def test_numpys_threads_do_not_wait_for_more(given, threads, monkeypatch, capsys
     assert os.environ["OPENBLAS_NUM_THREADS"] == threads
 
 
-def test_ctrl_c_stops_with_130(run, bar, monkeypatch, tmp_path):
+@pytest.mark.parametrize("in_dispatcher", [False, True])
+def test_ctrl_c_stops_with_130(run, bar, monkeypatch, tmp_path, in_dispatcher):
     def interrupted(*_, **__):
+        if in_dispatcher:  # as numba's raises it
+            raise SystemError("returned a result with an exception set") from KeyboardInterrupt()
         raise KeyboardInterrupt
 
     monkeypatch.setattr("cutcell.skinning.bind", interrupted)
@@ -54,6 +57,15 @@ def test_ctrl_c_stops_with_130(run, bar, monkeypatch, tmp_path):
     assert result.exit_code == 130
     assert "Traceback" not in result.stderr
     assert not (tmp_path / "out.glb").exists()
+
+
+def test_other_errors_of_the_interpreter_go_through(run, bar, monkeypatch, tmp_path):
+    def fails(*_, **__):
+        raise SystemError
+
+    monkeypatch.setattr("cutcell.skinning.bind", fails)
+    with pytest.raises(SystemError):
+        run("bind", bar, tmp_path / "out.glb")
 
 
 def test_bars_are_drawn_on_a_terminal_only(monkeypatch, capsys):
