@@ -13,6 +13,8 @@ from ..errors import CutcellError, MissingLibraryError
 AHEAD = 2
 """Jobs under way for each core of the workers: one runs while the next is sent."""
 CONNECT = "10s"
+LOOPBACK = "127.0.0.1:0"
+"""Any free port, for this machine alone."""
 
 
 class Cluster:
@@ -133,8 +135,9 @@ def connected(scheduler: str | None, workers: int | None, processes: bool) -> It
                 n_workers=shape[0],
                 threads_per_worker=shape[1],
                 processes=processes,
-                # Any free port of this machine alone, and nothing to see there.
-                dashboard_address="127.0.0.1:0",
+                # Dask opens these servers even where they have no pages.
+                dashboard_address=LOOPBACK,
+                worker_dashboard_address=LOOPBACK,
                 scheduler_kwargs={"dashboard": False},
                 memory_limit=0,
                 silence_logs=50,
