@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import logging
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
@@ -43,7 +44,8 @@ def for_people(command: Command) -> Command:
     @wraps(command)
     def run(*args: Any, **kwargs: Any) -> Any:
         try:
-            return command(*args, **kwargs)
+            with _compilation_shown(bool(kwargs.get("quiet"))):
+                return command(*args, **kwargs)
         except CutcellError as error:
             _to_stderr("error", str(error), "bold red")
             raise typer.Exit(WRONG_INPUT) from None
@@ -59,6 +61,25 @@ def for_people(command: Command) -> Command:
             raise typer.Exit(INTERRUPTED) from None
 
     return run  # type: ignore[return-value]
+
+
+@contextmanager
+def _compilation_shown(quiet: bool) -> Iterator[None]:
+    """Print a line on standard error as functions are compiled, where no bar shows it."""
+    if quiet or Console(stderr=True).is_terminal:
+        yield
+        return
+    logger, handler = logging.getLogger("cutcell.compile"), logging.StreamHandler()
+    before = logger.level, logger.propagate
+    logger.setLevel(logging.INFO)
+    logger.propagate = False
+    logger.addHandler(handler)
+    try:
+        yield
+    finally:
+        logger.removeHandler(handler)
+        logger.setLevel(before[0])
+        logger.propagate = before[1]
 
 
 def exit_by_output(run: Callable[[], Any]) -> None:

@@ -9,7 +9,9 @@ import numpy as np
 import pytest
 
 import cutcell
+from cutcell import compile_cache
 from cutcell.cli import main
+from cutcell.compiled import compiled
 from cutcell.console import print_json, progress_bars
 from cutcell.method import FALLOFFS
 from tests.conftest import ROOT
@@ -82,6 +84,27 @@ def test_bars_are_drawn_on_a_terminal_only(monkeypatch, capsys):
     assert drawn.out == ""
 
 
+@pytest.mark.parametrize(
+    ("options", "lines"), [((), 1), (("--json",), 1), (("--quiet",), 0), (("--json", "--quiet"), 0)]
+)
+def test_a_first_compile_is_one_line_where_no_bar_shows_it(
+    run, bar, tmp_path, monkeypatch, options, lines
+):
+    def compiles(*_, **__):
+        compiled(lambda number: number + 1)(1)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(compile_cache, "folders", lambda: (tmp_path / "kernels",))
+    compile_cache.announce.cache_clear()
+    monkeypatch.setattr("cutcell.skinning.bind", compiles)
+    shown = run("bind", bar, tmp_path / "out.glb", *options)
+    assert shown.stdout == ""
+    assert len(shown.stderr.splitlines()) == lines + 1
+    monkeypatch.setenv("FORCE_COLOR", "1")  # as on a terminal
+    compile_cache.announce.cache_clear()
+    assert "minute" not in run("bind", bar, tmp_path / "out.glb", *options).stderr
+
+
 def test_json_never_holds_what_is_not_json():
     with pytest.raises(ValueError, match="not JSON compliant"):
         print_json({"seconds": float("nan")})
@@ -89,6 +112,7 @@ def test_json_never_holds_what_is_not_json():
 
 def test_python_m_cutcell_is_the_command(bar, tmp_path):
     command = [sys.executable, "-m", "cutcell", "bind", str(bar), str(tmp_path / "o.glb"), "--json"]
+    command.append("--quiet")  # a first compile would be told
     done = subprocess.run(command, capture_output=True, text=True, cwd=ROOT)
     assert (done.returncode, done.stderr) == (0, "")
     assert json.loads(done.stdout)["output"].endswith("o.glb")
