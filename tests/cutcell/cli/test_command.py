@@ -15,6 +15,7 @@ from cutcell.compiled import compiled
 from cutcell.console import print_json, progress_bars
 from cutcell.method import FALLOFFS
 from tests.conftest import ROOT
+from tests.signals import reset_signals
 
 
 class TestHelp:
@@ -139,7 +140,9 @@ sys.argv = ["cutcell", "bind", {str(bar)!r}, {str(tmp_path / "o.glb")!r}]
 cutcell.cli.main()
 """
     command = [sys.executable, "-c", code]
-    done = subprocess.run(command, capture_output=True, text=True, cwd=ROOT, timeout=50)
+    done = subprocess.run(
+        command, capture_output=True, text=True, cwd=ROOT, timeout=50, preexec_fn=reset_signals
+    )
     assert (done.returncode, done.stderr) == (130, "stopped: by Ctrl-C\n")
     assert not (tmp_path / "o.glb").exists()
 
