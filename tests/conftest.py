@@ -1,5 +1,6 @@
 """What all tests share: characters to load, a browser, and how several processes run them."""
 
+import os
 from pathlib import Path
 
 import pytest
@@ -8,6 +9,13 @@ from cutcell.skinning import is_compiled, warm_up
 
 ROOT = Path(__file__).resolve().parent.parent
 SHARED_RIGS = ROOT.parent / "shared" / "data" / "rigs"
+
+
+@pytest.hookimpl(trylast=True)  # pytest itself may heed them
+def pytest_configure() -> None:
+    """Let commands print the same whatever is said of the terminal that the tests run on."""
+    for name in ("COLUMNS", "FORCE_COLOR", "GITHUB_ACTIONS", "LINES", "NO_COLOR", "PY_COLORS"):
+        os.environ.pop(name, None)
 
 
 def pytest_sessionstart(session: pytest.Session) -> None:
