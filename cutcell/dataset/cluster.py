@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
@@ -99,6 +100,7 @@ def connected(scheduler: str | None, workers: int | None, processes: bool) -> It
     try:
         import dask
         from distributed import Client, LocalCluster
+        from distributed.utils import get_ip
     except ImportError:
         raise MissingLibraryError(
             "work is shared out by Dask, which is not installed; try: pip install "
@@ -128,6 +130,9 @@ def connected(scheduler: str | None, workers: int | None, processes: bool) -> It
             return
         from .binding import cores, stop_runners
 
+        with warnings.catch_warnings():  # it warns, once, where there is no network
+            warnings.simplefilter("ignore", RuntimeWarning)
+            get_ip()
         count = workers or cores()
         shape = (count, 1) if processes else (1, count)
         with (
