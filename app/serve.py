@@ -93,7 +93,7 @@ def serve(
     # Computing in Python gives way to the page's own thread sooner than after 5 ms.
     sys.setswitchinterval(0.001)
     UPLOADS.sweep_by_the_clock()
-    threading.Thread(target=get_ready, daemon=True).start()
+    threading.Thread(target=get_ready, args=(UPLOADS.storage.make,), daemon=True).start()
     server = begin(path, chosen, address, opened)
     if is_compiled():
         # While the browser starts. The first compile ever is left to the page, which tells of it.

@@ -23,7 +23,14 @@ from .bind_command import EPILOG as BIND_EPILOG
 from .bind_command import bind
 from .clean_command import EPILOG as CLEAN_EPILOG
 from .clean_command import clean
-from .console import for_people, print_json, print_warnings, progress_bars
+from .console import (
+    exit_by_output,
+    for_people,
+    print_json,
+    print_line,
+    print_warnings,
+    progress_bars,
+)
 from .dataset_command import dataset
 from .diagnose_command import EPILOG as DIAGNOSE_EPILOG
 from .diagnose_command import diagnose
@@ -50,13 +57,14 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
     epilog="""The method: *A Geodesic Cut-Cell Prior for Neural Skinning* (Ma et al. 2026).
 
-Exit codes: 0 done; 2 wrong input, and one sentence says what; 130 stopped by Ctrl-C.""",
+Exit codes: 0 done; 2 wrong input, and one sentence says what; 130 stopped by Ctrl-C;
+141 the reader of its output is gone.""",
 )
 
 
 def _print_version(wanted: bool) -> None:
     if wanted:
-        typer.echo(f"cutcell {__version__}")
+        print_line(f"cutcell {__version__}")
         raise typer.Exit
 
 
@@ -165,7 +173,7 @@ def compare(
     if json:
         print_json(comparison.to_dict())
     elif markdown:
-        typer.echo(comparison_markdown(comparison))
+        print(comparison_markdown(comparison))
     else:
         print_comparison(comparison)
 
@@ -187,4 +195,4 @@ def main() -> None:
     # for more by running idle: a tenth of a second of a core each time, which kernels and the page
     # then lack.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-    app()
+    exit_by_output(app)

@@ -13,6 +13,7 @@ memory.
 from __future__ import annotations
 
 import hashlib
+import logging
 import os
 import pickle
 import shutil
@@ -76,6 +77,7 @@ class CompileCache(NullCache):
             with suppress(Exception):  # whatever is wrong with a file, the function can be compiled
                 payload = _checked(Path(folder, name).read_bytes())
                 return CompileResult._rebuild(target_context, *pickle.loads(payload))
+        announce()
         return None
 
     def save_overload(self, sig: Any, data: Any) -> None:
@@ -99,6 +101,15 @@ class CompileCache(NullCache):
 def is_complete() -> bool:
     """Tell whether all functions of a binding, as they now are, have been compiled and kept."""
     return any(os.path.exists(folder / COMPLETE) for folder in folders())
+
+
+@cache
+def announce() -> None:
+    """Log, once in a process, that this machine is to compile the functions of a binding."""
+    if not is_complete():
+        logging.getLogger("cutcell.compile").info(
+            "Compiling, once on this machine. This takes a minute or two."
+        )
 
 
 def mark_complete() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import logging
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
@@ -17,11 +18,14 @@ from rich.table import Table
 from rich.text import Text
 
 from .display import json_safe, printable
-from .errors import CutcellError
+from .errors import CutcellError, comes_from_ctrl_c
 from .progress import Progress, silent
+from .standard_output import OutputError, checked_output
 
 WRONG_INPUT = 2
 INTERRUPTED = 130
+READER_GONE = 141
+"""What a shell gives for a program that a closed pipe ends."""
 
 STAGES = {
     "compile": "Compiling, once on this machine",
@@ -40,7 +44,8 @@ def for_people(command: Command) -> Command:
     @wraps(command)
     def run(*args: Any, **kwargs: Any) -> Any:
         try:
-            return command(*args, **kwargs)
+            with _compilation_shown(bool(kwargs.get("quiet"))):
+                return command(*args, **kwargs)
         except CutcellError as error:
             _to_stderr("error", str(error), "bold red")
             raise typer.Exit(WRONG_INPUT) from None
@@ -49,11 +54,51 @@ def for_people(command: Command) -> Command:
             advice = "choose a lower resolution, or close other programs"
             _to_stderr("error", f"there is not enough memory{why}; {advice}", "bold red")
             raise typer.Exit(WRONG_INPUT) from None
-        except KeyboardInterrupt:
+        except (KeyboardInterrupt, SystemError) as error:
+            if not comes_from_ctrl_c(error):
+                raise
             _to_stderr("stopped", "by Ctrl-C", "bold yellow")
             raise typer.Exit(INTERRUPTED) from None
 
     return run  # type: ignore[return-value]
+
+
+@contextmanager
+def _compilation_shown(quiet: bool) -> Iterator[None]:
+    """Print a line on standard error as functions are compiled, where no bar shows it."""
+    if quiet or Console(stderr=True).is_terminal:
+        yield
+        return
+    logger, handler = logging.getLogger("cutcell.compile"), logging.StreamHandler()
+    before = logger.level, logger.propagate
+    logger.setLevel(logging.INFO)
+    logger.propagate = False
+    logger.addHandler(handler)
+    try:
+        yield
+    finally:
+        logger.removeHandler(handler)
+        logger.setLevel(before[0])
+        logger.propagate = before[1]
+
+
+def exit_by_output(run: Callable[[], Any]) -> None:
+    """Run a program; turn a full or closed standard output into one sentence and an exit code.
+
+    Whoever reads a pipe may stop when it has read enough: that needs no sentence.
+
+    Raises
+    ------
+    SystemExit
+    """
+    try:
+        with checked_output():
+            run()
+    except OutputError as error:
+        if error.reader_is_gone:
+            sys.exit(READER_GONE)
+        _to_stderr("error", f"standard output cannot be written to ({error})", "bold red")
+        sys.exit(WRONG_INPUT)
 
 
 @contextmanager

@@ -91,7 +91,18 @@ def json_safe(text: str) -> str:
 
     JSON itself only forbids those below a space; the others become escapes, which mean the same.
     """
-    return _NOT_PLAIN.sub(lambda found: _json_escape(found.group()), text)
+
+    def shown(match: re.Match[str]) -> str:
+        char = match.group()
+        return char if _ESCAPES[ord(char)] == char else json_escape(char)
+
+    return _NOT_PLAIN.sub(shown, text)
+
+
+def json_escape(text: str) -> str:
+    """Return characters as the escapes that strings of JSON have for them."""
+    units = text.encode("utf-16-be", "surrogatepass").hex()
+    return "".join(f"\\u{units[i : i + 4]}" for i in range(0, len(units), 4))
 
 
 def without_folders(text: str, known: Iterable[Path] = ()) -> str:
@@ -108,10 +119,3 @@ def without_folders(text: str, known: Iterable[Path] = ()) -> str:
             inner = r"[\\/](?:[^\s\\/\"':;,()]+[\\/])*"
             text = re.sub(re.escape(folder.rstrip("\\/")) + inner, "", text)
     return _FOLDERS.sub("", text)
-
-
-def _json_escape(char: str) -> str:
-    if _ESCAPES[ord(char)] == char:
-        return char
-    pair = char.encode("utf-16-be", "surrogatepass").hex()
-    return "".join(f"\\u{pair[i : i + 4]}" for i in range(0, len(pair), 4))

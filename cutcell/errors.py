@@ -35,3 +35,13 @@ class MissingLibraryError(CutcellError):
 
 class Cancelled(Exception):
     """Raised by a progress callback to stop a computation; never by cutcell itself."""
+
+
+def comes_from_ctrl_c(error: BaseException | None) -> bool:
+    """Tell whether an error is Ctrl-C, or was raised because of it.
+
+    numba's dispatcher raises `SystemError` where Ctrl-C comes while it looks at its arguments.
+    """
+    while error is not None and not isinstance(error, KeyboardInterrupt):
+        error = error.__cause__ or error.__context__
+    return error is not None

@@ -11,6 +11,13 @@ ROOT = Path(__file__).resolve().parent.parent
 SHARED_RIGS = ROOT.parent / "shared" / "data" / "rigs"
 
 
+@pytest.hookimpl(trylast=True)  # pytest itself may heed them
+def pytest_configure() -> None:
+    """Let commands print the same whatever is said of the terminal that the tests run on."""
+    for name in ("COLUMNS", "FORCE_COLOR", "GITHUB_ACTIONS", "LINES", "NO_COLOR", "PY_COLORS"):
+        os.environ.pop(name, None)
+
+
 def pytest_sessionstart(session: pytest.Session) -> None:
     """Compile all functions before there are workers: each of them would compile its own."""
     if session.config.getoption("numprocesses", None) and not is_compiled():

@@ -56,6 +56,7 @@ ORDER = [
         "progress",
         "rig",
         "sorting",
+        "standard_output",
         "subprocesses",
         "threads",
         "triangles",

@@ -12,6 +12,8 @@ from urllib.request import Request, urlopen
 
 import pytest
 
+from tests.signals import reset_signals
+
 ROOT = Path(__file__).resolve().parent.parent
 SOURCES = ("app", "assets", "cutcell", "viewers")
 FILES = ("LICENSE", "NOTICE", "README.md", "pyproject.toml", "setup.py")
@@ -98,6 +100,7 @@ def page(installed, folder) -> Iterator[str]:
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         text=True,
+        preexec_fn=reset_signals,
     ) as process:
         try:
             told = []

@@ -25,6 +25,9 @@ Result = TypeVar("Result")
 ASK_EVERY = 0.05
 """Seconds between two questions whether the result is still wanted."""
 
+LONGEST_FOLDER = 80
+"""Bytes of a folder's path to which the name of a socket can be added."""
+
 # A server of processes is started once, with what they need; each then takes some milliseconds.
 # What this process began with is imported by each, too: for the commands, that is `cutcell.cli`.
 _METHOD = "forkserver" if "forkserver" in multiprocessing.get_all_start_methods() else "spawn"
@@ -33,11 +36,22 @@ if _METHOD == "forkserver":
     _CONTEXT.set_forkserver_preload(["cutcell.cli", "cutcell.io", __name__])
 
 
-def get_ready() -> None:
-    """Start what processes are started by, before the first is needed."""
+def get_ready(make_folder: Callable[[], Path]) -> None:
+    """Start what processes are started by, before the first is needed.
+
+    Parameters
+    ----------
+    make_folder : callable
+        Makes a folder for its socket. The one that Python makes itself stays for ever where this
+        process is killed.
+    """
     if _METHOD == "forkserver":
         from multiprocessing.forkserver import ensure_running
 
+        with suppress(OSError):
+            folder = str(make_folder())
+            if len(os.fsencode(folder)) <= LONGEST_FOLDER:
+                multiprocessing.current_process()._config["tempdir"] = folder  # type: ignore[attr-defined]
         # Nothing in the folder that the page is started in takes the place of a library.
         os.environ["PYTHONSAFEPATH"] = "1"
         ensure_running()

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ..baselines import METHODS, Baseline, BaselineBinding
 from ..baselines.methods import known_options
 from ..checks import check_choice, check_has_joints
-from ..errors import Cancelled, CutcellError, ParameterError, WeightsError
+from ..errors import Cancelled, CutcellError, ParameterError, WeightsError, comes_from_ctrl_c
 from ..graph import build_graph
 from ..metrics import (
     TURNED,
@@ -125,6 +125,8 @@ def _attempt(method: Baseline, rig: Rig) -> BaselineBinding:
     except CutcellError as error:
         return BaselineBinding(None, failed=str(error))
     except Exception as error:
+        if comes_from_ctrl_c(error):
+            raise
         return BaselineBinding(None, failed=f"{type(error).__name__}: {error}".rstrip(": "))
 
 

@@ -16,6 +16,7 @@ from typing import Any
 
 from .. import __version__
 from ..checks import check_integer, check_number, one_line
+from ..compile_cache import announce
 from ..errors import CutcellError, TooLargeError
 from ..memory import SHARE, available_memory, gigabytes
 from .cluster import Cluster, connected
@@ -128,6 +129,8 @@ def bind_all(
     store = Store(folder)
     store.begin(parameters)
     run = _Run(store, parameters, len(sources), time_limit, tell)
+    if scheduler is None:
+        announce()  # the processes that bind compile, and print nothing
     with connected(scheduler, workers, processes) as cluster:
         try:
             run.all(sources, cluster)

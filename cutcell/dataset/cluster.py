@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
@@ -13,6 +14,8 @@ from ..errors import CutcellError, MissingLibraryError
 AHEAD = 2
 """Jobs under way for each core of the workers: one runs while the next is sent."""
 CONNECT = "10s"
+LOOPBACK = "127.0.0.1:0"
+"""Any free port, for this machine alone."""
 
 
 class Cluster:
@@ -97,6 +100,7 @@ def connected(scheduler: str | None, workers: int | None, processes: bool) -> It
     try:
         import dask
         from distributed import Client, LocalCluster
+        from distributed.utils import get_ip
     except ImportError:
         raise MissingLibraryError(
             "work is shared out by Dask, which is not installed; try: pip install "
@@ -126,6 +130,9 @@ def connected(scheduler: str | None, workers: int | None, processes: bool) -> It
             return
         from .binding import cores, stop_runners
 
+        with warnings.catch_warnings():  # it warns, once, where there is no network
+            warnings.simplefilter("ignore", RuntimeWarning)
+            get_ip()
         count = workers or cores()
         shape = (count, 1) if processes else (1, count)
         with (
@@ -133,8 +140,9 @@ def connected(scheduler: str | None, workers: int | None, processes: bool) -> It
                 n_workers=shape[0],
                 threads_per_worker=shape[1],
                 processes=processes,
-                # Any free port of this machine alone, and nothing to see there.
-                dashboard_address="127.0.0.1:0",
+                # Dask opens these servers even where they have no pages.
+                dashboard_address=LOOPBACK,
+                worker_dashboard_address=LOOPBACK,
                 scheduler_kwargs={"dashboard": False},
                 memory_limit=0,
                 silence_logs=50,

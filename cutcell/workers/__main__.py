@@ -60,7 +60,10 @@ def main(task: str, job_path: str, result_path: str, memory: str = "0") -> None:
 
 
 def limit_memory(allowance: int) -> None:
-    """Let this process take so many more bytes, 0 for any; only Linux sees to it."""
+    """Let this process take so many more bytes, 0 for any; only Linux sees to it.
+
+    A lower limit that this process began with stays.
+    """
     try:
         import resource
 
@@ -68,8 +71,11 @@ def limit_memory(allowance: int) -> None:
     except (ImportError, OSError):
         return
     if allowance:
+        soft, hard = resource.getrlimit(resource.RLIMIT_AS)
         most = pages * resource.getpagesize() + allowance
-        resource.setrlimit(resource.RLIMIT_AS, (most, resource.RLIM_INFINITY))
+        if soft != resource.RLIM_INFINITY:
+            most = min(most, soft)
+        resource.setrlimit(resource.RLIMIT_AS, (most, hard))
 
 
 if __name__ == "__main__":

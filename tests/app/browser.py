@@ -20,6 +20,7 @@ from PIL import Image
 from playwright.sync_api import Browser, ConsoleMessage, Error, Locator, Page, expect
 
 import cutcell
+from tests.signals import reset_signals
 
 ROOT = Path(__file__).resolve().parents[2]
 START_SECONDS = 240
@@ -110,6 +111,7 @@ def served(*arguments: str) -> Iterator[str]:
         stderr=subprocess.STDOUT,
         text=True,
         env={**os.environ, "PYTHONFAULTHANDLER": "1"},
+        preexec_fn=reset_signals,
     )
     lines: list[str] = []
     known = threading.Event()

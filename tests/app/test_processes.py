@@ -4,6 +4,7 @@ import os
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 from pathlib import Path
 
@@ -15,6 +16,7 @@ import cutcell
 from cutcell.errors import Cancelled, CutcellError, FileError, MeshError
 from cutcell_app.files import reading
 from cutcell_app.files.reading import read
+from cutcell_app.files.storage import NEW_SECONDS, Storage
 from cutcell_app.work.processes import in_process
 from cutcell_assets import demo_path
 from tests.conftest import ROOT
@@ -29,8 +31,20 @@ class OddError(Exception):
 
 SERVER = """
 import subprocess, sys
+from cutcell_app.files.storage import NEW_SECONDS, Storage
 from cutcell_app.work.processes import in_process
 in_process(subprocess.call, ["sh", "-c", 'echo $PPID $$ > "$0"; sleep 600', sys.argv[1]])
+"""
+
+
+KILLED_SERVER = """
+import os, signal
+from cutcell_app.files.storage import Storage
+from cutcell_app.files.storage import NEW_SECONDS, Storage
+from cutcell_app.work.processes import get_ready, in_process
+get_ready(Storage().make)
+in_process(divmod, 7, 2)
+os.kill(os.getpid(), signal.SIGKILL)
 """
 
 
@@ -158,3 +172,16 @@ def test_a_reader_that_ends_its_process_is_named(monkeypatch, tmp_path):
 
 def killed_by(path):
     killed()
+
+
+def test_a_killed_server_leaves_no_folder_that_is_not_swept():
+    with tempfile.TemporaryDirectory() as folder:  # of a short name: it holds a socket
+        environment = {**os.environ, "TMPDIR": folder}
+        command = [sys.executable, "-c", KILLED_SERVER]
+        done = subprocess.run(command, cwd=ROOT, env=environment)
+        assert done.returncode == -signal.SIGKILL
+        long_ago = time.time() - 2 * NEW_SECONDS
+        for left in Path(folder).iterdir():
+            os.utime(left, (long_ago, long_ago))
+        Storage(Path(folder)).sweep()
+        assert os.listdir(folder) == []

@@ -1,5 +1,6 @@
 """Work in a process of its own: it ends by its time limit, or when it is unwanted."""
 
+import subprocess
 import sys
 import time
 
@@ -9,6 +10,7 @@ import pytest
 from cutcell import apart
 from cutcell.apart import WorkFailedError
 from cutcell.errors import Cancelled
+from tests.conftest import ROOT
 
 
 def sleepers():
@@ -47,3 +49,30 @@ def test_nobody_is_asked_outside_the_block(sleeping):
         pass
     with pytest.raises(WorkFailedError):
         apart.run_apart("bbw", {}, 0.1, "the sleeper")
+
+
+@pytest.mark.parametrize(
+    ("soft", "hard", "allowance", "expected"),
+    [
+        (64, 64, 1, lambda soft: 1 <= soft < 64),
+        (64, 64, 128, lambda soft: soft == 64),
+        (64, -1, 128, lambda soft: soft == 64),
+        (64, 64, 0, lambda soft: soft == 64),
+    ],
+)
+def test_a_memory_limit_is_never_raised(soft, hard, allowance, expected):
+    pytest.importorskip("resource")
+    code = """
+import resource, sys
+from cutcell.workers.__main__ import limit_memory
+
+soft, hard, allowance = (int(word) * 2**30 if word != "-1" else -1 for word in sys.argv[1:])
+resource.setrlimit(resource.RLIMIT_AS, (soft, hard))
+limit_memory(allowance)
+print(*resource.getrlimit(resource.RLIMIT_AS))
+"""
+    words = [str(value) for value in (soft, hard, allowance)]
+    out = subprocess.check_output([sys.executable, "-c", code, *words], cwd=ROOT, text=True)
+    after = [int(word) for word in out.split()]
+    assert expected(after[0] / 2**30)
+    assert after[1] == (hard * 2**30 if hard > 0 else hard)

@@ -45,6 +45,19 @@ def test_a_kernel_is_compiled_once_for_each_type(folder):
     assert not compile_cache.refusals
 
 
+def test_a_first_compile_is_logged_once(folder, monkeypatch, caplog):
+    caplog.set_level("INFO", "cutcell.compile")
+    for number in (1, 1.5):
+        compile_cache.announce.cache_clear()
+        outcome(number)
+        outcome(number)
+    assert [record.name for record in caplog.records] == ["cutcell.compile"] * 2
+    compile_cache.mark_complete()
+    compile_cache.announce.cache_clear()
+    outcome(1j)
+    assert len(caplog.records) == 2, "the others are there: this one takes a moment"
+
+
 def with_checksum(content):
     return hashlib.sha256(content).digest() + content
 

@@ -11,6 +11,7 @@ import pytest
 
 from cutcell import FileError
 from cutcell.writing import TEMPORARY, check_place, replacing, sweep, write_all
+from tests.signals import reset_signals
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -39,6 +40,7 @@ def writer(tmp_path):
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
             text=True,
+            preexec_fn=reset_signals,
         )
         started.append(process)
         return process, process.stdout.readline().strip()

@@ -28,6 +28,8 @@ from pathlib import Path
 from types import ModuleType
 from typing import TextIO
 
+from tests.signals import reset_signals
+
 ROOT = Path(__file__).resolve().parents[2]
 SECONDS = 10
 """That a case may take."""
@@ -138,6 +140,7 @@ def _death(number: int, code: int, seconds: int) -> dict:
 
 def serve(module: str, seconds: int) -> None:
     """Check the cases whose numbers come in by standard input; answer each on standard output."""
+    reset_signals()
     with os.fdopen(os.dup(1), "w") as answers:
         os.dup2(2, 1)  # whatever is printed is no answer
         fuzzer = import_module(module)

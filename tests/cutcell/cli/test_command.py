@@ -9,10 +9,13 @@ import numpy as np
 import pytest
 
 import cutcell
+from cutcell import compile_cache
 from cutcell.cli import main
+from cutcell.compiled import compiled
 from cutcell.console import print_json, progress_bars
 from cutcell.method import FALLOFFS
 from tests.conftest import ROOT
+from tests.signals import reset_signals
 
 
 class TestHelp:
@@ -45,8 +48,11 @@ def test_numpys_threads_do_not_wait_for_more(given, threads, monkeypatch, capsys
     assert os.environ["OPENBLAS_NUM_THREADS"] == threads
 
 
-def test_ctrl_c_stops_with_130(run, bar, monkeypatch, tmp_path):
+@pytest.mark.parametrize("in_dispatcher", [False, True])
+def test_ctrl_c_stops_with_130(run, bar, monkeypatch, tmp_path, in_dispatcher):
     def interrupted(*_, **__):
+        if in_dispatcher:  # as numba's raises it
+            raise SystemError("returned a result with an exception set") from KeyboardInterrupt()
         raise KeyboardInterrupt
 
     monkeypatch.setattr("cutcell.skinning.bind", interrupted)
@@ -54,6 +60,15 @@ def test_ctrl_c_stops_with_130(run, bar, monkeypatch, tmp_path):
     assert result.exit_code == 130
     assert "Traceback" not in result.stderr
     assert not (tmp_path / "out.glb").exists()
+
+
+def test_other_errors_of_the_interpreter_go_through(run, bar, monkeypatch, tmp_path):
+    def fails(*_, **__):
+        raise SystemError
+
+    monkeypatch.setattr("cutcell.skinning.bind", fails)
+    with pytest.raises(SystemError):
+        run("bind", bar, tmp_path / "out.glb")
 
 
 def test_bars_are_drawn_on_a_terminal_only(monkeypatch, capsys):
@@ -70,6 +85,27 @@ def test_bars_are_drawn_on_a_terminal_only(monkeypatch, capsys):
     assert drawn.out == ""
 
 
+@pytest.mark.parametrize(
+    ("options", "lines"), [((), 1), (("--json",), 1), (("--quiet",), 0), (("--json", "--quiet"), 0)]
+)
+def test_a_first_compile_is_one_line_where_no_bar_shows_it(
+    run, bar, tmp_path, monkeypatch, options, lines
+):
+    def compiles(*_, **__):
+        compiled(lambda number: number + 1)(1)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(compile_cache, "folders", lambda: (tmp_path / "kernels",))
+    compile_cache.announce.cache_clear()
+    monkeypatch.setattr("cutcell.skinning.bind", compiles)
+    shown = run("bind", bar, tmp_path / "out.glb", *options)
+    assert shown.stdout == ""
+    assert len(shown.stderr.splitlines()) == lines + 1
+    monkeypatch.setenv("FORCE_COLOR", "1")  # as on a terminal
+    compile_cache.announce.cache_clear()
+    assert "minute" not in run("bind", bar, tmp_path / "out.glb", *options).stderr
+
+
 def test_json_never_holds_what_is_not_json():
     with pytest.raises(ValueError, match="not JSON compliant"):
         print_json({"seconds": float("nan")})
@@ -77,6 +113,7 @@ def test_json_never_holds_what_is_not_json():
 
 def test_python_m_cutcell_is_the_command(bar, tmp_path):
     command = [sys.executable, "-m", "cutcell", "bind", str(bar), str(tmp_path / "o.glb"), "--json"]
+    command.append("--quiet")  # a first compile would be told
     done = subprocess.run(command, capture_output=True, text=True, cwd=ROOT)
     assert (done.returncode, done.stderr) == (0, "")
     assert json.loads(done.stdout)["output"].endswith("o.glb")
@@ -103,7 +140,9 @@ sys.argv = ["cutcell", "bind", {str(bar)!r}, {str(tmp_path / "o.glb")!r}]
 cutcell.cli.main()
 """
     command = [sys.executable, "-c", code]
-    done = subprocess.run(command, capture_output=True, text=True, cwd=ROOT, timeout=300)
+    done = subprocess.run(
+        command, capture_output=True, text=True, cwd=ROOT, timeout=300, preexec_fn=reset_signals
+    )
     assert (done.returncode, done.stderr) == (130, "stopped: by Ctrl-C\n")
     assert not (tmp_path / "o.glb").exists()
 

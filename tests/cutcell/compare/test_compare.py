@@ -150,6 +150,14 @@ def test_cancelling_stops_everything():
 # Kept and put together
 
 
+def test_ctrl_c_in_a_dispatcher_stops_everything():
+    def interrupted(rig):
+        raise SystemError from KeyboardInterrupt()
+
+    with pytest.raises(SystemError):
+        compare([character()], {"a": interrupted})
+
+
 def test_a_comparison_comes_back_from_json():
     found = compare([character("a"), character("b")], ["artist", "euclidean"])
     again = Comparison.from_dict(json.loads(json.dumps(found.to_dict())))

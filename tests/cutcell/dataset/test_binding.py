@@ -10,10 +10,12 @@ import time
 from pathlib import Path
 
 import numpy as np
+import psutil
 import pytest
 
 import cutcell
 from cutcell.dataset.binding import bind_all, bind_apart, stop_runners
+from cutcell.dataset.cluster import connected
 from cutcell.dataset.formats import faces_of_edges
 from cutcell.dataset.generate import KINDS, generate
 from cutcell.dataset.runner import AssetLostError, Runner
@@ -211,6 +213,15 @@ def test_a_killed_run_goes_on_to_the_same_store(made, tmp_path):
     manifest = {row["name"]: row["error"] for row in Store(goal).manifest()}
     assert len(manifest) == 6
     assert (goal / "report.html").read_text().startswith("<!doctype html>")
+
+
+@pytest.mark.parametrize("processes", [False, True])
+def test_no_other_machine_can_reach_the_workers(processes):
+    with connected(None, 2, processes):
+        ours = [psutil.Process(), *psutil.Process().children(recursive=True)]
+        sockets = [socket for process in ours for socket in process.net_connections("inet")]
+        addresses = {s.laddr.ip for s in sockets if s.status == psutil.CONN_LISTEN}
+    assert addresses <= {"127.0.0.1", "::1"}
 
 
 def test_sources_of_every_kind_are_found(made, tmp_path):
