@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from ..progress import Tell, share_of
 from ..surface.rays import AXES, RayHits, cast_all_rays, strip_bounds
-from ..threads import in_threads, threads
+from ..threads import in_threads
 from .boundary import Boundary
 from .caps import smallest_caps
 from .cells import AMBIGUOUS, CONSTANT, classify_cells
@@ -28,10 +28,8 @@ from .clusters import ROOT, build_tree
 from .queries import query_points
 from .segments import keep_strip
 
-MAX_QUERIES = 2**22
-"""Queries that are answered together once there are as many. Each takes 100 bytes at the peak."""
-STRIPS_AT_ONCE = 12
-"""Strips of rays that are listed at least before their queries are answered."""
+MAX_QUERIES = 2**21
+"""Queries that are answered together once there are as many. Each takes 140 bytes at the peak."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,23 +89,25 @@ def inside_intervals(
         projected = np.ascontiguousarray(vertices[:, [u, v, along]])
         found = tuple((h.start, h.position, h.sign) for h in (hits[axis], cap_hits[axis]))
         families.append((axis, projected, _constant_columns(classes.coarse, along), *found))
-    segments = sum(resolution**3 + len(h.position) for h in hits)
-    strips = strip_bounds(resolution, segments)
+    surface = sum(len(h.position) for h in hits)
+    strips = strip_bounds(resolution, 3 * resolution**3 + surface)
     work = [(rays, i * resolution, j * resolution) for rays in families for i, j in strips]
-    rows = _rows_of_strips(shared, work, share_of(tell, 0.3, 1))
+    ambiguous = np.count_nonzero(classes.fine >= 0)
+    expected = 3 * ambiguous + surface if ambiguous else 0
+    rows = _rows_of_strips(shared, work, expected, share_of(tell, 0.3, 1))
     count = len(strips)
     of_axes = [np.concatenate(rows[count * k : count * (k + 1)]) for k in range(3)]
     return [InsideIntervals(*np.ascontiguousarray(of_axis.T)) for of_axis in of_axes]
 
 
-def _rows_of_strips(shared, work, tell):
+def _rows_of_strips(shared, work, expected, tell):
     """Return the intervals of each strip of rays, as rows.
 
-    Strips are listed some at a time. Their queries are answered together once there are many,
-    which bounds the memory that the list takes.
+    Strips are listed some at a time, and their queries are answered as soon as there are many. This
+    bounds the memory that they take. `expected` is how many there are at most in all strips.
     """
     intervals, listed = [], []
-    step = max(STRIPS_AT_ONCE, threads())
+    step = max(1, min(len(work), MAX_QUERIES * len(work) // max(expected, 1)))
     for first in range(0, len(work), step):
         strips = work[first : first + step]
         part = share_of(tell, first / len(work), (first + len(strips)) / len(work))
