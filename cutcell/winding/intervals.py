@@ -112,7 +112,7 @@ def _rows_of_strips(shared, work, expected, tell):
         strips = work[first : first + step]
         part = share_of(tell, first / len(work), (first + len(strips)) / len(work))
         listed += in_threads(
-            lambda strip: (strip, *keep_strip(shared, *strip)), strips, share_of(part, 0, 0.3)
+            lambda strip: (strip, *keep_strip(shared, strip)), strips, share_of(part, 0, 0.3)
         )
         is_last = first + step >= len(work)
         if is_last or sum(len(queries) for *_, queries, _ in listed) >= MAX_QUERIES:
@@ -132,7 +132,7 @@ def _answered(shared, listed, tell):
     _, _, classes, _, clusters, _ = shared
     results = query_points(classes.expansions, clusters, row, queries, share_of(tell, 0, 0.85))
     decided = in_threads(
-        lambda part: keep_strip(shared, *listed[part[0]][0], part[1])[0],
+        lambda part: keep_strip(shared, listed[part[0]][0], part[1])[0],
         zip(again, np.split(results, ends[:-1]), strict=True),
         share_of(tell, 0.85, 1),
     )

@@ -17,12 +17,13 @@ NONE = -1
 NO_RESULTS = np.zeros(0, np.uint8)
 
 
-def keep_strip(shared, rays, ray, last_ray, results=None):
+def keep_strip(shared, strip, results=None):
     """Run algorithm 1 on a strip of rays; list the queries where there are no results yet.
 
     Returns the rows of the intervals; the queries' rows of the expansions; the queries; and
     whether any segment is undecided.
     """
+    rays, ray, last_ray = strip
     resolution, start = shared[0], rays[3][0]
     rows = np.empty((2 * int(start[last_ray] - start[ray] + resolution + 1), 5), np.int32)
     row, queries = np.empty(256, np.int32), np.empty((256, SLACK + 1))
