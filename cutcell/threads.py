@@ -6,15 +6,21 @@ threads, say two sessions of the page, start such a loop at once.
 
 import os
 import threading
+import time
 from collections.abc import Callable, Iterable
 from concurrent.futures import Future, ThreadPoolExecutor, wait
+from contextvars import copy_context
 from functools import cache
 from itertools import pairwise
 from typing import Any, TypeVar
+from weakref import WeakSet
 
 import numba
 import numpy as np
 from numpy.typing import NDArray
+
+from .errors import Cancelled
+from .progress import Progress, silent
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
@@ -25,7 +31,11 @@ POLL_EVERY = 0.1
 MANY_STEPS = 50_000
 """Kernels of fewer steps end before the first report."""
 
+MAX_ABANDONED = 3
+"""Threads that may go on after their work was cancelled, until they report again."""
+
 _here = threading.local()
+_abandoned: WeakSet[threading.Thread] = WeakSet()
 
 
 def threads() -> int:
@@ -137,6 +147,74 @@ def watched(
     finally:
         pace[1] = 1
         runner.join()
+
+
+def cancellable(work: Callable[[Progress], Result], progress: Progress, first_stage: str) -> Result:
+    """Do work that can be cancelled at any moment, however long its steps take.
+
+    The work runs in a thread of its own. The calling thread repeats the last report ten times a
+    second, and passes on at once what `progress` raises. The work then ends at its next report,
+    with no one waiting for it. While `MAX_ABANDONED` such threads go on, new work waits.
+
+    Parameters
+    ----------
+    work : callable
+        Called with the progress to report to.
+    progress : callable
+        Called by one thread at a time.
+    first_stage : str
+        What is reported until the work does.
+    """
+    if progress is silent or getattr(_here, "is_worker", False) or getattr(_here, "is_run", False):
+        return work(progress)
+    relay, result = _Relay(progress, first_stage), Future[Result]()
+    context = copy_context()
+
+    def run() -> None:
+        _here.is_run = True
+        try:
+            result.set_result(context.run(work, relay.report))
+        except BaseException as error:
+            result.set_exception(error)
+
+    runner = threading.Thread(target=run, name="cutcell-work", daemon=True)
+    try:
+        while sum(thread.is_alive() for thread in _abandoned) >= MAX_ABANDONED:
+            relay.repeat()
+            time.sleep(POLL_EVERY)
+        runner.start()
+        while not wait([result], POLL_EVERY).done:
+            relay.repeat()
+        return result.result()
+    finally:
+        relay.is_over = True
+        _abandoned.add(runner)
+
+
+class _Relay:
+    """Reports of one thread, repeated by another, until it is over."""
+
+    def __init__(self, progress: Progress, stage: str) -> None:
+        self.is_over = False
+        self._progress = progress
+        self._last = stage, 0.0
+        self._lock = threading.Lock()
+
+    def report(self, stage: str, fraction: float) -> None:
+        """Pass a report on."""
+        with self._lock:
+            if self.is_over:
+                raise Cancelled
+            self._last = stage, fraction
+            self._progress(stage, fraction)
+
+    def repeat(self) -> None:
+        """Report the last one again, unless one is being passed on."""
+        if self._lock.acquire(blocking=False):
+            try:
+                self._progress(*self._last)
+            finally:
+                self._lock.release()
 
 
 def parts(count: int, at_once: int = 0) -> list[slice]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 from typing import Any
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -136,9 +137,16 @@ def cells_of(state: State, count: float) -> float:
 def bounds_of(state: State) -> np.ndarray:
     """Return the lowest and highest corner of the body at rest, shape (2, 3)."""
     rig = state.rig
-    points = rig.mesh.vertices[np.unique(rig.mesh.faces)] @ rig.world[:3, :3].T
-    points += rig.world[:3, 3]
-    return np.stack([points.min(axis=0), points.max(axis=0)])
+    if rig not in _bounds_of_rig:
+        points = rig.mesh.vertices[np.unique(rig.mesh.faces)] @ rig.world[:3, :3].T
+        points += rig.world[:3, 3]
+        bounds = np.stack([points.min(axis=0), points.max(axis=0)])
+        bounds.flags.writeable = False
+        _bounds_of_rig[rig] = bounds
+    return _bounds_of_rig[rig]
+
+
+_bounds_of_rig: WeakKeyDictionary[Rig, np.ndarray] = WeakKeyDictionary()
 
 
 def theme_of(state: State) -> Theme:

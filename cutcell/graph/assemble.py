@@ -11,7 +11,8 @@ from ..compiled import compiled, copy_to
 from ..surface.lattice import Lattice
 from ..surface.rays import AXES, RayHits
 from ..threads import in_threads
-from ..winding.intervals import NONE, InsideIntervals
+from ..winding.intervals import InsideIntervals
+from ..winding.segments import NONE
 from .cutcell_graph import INTERIOR, MESH, SURFACE, CutCellGraph
 from .inside_edges import diagonal_edges, edge_starts, fill_edges, lattice_steps
 from .interior import interior_points

@@ -5,16 +5,20 @@ from __future__ import annotations
 from typing import Unpack
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..checks import check_choice
+from ..errors import MeshError
 from ..inputs import MeshLike, as_mesh
 from ..method import ANIMATION, GraphOptions, Method, MethodName, method_of
-from ..progress import Progress, share_of, silent
+from ..progress import Progress, Tell, share_of, silent
+from ..rig import TriangleMesh
 from ..surface.edges import find_edges
 from ..surface.lattice import Lattice
 from ..surface.ray_tracers import cast_rays_embree, cast_rays_open3d
-from ..surface.rays import cast_all_rays
+from ..surface.rays import cast_all_rays, expected_hits
 from ..surface.weld import weld
+from ..threads import cancellable
 from ..winding import inside_intervals
 from ..winding.boundary import boundary_of
 from .assemble import assemble
@@ -24,6 +28,8 @@ from .memory import check_estimate
 from .orientation import find_inverted, flipped
 
 CASTERS = {"open3d": cast_rays_open3d, "embree": cast_rays_embree}
+MAX_LAYERS = 100
+"""Faces that a ray through the mesh's cube may cross on average. Characters have 2 at most."""
 
 
 def build_graph(
@@ -65,7 +71,8 @@ def build_graph(
     Raises
     ------
     MeshError
-        The mesh is too large or too small to compute with.
+        The mesh is too large or too small to compute with, or its faces are repeated hundreds of
+        times.
     ParameterError
         A parameter is out of its range, or the graph would not fit in memory.
     MissingLibraryError
@@ -77,21 +84,29 @@ def build_graph(
     """
     mesh = as_mesh(mesh)
     method = method_of(method, resolution, **options)
-    resolution, connectivity = method.resolution, method.connectivity
-    winding_threshold, orient = method.winding_threshold, method.orient
-    lattice = Lattice.around(mesh, resolution)
+    lattice = Lattice.around(mesh, method.resolution)
     check_choice("rays", rays, ("raster", *CASTERS))
     check_choice("winding", winding, ("exact", "fast"))
 
-    def tell(done: float) -> None:
-        progress("graph", done)
+    def build(report: Progress) -> CutCellGraph:
+        return _build(mesh, lattice, method, rays, winding, lambda done: report("graph", done))
 
+    return cancellable(build, progress, "graph")
+
+
+def _build(
+    mesh: TriangleMesh, lattice: Lattice, method: Method, rays: str, winding: str, tell: Tell
+) -> CutCellGraph:
+    resolution, connectivity = method.resolution, method.connectivity
+    winding_threshold = method.winding_threshold
     tell(0.0)
-    vertices, vertex_node = weld(lattice.to_unit(mesh.vertices))
+    vertices = lattice.to_unit(mesh.vertices)
+    _check_layers(vertices, mesh.faces)
+    vertices, vertex_node = weld(vertices)
     faces = vertex_node[mesh.faces]
     mesh_edges, incidence, partner = find_edges(faces)
     inverted = np.zeros(len(faces), np.bool_)
-    if orient:
+    if method.orient:
         inverted = find_inverted(vertices, faces, partner, share_of(tell, 0, 0.03))
     if inverted.any():
         faces = flipped(faces, inverted)
@@ -135,3 +150,13 @@ def build_graph(
     graph = assemble(*found, lattice, connectivity, inverted, winding_threshold)
     tell(1.0)
     return graph
+
+
+def _check_layers(vertices: NDArray[np.float64], faces: NDArray[np.int32]) -> None:
+    """Refuse faces in so many layers that a small file would take minutes."""
+    layers = expected_hits(vertices, faces, 1) / 3
+    if layers > MAX_LAYERS:
+        raise MeshError(
+            f"the {len(faces):,} faces lie in {layers:,.0f} layers on average, and at most "
+            f"{MAX_LAYERS} can be computed with; remove faces that are repeated"
+        )

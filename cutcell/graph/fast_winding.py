@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 from ..surface.ray_tracers import optional_library
 from ..surface.rays import AXES, RayHits
 from ..winding.boundary import find_boundary
-from ..winding.intervals import NONE, InsideIntervals
+from ..winding.intervals import InsideIntervals
+from ..winding.segments import NONE
 
 
 @dataclass(frozen=True, eq=False)

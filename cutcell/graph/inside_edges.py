@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..compiled import compiled
-from ..winding.intervals import NONE, InsideIntervals
+from ..winding.intervals import InsideIntervals
+from ..winding.segments import NONE
 from .interior import OUTSIDE, InteriorPoints, point_number, point_on_ray
 
 

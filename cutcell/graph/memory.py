@@ -13,7 +13,7 @@ from ..progress import Tell
 from ..surface.rays import cast_all_rays, expected_hits
 from ..winding import inside_intervals
 from ..winding.boundary import Boundary
-from ..winding.intervals import NONE
+from ..winding.segments import NONE
 from .interior import interior_points
 
 BYTES_PER_NODE = {6: 345, 26: 950, "any": 150}

@@ -22,6 +22,7 @@ from ..method import ANIMATION, Method, MethodName, Options, method_of
 from ..progress import Progress, silent
 from ..rig import Rig
 from ..surface.lattice import Lattice
+from ..threads import cancellable
 from .binding_warnings import binding_warnings
 from .compilation import is_compiled, warm_up
 from .correct import (
@@ -140,6 +141,23 @@ def bind(
         progress("compile", 0.0)
         warm_up()
         progress("compile", 1.0)
+    first_stage = "graph" if graph is None else "distances"
+
+    def work(report: Progress) -> Binding:
+        return _bind(rig, method, corrections, touches, graph, report)
+
+    return cancellable(work, progress, first_stage)
+
+
+def _bind(
+    rig: Rig,
+    method: Method,
+    corrections: Corrections,
+    touches: Touches,
+    graph: CutCellGraph | None,
+    progress: Progress,
+) -> Binding:
+    """Run the stages."""
     seconds: dict[str, float] = {}
     with _timed("graph", seconds):
         if graph is None:

@@ -1,4 +1,4 @@
-"""The boundary chain of a mesh: the edges with signed incidence, as closed loops."""
+"""The boundary chain of a mesh, the edges with signed incidence, as closed loops; and its caps."""
 
 from __future__ import annotations
 
@@ -45,6 +45,28 @@ class Boundary(NamedTuple):
         following = np.roll(self.loop, -1)
         following[self.start[1:] - 1] = self.loop[self.start[:-1]]
         return following
+
+
+class Caps(NamedTuple):
+    """A fan of triangles for each of some loops that sum to the boundary.
+
+    Parameters
+    ----------
+    vertices : array, shape (n + k, 3)
+        The mesh's, then the middles of those k loops that have more than four edges.
+    faces : array, shape (t, 3), int32
+        Of all fans. Together with the mesh's own they make a closed surface.
+    loop, start : arrays, shapes (e,) and (l + 1,), int64
+        The loops, as of a `Boundary`.
+    apex : array, shape (l,), int64
+        The vertex that the triangles of a fan share: of a short loop its first.
+    """
+
+    vertices: NDArray[np.float64]
+    faces: NDArray[np.int32]
+    loop: NDArray[np.int64]
+    start: NDArray[np.int64]
+    apex: NDArray[np.int64]
 
 
 def find_boundary(faces: NDArray[np.int32]) -> Boundary:

@@ -61,6 +61,9 @@ CROSSED, COUNT = SIZE + 3, SIZE + 4
 the number of near clusters."""
 DEPTH = 12
 """More often blocks are never halved."""
+MAX_NEAR = 64
+"""Near clusters that a block lists. Where there are more, nearly all are near, and its queries
+traverse all clusters. A list of its own for each block would take gigabytes."""
 
 
 class CellClasses(NamedTuple):
@@ -207,10 +210,12 @@ def _classify(clusters, resolution, tau, corner, top, coarse):
             if kept == len(expanded):
                 expanded = grown(expanded)
             row = expanded[kept]
-            copy_to(far[depth] if found == AMBIGUOUS else local, row)
+            level = depth if len(close) <= MAX_NEAR else 0  # at 0 are all clusters, and no far ones
+            copy_to(far[level] if found == AMBIGUOUS else local, row)
             row[SIZE], row[SIZE + 1], row[SIZE + 2] = q
             row[CROSSED], row[COUNT] = is_crossed and found != AMBIGUOUS, 0
             if found == AMBIGUOUS:
+                close = near[level, : nears[level]]
                 row[COUNT] = len(close)
                 while listed + len(close) > len(all_near):
                     all_near = grown(all_near)

@@ -35,7 +35,7 @@ from ..compiled import compiled, no_refcount
 from ..surface.vectors import between, dot
 from ..threads import in_threads, parts
 from . import multipole
-from .caps import Caps
+from .boundary import Caps
 
 ROOT = 1
 """The index of the cluster of all caps."""

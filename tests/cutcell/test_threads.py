@@ -8,7 +8,15 @@ import time
 import pytest
 
 from cutcell import Cancelled
-from cutcell.threads import in_threads, parts, submit, threads, watched
+from cutcell.threads import (
+    MAX_ABANDONED,
+    cancellable,
+    in_threads,
+    parts,
+    submit,
+    threads,
+    watched,
+)
 
 
 def test_results_keep_the_order_of_the_items():
@@ -148,3 +156,58 @@ def test_a_short_kernel_is_called_as_it_is():
     assert watched(lambda pace: threading.current_thread(), 10, pytest.fail) is (
         threading.current_thread()
     )
+
+
+def test_work_that_does_not_report_is_cancelled():
+    free, ended = threading.Event(), threading.Event()
+    reports = []
+
+    def work(report):
+        report("graph", 0.25)
+        free.wait()
+        try:
+            report("graph", 0.5)
+        finally:
+            ended.set()
+
+    def progress(stage, done):
+        reports.append((stage, done))
+        if len(reports) > 2:
+            raise Cancelled
+
+    with pytest.raises(Cancelled):
+        cancellable(work, progress, "graph")
+    free.set()
+    assert ended.wait(60)
+    assert reports == [("graph", 0.25)] * 3
+
+
+def test_work_waits_while_much_that_was_cancelled_goes_on():
+    free = threading.Event()
+
+    def stop(stage, done):
+        raise Cancelled
+
+    for _ in range(MAX_ABANDONED):
+        with pytest.raises(Cancelled):
+            cancellable(lambda report: free.wait(), stop, "graph")
+    with pytest.raises(Cancelled):
+        cancellable(lambda report: pytest.fail("begun"), stop, "graph")
+    free.set()
+    assert cancellable(lambda report: 7, lambda stage, done: None, "graph") == 7
+
+
+def test_cancellable_work_gives_its_result_its_reports_and_its_errors():
+    reports = []
+
+    def work(report):
+        report("graph", 1)
+        # Within such work there is no need for another thread.
+        return cancellable(lambda report: threading.current_thread(), report, "graph")
+
+    inner = cancellable(work, lambda *given: reports.append(given), "graph")
+    assert inner is not threading.current_thread()
+    assert inner.name == "cutcell-work"
+    assert reports == [("graph", 1)]
+    with pytest.raises(ZeroDivisionError):
+        cancellable(lambda report: 1 / 0, lambda stage, done: None, "graph")

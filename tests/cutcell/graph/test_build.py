@@ -285,3 +285,10 @@ def test_progress_ascends_and_can_cancel():
 
     with pytest.raises(Cancelled):
         build_graph(TriangleMesh(*meshes.box()), 8, progress=cancel)
+
+
+def test_faces_that_are_repeated_hundreds_of_times_are_refused():
+    vertices, faces = meshes.ball(1)
+    build_graph((vertices, np.tile(faces, (50, 1))), 4)
+    with pytest.raises(MeshError):
+        build_graph((vertices, np.tile(faces, (500, 1))), 4)

@@ -1,5 +1,7 @@
 """What binding must never depend on, and what it tells."""
 
+import threading
+
 import numpy as np
 import pytest
 import trimesh
@@ -96,6 +98,26 @@ def test_every_stage_reports_and_each_can_be_cancelled():
 
         with pytest.raises(Cancelled):
             bind(figure(), 8, progress=cancel)
+
+
+def test_binding_is_cancelled_while_a_step_is_silent(monkeypatch):
+    begun, free = threading.Event(), threading.Event()
+
+    def endless(faces):
+        begun.set()
+        assert free.wait(60)
+        raise Cancelled
+
+    def cancel(stage, fraction):
+        if begun.is_set() and not free.is_set():
+            raise Cancelled("asked while the step went on")
+
+    monkeypatch.setattr("cutcell.graph.build.find_edges", endless)
+    try:
+        with pytest.raises(Cancelled, match="asked"):
+            bind(figure(), 8, progress=cancel)
+    finally:
+        free.set()
 
 
 @pytest.mark.parametrize(

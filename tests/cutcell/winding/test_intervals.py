@@ -1,14 +1,21 @@
 """Inside intervals equal those that exact winding numbers give, segment by segment."""
 
+import tracemalloc
+
 import numpy as np
 import pytest
 
-from cutcell import TooLargeError, TriangleMesh, winding_number
+from cutcell import TriangleMesh, winding_number
 from cutcell.graph.fast_winding import list_segments
 from cutcell.surface.rays import cast_all_rays
 from cutcell.surface.weld import weld
+from cutcell.winding import intervals
 from cutcell.winding.boundary import find_boundary
+from cutcell.winding.caps import smallest_caps
+from cutcell.winding.cells import MAX_NEAR, classify_cells
+from cutcell.winding.clusters import build_tree
 from cutcell.winding.intervals import inside_intervals
+from cutcell.winding.queries import query_points
 from tests import meshes
 
 
@@ -42,6 +49,12 @@ def confetti():
     return points.reshape(-1, 3), np.arange(450, dtype=np.int32).reshape(-1, 3)
 
 
+def large_and_loose(count):
+    """Triangles that have nothing in common, as large as the unit cube."""
+    vertices = np.random.default_rng(3).random((3 * count, 3))
+    return vertices, np.arange(3 * count, dtype=np.int32).reshape(-1, 3)
+
+
 RESOLUTION = 15
 """No power of two: then no midpoint lies on a rim, where the number is anyone's."""
 SOUPS = {
@@ -50,6 +63,7 @@ SOUPS = {
     "jittered": jittered,
     "many flipped": many_flipped,
     "confetti": confetti,
+    "large and loose": lambda: large_and_loose(400),
 }
 SHAPES = SOUPS | meshes.OPEN
 
@@ -76,11 +90,46 @@ def test_intervals_equal_those_of_exact_numbers(name, tau):
         np.testing.assert_array_equal(rows, others)
 
 
-def test_more_midpoints_than_fit_in_memory_are_refused_while_they_are_listed(monkeypatch):
+def test_loose_triangles_take_memory_in_proportion_to_their_queries():
+    vertices, faces = large_and_loose(60)
+    resolution = 33
+    boundary, hits = find_boundary(faces), cast_all_rays(vertices, faces, resolution)
+    tracemalloc.start()
+    try:
+        inside_intervals(vertices, faces, hits, boundary, resolution, 0.5)
+        peak = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    segments = 3 * resolution**3 + sum(len(h.position) for h in hits)
+    assert peak < 300 * segments
+
+
+def test_queries_are_answered_some_at_a_time_with_the_same_result(monkeypatch):
     vertices, faces = apart(0.7)
     boundary, hits = find_boundary(faces), cast_all_rays(vertices, faces, RESOLUTION)
-    monkeypatch.setattr("cutcell.memory.available_memory", lambda enough: 1000)
-    listed_all = "cutcell.winding.intervals.query_points"
-    monkeypatch.setattr(listed_all, lambda *given: pytest.fail("listed all"))
-    with pytest.raises(TooLargeError, match=r"midpoints among holes .* choose a lower resolution"):
-        inside_intervals(vertices, faces, hits, boundary, RESOLUTION, 0.5)
+    given = vertices, faces, hits, boundary, RESOLUTION, 0.5
+    monkeypatch.setattr("cutcell.surface.rays.STRIP_WORK", 1000)
+    expected = inside_intervals(*given)
+    sizes, reports = [], []
+
+    def counted(expansions, clusters, row, queries, tell):
+        sizes.append(len(queries))
+        return query_points(expansions, clusters, row, queries, tell)
+
+    monkeypatch.setattr(intervals, "query_points", counted)
+    monkeypatch.setattr(intervals, "MAX_QUERIES", 1000)
+    for one, other in zip(inside_intervals(*given, reports.append), expected, strict=True):
+        for name, values in vars(one).items():
+            np.testing.assert_array_equal(values, getattr(other, name))
+    assert len(sizes) > 3
+    assert max(sizes) < sum(sizes) / 3
+    assert reports == sorted(reports)
+    assert reports[-1] == 1
+
+
+def test_blocks_list_few_near_clusters():
+    vertices, faces = large_and_loose(1000)
+    clusters = build_tree(smallest_caps(vertices, find_boundary(faces)))
+    expansions = classify_cells(clusters, RESOLUTION, 0.5).expansions
+    assert len(expansions.near) > 0
+    assert np.diff(expansions.start).max() <= MAX_NEAR
