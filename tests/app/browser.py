@@ -214,6 +214,18 @@ class Visit:
         except (Error, AssertionError):
             return False
 
+    @property
+    def address(self) -> str:
+        """The part of the page's address that names what it shows."""
+        return self.page.evaluate("location.search")
+
+    def go_back_to(self, query: str) -> None:
+        """Go to an address of this page, unless it is there."""
+        if self.address != query:
+            self.go(query)
+            if self.button("Close").is_visible():
+                self.dismiss()
+
     def go(self, query: str) -> None:
         """Go to another address of this page, as by the browser's Back: nothing is loaded anew."""
         self.page.evaluate(GO, query)

@@ -13,12 +13,20 @@ SOURCE = REAL if REAL.exists() else demo_path("rabbit")
 
 
 @pytest.fixture(scope="module")
-def visit(browser, url):
+def opened(browser, url):
     visit = Visit(browser, url + "/?rig=robot", viewport={"width": 1000, "height": 640})
     visit.open(SOURCE)
     visit.panel("Compare")
-    yield visit
+    yield visit, visit.address
     visit.close()
+
+
+@pytest.fixture
+def visit(opened):
+    """Show a real character on the panel Compare, with nothing else chosen."""
+    visit, address = opened
+    visit.go_back_to(address)
+    return visit
 
 
 def box(visit, name):

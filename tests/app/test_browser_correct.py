@@ -15,18 +15,20 @@ from tests.cutcell.diagnosis.test_leaks import soldier
 
 
 @pytest.fixture(scope="module")
-def visit(browser, url):
-    """Show the robot, coarse: each binding is quick."""
+def opened(browser, url):
     visit = Visit(browser, url + "/?rig=robot&resolution=24&bone=hips")
     visit.wait_until_bound()
     visit.dismiss()
-    yield visit
+    yield visit, visit.address
     visit.close()
 
 
-@pytest.fixture(autouse=True)
-def anew(visit):
-    yield
+@pytest.fixture
+def visit(opened):
+    """Show the robot, coarse, for quick bindings, and without corrections."""
+    visit, address = opened
+    visit.go_back_to(address)
+    yield visit
     if visit.page.get_by_role("button", name="Clear all").is_enabled():
         visit.button("Clear all").click()
         visit.settle()

@@ -19,13 +19,22 @@ SOURCE = REAL if REAL.exists() else demo_path("rabbit")
 
 
 @pytest.fixture(scope="module")
-def visit(browser, url):
+def opened(browser, url):
     size = {"width": 1000, "height": 640}
     visit = Visit(browser, url + "/?rig=robot", viewport=size, has_touch=True)
     visit.open(SOURCE)
     visit.panel("Pose")
-    yield visit
+    yield visit, visit.address
     visit.close()
+
+
+@pytest.fixture
+def visit(opened):
+    """Show a real character at rest on the panel Pose, with nothing else chosen."""
+    visit, address = opened
+    visit.go_back_to(address)
+    rest(visit)
+    return visit
 
 
 @pytest.fixture(scope="module")
