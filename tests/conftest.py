@@ -3,9 +3,13 @@
 import os
 from pathlib import Path
 
+import hypothesis
 import pytest
 
 from cutcell.skinning import is_compiled, warm_up
+
+hypothesis.settings.register_profile("patient", deadline=None)  # other work takes time as well
+hypothesis.settings.load_profile("patient")
 
 ROOT = Path(__file__).resolve().parent.parent
 SHARED_RIGS = ROOT.parent / "shared" / "data" / "rigs"
