@@ -8,7 +8,9 @@ import pytest
 
 from cutcell.skinning import is_compiled, warm_up
 
-hypothesis.settings.register_profile("patient", deadline=None)  # other work takes time as well
+# Other work takes time as well.
+SLOW = [hypothesis.HealthCheck.too_slow]
+hypothesis.settings.register_profile("patient", deadline=None, suppress_health_check=SLOW)
 hypothesis.settings.load_profile("patient")
 
 ROOT = Path(__file__).resolve().parent.parent

@@ -35,7 +35,7 @@ def slow_connected(weights, anchored, edges):
     return found
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.integers(0, 10**6))
 def test_connected_weights_are_those_of_flood_fills(seed):
     rng = np.random.default_rng(seed)

@@ -72,7 +72,7 @@ def test_kept_segments_equal_the_slow_ones(name, tau):
     assert named_segments(graph) == named_slowly(vertices, faces, 8, tau)
 
 
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=10)
 @given(st.integers(0, 10**6))
 def test_kept_segments_of_random_soups(seed):
     mesh, vertices, faces = in_unit_cube(*meshes.random_soup(seed))

@@ -301,7 +301,8 @@ def test_a_document_that_refers_to_bytes_that_are_not_there_is_refused(tmp_path,
 
 
 @settings(
-    max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+    max_examples=150,
+    suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
 )
 @given(data=st.data())
 def test_any_layout(tmp_path, data):

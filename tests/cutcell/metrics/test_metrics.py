@@ -94,7 +94,7 @@ def test_the_unweighted_are_counted():
 
 
 @given(st.integers(0, 1000), st.integers(0, 1000))
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 def test_l1_is_a_distance(a, b):
     rig = chain()
     first, second, third = (random_weights(rig, seed) for seed in (a, b, 7))

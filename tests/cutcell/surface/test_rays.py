@@ -43,14 +43,14 @@ def test_rays_equal_exact_arithmetic(name, axis):
     check_against_fractions(*meshes.ALL[name](), 8, axis)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(st.integers(0, 10**6), st.integers(0, 2), st.sampled_from([4, 8]))
 def test_rays_through_edges_and_vertices(seed, axis, resolution):
     # R is a power of two: corners and rays meet exactly, also in floating point.
     check_against_fractions(*meshes.grid_soup(seed, 8), resolution, axis)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(st.integers(0, 10**6), st.integers(0, 2))
 def test_random_soups(seed, axis):
     check_against_fractions(*meshes.random_soup(seed), 6, axis)
@@ -67,7 +67,7 @@ def test_a_ray_leaves_a_closed_mesh_as_often_as_it_enters(name, resolution):
         assert (balance == 0).all()
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(st.integers(0, 10**6), st.integers(2, 20))
 def test_rounding_never_opens_a_closed_mesh(seed, resolution):
     # A closed surface of random shape, folded through itself and rotated, whose corners

@@ -16,7 +16,7 @@ from cutcell.surface.weld import weld
 from tests import meshes
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(st.integers(0, 10**6))
 def test_groups_are_the_connected_ones(seed):
     rng = np.random.default_rng(seed)

@@ -46,7 +46,7 @@ def test_equals_libigl(name):
     np.testing.assert_allclose(found, expected, atol=1e-9)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(st.integers(0, 10**6))
 def test_points_in_line_with_edges_and_vertices(seed):
     # Corners and points on one grid: rays ahead run through vertices and along edges.
