@@ -1,4 +1,4 @@
-"""The house has one direction: app -> viewers -> cutcell, and an order inside the core."""
+"""Imports follow the layers app -> viewers -> cutcell, and those inside the core."""
 
 import ast
 import json

@@ -221,9 +221,9 @@ def _radii(
 def facing(
     point: NDArray[np.float64], normal: NDArray[np.float64], bones: Bones, joint: int
 ) -> float:
-    """Return how much surface at a point looks away from a joint's bones, `FACING_LEAST` to 1.
+    """Return how much surface at a point faces away from a joint's bones, `FACING_LEAST` to 1.
 
-    1 if it looks right at them: its distance is divided by this.
+    Distances are divided by this: a bone in front of the skin, as of another limb, counts as farther.
     """
     first, last = np.searchsorted(bones.joint, [joint, joint + 1])
     return float(_facing(point, normal, bones.start, bones.end, first, last))
