@@ -223,7 +223,8 @@ def facing(
 ) -> float:
     """Return how much surface at a point faces away from a joint's bones, `FACING_LEAST` to 1.
 
-    Distances are divided by this: a bone in front of the skin, as of another limb, counts as farther.
+    Distances are divided by this: a bone in front of the skin, as of another limb, counts as
+    farther.
     """
     first, last = np.searchsorted(bones.joint, [joint, joint + 1])
     return float(_facing(point, normal, bones.start, bones.end, first, last))
