@@ -11,8 +11,7 @@ from ..checks import check_choice
 from ..errors import MeshError
 from ..inputs import MeshLike, as_mesh
 from ..method import ANIMATION, GraphOptions, Method, MethodName, method_of
-from ..progress import Progress, Tell, share_of, silent
-from ..rig import TriangleMesh
+from ..progress import Progress, share_of, silent
 from ..surface.edges import find_edges
 from ..surface.lattice import Lattice
 from ..surface.ray_tracers import cast_rays_embree, cast_rays_open3d
@@ -87,69 +86,66 @@ def build_graph(
     lattice = Lattice.around(mesh, method.resolution)
     check_choice("rays", rays, ("raster", *CASTERS))
     check_choice("winding", winding, ("exact", "fast"))
-
-    def build(report: Progress) -> CutCellGraph:
-        return _build(mesh, lattice, method, rays, winding, lambda done: report("graph", done))
-
-    return cancellable(build, progress, "graph")
-
-
-def _build(
-    mesh: TriangleMesh, lattice: Lattice, method: Method, rays: str, winding: str, tell: Tell
-) -> CutCellGraph:
     resolution, connectivity = method.resolution, method.connectivity
     winding_threshold = method.winding_threshold
-    tell(0.0)
-    vertices = lattice.to_unit(mesh.vertices)
-    _check_layers(vertices, mesh.faces)
-    vertices, vertex_node = weld(vertices)
-    faces = vertex_node[mesh.faces]
-    mesh_edges, incidence, partner = find_edges(faces)
-    inverted = np.zeros(len(faces), np.bool_)
-    if method.orient:
-        inverted = find_inverted(vertices, faces, partner, share_of(tell, 0, 0.03))
-    if inverted.any():
-        faces = flipped(faces, inverted)
-        mesh_edges, incidence, _ = find_edges(faces)
-    boundary = boundary_of(mesh_edges, incidence)
-    tell(0.03)
-    check_estimate(
-        vertices,
-        faces,
-        boundary,
-        resolution,
-        winding_threshold,
-        connectivity,
-        share_of(tell, 0.03, 0.05),
-    )
-    tell(0.05)
-    if rays == "raster":
-        hits = cast_all_rays(vertices, faces, resolution, share_of(tell, 0.05, 0.2))
-    else:
-        hits = [CASTERS[rays](vertices, faces, resolution, axis) for axis in range(3)]
-    tell(0.2)
-    # Algorithm 1: segments of the rays whose midpoint has a winding number of at least tau.
-    if winding == "exact":
-        inside = inside_intervals(
+
+    def build(report: Progress) -> CutCellGraph:
+        def tell(done: float) -> None:
+            report("graph", done)
+
+        tell(0.0)
+        vertices = lattice.to_unit(mesh.vertices)
+        _check_layers(vertices, mesh.faces)
+        vertices, vertex_node = weld(vertices)
+        faces = vertex_node[mesh.faces]
+        mesh_edges, incidence, partner = find_edges(faces)
+        inverted = np.zeros(len(faces), np.bool_)
+        if method.orient:
+            inverted = find_inverted(vertices, faces, partner, share_of(tell, 0, 0.03))
+        if inverted.any():
+            faces = flipped(faces, inverted)
+            mesh_edges, incidence, _ = find_edges(faces)
+        boundary = boundary_of(mesh_edges, incidence)
+        tell(0.03)
+        check_estimate(
             vertices,
             faces,
-            hits,
             boundary,
             resolution,
             winding_threshold,
-            share_of(tell, 0.2, 0.9),
+            connectivity,
+            share_of(tell, 0.03, 0.05),
         )
-    else:
-        inside = [
-            fast_intervals(vertices, faces, found, resolution, axis, winding_threshold)
-            for axis, found in enumerate(hits)
-        ]
-    tell(0.9)
-    is_closed = len(boundary.loop) == 0
-    found = vertices, vertex_node, faces, mesh_edges, is_closed, hits, inside
-    graph = assemble(*found, lattice, connectivity, inverted, winding_threshold)
-    tell(1.0)
-    return graph
+        tell(0.05)
+        if rays == "raster":
+            hits = cast_all_rays(vertices, faces, resolution, share_of(tell, 0.05, 0.2))
+        else:
+            hits = [CASTERS[rays](vertices, faces, resolution, axis) for axis in range(3)]
+        tell(0.2)
+        # Algorithm 1: segments of the rays whose midpoint has a winding number of at least tau.
+        if winding == "exact":
+            inside = inside_intervals(
+                vertices,
+                faces,
+                hits,
+                boundary,
+                resolution,
+                winding_threshold,
+                share_of(tell, 0.2, 0.9),
+            )
+        else:
+            inside = [
+                fast_intervals(vertices, faces, found, resolution, axis, winding_threshold)
+                for axis, found in enumerate(hits)
+            ]
+        tell(0.9)
+        is_closed = len(boundary.loop) == 0
+        found = vertices, vertex_node, faces, mesh_edges, is_closed, hits, inside
+        graph = assemble(*found, lattice, connectivity, inverted, winding_threshold)
+        tell(1.0)
+        return graph
+
+    return cancellable(build, progress, "graph")
 
 
 def _check_layers(vertices: NDArray[np.float64], faces: NDArray[np.int32]) -> None:
@@ -157,6 +153,6 @@ def _check_layers(vertices: NDArray[np.float64], faces: NDArray[np.int32]) -> No
     layers = expected_hits(vertices, faces, 1) / 3
     if layers > MAX_LAYERS:
         raise MeshError(
-            f"the {len(faces):,} faces lie in {layers:,.0f} layers on average, and at most "
-            f"{MAX_LAYERS} can be computed with; remove faces that are repeated"
+            f"its {len(faces):,} faces lie in {layers:,.0f} layers on average, which would take "
+            f"minutes. The limit is {MAX_LAYERS}. Remove repeated faces"
         )
