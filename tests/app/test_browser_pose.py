@@ -156,6 +156,9 @@ def test_the_worst_turns_are_a_click_away(visit):
 
 
 def test_the_files_weights_are_a_ghost_or_a_neighbour(visit):
+    visit.page.get_by_role("list", name="The worst turns").get_by_role("button").first.click()
+    visit.expect_text("Error against the file's weights")
+    visit.switch("Error as colours")
     alone = visit.look()
     visit.button("Ghost").click()
     ghost = visit.look()

@@ -4,6 +4,7 @@ import http.client
 import re
 import socket
 import time
+from urllib.parse import quote
 
 import psutil
 import pytest
@@ -123,7 +124,8 @@ def test_scripts_are_served_and_nothing_beside_them(here):
     assert "javascript" in answer.getheader("Content-Type")
     assert answer.text == (FOLDER / "view.js").read_text(encoding="utf-8")
     assert get(here, f"/{ADDRESS}/view.js", Host=f"rebound.example:{here.port}").status == 421
-    for path in ("/../serve.py", "/..%2fserve.py", "/", "/none.js", f"/{FOLDER.parent}/serve.py"):
+    absolute = quote(str(FOLDER.parent / "serve.py"))
+    for path in ("/../serve.py", "/..%2fserve.py", "/", "/none.js", f"/{absolute}"):
         assert get(here, f"/{ADDRESS}{path}").status in (403, 404)
 
 
