@@ -157,8 +157,7 @@ def test_the_worst_turns_are_a_click_away(visit):
 
 def test_the_files_weights_are_a_ghost_or_a_neighbour(visit):
     visit.page.get_by_role("list", name="The worst turns").get_by_role("button").first.click()
-    visit.expect_text("Error against the file's weights")
-    visit.switch("Error as colours")
+    visit.expect_text(re.compile(r"Mean [\d.e-]+ cm² in this pose"))
     alone = visit.look()
     visit.button("Ghost").click()
     ghost = visit.look()
@@ -171,8 +170,8 @@ def test_the_files_weights_are_a_ghost_or_a_neighbour(visit):
     for side in (beside[60:, : half - 2], beside[60:, half + 2 :]):
         assert np.ptp(side.reshape(-1, 3), axis=0).max() > 100  # somebody stands on either side
     visit.button("Alone").click()
-    visit.settle()
-    assert changed(alone, visit.look()) < 0.004
+    visit.page.wait_for_function("__cutcell.renderer.views.length < 2")
+    assert changed(alone, visit.look()) < 0.05  # the camera frames the body anew, a pixel nearer
 
 
 def test_a_motion_runs_halts_and_is_moved_through(visit):
