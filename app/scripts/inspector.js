@@ -148,7 +148,7 @@ function overruling(model, facts) {
     dot.style.background = color
     const input = element("input")
     Object.assign(input, {type: "number", min: 0, max: 1, step: 0.05, required: true})
-    input.value = String(Number(weight.toFixed(3)))
+    input.defaultValue = String(Number(weight.toFixed(3)))
     input.setAttribute("aria-label", `Weight of ${name}`)
     label.append(dot, element("span", "name", name), input)
     form.append(label)
@@ -168,9 +168,17 @@ function overruling(model, facts) {
   form.addEventListener("submit", (e) => {
     e.preventDefault()
     const weights = fields.map(([joint, input]) => [joint, input.valueAsNumber])
+    for (const [, input] of fields) { input.defaultValue = input.value }
     model.send_msg({type: "overrule", weights})
   })
   return form
+}
+
+// What a person has typed into a card and not yet sent, by the fields' names.
+function typedNumbers(card) {
+  const inputs = [...card?.querySelectorAll("input") ?? []]
+  const edited = inputs.filter((input) => input.value !== input.defaultValue)
+  return new Map(edited.map((input) => [input.getAttribute("aria-label"), input.value]))
 }
 
 function card(model, facts) {
@@ -241,10 +249,18 @@ export function render({model}) {
   const show = () => {
     const old = root.querySelector(".vertex-card")
     const [label, top] = [old?.getAttribute("aria-label"), old?.scrollTop ?? 0]
+    const typed = typedNumbers(old)
+    const focused = old?.getRootNode().activeElement?.getAttribute("aria-label")
     root.replaceChildren(styled(), ...(model.facts ? [card(model, model.facts)] : []))
     // The same vertex with other numbers stays where it was read.
     const now = root.querySelector(".vertex-card")
-    if (now && now.getAttribute("aria-label") === label) { now.scrollTop = top }
+    if (!now || now.getAttribute("aria-label") !== label) { return }
+    now.scrollTop = top
+    for (const input of now.querySelectorAll("input")) {
+      const name = input.getAttribute("aria-label")
+      input.value = typed.get(name) ?? input.value
+      if (name === focused) { input.focus({preventScroll: true}) }
+    }
   }
   const escape = (e) => {
     if (e.key === "Escape" && model.facts) { model.send_msg({type: "close"}) }

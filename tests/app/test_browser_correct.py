@@ -34,6 +34,13 @@ def visit(opened):
         visit.settle()
 
 
+# As when the paths that explain the weights have come while a person types.
+SHOW_CARD_AGAIN = """() => {
+  const card = [...Bokeh.documents[0].all_models].find((model) => model.facts)
+  card.facts = {...card.facts}
+}"""
+
+
 def corrected(visit):
     """Return the corrections that the page saves."""
     with visit.page.expect_download() as saved:
@@ -191,6 +198,9 @@ def test_a_vertex_is_overruled_on_its_card_and_undone(visit, robot):
     expect(numbers.nth(1)).to_be_visible()
     for place, number in enumerate(numbers.all()):
         number.fill({0: "0.25", 1: "0.75"}.get(place, "0"))
+    visit.page.evaluate(SHOW_CARD_AGAIN)
+    expect(numbers.first).to_have_value("0.25")
+    expect(numbers.last).to_be_focused()
     visit.page.keyboard.press("Enter")
     expect(visit.card).to_contain_text("Weights, given by you")
     visit.settle()
