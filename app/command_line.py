@@ -10,10 +10,10 @@ from typing import Annotated, Any
 
 import typer
 
-from cutcell.console import for_people
+from cutcell.cli.console import for_people
+from cutcell.cli.networks import offer_networks
+from cutcell.cli.options import Networks
 from cutcell.errors import MissingLibraryError, ParameterError
-from cutcell.networks_command import offer_networks
-from cutcell.options import Networks
 
 from .render_command import EPILOG, render
 

@@ -8,10 +8,9 @@ from typing import Annotated, Any
 
 import typer
 
-from cutcell.console import for_people, print_line, print_warnings, progress_bars
-from cutcell.errors import MissingLibraryError, ParameterError
-from cutcell.networks_command import offer_networks
-from cutcell.options import (
+from cutcell.cli.console import for_people, print_line, print_warnings, progress_bars
+from cutcell.cli.networks import offer_networks
+from cutcell.cli.options import (
     FILES,
     Connectivity,
     How,
@@ -24,6 +23,7 @@ from cutcell.options import (
     WindingThreshold,
     chosen_method,
 )
+from cutcell.errors import MissingLibraryError, ParameterError
 
 from .render_flags import (
     WHAT,
@@ -252,7 +252,7 @@ def render(
     # A wrong name is refused before anything long begins.
     with naming(rig):
         scenes.check(loaded, choices, view)
-    from cutcell.skinning import bind
+    from cutcell.binding import bind
 
     bare = not len(loaded.skeleton.joints)
     textures = scenes.textures_for(loaded, choices)

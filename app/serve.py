@@ -16,9 +16,9 @@ import panel_material_ui  # noqa: F401  its components must be known before a pa
 from bokeh.settings import settings
 from bokeh.util.browser import view
 
-from cutcell.console import print_warnings
+from cutcell.cli.console import print_warnings
 from cutcell.dataset import load_audit
-from cutcell.skinning import is_compiled, warm_up
+from cutcell.weights.warm_up import is_compiled, warm_up
 
 from .files.upload_cache import UPLOADS
 from .layout.page import page

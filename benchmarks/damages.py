@@ -13,8 +13,8 @@ from scipy.spatial import cKDTree
 
 import cutcell
 from cutcell import Rig, Skeleton, TriangleMesh
+from cutcell.geometry.weld import weld
 from cutcell.graph import Lattice
-from cutcell.surface.weld import weld
 
 
 @dataclass(frozen=True, eq=False)

@@ -29,15 +29,15 @@ import psutil
 from scipy.spatial import cKDTree
 
 import cutcell
-from cutcell.dataset.auditing import THRESHOLD, compare, readings
-from cutcell.dataset.auditing import audit as audit_of
-from cutcell.dataset.chamfer import Block
-from cutcell.dataset.cluster import connected
-from cutcell.dataset.generate import KINDS, generate
-from cutcell.dataset.likeness import traits_of
-from cutcell.dataset.points import Normalised, normalised
-from cutcell.dataset.sources import read_source
-from cutcell.dataset.store import MANIFEST, read_table
+from cutcell.dataset.audit.auditing import THRESHOLD, compare, readings
+from cutcell.dataset.audit.auditing import audit as audit_of
+from cutcell.dataset.audit.chamfer import Block
+from cutcell.dataset.audit.likeness import traits_of
+from cutcell.dataset.audit.points import Normalised, normalised
+from cutcell.dataset.bind.cluster import connected
+from cutcell.dataset.generate.generate import KINDS, generate
+from cutcell.dataset.read.sources import read_source
+from cutcell.dataset.read.store import MANIFEST, read_table
 from tests.cutcell.dataset.test_audit import planted
 
 from .document import fill

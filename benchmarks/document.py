@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
-from cutcell.writing import write_all
+from cutcell.runtime.writing import write_all
 
 from .rigs import ROOT
 

@@ -18,8 +18,8 @@ import numpy as np
 import cutcell
 from cutcell.baselines import METHODS
 from cutcell.baselines.body import Body
-from cutcell.baselines.voxels import voxelize
-from cutcell.compare import Comparison, compare
+from cutcell.baselines.compare import Comparison, compare
+from cutcell.baselines.volumes.voxels import voxelize
 from cutcell.graph import build_graph
 
 from .document import fill

@@ -3,8 +3,8 @@
 python -m benchmarks.large [--rig RIG] [--times 0 1 2 3] [--exact 2] [--markdown OUT]
 
 The rig's triangles are quartered again and again. Many vertices are solved for by multigrid
-(`cutcell/skinning/multigrid.py`); the exact weights are those by factors of the whole matrix, from
-the same distances.
+(`cutcell/weights/rig_falloff/multigrid.py`); the exact weights are those by factors of the whole
+matrix, from the same distances.
 """
 
 from __future__ import annotations
@@ -19,10 +19,10 @@ import numpy as np
 import trimesh
 
 import cutcell
-from cutcell.skinning.ldl import fill_reducing_ordering
-from cutcell.skinning.rig_falloff import rig_weights
-from cutcell.skinning.surface_operators import SurfaceOperators
-from cutcell.surface.weld import weld
+from cutcell.geometry.weld import weld
+from cutcell.weights.rig_falloff.ldl import fill_reducing_ordering
+from cutcell.weights.rig_falloff.pipeline import rig_weights
+from cutcell.weights.rig_falloff.surface_operators import SurfaceOperators
 
 from .report import circumstances
 from .rigs import ROOT

@@ -27,11 +27,11 @@ import torch
 from numpy.typing import NDArray
 
 import cutcell
-from cutcell.dataset import generate
-from cutcell.dataset.generate import KINDS, Kind
+from cutcell.dataset.generate import generate
+from cutcell.dataset.generate.generate import KINDS, Kind
 from cutcell.networks import Recipe, Sample, Samples, predict, train
 from cutcell.networks.priors import cache_folder
-from cutcell.writing import write_all
+from cutcell.runtime.writing import write_all
 
 from .document import fill
 from .network_scores import Scores, groups, means, scores

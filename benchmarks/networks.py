@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 
 from cutcell.networks import HEADS, PRIORS, Recipe, Sample, Samples, predict, train
 from cutcell.networks.priors import cache_folder
-from cutcell.writing import write_all
+from cutcell.runtime.writing import write_all
 
 from .document import fill
 from .network_figure import draw

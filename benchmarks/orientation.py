@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 
 import cutcell
 from cutcell import CutcellError, TriangleMesh, build_graph
+from cutcell.geometry.triangles import areas
 from cutcell.graph import INTERIOR, inverted_faces
-from cutcell.triangles import areas
 
 from .rigs import SHARED, rig_paths
 from .tables import Table, percent, publish

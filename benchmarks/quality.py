@@ -25,11 +25,11 @@ from scipy.spatial import cKDTree
 
 import cutcell
 from cutcell.baselines import METHODS, BaselineBinding
-from cutcell.compare import Comparison, compare, comparison_markdown
-from cutcell.compare.plot import plot_comparison
+from cutcell.baselines.compare import Comparison, compare, comparison_markdown
+from cutcell.baselines.compare.plot import plot_comparison
 from cutcell.metrics.deformation import longest_side
-from cutcell.rig import Rig
-from cutcell.writing import write_all
+from cutcell.rig.rig import Rig
+from cutcell.runtime.writing import write_all
 
 from .document import fill
 from .rigs import ROOT, SHARED

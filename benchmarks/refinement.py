@@ -24,10 +24,10 @@ import cutcell
 from cutcell.geodesics import BoneDistances, bone_distances
 from cutcell.graph import build_graph
 from cutcell.method import ANIMATION
-from cutcell.rig import Rig
-from cutcell.skinning import keep_strongest
-from cutcell.skinning.rig_falloff import TAIL, permitted, rig_weights
-from cutcell.skinning.surface_operators import SurfaceOperators
+from cutcell.rig.rig import Rig
+from cutcell.weights import keep_strongest
+from cutcell.weights.rig_falloff.pipeline import TAIL, permitted, rig_weights
+from cutcell.weights.rig_falloff.surface_operators import SurfaceOperators
 
 from .document import fill
 from .network_scores import SAME_MAKER

@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
-from cutcell.writing import write_all
+from cutcell.runtime.writing import write_all
 
 from . import accuracy, growth, memory, speed
 from .rigs import ROOT

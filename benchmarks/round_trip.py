@@ -20,10 +20,10 @@ import numpy as np
 
 import cutcell
 from cutcell.io import SAVED, is_avatar, keeps_document
-from cutcell.io.gltf_accessors import read_accessor
-from cutcell.io.gltf_container import Document
-from cutcell.io.gltf_read import GltfSource
-from cutcell.io.materials import has_materials
+from cutcell.io.gltf.container import Document
+from cutcell.io.gltf.read.accessors import read_accessor
+from cutcell.io.gltf.read.read import GltfSource
+from cutcell.io.materials.transfer import has_materials
 from cutcell.io.rignet import word_names
 from tests.gltf_validator.validator import reports
 

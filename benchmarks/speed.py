@@ -18,7 +18,7 @@ import cutcell
 from cutcell.geodesics import bone_distances, bone_segments
 from cutcell.geodesics.shortest_paths import shortest_paths
 from cutcell.graph import build_graph
-from cutcell.skinning import warm_up
+from cutcell.weights.warm_up import warm_up
 
 from . import meshers, recipe, start_up
 from .rigs import Character, load_characters

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from cutcell import TriangleMesh
+from cutcell.geometry.weld import weld
 from cutcell.graph import Lattice
 from cutcell.graph.fast_winding import list_segments
-from cutcell.surface.rays import RayHits, cast_all_rays
-from cutcell.surface.weld import weld
-from cutcell.winding.boundary import find_boundary
-from cutcell.winding.intervals import InsideIntervals, inside_intervals
+from cutcell.graph.rays import RayHits, cast_all_rays
+from cutcell.graph.winding.boundary import find_boundary
+from cutcell.graph.winding.intervals import InsideIntervals, inside_intervals
 
 
 @dataclass(frozen=True)

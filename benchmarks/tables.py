@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from cutcell.writing import write_all
+from cutcell.runtime.writing import write_all
 
 
 @dataclass

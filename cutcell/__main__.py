@@ -1,6 +1,6 @@
 """`python -m cutcell` is the same as `cutcell`."""
 
-from .cli import main
+from .cli.app import main
 
 if __name__ == "__main__":
     main()

@@ -6,8 +6,8 @@ from dataclasses import dataclass, fields, replace
 from difflib import get_close_matches
 from typing import Any, Literal, TypedDict, get_args
 
-from .checks import check_choice, check_flag, check_integer, check_number
 from .errors import ParameterError
+from .rig.checks import check_choice, check_flag, check_integer, check_number
 
 Connectivity = Literal[6, 26, "any"]
 Leaf = Literal["point", "extend", "fit"]

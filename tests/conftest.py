@@ -6,7 +6,7 @@ from pathlib import Path
 import hypothesis
 import pytest
 
-from cutcell.skinning import is_compiled, warm_up
+from cutcell.weights.warm_up import is_compiled, warm_up
 
 # Other work takes time as well.
 SLOW = [hypothesis.HealthCheck.too_slow]

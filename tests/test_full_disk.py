@@ -20,10 +20,10 @@ from dataclasses import replace
 from pathlib import Path
 
 import cutcell
-from cutcell.compare import compare
-from cutcell.compare.plot import plot_comparison
+from cutcell.baselines.compare import compare
+from cutcell.baselines.compare.plot import plot_comparison
 from cutcell.io.numbers import save_numbers
-from tests.cutcell.compare.test_compare import character
+from tests.cutcell.baselines.test_compare import character
 from tests.viewers.arm import arm_rig
 from cutcell_viewers import film
 from cutcell_viewers.weights_scene import weights_scene

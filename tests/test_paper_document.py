@@ -9,7 +9,7 @@ import pytest
 import typer.main
 
 from benchmarks.paper import PARTS
-from cutcell.cli import app
+from cutcell.cli.app import app
 
 ROOT = Path(__file__).resolve().parent.parent
 TEXT = (ROOT / "docs" / "paper.md").read_text(encoding="utf-8")

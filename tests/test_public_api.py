@@ -12,7 +12,7 @@ import pytest
 import cutcell
 from tests.conftest import ROOT
 
-PACKAGES = ["io", "graph", "geodesics", "skinning", "pose", "metrics", "baselines"]
+PACKAGES = ["io", "graph", "geodesics", "weights", "editing", "pose", "metrics", "baselines"]
 ROOT_FUNCTIONS = sorted(
     name
     for name in cutcell.__all__

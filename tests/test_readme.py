@@ -8,7 +8,7 @@ import pytest
 from typer.testing import CliRunner
 
 import cutcell
-from cutcell.cli import app
+from cutcell.cli.app import app
 
 ROOT = Path(__file__).resolve().parent.parent
 README = (ROOT / "README.md").read_text(encoding="utf-8")

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import cutcell
+from cutcell.baselines.compare import comparison_markdown
 
 
 def how() -> list[cutcell.Method]:
@@ -47,11 +48,11 @@ def of_arrays(
     mesh = cutcell.TriangleMesh(vertices, faces)
     skeleton = cutcell.Skeleton(joints, parents)
     inside = cutcell.winding_number(mesh, vertices) > 0.5
-    assert_type(cutcell.inputs.as_mesh((vertices, faces)), cutcell.TriangleMesh)
+    assert_type(cutcell.rig.inputs.as_mesh((vertices, faces)), cutcell.TriangleMesh)
     bones = cutcell.bone_segments(skeleton, "extend")
     assert_type(bones, cutcell.geodesics.Bones)
     assert inside.any()
-    cutcell.bind((mesh, skeleton), progress=cutcell.progress.silent)
+    cutcell.bind((mesh, skeleton), progress=cutcell.runtime.progress.silent)
     return cutcell.bind((vertices, faces, joints, parents), leaf="extend", falloff="rig")
 
 
@@ -84,7 +85,7 @@ def look(rig: cutcell.Rig) -> list[str]:
 
 def paint(rig: cutcell.Rig, weights: NDArray[np.float64]) -> NDArray[np.float64]:
     brush = cutcell.Brush(0.1, mode="smooth", strength=0.5)
-    assert_type(brush.mode, cutcell.skinning.stroke.BrushMode)
+    assert_type(brush.mode, cutcell.editing.stroke.BrushMode)
     return cutcell.paint_weights(rig, weights, "Hand.L", [7, 8], brush, mirrored=True)
 
 
@@ -101,7 +102,7 @@ def put_right(rig: cutcell.Rig) -> cutcell.Binding:
         parts={7: cutcell.PartCorrection("glued", "Head")},
         vertices={3: {"Head": 0.5, "Neck": 0.5}},
     )
-    again = cutcell.corrections.Corrections.from_json(corrections.to_json())
+    again = cutcell.editing.corrections.Corrections.from_json(corrections.to_json())
     assert_type(cutcell.corrected_rig(rig, again), cutcell.Rig)
     return cutcell.bind(rig, corrections=again)
 
@@ -115,8 +116,8 @@ def move(rig: cutcell.Rig, weights: NDArray[np.float64]) -> NDArray[np.float64]:
 def compared(rig: cutcell.Rig) -> str:
     found = cutcell.baselines.METHODS["bone_heat"](rig)
     assert_type(found, cutcell.baselines.BaselineBinding)
-    comparison = cutcell.compare.compare([rig], ["cutcell_rig", "euclidean"])
-    return cutcell.compare.comparison_markdown(comparison)
+    comparison = cutcell.compare([rig], ["cutcell_rig", "euclidean"])
+    return comparison_markdown(comparison)
 
 
 def careful(path: Path) -> str:
@@ -137,12 +138,11 @@ def careful(path: Path) -> str:
 
 MODULES = (
     cutcell.dataset,
-    cutcell.deform,
     cutcell.diagnosis,
     cutcell.errors,
     cutcell.graph,
     cutcell.io,
-    cutcell.skinning,
-    cutcell.surface,
-    cutcell.winding,
+    cutcell.rig,
+    cutcell.weights,
+    cutcell.editing,
 )

@@ -7,7 +7,7 @@ import torch
 from torch import nn
 
 from cutcell.networks import HEADS, SIZES, create_network, parameter_count
-from cutcell.networks.heads import MADE
+from cutcell.networks.heads.heads import MADE
 
 
 def made(head: str, size: str) -> nn.Module:

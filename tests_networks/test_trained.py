@@ -11,14 +11,14 @@ import torch
 from typer.testing import CliRunner
 
 import cutcell
-from cutcell import memory
-from cutcell.apart import stoppable
 from cutcell.baselines import METHODS, BaselineBinding
-from cutcell.cli import app
+from cutcell.cli.app import app
 from cutcell.errors import Cancelled, FileError, TooLargeError, WeightsError
+from cutcell.isolated.run import stoppable
 from cutcell.networks import Recipe, load_network, predict, train, trained_networks
 from cutcell.networks.priors import PRIORS
 from cutcell.networks.samples import deal_rig
+from cutcell.runtime import memory
 from tests.bars import bar
 
 RECIPE = Recipe("unirig", prior="bind", points=32, resolution=16)

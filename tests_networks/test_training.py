@@ -10,7 +10,7 @@ import pytest
 import torch
 from typer.testing import CliRunner
 
-from cutcell.cli import app
+from cutcell.cli.app import app
 from cutcell.errors import FileError, ParameterError
 from cutcell.networks import (
     HEADS,

@@ -9,8 +9,8 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
-from cutcell.rig import Rig, Skeleton, TriangleMesh
-from cutcell.triangles import normals
+from cutcell.geometry.triangles import normals
+from cutcell.rig.rig import Rig, Skeleton, TriangleMesh
 
 from .description import Actor
 from .palette import ATTACHMENT, BODY, BONE, BONE_CHOSEN, BONE_EDGE, BONE_IDLE, to_bytes

@@ -8,7 +8,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from cutcell.io.face_colors import FaceColors
+from cutcell.io.materials.face_colors import FaceColors
 
 from .palette import BODY, Color
 from .skin import Skin

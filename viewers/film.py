@@ -14,10 +14,10 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from cutcell.errors import FileError
-from cutcell.motion import Clip
 from cutcell.pose import pose_at
-from cutcell.progress import Progress, silent
-from cutcell.writing import check_place, write_all
+from cutcell.rig.clip import Clip
+from cutcell.runtime.progress import Progress, silent
+from cutcell.runtime.writing import check_place, write_all
 
 from .camera import Camera, around, sees
 from .description import Description
@@ -77,7 +77,7 @@ def draw(order: Order, path: str | Path, progress: Progress = silent) -> None:
     path : str or Path
         Its ending says what it becomes: .png or .jpg, or .mp4 or .gif for a film.
     progress : callable
-        See `cutcell.progress`; may raise to stop.
+        See `cutcell.runtime.progress`; may raise to stop.
 
     Raises
     ------

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
-from cutcell.display import printable
+from cutcell.runtime.display import printable
 
 from .description import Legend
 from .palette import Color, Theme, colormap, to_bytes

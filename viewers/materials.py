@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from cutcell.io.face_colors import FaceColors, Layer, Materials, StoredImage
-from cutcell.io.materials import read_materials
-from cutcell.rig import Rig
+from cutcell.io.materials.face_colors import FaceColors, Layer, Materials, StoredImage
+from cutcell.io.materials.transfer import read_materials
+from cutcell.rig.rig import Rig
 
 FORMATS = ("PNG", "JPEG", "WEBP", "BMP", "TGA")
 LARGEST = 2**26

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cutcell.errors import FileError, MissingLibraryError
-from cutcell.writing import replacing
+from cutcell.runtime.writing import replacing
 
 ENCODING = ["-c:v", "libx264", "-crf", "18", "-preset", "fast", "-pix_fmt", "yuv420p"]
 CONTAINER = ["-movflags", "+faststart", "-f", "mp4"]

@@ -7,7 +7,7 @@ import sys
 from functools import cache
 
 from cutcell.errors import MissingLibraryError
-from cutcell.subprocesses import python_environment
+from cutcell.runtime.subprocesses import python_environment
 
 TRIAL = """
 import cutcell_viewers.scene, pyvista

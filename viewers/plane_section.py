@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import Delaunay, QhullError, cKDTree
 
-from cutcell.rig import Rig, TriangleMesh
-from cutcell.winding import winding_number
+from cutcell.graph.winding import winding_number
+from cutcell.rig.rig import Rig, TriangleMesh
 
 from .character import to_scene
 from .description import Cut

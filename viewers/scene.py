@@ -17,7 +17,7 @@ if sys.platform == "linux" and not os.environ.get("DISPLAY"):
 
 import pyvista as pv
 
-from cutcell.io.face_colors import BLENDED
+from cutcell.io.materials.face_colors import BLENDED
 
 from .camera import VIEW_ANGLE, Camera, framing
 from .description import Actor, Cut, Description

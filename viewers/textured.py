@@ -9,7 +9,7 @@ import numpy as np
 import pyvista as pv
 from numpy.typing import NDArray
 
-from cutcell.io.face_colors import BLENDED, CLAMP, MIRROR, REPEAT, FaceColors
+from cutcell.io.materials.face_colors import BLENDED, CLAMP, MIRROR, REPEAT, FaceColors
 
 # Members of `pyvista.Texture.WrapType`. By name: the class brings matplotlib, 60 MB of memory,
 # and the page's server imports this long before anybody wants a picture.

@@ -18,9 +18,9 @@ from typing import Any
 
 from cutcell import errors
 from cutcell.errors import CutcellError
-from cutcell.progress import Progress, silent
-from cutcell.subprocesses import python_environment
-from cutcell.writing import write_all
+from cutcell.runtime.progress import Progress, silent
+from cutcell.runtime.subprocesses import python_environment
+from cutcell.runtime.writing import write_all
 
 from .film import Order, check_picture_file, draw
 from .opengl import require_opengl

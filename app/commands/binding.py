@@ -15,15 +15,16 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 import cutcell
-from cutcell.corrections import Corrections
+from cutcell.binding import Binding
+from cutcell.editing.binding_warnings import binding_warnings
+from cutcell.editing.correct import adjustments_of
+from cutcell.editing.corrections import Corrections
 from cutcell.errors import CutcellError
 from cutcell.method import joints_needed
-from cutcell.progress import Progress
-from cutcell.rig import Rig
-from cutcell.skinning import Binding, keep_strongest, skinning_weights
-from cutcell.skinning.binding_warnings import binding_warnings
-from cutcell.skinning.correct import adjustments_of
-from cutcell.skinning.preview import Preview
+from cutcell.rig.rig import Rig
+from cutcell.runtime.progress import Progress
+from cutcell.weights import keep_strongest, skinning_weights
+from cutcell_app.work.preview import Preview
 
 from ..state import State
 from ..state.corrections import applied, changes, measured, same_structure

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from cutcell.editing.correct import locked_by
+from cutcell.editing.stroke import Brush, PaintSurface, Stroke
 from cutcell.errors import CutcellError
-from cutcell.skinning.correct import locked_by
-from cutcell.skinning.stroke import Brush, PaintSurface, Stroke
 from cutcell_viewers.skin import skin_of_weights
 
 from ..scenes.weights import painted_colors

@@ -8,10 +8,10 @@ from typing import Any
 
 from numpy.typing import NDArray
 
-from cutcell.apart import stoppable
 from cutcell.baselines import METHODS
 from cutcell.baselines.methods import known_options
 from cutcell.errors import CutcellError
+from cutcell.isolated.run import stoppable
 from cutcell.metrics import (
     DeformationError,
     deformation_error,
@@ -19,8 +19,8 @@ from cutcell.metrics import (
     vertex_shares,
     weight_l1,
 )
-from cutcell.progress import Progress
-from cutcell.rig import Rig
+from cutcell.rig.rig import Rig
+from cutcell.runtime.progress import Progress
 
 from ..scenes.compare import found_of
 from ..state import State

@@ -9,14 +9,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cutcell.corrections import Corrections, JointCorrection, PartCorrection
-from cutcell.deform import DeformJoints, deform_joints
-from cutcell.display import shown_name
+from cutcell.editing.correct import corrected_parts, corrected_rig, locked_by, overruled
+from cutcell.editing.corrections import Corrections, JointCorrection, PartCorrection
+from cutcell.editing.locks import lock_joints, locked_joints
 from cutcell.errors import CutcellError, ParameterError
 from cutcell.graph import CutCellGraph
-from cutcell.rig import Rig, Skeleton
-from cutcell.skinning.correct import corrected_parts, corrected_rig, locked_by, overruled
-from cutcell.skinning.locks import lock_joints, locked_joints
+from cutcell.rig.deform_joints import DeformJoints, deform_joints
+from cutcell.rig.rig import Rig, Skeleton
+from cutcell.runtime.display import shown_name
 
 from ..files.receive import safe_name
 from ..state.corrections import changes, renamed, tidy

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from cutcell.diagnosis import Diagnosis, Repaired, diagnose
-from cutcell.progress import Progress
+from cutcell.runtime.progress import Progress
 from cutcell_viewers.finding_scene import camera_on
 
 from ..scenes.common import bounds_of

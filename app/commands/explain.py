@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import cutcell
-from cutcell.progress import Progress
+from cutcell.runtime.progress import Progress
 
 from ..scenes.explain import explanation_of
 from ..state.method import effective, method_of

@@ -12,8 +12,8 @@ from typing import Any
 import cutcell
 from cutcell.io import binary_ending
 from cutcell.io.numbers import save_numbers
-from cutcell.progress import Progress
-from cutcell.rig import Clip
+from cutcell.rig.rig import Clip
+from cutcell.runtime.progress import Progress
 from cutcell_viewers.camera import Camera
 from cutcell_viewers.description import Description
 from cutcell_viewers.film import Order

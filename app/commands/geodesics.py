@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from cutcell.progress import Progress
+from cutcell.runtime.progress import Progress
 
 from ..scenes.geodesics import farthest, field_of, has_field, wants_field
 from ..scenes.measures import measured_of, measuring

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from cutcell.corrections import Corrections
+from cutcell.editing.corrections import Corrections
 
 from ..scenes.common import first_joint
 from ..state import State

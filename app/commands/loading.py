@@ -8,10 +8,10 @@ from typing import Any
 
 from param.parameterized import batch_call_watchers
 
-from cutcell.corrections import Corrections
+from cutcell.editing.corrections import Corrections
 from cutcell.errors import CutcellError, FileError, ParameterError
-from cutcell.progress import Progress
-from cutcell.rig import Rig
+from cutcell.rig.rig import Rig
+from cutcell.runtime.progress import Progress
 from cutcell_assets import DEMOS
 from cutcell_viewers.camera import Camera, framing
 

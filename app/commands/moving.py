@@ -8,13 +8,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from cutcell.corrections import Corrections, JointCorrection
+from cutcell.binding import Binding
+from cutcell.editing import middle_of_limb
+from cutcell.editing.correct import corrected_rig
+from cutcell.editing.corrections import Corrections, JointCorrection
+from cutcell.editing.symmetry import Mirror, find_joint_mirror
 from cutcell.errors import CutcellError, SkeletonError
-from cutcell.progress import Progress
-from cutcell.rig import Rig
-from cutcell.skinning import Binding, middle_of_limb
-from cutcell.skinning.correct import corrected_rig
-from cutcell.skinning.symmetry import Mirror, find_joint_mirror
+from cutcell.rig.rig import Rig
+from cutcell.runtime.progress import Progress
 from cutcell_viewers.character import to_scene
 
 from ..scenes.common import bones_part

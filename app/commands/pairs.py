@@ -7,11 +7,11 @@ from dataclasses import replace
 from pathlib import Path
 
 from cutcell.dataset import save_verdicts
-from cutcell.dataset.audit_files import read_verdicts
-from cutcell.dataset.sources import read_source
+from cutcell.dataset.audit.audit_files import read_verdicts
+from cutcell.dataset.read.sources import read_source
 from cutcell.errors import CutcellError
-from cutcell.progress import Progress
-from cutcell.rig import Rig
+from cutcell.rig.rig import Rig
+from cutcell.runtime.progress import Progress
 
 from ..state.pairs import Beside, OpenedAudit
 from .session import Session

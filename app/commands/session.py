@@ -12,9 +12,9 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, Protocol
 
-from cutcell.corrections import Corrections
+from cutcell.editing.corrections import Corrections
 from cutcell.errors import CutcellError
-from cutcell.progress import Progress
+from cutcell.runtime.progress import Progress
 from cutcell_viewers.camera import Camera
 from cutcell_viewers.description import Description
 

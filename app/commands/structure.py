@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from cutcell.corrections import Corrections, JointCorrection, PartCorrection
+from cutcell.editing.corrections import Corrections, JointCorrection, PartCorrection
 from cutcell.errors import CutcellError, ParameterError
-from cutcell.rig import Rig
+from cutcell.rig.rig import Rig
 
 from .correct import check_alone, correct, taken
 from .moving import mirror_of, moves_along, rounded

@@ -6,9 +6,9 @@ from collections.abc import Collection
 
 import numpy as np
 
-from cutcell.corrections import Corrections, JointCorrection
-from cutcell.progress import Progress
-from cutcell.rig import Rig, Skeleton
+from cutcell.editing.corrections import Corrections, JointCorrection
+from cutcell.rig.rig import Rig, Skeleton
+from cutcell.runtime.progress import Progress
 from cutcell.templates import Template, fit_skeleton, names_of
 
 from ..scenes.common import first_joint

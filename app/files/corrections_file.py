@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from cutcell.corrections import Corrections
+from cutcell.editing.corrections import Corrections
 from cutcell.errors import CutcellError
 
 from ..state.corrections import MOST_IN_ADDRESS, MOST_VERTICES, from_text, to_text

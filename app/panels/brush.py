@@ -6,7 +6,7 @@ from typing import Any
 
 import panel_material_ui as pmui
 
-from cutcell.display import shown_name
+from cutcell.runtime.display import shown_name
 
 from ..commands.brush import clear_selection, invert_selection
 from ..commands.moving import mirror_of

@@ -6,7 +6,7 @@ from typing import Any
 
 import panel_material_ui as pmui
 
-from cutcell.display import shown_name
+from cutcell.runtime.display import shown_name
 from cutcell_assets import DEMOS
 
 from ..commands.loading import load_again, load_demo, receiver

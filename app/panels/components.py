@@ -6,8 +6,8 @@ from typing import Any
 
 import panel_material_ui as pmui
 
-from cutcell.corrections import PartCorrection
-from cutcell.display import shown_name
+from cutcell.editing.corrections import PartCorrection
+from cutcell.runtime.display import shown_name
 
 from ..commands import correct
 from ..commands.session import Session

@@ -6,8 +6,8 @@ from typing import Any
 
 import panel_material_ui as pmui
 
-from cutcell.corrections import Corrections
 from cutcell.diagnosis.finding import count
+from cutcell.editing.corrections import Corrections
 
 from ..commands import correct
 from ..commands.session import Session

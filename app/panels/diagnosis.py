@@ -8,8 +8,8 @@ from typing import Any
 import panel_material_ui as pmui
 
 from cutcell.diagnosis import SEVERITIES, Finding
-from cutcell.display import shown_name
-from cutcell.rig import Rig
+from cutcell.rig.rig import Rig
+from cutcell.runtime.display import shown_name
 
 from ..commands.correct import leave_out
 from ..commands.diagnosis import look_at, repair, take_back

@@ -9,9 +9,9 @@ import numpy as np
 import panel_material_ui as pmui
 from panel_material_ui.widgets.base import MaterialWidget
 
-from cutcell.corrections import JointCorrection
-from cutcell.deform import DeformJoints
-from cutcell.display import shown_name
+from cutcell.editing.corrections import JointCorrection
+from cutcell.rig.deform_joints import DeformJoints
+from cutcell.runtime.display import shown_name
 
 from ..commands import correct
 from ..commands.session import Session

@@ -7,9 +7,9 @@ from typing import Any
 import panel_material_ui as pmui
 from panel.io import hold
 
-from cutcell.checks import shown
-from cutcell.corrections import JointCorrection
+from cutcell.editing.corrections import JointCorrection
 from cutcell.errors import ParameterError
+from cutcell.rig.checks import shown
 
 from ..commands import moving
 from ..commands.session import Session

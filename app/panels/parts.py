@@ -10,7 +10,7 @@ import panel as pn
 import panel_material_ui as pmui
 import param
 
-from cutcell.display import printable, shown_name
+from cutcell.runtime.display import printable, shown_name
 
 GAP = (4, 0)
 """Space above and below a widget, and beside it."""

@@ -7,8 +7,8 @@ from typing import Any
 import panel_material_ui as pmui
 from bokeh.models import PrintfTickFormatter
 
-from cutcell.display import shown_name
-from cutcell.io.materials import has_materials
+from cutcell.io.materials.transfer import has_materials
+from cutcell.runtime.display import shown_name
 
 from ..commands import pose as actions
 from ..commands.session import Session

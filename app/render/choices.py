@@ -8,10 +8,10 @@ from typing import Any
 
 from cutcell import ANIMATION, Method
 from cutcell.baselines import METHODS
-from cutcell.checks import check_choice, check_has_joints
 from cutcell.errors import ParameterError
-from cutcell.io.materials import has_materials
-from cutcell.rig import Rig
+from cutcell.io.materials.transfer import has_materials
+from cutcell.rig.checks import check_choice
+from cutcell.rig.rig import Rig
 
 from ..scenes.common import first_joint
 from ..state import State
@@ -127,7 +127,7 @@ def state_of(rig: Rig, choices: Choices) -> State:
     """
     panel = PANELS[check_choice("panel", choices.panel, PANELS)]
     if panel != "graph":
-        check_has_joints(rig.skeleton)
+        rig.skeleton.require_joints()
     state = State(rig=rig, panel=panel, dark=choices.dark, skeleton=choices.skeleton)
     state.joint = first_joint(rig) if choices.bone is None else find_bone(rig, choices.bone)
     if choices.bone is not None:

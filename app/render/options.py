@@ -8,8 +8,8 @@ from typing import Any
 
 import param
 
-from cutcell.checks import check_choice
 from cutcell.errors import ParameterError
+from cutcell.rig.checks import check_choice
 
 from ..state import State
 from ..state.geodesics import MEASURES, MOST_MEASURES

@@ -7,8 +7,8 @@ from typing import Any
 
 from cutcell import bind, build_graph, diagnose
 from cutcell.errors import ParameterError
-from cutcell.progress import Progress, silent
-from cutcell.rig import Rig
+from cutcell.rig.rig import Rig
+from cutcell.runtime.progress import Progress, silent
 from cutcell_viewers.description import Description
 from cutcell_viewers.error_scene import Gap
 from cutcell_viewers.materials import Textures, load_textures
@@ -46,7 +46,7 @@ def describe(
     resolution : int
         For that.
     progress : callable
-        See `cutcell.progress`.
+        See `cutcell.runtime.progress`.
 
     Returns
     -------

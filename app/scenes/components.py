@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_array
 
-from cutcell.corrections import PartCorrection
-from cutcell.display import shown_name
+from cutcell.editing.corrections import PartCorrection
+from cutcell.runtime.display import shown_name
 from cutcell_viewers.description import Actor
 
 from ..state import State

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from cutcell.skinning import Explanation, JointShare
-from cutcell.skinning.explain import STEPS
+from cutcell.editing import Explanation, JointShare
+from cutcell.editing.explain import STEPS
 from cutcell_viewers.character import to_scene
 from cutcell_viewers.description import Actor
 from cutcell_viewers.marks import path_tube

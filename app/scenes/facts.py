@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from cutcell.display import shown_name
 from cutcell.geodesics import FALLBACK_REASONS
 from cutcell.graph import MESH, CutCellGraph
-from cutcell.winding import winding_number
+from cutcell.graph.winding import winding_number
+from cutcell.runtime.display import shown_name
 from cutcell_viewers.graph_scene import KINDS
 from cutcell_viewers.palette import joint_colors, to_hex
 

@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cutcell.corrections import JointCorrection
-from cutcell.deform import DeformJoints
-from cutcell.display import shown_name
+from cutcell.editing.corrections import JointCorrection
 from cutcell.metrics import vertex_shares
+from cutcell.rig.deform_joints import DeformJoints
+from cutcell.runtime.display import shown_name
 from cutcell_viewers.palette import joint_colors, to_hex
 
 from ..state import State

@@ -12,7 +12,7 @@ import numpy as np
 import cutcell
 from cutcell.baselines.measures import Measure, MeasuredDistance, measure_distance
 from cutcell.geodesics import BoneDistances, path_length
-from cutcell.rig import Rig
+from cutcell.rig.rig import Rig
 from cutcell_viewers.character import to_scene
 from cutcell_viewers.description import Actor, Description
 from cutcell_viewers.distance_scene import distance_colors, distance_limits, distance_look

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from cutcell.display import shown_name
-from cutcell.rig import Rig
+from cutcell.rig.rig import Rig
+from cutcell.runtime.display import shown_name
 from cutcell_viewers.character import body, bones, to_scene
 from cutcell_viewers.description import Actor, Description
 from cutcell_viewers.weights_scene import weight_colors

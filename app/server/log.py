@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 
-from cutcell.display import printable
+from cutcell.runtime.display import printable
 
 LINE = 4000
 

@@ -9,8 +9,8 @@ import numpy as np
 import param
 from numpy.typing import NDArray
 
-from cutcell.rig import TriangleMesh
-from cutcell.skinning.stroke import BrushMode
+from cutcell.editing.stroke import BrushMode
+from cutcell.rig.rig import TriangleMesh
 
 LEAST_RADIUS, MOST_RADIUS = 0.005, 0.5
 """Of the character's longest side."""

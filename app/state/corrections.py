@@ -11,11 +11,11 @@ from typing import Any
 import numpy as np
 import param
 
-from cutcell.corrections import Corrections, JointCorrection
+from cutcell.binding import Binding
+from cutcell.editing.corrections import Corrections, JointCorrection
+from cutcell.editing.restructure import restructured, restructured_skeleton
 from cutcell.errors import CutcellError
-from cutcell.rig import Rig
-from cutcell.skinning import Binding
-from cutcell.skinning.restructure import restructured, restructured_skeleton
+from cutcell.rig.rig import Rig
 
 MOST_IN_ADDRESS = 1500
 """Letters: longer addresses are cut by some programs that pass them on."""

@@ -8,7 +8,7 @@ from urllib.parse import parse_qsl, quote, urlencode
 
 import param
 
-from cutcell.corrections import Corrections
+from cutcell.editing.corrections import Corrections
 
 from . import State
 from .brush import BRUSH

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cutcell.display import printable, shown_name
+from cutcell.runtime.display import printable, shown_name
 from cutcell_viewers.description import Actor, Apart, Description, Legend, Reading
 from cutcell_viewers.palette import colormap, to_hex
 from cutcell_viewers.scene import shading

@@ -10,7 +10,7 @@ from functools import partial
 from typing import Any
 
 from cutcell.errors import Cancelled
-from cutcell.progress import Progress, silent
+from cutcell.runtime.progress import Progress, silent
 
 Schedule = Callable[[Callable[[], Any]], Any]
 """Runs a function later, on the thread that owns the page."""

@@ -6,8 +6,8 @@ import errno
 import tempfile
 from pathlib import Path
 
-from cutcell.display import printable, without_folders
 from cutcell.errors import CutcellError
+from cutcell.runtime.display import printable, without_folders
 
 ROOT = Path(__file__).resolve().parents[2]
 

@@ -29,11 +29,11 @@ LONGEST_FOLDER = 80
 """Bytes of a folder's path to which the name of a socket can be added."""
 
 # A server of processes is started once, with what they need; each then takes some milliseconds.
-# What this process began with is imported by each, too: for the commands, that is `cutcell.cli`.
+# What this process began with is imported by each, too: for commands, `cutcell.cli.app`.
 _METHOD = "forkserver" if "forkserver" in multiprocessing.get_all_start_methods() else "spawn"
 _CONTEXT: Any = multiprocessing.get_context(_METHOD)
 if _METHOD == "forkserver":
-    _CONTEXT.set_forkserver_preload(["cutcell.cli", "cutcell.io", __name__])
+    _CONTEXT.set_forkserver_preload(["cutcell.cli.app", "cutcell.io", __name__])
 
 
 def get_ready(make_folder: Callable[[], Path]) -> None:

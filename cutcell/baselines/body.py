@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..geodesics import Bones, bone_segments, distance_to_segment
+from ..geometry.weld import weld
 from ..graph import Lattice
 from ..method import Leaf
-from ..rig import Rig
-from ..surface.weld import weld
+from ..rig.rig import Rig
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,10 +8,10 @@ from scipy.sparse import coo_array, diags_array
 from scipy.sparse.csgraph import connected_components
 from scipy.sparse.linalg import splu
 
-from ..checks import check_number
+from ..geometry.laplacian import cotangent_laplacian, vertex_areas, vertex_normals
 from ..method import PAPER, Leaf
-from ..rig import Rig
-from ..skinning.laplacian import cotangent_laplacian, vertex_areas, vertex_normals
+from ..rig.checks import check_number
+from ..rig.rig import Rig
 from .body import Body
 from .frame import BaselineBinding, Run, bind_by
 from .visibility import Blockers

@@ -9,10 +9,10 @@ from time import perf_counter
 import numpy as np
 from numpy.typing import NDArray
 
-from ..apart import WorkFailedError
+from ..isolated.run import WorkFailedError
 from ..method import Method
-from ..rig import Rig
-from ..skinning.prune import prune
+from ..rig.rig import Rig
+from ..weights.prune import prune
 from .body import Body
 
 

@@ -13,16 +13,16 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import cKDTree
 
-from ..checks import check_choice
 from ..errors import ParameterError
 from ..geodesics import BoneDistances, Bones, distance_to_segment, shortest_path
 from ..geodesics.distances import distances_from
 from ..graph import build_graph
 from ..method import Method
-from ..rig import Rig
+from ..rig.checks import check_choice
+from ..rig.rig import Rig
 from .body import Body
-from .voxel_binding import voxels_of_bone
-from .voxels import PAD, Voxels, voxelize
+from .volumes.voxel_binding import voxels_of_bone
+from .volumes.voxels import PAD, Voxels, voxelize
 
 Measure = Literal["straight", "surface", "voxel", "6", "26", "any"]
 MEASURES: tuple[Measure, ...] = get_args(Measure)

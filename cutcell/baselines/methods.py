@@ -7,16 +7,16 @@ from inspect import signature
 from time import perf_counter
 from typing import Any
 
+from ..binding import bind
 from ..method import ANIMATION, PAPER, Method
-from ..rig import Rig
-from ..skinning import bind
+from ..rig.rig import Rig
 from .bone_heat import bone_heat
-from .cage_methods import harmonic, mean_value
+from .cages.cage_methods import harmonic, mean_value
 from .euclidean import euclidean
 from .frame import BaselineBinding
 from .visible_geodesics import visibility
-from .volume import bbw, biharmonic, quasi_harmonic
-from .voxel_binding import voxel, voxel_unirig
+from .volumes.volume import bbw, biharmonic, quasi_harmonic
+from .volumes.voxel_binding import voxel, voxel_unirig
 
 Baseline = Callable[..., BaselineBinding]
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ..compiled import compiled
-from ..threads import in_threads, parts
+from ..runtime.compiled import compiled
+from ..runtime.threads import in_threads, parts
 
 LEAF = 4
 """Triangles in a leaf of the tree, at most."""

@@ -7,12 +7,12 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array, csr_array
 from scipy.sparse.csgraph import dijkstra
 
-from ..checks import check_number
+from ..geometry.edges import find_edges
 from ..method import PAPER, Leaf
-from ..progress import Progress, silent
-from ..rig import Rig
-from ..skinning.kernel import paper_kernel
-from ..surface.edges import find_edges
+from ..rig.checks import check_number
+from ..rig.rig import Rig
+from ..runtime.progress import Progress, silent
+from ..weights.paper_kernel import paper_kernel
 from .body import Body
 from .frame import BaselineBinding, Run, bind_by
 from .unreached import follow_nearest
@@ -56,7 +56,7 @@ def visibility(
     max_influences, threshold
         See `skinning_weights`.
     progress : callable
-        See `cutcell.progress`.
+        See `cutcell.runtime.progress`.
 
     Returns
     -------
@@ -119,7 +119,7 @@ def over_surface(
     seen : array, shape (b, k), bool
         Where the distance is straight. A bone that nothing sees is straight from all.
     progress : callable
-        See `cutcell.progress`.
+        See `cutcell.runtime.progress`.
 
     Returns
     -------

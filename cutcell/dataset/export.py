@@ -12,14 +12,14 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import shortest_path
 
-from ..checks import check_choice
 from ..errors import FileError, MissingLibraryError
-from ..io.objects import write_obj
+from ..io.meshes.obj import write_obj
 from ..io.rignet import word_names
-from ..rig import TriangleMesh
-from ..writing import replacing, write_all
-from .points import mesh_normals, sample_surface
-from .store import Entry, Store
+from ..rig.checks import check_choice
+from ..rig.rig import TriangleMesh
+from ..runtime.writing import replacing, write_all
+from .audit.points import mesh_normals, sample_surface
+from .read.store import Entry, Store
 from .torch_data import at_points
 
 FORMATS = ("rignet", "unirig", "puppeteer")

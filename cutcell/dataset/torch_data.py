@@ -9,10 +9,10 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from ..checks import check_choice, check_integer
 from ..errors import FileError, MissingLibraryError
-from .points import SurfacePoints, sample_surface
-from .store import Store, read_entry
+from ..rig.checks import check_choice, check_integer
+from .audit.points import SurfacePoints, sample_surface
+from .read.store import Store, read_entry
 
 Prior = Literal["weights", "distances", "bone_distances"]
 PRIORS: tuple[Prior, ...] = ("weights", "distances", "bone_distances")

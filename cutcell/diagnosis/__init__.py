@@ -1,9 +1,9 @@
 """What is wrong with a rig: checks that name the elements at fault, and repairs."""
 
 from .cleaning import Cleaned, JointLoss, clean
-from .finding import SEVERITIES, TITLES, Diagnosis, Finding, Pose
+from .finding import SEVERITIES, TITLES, Finding, Pose
 from .repair import Repaired
-from .run import diagnose, unreadable
+from .run import Diagnosis, diagnose, unreadable
 
 __all__ = [
     "SEVERITIES",

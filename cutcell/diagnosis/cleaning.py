@@ -7,18 +7,17 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..checks import check_has_joints
+from ..binding import bind
 from ..errors import WeightsError
 from ..geodesics import BoneDistances
-from ..inputs import RigLike, as_rig
 from ..method import ANIMATION, check_resolution
 from ..metrics import vertex_shares
-from ..progress import Progress, silent
-from ..rig import Rig
-from ..skinning import bind
-from ..skinning.diffusion import LEAST_CELLS
-from ..skinning.prune import prune
-from ..skinning.rig_falloff import TAIL
+from ..rig.inputs import RigLike, as_rig
+from ..rig.rig import Rig
+from ..runtime.progress import Progress, silent
+from ..weights.prune import prune
+from ..weights.rig_falloff.diffusion import LEAST_CELLS
+from ..weights.rig_falloff.pipeline import TAIL
 from .subject import Subject
 from .weights import INFLUENCES, measurable
 from .widest import connected_weights
@@ -103,7 +102,7 @@ def clean(rig: RigLike, resolution: int = 64, *, progress: Progress = silent) ->
     resolution : int
         R, as of `build_graph`.
     progress : callable
-        See `cutcell.progress`; stages are "graph", "distances" and "weights".
+        See `cutcell.runtime.progress`; stages are "graph", "distances" and "weights".
 
     Returns
     -------
@@ -128,7 +127,7 @@ def clean(rig: RigLike, resolution: int = 64, *, progress: Progress = silent) ->
     """
     rig = as_rig(rig)
     resolution = check_resolution(resolution)
-    check_has_joints(rig.skeleton)
+    rig.skeleton.require_joints()
     weights = rig.weights
     if weights is None or not weights.any():
         raise WeightsError("the rig has no weights that could be cleaned; bind computes some")

@@ -7,8 +7,8 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from ..surface.weld import WELD_TOLERANCE, weld
-from ..triangles import unit_normals
+from ..geometry.triangles import unit_normals
+from ..geometry.weld import WELD_TOLERANCE, weld
 from .finding import Finding, count
 from .subject import Subject
 

@@ -4,16 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import asdict, dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-
-from ..errors import ParameterError
-from ..rig import Rig
-
-if TYPE_CHECKING:
-    from .repair import Repaired
 
 SEVERITIES = ("error", "warning", "note")
 """The gravest first. Error: a binding, or another program, goes wrong because of it. Warning: most
@@ -135,73 +129,6 @@ class Finding:
             "repair": self.repair or None,
             "pose": None if self.pose is None else asdict(self.pose),
         }
-
-
-@dataclass(frozen=True, eq=False)
-class Diagnosis:
-    """All that was found of a rig, the gravest first.
-
-    Parameters
-    ----------
-    rig : Rig
-        What was looked at.
-    findings : tuple of Finding
-    """
-
-    rig: Rig
-    findings: tuple[Finding, ...]
-
-    def of(self, severity: str) -> tuple[Finding, ...]:
-        """Return the findings of one severity."""
-        return tuple(finding for finding in self.findings if finding.severity == severity)
-
-    @property
-    def counts(self) -> dict[str, int]:
-        """How many findings there are of each severity."""
-        return {severity: len(self.of(severity)) for severity in SEVERITIES}
-
-    def __getitem__(self, code: str) -> Finding:
-        """Return the finding of a code; KeyError if there is none."""
-        for finding in self.findings:
-            if finding.code == code:
-                return finding
-        raise KeyError(code)
-
-    def __contains__(self, code: object) -> bool:
-        """Whether there is a finding of a code."""
-        return any(finding.code == code for finding in self.findings)
-
-    def repaired(self, codes: Iterable[str] | None = None) -> Repaired:
-        """Return the rig with its faults repaired, as far as that is safe.
-
-        Parameters
-        ----------
-        codes : iterable of str, optional
-            Which findings to repair; all that can be when left out.
-
-        Raises
-        ------
-        ParameterError
-            There is no finding of such a code, or no safe repair of it.
-        """
-        from .repair import repair
-
-        chosen = [finding for finding in self.findings if finding.repair]
-        if codes is not None:
-            able = {finding.code: finding for finding in chosen}
-            wanted = list(codes)
-            for code in wanted:
-                if code not in able:
-                    known = ", ".join(able) or "none"
-                    raise ParameterError(
-                        f'there is nothing to repair of the code "{code}"; repairable: {known}'
-                    )
-            chosen = [able[code] for code in dict.fromkeys(wanted)]
-        return repair(self.rig, chosen)
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return it as plain data."""
-        return {"counts": self.counts, "findings": [finding.to_dict() for finding in self.findings]}
 
 
 def by_gravity(findings: Iterable[Finding]) -> tuple[Finding, ...]:

@@ -11,8 +11,8 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from ..compiled import compiled
-from ..surface.vectors import between, cross, dot
+from ..geometry.vectors import between, cross, dot
+from ..runtime.compiled import compiled
 from .finding import Finding, count, share
 from .subject import Subject
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from ..display import shown_name
+from ..runtime.display import shown_name
 from .finding import Finding, count
 from .subject import Subject
 

@@ -9,11 +9,11 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from ..display import shown_name
+from ..editing.symmetry import find_mirror
 from ..errors import MeshError
 from ..geodesics import BoneDistances
 from ..geodesics.fallback import REACHED
-from ..skinning.symmetry import find_mirror
+from ..runtime.display import shown_name
 from .finding import Finding, Pose, count, share
 from .subject import Subject
 from .weights import CLEANED, NOTICED, through_body

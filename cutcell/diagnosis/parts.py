@@ -8,15 +8,15 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from ..display import shown_name
 from ..geodesics import BoneDistances
 from ..geodesics.fallback import NOT_ALLOWED, UNREACHED
+from ..geometry.laplacian import vertex_areas, vertex_normals
 from ..graph import INTERIOR
-from ..rig import TriangleMesh
-from ..skinning.components import bone_containment
-from ..skinning.laplacian import vertex_areas, vertex_normals
-from ..skinning.rigid_accessories import SMALL
-from ..winding import winding_number
+from ..graph.winding import winding_number
+from ..rig.rig import TriangleMesh
+from ..runtime.display import shown_name
+from ..weights.rig_falloff.components import bone_containment
+from ..weights.rig_falloff.rigid_accessories import SMALL
 from .finding import Finding, count, share
 from .subject import Subject
 

@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from ..io.gltf_faces import with_faces
-from ..rig import Rig
-from ..skinning.prune import prune
-from ..surface.lattice import Lattice
-from ..surface.weld import weld
+from ..geometry.weld import weld
+from ..graph.lattice import Lattice
+from ..io.gltf.read.faces import with_faces
+from ..rig.rig import Rig
+from ..weights.prune import prune
 from .cleaning import clean
 from .finding import Finding
 from .weights import INFLUENCES

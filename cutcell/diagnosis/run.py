@@ -2,21 +2,91 @@
 
 from __future__ import annotations
 
-from ..errors import CutcellError
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
+
+from ..errors import CutcellError, ParameterError
 from ..geodesics import BoneDistances
 from ..method import check_resolution
-from ..progress import Progress, silent
-from ..rig import Rig
-from .finding import Diagnosis, Finding, by_gravity
+from ..rig.rig import Rig
+from ..runtime.progress import Progress, silent
+from .finding import SEVERITIES, Finding, by_gravity
 from .joints import check_joints
 from .leaks import check_leaks
 from .mesh import check_mesh
 from .parts import check_parts
+from .repair import Repaired, repair
 from .subject import Subject
 from .sweep import check_sweep
 from .weights import check_weights
 
 CHECKS = (check_mesh, check_joints, check_parts, check_weights, check_leaks, check_sweep)
+
+
+@dataclass(frozen=True, eq=False)
+class Diagnosis:
+    """All that was found of a rig, the gravest first.
+
+    Parameters
+    ----------
+    rig : Rig
+        What was looked at.
+    findings : tuple of Finding
+    """
+
+    rig: Rig
+    findings: tuple[Finding, ...]
+
+    def of(self, severity: str) -> tuple[Finding, ...]:
+        """Return the findings of one severity."""
+        return tuple(finding for finding in self.findings if finding.severity == severity)
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """How many findings there are of each severity."""
+        return {severity: len(self.of(severity)) for severity in SEVERITIES}
+
+    def __getitem__(self, code: str) -> Finding:
+        """Return the finding of a code; KeyError if there is none."""
+        for finding in self.findings:
+            if finding.code == code:
+                return finding
+        raise KeyError(code)
+
+    def __contains__(self, code: object) -> bool:
+        """Whether there is a finding of a code."""
+        return any(finding.code == code for finding in self.findings)
+
+    def repaired(self, codes: Iterable[str] | None = None) -> Repaired:
+        """Return the rig with its faults repaired, as far as that is safe.
+
+        Parameters
+        ----------
+        codes : iterable of str, optional
+            Which findings to repair; all that can be when left out.
+
+        Raises
+        ------
+        ParameterError
+            There is no finding of such a code, or no safe repair of it.
+        """
+        chosen = [finding for finding in self.findings if finding.repair]
+        if codes is not None:
+            able = {finding.code: finding for finding in chosen}
+            wanted = list(codes)
+            for code in wanted:
+                if code not in able:
+                    known = ", ".join(able) or "none"
+                    raise ParameterError(
+                        f'there is nothing to repair of the code "{code}"; repairable: {known}'
+                    )
+            chosen = [able[code] for code in dict.fromkeys(wanted)]
+        return repair(self.rig, chosen)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return it as plain data."""
+        return {"counts": self.counts, "findings": [finding.to_dict() for finding in self.findings]}
 
 
 def diagnose(
@@ -37,7 +107,7 @@ def diagnose(
     distances : BoneDistances, optional
         Of this rig, such as those of a `Binding`; measured when left out.
     progress : callable
-        See `cutcell.progress`; stages are "graph", "distances" and "checks".
+        See `cutcell.runtime.progress`; stages are "graph", "distances" and "checks".
 
     Returns
     -------

@@ -7,16 +7,16 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from ..deform import DeformJoints, deform_joints
-from ..deform.body import SPACING, Body
 from ..geodesics import BoneDistances, bone_distances
+from ..geometry.edges import MeshEdges, find_edges
+from ..geometry.triangles import areas
 from ..graph import CutCellGraph, build_graph
-from ..progress import Progress, silent
-from ..rig import Rig, TriangleMesh
-from ..skinning.components import label_components
-from ..surface.edges import MeshEdges, find_edges
-from ..triangles import areas
-from ..winding.boundary import Boundary, boundary_of
+from ..graph.winding.boundary import Boundary, boundary_of
+from ..rig.deform_joints import DeformJoints, deform_joints
+from ..rig.deform_joints.body import SPACING, Body
+from ..rig.rig import Rig, TriangleMesh
+from ..runtime.progress import Progress, silent
+from ..weights.rig_falloff.components import label_components
 
 
 class Subject:

@@ -9,9 +9,9 @@ from functools import reduce
 import numpy as np
 from numpy.typing import NDArray
 
-from ..display import shown_name
+from ..geometry.triangles import normals
 from ..pose import axis_rotation
-from ..triangles import normals
+from ..runtime.display import shown_name
 from .finding import Finding, Pose, count, share
 from .subject import Subject
 

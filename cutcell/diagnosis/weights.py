@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ..display import shown_name
 from ..geodesics import BoneDistances, distance_to_segment
 from ..geodesics.fallback import REACHED
+from ..runtime.display import shown_name
 from .finding import Finding, count
 from .subject import Subject
 

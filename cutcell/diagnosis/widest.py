@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_array
 
-from ..compiled import compiled
-from ..threads import in_threads
+from ..runtime.compiled import compiled
+from ..runtime.threads import in_threads
 
 
 def connected_weights(

@@ -7,13 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..checks import check_choice, check_has_joints
-from ..compiled import no_refcount
 from ..errors import MeshError
 from ..graph import CutCellGraph
 from ..method import LEAVES
-from ..rig import Skeleton
-from .contraction import Contraction
+from ..rig.checks import check_choice
+from ..rig.rig import Skeleton
+from ..runtime.compiled import no_refcount
+from .any_angle.contraction import Contraction
 from .nearest import NodeGrid
 
 TIE = 1e-9
@@ -67,7 +67,7 @@ def bone_segments(skeleton: Skeleton, leaf: str = "point") -> Bones:
         No joints.
     """
     check_choice("leaf", leaf, LEAVES[:2])
-    check_has_joints(skeleton)
+    skeleton.require_joints()
     start, end, joint = [], [], []
     for j in np.flatnonzero(skeleton.deform):
         head = skeleton.joints[j]

@@ -11,21 +11,21 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
-from ..checks import check_has_joints, check_integer, check_number, check_positions
 from ..errors import ParameterError, SkeletonError, WeightsError
 from ..graph import CutCellGraph
 from ..method import ANIMATION, DistanceOptions, Method, MethodName, method_of
-from ..progress import Progress, silent
-from ..rig import Skeleton
-from ..threads import submit
-from .any_angle import any_angle_paths, least_distances
-from .bone_extents import REGION_LEAVES, REGION_WITHIN, aim_leaf_bones, fit_bones
+from ..rig.checks import check_integer, check_number, check_positions
+from ..rig.rig import Skeleton
+from ..runtime.progress import Progress, silent
+from ..runtime.threads import submit
+from .any_angle.contraction import Contraction, contract
+from .any_angle.theta_star import any_angle_paths, least_distances
+from .bone_extents.fit import REGION_LEAVES, REGION_WITHIN, aim_leaf_bones, fit_bones
 from .bones import Bones, Sources, bone_segments, find_sources, node_grid
-from .contraction import Contraction, contract
 from .fallback import NOT_ALLOWED, REACHED, UNREACHED, UNUSED, straight_to_nearest
-from .inside import Inside
 from .nearest import NodeGrid
 from .shortest_paths import shortest_paths
+from .tracing.inside import Inside
 
 
 @dataclass(frozen=True, eq=False)
@@ -196,7 +196,7 @@ def bone_distances(
     allowed : array, shape (n, j), bool, optional
         Which joints each vertex may follow; see `Rig.allowed`.
     progress : callable
-        See `cutcell.progress`; the stage is called "distances".
+        See `cutcell.runtime.progress`; the stage is called "distances".
     **options
         Single options of the method: `samples`, `leaf`.
 
@@ -227,7 +227,7 @@ def bone_distances(
     else:
         nearest_joints = check_integer("nearest_joints", nearest_joints, 1, 1_000_000)
     within = check_number("within", method.reach_needed if within is None else within, 1, np.inf)
-    check_has_joints(skeleton)
+    skeleton.require_joints()
     check_positions(skeleton.joints, "joint", SkeletonError)
     if graph.connectivity != "any" or allowed is not None:
         nearest_joints = None

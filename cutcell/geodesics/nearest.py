@@ -9,8 +9,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ..compiled import compiled
-from ..sorting import sort_into
+from ..geometry.sorting import sort_into
+from ..runtime.compiled import compiled
 
 IN_A_CELL = 4
 """Lattice cells along each side of a cell of the grid."""

@@ -17,11 +17,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ..compiled import compiled, no_refcount
 from ..graph import CutCellGraph
 from ..graph.neighbours import Adjacency, list_neighbours
-from ..progress import Progress, Shares, Tell, silent
-from ..threads import in_threads, parts, threads
+from ..runtime.compiled import compiled, no_refcount
+from ..runtime.progress import Progress, Shares, Tell, silent
+from ..runtime.threads import in_threads, parts, threads
 from .bones import Sources
 from .simd import SIMD_WIDTH, lower
 

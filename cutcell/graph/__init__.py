@@ -1,9 +1,9 @@
 """The cut-cell graph of a mesh (paper section 3.1)."""
 
-from ..surface.lattice import Lattice
 from .build import build_graph
 from .cutcell_graph import INTERIOR, MESH, SURFACE, CutCellGraph
-from .orientation import inverted_faces
+from .lattice import Lattice
+from .orientation.orient import inverted_faces
 from .slice import RaySlice, slice_rays
 
 __all__ = [

@@ -7,16 +7,16 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ..compiled import compiled, copy_to
-from ..surface.lattice import Lattice
-from ..surface.rays import AXES, RayHits
-from ..threads import in_threads
-from ..winding.intervals import InsideIntervals
-from ..winding.segments import NONE
+from ..runtime.compiled import compiled, copy_to
+from ..runtime.threads import in_threads
 from .cutcell_graph import INTERIOR, MESH, SURFACE, CutCellGraph
 from .inside_edges import diagonal_edges, edge_starts, fill_edges, lattice_steps
 from .interior import interior_points
+from .lattice import Lattice
 from .memory import check_memory
+from .rays import AXES, RayHits
+from .winding.intervals import InsideIntervals
+from .winding.segments import NONE
 
 
 def assemble(

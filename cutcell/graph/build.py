@@ -7,24 +7,24 @@ from typing import Unpack
 import numpy as np
 from numpy.typing import NDArray
 
-from ..checks import check_choice
 from ..errors import MeshError
-from ..inputs import MeshLike, as_mesh
+from ..geometry.edges import find_edges
+from ..geometry.weld import weld
 from ..method import ANIMATION, GraphOptions, Method, MethodName, method_of
-from ..progress import Progress, share_of, silent
-from ..surface.edges import find_edges
-from ..surface.lattice import Lattice
-from ..surface.ray_tracers import cast_rays_embree, cast_rays_open3d
-from ..surface.rays import cast_all_rays, expected_hits
-from ..surface.weld import weld
-from ..threads import cancellable
-from ..winding import inside_intervals
-from ..winding.boundary import boundary_of
+from ..rig.checks import check_choice
+from ..rig.inputs import MeshLike, as_mesh
+from ..runtime.progress import Progress, share_of, silent
+from ..runtime.threads import cancellable
 from .assemble import assemble
 from .cutcell_graph import CutCellGraph
 from .fast_winding import fast_intervals
+from .lattice import Lattice
 from .memory import check_estimate
-from .orientation import find_inverted, flipped
+from .orientation.orient import find_inverted, flipped
+from .ray_tracers import cast_rays_embree, cast_rays_open3d
+from .rays import cast_all_rays, expected_hits
+from .winding import inside_intervals
+from .winding.boundary import boundary_of
 
 CASTERS = {"open3d": cast_rays_open3d, "embree": cast_rays_embree}
 MAX_LAYERS = 100
@@ -57,7 +57,7 @@ def build_graph(
         Exact winding numbers, or libigl's approximation at every midpoint. This and `rays`
         are for comparison.
     progress : callable
-        See `cutcell.progress`; the stage is called "graph".
+        See `cutcell.runtime.progress`; the stage is called "graph".
     **options
         Single options of the method: `connectivity`, `winding_threshold`, `orient`. With
         connectivity 26 there are diagonals of lattice cells that lie inside altogether; with

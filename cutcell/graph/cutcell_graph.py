@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
-from ..surface.lattice import Lattice
-from ..winding.exact import WindingNumbers
 from .interior import InteriorPoints
+from .lattice import Lattice
 from .neighbours import Adjacency, list_neighbours
+from .winding.exact import WindingNumbers
 
 MESH, INTERIOR, SURFACE = 0, 1, 2
 """Kinds of nodes (mesh vertices, lattice points inside, ray hits on the surface) and of edges (of

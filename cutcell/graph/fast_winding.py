@@ -1,7 +1,7 @@
 """Inside intervals by libigl's fast winding number at every midpoint.
 
-A cross-check of `winding/intervals.py`. The fast winding number is a truncated series: segments
-whose number is within about 1e-2 of tau may be decided otherwise.
+A cross-check of `graph/winding/intervals.py`. The fast winding number is a truncated series:
+segments whose number is within about 1e-2 of tau may be decided otherwise.
 """
 
 from __future__ import annotations
@@ -11,11 +11,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..surface.ray_tracers import optional_library
-from ..surface.rays import AXES, RayHits
-from ..winding.boundary import find_boundary
-from ..winding.intervals import InsideIntervals
-from ..winding.segments import NONE
+from .ray_tracers import optional_library
+from .rays import AXES, RayHits
+from .winding.boundary import find_boundary
+from .winding.intervals import InsideIntervals
+from .winding.segments import NONE
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ..compiled import compiled
-from ..winding.intervals import InsideIntervals
-from ..winding.segments import NONE
+from ..runtime.compiled import compiled
 from .interior import OUTSIDE, InteriorPoints, point_number, point_on_ray
+from .winding.intervals import InsideIntervals
+from .winding.segments import NONE
 
 
 def edge_starts(inside: InsideIntervals, first: int) -> NDArray[np.int64]:

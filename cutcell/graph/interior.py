@@ -12,10 +12,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..compiled import compiled
-from ..surface.rays import in_space
-from ..threads import in_threads
-from ..winding import InsideIntervals
+from ..runtime.compiled import compiled
+from ..runtime.threads import in_threads
+from .rays import in_space
+from .winding import InsideIntervals
 
 OUTSIDE = -1
 

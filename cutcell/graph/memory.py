@@ -8,18 +8,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import ParameterError
-from ..memory import SHARE, available_memory, gigabytes
-from ..progress import Tell
-from ..surface.rays import cast_all_rays, expected_hits
-from ..winding import inside_intervals
-from ..winding.boundary import Boundary
-from ..winding.segments import NONE
+from ..runtime.memory import SHARE, available_memory, gigabytes
+from ..runtime.progress import Tell
 from .interior import interior_points
+from .rays import cast_all_rays, expected_hits
+from .winding import inside_intervals
+from .winding.boundary import Boundary
+from .winding.segments import NONE
 
 BYTES_PER_NODE = {6: 345, 26: 950, "any": 150}
 """Peak of a graph and its distances, by connectivity; measured by benchmarks/memory.py."""
 BYTES_PER_LABELLED = 210
-"""With "any", in addition, for each node that is not contracted (`geodesics/contraction.py`)."""
+"""With "any", in addition, for each node that is not contracted (`contraction.py`)."""
 BLOCK_POINTS = 8
 """Lattice points deep inside that have one representative."""
 SHALLOW = 1.5

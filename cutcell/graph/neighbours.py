@@ -7,8 +7,8 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from ..compiled import compiled
-from ..threads import in_threads, parts, threads
+from ..runtime.compiled import compiled
+from ..runtime.threads import in_threads, parts, threads
 
 Adjacency: TypeAlias = tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.float64]]
 

@@ -11,14 +11,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..checks import check_choice, check_integer, check_number
 from ..errors import ParameterError
-from ..rig import TriangleMesh
-from ..surface.lattice import Lattice
-from ..surface.rays import AXES, RayHits, cast_rays
-from ..surface.weld import weld
-from ..winding import winding_number
-from .orientation import oriented
+from ..geometry.weld import weld
+from ..rig.checks import check_choice, check_integer, check_number
+from ..rig.rig import TriangleMesh
+from .lattice import Lattice
+from .orientation.orient import oriented
+from .rays import AXES, RayHits, cast_rays
+from .winding import winding_number
 
 
 @dataclass(frozen=True, eq=False)

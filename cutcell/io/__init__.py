@@ -7,22 +7,21 @@ from pathlib import Path
 
 import numpy as np
 
-from ..checks import check_has_joints
 from ..errors import CutcellError, FileError
-from ..rig import Rig
-from ..writing import check_place, write_all
+from ..rig.rig import Rig
+from ..runtime.writing import check_place, write_all
 from .articulation import articulation_bytes, read_articulation
-from .fbx import read_fbx
 from .files import naming, read_bytes
-from .gltf_colored import color_notes
-from .gltf_container import MAGIC
-from .gltf_fresh import check_fits, new_files
-from .gltf_read import GltfSource, read_gltf
-from .gltf_skinned import can_be_skinned, skinned
-from .gltf_write import rewritten
+from .gltf.container import MAGIC
+from .gltf.read.read import GltfSource, read_gltf
+from .gltf.write.fresh import check_fits, new_files
+from .gltf.write.skinned import can_be_skinned, skinned
+from .gltf.write.write import rewritten
+from .materials.gltf_colored import color_notes
+from .meshes.mesh_files import MESHES, read_soup
 from .rignet import check_mesh_file, read_rignet, rig_file, rignet_files
-from .soup import MESHES, read_soup
-from .usd import USD, read_usd
+from .scenes.fbx import read_fbx
+from .scenes.usd import USD, read_usd
 
 __all__ = ["load", "save"]
 
@@ -127,7 +126,7 @@ def save(path: str | os.PathLike[str], rig: Rig) -> tuple[Path, ...]:
     """
     path = Path(path)
     with naming(path):
-        check_has_joints(rig.skeleton)
+        rig.skeleton.require_joints()
         check_output(path)
         files = _files(path, rig)
         write_all(files)

@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ..deform import deform_joints
-from ..display import listed
-from ..rig import Skeleton, TriangleMesh
+from ..rig.deform_joints import deform_joints
+from ..rig.rig import Skeleton, TriangleMesh
+from ..runtime.display import listed
 
 KEY = "cutcell_deform"
 """Under which a saved file stores for each joint whether it deforms: a joint that got no weight

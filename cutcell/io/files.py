@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from ..errors import CutcellError, FileError
-from ..writing import reason
+from ..runtime.writing import reason
 
 LONGEST = 200
 """Characters of what another library says."""

@@ -9,10 +9,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..display import spreadsheet_cell
 from ..errors import FileError, ParameterError
-from ..rig import Rig
-from ..writing import check_place, write_all
+from ..rig.rig import Rig
+from ..runtime.display import spreadsheet_cell
+from ..runtime.writing import check_place, write_all
 
 DIGITS = 7
 """Significant digits of a CSV's numbers: what 32 bits hold."""

@@ -14,12 +14,12 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import CutcellError, FileError, SkeletonError, WeightsError
-from ..rig import Rig, Skeleton, TriangleMesh
+from ..rig.rig import Rig, Skeleton, TriangleMesh
 from .deforming import with_deform
 from .files import naming, read_text
+from .materials.obj_materials import ColouredObj
+from .meshes.obj import numbered_words, numbers, one_number, parse_obj, write_obj
 from .names import whole_characters
-from .obj_materials import ColouredObj
-from .objects import numbered_words, numbers, one_number, parse_obj, write_obj
 from .weights import NO_WEIGHTS, ReadWeights, summed
 
 MOST_DIGITS = 20

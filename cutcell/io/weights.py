@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..memory import check_matrix
+from ..runtime.memory import check_matrix
 
 LARGE = 1e300
 """Weights above it are scaled down before they are added: a sum must not overflow."""

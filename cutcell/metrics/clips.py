@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..checks import check_has_joints, check_integer
 from ..pose import linear_blend_skinning
-from ..rig import Rig
+from ..rig.checks import check_integer
+from ..rig.rig import Rig
 from .counting import vertex_shares
 from .deformation import CM2, check_fit, longest_side
 from .weight_error import checked_pair
@@ -72,7 +72,7 @@ def clip_error(
     ParameterError
         `frames` out of range, or an unknown `count`.
     """
-    check_has_joints(rig.skeleton)
+    rig.skeleton.require_joints()
     ours, theirs = checked_pair(predicted, reference)
     check_fit(ours, rig.mesh, rig.skeleton)
     frames = check_integer("frames", frames, 1, 100_000)

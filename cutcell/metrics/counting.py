@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..checks import check_choice
 from ..errors import ParameterError
-from ..rig import TriangleMesh
-from ..surface.weld import WELD_TOLERANCE, weld
+from ..geometry.weld import WELD_TOLERANCE, weld
+from ..rig.checks import check_choice
+from ..rig.rig import TriangleMesh
 
 COUNTS = ("welded", "vertices")
 

@@ -9,9 +9,9 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.sparse.csgraph import connected_components, dijkstra
 from scipy.spatial import cKDTree
 
-from ..checks import check_integer, check_number
 from ..errors import ParameterError
 from ..graph import CutCellGraph
+from ..rig.checks import check_integer, check_number
 from .weight_error import checked_weights
 
 NEAR = 0.05

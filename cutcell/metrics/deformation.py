@@ -8,10 +8,10 @@ from typing import Literal, get_args
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..checks import check_choice, check_has_joints, check_number
 from ..errors import ParameterError, WeightsError
-from ..progress import Progress, silent
-from ..rig import Rig, Skeleton, TriangleMesh
+from ..rig.checks import check_choice, check_number
+from ..rig.rig import Rig, Skeleton, TriangleMesh
+from ..runtime.progress import Progress, silent
 from .counting import vertex_shares
 from .weight_error import checked_pair
 
@@ -121,7 +121,7 @@ def deformation_error(
     count : {"welded", "vertices"}
         See `vertex_shares`.
     progress : callable
-        See `cutcell.progress`; the stage is called "deformation".
+        See `cutcell.runtime.progress`; the stage is called "deformation".
 
     Returns
     -------
@@ -141,7 +141,7 @@ def deformation_error(
     Paper section 4.3.1.
     """
     mesh, skeleton = parts_of(rig)
-    check_has_joints(skeleton)
+    skeleton.require_joints()
     ours, theirs = checked_pair(predicted, reference)
     check_fit(ours, mesh, skeleton)
     degrees = check_number("degrees", degrees, 0, 180)

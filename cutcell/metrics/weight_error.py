@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..checks import check_number
 from ..errors import WeightsError
+from ..rig.checks import check_number
 from .counting import checked_shares
 
 SUM_TOLERANCE = 1e-3

@@ -7,17 +7,16 @@ is asked for; `docs/networks.md` tells the heads and what they learned.
 from __future__ import annotations
 
 from importlib import import_module
-from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 
-from ..errors import MissingLibraryError
+from .torch_required import check_torch
 
 if TYPE_CHECKING:
     from .batches import Batch as Batch
     from .batches import collate as collate
-    from .heads import create_network as create_network
-    from .heads import parameter_count as parameter_count
-    from .heads import predict as predict
+    from .heads.heads import create_network as create_network
+    from .heads.heads import parameter_count as parameter_count
+    from .heads.heads import predict as predict
     from .names import HEADS as HEADS
     from .names import SIZES as SIZES
     from .priors import PRIORS as PRIORS
@@ -44,9 +43,9 @@ WITHOUT_TORCH = {
 WITH_TORCH = {
     "Batch": "batches",
     "collate": "batches",
-    "create_network": "heads",
-    "parameter_count": "heads",
-    "predict": "heads",
+    "create_network": "heads.heads",
+    "parameter_count": "heads.heads",
+    "predict": "heads.heads",
     "load_network": "training",
     "train": "training",
 }
@@ -64,13 +63,3 @@ def __getattr__(name: str) -> Any:
 
 def __dir__() -> list[str]:
     return __all__
-
-
-def check_torch() -> None:
-    """Raise MissingLibraryError, which says what to install, unless torch is there."""
-    if find_spec("torch") is None:
-        raise MissingLibraryError(
-            "networks are trained and evaluated by torch, which is not installed; try: "
-            "pip install 'cutcell[networks]' (a CPU is enough; for a small build see "
-            "docs/networks.md)"
-        )

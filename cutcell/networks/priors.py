@@ -16,13 +16,13 @@ from numpy.typing import NDArray
 
 from ..baselines import METHODS, Baseline, BaselineBinding
 from ..baselines.methods import known_options
-from ..checks import check_choice
-from ..dataset.sources import Source, find_sources, read_source
+from ..binding import bind
+from ..dataset.read.sources import Source, find_sources, read_source
 from ..errors import CutcellError, WeightsError
-from ..progress import Progress, silent
-from ..rig import Rig
-from ..skinning import bind
-from ..writing import write_all
+from ..rig.checks import check_choice
+from ..rig.rig import Rig
+from ..runtime.progress import Progress, silent
+from ..runtime.writing import write_all
 from .names import PRIOR_NAMES
 from .samples import Sample, sample_rig
 
@@ -58,7 +58,7 @@ def prior_of(
     resolution : int
         R, for the methods that have a lattice.
     progress : callable
-        See `cutcell.progress`; for the methods that tell of theirs.
+        See `cutcell.runtime.progress`; for the methods that tell of theirs.
 
     Returns
     -------
@@ -83,10 +83,11 @@ def prior_of(
 @cache
 def code_digest() -> bytes:
     """Hash the code that samples and priors depend on: all of cutcell but the networks."""
-    package = Path(__file__).resolve().parent.parent
+    networks = Path(__file__).resolve().parent
+    package = networks.parent
     digest = hashlib.blake2b(digest_size=12)
     for path in sorted(package.rglob("*.py")):
-        if path.parent != Path(__file__).resolve().parent or path.name in OWN:
+        if networks not in path.parents or path.name in OWN:
             digest.update(path.relative_to(package).as_posix().encode() + path.read_bytes())
     return digest.digest()
 

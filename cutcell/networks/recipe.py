@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..checks import check_choice, check_flag, check_integer
+from ..rig.checks import check_choice, check_flag, check_integer
 from .names import HEADS, PRIOR_NAMES, SIZES, TITLES
 
 

@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra, shortest_path
 
-from ..dataset.points import mesh_normals
+from ..dataset.audit.points import mesh_normals
 from ..errors import WeightsError
+from ..geometry.edges import find_edges
+from ..geometry.weld import WELD_TOLERANCE, weld
 from ..metrics.deformation import longest_side
-from ..rig import Rig, Skeleton
-from ..surface.edges import find_edges
-from ..surface.weld import WELD_TOLERANCE, weld
+from ..rig.rig import Rig, Skeleton
 
 RING, NEAR = 6, 16
 """Neighbours of a point: those for the one-ring, and those for the geodesic ball."""

@@ -16,19 +16,19 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from ..apart import run_apart
 from ..baselines import BaselineBinding
 from ..baselines.body import Body
 from ..baselines.frame import Run, bind_by
 from ..errors import FileError
-from ..memory import BYTES_PER_WEIGHT, check_room
+from ..isolated.run import run_apart
 from ..method import PAPER
-from ..progress import Progress, silent
-from ..rig import Rig
-from . import check_torch
+from ..rig.rig import Rig
+from ..runtime.memory import BYTES_PER_WEIGHT, check_room
+from ..runtime.progress import Progress, silent
 from .priors import prior_of
 from .recipe import Recipe
 from .samples import KNOWN, LENGTHS
+from .torch_required import check_torch
 
 LIMIT = 600.0
 """Seconds that a prediction may take."""
@@ -71,7 +71,7 @@ class TrainedNetwork:
         max_influences, threshold
             See `skinning_weights`.
         progress : callable
-            See `cutcell.progress`; of the prior.
+            See `cutcell.runtime.progress`; of the prior.
 
         Returns
         -------

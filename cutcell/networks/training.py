@@ -14,12 +14,12 @@ import numpy as np
 import torch
 from torch import nn
 
-from ..checks import check_integer
 from ..errors import FileError, ParameterError
-from ..writing import reason, write_all
+from ..rig.checks import check_integer
+from ..runtime.writing import reason, write_all
 from .augmentation import drawn
 from .batches import Batch, collate
-from .heads import create_network
+from .heads.heads import create_network
 from .recipe import Recipe
 from .samples import Sample
 

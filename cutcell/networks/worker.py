@@ -1,4 +1,4 @@
-"""Tasks of `cutcell.workers` that need torch: what goes wrong ends a process of its own.
+"""Tasks of `cutcell.isolated` that need torch: what goes wrong ends a process of its own.
 
 A task takes arrays and returns arrays; see `trained` for who asks. torch is imported by the task:
 where it is missing, the process says so.
@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import CutcellError
-from ..rig import Rig, Skeleton, TriangleMesh
+from ..rig.rig import Rig, Skeleton, TriangleMesh
 from .samples import deal_rig
 
 
@@ -78,7 +78,7 @@ def weights(
     FileError
         There is no such network.
     """
-    from .heads import predict
+    from .heads.heads import predict
     from .training import load_network
 
     network, recipe = load_network(Path(str(folder)))

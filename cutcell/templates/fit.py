@@ -7,9 +7,9 @@ from numpy.typing import NDArray
 
 from ..errors import MeshError
 from ..graph import CutCellGraph, build_graph
-from ..inputs import MeshLike, as_mesh
-from ..progress import Progress, silent
-from ..rig import Skeleton
+from ..rig.inputs import MeshLike, as_mesh
+from ..rig.rig import Skeleton
+from ..runtime.progress import Progress, silent
 from . import biped, chain, hand, quadruped
 from .frame import lying, standing
 from .interior import Interior
@@ -46,7 +46,7 @@ def fit_skeleton(
         The mesh's, if it is there. It is built when left out, and where this one is too coarse to
         tell limbs apart, or finer than is needed.
     progress : callable
-        See `cutcell.progress`.
+        See `cutcell.runtime.progress`.
 
     Returns
     -------

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Literal, cast, get_args
 
-from ..checks import check_choice
+from ..rig.checks import check_choice
 
 Template = Literal["biped", "quadruped", "hand", "snake", "chain"]
 TEMPLATES: tuple[Template, ...] = get_args(Template)

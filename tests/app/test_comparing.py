@@ -4,9 +4,9 @@ import threading
 
 import pytest
 
-from cutcell.apart import _WANTED
 from cutcell.baselines import METHODS, BaselineBinding
-from cutcell.progress import silent
+from cutcell.isolated.run import _WANTED
+from cutcell.runtime.progress import silent
 from cutcell_app.commands import compare, loading
 from cutcell_app.layout.session import begin
 from cutcell_app.panels.compare import rows_of

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import cutcell
-from cutcell.progress import silent
+from cutcell.runtime.progress import silent
 from cutcell_app.commands import binding, loading
 from cutcell_app.commands.export import (
     export_bound,
@@ -24,8 +24,8 @@ from cutcell_app.panels.export import _described
 from cutcell_app.state import PANELS
 from cutcell_app.work import jobs
 from cutcell_app.work.jobs import Jobs
-from tests.cutcell.io.gltf_builder import COLUMN
-from tests.cutcell.io.test_vrm import VRM1, avatar
+from tests.cutcell.io.gltf.gltf_builder import COLUMN
+from tests.cutcell.io.gltf.test_vrm import VRM1, avatar
 
 
 def test_the_bound_character_can_be_taken_along(bound, loop, tmp_path):

@@ -8,8 +8,8 @@ from html import unescape
 import panel_material_ui as pmui
 import pytest
 
-from cutcell.display import printable
 from cutcell.errors import FileError
+from cutcell.runtime.display import printable
 from cutcell_app.panels.parts import as_text, unique_names
 from cutcell_app.server.log import Printable
 from cutcell_app.work.messages import sentence, told

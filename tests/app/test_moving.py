@@ -9,9 +9,9 @@ import trimesh
 
 import cutcell
 from cutcell import Corrections, JointCorrection
+from cutcell.editing import middle_of_limb
 from cutcell.errors import SkeletonError
-from cutcell.rig import Skeleton, TriangleMesh
-from cutcell.skinning import middle_of_limb
+from cutcell.rig.rig import Skeleton, TriangleMesh
 from cutcell_app.commands import keys, loading, moving
 from cutcell_app.panels.moving import place
 from cutcell_app.scenes import resolve

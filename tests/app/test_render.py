@@ -10,7 +10,7 @@ from typer.testing import CliRunner
 
 import cutcell
 import cutcell_viewers
-from cutcell.cli import app
+from cutcell.cli.app import app
 from cutcell.errors import FileError, ParameterError
 from cutcell.io.numbers import save_numbers
 from cutcell_app.render import VIEWS, Choices, check, describe, find_bone, find_clip, order

@@ -5,8 +5,8 @@ import panel_material_ui as pmui
 import pytest
 
 import cutcell
-from cutcell.corrections import JointCorrection
-from cutcell.rig import Rig, Skeleton
+from cutcell.editing.corrections import JointCorrection
+from cutcell.rig.rig import Rig, Skeleton
 from cutcell_app.commands import correct, export, keys, loading, structure
 from cutcell_app.panels.structure import NOTHING
 from cutcell_app.panels.structure import structure as controls

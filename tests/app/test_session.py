@@ -260,7 +260,7 @@ def test_another_falloff_changes_weights_and_measures_nothing(bound, loop, fallo
     loop.run_until(lambda: not state.busy)
     assert state.binding.distances is before.distances
     chosen = {"falloff": falloff, **({"alpha": 0.9} if falloff == "paper" else {})}
-    expected = cutcell.skinning.skinning_weights(
+    expected = cutcell.weights.skinning_weights(
         before.distances, max_influences=2, threshold=0.1, **chosen
     )
     np.testing.assert_allclose(state.binding.weights, expected, atol=1e-9)
@@ -279,7 +279,7 @@ def test_a_falloff_chosen_while_distances_are_measured_counts(session, loop):
     session.state.param.update(max_influences=1, falloff="paper")
     loop.run_until(lambda: session.state.binding is not None and not session.state.busy)
     distances = session.state.binding.distances
-    expected = cutcell.skinning.skinning_weights(distances, falloff="paper", max_influences=1)
+    expected = cutcell.weights.skinning_weights(distances, falloff="paper", max_influences=1)
     np.testing.assert_allclose(session.state.binding.weights, expected, atol=1e-9)
 
 

@@ -8,7 +8,7 @@ import pytest
 import cutcell
 from benchmarks import document, quality
 from cutcell.baselines import METHODS
-from cutcell.compare import compare
+from cutcell.baselines.compare import compare
 from tests.conftest import SHARED_RIGS
 
 

@@ -14,15 +14,15 @@ from cutcell.pose import swing
 from tests.benchmarks.markdown import read_tables
 from tests.cutcell.cli.files import JOINTS, write_obj
 from tests.cutcell.io.fbx_builder import binary, column_scene, vector, with_materials
-from tests.cutcell.io.gltf_builder import REST, column, two_skins
-from tests.cutcell.io.test_gltf_clips import LINEAR, animate
-from tests.cutcell.io.test_gltf_colored import HALVES, IN_FILE, INSIDE, SKIN_PNG
-from tests.cutcell.io.test_gltf_fresh import small_rig
-from tests.cutcell.io.test_gltf_layouts import Layout
-from tests.cutcell.io.test_gltf_save import interleaved, many_joints, sparse_weights
-from tests.cutcell.io.test_obj_materials import RED, SKIN, lines
+from tests.cutcell.io.gltf.gltf_builder import REST, column, two_skins
+from tests.cutcell.io.gltf.test_gltf_clips import LINEAR, animate
+from tests.cutcell.io.gltf.test_gltf_fresh import small_rig
+from tests.cutcell.io.gltf.test_gltf_layouts import Layout
+from tests.cutcell.io.gltf.test_gltf_save import interleaved, many_joints, sparse_weights
+from tests.cutcell.io.gltf.test_vrm import VRM1, avatar
+from tests.cutcell.io.materials.test_gltf_colored import HALVES, IN_FILE, INSIDE, SKIN_PNG
+from tests.cutcell.io.materials.test_obj_materials import RED, SKIN, lines
 from tests.cutcell.io.test_usd import text as usd_text
-from tests.cutcell.io.test_vrm import VRM1, avatar
 
 
 def shared_views(path):

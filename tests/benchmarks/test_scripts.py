@@ -21,7 +21,7 @@ from benchmarks import (
     wild,
 )
 from benchmarks.rigs import ROOT, load_characters
-from cutcell.skinning import warm_up
+from cutcell.weights.warm_up import warm_up
 from tests.benchmarks.markdown import read_tables
 
 DEMO = str(ROOT / "assets" / "robot.glb")
@@ -50,14 +50,14 @@ def test_speed_of_binding(small, capsys):
 
 
 def test_start_up(small, capsys, monkeypatch):
-    monkeypatch.setattr("benchmarks.start_up.BIND", "import cutcell.rig")
+    monkeypatch.setattr("benchmarks.start_up.BIND", "import cutcell.rig.rig")
     speed.main([small, *TINY, "--tables", "start", "--cold"])
     (rows,) = read_tables(capsys.readouterr().out).values()
     assert len(rows) == 4
 
 
 def test_the_first_compile_finds_nothing_compiled(monkeypatch):
-    says = "from cutcell.skinning import is_compiled; assert is_compiled() is {}"
+    says = "from cutcell.weights.warm_up import is_compiled; assert is_compiled() is {}"
     warm_up()
     start_up.run(says.format(True))
     monkeypatch.setattr("benchmarks.start_up.BIND", says.format(False))

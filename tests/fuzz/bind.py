@@ -12,7 +12,7 @@ import numpy as np
 from numpy.random import Generator
 
 import cutcell
-from cutcell import skinning
+from cutcell import weights as skinning
 
 from .harness import main
 from .shapes import KINDS, mesh_of

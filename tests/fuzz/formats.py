@@ -14,7 +14,7 @@ import numpy as np
 from numpy.random import Generator
 
 from tests.cutcell.io import compressed, fbx_builder
-from tests.cutcell.io.gltf_builder import (
+from tests.cutcell.io.gltf.gltf_builder import (
     COLUMN,
     FACES,
     REST,
@@ -24,11 +24,11 @@ from tests.cutcell.io.gltf_builder import (
     pack,
     two_skins,
 )
+from tests.cutcell.io.gltf.test_gltf_clips import BOTH_PARTS, FLIPPED, SPLINE, animate
+from tests.cutcell.io.gltf.test_gltf_errors import sparse
+from tests.cutcell.io.gltf.test_vrm import VRM0, VRM1, avatar
 from tests.cutcell.io.test_articulation import arrays
-from tests.cutcell.io.test_gltf_clips import BOTH_PARTS, FLIPPED, SPLINE, animate
-from tests.cutcell.io.test_gltf_errors import sparse
 from tests.cutcell.io.test_usd import text as usd_text
-from tests.cutcell.io.test_vrm import VRM0, VRM1, avatar
 
 from . import damage
 

@@ -22,9 +22,10 @@ from typing import Any
 import numpy as np
 
 import cutcell
-from cutcell.apart import WorkFailedError
-from cutcell.io import fbx, gltf_draco, usd
-from cutcell.workers.__main__ import TASKS, limit_memory
+from cutcell.io.gltf.read import draco as gltf_draco
+from cutcell.io.scenes import fbx, usd
+from cutcell.isolated.__main__ import TASKS, limit_memory
+from cutcell.isolated.run import WorkFailedError
 
 from .formats import READERS, Files
 from .harness import SECONDS, try_cases
@@ -137,7 +138,7 @@ def _work(task: str, job: Mapping[str, Any], memory: int, pipe: int) -> None:
     try:
         limit_memory(memory)
         module, function = TASKS[task].split(":")
-        answer: Any = getattr(import_module(f"cutcell.workers.{module}"), function)(**job)
+        answer: Any = getattr(import_module(f"cutcell.isolated.{module}"), function)(**job)
     except (RuntimeError, ValueError, MemoryError) as error:
         answer = str(error) or type(error).__name__
     except BaseException as error:  # what ends the process by a traceback
@@ -155,7 +156,7 @@ def who(task: str) -> str:
 def warm_up() -> None:
     """Import what is slow to import: a case is not to be blamed for that."""
     for task in ("draco", "fbx", "usd"):
-        import_module(f"cutcell.workers.{TASKS[task].split(':')[0]}")
+        import_module(f"cutcell.isolated.{TASKS[task].split(':')[0]}")
     for number in range(len(NAMES)):
         check(number)
 

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import cutcell
-from cutcell.io.face_colors import Layer, StoredImage
-from cutcell.io.materials import read_materials
+from cutcell.io.materials.face_colors import Layer, StoredImage
+from cutcell.io.materials.transfer import read_materials
 from cutcell_viewers.camera import Camera
 from cutcell_viewers.character import body
 from cutcell_viewers.description import Description

@@ -5,7 +5,7 @@ import io
 import numpy as np
 from PIL import Image
 
-from tests.cutcell.io.gltf_builder import Builder, moved
+from tests.cutcell.io.gltf.gltf_builder import Builder, moved
 
 COLORS = np.array([[[220, 40, 40], [40, 200, 40]], [[50, 60, 220], [230, 220, 60]]], np.uint8)
 """Two by two pixels: red, green; blue, yellow."""

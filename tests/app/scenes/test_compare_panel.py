@@ -8,7 +8,7 @@ import pytest
 import cutcell
 from cutcell.baselines import METHODS, BaselineBinding
 from cutcell.metrics import deformation_error, weight_l1
-from cutcell.progress import silent
+from cutcell.runtime.progress import silent
 from cutcell_app.commands.compare import Compared, choose, measured, wanted
 from cutcell_app.panels.compare import _field, about, rows_of
 from cutcell_app.scenes import Memo, resolve

@@ -17,9 +17,9 @@ from cutcell.baselines.body import Body
 from cutcell.baselines.methods import known_options
 from cutcell.baselines.paths import path_lengths
 from cutcell.baselines.visibility import Blockers
-from cutcell.baselines.voxels import PAD, mark_triangles, voxelize
+from cutcell.baselines.volumes.voxels import PAD, mark_triangles, voxelize
+from cutcell.geometry.laplacian import cotangent_laplacian, vertex_areas, vertex_normals
 from cutcell.metrics import vertex_shares, weight_l1
-from cutcell.skinning.laplacian import cotangent_laplacian, vertex_areas, vertex_normals
 from tests import meshes
 from tests.bars import bar, check_weights, grid_box
 from tests.conftest import SHARED_RIGS

@@ -7,14 +7,16 @@ import trimesh
 from igl.copyleft import tetgen
 
 import cutcell
-from cutcell import Rig, Skeleton, TriangleMesh, apart
-from cutcell.apart import WorkFailedError
-from cutcell.baselines import METHODS, cage_methods
+from cutcell import Rig, Skeleton, TriangleMesh
+from cutcell.baselines import METHODS
 from cutcell.baselines.body import Body
-from cutcell.baselines.cage import _make, make_cage
-from cutcell.baselines.harmonic import harmonic_values
-from cutcell.baselines.mean_value import mean_values
-from cutcell.workers import cage as worker
+from cutcell.baselines.cages import cage_methods
+from cutcell.baselines.cages.cage import _make, make_cage
+from cutcell.baselines.cages.harmonic import harmonic_values
+from cutcell.baselines.cages.mean_value import mean_values
+from cutcell.isolated import cage as worker
+from cutcell.isolated import run as apart
+from cutcell.isolated.run import WorkFailedError
 from tests import meshes
 from tests.bars import bar, grid_box
 
@@ -172,7 +174,7 @@ def test_a_cage_that_cannot_be_made_says_so(name, monkeypatch):
 
 
 def test_equations_that_cannot_be_solved_say_so(monkeypatch):
-    monkeypatch.setattr("cutcell.baselines.harmonic.cg", lambda a, b, rtol: (b, 1))
+    monkeypatch.setattr("cutcell.baselines.cages.harmonic.cg", lambda a, b, rtol: (b, 1))
     vertices, faces, values = crooked_box()
     with pytest.raises(WorkFailedError, match="could not be solved"):
         harmonic_values(vertices, faces, INSIDE, values, 8)

@@ -8,8 +8,8 @@ from scipy.sparse.csgraph import dijkstra
 import cutcell
 from cutcell.baselines.body import Body
 from cutcell.baselines.measures import MEASURES, measure_distance
-from cutcell.baselines.voxel_binding import voxel_distances
-from cutcell.baselines.voxels import voxelize
+from cutcell.baselines.volumes.voxel_binding import voxel_distances
+from cutcell.baselines.volumes.voxels import voxelize
 from cutcell.errors import ParameterError
 from tests.bars import bar, fork
 

@@ -9,11 +9,12 @@ import pytest
 from scipy.optimize import approx_fprime, lsq_linear
 from scipy.spatial import cKDTree
 
-from cutcell import Rig, Skeleton, TriangleMesh, apart
+from cutcell import Rig, Skeleton, TriangleMesh
 from cutcell.baselines import METHODS
-from cutcell.baselines.tetrahedra import _fill as fill
-from cutcell.workers import __main__ as workers
-from cutcell.workers import quasi_harmonic, smooth, tetrahedra
+from cutcell.baselines.volumes.tetrahedra import _fill as fill
+from cutcell.isolated import __main__ as workers
+from cutcell.isolated import quasi_harmonic, smooth, tetrahedra
+from cutcell.isolated import run as apart
 from tests import meshes
 from tests.bars import bar, check_weights, grid_box
 
@@ -226,7 +227,7 @@ def test_a_library_that_dies_takes_nothing_along(monkeypatch, code, words):
 def test_a_solver_that_dies_is_told_from_a_mesher(monkeypatch):
     code = (
         "import sys, runpy; sys.argv[1] == 'bbw' and sys.exit(4); "
-        "runpy.run_module('cutcell.workers', run_name='__main__', alter_sys=True)"
+        "runpy.run_module('cutcell.isolated', run_name='__main__', alter_sys=True)"
     )
     monkeypatch.setattr(apart, "COMMAND", (sys.executable, "-c", code))
     found = METHODS["bbw"](bar(4))

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from cutcell.cli import app
+from cutcell.cli.app import app
 from tests.cutcell.cli.files import JOINTS, write_obj
 
 

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 import cutcell
-from cutcell import compile_cache
-from cutcell.cli import main
-from cutcell.compiled import compiled
-from cutcell.console import print_json, progress_bars
+from cutcell.cli.app import main
+from cutcell.cli.console import print_json, progress_bars
 from cutcell.method import FALLOFFS
+from cutcell.runtime import compile_cache
+from cutcell.runtime.compiled import compiled
 from tests.conftest import ROOT
 from tests.signals import reset_signals
 
@@ -55,7 +55,7 @@ def test_ctrl_c_stops_with_130(run, bar, monkeypatch, tmp_path, in_dispatcher):
             raise SystemError("returned a result with an exception set") from KeyboardInterrupt()
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("cutcell.skinning.bind", interrupted)
+    monkeypatch.setattr("cutcell.binding.bind", interrupted)
     result = run("bind", bar, tmp_path / "out.glb")
     assert result.exit_code == 130
     assert "Traceback" not in result.stderr
@@ -66,7 +66,7 @@ def test_other_errors_of_the_interpreter_go_through(run, bar, monkeypatch, tmp_p
     def fails(*_, **__):
         raise SystemError
 
-    monkeypatch.setattr("cutcell.skinning.bind", fails)
+    monkeypatch.setattr("cutcell.binding.bind", fails)
     with pytest.raises(SystemError):
         run("bind", bar, tmp_path / "out.glb")
 
@@ -97,7 +97,7 @@ def test_a_first_compile_is_one_line_where_no_bar_shows_it(
 
     monkeypatch.setattr(compile_cache, "folders", lambda: (tmp_path / "kernels",))
     compile_cache.announce.cache_clear()
-    monkeypatch.setattr("cutcell.skinning.bind", compiles)
+    monkeypatch.setattr("cutcell.binding.bind", compiles)
     shown = run("bind", bar, tmp_path / "out.glb", *options)
     assert shown.stdout == ""
     assert len(shown.stderr.splitlines()) == lines + 1
@@ -129,15 +129,15 @@ def test_a_real_process_refuses_with_2(tmp_path):
 def test_a_real_process_stops_at_ctrl_c(bar, tmp_path):
     code = f"""
 import os, signal, sys, time
-import cutcell.cli, cutcell.skinning
+import cutcell.binding, cutcell.cli.app
 
 def long_work(*_, **__):
     os.kill(os.getpid(), signal.SIGINT)
     time.sleep(600)
 
-cutcell.skinning.bind = long_work
+cutcell.binding.bind = long_work
 sys.argv = ["cutcell", "bind", {str(bar)!r}, {str(tmp_path / "o.glb")!r}]
-cutcell.cli.main()
+cutcell.cli.app.main()
 """
     command = [sys.executable, "-c", code]
     done = subprocess.run(

@@ -9,7 +9,7 @@ import pytest
 import cutcell
 from cutcell_assets import demo_path
 from tests.cutcell.cli.files import BAR, JOINTS, bar_faces, refused, write_obj
-from tests.cutcell.io.gltf_builder import FACES, column
+from tests.cutcell.io.gltf.gltf_builder import FACES, column
 
 
 @pytest.fixture

@@ -4,7 +4,7 @@ import json
 
 import cutcell
 from tests.cutcell.cli.files import bar_faces, refused, write_obj
-from tests.cutcell.io.gltf_builder import column
+from tests.cutcell.io.gltf.gltf_builder import column
 
 
 def test_counts_what_the_library_builds(run, bar):

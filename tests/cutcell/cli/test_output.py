@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from cutcell.cli import main
+from cutcell.cli.app import main
 from tests.conftest import ROOT
 from tests.cutcell.cli.files import write_obj
 

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import cutcell
-from cutcell.dataset.archive import read_archive, split
+from cutcell.dataset.read.archive import read_archive, split
 from cutcell.errors import FileError
 
 
@@ -116,7 +116,7 @@ def test_memory_is_that_of_one_asset(tmp_path):
     path = write(tmp_path / "a.npz", entries)
     code = (
         "import resource, sys\nfrom pathlib import Path\n"
-        "from cutcell.dataset.archive import read_archive\n"
+        "from cutcell.dataset.read.archive import read_archive\n"
         "most = lambda: resource.getrusage(resource.RUSAGE_SELF).ru_maxrss\n"
         "before = most()\n"
         "count = sum(1 for _ in read_archive(Path(sys.argv[1])))\n"

@@ -7,16 +7,16 @@ import pytest
 from scipy.spatial.distance import cdist
 
 import cutcell
-from cutcell.dataset.audit_files import save_audit
-from cutcell.dataset.auditing import audit
-from cutcell.dataset.chamfer import CELLS, CODE, block_of, close_joints, close_surfaces
-from cutcell.dataset.duplicates import Pair, clusters
-from cutcell.dataset.generate import KINDS, generate
-from cutcell.dataset.likeness import Likeness, likeness, same_skeletons, traits_of
-from cutcell.dataset.points import Normalised, normalised, sample_surface
-from cutcell.dataset.store import read_table
+from cutcell.dataset.audit.audit_files import save_audit
+from cutcell.dataset.audit.auditing import audit
+from cutcell.dataset.audit.chamfer import CELLS, CODE, block_of, close_joints, close_surfaces
+from cutcell.dataset.audit.duplicates import Pair, clusters
+from cutcell.dataset.audit.likeness import Likeness, likeness, same_skeletons, traits_of
+from cutcell.dataset.audit.points import Normalised, normalised, sample_surface
+from cutcell.dataset.generate.generate import KINDS, generate
+from cutcell.dataset.read.store import read_table
 from cutcell.errors import MeshError, ParameterError
-from cutcell.rig import Rig, Skeleton, TriangleMesh
+from cutcell.rig.rig import Rig, Skeleton, TriangleMesh
 
 ALIKE = Likeness("copy", True, 0.0, 0.0, 0.0, 1.0, 0.0)
 

@@ -14,14 +14,14 @@ import psutil
 import pytest
 
 import cutcell
-from cutcell.dataset.binding import bind_all, bind_apart, stop_runners
-from cutcell.dataset.cluster import connected
-from cutcell.dataset.formats import faces_of_edges
-from cutcell.dataset.generate import KINDS, generate
-from cutcell.dataset.runner import AssetLostError, Runner
-from cutcell.dataset.sources import Content, find_sources
-from cutcell.dataset.store import Parameters, Store, read_entry
-from cutcell.dataset.work import bind_content, rignet_bones
+from cutcell.dataset.bind.binding import bind_all, bind_apart
+from cutcell.dataset.bind.cluster import connected
+from cutcell.dataset.bind.runner import AssetLostError, Runner, stop_runners
+from cutcell.dataset.bind.work import bind_content, rignet_bones
+from cutcell.dataset.generate.generate import KINDS, generate
+from cutcell.dataset.read.formats import faces_of_edges
+from cutcell.dataset.read.sources import Content, find_sources
+from cutcell.dataset.read.store import Parameters, Store, read_entry
 from cutcell.errors import CutcellError, FileError, ParameterError
 
 QUICK = Parameters(cutcell.PAPER.with_options(resolution=12))
@@ -142,7 +142,7 @@ def test_precision_and_parameters_name_other_files(made):
 def test_too_little_memory_is_told_before_it_is_taken(made, monkeypatch):
     folder, _, _ = made
     content = find_sources([folder / "rig1.npz"])[0].content()
-    monkeypatch.setattr("cutcell.dataset.binding.available_memory", lambda: 1000)
+    monkeypatch.setattr("cutcell.dataset.bind.binding.available_memory", lambda: 1000)
     try:
         outcome = bind_apart(content, "k", QUICK, 60, 1)
     finally:
@@ -153,7 +153,7 @@ def test_too_little_memory_is_told_before_it_is_taken(made, monkeypatch):
 
 FAKE = """
 import sys, os, time
-from cutcell.dataset.runner import read, write
+from cutcell.dataset.bind.runner import read, write
 out = os.fdopen(os.dup(1), "wb")
 write(out, "ready")
 while True:

@@ -7,9 +7,9 @@ import pytest
 from typer.testing import CliRunner
 
 import cutcell
-from cutcell.cli import app
-from cutcell.dataset.archive import ArchivedAsset, asset_bytes
-from cutcell.dataset.generate import generate
+from cutcell.cli.app import app
+from cutcell.dataset.generate.generate import generate
+from cutcell.dataset.read.archive import ArchivedAsset, asset_bytes
 
 pytestmark = [
     pytest.mark.filterwarnings("ignore::ResourceWarning"),

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 import cutcell
-from cutcell.dataset.binding import bind_all
+from cutcell.dataset.bind.binding import bind_all
 from cutcell.dataset.export import export
-from cutcell.dataset.generate import KINDS, generate
-from cutcell.dataset.store import Parameters, Store
+from cutcell.dataset.generate.generate import KINDS, generate
+from cutcell.dataset.read.store import Parameters, Store
 from cutcell.dataset.torch_data import RigDataset, RigSamples, collate_samples
 from cutcell.errors import FileError, MissingLibraryError, ParameterError
 

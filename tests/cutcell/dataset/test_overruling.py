@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 
 import cutcell
-from cutcell.dataset.audit_files import (
+from cutcell.dataset.audit.audit_files import (
     VERDICTS,
     load_audit,
     read_verdicts,
     save_audit,
     save_verdicts,
 )
-from cutcell.dataset.auditing import audit
-from cutcell.dataset.duplicates import DIFFERENT, DUPLICATE
+from cutcell.dataset.audit.auditing import audit
+from cutcell.dataset.audit.duplicates import DIFFERENT, DUPLICATE
 from cutcell.errors import FileError, ParameterError
 from tests.cutcell.dataset.test_audit import planted
 

@@ -7,7 +7,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 import cutcell
 from benchmarks.damages import DAMAGES, READING
 from cutcell import ParameterError
-from cutcell.io.gltf_container import read_document
+from cutcell.io.gltf.container import read_document
 from cutcell_assets import demo_path
 from tests.cutcell.diagnosis.worm import SWEEP, worm
 

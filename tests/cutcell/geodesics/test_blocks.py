@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from cutcell import TriangleMesh
-from cutcell.geodesics.contraction import contract, find_blocks
+from cutcell.geodesics.any_angle.contraction import contract, find_blocks
 from cutcell.graph import build_graph
 from tests import meshes
 

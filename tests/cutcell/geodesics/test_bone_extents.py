@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from cutcell import Skeleton, TriangleMesh
-from cutcell.geodesics.bone_extents import fit_bones
+from cutcell.geodesics.bone_extents.fit import fit_bones
+from cutcell.geodesics.bone_extents.probe import BodyProbe
+from cutcell.geodesics.bone_extents.rest_axis import rest_directions
 from cutcell.geodesics.bones import node_grid
-from cutcell.geodesics.probe import BodyProbe
-from cutcell.geodesics.rest_axis import rest_directions
 from tests import meshes
 from tests.bars import grid_box
 from tests.paper import bone_distances, build_graph

@@ -6,7 +6,7 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components
 
 from cutcell import TriangleMesh
-from cutcell.geodesics.contraction import contract
+from cutcell.geodesics.any_angle.contraction import contract
 from cutcell.graph import build_graph
 from tests import meshes
 

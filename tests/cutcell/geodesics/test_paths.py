@@ -13,7 +13,7 @@ from cutcell import (
     TriangleMesh,
 )
 from cutcell.geodesics import PIECES, path_length, shortest_path, trace_path
-from cutcell.geodesics.inside import TOLERANCE
+from cutcell.geodesics.tracing.inside import TOLERANCE
 from cutcell_assets import demo_path
 from tests import meshes
 from tests.cutcell.geodesics.test_any_angle import l_bar

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from cutcell import MissingLibraryError, TriangleMesh, winding_number
+from cutcell.geometry.weld import weld
+from cutcell.graph import ray_tracers
 from cutcell.graph.fast_winding import fast_intervals, list_segments
-from cutcell.surface import ray_tracers
-from cutcell.surface.rays import AXES, cast_rays
-from cutcell.surface.weld import weld
+from cutcell.graph.rays import AXES, cast_rays
 from tests import meshes
 
 RUN = ("ray", "first", "last", "low", "high")

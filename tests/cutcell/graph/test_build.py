@@ -14,7 +14,7 @@ from benchmarks.growth import run
 from cutcell import Cancelled, MeshError, ParameterError, TriangleMesh, build_graph
 from cutcell.graph import INTERIOR, MESH, SURFACE
 from cutcell.graph.memory import needed_memory
-from cutcell.surface.rays import cast_all_rays
+from cutcell.graph.rays import cast_all_rays
 from tests import meshes, naive
 
 RABBIT = Path(__file__).resolve().parents[3] / "assets" / "rabbit.glb"

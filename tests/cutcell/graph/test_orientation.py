@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 import cutcell
 from cutcell import TriangleMesh, build_graph
 from cutcell.graph import INTERIOR, inverted_faces, slice_rays
-from cutcell.graph.exposure import exposure
+from cutcell.graph.orientation.exposure import exposure
 from cutcell_assets import demo_path
 from tests import meshes
 from tests.conftest import SHARED_RIGS

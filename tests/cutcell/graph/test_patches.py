@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from cutcell.graph.patches import find_patches, measure_faces
-from cutcell.surface.edges import find_edges
+from cutcell.geometry.edges import find_edges
+from cutcell.graph.orientation.patches import find_patches, measure_faces
 from tests import meshes
 
 

@@ -6,7 +6,7 @@ import zlib
 
 import numpy as np
 
-from tests.cutcell.io.gltf_builder import COLUMN, FACES, REST, SHARES, moved
+from tests.cutcell.io.gltf.gltf_builder import COLUMN, FACES, REST, SHARES, moved
 
 TICKS = 46186158000
 """FBX' unit of time, in a second."""

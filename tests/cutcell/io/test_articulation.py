@@ -7,8 +7,8 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 
 import cutcell
-from tests.cutcell.io.gltf_builder import COLUMN, FACES, REST, SHARES
-from tests.cutcell.io.test_gltf_fresh import small_rig
+from tests.cutcell.io.gltf.gltf_builder import COLUMN, FACES, REST, SHARES
+from tests.cutcell.io.gltf.test_gltf_fresh import small_rig
 
 ROWS, COLUMNS = np.nonzero(SHARES[:, :2])
 

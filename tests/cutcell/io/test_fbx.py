@@ -19,7 +19,7 @@ from tests.cutcell.io.fbx_builder import (
     text,
     vector,
 )
-from tests.cutcell.io.gltf_builder import COLUMN, FACES, REST, SHARES
+from tests.cutcell.io.gltf.gltf_builder import COLUMN, FACES, REST, SHARES
 from tests.gltf_validator.validator import errors, reports
 
 WAYS = {
@@ -244,7 +244,7 @@ class TestDamage:
 
     def test_a_reader_that_crashes_is_a_sentence(self, load, monkeypatch):
         code = "import os, signal; os.kill(os.getpid(), signal.SIGSEGV)"
-        monkeypatch.setattr("cutcell.apart.COMMAND", (sys.executable, "-c", code))
+        monkeypatch.setattr("cutcell.isolated.run.COMMAND", (sys.executable, "-c", code))
         with pytest.raises(cutcell.FileError, match=r"^column\.fbx: .*reader crashed .signal 11"):
             load(WAYS["text 7.4"])
 

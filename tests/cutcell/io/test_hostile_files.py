@@ -12,7 +12,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import cutcell
-from tests.cutcell.io.gltf_builder import column
+from tests.cutcell.io.gltf.gltf_builder import column
 from tests.cutcell.io.test_articulation import arrays, write
 
 CUBE = "".join(f"v {x} {y} {z}\n" for x in (0, 1) for y in (0, 1) for z in (0, 1))

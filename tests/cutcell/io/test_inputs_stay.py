@@ -9,10 +9,10 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 import cutcell
-from cutcell.io.gltf_container import read_document
-from tests.cutcell.io.gltf_builder import column
-from tests.cutcell.io.test_gltf_fresh import small_rig
-from tests.cutcell.io.test_gltf_save import random_weights
+from cutcell.io.gltf.container import read_document
+from tests.cutcell.io.gltf.gltf_builder import column
+from tests.cutcell.io.gltf.test_gltf_fresh import small_rig
+from tests.cutcell.io.gltf.test_gltf_save import random_weights
 
 TEXTURED = "# with UVs\nmtllib body.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvt 0 0\nvt 1 0\n"
 TEXTURED += "f 1/1 3/1 2/2\nf 1/1 2/2 4/1\nf 1/1 4/1 3/2\nf 2/2 3/1 4/1\n"

@@ -10,9 +10,9 @@ from numpy.testing import assert_allclose, assert_array_equal
 import cutcell
 from cutcell.io import check_output
 from cutcell.io.names import whole_characters
-from tests.cutcell.io.gltf_builder import COLUMN, FACES, REST, column
-from tests.cutcell.io.test_gltf_fresh import check_valid, small_rig
-from tests.cutcell.io.test_gltf_layouts import Layout
+from tests.cutcell.io.gltf.gltf_builder import COLUMN, FACES, REST, column
+from tests.cutcell.io.gltf.test_gltf_fresh import check_valid, small_rig
+from tests.cutcell.io.gltf.test_gltf_layouts import Layout
 
 HALF = "a\ud800b"
 HIGH, LOW = "\ud83d", "\ude00"
@@ -69,7 +69,7 @@ def test_a_joint_or_an_attachment_far_away_is_named(tmp_path):
 
 
 def test_more_joints_than_gltf_can_number_are_refused(tmp_path, monkeypatch):
-    monkeypatch.setattr("cutcell.io.gltf_fresh.MOST_JOINTS", 1)
+    monkeypatch.setattr("cutcell.io.gltf.write.fresh.MOST_JOINTS", 1)
     with pytest.raises(cutcell.SkeletonError, match="at most 1 joints, and the skeleton has 2"):
         cutcell.save(tmp_path / "out.glb", small_rig())
 

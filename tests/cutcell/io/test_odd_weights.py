@@ -6,8 +6,8 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 import cutcell
 from cutcell.io.weights import normalised, summed
-from tests.cutcell.io.gltf_builder import JOINTS, SHARES, column
-from tests.cutcell.io.test_gltf_fresh import small_rig
+from tests.cutcell.io.gltf.gltf_builder import JOINTS, SHARES, column
+from tests.cutcell.io.gltf.test_gltf_fresh import small_rig
 
 ODD = {"nan": np.nan, "negative": -0.25, "infinite": np.inf}
 TWO = "2 of 12 vertices have weights that are negative or not a number; these weights count as none"

@@ -5,7 +5,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 import cutcell
-from tests.cutcell.io.test_gltf_fresh import small_rig
+from tests.cutcell.io.gltf.test_gltf_fresh import small_rig
 
 OBJ = """# a tetrahedron
 o thing

@@ -8,7 +8,7 @@ import trimesh
 from numpy.testing import assert_allclose, assert_array_equal
 
 import cutcell
-from tests.cutcell.io.gltf_builder import COLUMN, FACES, REST
+from tests.cutcell.io.gltf.gltf_builder import COLUMN, FACES, REST
 
 ROOT = {"name": "root", "position": [0.5, 0, 0.5], "parent": None}
 TIP = {"name": "tip", "position": [0.5, 1, 0.5], "parent": "root"}

@@ -7,12 +7,12 @@ import pytest
 from numpy.testing import assert_array_equal
 
 import cutcell
-from cutcell.io.gltf_container import read_document
-from cutcell.skinning import corrected_rig
+from cutcell.editing import corrected_rig
+from cutcell.io.gltf.container import read_document
 from tests.cutcell.io.fbx_builder import binary, column_scene
-from tests.cutcell.io.gltf_builder import COLUMN, FACES, REST, column, two_skins
+from tests.cutcell.io.gltf.gltf_builder import COLUMN, FACES, REST, column, two_skins
+from tests.cutcell.io.gltf.test_bare import bare
 from tests.cutcell.io.test_articulation import write
-from tests.cutcell.io.test_bare import bare
 from tests.gltf_validator.validator import errors, reports
 
 KEY = "cutcell_deform"

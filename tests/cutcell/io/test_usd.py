@@ -6,7 +6,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from pxr import Usd, UsdUtils
 
 import cutcell
-from tests.cutcell.io.gltf_builder import COLUMN, FACES, REST, SHARES
+from tests.cutcell.io.gltf.gltf_builder import COLUMN, FACES, REST, SHARES
 from tests.gltf_validator.validator import errors, reports
 
 TEXT = """#usda 1.0

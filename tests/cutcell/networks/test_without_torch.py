@@ -8,7 +8,7 @@ from typer.testing import CliRunner
 
 import cutcell
 import cutcell.networks
-from cutcell.cli import app
+from cutcell.cli.app import app
 from cutcell.errors import MissingLibraryError
 from cutcell.networks.names import PRIOR_NAMES
 from tests.bars import bar
@@ -75,7 +75,7 @@ def test_neighbours_are_the_nearest_along_the_surface(rig):
     """Against Dijkstra on all vertices of a slow graph."""
     import networkx
 
-    from cutcell.surface.weld import weld
+    from cutcell.geometry.weld import weld
 
     sample = cutcell.networks.sample_rig(rig, 40, seed=3)
     _, group = weld(rig.mesh.vertices)

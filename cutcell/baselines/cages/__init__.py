@@ -1,0 +1,1 @@
+"""Binding by coordinates of a cage."""

@@ -1,0 +1,235 @@
+"""All stages in one call: the only place that composes them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from time import perf_counter
+from typing import Unpack
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .editing.binding_warnings import binding_warnings
+from .editing.correct import (
+    adjustments_of,
+    corrected_parts,
+    corrected_rig,
+    joints_measured,
+    locked_by,
+    overruled,
+)
+from .editing.corrections import Corrections
+from .editing.refine import Touches, check_refinement, refine_weights
+from .errors import ParameterError, SkeletonError
+from .geodesics import BoneDistances, bone_distances
+from .graph import CutCellGraph, build_graph
+from .graph.lattice import Lattice
+from .method import ANIMATION, Method, MethodName, Options, method_of
+from .rig.checks import check_positions
+from .rig.inputs import RigLike, as_rig
+from .rig.rig import Rig
+from .runtime.memory import check_matrix
+from .runtime.progress import Progress, silent
+from .runtime.threads import cancellable
+from .weights.rig_falloff.surface_operators import SurfaceOperators
+from .weights.skinning_weights import skinning_weights
+from .weights.warm_up import is_compiled, warm_up
+
+COPIES = 4
+"""Matrices of vertices and joints that there are at a time, distances and weights, at most."""
+
+
+@dataclass(frozen=True, eq=False)
+class Binding:
+    """A bound rig: weights, and everything they came from.
+
+    Parameters
+    ----------
+    weights : array, shape (n, j), float64
+        For the rig's own vertices, in their order.
+    graph : CutCellGraph
+    distances : BoneDistances
+        From as many of each vertex' nearest joints as the falloff needs.
+    seconds : dict of str to float
+        Time taken by each stage: "graph", "distances", "weights".
+    warnings : tuple of str
+        What a person should know about the result, in sentences.
+    """
+
+    weights: NDArray[np.float64]
+    graph: CutCellGraph
+    distances: BoneDistances
+    seconds: dict[str, float]
+    warnings: tuple[str, ...]
+
+
+def bind(
+    rig: RigLike,
+    resolution: int | None = None,
+    *,
+    method: Method | MethodName = ANIMATION,
+    smoothing: int = 0,
+    symmetric: bool = False,
+    locked: Sequence[int | str] = (),
+    corrections: Corrections | None = None,
+    graph: CutCellGraph | None = None,
+    progress: Progress = silent,
+    **options: Unpack[Options],
+) -> Binding:
+    """Compute skinning weights for a rig.
+
+    It is the stages one after the other, each with the same method: `build_graph`,
+    `bone_distances`, `skinning_weights`, and last what touches weights up, `refine_weights`.
+
+    Parameters
+    ----------
+    rig : Rig, (mesh, skeleton) or (vertices, faces, joints, parents)
+        The mesh may be of any kind that `build_graph` takes. A rig's own weights are not used,
+        except that joints without any stay without (`Skeleton.deform`).
+    resolution : int, optional
+        R, 2 to 1024; the method's when left out.
+    method : Method, "animation" or "paper"
+        How weights are computed. `cutcell.ANIMATION` is made to animate with, `cutcell.PAPER` is
+        the paper's method.
+    smoothing, symmetric, locked
+        See `refine_weights`.
+    corrections : Corrections, optional
+        What a person corrects: joints without weight, locked or of another reach, parts that are
+        glued, single vertices.
+    graph : CutCellGraph, optional
+        That of another binding of the same mesh by the same method, `binding.graph`: it does not
+        depend on the skeleton. What only depends on it is then not computed again.
+    progress : callable
+        See `cutcell.runtime.progress`; stages are "graph", "distances", "weights", and
+        before them "compile" the very first time on a machine, and after a change of the code.
+    **options
+        Single options on top of the method, see `Method`: `connectivity`, `winding_threshold`,
+        `orient`, `samples`, `leaf`, `falloff`, `alpha`, `max_influences`, `threshold`.
+
+    Returns
+    -------
+    Binding
+
+    Raises
+    ------
+    ParameterError
+        A parameter is out of its range, or has no effect.
+    MeshError, SkeletonError, WeightsError
+        The rig cannot be bound; the sentence says why.
+
+    Examples
+    --------
+    >>> rig = cutcell.load("character.glb")  # doctest: +SKIP
+    >>> binding = cutcell.bind(rig)  # doctest: +SKIP
+    >>> cutcell.save("bound.glb", rig.with_weights(binding.weights))  # doctest: +SKIP
+    >>> again = cutcell.bind(moved, graph=binding.graph)  # other joints  # doctest: +SKIP
+    >>> cutcell.bind((vertices, faces, joints, parents), method="paper")  # doctest: +SKIP
+    """
+    rig = as_rig(rig)
+    method = method_of(method, resolution, **options)
+    corrections = Corrections() if corrections is None else corrections
+    rig = corrected_rig(rig, corrections)
+    if corrections.joints:
+        locked = [*locked, *locked_by(corrections)]
+    touches: Touches = {"smoothing": smoothing, "symmetric": symmetric, "locked": locked}
+    _check(rig, method, touches)
+    if graph is not None:
+        _check_graph(graph, rig, method)
+    if not is_compiled():
+        progress("compile", 0.0)
+        warm_up()
+        progress("compile", 1.0)
+    first_stage = "graph" if graph is None else "distances"
+
+    def work(report: Progress) -> Binding:
+        return _bind(rig, method, corrections, touches, graph, report)
+
+    return cancellable(work, progress, first_stage)
+
+
+def _bind(
+    rig: Rig,
+    method: Method,
+    corrections: Corrections,
+    touches: Touches,
+    graph: CutCellGraph | None,
+    progress: Progress,
+) -> Binding:
+    """Run the stages."""
+    seconds: dict[str, float] = {}
+    with _timed("graph", seconds):
+        if graph is None:
+            graph = build_graph(rig.mesh, method=method, progress=progress)
+    with _timed("distances", seconds):
+        _begin_what_follows(graph, method)
+        nearest, within = joints_measured(corrections, method)
+        distances = bone_distances(
+            graph,
+            rig.skeleton,
+            method=method,
+            nearest_joints=nearest,
+            within=within,
+            allowed=rig.allowed,
+            progress=progress,
+        )
+    with _timed("weights", seconds):
+        progress("weights", 0.0)
+        weights = skinning_weights(
+            distances,
+            method=method,
+            allowed=rig.allowed,
+            adjustments=adjustments_of(rig, graph, corrections),
+            progress=progress,
+        )
+        weights = corrected_parts(rig, graph, weights, corrections)
+        weights = refine_weights(rig, weights, method=method, **touches)
+        weights = overruled(rig, weights, corrections)
+        progress("weights", 1.0)
+    warnings = binding_warnings(rig, distances, weights, corrections, touches["locked"])
+    return Binding(weights, graph, distances, seconds, warnings)
+
+
+def _begin_what_follows(graph: CutCellGraph, method: Method) -> None:
+    """Let other cores begin what later stages will ask of the graph."""
+    if method.falloff == "rig":
+        SurfaceOperators.begin(graph)
+
+
+def _check(rig: Rig, method: Method, touches: Touches) -> None:
+    """Refuse what a stage would refuse, before the first one has begun."""
+    Lattice.around(rig.mesh, method.resolution)
+    rig.skeleton.require_joints()
+    check_positions(rig.skeleton.joints, "joint", SkeletonError)
+    check_refinement(rig, **touches)
+    check_matrix(len(rig.mesh.vertices), len(rig.skeleton.joints), COPIES)
+
+
+def _check_graph(graph: CutCellGraph, rig: Rig, method: Method) -> None:
+    """Refuse a graph that is not of this mesh by this method."""
+    for name, has, wanted in (
+        ("resolution", graph.lattice.resolution, method.resolution),
+        ("connectivity", graph.connectivity, method.connectivity),
+        ("winding_threshold", graph.winding_threshold, method.winding_threshold),
+    ):
+        if has != wanted:
+            raise ParameterError(
+                f"the graph was built with {name}={has!r}, the method has {wanted!r}; "
+                "leave the graph out, and it is built"
+            )
+    points = graph.lattice.to_file(graph.nodes)
+    count = len(rig.mesh.vertices)
+    if count != len(graph.vertex_node) or not np.allclose(
+        points[graph.vertex_node], rig.mesh.vertices, rtol=0, atol=1e-5 * graph.lattice.size
+    ):
+        raise ParameterError(
+            "the graph is of another mesh than the rig's; leave the graph out, and it is built"
+        )
+
+
+@contextmanager
+def _timed(stage: str, seconds: dict[str, float]) -> Iterator[None]:
+    begin = perf_counter()
+    yield
+    seconds[stage] = perf_counter() - begin

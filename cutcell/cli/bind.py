@@ -1,0 +1,243 @@
+"""The command `cutcell bind`: compute weights and save them."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from ..errors import ParameterError
+from .console import for_people, print_json, print_table, print_warnings, progress_bars
+from .options import (
+    Alpha,
+    Connectivity,
+    CorrectionsFile,
+    Deform,
+    Falloff,
+    Fresh,
+    How,
+    Json,
+    Leaf,
+    Lock,
+    MaxInfluences,
+    NoDeform,
+    Orient,
+    Quiet,
+    Resolution,
+    RigFile,
+    Samples,
+    SkeletonFile,
+    Smoothing,
+    Symmetric,
+    TemplateName,
+    Threshold,
+    WindingThreshold,
+    chosen_method,
+)
+from .report import report_rows
+
+if TYPE_CHECKING:
+    from ..binding import Binding
+    from ..editing.corrections import Corrections
+    from ..graph import CutCellGraph
+    from ..method import Method
+    from ..rig.rig import Rig
+    from ..runtime.progress import Progress
+    from ..templates import Template
+
+EPILOG = """Examples:
+
+- `cutcell bind character.glb bound.glb`
+
+- `cutcell bind character.glb bound.glb -r 128`  (a finer lattice keeps close parts apart)
+
+- `cutcell bind character.glb bound.npz --method paper`  (just as in the paper, every influence)
+
+- `cutcell bind character.glb bound.glb --method paper --connectivity any --alpha 0.3`
+
+- `cutcell bind character.glb bound.glb --lock Jaw --lock Eye.L --symmetric`  (keep these two)
+
+- `cutcell bind character.glb bound.glb --fresh --no-deform '*_IK' --deform Tail`  (other joints)
+
+- `cutcell bind character.glb bound.glb --corrections character.corrections.json`
+
+- `cutcell bind body.obj bound.glb --skeleton body.json`  (a bare mesh)
+
+- `cutcell bind statue.obj bound.glb --template biped`  (a skeleton is fitted into the body)
+
+- `cutcell bind character.glb bound.glb --json | jq .seconds`  (for a script)"""
+
+GLTF = (".glb", ".gltf", ".vrm")
+GLTF_INFLUENCES = 4
+"""Influences a vertex that are saved in glTF where nobody says how many: what engines read."""
+
+
+@for_people
+def bind(
+    rig: RigFile,
+    out: Annotated[
+        Path,
+        typer.Argument(
+            metavar="OUT",
+            help="Where to save it with the new weights; all else in the file stays as it was.",
+        ),
+    ],
+    method: How = "animation",
+    resolution: Resolution = 64,
+    connectivity: Connectivity = None,
+    winding_threshold: WindingThreshold = 0.5,
+    orient: Orient = True,
+    samples: Samples = 5,
+    leaf: Leaf = None,
+    falloff: Falloff = None,
+    alpha: Alpha = None,
+    max_influences: MaxInfluences = None,
+    threshold: Threshold = 0.0,
+    smoothing: Smoothing = 0,
+    symmetric: Symmetric = False,
+    lock: Lock = None,
+    deform: Deform = None,
+    no_deform: NoDeform = None,
+    fresh: Fresh = False,
+    corrections: CorrectionsFile = None,
+    skeleton: SkeletonFile = None,
+    template: TemplateName = None,
+    json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Compute skinning weights for RIG and save it with them as OUT.
+
+    Weights follow the shortest path through the inside of the mesh from each bone to each
+    vertex, so that a hand beside a hip does not follow the hip. The paths are found in a
+    graph: rays along x, y and z cut the mesh, and the intervals inside become edges.
+    """
+    from ..binding import bind as compute
+    from ..editing import corrected_rig
+    from ..editing.corrections import Corrections
+    from ..io import check_output, load, save, saving_notes
+    from ..io.files import naming
+    from ..rig.deform_joints import choose_deform
+    from ..templates.names import check_template
+    from . import summary
+
+    how = chosen_method(
+        method,
+        resolution=resolution,
+        connectivity=connectivity,
+        winding_threshold=winding_threshold,
+        orient=orient,
+        samples=samples,
+        leaf=leaf,
+        falloff=falloff,
+        alpha=alpha,
+        max_influences=max_influences,
+        threshold=threshold,
+    )
+    touches: dict[str, Any] = {
+        "smoothing": smoothing,
+        "symmetric": symmetric,
+        "locked": lock or [],
+    }
+    corrected = None if corrections is None else Corrections.load(corrections)
+    fits = None if template is None else check_template(template)
+    check_output(out)
+    loaded, graph = load(rig, skeleton=skeleton), None
+    with naming(rig):
+        if fits is not None:
+            with progress_bars(quiet) as progress:
+                loaded, graph = _with_template(loaded, fits, how, progress)
+        if corrected is not None and not len(loaded.skeleton.joints):
+            loaded = corrected_rig(loaded, corrected)  # they may bring a skeleton
+        loaded.skeleton.require_joints()
+        loaded = choose_deform(loaded, deform or (), no_deform or (), fresh=fresh)
+        if corrected is not None:
+            loaded = corrected_rig(loaded, corrected)
+    check_output(out, loaded)
+    with progress_bars(quiet) as progress:
+        binding = compute(
+            loaded, method=how, **touches, corrections=corrected, graph=graph, progress=progress
+        )
+    dropped: list[str] = []
+    if max_influences is None and how.max_influences is None and out.suffix.lower() in GLTF:
+        how = how.with_options(max_influences=GLTF_INFLUENCES)
+        binding, dropped = _limited(loaded, binding, how, touches, corrected)
+    warnings = [*loaded.warnings, *binding.warnings, *dropped]
+    files = save(out, loaded.with_weights(binding.weights))
+    warnings += saving_notes(out, loaded)
+    document = {
+        "input": str(rig),
+        "output": str(out),
+        "files": [str(file) for file in files],
+        "method": method,
+        "parameters": {**asdict(how), **touches},
+        "corrections": None if corrections is None else str(corrections),
+        "template": template,
+        "mesh": summary.summarize_mesh(loaded.mesh, binding.graph),
+        "meshes": summary.summarize_parts(loaded),
+        "skeleton": summary.summarize_skeleton(loaded.skeleton),
+        "graph": summary.summarize_graph(binding.graph),
+        "fallback": summary.summarize_fallback(binding.distances),
+        "influences": summary.summarize_weights(binding.weights),
+        "seconds": {name: round(value, 4) for name, value in binding.seconds.items()},
+        "warnings": warnings,
+    }
+    if not quiet:
+        print_warnings(warnings)
+    if json:
+        print_json(document)
+    elif not quiet:
+        print_table(f"{rig.name} -> {out}", report_rows(document))
+
+
+def _with_template(
+    rig: Rig, template: Template, method: Method, progress: Progress
+) -> tuple[Rig, CutCellGraph]:
+    """Return a rig with a skeleton that is fitted into its mesh, and the mesh's graph."""
+    from ..graph import build_graph
+    from ..templates import fit_skeleton
+
+    if len(rig.skeleton.joints):
+        raise ParameterError(
+            f"the rig has a skeleton of {len(rig.skeleton.joints)} joints already; --template is "
+            "for meshes without one"
+        )
+    graph = build_graph(rig.mesh, method=method, progress=progress)
+    skeleton = fit_skeleton(rig.mesh, template, graph=graph)
+    return replace(rig, skeleton=skeleton), graph
+
+
+def _limited(
+    rig: Rig,
+    binding: Binding,
+    method: Method,
+    touches: dict[str, Any],
+    corrections: Corrections | None,
+) -> tuple[Binding, list[str]]:
+    """Keep as few influences as a method says, and tell in a sentence what that drops."""
+    from ..binding import bind as compute
+    from ..editing import refine_weights
+    from ..editing.binding_warnings import binding_warnings
+    from ..editing.corrections import Corrections
+    from ..weights import skinning_weights
+
+    every = binding.weights
+    most = int((every > 0).sum(axis=1).max())
+    if method.max_influences is None or most <= method.max_influences:
+        return binding, []
+    if corrections:
+        weights = compute(rig, method=method, **touches, corrections=corrections).weights
+    else:
+        weights = skinning_weights(binding.distances, method=method, allowed=rig.allowed)
+        weights = refine_weights(rig, weights, method=method, **touches)
+    dropped = every.sum(axis=1, where=weights == 0)
+    sentence = (
+        f"of up to {most} influences a vertex the {method.max_influences} largest are saved, as "
+        f"glTF files are read; that drops {dropped.mean():.1%} of the weight on average and "
+        f"{dropped.max():.1%} at most. --max-influences says how many, or all"
+    )
+    warnings = binding_warnings(
+        rig, binding.distances, weights, corrections or Corrections(), touches["locked"]
+    )
+    return replace(binding, weights=weights, warnings=warnings), [sentence]

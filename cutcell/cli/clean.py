@@ -1,0 +1,107 @@
+"""The command `cutcell clean`: take away weights that cannot be true, and save the others."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from .console import for_people, print_json, print_table, print_warnings, progress_bars
+from .options import Json, Quiet, Resolution, RigFile, SkeletonFile
+
+if TYPE_CHECKING:
+    from ..diagnosis import Cleaned
+
+EPILOG = """Examples:
+
+- `cutcell clean network.glb clean.glb`
+
+- `cutcell clean character.npz clean.npz -r 128`  (a finer lattice keeps close parts apart)
+
+- `cutcell clean network.glb clean.glb --json | jq '.joints[] | {name, share}'`  (for a script)"""
+
+FEW = 12
+"""Joints that the table lists; `--json` has them all."""
+
+
+@for_people
+def clean(
+    rig: RigFile,
+    out: Annotated[
+        Path,
+        typer.Argument(
+            metavar="OUT",
+            help="Where to save it with the cleaned weights; all else in the file stays as it was.",
+        ),
+    ],
+    resolution: Resolution = 64,
+    skeleton: SkeletonFile = None,
+    json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Take away what cannot be true of the weights of RIG, and save it as OUT.
+
+    Weight is taken away where its joint is far through the body, other joints are nearer, and no
+    skin that follows the joint leads there: a hand's weight on the hip, islands, noise. Other
+    weights keep their proportions. Weights that were painted on purpose stay.
+    """
+    from ..diagnosis import clean as take_away
+    from ..io import check_output, load, save, saving_notes
+    from ..io.files import naming
+
+    check_output(out)
+    loaded = load(rig, skeleton=skeleton)
+    check_output(out, loaded)
+    with naming(rig), progress_bars(quiet) as progress:
+        cleaned = take_away(loaded, resolution, progress=progress)
+    files = save(out, loaded.with_weights(cleaned.weights))
+    warnings = [*loaded.warnings, *saving_notes(out, loaded)]
+    document = {
+        "input": str(rig),
+        "output": str(out),
+        "files": [str(file) for file in files],
+        "resolution": resolution,
+        "vertices": len(cleaned.weights),
+        "changed": len(cleaned.vertices),
+        "bound": len(cleaned.bound),
+        "share": cleaned.share,
+        "joints": [
+            {
+                "joint": loss.joint,
+                "name": loss.name,
+                "share": loss.share,
+                "largest": loss.largest,
+                "vertices": loss.vertices.tolist(),
+            }
+            for loss in cleaned.losses
+        ],
+        "warnings": warnings,
+    }
+    if not quiet:
+        print_warnings(warnings)
+    if json:
+        print_json(document)
+    elif not quiet:
+        print_table(f"{rig.name} -> {out}", _rows(document, cleaned))
+
+
+def _rows(document: dict[str, Any], cleaned: Cleaned) -> Iterator[tuple[str, str]]:
+    """Say in words what was taken away, as pairs of a name and a text."""
+    if not cleaned.losses:
+        yield "taken away", "nothing"
+        return
+    yield "taken away", f"{cleaned.share:.2%} of all weight"
+    yield "changed", f"{document['changed']:,} of {document['vertices']:,} vertices"
+    if document["bound"]:
+        yield "bound again", f"{document['bound']:,} that lost more than half of their weight"
+    for loss in cleaned.losses[:FEW]:
+        vertices = "vertex" if len(loss.vertices) == 1 else "vertices"
+        yield (
+            loss.name,
+            f"{loss.share:.1%} of its weight, on {len(loss.vertices):,} {vertices}, "
+            f"up to {loss.largest:.0%} of one",
+        )
+    if len(cleaned.losses) > FEW:
+        yield "", f"and {len(cleaned.losses) - FEW} more joints"

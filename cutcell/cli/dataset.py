@@ -1,0 +1,309 @@
+"""The commands `cutcell dataset ...`: from an archive of rigs to training data."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from rich.console import Console
+from rich.progress import (
+    BarColumn,
+    MofNCompleteColumn,
+    Progress,
+    TextColumn,
+    TimeElapsedColumn,
+    TimeRemainingColumn,
+)
+
+from ..runtime.display import printable
+from .console import for_people, print_json, print_table, print_warnings
+from .options import FILES, METHOD, How, Json, Quiet, Resolution, chosen_method
+
+WORK = "Where the work is done"
+FEW = 5
+"""Failures that are printed; the report has all."""
+
+dataset = typer.Typer(
+    no_args_is_help=True,
+    rich_markup_mode="markdown",
+    help="Prepare rigs for training: split, bind, audit, export and generate them.",
+    epilog="`docs/dataset.md` goes the whole way, from a download to training data.",
+)
+
+Inputs = Annotated[
+    list[Path],
+    typer.Argument(
+        metavar="IN...",
+        help="Files and folders of rigs: what `bind` reads, RigNet's folders obj and rig_info, "
+        "UniRig's raw_data.npz, Puppeteer's HDF5.",
+    ),
+]
+Scheduler = Annotated[
+    str | None,
+    typer.Option(
+        "--scheduler",
+        metavar="ADDRESS",
+        help="A Dask scheduler, tcp://HOST:PORT; on this machine alone if left out.",
+        rich_help_panel=WORK,
+    ),
+]
+Workers = Annotated[
+    int | None,
+    typer.Option(
+        "--workers", help="Assets at a time here; one a core if left out.", rich_help_panel=WORK
+    ),
+]
+
+
+@dataset.command(
+    epilog="""Example:
+
+- `cutcell dataset split articulation_xlv2.npz rigs`"""
+)
+@for_people
+def split(
+    archive: Annotated[
+        Path, typer.Argument(metavar="ARCHIVE", help="Articulation-XL 2.0 as it is published.")
+    ],
+    folder: Annotated[Path, typer.Argument(metavar="FOLDER", help="Gets a file for each asset.")],
+    json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Split ARCHIVE into one npz file an asset, without running what is pickled in it.
+
+    Only arrays, texts and numbers are read. An asset that holds anything else is left out, and
+    said. A split that was stopped goes on when it is started again.
+    """
+    from ..dataset.read.archive import split as divide
+
+    with counting("Splitting", quiet or json) as step:
+        done = divide(archive, folder, lambda asset: step(asset.index + 1, None, asset.name))
+    if not quiet:
+        print_warnings(list(done.refused.values()))
+    if json:
+        print_json({"written": done.written, "kept": done.kept, "refused": dict(done.refused)})
+    elif not quiet:
+        rows = {"written": done.written, "there before": done.kept, "left out": len(done.refused)}
+        print_table(f"{archive.name} -> {folder}", [(k, f"{v:,}") for k, v in rows.items()])
+
+
+@dataset.command(
+    epilog="""Examples:
+
+- `cutcell dataset bind rigs store`
+
+- `cutcell dataset bind rigs store --scheduler tcp://10.0.0.1:8786`  (a cluster)
+
+- `cutcell dataset bind rigs store --method animation --precision float16`"""
+)
+@for_people
+def bind(
+    paths: Annotated[
+        list[Path], typer.Argument(metavar="IN... OUT", help="Rigs, and last the store.")
+    ],
+    method: How = "paper",
+    resolution: Resolution = 64,
+    precision: Annotated[
+        str, typer.Option("--precision", help="float32 or float16.", rich_help_panel=FILES)
+    ] = "float32",
+    bones: Annotated[
+        bool,
+        typer.Option(
+            "--bones/--no-bones",
+            help="Distances of every single bone, too, as RigNet needs them.",
+            rich_help_panel=METHOD,
+        ),
+    ] = True,
+    scheduler: Scheduler = None,
+    workers: Workers = None,
+    processes: Annotated[
+        bool,
+        typer.Option(
+            "--processes", help="Dask's workers here are processes.", rich_help_panel=WORK
+        ),
+    ] = False,
+    time_limit: Annotated[
+        float,
+        typer.Option("--time-limit", help="Seconds for one asset.", rich_help_panel=WORK),
+    ] = 600.0,
+    json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Compute distances, weights and metrics of every rig in IN, and keep them in the store OUT.
+
+    What OUT has already is not computed again, so that a run that was stopped goes on. An asset
+    that crashes, hangs or needs too much memory costs itself alone. The report is OUT/report.html,
+    the list of all assets OUT/manifest.parquet.
+    """
+    from ..dataset.audit.page import bind_counts, write_bind_report
+    from ..dataset.bind.binding import bind_all
+    from ..dataset.read.store import Parameters
+
+    *inputs, out = two_or_more(paths, "rigs, and last the store, such as: bind rigs store")
+    parameters = Parameters(chosen_method(method, resolution=resolution), precision, bones)  # type: ignore[arg-type]
+    with counting("Binding", quiet or json) as step:
+        report = bind_all(
+            inputs,
+            out,
+            parameters,
+            scheduler=scheduler,
+            workers=workers,
+            processes=processes,
+            time_limit=time_limit,
+            tell=step,
+        )
+    write_bind_report(report, out / "report.html")
+    if json:
+        print_json(
+            {
+                "store": str(out),
+                "assets": len(report.rows),
+                "bound": report.bound,
+                "known": report.known,
+                "failed": report.failures,
+                "seconds": round(report.seconds, 3),
+            }
+        )
+    elif not quiet:
+        print_failures(report.failures)
+        print_table(str(out), bind_counts(report).items())
+
+
+@dataset.command(
+    epilog="""Examples:
+
+- `cutcell dataset export store rignet_data --format rignet`
+
+- `cutcell dataset export store train.h5 --format puppeteer`"""
+)
+@for_people
+def export(
+    store: Annotated[Path, typer.Argument(metavar="STORE", help="Made by `dataset bind`.")],
+    out: Annotated[
+        Path, typer.Argument(metavar="OUT", help="A folder; for Puppeteer an HDF5 file.")
+    ],
+    kind: Annotated[
+        str, typer.Option("--format", metavar="F", help="rignet, unirig or puppeteer.")
+    ],
+    json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Write STORE as the training code of RigNet, UniRig or Puppeteer reads it.
+
+    RigNet's volumetric geodesics, UniRig's voxel_skin, Puppeteer's HDF5 with our weights as
+    `prior`.
+    """
+    from ..dataset.export import export as write
+
+    done = 0
+
+    def one(name: str) -> None:
+        nonlocal done
+        done += 1
+        step(done, None, name)
+
+    with counting("Exporting", quiet or json) as step:
+        count = write(store, out, kind, one)
+    if json:
+        print_json({"output": str(out), "format": kind, "assets": count})
+    elif not quiet:
+        print_table(str(out), [("format", kind), ("assets", f"{count:,}")])
+
+
+@dataset.command(
+    epilog="""Examples:
+
+- `cutcell dataset generate beast 100 rigs`
+
+- `cutcell dataset generate any 2000 rigs --seed 5 --detail 96`"""
+)
+@for_people
+def generate(
+    kind: Annotated[
+        str,
+        typer.Argument(
+            metavar="KIND", help="body, hand, beast, octopus, robot, person (needs anny), or any."
+        ),
+    ],
+    count: Annotated[int, typer.Argument(metavar="COUNT", help="How many.", min=1)],
+    folder: Annotated[Path, typer.Argument(metavar="FOLDER", help="Gets an npz file for each.")],
+    seed: Annotated[int, typer.Option("--seed", help="Of the first; the next has the next.")] = 0,
+    detail: Annotated[
+        int, typer.Option("--detail", help="Samples along the longest side, 12 to 512.")
+    ] = 48,
+    clean: Annotated[bool, typer.Option("--clean", help="No holes, loose parts or soups.")] = False,
+    json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Make COUNT characters with weights, each as an Articulation-XL npz.
+
+    Proportions and pose are drawn from the seed.
+    """
+    from ..dataset.generate.generate import KINDS
+    from ..dataset.generate.generate import generate as make
+    from ..io import save
+
+    folder.mkdir(parents=True, exist_ok=True)
+    kinds = [name for name in KINDS if name != "person"] if kind == "any" else [kind]
+    with counting("Generating", quiet or json) as step:
+        for k in range(count):
+            rig = make(kinds[k % len(kinds)], seed + k, detail=detail, clean=clean)  # type: ignore[arg-type]
+            save(folder / f"{rig.name}.npz", replace(rig, parts=()))
+            step(k + 1, count, rig.name)
+    if json:
+        print_json({"output": str(folder), "assets": count})
+    elif not quiet:
+        print_table(str(folder), [("assets", f"{count:,}")])
+
+
+def two_or_more(paths: list[Path], what: str) -> list[Path]:
+    """Return the paths of a command that takes inputs and an output.
+
+    Raises
+    ------
+    ParameterError
+        There is but one.
+    """
+    from ..errors import ParameterError
+
+    if len(paths) < 2:
+        raise ParameterError(f"give {what}")
+    return paths
+
+
+def print_failures(failures: dict[str, str]) -> None:
+    """Print the first failures, and how many more there are."""
+    print_warnings([f"{name}: {why}" for name, why in list(failures.items())[:FEW]])
+    if len(failures) > FEW:
+        print_warnings([f"and {len(failures) - FEW:,} more failed; the report lists all"])
+
+
+Step = Callable[[int, int | None, str], Any]
+
+
+@contextmanager
+def counting(what: str, quiet: bool) -> Iterator[Step]:
+    """Give a function that shows how many are done, out of how many, and the time left."""
+    console = Console(stderr=True)
+    if quiet or not console.is_terminal:
+        yield lambda done, count, name: None
+        return
+    columns = (
+        TextColumn("{task.description}", markup=False),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TimeElapsedColumn(),
+        TimeRemainingColumn(),
+        TextColumn("{task.fields[name]}", markup=False),
+    )
+    with Progress(*columns, console=console, transient=True) as bars:
+        task = bars.add_task(what, total=None, name="")
+
+        def step(done: int, count: int | None, name: str) -> None:
+            bars.update(task, completed=done, total=count, name=printable(name)[-40:])
+
+        yield step

@@ -1,0 +1,109 @@
+"""The command `cutcell dataset audit`: near-duplicates in a data set, or between two."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from .console import for_people, print_json, print_table
+from .dataset import Scheduler, Workers, counting, dataset, print_failures
+from .options import Json, Quiet
+
+MEASURE = "What counts as a duplicate"
+
+
+@dataset.command(
+    epilog="""Examples:
+
+- `cutcell dataset audit rigs`
+
+- `cutcell dataset audit test train --out leaks`  (which of test are in train)
+
+- `cutcell dataset audit store --json | jq .keep`"""
+)
+@for_people
+def audit(
+    first: Annotated[Path, typer.Argument(metavar="A", help="Rigs, or a store.")],
+    second: Annotated[
+        Path | None, typer.Argument(metavar="[B]", help="Others, to compare A with.")
+    ] = None,
+    out: Annotated[
+        Path, typer.Option("--out", metavar="FOLDER", help="Gets the tables and the report.")
+    ] = Path("audit"),
+    joint_threshold: Annotated[
+        float, typer.Option("--joints", help="T_J of stage 1.", rich_help_panel=MEASURE)
+    ] = 0.01,
+    surface_threshold: Annotated[
+        float, typer.Option("--surface", help="T_V of stage 2.", rich_help_panel=MEASURE)
+    ] = 0.01,
+    points: Annotated[
+        int, typer.Option("--points", help="On each surface.", rich_help_panel=MEASURE)
+    ] = 2048,
+    least: Annotated[
+        int,
+        typer.Option(
+            "--min-points",
+            help="DBSCAN's MinPts; the paper does not say.",
+            rich_help_panel=MEASURE,
+        ),
+    ] = 2,
+    poses: Annotated[
+        bool,
+        typer.Option(
+            "--poses/--no-poses",
+            help="Look for the same skeleton in other poses, too.",
+            rich_help_panel=MEASURE,
+        ),
+    ] = True,
+    scheduler: Scheduler = None,
+    workers: Workers = None,
+    json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Find near-duplicates in A, or characters of A that are in B, as the paper does.
+
+    Every pair is compared; bounds that are never too high leave out those that cannot be
+    duplicates. FOLDER gets pairs.parquet, clusters.parquet, audit.json and report.html. Step
+    through the pairs, side by side, and overrule them: cutcell app --pairs FOLDER. What was said
+    of them there still holds when the same FOLDER is audited again.
+    """
+    from ..dataset.audit.audit_files import read_verdicts, save_audit
+    from ..dataset.audit.audit_page import write_audit_report
+    from ..dataset.audit.auditing import audit as compare
+
+    verdicts = read_verdicts(out)
+    inputs = [first], [] if second is None else [second]
+    with counting("Comparing", quiet or json) as step:
+        found = compare(
+            *inputs,
+            joint_threshold=joint_threshold,
+            surface_threshold=surface_threshold,
+            points=points,
+            least=least,
+            poses=poses,
+            scheduler=scheduler,
+            workers=workers,
+            tell=step,
+        )
+    found = replace(found, verdicts=verdicts)
+    save_audit(found, out, *inputs)
+    write_audit_report(found, out / "report.html")
+    document = found.to_dict()
+    if json:
+        print_json(document)
+    elif not quiet:
+        print_failures(found.failed)
+        rows = [
+            ("assets", f"{document['assets']:,}"),
+            ("candidates", f"{found.candidates:,} pairs with joints alike"),
+            ("near-duplicates", f"{len(found.pairs):,} pairs"),
+            *((f"  {tier}", f"{count:,}") for tier, count in document["tiers"].items()),
+            ("clusters", f"{len(document['clusters']):,}"),
+            *([("overruled", f"{len(verdicts):,} pairs")] if verdicts else []),
+            ("to keep", f"{len(document['keep']):,}"),
+            ("report", str(out / "report.html")),
+        ]
+        print_table(str(first) if second is None else f"{first} in {second}", rows)

@@ -1,0 +1,156 @@
+"""The command `cutcell explain`: why a vertex has the weights that it has."""
+
+from __future__ import annotations
+
+from itertools import groupby
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from ..runtime.display import shown_name
+from .console import for_people, print_json, print_warnings, progress_bars
+from .options import (
+    Alpha,
+    Connectivity,
+    CorrectionsFile,
+    Falloff,
+    How,
+    Json,
+    Leaf,
+    MaxInfluences,
+    Orient,
+    Resolution,
+    RigFile,
+    Samples,
+    SkeletonFile,
+    Threshold,
+    WindingThreshold,
+    chosen_method,
+)
+
+if TYPE_CHECKING:
+    from ..editing import Explanation, JointShare
+
+EPILOG = """Examples:
+
+- `cutcell explain character.glb 120`
+
+- `cutcell explain character.glb 120 --method paper`
+
+- `cutcell explain character.glb 120 --json | jq '.joints[].steps'`  (for a script)"""
+
+MOST_JOINTS = 6
+"""Joints that are printed; `--json` has them all."""
+
+
+@for_people
+def explain(
+    rig: RigFile,
+    vertex: Annotated[
+        int, typer.Argument(metavar="VERTEX", help="The vertex' number in the file, from 0.")
+    ],
+    method: How = "animation",
+    resolution: Resolution = 64,
+    connectivity: Connectivity = None,
+    winding_threshold: WindingThreshold = 0.5,
+    orient: Orient = True,
+    samples: Samples = 5,
+    leaf: Leaf = None,
+    falloff: Falloff = None,
+    alpha: Alpha = None,
+    max_influences: MaxInfluences = None,
+    threshold: Threshold = 0.0,
+    corrections: CorrectionsFile = None,
+    skeleton: SkeletonFile = None,
+    json: Json = False,
+) -> None:
+    """Say why a VERTEX of RIG gets the weights that `cutcell bind` gives it.
+
+    For each joint: the distance and the path that it is the length of, what the falloff
+    multiplies it by, the weight after each step, and the file's own weight.
+    """
+    from ..editing import explain as compute
+    from ..editing.corrections import Corrections
+    from ..io import load
+
+    how = chosen_method(
+        method,
+        resolution=resolution,
+        connectivity=connectivity,
+        winding_threshold=winding_threshold,
+        orient=orient,
+        samples=samples,
+        leaf=leaf,
+        falloff=falloff,
+        alpha=alpha,
+        max_influences=max_influences,
+        threshold=threshold,
+    )
+    corrected = None if corrections is None else Corrections.load(corrections)
+    loaded = load(rig, skeleton=skeleton)
+    with progress_bars(quiet=json) as progress:
+        found = compute(loaded, vertex, method=how, corrections=corrected, progress=progress)
+    if json:
+        print_json({"input": str(rig), **found.to_dict(), "warnings": list(loaded.warnings)})
+        return
+    print_warnings(loaded.warnings)
+    _print(f"{rig.name}, vertex {vertex}", found)
+
+
+def _print(heading: str, found: Explanation) -> None:
+    from ..editing.explain import STEPS
+
+    console = Console(highlight=False)
+    place = ", ".join(f"{x:.4g}" for x in found.position)
+    table = Table(title=Text(f"{heading} at ({place})", "bold"), title_justify="left", box=None)
+    table.add_column(style="dim", no_wrap=True)
+    shares = found.joints[:MOST_JOINTS]
+    for share in shares:
+        table.add_column(Text(shown_name(share.name), overflow="fold"), justify="right")
+    for name, cells in _rows(shares, STEPS):
+        table.add_row(name, *cells)
+    console.print(table)
+    if found.fallback:
+        console.print(f"It follows its nearest bones in a straight line: {found.fallback}.")
+    for share in shares:
+        console.print(Text(f"path to {shown_name(share.name)}: {_told(share)}", "dim"))
+    if len(found.joints) > len(shares):
+        console.print(f"and {len(found.joints) - len(shares)} more joints with less weight: --json")
+
+
+def _rows(shares: tuple[JointShare, ...], steps: dict[str, str]) -> list[tuple[str, list[str]]]:
+    """Return the rows of the table: names, and a cell for each joint."""
+    rows = [
+        ("distance", [_number(share.distance) for share in shares]),
+        ("through the air", [_number(share.straight) for share in shares]),
+    ]
+    factors = dict.fromkeys(name for share in shares for name in share.factors)
+    for name in factors:
+        cells = [f"x {share.factors[name]:.3g}" if share.factors else "" for share in shares]
+        rows.append((f"  {name}", cells))
+    if factors:
+        rows.append(("counts as", [_number(share.effective) for share in shares]))
+    present = dict.fromkeys(name for share in shares for name in share.steps)
+    rows += [(steps[name], [f"{share.steps[name]:.4f}" for share in shares]) for name in present]
+    if any(share.file_weight is not None for share in shares):
+        rows.append(("in the file", [f"{share.file_weight:.4f}" for share in shares]))
+    return rows
+
+
+def _number(length: float) -> str:
+    return "farther" if length == float("inf") else f"{length:.4g}"
+
+
+def _told(share: JointShare) -> str:
+    """Say what a path is made of, in the order in which it is walked."""
+    if not share.path:
+        return "none leads through the body"
+    parts = []
+    for kind, pieces in groupby(share.path, lambda piece: piece.kind):
+        run = list(pieces)
+        many = f" ({len(run)})" if len(run) > 1 else ""
+        parts.append(f"{kind} {sum(piece.length for piece in run):.4g}{many}")
+    return ", ".join(parts)

@@ -1,0 +1,59 @@
+"""The command `cutcell joints`: which joints of a character carry weight, and why."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from .console import for_people, print_json, print_table, print_warnings
+from .options import Deform, Fresh, Json, NoDeform, RigFile, SkeletonFile
+
+EPILOG = """Examples:
+
+- `cutcell joints character.glb`
+
+- `cutcell joints character.glb --fresh --no-deform '*_IK'`  (as `bind` would take it)
+
+- `cutcell joints character.glb --json | jq '.joints[] | select(.deform | not)'`"""
+
+
+@for_people
+def joints(
+    rig: RigFile,
+    deform: Deform = None,
+    no_deform: NoDeform = None,
+    fresh: Fresh = False,
+    skeleton: SkeletonFile = None,
+    json: Json = False,
+) -> None:
+    """List the joints of RIG: which may carry weight, and why.
+
+    Weights in the file say so. Where there are none, names and places do: end markers,
+    controls, and roots beside the body get none. `cutcell bind` takes the same options.
+    """
+    from ..io import load
+    from ..io.files import naming
+    from ..rig.deform_joints import choose_deform, deform_joints
+
+    loaded = load(rig, skeleton=skeleton)
+    with naming(rig):
+        loaded.skeleton.require_joints()
+        chosen = choose_deform(loaded, deform or (), no_deform or (), fresh=fresh)
+    guess = deform_joints(loaded.mesh, loaded.skeleton)
+    rows: list[dict[str, Any]] = []
+    for j, name in enumerate(chosen.skeleton.names):
+        carries = bool(chosen.skeleton.deform[j])
+        reason = guess.reason[j]
+        if bool(guess.deform[j]) != carries:
+            by_weights = chosen.weights is not None and carries == loaded.skeleton.deform[j]
+            reason = "by the file" if by_weights else "chosen"
+        parent = int(chosen.skeleton.parents[j])
+        rows.append({"name": name, "parent": parent, "deform": carries, "reason": reason})
+    if json:
+        print_json({"input": str(rig), "joints": rows, "warnings": list(loaded.warnings)})
+        return
+    print_warnings(loaded.warnings)
+    count = int(chosen.skeleton.deform.sum())
+    print_table(
+        f"{rig.name}: {count} of {len(rows)} joints deform",
+        [(row["name"], f"{'yes' if row['deform'] else 'no'} · {row['reason']}") for row in rows],
+    )

@@ -1,0 +1,1 @@
+"""Find damaged, duplicate and variant rigs of a data set."""

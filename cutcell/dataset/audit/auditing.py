@@ -1,0 +1,300 @@
+"""Which characters of a data set are near-duplicates of others (paper, algorithms 3 and 4)."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from itertools import combinations_with_replacement, product
+from pathlib import Path
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...errors import CutcellError
+from ...io.files import naming
+from ...rig.checks import check_integer, check_number
+from ..bind.cluster import Cluster, connected
+from ..read.sources import Content, Source, find_sources, read_content
+from .chamfer import Block, block_of, close_joints, close_surfaces, reach_of
+from .duplicates import Audit, Pair
+from .likeness import Traits, likeness, same_skeletons, traits_of
+from .points import Normalised, normalised
+
+POINTS = 2048
+"""On each surface."""
+BLOCK = 1000
+"""Characters that are compared with as many others as one job."""
+BATCH = 16
+"""Characters that are read as one job."""
+THRESHOLD = 0.01
+
+
+def audit(
+    first: Sequence[Path],
+    second: Sequence[Path] = (),
+    *,
+    joint_threshold: float = THRESHOLD,
+    surface_threshold: float = THRESHOLD,
+    points: int = POINTS,
+    least: int = 2,
+    poses: bool = True,
+    scheduler: str | None = None,
+    workers: int | None = None,
+    tell: Callable[[int, int, str], None] = lambda done, count, name: None,
+) -> Audit:
+    """Find near-duplicates in a data set, or between two.
+
+    Each character is moved into the unit cube, and points are drawn on its surface with a fixed
+    seed. Pairs whose joints are closer than one threshold and whose surfaces are closer than the
+    other are near-duplicates. In one data set they are clustered by DBSCAN, as in the paper.
+
+    Parameters
+    ----------
+    first, second : sequence of Path
+        See `find_sources`; `first` is compared with itself where `second` is empty.
+    joint_threshold, surface_threshold : float
+        T_J and T_V, above 0, squared Chamfer distances.
+    points : int
+        On each surface, 16 to 100,000.
+    least : int
+        DBSCAN's MinPts, the point itself included. With 2 each pair is a cluster; the paper
+        does not say.
+    poses : bool
+        Whether pairs of one skeleton in other poses are looked for, too.
+    scheduler, workers, tell
+        See `bind_all`; work is done in processes.
+
+    Returns
+    -------
+    Audit
+
+    Raises
+    ------
+    FileError
+        There are no characters.
+    ParameterError
+        An argument is out of its range.
+    MissingLibraryError
+        Dask or scikit-learn is not installed.
+    CutcellError
+        The scheduler cannot be reached, or was lost.
+
+    References
+    ----------
+    Paper, appendix on the audit of the data set, algorithms 3 and 4.
+    """
+    limits = (
+        check_number("joint_threshold", joint_threshold, 1e-12, 10),
+        check_number("surface_threshold", surface_threshold, 1e-12, 10),
+    )
+    check_integer("points", points, 16, 100_000)
+    check_integer("least", least, 2, 1_000_000)
+    one, two = find_sources(first), find_sources(second) if second else None
+    seconds: dict[str, float] = {}
+    begin = perf_counter()
+    with connected(scheduler, workers, True) as cluster:
+        failed: dict[str, str] = {}
+        ours = _read(one, points, cluster, failed, tell)
+        theirs = ours if two is None else _read(two, points, cluster, failed, tell)
+        seconds["reading"] = perf_counter() - begin
+        begin = perf_counter()
+        found = compare(ours, None if two is None else theirs, limits, cluster, tell)
+    pairs = _pairs(ours, theirs, found)
+    posed = _posed(ours, None if two is None else theirs, pairs) if poses else []
+    seconds["pairs"] = perf_counter() - begin
+    return Audit(
+        [source.name for source in ours.sources],
+        [source.name for source in theirs.sources],
+        pairs,
+        posed,
+        found.candidates,
+        failed,
+        ours.sources,
+        theirs.sources,
+        seconds,
+        limits[1],
+        least,
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class Readings:
+    """What is known of a set of characters: those that could be read, in order."""
+
+    sources: list[Source]
+    traits: list[Traits]
+    blocks: list[Block]
+    size: int = BLOCK
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """Pairs by their places in both sets, with their figures, and how many stage 1 kept."""
+
+    pairs: NDArray[np.int64]
+    joints: NDArray[np.float64]
+    surface: NDArray[np.float64]
+    reach: NDArray[np.float64]
+    candidates: int
+
+
+def readings(
+    sources: list[Source], characters: list[tuple[Normalised, Traits]], size: int = BLOCK
+) -> Readings:
+    """Put characters into blocks."""
+    blocks = [
+        block_of([character for character, _ in characters[k : k + size]])
+        for k in range(0, len(characters), size)
+    ]
+    return Readings(sources, [traits for _, traits in characters], blocks, size)
+
+
+def _read(
+    sources: list[Source],
+    points: int,
+    cluster: Cluster,
+    failed: dict[str, str],
+    tell: Callable[[int, int, str], None],
+) -> Readings:
+    """Read all characters, many at a time; those that cannot be read are in `failed`."""
+    results: dict[int, list[Any]] = {}
+    done = 0
+
+    def take() -> None:
+        nonlocal done
+        key, result = cluster.next_result()
+        number = int(key.rpartition("-")[2])
+        batch = sources[number * BATCH : (number + 1) * BATCH]
+        if isinstance(result, BaseException):
+            result = [f"it was not read: {result}"] * len(batch)
+        results[number] = result
+        done += len(batch)
+        tell(done, len(sources), batch[-1].name)
+
+    count = 0
+    for number, batch in enumerate(_batches(sources)):
+        contents: list[Content | str] = []
+        for source in batch:
+            try:
+                contents.append(source.content())
+            except CutcellError as error:
+                contents.append(str(error))
+        while cluster.is_full():
+            take()
+        cluster.submit(f"read-{id(sources)}-{number}", _characters, contents, points)
+        count += 1
+    while len(results) < count:
+        take()
+    good, characters = [], []
+    read = [one for number in range(count) for one in results[number]]
+    for source, one in zip(sources, read, strict=True):
+        if isinstance(one, str):
+            failed[source.name] = one
+        else:
+            good.append(source)
+            characters.append(one)
+    return readings(good, characters)
+
+
+def _batches(sources: list[Source]) -> list[list[Source]]:
+    return [sources[k : k + BATCH] for k in range(0, len(sources), BATCH)]
+
+
+def _characters(
+    contents: list[Content | str], points: int
+) -> list[tuple[Normalised, Traits] | str]:
+    """Read some characters: what a Dask worker does. A text says why one cannot be read."""
+    found: list[tuple[Normalised, Traits] | str] = []
+    for content in contents:
+        if isinstance(content, str):
+            found.append(content)
+            continue
+        try:
+            with tempfile.TemporaryDirectory() as folder, naming(Path(next(iter(content.files)))):
+                rig = read_content(content, Path(folder))
+                if not len(rig.skeleton.joints):
+                    found.append("it has no joints")
+                    continue
+                found.append((normalised(rig, points), traits_of(rig)))
+        except (CutcellError, MemoryError) as error:
+            found.append(str(error) or "there is not enough memory")
+    return found
+
+
+def compare(
+    ours: Readings,
+    theirs: Readings | None,
+    limits: tuple[float, float],
+    cluster: Cluster,
+    tell: Callable[[int, int, str], None] = lambda done, count, name: None,
+) -> Found:
+    """Run both stages on all pairs, a block against a block as one job."""
+    left = cluster.scatter(ours.blocks)
+    right = left if theirs is None else cluster.scatter(theirs.blocks)
+    numbers = range(len(left)), range(len(right))
+    jobs = list(combinations_with_replacement(numbers[0], 2) if theirs is None
+                else product(*numbers))  # fmt: skip
+    parts: dict[str, tuple[NDArray, NDArray, int]] = {}
+
+    def take() -> None:
+        key, result = cluster.next_result()
+        if isinstance(result, BaseException):
+            raise CutcellError(f"a part of the comparison was lost: {result}; run it again")
+        parts[key] = result
+        tell(len(parts), len(jobs), "pairs")
+
+    for i, j in jobs:
+        while cluster.is_full():
+            take()
+        same = theirs is None and i == j
+        cluster.submit(f"pairs-{id(ours)}-{i}-{j}", _compared, left[i], right[j], limits, same)
+    while len(parts) < len(jobs):
+        take()
+    rows = []
+    for i, j in jobs:
+        pairs, figures, count = parts[f"pairs-{id(ours)}-{i}-{j}"]
+        size = ours.size, (theirs or ours).size
+        rows.append((pairs + np.array([i * size[0], j * size[1]]), figures, count))
+    if not rows:
+        nothing = np.zeros(0)
+        return Found(np.zeros((0, 2), np.int64), nothing, nothing, nothing, 0)
+    pairs = np.concatenate([row[0] for row in rows])
+    joints, surface, reach = np.concatenate([row[1] for row in rows], axis=1)
+    order = np.lexsort((pairs[:, 1], pairs[:, 0], surface))
+    candidates = sum(row[2] for row in rows)
+    return Found(pairs[order], joints[order], surface[order], reach[order], candidates)
+
+
+def _compared(
+    a: Block, b: Block, limits: tuple[float, float], same: bool
+) -> tuple[NDArray[np.int64], NDArray[np.float64], int]:
+    """Compare two blocks: what a Dask worker does. The figures are distances and reach."""
+    pairs, joints = close_joints(a, b, limits[0], same)
+    surface = close_surfaces(a, b, pairs, limits[1])
+    near = np.isfinite(surface)
+    figures = np.stack([joints[near], surface[near], reach_of(a, b, pairs[near])])
+    return pairs[near].astype(np.int64), figures, len(pairs)
+
+
+def _pairs(ours: Readings, theirs: Readings, found: Found) -> list[Pair]:
+    pairs = []
+    figures = found.joints.tolist(), found.surface.tolist(), found.reach.tolist()
+    for (a, b), joints, surface, reach in zip(found.pairs.tolist(), *figures, strict=True):
+        alike = likeness(ours.traits[a], theirs.traits[b], surface, reach)
+        pairs.append(Pair(a, b, joints, surface, alike))
+    return pairs
+
+
+def _posed(ours: Readings, theirs: Readings | None, pairs: list[Pair]) -> list[Pair]:
+    known = {(pair.a, pair.b) for pair in pairs}
+    other = ours if theirs is None else theirs
+    found = same_skeletons(ours.traits, None if theirs is None else theirs.traits)
+    posed = []
+    for a, b in found.tolist():
+        if (a, b) not in known:
+            alike = likeness(ours.traits[a], other.traits[b], np.inf, np.nan)
+            posed.append(Pair(a, b, np.inf, np.inf, alike))
+    return posed

@@ -1,0 +1,1 @@
+"""Bind all rigs of a data set, on one machine or several."""

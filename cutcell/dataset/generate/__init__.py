@@ -1,0 +1,1 @@
+"""Generate random rigged characters."""

@@ -1,0 +1,1 @@
+"""Read rigs of data sets: archives, folders and stores."""

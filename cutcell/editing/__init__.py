@@ -1,0 +1,24 @@
+"""What a person changes: corrections, brush strokes, locks, symmetry, smoothing."""
+
+from .brush import paint_weights
+from .correct import corrected_rig
+from .corrections import Corrections, JointCorrection, PartCorrection
+from .explain import Explanation, JointShare, Piece, explain
+from .limb import middle_of_limb
+from .refine import refine_weights
+from .stroke import Brush
+
+__all__ = [
+    "Brush",
+    "Corrections",
+    "Explanation",
+    "JointCorrection",
+    "JointShare",
+    "PartCorrection",
+    "Piece",
+    "corrected_rig",
+    "explain",
+    "middle_of_limb",
+    "paint_weights",
+    "refine_weights",
+]

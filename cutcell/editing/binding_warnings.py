@@ -1,0 +1,127 @@
+"""What a person should know about a binding, in sentences."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..geodesics import FALLBACK_REASONS, BoneDistances
+from ..graph import CutCellGraph
+from ..rig.rig import Rig
+from ..runtime.display import listed
+from ..weights.rig_falloff.surface_operators import SurfaceOperators
+from .correct import locked_by
+from .corrections import Corrections
+from .locks import joint_index, locked_joints
+
+SAME = 1e-6
+"""Weights that differ by less are the same: files round them."""
+
+
+def binding_warnings(
+    rig: Rig,
+    distances: BoneDistances,
+    weights: NDArray[np.float64],
+    corrections: Corrections,
+    locked: Sequence[int | str] = (),
+) -> tuple[str, ...]:
+    """Return what a person should know about weights and what they were computed from.
+
+    Parameters
+    ----------
+    rig : Rig
+        With the corrections of its skeleton, see `corrected_rig`.
+    distances : BoneDistances
+    weights : array, shape (n, j)
+    corrections : Corrections
+    locked : sequence of int or str
+        Joints that are locked besides those of the corrections.
+    """
+    is_locked = locked_joints(rig, [*locked, *locked_by(corrections)])
+    return (
+        *_of_distances(distances.graph, distances),
+        *_weightless(rig, weights),
+        *_overruled_by_locks(rig, distances.graph, corrections, is_locked),
+        *_overruling_locks(rig, corrections, is_locked),
+    )
+
+
+def _of_distances(graph: CutCellGraph, distances: BoneDistances) -> Iterator[str]:
+    inverted = int(graph.inverted.sum())
+    if inverted:
+        yield (
+            f"{inverted} of {len(graph.inverted)} faces are inside out and count as turned round; "
+            "the mesh itself stays as it is"
+        )
+    for reason, text in enumerate(FALLBACK_REASONS[1:], start=1):
+        count = int((distances.fallback == reason).sum())
+        if count:
+            yield (
+                f"{count} of {len(distances.fallback)} vertices follow their nearest bones "
+                f"in a straight line: {text}"
+            )
+    if not (graph.node_kind == 1).any():
+        yield (
+            "no lattice point lies inside the mesh, distances run over its surface alone: it is "
+            "open, or thinner than a lattice cell. Try a higher resolution"
+        )
+
+
+def _weightless(rig: Rig, weights: NDArray[np.float64]) -> Iterator[str]:
+    deform = rig.skeleton.deform
+    weightless = deform & ~weights.any(axis=0)
+    if weightless.any():
+        yield (
+            f"{weightless.sum()} of {deform.sum()} joints that deform get no weight: "
+            f"{_names(rig, weightless)}"
+        )
+
+
+def _overruled_by_locks(
+    rig: Rig, graph: CutCellGraph, corrections: Corrections, is_locked: NDArray[np.bool_]
+) -> Iterator[str]:
+    """Say which parts do not move as they are corrected to, as locked joints keep weight there."""
+    if rig.weights is None or not is_locked.any():
+        return
+    for vertex, part in corrections.parts.items():
+        if part.how == "itself":
+            continue
+        component = SurfaceOperators.of(graph).component[graph.vertex_node]
+        wanted, binding = np.zeros(len(is_locked)), "follows what it touches"
+        if part.joint is not None:
+            wanted[joint_index(rig.skeleton, part.joint)] = 1
+            binding = f'is glued to "{part.joint}"'
+        own = rig.weights[component == component[vertex]]
+        keeping = is_locked & (np.abs(own - wanted) > SAME).any(axis=0)
+        if keeping.any():
+            yield (
+                f"the part of vertex {vertex} {binding}, but these joints are locked and keep the "
+                f"file's weights there: {_names(rig, keeping)}"
+            )
+
+
+def _overruling_locks(
+    rig: Rig, corrections: Corrections, is_locked: NDArray[np.bool_]
+) -> Iterator[str]:
+    """Say which locked joints do not keep the file's weights, as vertices are set by hand."""
+    if rig.weights is None or not is_locked.any() or not corrections.vertices:
+        return
+    column = {rig.skeleton.names[j]: j for j in np.flatnonzero(is_locked)}
+    given = np.zeros((len(corrections.vertices), len(is_locked)))
+    for row, held in enumerate(corrections.vertices.values()):
+        for name in held.keys() & column.keys():
+            given[row, column[name]] = held[name]
+    differs = np.abs(given - rig.weights[list(corrections.vertices)]) > SAME
+    changed = is_locked & differs.any(axis=0)
+    if changed.any():
+        count = int(differs[:, changed].any(axis=1).sum())
+        yield (
+            f"{count} vertices that are set by hand change the weights of locked joints: "
+            f"{_names(rig, changed)}"
+        )
+
+
+def _names(rig: Rig, which: NDArray[np.bool_]) -> str:
+    return listed([rig.skeleton.names[j] for j in np.flatnonzero(which)])

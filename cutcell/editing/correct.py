@@ -1,0 +1,163 @@
+"""Applying a person's corrections to a rig and to its weights."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import ParameterError, SkeletonError
+from ..graph import CutCellGraph
+from ..method import Method
+from ..rig.rig import Rig
+from ..weights.adjustments import Adjustments
+from ..weights.rig_falloff.rigid_accessories import attach
+from ..weights.rig_falloff.surface_operators import SurfaceOperators
+from .corrections import Corrections
+from .locks import joint_index
+from .restructure import restructured
+
+JOINTS_FOR_GAINS = 8
+"""Nearest joints of each vertex that distances are measured from where one has a gain: with a
+longer reach it may count although others are nearer."""
+
+
+def corrected_rig(rig: Rig, corrections: Corrections) -> Rig:
+    """Apply corrections of the skeleton; check all names and vertices.
+
+    Parameters
+    ----------
+    rig : Rig
+    corrections : Corrections
+
+    Returns
+    -------
+    Rig
+        With the joints, names and parents that the corrections tell of, where they put them, and
+        with those that may carry weight: what `cutcell.bind` binds, and `cutcell.save` is to be
+        given. The skeleton's structure is not changed a second time.
+
+    Raises
+    ------
+    ParameterError
+        A joint or a vertex that the rig does not have, or weights that its file cannot store.
+    SkeletonError
+        No joint would be left, or none to carry weight; two would share a name, or hang on each
+        other in a circle; or one stands too far from the mesh.
+    """
+    rig = restructured(rig, corrections)
+    count = len(rig.mesh.vertices)
+    for vertex in (*corrections.parts, *corrections.vertices):
+        if vertex >= count:
+            raise ParameterError(
+                f"corrections name the vertex {vertex}, but {rig.name} has only {count} "
+                "(numbered from 0); are they of another character?"
+            )
+    index = _first_of(rig)
+    for vertex, weights in corrections.vertices.items():
+        for name in weights:
+            if name not in index:
+                joint_index(rig.skeleton, name)  # tells which sound alike
+            joint = index[name]
+            if rig.allowed is not None and not rig.allowed[vertex, joint]:
+                raise ParameterError(f'the file cannot store weight of "{name}" at vertex {vertex}')
+    for part in corrections.parts.values():
+        if part.joint is not None:
+            joint_index(rig.skeleton, part.joint)
+    deform, joints = rig.skeleton.deform.copy(), rig.skeleton.joints.copy()
+    for name, one in corrections.joints.items():
+        joint = joint_index(rig.skeleton, name)
+        deform[joint] = deform[joint] if one.deform is None else one.deform
+        joints[joint] = joints[joint] if one.position is None else one.position
+    if rig.skeleton.deform.any() and not deform.any():
+        raise SkeletonError("by the corrections no joint of the skeleton may carry weight")
+    if not np.array_equal(deform, rig.skeleton.deform):
+        rig = replace(rig, skeleton=replace(rig.skeleton, deform=deform))
+    return rig.with_joints(joints)
+
+
+def locked_by(corrections: Corrections) -> list[int | str]:
+    """List the joints that keep the file's weights."""
+    return [name for name, one in corrections.joints.items() if one.locked]
+
+
+def joints_measured(corrections: Corrections, method: Method) -> tuple[int | None, float]:
+    """Return from how many nearest joints, and how far beyond the nearest, distances are needed."""
+    gains = [1.0, *(one.gain for one in corrections.joints.values())]
+    needed, within = method.joints_needed, method.reach_needed
+    if set(gains) == {1.0} or needed is None:
+        return needed, within
+    return max(needed, JOINTS_FOR_GAINS), within * max(gains) / min(gains)
+
+
+def adjustments_of(rig: Rig, graph: CutCellGraph, corrections: Corrections) -> Adjustments | None:
+    """Return gains, radii and unrigid components as arrays; None if all are as they are anyway."""
+    gain, radius = np.ones(len(rig.skeleton.joints)), np.full(len(rig.skeleton.joints), np.nan)
+    for name, one in corrections.joints.items():
+        joint = joint_index(rig.skeleton, name)
+        gain[joint] = one.gain
+        if one.radius is not None:
+            radius[joint] = one.radius / graph.lattice.size
+    itself = [v for v, part in corrections.parts.items() if part.how == "itself"]
+    if not len(itself) and (gain == 1).all() and np.isnan(radius).all():
+        return None
+    component = SurfaceOperators.of(graph).component
+    by_itself = np.zeros(component.max() + 1, np.bool_)
+    by_itself[component[graph.vertex_node[itself]]] = True
+    return Adjustments(gain, radius, by_itself)
+
+
+def corrected_parts(
+    rig: Rig, graph: CutCellGraph, weights: NDArray[np.float64], corrections: Corrections
+) -> NDArray[np.float64]:
+    """Glue components to joints, or let them follow the body where they touch it."""
+    if all(part.how == "itself" for part in corrections.parts.values()):
+        return weights
+    surface = SurfaceOperators.of(graph)
+    node, weights = graph.vertex_node, weights.copy()
+    component = surface.component[node]
+    touching = np.zeros(component.max() + 1, np.bool_)
+    for vertex, part in corrections.parts.items():
+        mine = component == component[vertex]
+        if part.joint is not None:
+            joint = joint_index(rig.skeleton, part.joint)
+            if rig.allowed is not None and not rig.allowed[mine, joint].all():
+                raise ParameterError(
+                    f'the file cannot store weight of "{part.joint}" for the part of '
+                    f"vertex {vertex}"
+                )
+            weights[mine] = np.eye(weights.shape[1])[joint]
+        touching[component[vertex]] = part.how == "touching"
+    if touching.all():
+        raise ParameterError("every component is to follow where it touches, and none is left")
+    if touching.any():
+        first = np.unique(node, return_index=True)[1]
+        attached = attach(graph, surface, touching, weights[first])
+        mine = touching[component]
+        rows = attached[node[mine]]
+        if rig.allowed is not None:
+            rows = np.where(rig.allowed[mine], rows, 0.0)
+        total = rows.sum(axis=1, keepdims=True)
+        weights[mine] = np.divide(rows, total, out=weights[mine], where=total > 0)
+    return weights
+
+
+def overruled(
+    rig: Rig, weights: NDArray[np.float64], corrections: Corrections
+) -> NDArray[np.float64]:
+    """Put the weights that a person gives to single vertices."""
+    if not corrections.vertices:
+        return weights
+    weights, index, given = weights.copy(), _first_of(rig), corrections.vertices
+    weights[list(given)] = 0
+    row = [vertex for vertex, held in given.items() for _ in held]
+    column = [index[name] for held in given.values() for name in held]
+    weights[row, column] = [value for held in given.values() for value in held.values()]
+    return weights
+
+
+def _first_of(rig: Rig) -> dict[str, int]:
+    """Return the first joint of each name; a brush may overrule most vertices."""
+    names = rig.skeleton.names
+    return dict(zip(reversed(names), reversed(range(len(names))), strict=True))

@@ -1,0 +1,375 @@
+"""Why a vertex has the weights that it has: paths, distances, and what each step makes of them."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from typing import Any, Unpack
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..geodesics import (
+    FALLBACK_REASONS,
+    PIECES,
+    BoneDistances,
+    bone_distances,
+    distance_to_segment,
+    trace_path,
+)
+from ..geodesics.fallback import REACHED
+from ..graph import build_graph
+from ..method import ANIMATION, Method, MethodName, Options, method_of
+from ..rig.checks import check_integer
+from ..rig.inputs import RigLike, as_rig
+from ..rig.rig import Rig
+from ..runtime.progress import Progress, silent
+from ..weights.adjustments import Adjustments
+from ..weights.paper_kernel import paper_kernel
+from ..weights.rig_falloff.division import facing
+from ..weights.rig_falloff.pipeline import permitted, rig_weights
+from ..weights.rig_falloff.surface_operators import SurfaceOperators
+from ..weights.skinning_weights import keep_strongest, skinning_weights
+from .correct import (
+    adjustments_of,
+    corrected_parts,
+    corrected_rig,
+    joints_measured,
+    locked_by,
+    overruled,
+)
+from .corrections import Corrections
+from .locks import lock_joints
+
+STEPS = {
+    "falloff": "shares by distance",
+    "spread": "spread over skin",
+    "rigid": "rigid components",
+    "tail": "tail subtracted",
+    "storable": "storable in file",
+    "limit": "limited",
+    "normalise": "normalised",
+    "correct": "corrected",
+}
+"""The steps from distances to weights, in their order. A method has some of them."""
+SOME = 1e-4
+"""Joints that no step gives as much are left out, unless the file has weight of them."""
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A straight piece of a path.
+
+    Parameters
+    ----------
+    kind : str
+        One of `geodesics.PIECES`.
+    start, end : tuple of 3 floats
+        In the file's units.
+    length : float
+        In the file's units.
+    """
+
+    kind: str
+    start: tuple[float, float, float]
+    end: tuple[float, float, float]
+    length: float
+
+
+@dataclass(frozen=True)
+class JointShare:
+    """How a vertex comes to its weight of one joint. Lengths are in the file's units.
+
+    Parameters
+    ----------
+    joint : int
+    name : str
+    path : tuple of Piece
+        From the vertex to the joint's bones; empty where none leads through the body.
+    distance : float
+        That the weights are computed from; infinite where the joint is not among the nearest.
+    straight : float
+        The distance through the air.
+    factors : dict of str to float
+        What the falloff for rigs multiplies the distance by: "component", if the bone is in
+        another component; "radius", if the vertex is beyond the bone's radius; "facing", if the
+        surface looks at the bone rather than away from it. The paper's has none. With either,
+        "gain", if corrections give the joint one.
+    effective : float
+        The distance times all factors: shares fall with it.
+    steps : dict of str to float
+        The weight after each step, keys of `STEPS` in their order.
+    weight : float
+        After the last.
+    file_weight : float or None
+        What the file says.
+    """
+
+    joint: int
+    name: str
+    path: tuple[Piece, ...]
+    distance: float
+    straight: float
+    factors: dict[str, float]
+    effective: float
+    steps: dict[str, float]
+    weight: float
+    file_weight: float | None
+
+
+@dataclass(frozen=True)
+class Explanation:
+    """Why a vertex has its weights.
+
+    Parameters
+    ----------
+    vertex : int
+    position : tuple of 3 floats
+        In the file's units.
+    fallback : str
+        Why no path through the body reaches the vertex; empty if one does.
+    joints : tuple of JointShare
+        Those that any step gives weight, or the file; the largest weight first.
+    """
+
+    vertex: int
+    position: tuple[float, float, float]
+    fallback: str
+    joints: tuple[JointShare, ...]
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return it as plain data; infinite distances are None."""
+        found: dict[str, Any] = _finite(asdict(self))
+        return found
+
+
+def explain(
+    rig: RigLike,
+    vertex: int,
+    resolution: int | None = None,
+    *,
+    method: Method | MethodName = ANIMATION,
+    corrections: Corrections | None = None,
+    distances: BoneDistances | None = None,
+    progress: Progress = silent,
+    **options: Unpack[Options],
+) -> Explanation:
+    """Say why `bind` gives a vertex the weights that it does.
+
+    Parameters
+    ----------
+    rig : Rig, (mesh, skeleton) or (vertices, faces, joints, parents)
+    vertex : int
+    resolution : int, optional
+        R; the method's when left out.
+    method : Method, "animation" or "paper"
+    corrections : Corrections, optional
+        As of `bind`.
+    distances : BoneDistances, optional
+        Of this rig by this method and these corrections, such as those of a `Binding`;
+        measured when left out.
+    progress : callable
+        See `cutcell.runtime.progress`; stages are "graph", "distances" and "weights".
+    **options
+        Single options on top of the method, see `Method`.
+
+    Returns
+    -------
+    Explanation
+
+    Raises
+    ------
+    ParameterError
+        There is no such vertex, or a parameter is out of its range.
+    MeshError, SkeletonError
+        The rig cannot be bound.
+
+    Examples
+    --------
+    >>> for share in cutcell.explain(rig, 120).joints:  # doctest: +SKIP
+    ...     print(share.name, share.distance, share.steps, share.file_weight)
+    """
+    rig = as_rig(rig)
+    method = method_of(method, resolution, **options)
+    vertex = check_integer("vertex", vertex, 0, len(rig.mesh.vertices) - 1)
+    corrections = Corrections() if corrections is None else corrections
+    rig = corrected_rig(rig, corrections)
+    if distances is None:
+        graph = build_graph(rig.mesh, method=method, progress=progress)
+        nearest, within = joints_measured(corrections, method)
+        distances = bone_distances(
+            graph,
+            rig.skeleton,
+            method=method,
+            nearest_joints=nearest,
+            within=within,
+            allowed=rig.allowed,
+            progress=progress,
+        )
+    progress("weights", 0.0)
+    adjustments = adjustments_of(rig, distances.graph, corrections)
+    falloff = (_Paper if method.falloff == "paper" else _ForRigs)(distances, method, adjustments)
+    steps = _limited(rig, distances, method, vertex, falloff.steps(vertex))
+    if corrections:
+        steps["correct"] = _corrected(rig, distances, method, vertex, corrections, adjustments)
+    most = np.max(list(steps.values()), axis=0)
+    own = None if rig.weights is None else rig.weights[vertex]
+    listed = np.flatnonzero((most > SOME) | (0 if own is None else own > SOME))
+    last = list(steps.values())[-1]
+    shares = []
+    for done, joint in enumerate(listed[np.argsort(-last[listed], kind="stable")].tolist()):
+        progress("weights", done / len(listed))
+        shares.append(_share(rig, distances, vertex, joint, falloff, steps))
+    progress("weights", 1.0)
+    reason = int(distances.fallback[vertex])
+    why = "" if reason == REACHED else FALLBACK_REASONS[reason]
+    return Explanation(vertex, _place(rig.mesh.vertices[vertex]), why, tuple(shares))
+
+
+class _Paper:
+    """The paper's falloff: a formula of the distance alone."""
+
+    def __init__(
+        self, distances: BoneDistances, method: Method, adjustments: Adjustments | None
+    ) -> None:
+        assert method.alpha is not None
+        self._distances, self._alpha, self._adjustments = distances, method.alpha, adjustments
+
+    def steps(self, vertex: int) -> dict[str, NDArray[np.float64]]:
+        distance = self._distances.joint[:, [vertex]]
+        if self._adjustments is not None:
+            distance = distance / self._adjustments.gain[:, None]
+        diagonal = self._distances.graph.lattice.diagonal
+        return {"falloff": paper_kernel(distance, diagonal, self._alpha)[0]}
+
+    def factors(self, vertex: int, joint: int) -> dict[str, float]:
+        return _gain(self._adjustments, joint)
+
+
+class _ForRigs:
+    """The falloff for rigs, with what it records on its way."""
+
+    def __init__(
+        self, distances: BoneDistances, method: Method, adjustments: Adjustments | None
+    ) -> None:
+        self._distances, self._adjustments = distances, adjustments
+        self._surface = SurfaceOperators.of(distances.graph)
+        self._found: dict[str, NDArray] = {}
+
+        def record(step: str, array: NDArray) -> None:
+            self._found[step] = array.copy()
+
+        self._found["tail"] = rig_weights(
+            distances, self._surface, record=record, adjustments=adjustments
+        )
+
+    def steps(self, vertex: int) -> dict[str, NDArray[np.float64]]:
+        place = self._distances.graph.vertex_node[vertex]
+        names = ("falloff", "spread", "rigid", "tail")
+        return {name: self._found[name][place] for name in names}
+
+    def factors(self, vertex: int, joint: int) -> dict[str, float]:
+        place, surface = self._distances.graph.vertex_node[vertex], self._surface
+        penalty = float(self._found["penalty"][surface.component[place], joint])
+        gain = _gain(self._adjustments, joint)
+        radius = 1.0
+        if self._found["beyond"][place]:  # elsewhere nothing is beyond any radius
+            known = self._distances.at_welded[joint, place] / self._found["radius"][joint]
+            radius = max(1.0, float(known))
+        where = surface.points[place], surface.normals[place]
+        away = facing(*where, self._distances.bones, joint)
+        component = penalty / gain.get("gain", 1.0)
+        return {"component": component, "radius": radius, "facing": 1 / away, **gain}
+
+
+def _gain(adjustments: Adjustments | None, joint: int) -> dict[str, float]:
+    """Return the factor of a joint's distance that corrections ask for, if any."""
+    gain = 1.0 if adjustments is None else float(adjustments.gain[joint])
+    return {} if gain == 1 else {"gain": 1 / gain}
+
+
+def _corrected(
+    rig: Rig,
+    distances: BoneDistances,
+    method: Method,
+    vertex: int,
+    corrections: Corrections,
+    adjustments: Adjustments | None,
+) -> NDArray[np.float64]:
+    """Return the weights of a vertex after all corrections, as `bind` does."""
+    weights = skinning_weights(
+        distances, method=method, allowed=rig.allowed, adjustments=adjustments
+    )
+    weights = corrected_parts(rig, distances.graph, weights, corrections)
+    weights = lock_joints(rig, weights, locked_by(corrections), method.max_influences)
+    found: NDArray[np.float64] = overruled(rig, weights, corrections)[vertex]
+    return found
+
+
+def _limited(
+    rig: Rig,
+    distances: BoneDistances,
+    method: Method,
+    vertex: int,
+    steps: dict[str, NDArray[np.float64]],
+) -> dict[str, NDArray[np.float64]]:
+    """Add the steps that every method ends with, for one vertex."""
+    row = list(steps.values())[-1][None]
+    if rig.allowed is not None:
+        row = permitted(row, distances.joint[:, [vertex]], rig.allowed[[vertex]])
+        steps["storable"] = row[0]
+    kept = keep_strongest(distances, row, method.max_influences, method.threshold)[0]
+    steps["limit"] = np.where(kept > 0, row[0], 0.0)
+    steps["normalise"] = kept
+    return steps
+
+
+def _share(
+    rig: Rig,
+    distances: BoneDistances,
+    vertex: int,
+    joint: int,
+    falloff: _Paper | _ForRigs,
+    steps: dict[str, NDArray[np.float64]],
+) -> JointShare:
+    unit, bones = distances.graph.lattice.size, distances.bones
+    distance = float(distances.joint[joint, vertex])
+    own = np.flatnonzero(bones.joint == joint)
+    point = distances.graph.nodes[distances.graph.vertex_node[vertex]]
+    straight = distance_to_segment(point, bones.start[own], bones.end[own]).min(initial=np.inf)
+    factors = falloff.factors(vertex, joint) if np.isfinite(distance) and len(own) else {}
+    weight = {name: float(row[joint]) for name, row in steps.items()}
+    return JointShare(
+        joint=joint,
+        name=rig.skeleton.names[joint],
+        path=_path(distances, joint, vertex) if len(own) else (),
+        distance=distance * unit,
+        straight=float(straight) * unit,
+        factors=factors,
+        effective=distance * unit * float(np.prod(list(factors.values()))),
+        steps=weight,
+        weight=list(weight.values())[-1],
+        file_weight=None if rig.weights is None else float(rig.weights[vertex, joint]),
+    )
+
+
+def _path(distances: BoneDistances, joint: int, vertex: int) -> tuple[Piece, ...]:
+    path = trace_path(distances, joint, vertex)
+    lattice = distances.graph.lattice
+    places = [_place(point) for point in lattice.to_file(path.points)]
+    lengths = (path.lengths * lattice.size).tolist()
+    parts = zip(path.kinds, places[:-1], places[1:], lengths, strict=True)
+    return tuple(Piece(PIECES[kind], start, end, length) for kind, start, end, length in parts)
+
+
+def _place(point: NDArray[np.float64]) -> tuple[float, float, float]:
+    x, y, z = point.tolist()
+    return x, y, z
+
+
+def _finite(data: Any) -> Any:
+    """Replace infinite numbers, which JSON has none of, by None."""
+    if isinstance(data, dict):
+        return {key: _finite(value) for key, value in data.items()}
+    if isinstance(data, list | tuple):
+        return [_finite(value) for value in data]
+    return None if isinstance(data, float) and not np.isfinite(data) else data

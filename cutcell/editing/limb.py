@@ -1,0 +1,126 @@
+"""The middle of the body around a joint."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import SkeletonError
+from ..graph.winding import winding_number
+from ..rig.checks import check_integer
+from ..rig.rig import Rig, Skeleton
+
+DIRECTIONS = 96
+"""In the plane across the limb, in which the skin is looked for."""
+ROUNDS = 16
+"""The middle of what is seen from a point is nearer to the limb's; seen from there it is nearer."""
+FARTHEST = 2.0
+"""Times the lower quartile of the distances to the skin: where a limb opens into the trunk, what is
+farther is the trunk's."""
+SEEN = 0.75
+"""Part of the directions that must meet skin."""
+
+
+def middle_of_limb(rig: Rig, joint: int) -> NDArray[np.float64]:
+    """Find the middle of the limb that a joint is in.
+
+    In the plane through the joint across its bones it is the centroid of what is seen from there:
+    another limb that the plane cuts does not count.
+
+    Parameters
+    ----------
+    rig : Rig
+    joint : int
+
+    Returns
+    -------
+    array, shape (3,), float64
+        In the file's units.
+
+    Raises
+    ------
+    ParameterError
+        There is no such joint.
+    SkeletonError
+        The joint is not in the body.
+    """
+    joint = check_integer("joint", joint, 0, len(rig.skeleton.joints) - 1)
+    place, out = rig.skeleton.joints[joint], _along(rig.skeleton, joint)
+    side = np.cross(out, np.eye(3)[np.abs(out).argmin()])
+    plane = np.stack([side, np.cross(out, side)]) / np.linalg.norm(side)
+    start, end = _section(rig.mesh.vertices[rig.mesh.faces] - place, out, plane)
+    middle, most = np.zeros(2), np.inf
+    inside = bool(winding_number(rig.mesh, place[None])[0] > 0.5)
+    for _ in range(ROUNDS):
+        skin = _seen(start - middle, end - middle)
+        if not inside or len(skin) < SEEN * DIRECTIONS:
+            raise SkeletonError(
+                f'joint "{rig.skeleton.names[joint]}" is not in the body, so that there is no limb '
+                "around it; move it into the body first"
+            )
+        most = most if np.isfinite(most) else float(np.median(np.linalg.norm(skin, axis=1)))
+        middle = middle + _centroid(skin)
+        if np.linalg.norm(middle) > most:  # it leaves the limb for the trunk
+            middle *= most / np.linalg.norm(middle)
+            break
+    return np.asarray(place + middle @ plane)
+
+
+def _along(skeleton: Skeleton, joint: int) -> NDArray[np.float64]:
+    """Return the direction of the bones at a joint, of length 1: in by one, out by the others."""
+    place, parent = skeleton.joints[joint], skeleton.parents[joint]
+    children = skeleton.joints[skeleton.children[joint]]
+    ways = [children.mean(axis=0) - place] if len(children) else []
+    ways += [place - skeleton.joints[parent]] if parent >= 0 else []
+    units = [way / np.linalg.norm(way) for way in ways if way.any()]
+    total = np.sum(units, axis=0) if units else np.zeros(3)
+    length = float(np.linalg.norm(total))
+    if length > 1e-3:
+        return np.asarray(total / length)
+    return np.asarray(units[0]) if units else np.array([0.0, 1.0, 0.0])
+
+
+def _section(
+    corners: NDArray[np.float64], out: NDArray[np.float64], plane: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Cut triangles (m, 3, 3) by the plane through 0; return segments in it, (s, 2) each."""
+    above = corners @ out
+    crossed = np.flatnonzero((above.min(axis=1) < 0) & (above.max(axis=1) >= 0))
+    corners, above = corners[crossed], above[crossed]
+    # Rolled so that the first corner is alone on its side.
+    sides = above >= 0
+    alone = np.where(sides.sum(axis=1) == 1, sides.argmax(axis=1), (~sides).argmax(axis=1))
+    order = (alone[:, None] + np.arange(3)) % 3
+    corners = np.take_along_axis(corners, order[..., None], axis=1)
+    above = np.take_along_axis(above, order, axis=1)
+    share = above[:, :1] / (above[:, :1] - above[:, 1:])
+    points = corners[:, :1] + share[..., None] * (corners[:, 1:] - corners[:, :1])
+    flat = points @ plane.T
+    return flat[:, 0], flat[:, 1]
+
+
+def _seen(start: NDArray[np.float64], end: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the nearest points of segments (s, 2) in each direction from 0, as far as any is."""
+    angle = 2 * np.pi * np.arange(DIRECTIONS) / DIRECTIONS
+    way = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    edge = end - start
+    facing = _cross(way[:, None], edge)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        far = _cross(start, edge) / facing
+        share = _cross(start, way[:, None]) / facing
+    far = np.where((far > 0) & (share >= 0) & (share <= 1), far, np.inf).min(axis=1, initial=np.inf)
+    hit = np.isfinite(far)
+    if hit.any():
+        far = np.minimum(far, FARTHEST * np.quantile(far[hit], 0.25))
+    return way[hit] * far[hit, None]
+
+
+def _centroid(corners: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the centroid of a polygon (k, 2) around 0."""
+    after = np.roll(corners, -1, axis=0)
+    area = _cross(corners, after)
+    return np.asarray((area[:, None] * (corners + after)).sum(axis=0) / (3 * area.sum()))
+
+
+def _cross(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
+    return np.asarray(a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0])

@@ -1,0 +1,116 @@
+"""Lock joints: keep an artist's weights of some joints and fill in the rest."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from difflib import get_close_matches
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import ParameterError, WeightsError
+from ..rig.checks import LONG, check_integer, one_line, shown
+from ..rig.rig import Rig, Skeleton
+
+
+def lock_joints(
+    rig: Rig,
+    weights: NDArray[np.float64],
+    locked: Sequence[int | str],
+    max_influences: int | None = None,
+) -> NDArray[np.float64]:
+    """Put back the rig's own weights of some joints; the others share what these leave.
+
+    Parameters
+    ----------
+    rig : Rig
+        With the weights to keep.
+    weights : array, shape (n, j)
+        What was computed; rows sum to one.
+    locked : sequence of int or str
+        Joints by index or by name.
+    max_influences : int or None
+        Joints a vertex may follow. Locked ones come first.
+
+    Returns
+    -------
+    array, shape (n, j)
+        Rows sum to one. Locked joints have the file's weights exactly. Where no other joint has
+        computed weight, or `max_influences` leaves no room for one, all joints have the file's. A
+        vertex without any weight in the file keeps what was computed.
+
+    Raises
+    ------
+    ParameterError
+        There is no such joint; the sentence names those that sound alike.
+    WeightsError
+        The rig has no weights to keep.
+    """
+    is_locked = locked_joints(rig, locked)
+    if not is_locked.any() or rig.weights is None:
+        return weights
+    kept = np.where(is_locked, rig.weights, 0.0)
+    free = np.where(is_locked, 0.0, weights)
+    if max_influences is not None:
+        free = _largest(free, max_influences - (kept > 0).sum(axis=1))
+    others = np.where(is_locked, 0.0, rig.weights)
+    share, rest = free.sum(axis=1, keepdims=True), others.sum(axis=1, keepdims=True)
+    result = kept + np.divide(free * rest, share, out=others, where=share > 0)
+    has_weight = rig.weights.any(axis=1, keepdims=True)
+    return np.where(has_weight, result, weights)
+
+
+def locked_joints(rig: Rig, locked: Sequence[int | str]) -> NDArray[np.bool_]:
+    """Tell of each joint whether it is locked, shape (j,).
+
+    Raises
+    ------
+    ParameterError
+        There is no such joint, or `locked` is no list of joints.
+    WeightsError
+        The rig has no weights to keep.
+    """
+    if isinstance(locked, str) or not isinstance(locked, Sequence | np.ndarray):
+        raise ParameterError(
+            f"locked must be a list of joints, by index or by name, not {shown(locked)}"
+        )
+    is_locked = np.zeros(len(rig.skeleton.names), bool)
+    for joint in locked:
+        is_locked[joint_index(rig.skeleton, joint)] = True
+    if is_locked.any() and rig.weights is None:
+        raise WeightsError(
+            f"{rig.name} has no weights of its own, so no joint of it can be locked; "
+            "leave out the locked joints"
+        )
+    return is_locked
+
+
+def joint_index(skeleton: Skeleton, joint: int | str) -> int:
+    """Return the index of a joint that is given by its index or its name.
+
+    Raises
+    ------
+    ParameterError
+        There is no such joint.
+    """
+    names = list(skeleton.names)
+    if isinstance(joint, str):
+        if joint in names:
+            return names.index(joint)
+        close = get_close_matches(joint, names, n=3, cutoff=0.4) or names[:3]
+        asked = one_line(joint)[:LONG]
+        if not names:
+            raise ParameterError(f'there is no joint "{asked}": the mesh has no skeleton')
+        raise ParameterError(
+            f'there is no joint "{asked}" among the {len(names)} of the skeleton; there is '
+            + ", ".join(f'"{name}"' for name in close)
+        )
+    return check_integer("joint", joint, 0, len(names) - 1, "or the name of one")
+
+
+def _largest(weights: NDArray[np.float64], room: NDArray[np.intp]) -> NDArray[np.float64]:
+    """Keep the `room` largest weights of each row; ties go to the lower index."""
+    order = np.argsort(-weights, axis=1, kind="stable")
+    rank = np.empty_like(order)
+    np.put_along_axis(rank, order, np.arange(weights.shape[1])[None, :], axis=1)
+    return np.where(rank < room[:, None], weights, 0.0)

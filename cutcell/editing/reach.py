@@ -1,0 +1,122 @@
+"""Geodesic distances over the surface of a mesh, as far as a limit."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csr_array
+from scipy.sparse.csgraph import dijkstra
+
+from ..geometry.edges import find_edges
+from ..geometry.weld import WELD_TOLERANCE, weld
+from ..rig.rig import TriangleMesh
+
+
+@dataclass(frozen=True, eq=False)
+class SurfaceReach:
+    """A welded mesh, and the ways over it.
+
+    Parameters
+    ----------
+    points : array, shape (k, 3)
+        The welded vertices, in the file's units.
+    faces : array, shape (m, 3), int32
+        Of welded vertices.
+    index : array, shape (n,), int32
+        The welded vertex of each vertex of the mesh.
+    lengths : csr_array, shape (k, k)
+        Of the edges, and of the straight ways between the corners that face an edge: without those
+        distances across a grid would be up to 41 % too long, with them up to 8 %.
+    """
+
+    points: NDArray[np.float64]
+    faces: NDArray[np.int32]
+    index: NDArray[np.int32]
+    lengths: csr_array
+
+    @classmethod
+    def of(cls, mesh: TriangleMesh) -> SurfaceReach:
+        """Weld a mesh, and find the ways over it."""
+        size = float(np.ptp(mesh.bounds, axis=0).max())
+        points, index = weld(mesh.vertices, WELD_TOLERANCE * size)
+        faces = np.ascontiguousarray(index[mesh.faces])
+        found = find_edges(faces)
+        edges, partner = found.edges, found.partner
+        sides = np.linalg.norm(points[edges[:, 0]] - points[edges[:, 1]], axis=1)
+        across, straight = _across(points, faces, partner)
+        pairs = np.concatenate([edges, across])
+        lengths = _symmetric(pairs, np.concatenate([sides, straight]), len(points))
+        return cls(points, faces, index, lengths)
+
+    def distances(
+        self, vertices: NDArray[np.integer], begin: NDArray[np.float64], limit: float
+    ) -> NDArray[np.float64]:
+        """Return how far all welded vertices are from the nearest of some, over the surface.
+
+        Parameters
+        ----------
+        vertices : array, shape (s,), int
+            Welded vertices.
+        begin : array, shape (s,)
+            How far each of these is already.
+        limit : float
+            Vertices farther than this are infinitely far.
+
+        Returns
+        -------
+        array, shape (k,)
+        """
+        ways, count = self.lengths, len(self.points)
+        first = np.full(count, np.inf)
+        np.minimum.at(first, vertices, np.maximum(begin, np.finfo(float).tiny))
+        seeds = np.flatnonzero(np.isfinite(first))
+        # One more node, from which all begin: then a single search finds the nearest.
+        indices = np.concatenate([ways.indices, seeds.astype(ways.indices.dtype)])
+        pointers = np.append(ways.indptr, len(indices)).astype(ways.indptr.dtype)
+        data = np.concatenate([ways.data, first[seeds]])
+        whole = csr_array((data, indices, pointers), shape=(count + 1, count + 1))
+        found: NDArray[np.float64] = dijkstra(whole, indices=count, limit=limit)
+        return found[:count]
+
+
+def _across(
+    points: NDArray[np.float64], faces: NDArray[np.int32], partner: NDArray[np.int32]
+) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
+    """Return the pairs of corners that face an edge and see each other across it, and how far.
+
+    Both triangles are laid into one plane; the straight way must cross their edge.
+    """
+    half = np.flatnonzero(partner > np.arange(len(partner)))
+    other = partner[half]
+    face, corner = np.divmod(half, 3)
+    a, b, c = (faces[face, (corner + k) % 3] for k in range(3))
+    d = faces[other // 3, (other + 2) % 3]
+    along = points[b] - points[a]
+    length = np.linalg.norm(along, axis=1)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        along /= length[:, None]
+        (x_c, y_c), (x_d, y_d) = (_beside(points[q] - points[a], along) for q in (c, d))
+        crossing = (x_c * y_d + x_d * y_c) / (y_c + y_d)
+        seen = (crossing > 0) & (crossing < length) & (c != d)
+    pairs = np.stack([c, d], axis=1)[seen]
+    return pairs, np.hypot(x_c - x_d, y_c + y_d)[seen]
+
+
+def _beside(
+    point: NDArray[np.float64], along: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return how far points lie along directions, and how far beside them."""
+    x = (point * along).sum(axis=1)
+    return x, np.linalg.norm(point - x[:, None] * along, axis=1)
+
+
+def _symmetric(pairs: NDArray[np.int32], length: NDArray[np.float64], count: int) -> csr_array:
+    """Return a matrix of lengths, of a pair that comes twice the shorter one."""
+    both = np.concatenate([pairs, pairs[:, ::-1]])
+    length = np.tile(length, 2)
+    order = np.lexsort([length, both[:, 1], both[:, 0]])
+    both, length = both[order], length[order]
+    first = np.append(True, (both[1:] != both[:-1]).any(axis=1))
+    return csr_array((length[first], both[first].T), shape=(count, count))

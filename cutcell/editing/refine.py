@@ -1,0 +1,110 @@
+"""Touching weights up: smoothing, symmetry, and joints whose weights an artist has painted."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TypedDict, Unpack
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..method import ANIMATION, Method, MethodName, method_of
+from ..rig.checks import check_flag, check_integer
+from ..rig.rig import Rig
+from ..weights.prune import prune
+from .locks import lock_joints, locked_joints
+from .smoothing import MOST_PASSES, smooth_weights
+from .symmetry import balance, find_mirror, mirror_weights
+
+
+class Touches(TypedDict):
+    """What can be asked of the weights of one character, see `refine_weights`."""
+
+    smoothing: int
+    symmetric: bool
+    locked: Sequence[int | str]
+
+
+class Pruning(TypedDict, total=False):
+    """Options of a `Method` that `refine_weights` follows."""
+
+    max_influences: int | None
+    threshold: float
+
+
+def refine_weights(
+    rig: Rig,
+    weights: NDArray[np.float64],
+    *,
+    method: Method | MethodName = ANIMATION,
+    smoothing: int = 0,
+    symmetric: bool = False,
+    locked: Sequence[int | str] = (),
+    **options: Unpack[Pruning],
+) -> NDArray[np.float64]:
+    """Smooth weights, mirror them, and put back those of locked joints: in this order.
+
+    Parameters
+    ----------
+    rig : Rig
+    weights : array, shape (n, j)
+        Rows sum to one.
+    method : Method, "animation" or "paper"
+        Its greatest number of influences and threshold hold again after smoothing and mirroring.
+    smoothing : int
+        Passes over the mesh; see `smooth_weights`.
+    symmetric : bool
+        Left and right get the same; see `find_mirror`.
+    locked : sequence of int or str
+        Joints that keep the rig's own weights; see `lock_joints`.
+    **options
+        Single options of the method: `max_influences`, `threshold`.
+
+    Returns
+    -------
+    array, shape (n, j)
+        Rows sum to one; `weights` itself when nothing is asked.
+
+    Raises
+    ------
+    ParameterError, MeshError, WeightsError
+        What is asked is out of range, or the rig is not made for it.
+    """
+    method = method_of(method, **options)
+    symmetric = check_flag("symmetric", symmetric)
+    if smoothing or symmetric:
+        mirror = find_mirror(rig) if symmetric else None
+        weights = smooth_weights(rig.mesh, weights, smoothing)
+        if mirror is not None:
+            weights = mirror_weights(weights, mirror)
+        weights = _permitted(rig, weights)
+        order = np.lexsort(rig.skeleton.joints.T)
+        weights = prune(weights, method.max_influences, method.threshold, order)
+        if mirror is not None:
+            weights = balance(weights, mirror)
+    return lock_joints(rig, weights, locked, method.max_influences)
+
+
+def check_refinement(
+    rig: Rig, smoothing: int, symmetric: bool, locked: Sequence[int | str]
+) -> None:
+    """Refuse what `refine_weights` would, before weights are computed.
+
+    Raises
+    ------
+    ParameterError, MeshError, WeightsError
+        What is asked is out of range, or the rig is not made for it.
+    """
+    check_integer("smoothing", smoothing, 0, MOST_PASSES)
+    if check_flag("symmetric", symmetric):
+        find_mirror(rig)
+    locked_joints(rig, locked)
+
+
+def _permitted(rig: Rig, weights: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Take away what the file cannot store, unless a row would be left empty."""
+    if rig.allowed is None:
+        return weights
+    kept = np.where(rig.allowed, weights, 0.0)
+    total = kept.sum(axis=1, keepdims=True)
+    return np.divide(kept, total, out=weights.copy(), where=total > 0)

@@ -1,0 +1,243 @@
+"""Skeletons with other joints, names and parents than in their file: `restructured`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import ParameterError, SkeletonError
+from ..rig.clip import Motion
+from ..rig.rig import Clip, Rig, Skeleton, with_origin
+from ..rig.transforms import composed, relative
+from ..runtime.display import shown_name
+from .corrections import Corrections
+from .locks import joint_index
+
+
+def restructured(rig: Rig, corrections: Corrections) -> Rig:
+    """Return a rig whose joints are added, removed, renamed and reparented as corrections tell.
+
+    Joints of the file come first, in its order. What a removed joint held goes to the nearest
+    joint above it that stays, and where there is none to the first below it. A joint of the file
+    goes on to move against its parent as it did; what is added does not move against its parent,
+    and the motion of what is removed is dropped.
+
+    Parameters
+    ----------
+    rig : Rig
+        As its file has it; one that was restructured before is returned as it is.
+    corrections : Corrections
+
+    Raises
+    ------
+    ParameterError
+        A joint that the rig does not have.
+    SkeletonError
+        No joint would be left, two would share a name, or hang on each other in a circle.
+    """
+    if rig.origin is not None or not corrections.structural:
+        return rig
+    old = rig.skeleton
+    skeleton, origin = restructured_skeleton(old, corrections)
+    removed = ~np.isin(np.arange(len(old.joints)), origin)
+    heir = _heirs(old, removed)
+    number = np.maximum(np.cumsum(~removed) - 1, 0)
+    weights = rig.weights
+    if weights is not None:
+        moved = np.zeros((len(weights), len(origin)))
+        np.add.at(moved.T, number[heir], weights.T)
+        weights = moved
+    allowed = rig.allowed
+    if allowed is not None:
+        allowed = allowed[:, [max(int(origin[j]), 0) for j in with_origin(skeleton, origin)]]
+    return replace(
+        rig,
+        skeleton=skeleton,
+        weights=weights,
+        allowed=allowed,
+        clips=tuple(
+            Clip(
+                clip.name,
+                motion=Restructured(clip.motion, old.joints, old.parents, skeleton.parents, origin),
+            )
+            for clip in rig.clips
+        ),
+        attachments=tuple(
+            replace(one, joint=int(number[heir[one.joint]])) for one in rig.attachments
+        ),
+        origin=origin.astype(np.int32),
+    )
+
+
+def restructured_skeleton(
+    old: Skeleton, corrections: Corrections
+) -> tuple[Skeleton, NDArray[np.int_]]:
+    """Return the skeleton that corrections make, its joints where they were, and their origin.
+
+    Parameters
+    ----------
+    old : Skeleton
+        As the file has it.
+    corrections : Corrections
+
+    Returns
+    -------
+    skeleton : Skeleton
+    origin : array, shape (j,), int
+        Which of the old joints each one is; -1 where it was added.
+
+    Raises
+    ------
+    ParameterError, SkeletonError
+        See `restructured`.
+    """
+    if not corrections.structural:
+        return old, np.arange(len(old.joints))
+    removed = np.zeros(len(old.joints), np.bool_)
+    for name in corrections.removed:
+        removed[joint_index(old, name)] = True
+    names = _names(old, removed, corrections)
+    kept = np.flatnonzero(~removed)
+    origin = np.concatenate([kept, np.full(len(names) - len(kept), -1)])
+    if not len(origin):
+        raise SkeletonError(
+            "by the corrections no joint of the skeleton is left; keep at least one"
+        )
+    return _skeleton(old, removed, names, origin, corrections), origin
+
+
+def _names(old: Skeleton, removed: NDArray[np.bool_], corrections: Corrections) -> list[str]:
+    """Return the names of the joints that stay, and of those that are added."""
+    now = list(old.names)
+    fresh = []
+    for name, one in corrections.joints.items():
+        if one.was is not None:
+            joint = joint_index(old, one.was)
+            if removed[joint]:
+                raise ParameterError(f'corrections both remove and rename the joint "{one.was}"')
+            now[joint] = name
+        if one.was is not None or one.added:
+            fresh.append(name)
+    names = [now[joint] for joint in np.flatnonzero(~removed)]
+    names += [name for name, one in corrections.joints.items() if one.added]
+    for name in fresh:
+        if not name.strip():
+            raise SkeletonError("a joint needs a name")
+        if names.count(name) > 1:
+            raise SkeletonError(
+                f'two joints would be called "{shown_name(name)}"; choose another name for one'
+            )
+    return names
+
+
+def _skeleton(
+    old: Skeleton,
+    removed: NDArray[np.bool_],
+    names: list[str],
+    origin: NDArray[np.int_],
+    corrections: Corrections,
+) -> Skeleton:
+    """Return the new skeleton; joints of the file stand where they stood."""
+    kept, count = origin[origin >= 0], len(names)
+    parents = np.full(count, -1)
+    number = np.cumsum(~removed) - 1
+    for j, was in enumerate(kept):
+        above = old.parents[was]
+        while above >= 0 and removed[above]:
+            above = old.parents[above]
+        parents[j] = number[above] if above >= 0 else -1
+    joints, deform = np.zeros((count, 3)), np.ones(count, np.bool_)
+    joints[: len(kept)], deform[: len(kept)] = old.joints[kept], old.deform[kept]
+    for j, name in enumerate(names):
+        one = corrections.joints.get(name)
+        if one is None:
+            continue
+        if one.parent is not None:
+            if one.parent and one.parent not in names:
+                raise ParameterError(
+                    f'"{shown_name(name)}" is to hang on "{shown_name(one.parent)}", but there is '
+                    "no such joint"
+                )
+            parents[j] = names.index(one.parent) if one.parent else -1
+        if one.added:
+            joints[j] = one.position
+    plain = Skeleton(joints, parents, names, deform)  # refuses circles
+    if old.orientations is None:
+        return plain
+    axes = np.tile(np.eye(3), (count, 1, 1))
+    like = with_origin(plain, origin)
+    known = origin[like] >= 0
+    axes[known] = old.orientations[origin[like[known]]]
+    return replace(plain, orientations=axes)
+
+
+def _heirs(old: Skeleton, removed: NDArray[np.bool_]) -> NDArray[np.int_]:
+    """Return the joint that takes over from each joint of the file: itself where it stays."""
+    heir = np.arange(len(old.joints))
+    for j in np.flatnonzero(removed):
+        above = old.parents[j]
+        while above >= 0 and removed[above]:
+            above = old.parents[above]
+        if above < 0:
+            below = np.flatnonzero(old.subtree[j] & ~removed)
+            above = below[0] if len(below) else (~removed).argmax()
+        heir[j] = above
+    return heir
+
+
+@dataclass(frozen=True, eq=False)
+class Restructured:
+    """A motion of another skeleton's joints; see `restructured`.
+
+    Parameters
+    ----------
+    motion : Motion
+    places : array, shape (i, 3)
+        Where the joints that it moves stand.
+    before : array, shape (i,), int
+        Their parents.
+    parents : array, shape (j,), int
+        Parents now.
+    origin : array, shape (j,), int
+        Which of its joints each one is; -1 for none.
+    """
+
+    motion: Motion
+    places: NDArray[np.float64]
+    before: NDArray[np.int32]
+    parents: NDArray[np.int32]
+    origin: NDArray[np.int_]
+
+    @property
+    def joints(self) -> int:
+        """How many joints it moves."""
+        return len(self.origin)
+
+    @property
+    def duration(self) -> float:
+        """Length in seconds."""
+        return self.motion.duration
+
+    @property
+    def times(self) -> NDArray[np.float64]:
+        """Times of the frames that show it, shape (f,), seconds, ascending from 0."""
+        return self.motion.times
+
+    def moved(
+        self, joints: NDArray[np.float64], parents: NDArray[np.int32], by: NDArray[np.float64]
+    ) -> Restructured:
+        """Return it for joints that were moved: those that the motion knows are in it, too."""
+        own, known = np.zeros_like(self.places), self.origin >= 0
+        own[self.origin[known]] = by[known]
+        moved = Clip("", motion=self.motion).moved(self.places, self.before, own).motion
+        return replace(self, motion=moved, places=self.places + own)
+
+    def sample(self, seconds: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return skinning matrices at some times, shape (f, j, 4, 4)."""
+        before = relative(self.motion.sample(seconds), self.before)
+        own = np.tile(np.eye(4), (len(before), len(self.origin), 1, 1))
+        known = self.origin >= 0
+        own[:, known] = before[:, self.origin[known]]
+        return composed(own, self.parents)

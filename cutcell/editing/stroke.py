@@ -1,0 +1,294 @@
+"""One stroke of a brush over a mesh, and the weights that come of it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Literal, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csr_array, diags_array
+from scipy.sparse.linalg import splu
+from scipy.spatial import cKDTree
+
+from ..errors import ParameterError
+from ..geometry.laplacian import cotangent_laplacian, vertex_areas
+from ..rig.checks import check_choice, check_number
+from ..rig.rig import Rig, TriangleMesh
+from .locks import joint_index
+from .reach import SurfaceReach
+from .symmetry import Mirror
+
+BrushMode = Literal["add", "subtract", "replace", "smooth"]
+
+FARTHEST = 1e30
+SPREAD = 1 / 8
+"""Squared radii: for how long weights diffuse where they are smoothed, so that after it a point is
+half a radius wide (a standard deviation along each axis)."""
+LEAST_AREA = 1e-12
+"""Of the largest around a vertex: faces without any are no reason not to be solved for."""
+ON_THE_OTHER_SIDE = 0.25
+"""Radii: how far from a vertex a mirrored stroke may pass to touch the surface there."""
+
+
+@dataclass(frozen=True)
+class Brush:
+    """A brush.
+
+    Parameters
+    ----------
+    radius : float
+        Over the surface, in the file's units. The brush is strongest in the middle; towards its
+        rim, where it does nothing, it falls as (1 - t²)².
+    mode : {"add", "subtract", "replace", "smooth"}
+        What it does to the weight of a joint: add the strength, subtract it, or go that part of
+        the way to the value. Or it goes that part of the way to weights of all joints that
+        diffused over the surface.
+    strength : float
+        0 to 1. A whole stroke changes no vertex by more, however often it passes over.
+    value : float
+        0 to 1, what weights are replaced by.
+
+    Raises
+    ------
+    ParameterError
+        One of them is out of its range.
+    """
+
+    radius: float
+    mode: BrushMode = "add"
+    strength: float = 1.0
+    value: float = 1.0
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "radius", check_number("radius", self.radius, 0, FARTHEST))
+        if self.radius == 0:
+            raise ParameterError("radius must be more than 0")
+        object.__setattr__(self, "mode", check_choice("mode", self.mode, get_args(BrushMode)))
+        for name in ("strength", "value"):
+            object.__setattr__(self, name, check_number(name, getattr(self, name), 0, 1))
+
+
+class PaintSurface:
+    """What strokes over one mesh have in common, worked out once.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+    """
+
+    def __init__(self, mesh: TriangleMesh) -> None:
+        self.reach = SurfaceReach.of(mesh)
+
+    @cached_property
+    def _used(self) -> tuple[NDArray[np.int32], Any]:
+        """The welded vertices that faces have, and what finds the nearest of them."""
+        used = np.unique(self.reach.faces)
+        return used, cKDTree(self.reach.points[used])
+
+    def nearest(
+        self, places: NDArray[np.float64], limit: float
+    ) -> tuple[NDArray[np.bool_], NDArray[np.int32]]:
+        """Return which of some places have a vertex within a limit, and the nearest of these."""
+        used, tree = self._used
+        gap, near = tree.query(places, distance_upper_bound=limit)
+        found = np.isfinite(gap)
+        return found, used[near[found]]
+
+    @cached_property
+    def diffusion(self) -> tuple[csr_array, NDArray[np.float64]]:
+        """The Laplacian with no negative weight, so that nothing overshoots; and areas."""
+        points, faces = self.reach.points, self.reach.faces
+        # In the unit of the mesh's size, which the kernels' tolerances are made for.
+        size = float(np.ptp(points, axis=0).max()) or 1.0
+        flow = cotangent_laplacian(points / size, faces)
+        flow.setdiag(0)
+        flow.data = np.maximum(-flow.data, 0)
+        laplacian = csr_array(diags_array(flow.sum(axis=1)) - flow)
+        areas = vertex_areas(points / size, faces)
+        return laplacian, np.maximum(areas, LEAST_AREA * areas.max()) * size**2
+
+
+class Stroke:
+    """One stroke of a brush: whatever it passed, in whichever steps, is painted once.
+
+    Parameters
+    ----------
+    surface : PaintSurface
+    rig : Rig
+    weights : array, shape (n, j)
+        As they are before it.
+    joint : int or str
+    brush : Brush
+    mirror : Mirror, optional
+        Of the joints; what the other side's brush goes by.
+    locked, max_influences, within
+        See `paint_weights`.
+
+    Raises
+    ------
+    ParameterError
+        There is no such joint, or it is locked or may carry no weight.
+    """
+
+    def __init__(
+        self,
+        surface: PaintSurface,
+        rig: Rig,
+        weights: NDArray[np.float64],
+        joint: int | str,
+        brush: Brush,
+        *,
+        mirror: Mirror | None = None,
+        locked: Sequence[int | str] = (),
+        max_influences: int | None = None,
+        within: NDArray[np.bool_] | None = None,
+    ) -> None:
+        self._within = np.ones(len(weights), bool) if within is None else within
+        self._surface, self._rig, self._weights, self._brush = surface, rig, weights, brush
+        self._mirror, self._most = mirror, max_influences
+        self._locked = np.zeros(len(rig.skeleton.names), bool)
+        self._locked[[joint_index(rig.skeleton, one) for one in locked]] = True
+        joint = joint_index(rig.skeleton, joint)
+        partner = -1 if mirror is None else int(mirror.joint[joint])
+        self._joints = [joint] if partner < 0 else [joint, partner]
+        if brush.mode != "smooth":
+            for one in self._joints:
+                self._check(one)
+        sides = 1 if mirror is None or (partner < 0 and brush.mode != "smooth") else 2
+        self._far = np.full((sides, len(surface.reach.points)), np.inf)
+
+    def _check(self, joint: int) -> None:
+        name = self._rig.skeleton.names[joint]
+        if self._locked[joint]:
+            raise ParameterError(f'"{name}" is locked; unlock it to paint its weight')
+        if not self._rig.skeleton.deform[joint]:
+            raise ParameterError(f'"{name}" carries no weight; let it, to paint its weight')
+
+    def pass_over(self, corners: NDArray[np.integer], shares: NDArray[np.float64]) -> None:
+        """Lead the brush over points of the surface.
+
+        Parameters
+        ----------
+        corners : array, shape (s, c), int
+            Vertices around each point.
+        shares : array, shape (s, c)
+            What each counts for the place; rows sum to one.
+        """
+        reach = self._surface.reach
+        welded = reach.index[corners]
+        around = reach.points[welded]
+        points = (around * shares[:, :, None]).sum(axis=1)
+        begin = np.linalg.norm(around - points[:, None], axis=2)
+        self._pass(0, welded.ravel(), begin.ravel())
+        if len(self._far) < 2:
+            return
+        mirror = self._mirror
+        assert mirror is not None
+        points, around = points.copy(), around.reshape(-1, 3).copy()
+        for some in (points, around):
+            some[:, mirror.axis] = 2 * mirror.position - some[:, mirror.axis]
+        found, near = self._surface.nearest(around, ON_THE_OTHER_SIDE * self._brush.radius)
+        point = np.repeat(np.arange(len(points)), corners.shape[1])[found]
+        self._pass(1, near, np.linalg.norm(reach.points[near] - points[point], axis=1))
+
+    def _pass(self, side: int, vertices: NDArray[np.integer], begin: NDArray[np.float64]) -> None:
+        far = self._surface.reach.distances(vertices, begin, self._brush.radius)
+        np.minimum(self._far[side], far, out=self._far[side])
+
+    def touched(self) -> NDArray[np.intp]:
+        """Return the vertices that were touched so far, shape (v,)."""
+        near = self._far.min(axis=0) < self._brush.radius
+        return np.flatnonzero(near[self._surface.reach.index] & self._within)
+
+    def painted(self) -> tuple[NDArray[np.intp], NDArray[np.float64]]:
+        """Return the vertices that were touched so far, shape (v,), and their weights, (v, j)."""
+        brush, index, vertices = self._brush, self._surface.reach.index, self.touched()
+        inside = np.maximum(1 - np.square(self._far / brush.radius), 0)
+        covered = brush.strength * np.square(inside)
+        if not len(vertices):
+            return vertices, self._weights[vertices]
+        rows, cover = self._weights[vertices], covered[:, index[vertices]]
+        can = np.ones(rows.shape, bool)
+        if self._rig.allowed is not None:
+            can = self._rig.allowed[vertices]
+        if brush.mode == "smooth":
+            goal = self._diffused(covered.max(axis=0), vertices)
+            moved = rows + cover.max(axis=0)[:, None] * (goal - rows)
+        elif len(cover) == 2 and self._joints[0] == self._joints[-1]:
+            moved = rows + self._change(rows, cover.max(axis=0), self._joints[0], can)
+        else:
+            changes = zip(self._joints, cover, strict=True)
+            moved = rows + sum(self._change(rows, part, joint, can) for joint, part in changes)
+        return vertices, self._whole(rows, np.where(can, moved, 0.0))
+
+    def _change(
+        self, rows: NDArray[np.float64], cover: NDArray[np.float64], joint: int, can: NDArray
+    ) -> NDArray[np.float64]:
+        """Return what a joint wins or loses, and what the others that may change lose or win."""
+        others = np.where(self._locked, 0.0, rows)
+        held, others[:, joint] = rows[:, joint], 0.0
+        rest = others.sum(axis=1)
+        step = {
+            "add": cover, "subtract": -cover, "replace": cover * (self._brush.value - held),
+        }[self._brush.mode]  # fmt: skip
+        step = np.where(can[:, joint] & (rest > 0), np.clip(step, -held, rest), 0.0)
+        change = others * np.divide(-step, rest, out=np.zeros_like(rest), where=rest > 0)[:, None]
+        change[:, joint] = step
+        return change
+
+    def _whole(self, before: NDArray[np.float64], rows: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Let the joints that are neither locked nor painted, and not too many, share the rest."""
+        kept = np.where(self._locked, before, 0.0)
+        free = np.where(self._locked, 0.0, np.maximum(rows, 0.0))
+        if self._most is not None and ((free > 0) | (kept > 0)).sum(axis=1).max() > self._most:
+            free = self._strongest(free, self._most - (kept > 0).sum(axis=1))
+        rest = np.maximum(before.sum(axis=1) - kept.sum(axis=1), 0)
+        painted = np.zeros_like(free)
+        if self._brush.mode != "smooth":
+            painted[:, self._joints] = free[:, self._joints]
+        others, left = free - painted, rest - painted.sum(axis=1)
+        fits = (others.sum(axis=1) > 0) & (left >= 0)
+        whole = kept + np.where(fits[:, None], painted + _scaled(others, left), _scaled(free, rest))
+        return np.where(free.any(axis=1, keepdims=True), whole, before)
+
+    def _strongest(
+        self, free: NDArray[np.float64], room: NDArray[np.integer]
+    ) -> NDArray[np.float64]:
+        """Keep as many joints of each row as there is room for, the painted ones first."""
+        order = free.copy()
+        if self._brush.mode != "smooth":
+            order[:, self._joints] += order[:, self._joints] > 0
+        rank = np.argsort(np.argsort(-order, axis=1, kind="stable"), axis=1, kind="stable")
+        return np.where(rank < room[:, None], free, 0.0)
+
+    def _diffused(
+        self, cover: NDArray[np.float64], vertices: NDArray[np.intp]
+    ) -> NDArray[np.float64]:
+        """Return weights of vertices that are covered, after they diffused where that is."""
+        reach = self._surface.reach
+        laplacian, areas = self._surface.diffusion
+        inner = np.flatnonzero(cover > 0)
+        rows = laplacian[inner]
+        around = np.union1d(rows.indices, inner)
+        first = np.zeros(len(reach.points), np.intp)
+        first[reach.index[::-1]] = np.arange(len(reach.index))[::-1]
+        start = self._weights[first[around]]
+        used = np.flatnonzero(start.any(axis=0))
+        is_inner = cover[around] > 0
+        time, area = SPREAD * self._brush.radius**2, areas[inner]
+        system = csr_array(diags_array(area) + time * rows[:, inner]).tocsc()
+        given = area[:, None] * start[np.ix_(is_inner, used)]
+        given -= time * (rows[:, around[~is_inner]] @ start[np.ix_(~is_inner, used)])
+        goal = np.zeros((len(inner), start.shape[1]))
+        goal[:, used] = splu(system).solve(given)
+        return goal[np.searchsorted(inner, reach.index[vertices])]
+
+
+def _scaled(rows: NDArray[np.float64], sums: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Scale rows to given sums; empty rows stay empty."""
+    total = rows.sum(axis=1)
+    factor: NDArray[np.float64] = np.divide(sums, total, out=np.zeros_like(total), where=total > 0)
+    return rows * factor[:, None]

@@ -1,0 +1,212 @@
+"""Make the weights of a mirrored character mirrored."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import linear_sum_assignment
+from scipy.spatial import cKDTree
+from scipy.spatial.distance import cdist
+
+from ..errors import MeshError, SkeletonError
+from ..geometry.weld import WELD_TOLERANCE, weld
+from ..rig.rig import Rig, Skeleton
+
+VERTEX_TOLERANCE = 1e-3
+"""Of the bounding box's diagonal: how far from its mirror image a vertex's partner may lie."""
+
+JOINT_TOLERANCE = 3e-2
+"""The same for joints, which artists set by eye."""
+
+LEAST_SHARE = 0.5
+"""Of the vertices that must have a partner, for the character to count as mirrored."""
+
+
+@dataclass(frozen=True, eq=False)
+class Mirror:
+    """A plane of symmetry, and who is whose mirror image.
+
+    Parameters
+    ----------
+    axis : int
+        0, 1, 2: the plane is orthogonal to x, y or z.
+    position : float
+        Where it cuts that axis, in the file's units.
+    vertex : array, shape (n,), int
+        The partner of each vertex, itself on the plane; -1 where there is none.
+    joint : array, shape (j,), int
+        The partner of each joint; -1 where there is none.
+    """
+
+    axis: int
+    position: float
+    vertex: NDArray[np.intp]
+    joint: NDArray[np.intp]
+
+
+def find_mirror(rig: Rig) -> Mirror:
+    """Find the plane, orthogonal to x, y or z, across which most vertices have a partner.
+
+    Raises
+    ------
+    MeshError
+        Less than half of the vertices have a partner across any such plane, or no two joints
+        lie on different sides of it.
+    """
+    used = np.zeros(len(rig.mesh.vertices), bool)
+    used[rig.mesh.faces] = True
+    diagonal = float(np.linalg.norm(np.ptp(rig.mesh.bounds, axis=0)))
+    best: Mirror | None = None
+    share = 0.0
+    for axis in range(3):
+        middle = float(rig.mesh.bounds[:, axis].mean())
+        for position in {middle, float(np.median(rig.skeleton.joints[:, axis])), 0.0}:
+            joint = _joint_partners(rig.skeleton, axis, position, JOINT_TOLERANCE * diagonal)
+            if not np.any((joint >= 0) & (joint != np.arange(len(joint)))):
+                continue
+            vertex = _vertex_partners(rig.mesh.vertices, axis, position, diagonal)
+            found = float((vertex[used] >= 0).mean()) * float((joint >= 0).mean())
+            if found > share:
+                best, share = Mirror(axis, position, vertex, joint), found
+    matched = 0.0 if best is None else float((best.vertex[used] >= 0).mean())
+    if best is None or matched < LEAST_SHARE:
+        raise MeshError(
+            f"{rig.name} is not mirrored across x, y or z: at best {matched:.0%} of its vertices "
+            "have a partner on the other side of a left and a right joint; bind it without "
+            "symmetry"
+        )
+    return best
+
+
+def find_joint_mirror(rig: Rig) -> Mirror:
+    """Find the plane, orthogonal to x, y or z, across which most joints have a partner.
+
+    Unlike for `find_mirror` the mesh need not be mirrored: hair seldom is. No vertex is paired.
+
+    Raises
+    ------
+    SkeletonError
+        Less than half of the joints have a partner across any such plane, or no two joints lie
+        on different sides of it.
+    """
+    joints = rig.skeleton.joints
+    if not len(joints):
+        raise SkeletonError(f"{rig.name} has no joints, so none has a partner on the other side")
+    diagonal = float(np.linalg.norm(np.ptp(rig.mesh.bounds, axis=0)))
+    best: Mirror | None = None
+    share = 0.0
+    for axis in range(3):
+        middle = float(rig.mesh.bounds[:, axis].mean())
+        for position in (0.0, middle, float(np.median(joints[:, axis]))):
+            joint = _joint_partners(rig.skeleton, axis, position, JOINT_TOLERANCE * diagonal)
+            if not np.any((joint >= 0) & (joint != np.arange(len(joint)))):
+                continue
+            gap = _reflected(joints, axis, position)[joint >= 0] - joints[joint[joint >= 0]]
+            exact = 1 - float(np.linalg.norm(gap, axis=1).mean()) / (JOINT_TOLERANCE * diagonal)
+            found = float((joint >= 0).mean()) + 0.1 * exact
+            if found > share:
+                best, share = Mirror(axis, position, np.empty(0, np.intp), joint), found
+    if best is None or (best.joint >= 0).mean() < LEAST_SHARE:
+        raise SkeletonError(
+            f"the skeleton of {rig.name} is not mirrored across x, y or z: less than half of its "
+            "joints have a partner on the other side"
+        )
+    return best
+
+
+def mirror_weights(weights: NDArray[np.float64], mirror: Mirror) -> NDArray[np.float64]:
+    """Average the weights of each vertex with its partner's, left and right exchanged.
+
+    Parameters
+    ----------
+    weights : array, shape (n, j)
+        Rows sum to one.
+    mirror : Mirror
+
+    Returns
+    -------
+    array, shape (n, j)
+        Rows sum to one. Vertices without a partner, and those that follow a joint without
+        one, stay as they were.
+    """
+    alone = mirror.joint < 0
+    partner = mirror.vertex
+    follows_alone: NDArray[np.bool_] = np.asarray((weights[:, alone] > 0).any(axis=1))
+    paired = (partner >= 0) & ~follows_alone & ~follows_alone[partner]
+    result = weights.copy()
+    swap = np.where(alone, np.arange(len(alone)), mirror.joint)
+    result[paired] = (weights[paired] + weights[partner[paired]][:, swap]) / 2
+    return result
+
+
+def balance(weights: NDArray[np.float64], mirror: Mirror) -> NDArray[np.float64]:
+    """Where pruning took one of a pair from a vertex on the plane, take the other too.
+
+    Parameters
+    ----------
+    weights : array, shape (n, j)
+    mirror : Mirror
+
+    Returns
+    -------
+    array, shape (n, j)
+        Rows sum to what they did.
+    """
+    middle = np.flatnonzero(mirror.vertex == np.arange(len(mirror.vertex)))
+    swap = np.where(mirror.joint < 0, np.arange(len(mirror.joint)), mirror.joint)
+    rows = weights[middle]
+    even = np.where(rows[:, swap] > 0, rows, 0.0)
+    total = even.sum(axis=1, keepdims=True)
+    before = rows.sum(axis=1, keepdims=True)
+    result = weights.copy()
+    result[middle] = np.divide(even * before, total, out=rows.copy(), where=total > 0)
+    return result
+
+
+def _reflected(points: NDArray[np.float64], axis: int, position: float) -> NDArray[np.float64]:
+    result = points.copy()
+    result[:, axis] = 2 * position - result[:, axis]
+    return result
+
+
+def _vertex_partners(
+    vertices: NDArray[np.float64], axis: int, position: float, diagonal: float
+) -> NDArray[np.intp]:
+    """Pair vertices that are each other's nearest after reflection."""
+    # Welded vertices: copies of a vertex at a seam must all get the same partner.
+    points, welded = weld(vertices, WELD_TOLERANCE * diagonal)
+    distance, near = cKDTree(points).query(
+        _reflected(points, axis, position), distance_upper_bound=VERTEX_TOLERANCE * diagonal
+    )
+    near[np.isinf(distance)] = -1
+    mutual = (near >= 0) & (near[near] == np.arange(len(near)))
+    first = np.zeros(len(points), np.intp)
+    first[welded[::-1]] = np.arange(len(welded))[::-1]
+    partner = np.where(mutual, first[near], -1)[welded]
+    on_plane = (near == np.arange(len(near)))[welded]
+    return np.where(on_plane, np.arange(len(welded)), partner)
+
+
+def _joint_partners(
+    skeleton: Skeleton, axis: int, position: float, tolerance: float
+) -> NDArray[np.intp]:
+    """Pair joints by position; of several at one position, those whose branches lie alike."""
+    joints = skeleton.joints
+    branch = skeleton.subtree @ joints / skeleton.subtree.sum(axis=1, keepdims=True)
+    gap = cdist(_reflected(joints, axis, position), joints)
+    branch_gap = cdist(_reflected(branch, axis, position), branch)
+    depth = skeleton.subtree.sum(axis=0)
+    unlike = np.abs(depth[:, None] - depth) / len(joints)
+    cost = np.where(gap <= tolerance, (gap + branch_gap) / tolerance + unlike, 1e6)
+    cost = (cost + cost.T) / 2  # a pair is one from either side
+    partner = linear_sum_assignment(cost)[1]
+    near = gap[np.arange(len(joints)), partner] <= tolerance
+    partner = np.where(near, partner, -1)
+    mutual = (partner >= 0) & (partner[partner] == np.arange(len(joints)))
+    partner = np.where(mutual, partner, -1)
+    # A chain is no mirror image of itself from end to start: parents must be partners too.
+    parents = skeleton.parents
+    above = np.where(parents >= 0, partner[parents], -1)
+    return np.where((partner >= 0) & (parents[partner] == above), partner, -1)

@@ -1,0 +1,278 @@
+"""Graph contraction: fewer nodes for any-angle paths, with paths as short.
+
+Where a ray leaves the body, its last segment runs from a lattice point to a surface node, whose
+only other neighbours are the corners of a triangle. Shortcut edges from the lattice point to these
+corners replace the surface node, which removes a third of all nodes (as contraction hierarchies do
+on road networks: Geisberger, Sanders, Schultes & Delling 2008). Surface nodes stay where the body
+is thinner than a lattice cell.
+
+Deep inside, one lattice point represents a block of 2 x 2 x 2, and one edge between two blocks
+replaces four. This changes paths along edges, but any-angle paths are straight there.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...geometry.sorting import order_by_place, sort_into
+from ...graph import INTERIOR, SURFACE, CutCellGraph
+from ...graph.inside_edges import lattice_steps
+from ...graph.interior import OUTSIDE
+from ...graph.neighbours import count_ends, list_ends
+from ...runtime.compiled import compiled
+
+KEPT, UNKNOWN = -1, -2
+"""Instead of a representative: of nodes that are not contracted, or not yet known to be."""
+CORNERS = 3
+NO_BLOCK = -1
+BLOCK_POINTS = 8
+MANY_VERTICES = 50_000
+"""With more vertices, wavefronts take half as long if these are numbered by place."""
+
+
+@dataclass(frozen=True, eq=False)
+class Contraction:
+    """The kept nodes with numbers of their own, and the representatives of contracted ones.
+
+    Numbers follow the order of the graph's nodes, except that of many mesh vertices those in one
+    lattice cell come one after the other.
+
+    Parameters
+    ----------
+    steps : array, shape (p, 6), int32
+        Neighbours of the lattice points inside, see `lattice_steps`.
+    indptr, indices : arrays, shapes (K + 1,) and (2E,), int32
+        Neighbours of each kept node.
+    places : array, shape (K, 3), float64
+        In the unit cube.
+    node : array, shape (K,), int32
+        The graph's node. All vertices of the mesh are kept.
+    number : array, shape (N,), int32
+        For each node of the graph its own number, or that of its representative: a lattice point
+        next to a surface node, or of the same block.
+    first_surface : int
+        The number of the first surface node.
+    """
+
+    steps: NDArray[np.int32]
+    indptr: NDArray[np.int32]
+    indices: NDArray[np.int32]
+    places: NDArray[np.float64]
+    node: NDArray[np.int32]
+    number: NDArray[np.int32]
+    first_surface: int
+
+    def representative(self, nodes: NDArray[np.int64]) -> NDArray[np.int32]:
+        """Return the representatives of nodes of the graph; of kept nodes themselves."""
+        return self.node[self.number[nodes]]
+
+
+def contract(graph: CutCellGraph) -> Contraction:
+    """Contract blocks of lattice points, and surface nodes at the end of a single segment."""
+    first, last = graph.first_point, graph.first_surface
+    inside = np.searchsorted(graph.edge_kind, np.array([INTERIOR, SURFACE], np.uint8))
+    steps = lattice_steps(graph.nodes, graph.edges[slice(*inside)], first, last)
+    block = find_blocks(graph.nodes[first:last], graph.lattice.resolution, steps)
+    contracted = Contraction(steps, *_contract(graph.nodes, graph.edges, block, first))
+    return _sorted_by_place(contracted, first) if first > MANY_VERTICES else contracted
+
+
+def _sorted_by_place(contracted: Contraction, vertices: int) -> Contraction:
+    """Renumber mesh vertices by place. Paths remain the same."""
+    order = np.arange(len(contracted.node))
+    order[:vertices] = order_by_place(contracted.places[:vertices])
+    rank = np.empty(len(order), np.int32)
+    rank[order] = np.arange(len(order))
+    size = np.diff(contracted.indptr)[order]
+    indptr = np.concatenate([[0], np.cumsum(size)]).astype(np.int32)
+    entry = np.arange(indptr[-1]) + np.repeat(contracted.indptr[order] - indptr[:-1], size)
+    return replace(
+        contracted,
+        indptr=indptr,
+        indices=rank[contracted.indices[entry]],
+        places=contracted.places[order],
+        node=contracted.node[order],
+        number=rank[contracted.number],
+    )
+
+
+def find_blocks(
+    places: NDArray[np.float64], resolution: int, steps: NDArray[np.int32]
+) -> NDArray[np.int32]:
+    """Find blocks of two lattice points each way whose neighbours are all inside.
+
+    They are laid out from the middle of the cube, alike on both sides, so that a mirror-symmetric
+    body gets mirror-symmetric blocks.
+
+    Parameters
+    ----------
+    places : array, shape (p, 3)
+        The lattice points inside, in the unit cube.
+    resolution : int
+    steps : array, shape (p, 6), int32
+        See `lattice_steps`.
+
+    Returns
+    -------
+    array, shape (p,), int32
+        The innermost point of the block of each lattice point inside; -1 for points in none.
+    """
+    return _find_blocks(places, resolution, steps)
+
+
+@compiled
+def _find_blocks(places, resolution, steps):
+    deep = np.zeros(len(places), np.bool_)
+    for p in range(len(steps)):
+        deep[p] = steps[p].min() != OUTSIDE
+    innermost = np.full(len(places), NO_BLOCK, np.int32)
+    outward, block = np.empty(3, np.int64), np.empty(BLOCK_POINTS, np.int32)
+    for p in range(len(steps)):
+        begins = deep[p] and _begins_block(places[p], resolution, outward)
+        if begins and _fill_block(p, steps, deep, outward, block):
+            for k in range(BLOCK_POINTS):
+                innermost[block[k]] = p
+    return innermost
+
+
+@compiled(inline="always")
+def _begins_block(place, resolution, outward):
+    """Tell if a point is innermost in its block; write the columns of `steps` that lead outward."""
+    begins = True
+    for axis in range(3):
+        k = int(place[axis] * resolution)
+        upper = 2 * k >= resolution
+        from_middle = k - (resolution + 1) // 2 if upper else resolution // 2 - 1 - k
+        begins &= from_middle % 2 == 0
+        outward[axis] = axis if upper else axis + 3
+    return begins
+
+
+@compiled(inline="always")
+def _fill_block(p, steps, deep, outward, block):
+    """List the points of a block, up to the first that is not deep inside; tell if all are."""
+    block[0] = p
+    for k in range(1, BLOCK_POINTS):
+        axis = 2 if k >= 4 else 1 if k >= 2 else 0
+        block[k] = steps[block[k - (1 << axis)], outward[axis]]
+        if not deep[block[k]]:
+            return False
+    return True
+
+
+# A single kernel, so that another thread acquires Python's lock only once.
+@compiled
+def _contract(nodes, edges, block, mesh):
+    """Contract a graph with `mesh` mesh vertices; edges of surface nodes to corners come last."""
+    first_surface = mesh + len(block)
+    ends = len(edges) - CORNERS * (len(nodes) - first_surface)
+    representative = _find_representatives(edges[:ends], block, mesh, len(nodes))
+    node, number = _number(representative)
+    kept = np.empty_like(edges)
+    count = _keep_edges(nodes, edges, block, mesh, representative, number, kept)
+    # Kept nodes are below 0 here, and left out.
+    start, order = sort_into(representative[first_surface:] - mesh, len(block))
+    count = _add_shortcuts(edges, ends, start, order, mesh, number, kept, count)
+    indptr, indices = _list_neighbours(kept[:count], len(node))
+    places, crossing = np.empty((len(node), 3)), 0
+    for n in range(len(node)):
+        for axis in range(3):
+            places[n, axis] = nodes[node[n], axis]
+        crossing += node[n] < first_surface
+    return indptr, indices, places, node, number, crossing
+
+
+@compiled
+def _find_representatives(edges, block, mesh, count):
+    """Return the representative of each contracted node; less than 0 for kept ones."""
+    representative = np.full(count, UNKNOWN, np.int32)
+    for p in range(len(block)):
+        if block[p] != NO_BLOCK and block[p] != p:
+            representative[mesh + p] = mesh + block[p]
+    first_surface = mesh + len(block)
+    for e in range(len(edges)):
+        for side in range(2):
+            c, other = edges[e, side], edges[e, 1 - side]
+            if c >= first_surface:
+                single = representative[c] == UNKNOWN and mesh <= other < first_surface
+                representative[c] = other if single else KEPT
+    return representative
+
+
+@compiled
+def _number(representative):
+    """Return the kept nodes, and for each node its number or that of its representative."""
+    node = np.empty(len(representative), np.int32)
+    number = np.empty(len(representative), np.int32)
+    count = 0
+    for n in range(len(representative)):
+        if representative[n] < 0:
+            node[count], number[n] = n, count
+            count += 1
+    for n in range(len(representative)):
+        if representative[n] >= 0:
+            number[n] = number[representative[n]]
+    return node[:count].copy(), number
+
+
+@compiled
+def _keep_edges(nodes, edges, block, mesh, representative, number, kept):
+    """List the edges between kept nodes, and one edge between neighbouring blocks."""
+    first_surface = mesh + len(block)
+    count = 0
+    for e in range(len(edges)):
+        u, v = edges[e, 0], edges[e, 1]
+        if max(u, v) >= first_surface:
+            if representative[max(u, v)] >= 0:
+                continue
+        elif min(u, v) >= mesh:
+            a, b = block[u - mesh], block[v - mesh]
+            between = a != NO_BLOCK and b != NO_BLOCK
+            if between and (a == b or not _in_line(nodes, mesh + a, u, v)):
+                continue
+        kept[count, 0], kept[count, 1] = number[u], number[v]
+        count += 1
+    return count
+
+
+@compiled
+def _list_neighbours(edges, count):
+    indptr = np.zeros(count + 1, np.int32)
+    count_ends(edges, 0, count, indptr[1:])
+    for node in range(count):
+        indptr[node + 1] += indptr[node]
+    indices, no_lengths = np.empty(2 * len(edges), np.int32), np.empty(0)
+    list_ends(edges, no_lengths, 0, count, indptr[:-1].copy(), indices, no_lengths)
+    return indptr, indices
+
+
+@compiled(inline="always")
+def _in_line(nodes, a, u, v):
+    """Tell if a node lies on the axis-parallel line through two others."""
+    for axis in range(3):
+        if nodes[u, axis] == nodes[v, axis] and nodes[u, axis] != nodes[a, axis]:
+            return False
+    return True
+
+
+@compiled
+def _add_shortcuts(edges, ends, start, order, mesh, number, kept, count):
+    """List shortcuts from lattice points to corners, each once, from row `count` on.
+
+    `order` from start[p] on are the surface nodes that the lattice point p represents. Edges of
+    surface nodes to corners begin at `ends`.
+    """
+    for p in range(len(start) - 1):
+        own = count  # the first of its shortcuts
+        for c in order[start[p] : start[p + 1]]:
+            for e in range(ends + CORNERS * c, ends + CORNERS * c + CORNERS):
+                k = own
+                while k < count and kept[k, 1] != edges[e, 1]:
+                    k += 1
+                if k == count:
+                    kept[k, 0], kept[k, 1] = number[mesh + p], edges[e, 1]
+                    count += 1
+    return count

@@ -1,0 +1,170 @@
+"""Wavefronts of any-angle paths: bones and joints ranked by position, and the sources' labels."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial.distance import cdist
+
+from ...geometry.sorting import sort_into
+from ...runtime.compiled import compiled
+from ..bones import Bones, Sources
+from .labels import NO_JOINT, find_room, no_labels
+from .queue import bucket_of, join
+
+
+@dataclass(frozen=True, eq=False)
+class Ranking:
+    """Bones, joints and sources sorted by position, so that ties do not depend on numbering.
+
+    Parameters
+    ----------
+    joints : array, shape (j,)
+        The joint of each rank.
+    places : array, shape (j, 3)
+        The start of the first bone of each.
+    table : array, shape (b, 7)
+        Of each bone: its start, the displacement to its end, and one over its squared length.
+    rank : array, shape (b,), int32
+        The rank of each bone's joint.
+    sources : Sources
+        With bones as in the table, ascending.
+    """
+
+    joints: NDArray[np.int32]
+    places: NDArray[np.float64]
+    table: NDArray[np.float64]
+    rank: NDArray[np.int32]
+    sources: Sources
+
+
+@dataclass(frozen=True, eq=False)
+class Wavefront:
+    """Labels of joints that propagate together.
+
+    Parameters
+    ----------
+    each : int
+        k, labels a node.
+    labels, parents : arrays, shape (N * k,)
+        See `labels`.
+    least : array, shape (N,)
+        The distance of the nearest joint to each node found so far.
+    """
+
+    each: int
+    labels: NDArray[np.void]
+    parents: NDArray[np.int32]
+    least: NDArray[np.float64]
+
+
+def rank_bones(bones: Bones, sources: Sources) -> Ranking:
+    """Order bones, joints and sources by position."""
+    order = np.lexsort(np.concatenate([bones.start, bones.end], axis=1).T[::-1])
+    ranked = _rank(order, bones.start, bones.end, bones.joint, sources.bone)
+    joints, places, table, rank, bone, by_bone = ranked
+    begin = Sources(sources.node[by_bone], bone, sources.distance[by_bone])
+    return Ranking(joints, places, table, rank, begin)
+
+
+@compiled
+def _rank(order, start, end, joint, bone):
+    """Rank joints by their first bone; sort sources by bone."""
+    table, rank = np.empty((len(order), 7)), np.empty(len(order), np.int32)
+    joints, places = np.empty(len(order), np.int32), np.empty((len(order), 3))
+    row_of, rank_of = np.empty(len(order), np.int32), np.full(joint.max() + 1, NO_JOINT, np.int32)
+    count = 0
+    for row in range(len(order)):
+        b = order[row]
+        row_of[b] = row
+        squared = 0.0
+        for axis in range(3):
+            along = end[b, axis] - start[b, axis]
+            table[row, axis], table[row, 3 + axis] = start[b, axis], along
+            squared += along * along
+        table[row, 6] = 1 / squared if squared > 0 else 0.0
+        if rank_of[joint[b]] == NO_JOINT:
+            rank_of[joint[b]], joints[count] = count, joint[b]
+            for axis in range(3):
+                places[count, axis] = start[b, axis]
+            count += 1
+        rank[row] = rank_of[joint[b]]
+    own = row_of[bone]
+    _, by_bone = sort_into(own, len(order))
+    return joints[:count], places[:count], table, rank, own[by_bone], by_bone
+
+
+def partition_sources(places: NDArray[np.float64]) -> list[NDArray[np.bool_]]:
+    """Partition joints at places (j, 3) into two groups, neighbours into different ones.
+
+    Each joint in turn goes to the group that its nearest predecessor is not in. A single joint is
+    one group.
+    """
+    apart = cdist(places, places)
+    odd = np.zeros(len(places), np.bool_)
+    for k in range(1, len(places)):
+        odd[k] = not odd[apart[k, :k].argmin()]
+    return [half for half in (~odd, odd) if half.any()]
+
+
+def begin(
+    ranking: Ranking,
+    nodes: int,
+    group: NDArray[np.bool_],
+    each: int,
+    least: NDArray[np.float64] | None = None,
+) -> Wavefront:
+    """Start a wavefront: label the sources of some joints.
+
+    Parameters
+    ----------
+    ranking : Ranking
+    nodes : int
+        N, kept nodes of the contracted graph.
+    group : array, shape (j,), bool
+        Which joints, by rank.
+    each : int
+        k, labels a node.
+    least : array, shape (N,), optional
+        The distance of the nearest joint to each node, if known.
+
+    Returns
+    -------
+    Wavefront
+    """
+    labels, parents = no_labels(nodes, each)
+    least = np.full(nodes, np.inf) if least is None else least.copy()
+    sources = ranking.sources.node, ranking.sources.bone, ranking.sources.distance
+    _enter_sources(labels, parents, least, each, group, ranking.rank, *sources)
+    return Wavefront(each, labels, parents, least)
+
+
+@compiled
+def _enter_sources(labels, parents, least, each, group, rank, node, bone, distance):
+    for s in range(len(node)):
+        joint, parent = rank[bone[s]], ~bone[s]
+        if not group[joint]:
+            continue
+        label = find_room(labels, each, node[s], joint)
+        if distance[s] < labels[label].distance:
+            labels[label].joint, parents[label] = joint, parent
+            labels[label].distance = distance[s]
+            least[node[s]] = min(least[node[s]], distance[s])
+
+
+@compiled
+def enqueue(labels, each, head, scale, node, number):
+    """Insert all used labels into the queue, in the order of the graph's nodes.
+
+    `node` and `number` are those of the contraction. However it numbers nodes, the result of paths
+    of equal length is the same.
+    """
+    for n in range(len(number)):
+        v = number[n]
+        if node[v] != n:
+            continue
+        for label in range(v * each, v * each + each):
+            if labels[label].joint != NO_JOINT:
+                join(head, labels, bucket_of(head, scale, labels[label].distance), label)

@@ -1,0 +1,1 @@
+"""Where each bone ends inside the body."""

@@ -1,0 +1,267 @@
+"""Bone chains: which bones continue which, from the joints' places in the body.
+
+The joint tree of a file says what moves with what. Most of its parent-child pairs are bones, but
+not all: feet for inverse kinematics are children of a root below the ground, arms and ears branch
+off sideways, and some files list their joints without any tree.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse.csgraph import dijkstra
+from scipy.spatial.distance import cdist
+
+from ...rig.rig import Skeleton
+from .probe import BodyProbe
+from .rest_axis import rest_directions
+
+SAME_PLACE = 1e-6
+"""Of the longest side: joints at most this far apart coincide."""
+ONWARD = 0.5
+"""Cosine: a child within 60 degrees of its parent's bone continues it; others branch off."""
+ALONG_AXIS = 0.9
+"""Cosine: if the rest axis gives the direction, a child within 25 degrees continues the bone."""
+IN_BODY = 0.5
+"""Part of a bone that must run through the body for it to be one."""
+BACKWARD = (-0.2, -0.5)
+"""Cosine: an inferred bone may bend back by this much, like the hock of a hind leg; where that
+leaves joints over, by more, like the knee of a machine."""
+REACH = 4.0
+"""The length of an inferred bone over that of the bone that it continues, at most."""
+CLEARLY = 1.2
+"""A bone is inferred if the second-best candidate is farther by this factor; else it is
+ambiguous."""
+HOP = 1.5
+"""Without a tree, edges between joints cost their length to this power: many short ones along a
+limb are cheaper than one across, and a straight one is cheaper than a zigzag."""
+THROUGH_AIR = 10.0
+"""Extra cost of an edge outside the body."""
+
+
+@dataclass(frozen=True, eq=False)
+class Chains:
+    """The bones between joints.
+
+    Parameters
+    ----------
+    joints : array, shape (j, 3)
+        In the unit cube.
+    near : array, shape (j,), bool
+        Joints in the body or right beside it.
+    direction : array, shape (j, 3)
+        Unit vector of the bone that ends at each joint; zero if there is none.
+    rest : array, shape (j, 3), or None
+        Unit vector of each joint's own bone at rest; see `rest_directions`.
+    length : array, shape (j,)
+        Length of the bone that ends at each joint; zero if there is none.
+    ends : tuple of lists
+        The joints at which the bones of each joint end.
+    inferred : tuple of lists
+        The joints at which inferred bones end, which the tree does not have.
+    """
+
+    joints: NDArray[np.float64]
+    near: NDArray[np.bool_]
+    direction: NDArray[np.float64]
+    rest: NDArray[np.float64] | None
+    length: NDArray[np.float64]
+    ends: tuple[list[int], ...]
+    inferred: tuple[list[int], ...]
+
+    @property
+    def onward(self) -> NDArray[np.float64]:
+        """Directions of leaf bones, shape (j, 3): along the rest axis, if that is known."""
+        return self.direction if self.rest is None else self.rest
+
+
+def find_chains(skeleton: Skeleton, joints: NDArray[np.float64], probe: BodyProbe) -> Chains:
+    """Find the bone chains of a skeleton.
+
+    Parameters
+    ----------
+    skeleton : Skeleton
+    joints : array, shape (j, 3)
+        Its joints in the unit cube.
+    probe : BodyProbe
+    """
+    near = probe.near(joints)
+    near |= _leads_in(skeleton, joints, near, probe)
+    same = cdist(joints, joints) < SAME_PLACE
+    if not _has_bones(skeleton):
+        parents = _inferred_tree(skeleton, joints, near, probe)
+        skeleton = replace(skeleton, parents=parents)
+    direction, length = _directions(skeleton, joints, near, same, probe)
+    rest = rest_directions(skeleton, joints)
+    ends = _ends(skeleton, joints, near, same, direction, rest)
+    inferred = _inferred_bones(skeleton, joints, direction, length, ends, probe)
+    return Chains(joints, near, direction, rest, length, ends, inferred)
+
+
+def _leads_in(
+    skeleton: Skeleton, joints: NDArray[np.float64], near: NDArray[np.bool_], probe: BodyProbe
+) -> NDArray[np.bool_]:
+    """Tell which joints outside the body begin a bone into it, such as one in an open mouth.
+
+    They have one child, which is in the body, unlike a root on the ground, on which feet hang, too.
+    """
+    only = [len(children) == 1 for children in skeleton.children]
+    some = np.flatnonzero(skeleton.deform & ~near & only)
+    child = np.array([skeleton.children[j][0] for j in some], np.intp)
+    leads = np.zeros(len(joints), np.bool_)
+    leads[some] = near[child] & (probe.inner_part(joints[some], joints[child]) >= IN_BODY)
+    return leads
+
+
+def _has_bones(skeleton: Skeleton) -> bool:
+    above = skeleton.parents[skeleton.parents >= 0]
+    return bool(skeleton.deform[above].any())
+
+
+def _directions(
+    skeleton: Skeleton,
+    joints: NDArray[np.float64],
+    near: NDArray[np.bool_],
+    same: NDArray[np.bool_],
+    probe: BodyProbe,
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return direction and length of the bone that ends at each joint, zero if there is none.
+
+    A parent and its child are the ends of a bone if it begins in the body and runs through it,
+    unlike from a root on the ground. `same`, shape (j, j), marks joints that coincide.
+    """
+    parent = skeleton.parents.copy()
+    for j in np.flatnonzero((parent >= 0) & same[parent, np.arange(len(parent))]):
+        while parent[j] >= 0 and same[parent[j], j]:
+            parent[j] = skeleton.parents[parent[j]]
+    away = joints - joints[parent]
+    length = np.linalg.norm(away, axis=1)
+    bone = (parent >= 0) & near[parent] & (length >= SAME_PLACE)
+    bone[bone] = probe.inner_part(joints[parent[bone]], joints[bone]) >= IN_BODY
+    length = np.where(bone, length, 0.0)
+    direction = np.divide(away, length[:, None], out=np.zeros_like(away), where=bone[:, None])
+    return direction, length
+
+
+def _ends(
+    skeleton: Skeleton,
+    joints: NDArray[np.float64],
+    near: NDArray[np.bool_],
+    same: NDArray[np.bool_],
+    direction: NDArray[np.float64],
+    rest: NDArray[np.float64] | None,
+) -> tuple[list[int], ...]:
+    """List where the bones of each joint end.
+
+    Bones run to the joint's children, unless there are several and none continues the bone before:
+    then the children are side branches, like the ears of a head, and the joint's own bone is not in
+    the file. A child continues the bone if it lies along the joint's rest axis or, if that is
+    unknown or far from the direction of the bone before, along the latter. A joint outside the body
+    has no bone.
+    """
+    ends: tuple[list[int], ...] = tuple([] for _ in joints)
+    child, parent = np.arange(len(joints)), skeleton.parents
+    leads = (parent >= 0) & (skeleton.deform | near) & ~same[parent, child]
+    leads &= (skeleton.deform & near)[parent]
+    for k in np.flatnonzero(leads).tolist():
+        ends[parent[k]].append(k)
+    for j, children in enumerate(ends):
+        if len(children) > 1 and direction[j].any():
+            away = joints[children] - joints[j]
+            away /= np.linalg.norm(away, axis=1, keepdims=True)
+            along, least = direction[j], ONWARD
+            if rest is not None and rest[j] @ along >= ONWARD:
+                along, least = rest[j], ALONG_AXIS
+            if (away @ along).max() < least:
+                children.clear()
+    return ends
+
+
+def _inferred_bones(
+    skeleton: Skeleton,
+    joints: NDArray[np.float64],
+    direction: NDArray[np.float64],
+    length: NDArray[np.float64],
+    ends: tuple[list[int], ...],
+    probe: BodyProbe,
+) -> tuple[list[int], ...]:
+    """Infer bones from the ends of chains to joints at which no bone ends, as from shin to foot.
+
+    Each must be the other's clear choice: the nearest through the body, and not backward.
+    """
+    inferred: tuple[list[int], ...] = tuple([] for _ in joints)
+    loose = np.flatnonzero(skeleton.deform & (length == 0))
+    has_end = np.array([len(those) > 0 for those in ends])
+    leaves = np.flatnonzero(skeleton.deform & ~has_end & (length > 0))
+    away = joints[loose] - joints[leaves, None]
+    far = np.linalg.norm(away, axis=2)
+    onward = np.einsum("tlc,tc->tl", away, direction[leaves])
+    fits = (far >= SAME_PLACE) & ~skeleton.subtree[loose][:, leaves].T
+    fits &= (far <= REACH * length[leaves, None]) & (onward >= BACKWARD[-1] * far)
+    leaf, goal = fits.nonzero()
+    fits[leaf, goal] = probe.inner_part(joints[leaves[leaf]], joints[loose[goal]]) >= IN_BODY
+    for backward in BACKWARD:
+        distance = np.where(fits & (onward >= backward * far), far, np.inf)
+        choice = _clear_choice(distance, joints[loose])
+        suits = np.arange(len(loose)) == choice[:, None]
+        suitor = _clear_choice(np.where(suits, distance, np.inf).T, joints[leaves])
+        found = np.flatnonzero(suitor >= 0)
+        for k in found:
+            inferred[leaves[suitor[k]]].append(int(loose[k]))
+        fits[suitor[found]], fits[:, found] = False, False
+    return inferred
+
+
+def _clear_choice(far: NDArray[np.float64], places: NDArray[np.float64]) -> NDArray[np.intp]:
+    """Find the nearest candidate of each, shape (n,); -1 if another one is about as near.
+
+    Parameters
+    ----------
+    far : array, shape (n, m)
+        Distances; infinite for those that are no candidates.
+    places : array, shape (m, 3)
+    """
+    if far.size == 0:
+        return np.full(len(far), -1)
+    first = far.argmin(axis=1)
+    least = far.min(axis=1)
+    elsewhere = (cdist(places, places) >= SAME_PLACE)[first]
+    next_best = np.where(elsewhere, far, np.inf).min(axis=1)
+    return np.where((least < np.inf) & (next_best > CLEARLY * least), first, -1)
+
+
+def _inferred_tree(
+    skeleton: Skeleton, joints: NDArray[np.float64], near: NDArray[np.bool_], probe: BodyProbe
+) -> NDArray[np.int32]:
+    """Infer a tree for joints without one; return the parents.
+
+    It is the tree of cheapest paths from the root. The root is the joint whose paths are
+    straightest.
+    """
+    parents = np.full(len(joints), -1, np.int32)
+    members = np.flatnonzero(skeleton.deform | near)
+    if len(members) < 3:
+        return parents
+    # Sorted by position, so that ties do not depend on how a file numbers joints.
+    members = members[np.lexsort(joints[members].T[::-1])]
+    places = joints[members]
+    away = places[None] - places[:, None]
+    length = np.linalg.norm(away, axis=2)
+    air = 1 - probe.inner_part(places[:, None], places[None], strictly=True)
+    # Coincident joints cost almost nothing; zero would mean no edge.
+    cost = np.maximum(length**HOP * (1 + THROUGH_AIR * air), 1e-12)
+    before = dijkstra(cost, return_predecessors=True)[1]
+    unit = np.divide(away, length[..., None], out=np.zeros_like(away), where=length[..., None] > 0)
+    best, least = -1, np.inf
+    for root in np.flatnonzero(skeleton.deform[members]):
+        # Edges from the root itself do not bend.
+        to = np.flatnonzero((before[root] >= 0) & (before[root] != root))
+        via = before[root][to]
+        bend = (1 - (unit[before[root][via], via] * unit[via, to]).sum(axis=1)).sum()
+        if bend < least * (1 - SAME_PLACE):
+            best, least = int(root), float(bend)
+    reached = before[best] >= 0
+    parents[members[reached]] = members[before[best][reached]]
+    return parents

@@ -1,0 +1,227 @@
+"""Bone extents fitted to the body: where bones end, which files seldom say.
+
+A joint is where a bone begins. Where the bone ends is known only if one child continues it. All
+others are leaf bones: each runs on until it leaves the body, or comes nearer to another bone. Once
+the skin nearest to it is known, it is aimed at the middle of that skin.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial.distance import cdist
+
+from ...graph import CutCellGraph
+from ...rig.rig import Skeleton
+from ...runtime.compiled import no_refcount
+from ..bones import Bones
+from ..nearest import NodeGrid
+from .chains import SAME_PLACE, Chains, find_chains
+from .probe import BodyProbe
+
+NO_ROOM = 2.0
+"""Depths of the body: a leaf bone shorter than this is given part of the bone that leads to it."""
+GIVEN = 2.0
+"""Depths of the body that it is given, at most."""
+REGION_LEAVES = 3
+"""Leaf bones that skin is assigned to, its nearest. In the middle between left and right there are
+two."""
+REGION_WITHIN = 1.25
+"""Skin to which another joint is nearer by this factor belongs to that joint alone: the leaf bone's
+share of it would be a hundredth."""
+REGION_POWER = 20
+"""Skin is shared among joints by this power of the nearest distance over their own."""
+PART_OF_REACH = 0.5
+"""A bone along a rest axis ends half-way to where it would leave the body: further out the skin is
+close to its end."""
+LEAST_CELLS = 2.0
+"""Lattice cells: such a bone is at least this long, if the body is still near there. Shorter ones
+have hardly any direction."""
+UNDER_SKIN = 0.35
+"""A joint lies close under the skin if that is nearer than this part of the room around the
+joint."""
+LEAST_ROOM = 1.5
+"""Lattice cells: with less room than this the part is not meaningful."""
+
+
+def fit_bones(
+    graph: CutCellGraph, skeleton: Skeleton, grid: NodeGrid
+) -> tuple[Bones, NDArray[np.bool_]]:
+    """Find the bones of every joint that may carry weight.
+
+    Parameters
+    ----------
+    graph : CutCellGraph
+    skeleton : Skeleton
+        In the units of the graph's mesh.
+    grid : NodeGrid
+        Of the graph's nodes.
+
+    Returns
+    -------
+    bones : Bones
+        In the unit cube, ordered by joint.
+    aimed : array, shape (b,), bool
+        Leaf bones whose direction neither a joint nor the rest orientation gives; see
+        `aim_leaf_bones`.
+    """
+    probe = BodyProbe(graph, grid)
+    chains = find_chains(skeleton, graph.lattice.to_unit(skeleton.joints), probe)
+    start, end = [], []
+    for j in np.flatnonzero(skeleton.deform).tolist():
+        ends = chains.ends[j] + chains.inferred[j] or [j]
+        end += ends
+        start += [j] * len(ends)
+    joint = np.array(start, np.int32)
+    leaf = joint == end
+    bones = Bones(chains.joints[joint], chains.joints[end], joint)
+    leaves = bones.joint[leaf]
+    onward = chains.onward[leaves]
+    reach = probe.exit_distance(chains.joints[leaves], onward)
+    bones.end[leaf] += onward * reach[:, None]
+    bones = _share_with_leaves(bones, leaf, probe)
+    length, on_axis = _leaf_lengths(bones, leaf, chains, reach, probe)
+    under_skin = (skeleton.parents[leaves] >= 0) & _close_under_skin(chains.joints[leaves], probe)
+    length[under_skin] = 0
+    bones.end[leaf] = chains.joints[leaves] + onward * length[:, None]
+    aimed = leaf.copy()
+    aimed[leaf] = ~on_axis & ~under_skin & chains.near[leaves]
+    return bones, aimed
+
+
+def _share_with_leaves(bones: Bones, leaf: NDArray[np.bool_], probe: BodyProbe) -> Bones:
+    """Shorten bones that end at a leaf bone without room, such as a foot on the ground.
+
+    The leaf bone's joint lies at the very end of the body. If the bone before it reached as far,
+    no skin would be nearest to the leaf bone.
+    """
+    end = bones.end.copy()
+    room = np.linalg.norm(bones.end - bones.start, axis=1)
+    continues = leaf & (cdist(bones.end, bones.start) < SAME_PLACE)
+    before = np.flatnonzero(~leaf & continues.any(axis=1))
+    depth = probe.depth((bones.start[before] + bones.end[before]) / 2)
+    own, left = room[before], np.where(continues[before], room, 0.0).max(axis=1, initial=0.0)
+    short = left < np.minimum(own, NO_ROOM * depth)
+    cut = np.minimum((own - left) / 2, GIVEN * depth)
+    share = np.divide(cut, own, out=np.zeros_like(own), where=short)
+    end[before] += (bones.start - bones.end)[before] * share[:, None]
+    return Bones(bones.start, end, bones.joint)
+
+
+def _leaf_lengths(
+    bones: Bones,
+    leaf: NDArray[np.bool_],
+    chains: Chains,
+    reach: NDArray[np.float64],
+    probe: BodyProbe,
+) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+    """Measure the lengths of the leaf bones.
+
+    Each ends where it leaves the body (`reach`), or where it comes nearer, through the body, to
+    the bone of another joint than to its own joint: a jaw does not continue through the skull.
+
+    Returns
+    -------
+    length : array, shape (t,)
+    on_axis : array, shape (t,), bool
+        Those that point along the rest axis of their joint.
+    """
+    joint = bones.joint[leaf]
+    place, onward = chains.joints[joint], chains.onward[joint]
+    length = probe.distance_to_others(place, onward, reach, _others(bones, leaf, joint, place))
+    if chains.rest is None:
+        return length, np.zeros(len(joint), np.bool_)
+    length *= PART_OF_REACH
+    least = LEAST_CELLS / probe.resolution
+    on_axis = probe.near(place + onward * least) | (length > least)
+    return np.where(on_axis, np.maximum(length, least), length), on_axis
+
+
+def _others(
+    bones: Bones, leaf: NDArray[np.bool_], joints: NDArray[np.int32], places: NDArray[np.float64]
+) -> Iterator[tuple[NDArray[np.float64], NDArray[np.float64]]]:
+    """Yield for each joint the bones of others that do not end at it; of leaf bones the start."""
+    end = np.where(leaf[:, None], bones.start, bones.end)
+    for joint, place in zip(joints, places, strict=True):
+        ends_here = np.abs(bones.end - place).max(axis=1) < SAME_PLACE
+        other = (bones.joint != joint) & ~ends_here
+        yield bones.start[other], end[other]
+
+
+def _close_under_skin(places: NDArray[np.float64], probe: BodyProbe) -> NDArray[np.bool_]:
+    """Tell which leaf joints (t, 3) lie close under the skin of something large, among others.
+
+    Such are the joints of a face. Each moves the skin about it, not half a head: its bone is a
+    point.
+    """
+    room = probe.room(places)
+    apart = cdist(places, places)
+    nearby = ((apart > SAME_PLACE) & (apart < room[:, None])).any(axis=1)
+    close = probe.to_skin(places) < UNDER_SKIN * room
+    return nearby & close & (room > LEAST_ROOM / probe.resolution)
+
+
+def aim_leaf_bones(
+    graph: CutCellGraph,
+    bones: Bones,
+    aimed: NDArray[np.bool_],
+    distance: NDArray[np.float64],
+    nearest: NDArray[np.float64],
+) -> Bones:
+    """End leaf bones in the middle of the skin that they move.
+
+    Parameters
+    ----------
+    graph : CutCellGraph
+    bones : Bones
+        In the unit cube.
+    aimed : array, shape (b,), bool
+        Which to aim.
+    distance : array, shape (t, k)
+        From each of these to the welded vertices. Infinite where it is not needed.
+    nearest : array, shape (k,)
+        From the nearest of all joints.
+
+    Returns
+    -------
+    Bones
+    """
+    end = bones.end.copy()
+    points = graph.nodes[: len(nearest)]
+    area = np.zeros(len(points))
+    _add_areas(points, graph.faces, area)
+    total, middle = np.zeros(len(distance)), np.zeros((len(distance), 3))
+    _sum_regions(points, area, distance, nearest, total, middle)
+    some = total > 0
+    end[np.flatnonzero(aimed)[some]] = middle[some] / total[some, None]
+    return Bones(bones.start, end, bones.joint)
+
+
+@no_refcount
+def _sum_regions(points, area, distance, nearest, total, middle):
+    """Sum the area of each leaf bone's skin, and its first moment."""
+    for leaf in range(len(distance)):
+        for k in range(len(points)):
+            own = distance[leaf, k]
+            if own < np.inf:
+                part = area[k] * (nearest[k] / own if own > 0 else 1.0) ** REGION_POWER
+                total[leaf] += part
+                for axis in range(3):
+                    middle[leaf, axis] += part * points[k, axis]
+
+
+@no_refcount
+def _add_areas(points, faces, areas):
+    """Add twice the area of each triangle to all its corners."""
+    for f in range(len(faces)):
+        a, b, c = faces[f, 0], faces[f, 1], faces[f, 2]
+        squared = 0.0
+        for axis in range(3):
+            i, j = (axis + 1) % 3, (axis + 2) % 3
+            normal = (points[b, i] - points[a, i]) * (points[c, j] - points[a, j])
+            normal -= (points[b, j] - points[a, j]) * (points[c, i] - points[a, i])
+            squared += normal * normal
+        for corner in range(3):
+            areas[faces[f, corner]] += np.sqrt(squared)

@@ -1,0 +1,189 @@
+"""Point and ray queries on the body: inside, depth, thickness, exit."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ...graph import CutCellGraph
+from ...graph.interior import OUTSIDE, point_number
+from ...runtime.compiled import compiled
+from ..nearest import NodeGrid
+
+STEP = 0.25
+"""Lattice cells between sample points on a ray."""
+ENTRY = 5
+"""Steps within which a ray must enter the body: a joint may lie slightly outside the skin."""
+ALONG = np.linspace(0, 1, 17)
+"""Sample points on a segment."""
+SEEN = 0.85
+"""The part of a segment that must run inside for line of sight between its ends."""
+NEARER = 0.999
+"""A bone is nearer than the ray's start if its distance is below this factor of the start's."""
+ALL_ROUND = np.array(
+    [*np.eye(3), *-np.eye(3), *(np.array(list(np.ndindex(2, 2, 2))) * 2 - 1) / np.sqrt(3)]
+)
+"""Directions to the faces and the corners of a cube."""
+
+
+class BodyProbe:
+    """Answers point and ray queries on the body, accurate to about a lattice cell.
+
+    Parameters
+    ----------
+    graph : CutCellGraph
+        Points are in its unit cube.
+    grid : NodeGrid
+        Of its nodes.
+    """
+
+    def __init__(self, graph: CutCellGraph, grid: NodeGrid) -> None:
+        self._graph = graph
+        self._grid = grid
+        self.resolution = graph.lattice.resolution
+
+    def inside(self, points: ArrayLike) -> NDArray[np.bool_]:
+        """Tell for each point (..., 3) whether its lattice cell's centre is inside."""
+        points = np.asarray(points, np.float64)
+        found = _inside(points.reshape(-1, 3), self.resolution, self._graph.interior.table)
+        return found.reshape(points.shape[:-1])
+
+    def near(self, points: ArrayLike) -> NDArray[np.bool_]:
+        """Tell for each point (..., 3) whether the body is in its lattice cell or next to it."""
+        points = np.asarray(points, np.float64)
+        return self._grid.beside(points.reshape(-1, 3)).reshape(points.shape[:-1])
+
+    def inner_part(
+        self, start: ArrayLike, end: ArrayLike, *, strictly: bool = False
+    ) -> NDArray[np.float64]:
+        """Return the part of each segment (..., 3) that runs near the body, or strictly inside."""
+        start, end = np.broadcast_arrays(np.asarray(start, float), np.asarray(end, float))
+        points = start[..., None, :] + ALONG[:, None] * (end - start)[..., None, :]
+        return (self.inside if strictly else self.near)(points).mean(axis=-1)
+
+    def to_skin(self, points: ArrayLike) -> NDArray[np.float64]:
+        """Compute the distance of points (p, 3) to the nearest skin."""
+        points, graph = np.asarray(points, np.float64), self._graph
+        skin = graph.nodes[: graph.first_point], graph.nodes[graph.first_surface :]
+        return np.minimum(*(_to_nearest(points, nodes) for nodes in skin))
+
+    def depth(self, points: ArrayLike) -> NDArray[np.float64]:
+        """Compute the distance of points (p, 3) to the nearest skin; zero outside."""
+        return np.where(self.inside(points), self.to_skin(points), 0.0)
+
+    def room(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Compute the median over all directions of the exit distance of points (p, 3)."""
+        exits = [self.exit_distance(points, np.tile(d, (len(points), 1))) for d in ALL_ROUND]
+        return np.median(exits, axis=0)
+
+    def exit_distance(
+        self, start: NDArray[np.float64], direction: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """Compute where rays from points (p, 3) leave the body; zero if they never enter it."""
+        table, step = self._graph.interior.table, STEP / self.resolution
+        return _exit_distances(start, direction, step, self.resolution, table)
+
+    def distance_to_others(
+        self,
+        start: NDArray[np.float64],
+        direction: NDArray[np.float64],
+        limit: NDArray[np.float64],
+        others: Iterable[tuple[NDArray[np.float64], NDArray[np.float64]]],
+    ) -> NDArray[np.float64]:
+        """Compute where rays come nearer, through the body, to other segments than to their start.
+
+        Parameters
+        ----------
+        start, direction : arrays, shape (p, 3)
+        limit : array, shape (p,)
+            The length of each ray.
+        others : p pairs of arrays, shape (b, 3)
+            Start and end of the segments for each ray.
+
+        Returns
+        -------
+        array, shape (p,)
+            At most `limit`.
+        """
+        table, step = self._graph.interior.table, 2 * STEP / self.resolution
+        return np.array(
+            [
+                _distance_to_others(*ray, *segments, step, self.resolution, table)
+                for *ray, segments in zip(start, direction, limit, others, strict=True)
+            ]
+        )
+
+
+@compiled
+def _inside(points, resolution, table):
+    found = np.empty(len(points), np.bool_)
+    for p in range(len(points)):
+        found[p] = _is_inside(resolution, table, points[p, 0], points[p, 1], points[p, 2])
+    return found
+
+
+@compiled(inline="always")
+def _is_inside(resolution, table, x, y, z):
+    start, first, last, number = table
+    x, y, z = np.floor(x * resolution), np.floor(y * resolution), np.floor(z * resolution)
+    if not (0 <= x < resolution and 0 <= y < resolution and 0 <= z < resolution):
+        return False
+    column = int(x) * resolution + int(y)
+    return point_number(start, first, last, number, column, int(z)) != OUTSIDE
+
+
+@compiled
+def _exit_distances(start, direction, step, resolution, table):
+    away = np.zeros(len(start))
+    for p in range(len(start)):
+        was_inside = False
+        for k in range(int(2 / step)):  # at most across the cube
+            x, y, z = (
+                start[p, 0] + k * step * direction[p, 0],
+                start[p, 1] + k * step * direction[p, 1],
+                start[p, 2] + k * step * direction[p, 2],
+            )
+            is_inside = _is_inside(resolution, table, x, y, z)
+            if was_inside and not is_inside:
+                away[p] = k * step
+                break
+            if not is_inside and k + 1 == ENTRY:
+                break
+            was_inside = is_inside
+    return away
+
+
+@compiled
+def _distance_to_others(point, direction, limit, start, end, step, resolution, table):
+    for k in range(1, int(limit / step) + 1):
+        here = point + k * step * direction
+        for b in range(len(start)):
+            along = end[b] - start[b]
+            squared = (along * along).sum()
+            t = ((here - start[b]) * along).sum() / squared if squared > 0 else 0.0
+            there = start[b] + min(max(t, 0.0), 1.0) * along - here
+            if (there * there).sum() > (NEARER * k * step) ** 2:
+                continue
+            inside = 0
+            for share in ALONG:
+                x, y, z = here + share * there
+                inside += _is_inside(resolution, table, x, y, z)
+            if inside >= SEEN * len(ALONG):
+                return k * step
+    return limit
+
+
+@compiled
+def _to_nearest(points, others):
+    result = np.empty(len(points))
+    for p in range(len(points)):
+        least = np.inf
+        for o in range(len(others)):
+            x = points[p, 0] - others[o, 0]
+            y = points[p, 1] - others[o, 1]
+            z = points[p, 2] - others[o, 2]
+            least = min(least, x * x + y * y + z * z)
+        result[p] = np.sqrt(least)
+    return result

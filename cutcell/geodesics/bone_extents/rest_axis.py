@@ -1,0 +1,55 @@
+"""The rest axis: which local axis of the joints points along their bones."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...rig.rig import Skeleton
+
+ALONG = np.cos(np.radians(10))
+"""An axis points along a bone if it is within 10 degrees of it."""
+MOST = 0.6
+"""Share of the bones to an only child that must agree on the axis."""
+LEAST_BONES = 3
+"""Fewer bones are no evidence."""
+SHORTEST = 1e-3
+"""Of the longest side: shorter bones have no direction."""
+
+
+def rest_directions(skeleton: Skeleton, joints: NDArray[np.float64]) -> NDArray[np.float64] | None:
+    """Find the local axis along which the joints' bones point, and its direction at each joint.
+
+    Modelling programs orient joints so that one local axis, nearly always +Y, runs along the bone.
+    Joints with one child show which axis it is; leaf joints have it, too.
+
+    Parameters
+    ----------
+    skeleton : Skeleton
+    joints : array, shape (j, 3)
+        Its joints in the unit cube.
+
+    Returns
+    -------
+    array, shape (j, 3), or None
+        Unit vectors in the mesh's frame. None where the file does not hold the joints' rest
+        orientation, or where no axis points along most bones.
+    """
+    if skeleton.orientations is None:
+        return None
+    local = []
+    for j, children in enumerate(skeleton.children):
+        away = joints[children] - joints[j]
+        length = np.linalg.norm(away, axis=1)
+        if np.count_nonzero(length > SHORTEST) == 1:
+            only = length.argmax()
+            local.append(skeleton.orientations[j].T @ (away[only] / length[only]))
+    if len(local) < LEAST_BONES:
+        return None
+    # Columns: how many bones run along x, y, z, -x, -y, -z.
+    signed = np.hstack([np.array(local), -np.array(local)])
+    agree = (signed > ALONG).mean(axis=0)
+    best = int(agree.argmax())
+    if agree[best] < MOST:
+        return None
+    return skeleton.orientations[:, :, best % 3] * (1 if best < 3 else -1)

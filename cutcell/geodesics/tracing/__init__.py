@@ -1,0 +1,1 @@
+"""The path behind a distance, for display."""

@@ -1,0 +1,1 @@
+"""Primitives of triangle meshes: edges, welding, normals, Laplacian, union-find."""

@@ -1,0 +1,31 @@
+"""Vectors as tuples of three floats, for kernels."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..runtime.compiled import compiled
+
+
+@compiled(inline="always")
+def between(a, b):
+    """Return the displacement from a to b."""
+    return b[0] - a[0], b[1] - a[1], b[2] - a[2]
+
+
+@compiled(inline="always")
+def dot(a, b):
+    """Return the inner product."""
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+@compiled(inline="always")
+def cross(a, b):
+    """Return the vector product."""
+    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+
+
+@compiled(inline="always")
+def length(a):
+    """Return the Euclidean length."""
+    return np.sqrt(dot(a, a))

@@ -1,0 +1,1 @@
+"""Decide for each patch of the surface which side is outside."""

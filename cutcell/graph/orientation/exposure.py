@@ -1,0 +1,175 @@
+"""Which side of a surface sees the outside, by ray casting (Takayama et al. 2014).
+
+From points on the surface, rays are cast in both directions of lines spread evenly over the sphere.
+A ray that hits no other face sees the outside. Rays are cast as in `graph/rays.py`: the mesh is
+rotated until the lines are vertical, and hits are decided without tolerances, so no ray passes
+between two adjacent faces.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...geometry.sorting import sort_into
+from ...geometry.triangles import areas, unit_normals
+from ...runtime.compiled import compiled
+from ...runtime.progress import Tell
+from ...runtime.threads import in_threads
+from ..rays import column_span, height_between
+
+LINES = 12
+SAMPLES = 2, 32
+"""Points on each patch, at least and at most."""
+MOST_SAMPLES = 4096
+"""On all patches together, unless there are more than half as many patches."""
+COINCIDENT = 1e-9
+"""A face this close to a point does not hide it: it is the other side of a doubled sheet."""
+COLUMNS = 128
+"""Cells along each side of the grid that finds the points above and below a face."""
+SHRINK = 1.75
+"""The unit cube, rotated about its middle, fits into itself if scaled down by this."""
+
+
+def exposure(
+    vertices: NDArray[np.float64],
+    faces: NDArray[np.int32],
+    patch: NDArray[np.int32],
+    wanted: NDArray[np.bool_],
+    tell: Tell = lambda done: None,
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Measure how much of the outside is seen from the front and from the back of patches.
+
+    Parameters
+    ----------
+    vertices : array, shape (n, 3)
+        In the unit cube.
+    faces : array, shape (m, 3), int32
+    patch : array, shape (m,), int32
+        Of each face.
+    wanted : array, shape (p,), bool
+        Which patches to measure.
+    tell : callable
+        See `progress.Tell`.
+
+    Returns
+    -------
+    front, back : arrays, shape (p,)
+        Share of rays that escape, weighted by the cosine to the face's normal; zero for patches
+        that were not to be measured.
+
+    References
+    ----------
+    Takayama, Jacobson, Kavan & Sorkine-Hornung, "A simple method for correcting facet
+    orientations in polygon meshes based on ray casting", 2014.
+    """
+    count = len(wanted)
+    face, points = _samples(vertices, faces, patch, wanted)
+    normals = unit_normals(vertices[faces[face]])
+    of = patch[face]
+    single, own = _each_once(faces)
+    own = own[face]
+
+    def along(turn: NDArray[np.float64]) -> NDArray[np.float64]:
+        seen = [np.ascontiguousarray((x - 0.5) @ turn.T / SHRINK + 0.5) for x in (vertices, points)]
+        is_free = _escape(seen[1], own, seen[0], single)
+        cosine = normals @ turn[2]
+        weight, is_up = np.abs(cosine), cosine > 0
+        front = weight * np.where(is_up, is_free[:, 0], is_free[:, 1])
+        back = weight * np.where(is_up, is_free[:, 1], is_free[:, 0])
+        return np.stack([np.bincount(of, x, count) for x in (front, back, weight)])
+
+    front, back, every = np.sum(in_threads(along, _turns(), tell), axis=0)
+    every = np.maximum(every, 1e-300)
+    return front / every, back / every
+
+
+def _each_once(faces: NDArray[np.int32]) -> tuple[NDArray[np.int32], NDArray[np.intp]]:
+    """Return the distinct faces, which hide as much, and the index of each face in them."""
+    corners = np.sort(faces, axis=1)
+    order = np.lexsort(corners.T)
+    is_new = np.ones(len(faces), np.bool_)
+    is_new[1:] = (corners[order[1:]] != corners[order[:-1]]).any(axis=1)
+    index = np.empty(len(faces), np.intp)
+    index[order] = np.cumsum(is_new) - 1
+    return faces[order[is_new]], index
+
+
+def _turns() -> list[NDArray[np.float64]]:
+    """Return rotations (3, 3) that map lines spread over the sphere (a spiral) to the vertical."""
+    k = np.arange(LINES) + 0.5
+    height, turn = k / LINES, k * np.pi * (3 - np.sqrt(5))
+    out = np.sqrt(1 - height**2)
+    lines = np.stack([out * np.cos(turn), out * np.sin(turn), height], axis=1)
+    turns = []
+    for line in lines:
+        beside = np.cross(line, (0.3, 0.5, 0.81))
+        beside /= np.linalg.norm(beside)
+        turns.append(np.stack([beside, np.cross(line, beside), line]))
+    return turns
+
+
+def _samples(
+    vertices: NDArray[np.float64],
+    faces: NDArray[np.int32],
+    patch: NDArray[np.int32],
+    wanted: NDArray[np.bool_],
+) -> tuple[NDArray[np.intp], NDArray[np.float64]]:
+    """Place points evenly by area on patches; return the face and the position of each."""
+    mine = np.flatnonzero(wanted[patch])
+    # Sorted by corners: the result depends neither on the order of faces nor on their winding.
+    corners = np.sort(faces[mine], axis=1)
+    order = np.lexsort((*corners.T[::-1], patch[mine]))
+    mine, triangles = mine[order], vertices[corners[order]]
+    reached = np.cumsum(areas(triangles))
+    first = np.flatnonzero(np.diff(patch[mine], prepend=-1))
+    last = np.append(first[1:], len(mine)) - 1
+    low = np.concatenate([[0], reached[last[:-1]]])
+    each = int(np.clip(MOST_SAMPLES // len(first), *SAMPLES))
+    share = (np.arange(each) + 0.5) / each
+    places = low[:, None] + share * (reached[last] - low)[:, None]
+    found = np.clip(np.searchsorted(reached, places), first[:, None], last[:, None]).ravel()
+    # A plane sequence of low discrepancy (Roberts), folded into the triangle.
+    k = np.tile(np.arange(each), len(first))
+    u, v = 0.7548777 * (k + 1) % 1, 0.5698403 * (k + 1) % 1
+    u, v = np.where(u + v > 1, 1 - u, u)[:, None], np.where(u + v > 1, 1 - v, v)[:, None]
+    a, b, c = triangles[found].transpose(1, 0, 2)
+    return mine[found], a + u * (b - a) + v * (c - a)
+
+
+@compiled
+def _escape(points, own, vertices, faces):
+    """Tell for each point whether the rays upward and downward escape, shape (p, 2)."""
+    column = np.empty(len(points), np.int64)
+    for q in range(len(points)):
+        column[q] = int(points[q, 0] * COLUMNS) * COLUMNS + int(points[q, 1] * COLUMNS)
+    start, order = sort_into(column, COLUMNS * COLUMNS)
+    is_free = np.ones((len(points), 2), np.bool_)
+    hidden = 0
+    for f in range(len(faces)):
+        if 2 * hidden > len(order):  # in a soup a few faces hide nearly all points
+            for q in order:
+                column[q] = column[q] if is_free[q, 0] or is_free[q, 1] else -1
+            start, order = sort_into(column, COLUMNS * COLUMNS)
+            hidden = 0
+        a, b, c = faces[f, 0], faces[f, 1], faces[f, 2]
+        low_u = min(vertices[a, 0], vertices[b, 0], vertices[c, 0])
+        high_u = max(vertices[a, 0], vertices[b, 0], vertices[c, 0])
+        low_v = min(vertices[a, 1], vertices[b, 1], vertices[c, 1])
+        high_v = max(vertices[a, 1], vertices[b, 1], vertices[c, 1])
+        for i in range(int(low_u * COLUMNS), int(high_u * COLUMNS) + 1):
+            first = start[i * COLUMNS + int(low_v * COLUMNS)]
+            last = start[i * COLUMNS + int(high_v * COLUMNS) + 1]
+            for q in order[first:last]:
+                pu, pv = points[q, 0], points[q, 1]
+                if own[q] == f or not (low_u <= pu <= high_u and low_v <= pv <= high_v):
+                    continue
+                if not (is_free[q, 0] or is_free[q, 1]):
+                    continue
+                span_low, low, span_high, high, _ = column_span(vertices, faces, f, pu)
+                if span_low <= pv < span_high:
+                    away = height_between(span_low, low, span_high, high, pv) - points[q, 2]
+                    if abs(away) > COINCIDENT:
+                        is_free[q, 0 if away > 0 else 1] = False
+                        hidden += not (is_free[q, 0] or is_free[q, 1])
+    return is_free

@@ -1,0 +1,152 @@
+"""Faces that are inside out: which side of a surface is the outer one.
+
+Connected faces are first oriented consistently (`patches.py`). Then it remains to decide which side
+of each patch is the outer one. A patch that encloses a volume (closed, or with small holes) should
+enclose a positive one. If the volume is negative, rays decide whether the outside sees its back
+(`exposure.py`). So an inverted arm is flipped; a cavity in a body, which nobody sees, is not; nor
+is a sheet, which is seen from both sides and encloses nothing.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...geometry.edges import find_edges
+from ...geometry.weld import weld
+from ...rig.rig import TriangleMesh
+from ...runtime.progress import Tell
+from ..lattice import Lattice
+from ..winding.boundary import boundary_of
+from ..winding.treecode.caps import cap_holes
+from .exposure import exposure
+from .patches import find_patches, measure_faces
+
+OPEN = 0.5
+"""A patch is a sheet, which encloses nothing, if its holes have this share of its own area."""
+FLAT = 1e-6
+"""Volumes below this, relative to area^(3/2), count as zero. For a sphere the ratio is 0.09."""
+SEEN = 0.02
+"""The least share of rays that escape from a side that is seen from outside."""
+CLEARLY = 3.0
+"""The outer side must see the outside by this factor more than the other."""
+MOSTLY = 0.75
+"""A mesh is inverted as a whole if this share of the decidable area is."""
+
+
+def inverted_faces(mesh: TriangleMesh) -> NDArray[np.bool_]:
+    """Tell which faces of a mesh are inside out.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+        Closed or open, with any number of components; equal vertices are welded first.
+
+    Returns
+    -------
+    array, shape (m,), bool
+        Faces to flip. Where the outer side is undecidable, as on a sheet seen from both sides,
+        faces stay as the file has them.
+
+    References
+    ----------
+    Takayama, Jacobson, Kavan & Sorkine-Hornung, "A simple method for correcting facet
+    orientations in polygon meshes based on ray casting", 2014.
+    """
+    vertices, index = weld(Lattice.around(mesh, 2).to_unit(mesh.vertices))
+    faces = index[mesh.faces]
+    return find_inverted(vertices, faces, find_edges(faces).partner)
+
+
+def oriented(mesh: TriangleMesh) -> TriangleMesh:
+    """Return a mesh with its inverted faces flipped; the mesh itself if there are none."""
+    inverted = inverted_faces(mesh)
+    if not inverted.any():
+        return mesh
+    return TriangleMesh(mesh.vertices, flipped(mesh.faces, inverted))
+
+
+def find_inverted(
+    vertices: NDArray[np.float64],
+    faces: NDArray[np.int32],
+    partner: NDArray[np.int32],
+    tell: Tell = lambda done: None,
+) -> NDArray[np.bool_]:
+    """Tell which welded faces are inside out.
+
+    Parameters
+    ----------
+    vertices : array, shape (n, 3)
+        In the unit cube.
+    faces : array, shape (m, 3), int32
+    partner : array, shape (3 m,), int32
+        See `surface.edges.MeshEdges`.
+    tell : callable
+        See `progress.Tell`.
+
+    Returns
+    -------
+    array, shape (m,), bool
+    """
+    a, b, c = faces.T
+    proper = (a != b) & (b != c) & (c != a)
+    if proper.all():
+        return _find_inverted(vertices, faces, partner, tell)
+    inverted = np.zeros(len(faces), np.bool_)
+    if proper.any():
+        faces = faces[proper]
+        inverted[proper] = _find_inverted(vertices, faces, find_edges(faces).partner, tell)
+    return inverted
+
+
+def _find_inverted(
+    vertices: NDArray[np.float64],
+    faces: NDArray[np.int32],
+    partner: NDArray[np.int32],
+    tell: Tell,
+) -> NDArray[np.bool_]:
+    areas, volumes = measure_faces(vertices, faces)
+    flips, patch, rims, of_rim = find_patches(vertices, faces, partner, areas)
+    faces, volumes = flipped(faces, flips), np.where(flips, -volumes, volumes)
+    area, volume = np.bincount(patch, areas), np.bincount(patch, volumes)
+    holes, missing = _cap(vertices, rims, of_rim, len(area))
+    is_sheet = holes >= OPEN * area
+    doubtful = ~is_sheet & (volume + missing < -FLAT * area**1.5)
+    if area[is_sheet].sum() > area.sum() / 2:
+        doubtful |= is_sheet  # in a soup nothing else decides
+    if not doubtful.any():
+        return flips
+    front, back = exposure(vertices, faces, patch, doubtful, tell)
+    wrong = (back >= SEEN) & (back >= CLEARLY * front)
+    right = (front >= SEEN) & (front >= CLEARLY * back) | ~(doubtful | is_sheet)
+    if wrong.any() and area[wrong].sum() >= MOSTLY * area[wrong | right].sum():
+        wrong = ~right  # what is undecidable was inverted with the rest
+    return flips ^ wrong[patch]
+
+
+def _cap(
+    vertices: NDArray[np.float64],
+    rims: NDArray[np.int32],
+    of_rim: NDArray[np.int32],
+    count: int,
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Cap the holes of each patch; return the area of the caps, and their signed volume."""
+    if len(rims) == 0:
+        return np.zeros(count), np.zeros(count)
+    # Patches may share vertices, but not holes.
+    key, ends = np.unique(of_rim[:, None] * np.int64(len(vertices)) + rims, return_inverse=True)
+    a, b = ends.reshape(-1, 2).T
+    side, index = np.unique(np.minimum(a, b) * len(key) + np.maximum(a, b), return_inverse=True)
+    incidence = np.bincount(index, np.sign(b - a)).astype(np.int32)
+    edges = np.stack(np.divmod(side, len(key)), axis=1).astype(np.int32)
+    caps = cap_holes(vertices[key % len(vertices)], boundary_of(edges, incidence))
+    areas, volumes = measure_faces(caps.vertices, caps.faces)
+    corner = np.where(caps.faces < len(key), caps.faces, 0).max(axis=1)
+    of_cap = key[corner] // len(vertices)
+    holes, missing = (np.bincount(of_cap, x, count).astype(float) for x in (areas, volumes))
+    return holes, missing
+
+
+def flipped(faces: NDArray[np.int32], which: NDArray[np.bool_]) -> NDArray[np.int32]:
+    """Return faces, shape (m, 3), with some of them, (m,), flipped."""
+    return np.where(which[:, None], faces[:, [0, 2, 1]], faces) if which.any() else faces

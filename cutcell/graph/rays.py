@@ -1,0 +1,285 @@
+"""All hits of axis-aligned rays on a mesh (paper section 3.1, algorithm 1).
+
+Casting all rays of an axis amounts to rasterising the triangles seen along it: for each triangle,
+visit the lattice columns inside its projection. A column line u = const meets two edges of the
+triangle or none, and the ray at height v hits the triangle if v lies between these two. The height
+of an edge on a column line is always computed from its left end, so the two triangles that share
+the edge get the same number to the last bit. Whatever rounding does, a ray therefore leaves a
+closed surface as often as it enters it.
+
+Rays exactly through an edge or a vertex are treated by symbolic perturbation: the ray is moved by
+infinitesimal amounts, far less along u than along v. A vertex on the column line counts as left
+of it, and an edge at exactly the ray's height as below it. In all three families of rays u comes
+before v in the order x, y, z, so they are perturbed consistently.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..geometry.vectors import between, cross
+from ..runtime.compiled import compiled, copy_to
+from ..runtime.progress import Tell
+from ..runtime.threads import in_threads, threads
+
+AXES = ((1, 2, 0), (0, 2, 1), (0, 1, 2))
+"""For rays along x, y, z: the axes (u, v) of the plane across them, and their own axis."""
+
+STRIPS = 4
+"""Strips of columns for each axis that are rasterised in parallel, at most one a thread, unless
+there is more work than `STRIP_WORK` in each."""
+STRIP_WORK = 2_000_000
+"""Hits, or steps of a traversal, that take about a tenth of a second."""
+
+
+@dataclass(frozen=True, eq=False)
+class RayHits:
+    """Hits of the R x R rays along one axis on the triangles, ray by ray.
+
+    Parameters
+    ----------
+    start : array, shape (R * R + 1,), int64
+        Hits of ray i * R + j, through u = (i + 1/2) / R and v = (j + 1/2) / R, are
+        those from start[i * R + j] to start[i * R + j + 1].
+    position : array, shape (c,), float64
+        Coordinate along the axis, ascending within each ray.
+    triangle : array, shape (c,), int32
+    sign : array, shape (c,), int8
+        +1 where the ray leaves through the back of the triangle, along its normal; -1 where it
+        enters. At equal positions, entering comes first.
+    """
+
+    start: NDArray[np.int64]
+    position: NDArray[np.float64]
+    triangle: NDArray[np.int32]
+    sign: NDArray[np.int8]
+
+
+def cast_rays(
+    vertices: NDArray[np.float64], faces: NDArray[np.int32], resolution: int, axis: int
+) -> RayHits:
+    """Cast the R x R rays along one axis through the lattice points of the unit cube.
+
+    Parameters
+    ----------
+    vertices : array, shape (n, 3), float64
+        Unit-cube coordinates.
+    faces : array, shape (m, 3), int32
+    resolution : int
+        R.
+    axis : int
+        0, 1, 2 for x, y, z.
+
+    Returns
+    -------
+    RayHits
+    """
+    return _cast(vertices, faces, resolution, (axis,))[0]
+
+
+def cast_all_rays(
+    vertices: NDArray[np.float64],
+    faces: NDArray[np.int32],
+    resolution: int,
+    tell: Tell = lambda done: None,
+) -> list[RayHits]:
+    """Cast the rays along x, y and z, see `cast_rays` and `progress.Tell`."""
+    return _cast(vertices, faces, resolution, (0, 1, 2), tell)
+
+
+def expected_hits(
+    vertices: NDArray[np.float64], faces: NDArray[np.int32], resolution: int
+) -> float:
+    """Estimate how many hits the rays along x, y and z have: R^2 times projected areas."""
+    return resolution**2 * _projected_area(vertices, faces)
+
+
+def _cast(vertices, faces, resolution, axes, tell=lambda done: None):
+    if len(faces) == 0:  # the caps of a closed mesh
+        start = np.zeros(resolution * resolution + 1, np.int64)
+        nothing = RayHits(start, np.empty(0), np.empty(0, np.int32), np.empty(0, np.int8))
+        return [nothing] * len(axes)
+    bounds = strip_bounds(resolution, expected_hits(vertices, faces, resolution))
+    projected = {axis: np.ascontiguousarray(vertices[:, AXES[axis]]) for axis in axes}
+
+    def rasterise(part):
+        axis, first, last = part
+        flip = -1 if axis == 1 else 1  # x cross z points along -y
+        return _rasterise(projected[axis], faces, resolution, flip, first, last)
+
+    strips = in_threads(rasterise, [(axis, *bound) for axis in axes for bound in bounds], tell)
+    found = []
+    for k in range(len(axes)):
+        parts = zip(*strips[k * len(bounds) : (k + 1) * len(bounds)], strict=True)
+        counts, position, triangle, sign = (np.concatenate(part) for part in parts)
+        start = np.concatenate([[0], np.cumsum(counts)])
+        found.append(RayHits(start, position, triangle, sign))
+    return found
+
+
+def strip_bounds(resolution: int, work: float) -> list[tuple[int, int]]:
+    """Divide the columns 0 to R - 1 into strips for parallel work."""
+    count = min(max(min(STRIPS, threads()), int(work / STRIP_WORK)), resolution)
+    return list(pairwise(np.arange(count + 1) * resolution // count))
+
+
+@compiled(inline="always")
+def in_space(axis, u, v, along):
+    """Permute coordinates (u, v, along) of the rays along an axis to (x, y, z)."""
+    if axis == 0:
+        return along, u, v
+    if axis == 1:
+        return u, along, v
+    return u, v, along
+
+
+@compiled
+def _rasterise(vertices, faces, resolution, flip, first, last):
+    """Rasterise the triangles on the columns first <= i < last.
+
+    Returns the number of hits of each ray; then position, triangle and sign of each hit, ray by
+    ray.
+    """
+    at, hits, size = np.empty(256), np.empty((256, 3), np.int32), 0
+    for f in range(len(faces)):
+        u0, u1, u2 = vertices[faces[f, 0], 0], vertices[faces[f, 1], 0], vertices[faces[f, 2], 0]
+        if max(u0, u1, u2) * resolution < first or min(u0, u1, u2) * resolution > last:
+            continue
+        begin = max(first, first_at_least(min(u0, u1, u2), resolution))
+        end = min(last, first_at_least(max(u0, u1, u2), resolution))
+        for i in range(begin, end):
+            pu = (i + 0.5) / resolution
+            low_v, low_a, high_v, high_a, side = column_span(vertices, faces, f, pu)
+            j = first_at_least(low_v, resolution)
+            while j < resolution and (j + 0.5) / resolution < high_v:
+                if size == len(at):
+                    at, hits = grown(at), grown(hits)
+                pv = (j + 0.5) / resolution
+                at[size] = height_between(low_v, low_a, high_v, high_a, pv)
+                hits[size, 0] = (i - first) * resolution + j
+                hits[size, 1], hits[size, 2] = f, flip * side
+                size += 1
+                j += 1
+    return _by_ray(at[:size], hits[:size], (last - first) * resolution)
+
+
+@compiled
+def _projected_area(vertices, faces):
+    """Sum the areas of all triangles projected along x, along y and along z."""
+    total = 0.0
+    for f in range(len(faces)):
+        a, b, c = vertices[faces[f, 0]], vertices[faces[f, 1]], vertices[faces[f, 2]]
+        normal = cross(between(a, b), between(a, c))
+        total += abs(normal[0]) + abs(normal[1]) + abs(normal[2])
+    return total / 2
+
+
+@compiled
+def _by_ray(at, hits, rays):
+    counts = np.zeros(rays, np.int64)
+    for k in range(len(hits)):
+        counts[hits[k, 0]] += 1
+    cursor = np.cumsum(counts) - counts
+    position = np.empty(len(hits))
+    triangle, sign = np.empty(len(hits), np.int32), np.empty(len(hits), np.int8)
+    for k in range(len(hits)):
+        n = cursor[hits[k, 0]]
+        position[n], triangle[n], sign[n] = at[k], hits[k, 1], hits[k, 2]
+        cursor[hits[k, 0]] += 1
+    _sort_rays(counts, position, triangle, sign)
+    return counts, position, triangle, sign
+
+
+@compiled
+def grown(array):
+    """Return a copy of an array with twice the capacity."""
+    larger = np.empty((2 * array.shape[0], *array.shape[1:]), array.dtype)
+    copy_to(array.reshape(-1), larger.reshape(-1))
+    return larger
+
+
+@compiled(inline="always")
+def first_at_least(coordinate, resolution):
+    """Return the first i >= 0 whose (i + 1/2) / R is not below the coordinate."""
+    i = max(0, int(np.ceil(coordinate * resolution - 0.5)))
+    while i > 0 and (i - 0.5) / resolution >= coordinate:
+        i -= 1
+    while (i + 0.5) / resolution < coordinate:
+        i += 1
+    return i
+
+
+@compiled
+def column_span(vertices, faces, f, pu):
+    """Intersect the column line u = pu with the triangle f.
+
+    Returns the two ends of the intersection as (v, along), lower v first, and the sign of the
+    hits on it: +1 if the triangle is counter-clockwise in the (u, v) plane, so that rays leave
+    through it, else -1. If the line misses the triangle, the two ends are equal.
+    """
+    right_v = left_v = right_a = left_a = 0.0
+    for k in range(3):
+        a, b = faces[f, k], faces[f, (k + 1) % 3]
+        a_left = vertices[a, 0] <= pu
+        if a_left == (vertices[b, 0] <= pu):
+            continue
+        if a_left:
+            right_v, right_a = edge_height(vertices, a, b, pu)
+        else:
+            left_v, left_a = edge_height(vertices, b, a, pu)
+    if right_v <= left_v:
+        return right_v, right_a, left_v, left_a, 1
+    return left_v, left_a, right_v, right_a, -1
+
+
+@compiled(inline="always")
+def edge_height(vertices, a, b, pu):
+    """Return v and the third coordinate of an edge at u = pu; a is its left end.
+
+    At the left end itself the result is exact.
+    """
+    width = vertices[b, 0] - vertices[a, 0]
+    step = pu - vertices[a, 0]
+    v = vertices[a, 1] + step * (vertices[b, 1] - vertices[a, 1]) / width
+    along = vertices[a, 2] + step * (vertices[b, 2] - vertices[a, 2]) / width
+    return v, along
+
+
+@compiled(inline="always")
+def height_between(low_v, low_a, high_v, high_a, pv):
+    """Interpolate the coordinate along the ray at v = pv between the two ends of a span."""
+    along = low_a + (pv - low_v) * (high_a - low_a) / (high_v - low_v)
+    return min(max(along, min(low_a, high_a)), max(low_a, high_a))
+
+
+@compiled
+def _sort_rays(counts, position, triangle, sign):
+    end = 0
+    for ray in range(len(counts)):
+        begin, end = end, end + counts[ray]
+        if end - begin > 64:  # a soup of many layers would make the insertion sort quadratic
+            order = begin + np.argsort(position[begin:end])
+            copy_to(position[order], position[begin:end])
+            copy_to(triangle[order], triangle[begin:end])
+            copy_to(sign[order], sign[begin:end])
+        for k in range(begin + 1, end):
+            p, t, s = position[k], triangle[k], sign[k]
+            while k > begin and _after(position[k - 1], sign[k - 1], triangle[k - 1], p, s, t):
+                position[k] = position[k - 1]
+                triangle[k] = triangle[k - 1]
+                sign[k] = sign[k - 1]
+                k -= 1
+            position[k], triangle[k], sign[k] = p, t, s
+
+
+@compiled(inline="always")
+def _after(position0, sign0, triangle0, position1, sign1, triangle1):
+    if position0 != position1:
+        return position0 > position1
+    if sign0 != sign1:
+        return sign0 > sign1
+    return triangle0 > triangle1

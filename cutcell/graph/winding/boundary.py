@@ -1,0 +1,130 @@
+"""The boundary chain of a mesh, the edges with signed incidence, as closed loops; and its caps."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...geometry.edges import find_edges
+from ...runtime.compiled import compiled
+
+
+class Boundary(NamedTuple):
+    """The boundary chain of a mesh as closed loops; no loops if the mesh is closed.
+
+    Parameters
+    ----------
+    loop : array, shape (e,), int64
+        The vertices of the loops, one loop after the other, in the direction of the faces.
+    start : array, shape (l + 1,), int64
+        Loop i has the vertices loop[start[i]] to loop[start[i + 1] - 1].
+    times : array, shape (l,), int64
+        How often the chain runs around each loop: more than once where faces lie on copies.
+    """
+
+    loop: NDArray[np.int64]
+    start: NDArray[np.int64]
+    times: NDArray[np.int64]
+
+    @property
+    def unrolled(self) -> Boundary:
+        """The same chain with loops that are run around once, and repeated."""
+        if (self.times == 1).all():
+            return self
+        begin = np.repeat(self.start[:-1], self.times)
+        size = np.repeat(np.diff(self.start), self.times)
+        start = np.concatenate([[0], np.cumsum(size)])
+        slot = np.arange(start[-1]) + np.repeat(begin - start[:-1], size)
+        return Boundary(self.loop[slot], start, np.ones_like(begin))
+
+    @property
+    def following(self) -> NDArray[np.int64]:
+        """The vertex after each of `loop`, shape (e,)."""
+        following = np.roll(self.loop, -1)
+        following[self.start[1:] - 1] = self.loop[self.start[:-1]]
+        return following
+
+
+class Caps(NamedTuple):
+    """A fan of triangles for each of some loops that sum to the boundary.
+
+    Parameters
+    ----------
+    vertices : array, shape (n + k, 3)
+        The mesh's, then the middles of those k loops that have more than four edges.
+    faces : array, shape (t, 3), int32
+        Of all fans. Together with the mesh's own they make a closed surface.
+    loop, start : arrays, shapes (e,) and (l + 1,), int64
+        The loops, as of a `Boundary`.
+    apex : array, shape (l,), int64
+        The vertex that the triangles of a fan share: of a short loop its first.
+    """
+
+    vertices: NDArray[np.float64]
+    faces: NDArray[np.int32]
+    loop: NDArray[np.int64]
+    start: NDArray[np.int64]
+    apex: NDArray[np.int64]
+
+
+def find_boundary(faces: NDArray[np.int32]) -> Boundary:
+    """Find the boundary of welded faces, shape (m, 3)."""
+    edges, incidence, _ = find_edges(faces)
+    return boundary_of(edges, incidence)
+
+
+def boundary_of(edges: NDArray[np.int32], incidence: NDArray[np.int32]) -> Boundary:
+    """Assemble the boundary from edges and their signed incidence, see `surface.edges`."""
+    is_open = incidence != 0
+    if not is_open.any():
+        return Boundary(np.empty(0, np.int64), np.zeros(1, np.int64), np.empty(0, np.int64))
+    return Boundary(*_loops(edges[is_open], incidence[is_open], int(edges.max()) + 1))
+
+
+@compiled
+def _loops(edges, count, vertices):
+    """Decompose the boundary chain into closed loops without repeated vertices.
+
+    The chain enters each vertex as often as it leaves it, so a walk along unused edges never gets
+    stuck. Whenever the walk returns to a vertex of its path it has closed a loop, which is removed
+    as often as all of its edges are there.
+    """
+    leaving = np.zeros(vertices + 1, np.int64)
+    for e in range(len(edges)):
+        leaving[(edges[e, 0] if count[e] > 0 else edges[e, 1]) + 1] += 1
+    leaving = np.cumsum(leaving)
+    cursor = leaving[:-1].copy()
+    following, unused = np.empty(len(edges), np.int64), np.empty(len(edges), np.int64)
+    for e in range(len(edges)):
+        a, b = (edges[e, 0], edges[e, 1]) if count[e] > 0 else (edges[e, 1], edges[e, 0])
+        following[cursor[a]], unused[cursor[a]] = b, abs(count[e])
+        cursor[a] += 1
+
+    loop, start, times = [np.int64(0) for _ in range(0)], [0], [np.int64(0) for _ in range(0)]
+    path, slot = np.empty(vertices + 1, np.int64), np.full(vertices, -1)
+    cursor = leaving[:-1].copy()
+    for first in range(vertices):
+        path[0], slot[first], length = first, 0, 1
+        while length > 1 or cursor[first] < leaving[first + 1]:
+            there = following[cursor[path[length - 1]]]
+            if slot[there] < 0:
+                path[length], slot[there] = there, length
+                length += 1
+                continue
+            around = path[slot[there] : length]
+            least = unused[cursor[around[0]]]
+            for a in around:
+                least = min(least, unused[cursor[a]])
+            for a in around:
+                loop.append(a)
+                unused[cursor[a]] -= least
+                cursor[a] += unused[cursor[a]] == 0
+                slot[a] = -1
+            start.append(len(loop))
+            times.append(least)
+            slot[there] = length - len(around)
+            length = slot[there] + 1
+        slot[first] = -1
+    return np.array(loop), np.array(start), np.array(times)

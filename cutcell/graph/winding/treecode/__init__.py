@@ -1,0 +1,1 @@
+"""Winding numbers of many points at once, by clusters of boundary caps."""

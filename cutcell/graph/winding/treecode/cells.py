@@ -1,0 +1,263 @@
+"""Classification of lattice cells: how many crossings ahead it takes to be inside.
+
+With its holes capped a mesh is closed, and its winding number is the signed count chi of crossings
+ahead, a whole number. The open mesh's own number is less by that of the caps, w = chi - w_caps, so
+
+    w >= tau   <=>   chi >= required,   required = ceil(tau + w_caps).
+
+Away from the holes w_caps is small and smooth. Here it is bounded over whole blocks of cells, by
+the local expansions of `expansion.py`: in most blocks the required crossing count is constant.
+Blocks where it is not are halved, from the whole cube down to two cells, and what remains is
+ambiguous: cells near the rims of holes, and near the surfaces w_caps = k - tau. Their midpoints are
+point queries, see `queries.py`. Clusters far from a block are far from its halves, too, and their
+expansion is translated from block to half; only near clusters are visited again.
+
+In a block that a cap crosses, w_caps jumps by one across the cap, and so does chi: chi - w_caps is
+smooth. The block's expansion still gives it, up to a whole number that is found once for each ray
+through the block, see `intervals.py`.
+
+Of a soup whose triangles are all apart, the caps are the triangles turned round: chi is 0
+everywhere, and the clusters decide all.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ....geometry.vectors import between
+from ....runtime.compiled import compiled, copy_to
+from ....runtime.progress import Tell
+from ....runtime.threads import in_threads
+from ...rays import grown, in_space
+from .clusters import ROOT, Clusters
+from .expansion import (
+    ERROR,
+    ROUNDING,
+    SIZE,
+    LocalExpansions,
+    add_clusters,
+    add_far_clusters,
+    translate,
+    variation,
+)
+
+BLOCK = 8
+"""Cells along the side of the blocks that are either constant or classified cell by cell."""
+CONSTANT = -(1 << 20)
+"""A negative class is CONSTANT + the required crossing count; others are rows of expansions."""
+AMBIGUOUS = 1 << 30
+"""The class of blocks that are to be halved, or that have point queries."""
+SMALLEST = 2
+"""Cells along the side of blocks that are not halved: the queries are no dearer."""
+WORTH = 20
+"""Ambiguous midpoints for which it pays to halve a block."""
+TOLERANCE = 5e-3
+"""Clusters of a larger error in a block are split."""
+CROSSED, COUNT = SIZE + 3, SIZE + 4
+"""Columns of an expansion's row, after coefficients and centre: `LocalExpansions.is_crossed`, and
+the number of near clusters."""
+DEPTH = 12
+"""More often blocks are never halved."""
+MAX_NEAR = 64
+"""Near clusters that a block lists. Where there are more, nearly all are near, and its queries
+traverse all clusters. A list of its own for each block would take gigabytes."""
+
+
+class CellClasses(NamedTuple):
+    """The class of each lattice cell.
+
+    Parameters
+    ----------
+    coarse : array, shape (b, b, b), int32
+        The class of each block of BLOCK^3 cells if it is constant; else the block's row of `fine`.
+    fine : array, shape (u, BLOCK, BLOCK, BLOCK), int32
+        The class of each cell.
+    expansions : LocalExpansions
+        Of ambiguous cells.
+    """
+
+    coarse: NDArray[np.int32]
+    fine: NDArray[np.int32]
+    expansions: LocalExpansions
+
+
+def classify_cells(
+    clusters: Clusters,
+    resolution: int,
+    winding_threshold: float,
+    tell: Tell = lambda done: None,
+) -> CellClasses:
+    """Bound the caps' winding number over the cells of the lattice.
+
+    Parameters
+    ----------
+    clusters : Clusters
+        Of the caps.
+    resolution : int
+    winding_threshold : float
+        tau.
+    tell : callable
+        See `progress.Tell`.
+    """
+    blocks = -(-resolution // BLOCK)
+    coarse = np.full((blocks,) * 3, CONSTANT + int(np.ceil(winding_threshold)), np.int32)
+    corners, top = np.zeros((0, 3), np.int64), BLOCK
+    if len(clusters.apex):
+        while 4 * top < resolution:
+            top *= 2
+        along = np.arange(0, resolution, top)
+        corners = np.stack(np.meshgrid(along, along, along, indexing="ij"), -1).reshape(-1, 3)
+    found = in_threads(
+        lambda corner: _classify(clusters, resolution, winding_threshold, corner, top, coarse),
+        [*corners, np.full(3, resolution)],  # the last one lies outside: never an empty list
+        tell,
+    )
+    rows = count = 0
+    for blocks, fine, expanded, _ in found:
+        coarse[tuple(blocks.T)] += rows
+        fine[fine >= 0] += count
+        rows, count = rows + len(fine), count + len(expanded)
+    _, fine, expanded, near = (np.concatenate(parts) for parts in zip(*found, strict=True))
+    start = np.concatenate([[0], np.cumsum(expanded[:, COUNT], dtype=np.int64)])
+    columns = (0, SIZE), (SIZE, CROSSED)
+    local, centre = (np.ascontiguousarray(expanded[:, a:b]) for a, b in columns)
+    is_crossed = expanded[:, CROSSED] > 0
+    return CellClasses(coarse, fine, LocalExpansions(centre, local, is_crossed, start, near))
+
+
+@compiled(inline="always")
+def required_crossings(total, error):
+    """Round a sum, tau plus the caps' winding number, up; AMBIGUOUS if the error does not tell."""
+    required = np.ceil(total - error)
+    return np.int64(required) if required == np.ceil(total + error) else AMBIGUOUS
+
+
+@compiled(inline="always")
+def class_at(classes, axis, ray, cell, stop):
+    """Return the class of a cell on a ray, and where the cells of this class end on the ray.
+
+    Looks at cells of the same block only, and at none from `stop` on.
+    """
+    x, y, z = in_space(axis, ray[0], ray[1], cell)
+    stop = min(stop, (cell // BLOCK + 1) * BLOCK)
+    found = classes.coarse[x // BLOCK, y // BLOCK, z // BLOCK]
+    if found < 0:
+        return found, max(stop, cell + 1)
+    block = classes.fine[found]
+    x, y, z = x % BLOCK, y % BLOCK, z % BLOCK
+    found = block[x, y, z]
+    until = cell + 1
+    while until < stop:
+        x, y, z = x + (axis == 0), y + (axis == 1), z + (axis == 2)
+        if block[x, y, z] != found:
+            break
+        until += 1
+    return found, until
+
+
+@compiled
+def _classify(clusters, resolution, tau, corner, top, coarse):
+    """Write the classes of the blocks in a cube of `top` cells into `coarse`.
+
+    Returns which blocks are not constant, shape (u, 3); the classes of their cells; the rows of
+    expansions that these name: coefficients, centre, CROSSED, COUNT; and the near clusters.
+    """
+    blocks, fine = np.empty((16, 3), np.int32), np.empty((16, BLOCK, BLOCK, BLOCK), np.int32)
+    expanded, all_near = np.empty((64, COUNT + 1)), np.empty(1024, np.int32)
+    rows = kept = listed = 0
+    waiting, count = np.empty((64, 5), np.int64), 1  # blocks: corner, size and depth
+    copy_to(corner, waiting[0])
+    waiting[0, 3], waiting[0, 4] = top, 1
+    # For each ancestor of the current block: its centre, far expansion and near clusters.
+    centre, far, local = np.zeros((DEPTH, 3)), np.zeros((DEPTH, SIZE)), np.empty(SIZE)
+    near, nears = np.empty((DEPTH, len(clusters.start) - 1), np.int32), np.ones(DEPTH, np.int64)
+    near[0, 0] = ROOT
+    while count:
+        count -= 1
+        x, y, z, size, depth = waiting[count]
+        if max(x, y, z) >= resolution:
+            continue
+        half = size / (2 * resolution)
+        q = x / resolution + half, y / resolution + half, z / resolution + half
+        reach = half * np.sqrt(3)
+        centre[depth, 0], centre[depth, 1], centre[depth, 2] = q
+        copy_to(far[depth - 1], far[depth])
+        shift = between(centre[depth - 1], q)
+        translate(far[depth], shift[0], shift[1], shift[2])
+        among = near[depth - 1, : nears[depth - 1]]
+        nears[depth] = add_far_clusters(clusters, among, far[depth], near[depth], q, reach)
+        close = near[depth, : nears[depth]]
+        copy_to(far[depth], local)
+        is_crossed = add_clusters(clusters, close, local, q, reach, TOLERANCE)
+        found = _class_of(local, is_crossed, half, size, tau)
+        a, b, c, wide = x // BLOCK, y // BLOCK, z // BLOCK, size // BLOCK
+        if size >= BLOCK and found < 0:
+            coarse[a : a + wide, b : b + wide, c : c + wide] = found
+            continue
+        if size == BLOCK:
+            if rows == len(fine):
+                blocks, fine = grown(blocks), grown(fine)
+            blocks[rows, 0], blocks[rows, 1], blocks[rows, 2] = a, b, c
+            coarse[a, b, c] = rows
+            rows += 1
+        if size > BLOCK or (found == AMBIGUOUS and size > SMALLEST):
+            count = _halve(waiting, count)
+            continue
+        if found >= 0:
+            if kept == len(expanded):
+                expanded = grown(expanded)
+            row = expanded[kept]
+            level = depth if len(close) <= MAX_NEAR else 0  # at 0 are all clusters, and no far ones
+            copy_to(far[level] if found == AMBIGUOUS else local, row)
+            row[SIZE], row[SIZE + 1], row[SIZE + 2] = q
+            row[CROSSED], row[COUNT] = is_crossed and found != AMBIGUOUS, 0
+            if found == AMBIGUOUS:
+                close = near[level, : nears[level]]
+                row[COUNT] = len(close)
+                while listed + len(close) > len(all_near):
+                    all_near = grown(all_near)
+                copy_to(close, all_near[listed:])
+                listed += len(close)
+            found = kept
+            kept += 1
+        i, j, k = x % BLOCK, y % BLOCK, z % BLOCK
+        fine[rows - 1, i : i + size, j : j + size, k : k + size] = found
+    return (
+        blocks[:rows].copy(),
+        fine[:rows].copy(),
+        expanded[:kept].copy(),
+        all_near[:listed].copy(),
+    )
+
+
+@compiled
+def _halve(waiting, count):
+    """Replace a block by its eight halves; return how many blocks wait."""
+    x, y, z, size, depth = waiting[count]
+    size //= 2
+    for corner in range(8):
+        half = waiting[count + corner]
+        half[0] = x + size * (corner >> 2)
+        half[1] = y + size * (corner >> 1 & 1)
+        half[2] = z + size * (corner & 1)
+        half[3], half[4] = size, depth + 1
+    return count + 8
+
+
+@compiled
+def _class_of(local, is_crossed, half, size, tau):
+    """Return the class of a constant block; AMBIGUOUS; or 0 if its expansion decides queries."""
+    error = local[ERROR] + ROUNDING
+    if error >= 0.5:
+        return AMBIGUOUS
+    slope = variation(local, half)
+    required = required_crossings(tau + local[0], slope + error)
+    if required < AMBIGUOUS:
+        return 0 if is_crossed else CONSTANT + required
+    # About error / slope of the midpoints on three axes are closer to the threshold than the error.
+    if 3 * size**3 * min(error, slope) > WORTH * slope and size > SMALLEST:
+        return AMBIGUOUS
+    return 0

@@ -1,0 +1,304 @@
+"""The caps' winding number in a ball, as a local expansion with a proven error.
+
+A local (Taylor) expansion is a row of SIZE numbers: value, gradient (x, y, z), the second
+derivatives (xx, yy, xy, xz, yz), and a bound of the error; zz = -xx - yy, as the function is
+harmonic.
+
+Distant clusters add their multipole moments, see `clusters.py` for the error. The caps of near
+loops are summed exactly at the centre q. Their gradient is, by Biot and Savart's law, the integral
+of F x dr around the loop, whichever surface spans it; its own derivatives are at most those of F,
+|DF| = 1 / (2 pi |r|^3). So within s of q the gradient of a loop leaves out at most
+
+    s^2 / 2 sum over its edges of length / (2 pi d^3),
+
+with d the distance of an edge to the ball. Only the rim has to keep away from the ball. In a ball
+crossed by a cap the winding number jumps by one across it, but is smooth otherwise: the expansion
+is then valid up to whole numbers. Where a rim enters the ball, the error is infinite.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ....geometry.vectors import between, cross, dot, length
+from ....runtime.compiled import compiled, no_refcount
+from .clusters import error_bound, next_cluster
+from .multipole import add_multipole
+
+SIZE = 10
+ERROR = SIZE - 1
+"""The column of the error bound."""
+NEGLIGIBLE = 5e-3
+"""A cluster whose error in a ball is at most this is far from the ball."""
+ROUNDING = 1e-9
+"""Beyond the error bound, for rounding."""
+COARSE = 0.3
+"""Near clusters of a larger error are split, to see if parts of them are far."""
+USELESS = 0.5
+"""With a larger error an expansion decides nothing."""
+SMALL = 1e-60
+"""Products are rescaled below this, and above its inverse, before they under- or overflow."""
+
+
+class LocalExpansions(NamedTuple):
+    """Local expansions of the caps' winding number in blocks of cells.
+
+    Parameters
+    ----------
+    centre : array, shape (n, 3)
+    local : array, shape (n, SIZE)
+        Of all caps, or of all but those of the near clusters.
+    is_crossed : array, shape (n,), bool
+        Whether a cap crosses the ball around the block: then `local`, of all caps, is valid up to
+        whole numbers.
+    start : array, shape (n + 1,), int64
+        The near clusters are near[start[i]] to near[start[i + 1] - 1].
+    near : array, int32
+    """
+
+    centre: NDArray[np.float64]
+    local: NDArray[np.float64]
+    is_crossed: NDArray[np.bool_]
+    start: NDArray[np.int64]
+    near: NDArray[np.int32]
+
+
+@compiled(inline="always")
+def evaluate(local, x, y, z):
+    """Return the value at a displacement (x, y, z) from the centre."""
+    linear = local[1] * x + local[2] * y + local[3] * z
+    square = local[4] * (x * x - z * z) + local[5] * (y * y - z * z)
+    return local[0] + linear + square / 2 + local[6] * x * y + local[7] * x * z + local[8] * y * z
+
+
+@compiled(inline="always")
+def value_at(expansions, row, point):
+    """Return the caps' winding number at a point of a block, and a bound of the error."""
+    x, y, z = between(expansions.centre[row], point)
+    local = expansions.local[row]
+    return evaluate(local, x, y, z), local[ERROR] + ROUNDING
+
+
+@compiled(inline="always")
+def translate(local, x, y, z):
+    """Move the centre by (x, y, z)."""
+    local[0] = evaluate(local, x, y, z)
+    local[1] += local[4] * x + local[6] * y + local[7] * z
+    local[2] += local[6] * x + local[5] * y + local[8] * z
+    local[3] += local[7] * x + local[8] * y - (local[4] + local[5]) * z
+
+
+@compiled(inline="always")
+def variation(local, half):
+    """Bound how far values differ from the one at the centre, in a cube of that half side."""
+    linear = abs(local[1]) + abs(local[2]) + abs(local[3])
+    square = (abs(local[4]) + abs(local[5]) + abs(local[4] + local[5])) / 2
+    return half * (linear + half * (square + abs(local[6]) + abs(local[7]) + abs(local[8])))
+
+
+@no_refcount
+def add_far_clusters(clusters, among, local, near, q, reach):
+    """Add the clusters that are far from a ball to its expansion, and list the others.
+
+    Parameters
+    ----------
+    clusters : Clusters
+    among : array, int32
+        Disjoint clusters.
+    local : array, shape (SIZE,)
+        An expansion around q; the clusters of negligible error are added.
+    near : array, int32
+        Gets disjoint clusters with all other caps; as long as there are caps.
+    q : tuple of 3 floats
+    reach : float
+        Radius of the ball around q.
+
+    Returns
+    -------
+    count : int
+        Number of near clusters. They are not much smaller than the ball.
+    """
+    count = 0
+    leaves = len(clusters.start) - 1
+    for top in among:
+        k, end = top, next_cluster(top)
+        while k != end:
+            r, distance, error = _relative(clusters, k, q, reach)
+            if error <= NEGLIGIBLE:
+                add_multipole(local, clusters.moments[k], r, distance)
+                local[ERROR] += error
+            elif error > COARSE and clusters.sphere[k, 3] > reach and k < leaves:
+                k *= 2
+                continue
+            else:
+                near[count] = k
+                count += 1
+            k = next_cluster(k)
+    return count
+
+
+@no_refcount
+def add_clusters(clusters, among, local, q, reach, tolerance):
+    """Add clusters to the local expansion of a ball; stop once its error is useless.
+
+    Parameters
+    ----------
+    clusters : Clusters
+    among : array, int32
+        Disjoint clusters.
+    local : array, shape (SIZE,)
+        An expansion around q; changed.
+    q : tuple of 3 floats
+    reach : float
+        Radius of the ball around q.
+    tolerance : float
+        Clusters of a larger error are split.
+
+    Returns
+    -------
+    is_crossed : bool
+        Whether a cap crosses the ball: then the expansion is valid up to whole numbers.
+    """
+    is_crossed = False
+    leaves = len(clusters.start) - 1
+    for top in among:
+        k, end = top, next_cluster(top)
+        while k != end:
+            r, distance, error = _relative(clusters, k, q, reach)
+            # Splitting helps little where it is the ball's radius that makes the error large.
+            if error <= tolerance or (error < np.inf and clusters.sphere[k, 3] < reach / 4):
+                add_multipole(local, clusters.moments[k], r, distance)
+                local[ERROR] += error
+            elif k < leaves:
+                k *= 2
+                continue
+            else:
+                is_crossed |= _add_caps(clusters, k - leaves, local, q, reach, error == np.inf)
+            if local[ERROR] > USELESS:
+                return is_crossed
+            k = next_cluster(k)
+    return is_crossed
+
+
+@no_refcount
+def _add_caps(clusters, leaf, local, q, reach, may_cross):
+    """Add the caps of a leaf of the tree one by one; tell whether one crosses the ball."""
+    is_crossed = False
+    for loop in range(clusters.start[leaf], clusters.start[leaf + 1]):
+        rim = clusters.rim[clusters.first[loop] : clusters.first[loop + 1]]
+        is_crossed |= _add_gradient(local, rim, clusters.apex[loop], q, reach, may_cross)
+        if local[ERROR] > USELESS:
+            break
+        local[0] += _winding_number(rim, clusters.apex[loop], q)
+    return is_crossed
+
+
+@compiled(inline="always")
+def _relative(clusters, k, q, reach):
+    """Return a cluster's centre relative to q, its distance, and the error of its expansion."""
+    r = between(q, clusters.sphere[k])
+    distance = length(r)
+    return r, distance, error_bound(clusters.sphere[k], distance, reach)
+
+
+@no_refcount
+def _winding_number(rim, apex, q):
+    """Return the winding number of one cap: its solid angle over 4 pi.
+
+    Half the solid angle of a triangle is the argument of a complex number (van Oosterom &
+    Strackee 1983). The arguments are added by multiplying the numbers (x, y); full turns are
+    counted apart: the sum of two arguments in one half plane has wrapped around if the product
+    lies in the other.
+    """
+    x, y, turns = 1.0, 0.0, 0.0
+    # Where the apex is the rim's first vertex, the edges at it span no triangle.
+    begin, end = (2, len(rim)) if len(rim) <= 4 else (1, len(rim) + 1)
+    c = between(q, apex)
+    b = between(q, rim[begin - 1])
+    lc, lb = length(c), length(b)
+    for e in range(begin, end):
+        a = between(q, rim[e] if e < len(rim) else rim[0])
+        la = length(a)
+        triple = dot(a, cross(b, c))
+        rest = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb
+        imaginary = x * triple + y * rest
+        x, was = x * rest - y * triple, y
+        y = imaginary
+        if was >= 0 and triple >= 0 and y < 0:
+            turns += 1
+        elif was < 0 and triple < 0 and y >= 0:
+            turns -= 1
+        size = abs(x) + abs(y)
+        if 0 < size < SMALL or size > 1 / SMALL:
+            x, y = x / size, y / size
+        b, lb = a, la
+    return turns + np.arctan2(y, x) / (2 * np.pi)
+
+
+@no_refcount
+def _add_gradient(local, rim, apex, q, reach, may_cross):
+    """Add the gradient of a cap, and its error; tell whether the cap crosses the ball."""
+    is_crossed = False
+    c = between(q, apex)
+    b = between(q, rim[len(rim) - 1])
+    lb = length(b)
+    for e in range(len(rim)):
+        a, la = b, lb
+        b = between(q, rim[e])
+        lb = length(b)
+        side = length(between(a, b))
+        # Triangle inequality: no point of the edge is nearer than this.
+        gap = (la + lb - side) / 2 - reach
+        if gap < side:
+            gap = _distance_to_edge(a, b) - reach
+        if gap <= 0:
+            local[ERROR] = np.inf
+            return True
+        local[ERROR] += reach * reach / 2 * side / (2 * np.pi * gap * gap * gap)
+        if local[ERROR] > USELESS:
+            break
+        g = _biot_savart(b, a, lb, la)
+        local[1] += g[0]
+        local[2] += g[1]
+        local[3] += g[2]
+        if may_cross and not is_crossed:
+            is_crossed = _is_within(b, a, c, reach)
+    return is_crossed
+
+
+@compiled(inline="always")
+def _biot_savart(a, b, la, lb):
+    """Return the integral of r x dr / (4 pi |r|^3) along an edge from a to b.
+
+    It is the edge's part of the gradient of the solid angle over 4 pi. a and b are relative to the
+    point, la and lb their lengths.
+    """
+    n = cross(a, b)
+    below = la * lb * (la * lb + dot(a, b))
+    factor = (la + lb) / (4 * np.pi * below) if below > 0 else 0.0
+    return n[0] * factor, n[1] * factor, n[2] * factor
+
+
+@compiled(inline="always")
+def _distance_to_edge(a, b):
+    """Return the distance of the origin to the edge between a and b."""
+    e = between(a, b)
+    squared = dot(e, e)
+    t = min(max(-dot(a, e) / squared, 0.0), 1.0) if squared > 0 else 0.0
+    return length((a[0] + t * e[0], a[1] + t * e[1], a[2] + t * e[2]))
+
+
+@compiled
+def _is_within(a, b, c, reach):
+    """Tell whether a triangle comes within reach of the origin; its edge a, b is left out."""
+    n = cross(between(a, b), between(a, c))
+    height = dot(a, n)
+    if height * height > reach * reach * dot(n, n):
+        return False
+    # The plane is within reach. The foot is in the triangle if on one side of all edges.
+    if dot(n, cross(a, b)) > 0 and dot(n, cross(b, c)) > 0 and dot(n, cross(c, a)) > 0:
+        return True
+    return min(_distance_to_edge(a, c), _distance_to_edge(b, c)) <= reach

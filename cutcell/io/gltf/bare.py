@@ -1,0 +1,107 @@
+"""The meshes of a glTF document that has no skin: one mesh, where they stand in the scene."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...errors import MeshError
+from ...rig.rig import Part, Rig, Skeleton, TriangleMesh
+from .container import Document
+from .nodes import Nodes
+from .read.parts import hidden_nodes, left_out_meshes, mesh_name, vanishes
+from .read.primitives import StoredFaces, draws_triangles, primitives, read_triangles
+
+
+@dataclass(frozen=True, eq=False)
+class StoredMesh:
+    """A mesh of the document, where a node has it.
+
+    Parameters
+    ----------
+    node, mesh : int
+    hidden : bool
+        Whether `KHR_node_visibility` hides it.
+    world : array, shape (4, 4)
+        Of the node.
+    first_vertices : list of int
+        In the rig, of each primitive that draws triangles, in order.
+    """
+
+    node: int
+    mesh: int
+    hidden: bool
+    world: NDArray[np.float64]
+    first_vertices: list[int]
+
+
+@dataclass(frozen=True, eq=False)
+class BareSource:
+    """What a rig remembers of its glTF file without a skin, for saving.
+
+    Parameters
+    ----------
+    document : Document
+    mesh : TriangleMesh
+        As it was read.
+    stored : list of StoredMesh
+    faces : tuple of StoredFaces
+        As they are now, if faces were repaired.
+    """
+
+    document: Document
+    mesh: TriangleMesh
+    stored: list[StoredMesh]
+    faces: tuple[StoredFaces, ...] = ()
+
+
+def read_bare(document: Document, nodes: Nodes, name: str) -> Rig:
+    """Return the scene's meshes as a rig without joints, in the scene's space and units."""
+    here = set(nodes.in_scene())
+    shown = [i for i, node in enumerate(nodes.raw) if "mesh" in node and i in here]
+    shown = shown or [i for i, node in enumerate(nodes.raw) if "mesh" in node]
+    hidden = hidden_nodes(nodes)
+    vertices, faces, parts, stored, total = [], [], [], [], 0
+    stored_faces: list[StoredFaces] = []
+    triangles = 0
+    for i in shown:
+        mesh = nodes.raw[i]["mesh"]
+        points, corners, drawn = read_triangles(document, mesh, document.label("nodes", i))
+        if not len(corners):
+            continue
+        world = nodes.world[i]
+        is_mirrored = bool(np.linalg.det(world[:3, :3]) < 0)
+        if is_mirrored:
+            corners = corners[:, ::-1]  # what was outside stays outside
+        first = [total + one.first_vertex for one in drawn]
+        stored.append(StoredMesh(i, mesh, i in hidden, world, first))
+        numbers = _drawing(document, mesh, document.label("nodes", i))
+        for number, one, start in zip(numbers, drawn, first, strict=True):
+            drawn_rows = slice(triangles + one.rows.start, triangles + one.rows.stop)
+            stored_faces.append(StoredFaces(mesh, number, start, drawn_rows, is_mirrored))
+        triangles += len(corners)
+        document.allowance.take(points.nbytes + corners.nbytes, document.label("nodes", i))
+        vertices.append(points @ world[:3, :3].T + world[:3, 3])
+        faces.append(corners + total)
+        rows = slice(total, total := total + len(points))
+        hides = i in hidden or vanishes(nodes, i)
+        parts.append(Part(mesh_name(document, nodes, i), rows, hides))
+    if not faces:
+        raise MeshError("its meshes have no triangles")
+    whole = TriangleMesh(np.concatenate(vertices), np.concatenate(faces))  # type: ignore[arg-type]
+    return Rig(
+        whole,
+        Skeleton([], []),  # type: ignore[arg-type]
+        name=name,
+        parts=tuple(parts),
+        left_out=left_out_meshes(document, nodes, [one.node for one in stored], ()),
+        source=BareSource(document, whole, stored, tuple(stored_faces)),
+    )
+
+
+def _drawing(document: Document, mesh: int, user: str) -> list[int]:
+    """Return the numbers of a mesh's primitives that draw triangles."""
+    found = enumerate(primitives(document, mesh, user))
+    return [k for k, primitive in found if draws_triangles(primitive)]

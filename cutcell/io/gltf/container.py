@@ -1,0 +1,290 @@
+"""The glTF document and its bytes: the GLB container, data URIs, files beside it.
+
+The JSON is kept as it was parsed, so that whatever cutcell does not know (extensions,
+extras, empty lists) is still there when the document is written again. pygltflib's own
+loader fills its dataclasses instead, which loses such fields and takes seconds on a file
+with thousands of animation channels; its names for glTF's numbers are used throughout.
+"""
+
+from __future__ import annotations
+
+import base64
+import binascii
+import json
+import re
+import struct
+from dataclasses import dataclass, field
+from pathlib import Path, PurePosixPath
+from typing import Any
+from urllib.parse import unquote
+
+import pygltflib
+
+from ...errors import FileError
+from ..allowance import Allowance
+from ..files import one_line, read_bytes
+from ..names import HALVES, whole_characters
+
+MAGIC = pygltflib.MAGIC
+SURROGATE = re.compile(rb"\\u[dD][89a-fA-F]")
+JSON_CHUNK = 0x4E4F534A
+BINARY_CHUNK = 0x004E4942
+
+
+@dataclass(eq=False)
+class Document:
+    """A glTF document: its JSON untouched, and the bytes of its buffers."""
+
+    path: Path
+    json: dict[str, Any]
+    buffers: list[bytes]
+    size: int = 0
+    """Bytes of its JSON."""
+    binary: bool = True
+    """Whether it came as a GLB container."""
+    chunks: list[tuple[int, bytes]] = field(default_factory=list)
+    """GLB chunks that are neither JSON nor the binary buffer."""
+    accessors: dict[int, Any] = field(default_factory=dict)
+    """Accessors checked so far."""
+    decoded: dict[int, Any] = field(default_factory=dict)
+    """Accessors decoded so far."""
+    finite: set[int] = field(default_factory=set)
+    """Accessors that were seen to hold finite numbers only."""
+    triangles: dict[int, Any] = field(default_factory=dict)
+    """Vertices, faces and primitives of meshes read so far."""
+    _checked: dict[str, list[dict[str, Any]]] = field(default_factory=dict)
+    allowance: Allowance = field(init=False)
+    """Memory that may be taken to read it."""
+    warnings: list[str] = field(default_factory=list)
+    """What a person should know of how it was read, in sentences."""
+    surfaces: Any = None
+    """Of a document that was made of another format: the `Surfaces` that colour its meshes."""
+
+    def __post_init__(self) -> None:
+        self.allow()
+
+    def allow(self) -> None:
+        """Count anew what may be taken to read it, by the size that it has now."""
+        self.allowance = Allowance(self.size + sum(map(len, self.buffers)))
+
+    def forget(self) -> None:
+        """Let go of what was only needed to read it."""
+        for found in (self.accessors, self.decoded, self.finite, self.triangles):
+            found.clear()
+
+    def items(self, kind: str) -> list[dict[str, Any]]:
+        """Return a top-level list of objects such as "nodes"; empty when absent."""
+        found = self.json.get(kind, [])
+        if found is not self._checked.get(kind):  # long lists are asked for again and again
+            if not isinstance(found, list) or not all(isinstance(x, dict) for x in found):
+                raise FileError(f'"{kind}" of the glTF document must be a list of objects')
+            self._checked[kind] = found
+        return found
+
+    def item(self, kind: str, index: Any, user: str) -> dict[str, Any]:
+        """Return one object of a top-level list; `user` is who refers to it."""
+        found = self.json.get(kind, [])
+        if not isinstance(found, list):
+            raise FileError(f'"{kind}" of the glTF document must be a list of objects')
+        if type(index) is not int or not 0 <= index < len(found):
+            raise FileError(
+                f"{user} refers to {kind}[{index}], but the file has {len(found)} {kind}"
+            )
+        if not isinstance(found[index], dict):
+            raise FileError(f"{kind}[{index}] of the glTF document is not an object")
+        return found[index]
+
+    def label(self, kind: str, index: int) -> str:
+        """Return how to name an object to people: by its name, else by its number."""
+        name = self.item(kind, index, "the document").get("name")
+        one = "mesh" if kind == "meshes" else kind.removesuffix("s")
+        return f'{one} "{name}"' if isinstance(name, str) and name else f"{kind}[{index}]"
+
+
+def whole(owner: dict[str, Any], key: str, user: str, default: int | None = None) -> int:
+    """Return a field that must be a whole number, 0 or more."""
+    value = owner.get(key, default)
+    if type(value) is not int or value < 0:
+        raise FileError(f'{user}: "{key}" must be a whole number, 0 or more, not {value!r}')
+    return value
+
+
+def indices(owner: dict[str, Any], key: str, user: str) -> list[int]:
+    """Return a field that must be a list of whole numbers; empty when absent."""
+    value = owner.get(key, [])
+    if not isinstance(value, list) or any(type(x) is not int for x in value):
+        raise FileError(f'{user}: "{key}" must be a list of whole numbers')
+    return value
+
+
+def is_gltf(data: bytes) -> bool:
+    """Tell whether bytes look like a GLB container or like JSON text."""
+    return data[:4] == MAGIC or data.lstrip(b"\xef\xbb\xbf \t\r\n")[:1] == b"{"
+
+
+def read_document(path: Path) -> Document:
+    """Read a GLB or glTF file with all its buffers.
+
+    Raises
+    ------
+    FileError
+        Not a glTF 2.0 file, cut short, or one of its buffers is not there.
+    """
+    data = read_bytes(path)
+    binary: bytes | None = None
+    others: list[tuple[int, bytes]] = []
+    if data[:4] == MAGIC:
+        text, binary, others = _split_chunks(data)
+    elif is_gltf(data):
+        text = data
+    else:
+        raise FileError(
+            "is not a glTF file: it starts with neither the letters glTF (binary) nor a "
+            "brace (JSON text)"
+        )
+    parsed, warnings = _parse(text)
+    document = Document(path, parsed, [], len(text), data[:4] == MAGIC, others, warnings=warnings)
+    _check_version(document)
+    files: dict[str, bytes] = {}
+    for i, buffer in enumerate(document.items("buffers")):
+        document.buffers.append(_buffer_bytes(path, buffer, i, binary, files))
+    document.allow()
+    return document
+
+
+def _split_chunks(data: bytes) -> tuple[bytes, bytes | None, list[tuple[int, bytes]]]:
+    if len(data) < 20:
+        raise FileError(f"is cut short: {len(data)} bytes are no complete GLB file")
+    version, length = struct.unpack_from("<II", data, 4)
+    if version != 2:
+        raise FileError(f"is a GLB container of version {version}; only version 2 can be read")
+    if length > len(data):
+        raise FileError(f"is cut short: {length} bytes are announced, {len(data)} are there")
+    chunks: list[tuple[int, bytes]] = []
+    at = 12
+    while at + 8 <= length:
+        size, kind = struct.unpack_from("<II", data, at)
+        if at + 8 + size > length:
+            raise FileError(f"is cut short: the GLB chunk at byte {at} runs past the end")
+        chunks.append((kind, data[at + 8 : at + 8 + size]))
+        at += 8 + size
+    if not chunks or chunks[0][0] != JSON_CHUNK:
+        raise FileError("has no JSON chunk at the start of its GLB container")
+    if len(chunks) > 1 and chunks[1][0] == BINARY_CHUNK:
+        return chunks[0][1], chunks[1][1], chunks[2:]
+    return chunks[0][1], None, chunks[1:]
+
+
+def _parse(text: bytes) -> tuple[dict[str, Any], list[str]]:
+    """Return the JSON object in a text, and what is to be told of it."""
+    warnings = []
+    try:
+        document = json.loads(text.decode("utf-8-sig").rstrip("\0"), parse_constant=_no_constant)
+        if SURROGATE.search(text):
+            whole = with_whole_names(document)
+            warnings += [HALVES] if whole != document else []
+            document = whole
+    except (ValueError, RecursionError) as e:
+        raise FileError(f"its JSON cannot be read: {one_line(e)}") from None
+    if not isinstance(document, dict):
+        raise FileError("its JSON is not an object")
+    return document, warnings
+
+
+def _no_constant(name: str) -> float:
+    raise ValueError(f"{name} is not a JSON number")
+
+
+def _check_version(document: Document) -> None:
+    asset = document.json.get("asset")
+    if not isinstance(asset, dict) or "version" not in asset:
+        raise FileError('is JSON, but not glTF: it has no "asset" with a "version"')
+    if not str(asset["version"]).startswith("2."):
+        raise FileError(f"is glTF {asset['version']}; only glTF 2.0 can be read")
+
+
+def _buffer_bytes(
+    path: Path, buffer: dict[str, Any], i: int, binary: bytes | None, files: dict[str, bytes]
+) -> bytes:
+    """Return the bytes of a buffer; `files` keeps what was read, for others that want the same."""
+    user = f"buffers[{i}]"
+    length = whole(buffer, "byteLength", user)
+    if _is_placeholder(buffer):
+        return b""  # nothing lies here: its buffer views are compressed, and lie elsewhere
+    uri = buffer.get("uri")
+    if uri is None:
+        if i != 0 or binary is None:
+            raise FileError(f"{user} has no data: neither a uri nor a binary chunk")
+        data = binary
+    else:
+        if not isinstance(uri, str):
+            raise FileError(f'{user}: "uri" must be text')
+        if uri not in files:
+            files[uri] = read_uri(path, uri, user)
+        data = files[uri]
+    if len(data) < length:
+        raise FileError(f"{user} is cut short: {length} bytes announced, {len(data)} there")
+    return data[:length]
+
+
+def _is_placeholder(buffer: dict[str, Any]) -> bool:
+    extensions = buffer.get("extensions")
+    said = extensions.values() if isinstance(extensions, dict) else ()
+    return any(isinstance(value, dict) and value.get("fallback") is True for value in said)
+
+
+def read_uri(path: Path, uri: Any, user: str) -> bytes:
+    """Return the bytes behind a data URI or a relative file name."""
+    if not isinstance(uri, str):
+        raise FileError(f'{user}: "uri" must be text')
+    if uri.startswith("data:"):
+        head, _, body = uri.partition(",")
+        if not head.endswith(";base64"):
+            raise FileError(f"{user}: only base64 data URIs can be read")
+        try:
+            return base64.b64decode(body, validate=True)
+        except (binascii.Error, ValueError):
+            raise FileError(f"{user}: its data URI is not valid base64") from None
+    file = beside(path, uri)
+    if file is None:
+        raise FileError(
+            f'{user}: "{uri[:80]}" is not a file in the folder of {path.name} or below it'
+        )
+    return read_bytes(file)
+
+
+def beside(path: Path, uri: str) -> Path | None:
+    """Return the file that a relative URI names, None when it leads out of the folder.
+
+    A document may come from a stranger, over the page; it must not reach other files.
+    """
+    name = PurePosixPath(unquote(uri))
+    outside = name.is_absolute() or ".." in name.parts or ":" in str(name) or "\\" in str(name)
+    if outside or "\0" in str(name) or not name.parts:
+        return None
+    return path.parent.joinpath(*name.parts)
+
+
+def with_whole_names(document: dict[str, Any]) -> dict[str, Any]:
+    """Return a document in which no text holds half of a character."""
+    return json.loads(whole_characters(json.dumps(document, ensure_ascii=False)))
+
+
+def json_bytes(document: dict[str, Any]) -> bytes:
+    """Return a document as JSON text."""
+    try:
+        return json.dumps(document, separators=(",", ":"), allow_nan=False).encode()
+    except ValueError as e:
+        raise FileError(f"its document cannot be written as JSON: {e}") from None
+
+
+def pack_glb(text: bytes, binary: bytes, chunks: list[tuple[int, bytes]]) -> bytes:
+    """Assemble a GLB container; every chunk starts and ends on a multiple of 4 bytes."""
+    parts = [(JSON_CHUNK, text + b" " * (-len(text) % 4))]
+    if binary:
+        parts.append((BINARY_CHUNK, binary + b"\0" * (-len(binary) % 4)))
+    parts += [(kind, body + b"\0" * (-len(body) % 4)) for kind, body in chunks]
+    packed = b"".join(struct.pack("<II", len(body), kind) + body for kind, body in parts)
+    if 12 + len(packed) >= 2**32:
+        raise FileError("is too large for a GLB file, which ends at 4 GiB; save it as .gltf")
+    return MAGIC + struct.pack("<II", 2, 12 + len(packed)) + packed

@@ -1,0 +1,209 @@
+"""The node tree of a glTF document: who hangs on whom, and where everything is."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...errors import FileError, SkeletonError
+from ...rig.checks import LARGEST
+from .container import Document, indices
+
+
+class Nodes:
+    """All nodes as arrays.
+
+    Attributes
+    ----------
+    parents : list of int
+        Parent of each node, -1 for none.
+    levels : list of int arrays
+        Nodes by depth, roots first.
+    depth : array, shape (k,), int
+    translation, rotation, scale : arrays, shape (k, 3), (k, 4), (k, 3)
+        Rest pose; rotations are quaternions (x, y, z, w).
+    local, world : arrays, shape (k, 4, 4)
+        Matrices of the rest pose.
+    """
+
+    def __init__(self, document: Document) -> None:
+        self.document = document
+        self.raw = document.items("nodes")
+        self.parents = _parents(document)
+        self.levels = _levels(document, self.parents)
+        self.depth = np.zeros(len(self.raw), int)
+        for depth, level in enumerate(self.levels):
+            self.depth[level] = depth
+        self._read_transforms()
+        with np.errstate(over="ignore", invalid="ignore"):  # refused below
+            self.world = self.compose_world(self.local[None])[0]
+        far = np.flatnonzero(~(np.abs(self.world) <= LARGEST).all(axis=(1, 2)))
+        if len(far):
+            raise FileError(
+                f"{document.label('nodes', int(far[0]))}: its place in the scene has numbers above "
+                f"{LARGEST:g}; give it and the nodes above it smaller transforms"
+            )
+
+    def _read_transforms(self) -> None:
+        count = len(self.raw)
+        self.translation = np.zeros((count, 3))
+        self.rotation = np.tile([0.0, 0.0, 0.0, 1.0], (count, 1))
+        self.scale = np.ones((count, 3))
+        matrices = {}
+        for i, node in enumerate(self.raw):
+            for key, target in (
+                ("translation", self.translation),
+                ("rotation", self.rotation),
+                ("scale", self.scale),
+            ):
+                if key in node:
+                    target[i] = self._numbers(i, key, target.shape[1])
+            if "matrix" in node:
+                matrices[i] = self._numbers(i, "matrix", 16).reshape(4, 4).T
+        self.local = compose(self.translation, self.rotation, self.scale)
+        for i, matrix in matrices.items():
+            self.local[i] = matrix
+            self.translation[i], self.rotation[i], self.scale[i] = decompose(matrix)
+
+    def _numbers(self, i: int, key: str, count: int) -> NDArray:
+        value: Any = self.raw[i][key]
+        try:
+            numbers = np.array(value, np.float64)
+        except (TypeError, ValueError, OverflowError):
+            numbers = np.zeros(0)
+        if numbers.shape != (count,) or not (np.abs(numbers) <= LARGEST).all():
+            raise FileError(
+                f'{self.document.label("nodes", i)}: "{key}" must be {count} finite numbers, '
+                f"{LARGEST:g} at most"
+            )
+        return numbers
+
+    def compose_world(self, local: NDArray) -> NDArray:
+        """Return world matrices, shape (f, k, 4, 4), from local ones of the same shape."""
+        world = local.copy()
+        parents = np.array(self.parents, int)
+        for level in self.levels[1:]:
+            world[:, level] = world[:, parents[level]] @ local[:, level]
+        return world
+
+    def with_ancestors(self, some: list[int]) -> list[int]:
+        """Return some nodes and all that are above any of them, each once."""
+        found: set[int] = set()
+        for node in some:
+            while node >= 0 and node not in found:
+                found.add(node)
+                node = self.parents[node]
+        return sorted(found)
+
+    def nearest(self, some: Collection[int]) -> list[int]:
+        """Return for each node the nearest of some, itself or above it; -1 for none."""
+        found = [-1] * len(self.raw)
+        for level in self.levels:
+            for i in level.tolist():
+                parent = self.parents[i]
+                found[i] = i if i in some else found[parent] if parent >= 0 else -1
+        return found
+
+    def relative_to(self, some: list[int]) -> NDArray[np.float64]:
+        """Return matrices, shape (k, 4, 4), from each node to the nearest of some above it."""
+        relative = self.local.copy()
+        parents = np.array(self.parents, int)
+        chosen = np.zeros(len(self.raw), bool)
+        chosen[some] = True
+        relative[chosen] = np.eye(4)
+        for level in self.levels[1:]:
+            other = level[~chosen[level]]
+            relative[other] = relative[parents[other]] @ relative[other]
+        return relative
+
+    def in_scene(self) -> list[int]:
+        """Return the nodes of the default scene, ascending; all when there is no scene."""
+        document = self.document
+        if not document.items("scenes"):
+            return list(range(len(self.raw)))
+        chosen = document.json.get("scene", 0)
+        reached = set(indices(document.item("scenes", chosen, "scene"), "nodes", "the scene"))
+        for i in reached:
+            document.item("nodes", i, "the scene")
+        for level in self.levels:
+            reached |= {int(i) for i in level if self.parents[i] in reached}
+        return sorted(reached)
+
+
+def _parents(document: Document) -> list[int]:
+    nodes = document.items("nodes")
+    parents = [-1] * len(nodes)
+    for i, node in enumerate(nodes):
+        for child in indices(node, "children", f"nodes[{i}]"):
+            document.item("nodes", child, f"nodes[{i}]")
+            if parents[child] not in (-1, i):
+                raise SkeletonError(
+                    f"{document.label('nodes', child)} hangs on two nodes, "
+                    f"{document.label('nodes', parents[child])} and {document.label('nodes', i)}"
+                )
+            parents[child] = i
+    return parents
+
+
+def _levels(document: Document, parents: list[int]) -> list[NDArray]:
+    children: dict[int, list[int]] = {}
+    for i, parent in enumerate(parents):
+        children.setdefault(parent, []).append(i)
+    levels = [children.get(-1, [])]
+    while levels[-1]:
+        levels.append([c for i in levels[-1] for c in children.get(i, ())])
+    reached = sum(len(level) for level in levels)
+    if reached < len(parents):
+        seen = {i for level in levels for i in level}
+        stuck = next(i for i in range(len(parents)) if i not in seen)
+        raise SkeletonError(
+            f"the node tree has a cycle at {document.label('nodes', stuck)}: a node hangs on itself"
+        )
+    return [np.array(level, int) for level in levels[:-1]]
+
+
+def compose(translation: NDArray, rotation: NDArray, scale: NDArray) -> NDArray:
+    """Return matrices (..., 4, 4) from translations, quaternions (x, y, z, w) and scales."""
+    norm = np.linalg.norm(rotation, axis=-1, keepdims=True)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        q = np.where(norm == 0, [0.0, 0.0, 0.0, 1.0], rotation / norm)
+    x, y, z, w = np.moveaxis(q, -1, 0)
+    out = np.zeros((*q.shape[:-1], 4, 4))
+    out[..., 0, 0], out[..., 0, 1], out[..., 0, 2] = (
+        1 - 2 * (y * y + z * z),
+        2 * (x * y - z * w),
+        2 * (x * z + y * w),
+    )
+    out[..., 1, 0], out[..., 1, 1], out[..., 1, 2] = (
+        2 * (x * y + z * w),
+        1 - 2 * (x * x + z * z),
+        2 * (y * z - x * w),
+    )
+    out[..., 2, 0], out[..., 2, 1], out[..., 2, 2] = (
+        2 * (x * z - y * w),
+        2 * (y * z + x * w),
+        1 - 2 * (x * x + y * y),
+    )
+    out[..., :3, :3] *= scale[..., None, :]
+    out[..., :3, 3] = translation
+    out[..., 3, 3] = 1
+    return out
+
+
+def decompose(matrices: NDArray) -> tuple[NDArray, NDArray, NDArray]:
+    """Split matrices (..., 4, 4) into translations, quaternions and scales; shear is lost."""
+    linear = matrices[..., :3, :3]
+    scale = np.linalg.norm(linear, axis=-2)
+    scale[..., 0] *= np.where(np.linalg.det(linear) < 0, -1, 1)
+    turn = linear / np.where(scale == 0, 1, scale)[..., None, :]
+    # The quaternion is the eigenvector of the largest eigenvalue (Bar-Itzhack 2000).
+    trace = np.trace(turn, axis1=-2, axis2=-1)
+    k = np.zeros((*trace.shape, 4, 4))
+    k[..., :3, :3] = turn + np.swapaxes(turn, -1, -2) - trace[..., None, None] * np.eye(3)
+    for i, (a, b) in enumerate([(2, 1), (0, 2), (1, 0)]):
+        k[..., i, 3] = k[..., 3, i] = turn[..., a, b] - turn[..., b, a]
+    k[..., 3, 3] = trace
+    return matrices[..., :3, 3], np.linalg.eigh(k)[1][..., -1], scale

@@ -1,0 +1,266 @@
+"""The animations of a glTF document as clips, which are sampled when they are played."""
+
+from __future__ import annotations
+
+import math
+from copy import copy
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import pygltflib
+from numpy.typing import NDArray
+
+from ....errors import FileError
+from ....rig.clip import Clip
+from ..container import Document
+from ..interpolation import sample
+from ..nodes import Nodes, compose
+from ..write.moves import node_shifts
+from .accessors import Accessor, find_accessor, read_accessor
+
+FRAMES_A_SECOND = 30
+MOST_FRAMES = 3600
+"""Two minutes at full rate; a longer clip is shown by frames that are farther apart."""
+TOGETHER = 2**18
+"""Matrices of nodes that are sampled together: what it takes on the way stays small."""
+MOST_MATRICES, LEVEL = 2**22, 100
+"""Of nodes in all frames, and what a level of the hierarchy costs beside its own, in matrices: a
+chain of thousands of nodes is shown by fewer frames, too."""
+
+WIDTHS = {"translation": 3, "rotation": 4, "scale": 3}
+HOW = (pygltflib.ANIM_LINEAR, pygltflib.ANIM_STEP, pygltflib.ANIM_CUBICSPLINE)
+
+
+def read_clips(
+    document: Document, nodes: Nodes, joints: list[int], inverse: NDArray, world: NDArray
+) -> tuple[Clip, ...]:
+    """Return every animation that moves a joint.
+
+    Parameters
+    ----------
+    document : Document
+    nodes : Nodes
+    joints : list of int
+        The node of each joint.
+    inverse : array, shape (j, 4, 4)
+        Inverse bind matrices, for vertices in the rig's space.
+    world : array, shape (4, 4)
+        From the rig's space to the scene.
+    """
+    animations = document.items("animations")
+    if not animations:
+        return ()
+    tree = _Subtree(nodes, joints, np.linalg.inv(world), inverse)
+    reader = _Reader(document, tree)
+    clips = []
+    for i, animation in enumerate(animations):
+        label = document.label("animations", i)
+        tracks = reader.tracks(animation, label)
+        if tracks:
+            duration = max(float(track.keys[-1]) for track in tracks)
+            name = animation.get("name")
+            name = name if isinstance(name, str) and name else f"clip {i}"
+            clips.append(Clip(name, motion=Channels(label, tree, tracks, max(duration, 0.0))))
+    return tuple(clips)
+
+
+@dataclass(frozen=True, eq=False)
+class Track:
+    """Channels with common keys: exporters give hundreds the same.
+
+    Parameters
+    ----------
+    keys : array, shape (k,), seconds
+    how : {"LINEAR", "STEP", "CUBICSPLINE"}
+    path : {"translation", "rotation", "scale"}
+    values : dict of int to Accessor
+        By what moves, numbered as in the subtree: the values at the keys, three each for a cubic
+        spline.
+    """
+
+    keys: NDArray[np.float64]
+    how: str
+    path: str
+    values: dict[int, Accessor]
+
+    def at(self, seconds: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the values at some times, shape (f, c, width)."""
+        left = np.searchsorted(self.keys, seconds, side="right") - 1
+        left = left.clip(0, len(self.keys) - 1)
+        right = np.minimum(left + 1, len(self.keys) - 1)
+        values = (self._keyed(left), self._keyed(right))
+        return sample(self.keys[left], self.keys[right], *values, self.how, seconds, self.path)
+
+    def _keyed(self, at: NDArray[np.intp]) -> NDArray[np.float64]:
+        """Return the values at some keys, shape (f, c, width), or (f, c, 3, width)."""
+        if self.how != pygltflib.ANIM_CUBICSPLINE:
+            return np.stack([one.decoded(at) for one in self.values.values()], axis=1)
+        three = (3 * at[:, None] + np.arange(3)).ravel()
+        found = [one.decoded(three).reshape(len(at), 3, -1) for one in self.values.values()]
+        return np.stack(found, axis=1)
+
+
+@dataclass(frozen=True, eq=False)
+class Channels:
+    """A motion as a glTF animation has it; see `cutcell.rig.clip.Motion`."""
+
+    label: str
+    tree: _Subtree
+    tracks: list[Track]
+    duration: float
+
+    @property
+    def joints(self) -> int:
+        """How many joints it moves."""
+        return len(self.tree.inverse)
+
+    @property
+    def times(self) -> NDArray[np.float64]:
+        """Return times of frames, shape (f,)."""
+        if self.duration <= 0:
+            return np.zeros(1)
+        cost = len(self.tree.parents) + LEVEL * len(self.tree.levels) / self._step
+        frames = min(self.duration * FRAMES_A_SECOND + 1e-6, MOST_FRAMES, MOST_MATRICES / cost)
+        return np.linspace(0, self.duration, max(math.floor(frames), 1) + 1)
+
+    @property
+    def _step(self) -> int:
+        """Frames that are sampled together."""
+        return max(TOGETHER // len(self.tree.parents), 1)
+
+    def sample(self, seconds: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return skinning matrices at some times, shape (f, j, 4, 4)."""
+        found = np.empty((len(seconds), self.joints, 4, 4))
+        step = self._step
+        for first in range(0, len(seconds), step):
+            frames = slice(first, first + step)
+            with np.errstate(over="ignore", invalid="ignore"):
+                found[frames] = self.tree.skinning(self.tracks, seconds[frames])
+        if not np.isfinite(found).all():
+            raise FileError(f"{self.label} leads to matrices that are not finite numbers")
+        return found
+
+    def moved(
+        self, joints: NDArray[np.float64], parents: NDArray[np.int32], by: NDArray[np.float64]
+    ) -> Channels:
+        """Return it as it is in the file that is written with joints moved; see `Clip.moved`."""
+        return replace(self, tree=self.tree.moved(by))
+
+
+class _Reader:
+    """Reads channels, and checks what many of them share once."""
+
+    def __init__(self, document: Document, tree: _Subtree) -> None:
+        self._document = document
+        self._tree = tree
+        self._keys: dict[int, NDArray[np.float64]] = {}
+
+    def tracks(self, animation: dict[str, Any], label: str) -> list[Track]:
+        """Return the channels of an animation that move a joint, grouped by their keys."""
+        channels, samplers = animation.get("channels"), animation.get("samplers")
+        if not isinstance(channels, list) or not isinstance(samplers, list):
+            raise FileError(f'{label}: needs "channels" and "samplers"')
+        groups: dict[Any, Track] = {}
+        for channel in channels:
+            target = channel.get("target") if isinstance(channel, dict) else None
+            if not isinstance(target, dict):
+                raise FileError(f'{label}: a channel has no "target"')
+            node, path = target.get("node"), target.get("path")
+            if node not in self._tree.place or path not in WIDTHS:
+                continue
+            at = channel.get("sampler")
+            if type(at) is not int or not 0 <= at < len(samplers):
+                raise FileError(f"{label}: a channel uses sampler {at!r} of {len(samplers)}")
+            sampler = samplers[at]
+            if not isinstance(sampler, dict):
+                raise FileError(f"{label}: its sampler {at} is not an object")
+            how = sampler.get("interpolation", pygltflib.ANIM_LINEAR)
+            keys, values = self._checked(sampler, how, path, label)
+            track = groups.setdefault((sampler["input"], how, path), Track(keys, how, path, {}))
+            track.values[self._tree.place[node]] = values
+        return list(groups.values())
+
+    def _checked(
+        self, sampler: dict[str, Any], how: Any, path: str, label: str
+    ) -> tuple[NDArray[np.float64], Accessor]:
+        """Return the keys of a sampler and the values at them."""
+        keys = self._key_times(sampler.get("input"), label)
+        kind = "VEC4" if path == "rotation" else "VEC3"
+        index: Any = sampler.get("output")
+        values = find_accessor(self._document, index, kind, label)
+        if how not in HOW:
+            raise FileError(f"{label}: the interpolation {how!r} is none of glTF's")
+        needed = len(keys) * (3 if how == pygltflib.ANIM_CUBICSPLINE else 1)
+        if len(values) != needed:
+            raise FileError(
+                f"{label}: {len(keys)} keys need {needed} values, {len(values)} are there"
+            )
+        if index not in self._document.finite:
+            if not np.isfinite(values.decoded()).all():
+                raise FileError(f"{label} holds values that are not finite numbers")
+            self._document.finite.add(index)
+        return keys, values
+
+    def _key_times(self, index: Any, label: str) -> NDArray[np.float64]:
+        if type(index) is not int or index not in self._keys:
+            keys = read_accessor(self._document, index, "SCALAR", label)[:, 0]
+            if keys.dtype.kind != "f" or not np.isfinite(keys).all() or (np.diff(keys) < 0).any():
+                raise FileError(f"{label}: its key times must be ascending numbers of seconds")
+            self._keys[index] = keys
+        return self._keys[index]
+
+
+class _Subtree:
+    """The joints and all above them, numbered parents first."""
+
+    def __init__(self, nodes: Nodes, joints: list[int], back: NDArray, inverse: NDArray) -> None:
+        wanted = nodes.with_ancestors(joints)
+        depth = nodes.depth[wanted]
+        by_depth = np.argsort(depth, kind="stable")
+        order = np.array(wanted)[by_depth].tolist()
+        self.place = {node: k for k, node in enumerate(order)}
+        self.parents = np.array([self.place.get(nodes.parents[i], -1) for i in order])
+        self.rest = {
+            "translation": nodes.translation[order],
+            "rotation": nodes.rotation[order],
+            "scale": nodes.scale[order],
+        }
+        self.local = nodes.local[order]
+        deeper = np.flatnonzero(np.diff(depth[by_depth])) + 1
+        self.levels = np.split(np.arange(len(order)), deeper)
+        self.joints = [self.place[node] for node in joints]
+        self.back, self.inverse = back, inverse
+        self.shift = np.zeros((len(order), 3))
+
+    def moved(self, by: NDArray[np.float64]) -> _Subtree:
+        """Return it with joints moved at rest by `by`, shape (j, 3), in the rig's space."""
+        own = np.einsum("jab,jb->ja", self.inverse[:, :3, :3], by)
+        at = np.zeros_like(self.shift)
+        at[self.joints] = own
+        other = copy(self)
+        other.shift = self.shift + node_shifts(self.local, self.parents, at)
+        other.inverse = self.inverse.copy()
+        other.inverse[:, :3, 3] -= own
+        return other
+
+    def skinning(self, tracks: list[Track], seconds: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return skinning matrices at some times, shape (f, j, 4, 4)."""
+        return self.back @ self._worlds(tracks, seconds)[:, self.joints] @ self.inverse
+
+    def _worlds(self, tracks: list[Track], seconds: NDArray[np.float64]) -> NDArray[np.float64]:
+        count = len(seconds)
+        posed = {k: np.tile(v, (count, 1, 1)) for k, v in self.rest.items()}
+        moved = np.zeros(len(self.parents), bool)
+        for track in tracks:
+            nodes = list(track.values)
+            posed[track.path][:, nodes] = track.at(seconds)
+            moved[nodes] = True
+        world = np.tile(self.local, (count, 1, 1, 1))
+        world[:, moved] = compose(
+            posed["translation"][:, moved], posed["rotation"][:, moved], posed["scale"][:, moved]
+        )
+        world[..., :3, 3] += self.shift
+        for level in self.levels[1:]:
+            world[:, level] = world[:, self.parents[level]] @ world[:, level]
+        return world

@@ -1,0 +1,72 @@
+"""The meshes of a glTF document by name: those bound, those hidden, those left out."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from ....rig.rig import LeftOut
+from ..container import Document
+from ..nodes import Nodes
+from .primitives import draws_triangles, primitives
+
+
+def mesh_name(document: Document, nodes: Nodes, node: int) -> str:
+    """Return what people call the mesh of a node: the node's name, the mesh's, a number."""
+    for owner in (nodes.raw[node], document.items("meshes")[nodes.raw[node]["mesh"]]):
+        if isinstance(owner.get("name"), str) and owner["name"]:
+            return owner["name"]
+    return f"mesh {nodes.raw[node]['mesh']}"
+
+
+def hidden_nodes(nodes: Nodes) -> set[int]:
+    """Return the nodes that `KHR_node_visibility` hides, and all below them."""
+    hidden: set[int] = set()
+    for level in nodes.levels:
+        for i in level.tolist():
+            extensions = nodes.raw[i].get("extensions")
+            said = extensions.get("KHR_node_visibility") if isinstance(extensions, dict) else None
+            off = isinstance(said, dict) and said.get("visible", True) is False
+            if off or nodes.parents[i] in hidden:
+                hidden.add(i)
+    return hidden
+
+
+def vanishes(nodes: Nodes, node: int) -> bool:
+    """Tell whether a node is scaled to nothing, as game characters hide their weapons."""
+    return bool(np.linalg.matrix_rank(nodes.world[node][:3, :3]) < 2)
+
+
+def left_out_meshes(
+    document: Document, nodes: Nodes, bound: Iterable[int], attached: Iterable[int]
+) -> tuple[LeftOut, ...]:
+    """List the meshes that no part and no attachment shows, with the reason.
+
+    Parameters
+    ----------
+    document, nodes
+    bound, attached : iterables of int
+        The nodes whose meshes the rig holds.
+    """
+    here = set(nodes.in_scene())
+    kept = {*bound, *attached}
+    found = []
+    draws: dict[int, bool] = {}
+    for i, node in enumerate(nodes.raw):
+        if "mesh" not in node or i in kept:
+            continue
+        mesh = node["mesh"]
+        if mesh not in draws:
+            drawn = primitives(document, mesh, document.label("nodes", i))
+            draws[mesh] = any(draws_triangles(p) for p in drawn)
+        if not draws[mesh]:
+            why = "is points or lines"
+        elif i not in here:
+            why = "is outside of the scene"
+        elif vanishes(nodes, i):
+            why = "is scaled to nothing"
+        else:
+            why = "has no skin and hangs on no joint"
+        found.append(LeftOut(mesh_name(document, nodes, i), why))
+    return tuple(found)

@@ -1,0 +1,268 @@
+"""From a glTF document to a Rig."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ....errors import CutcellError, FileError, MeshError
+from ....rig.rig import Attachment, Part, Rig, Skeleton, TriangleMesh
+from ...deforming import with_deform
+from ...weights import ReadWeights
+from ..bare import read_bare
+from ..container import Document, read_document
+from ..deform import read_deform
+from ..nodes import Nodes
+from ..write.seams import SPLIT_FROM, merged, read_origin, vertex_count
+from .clips import read_clips
+from .draco import decompress_draco
+from .meshopt import decompress_meshopt
+from .parts import hidden_nodes, left_out_meshes, mesh_name, vanishes
+from .primitives import (
+    StoredFaces,
+    attributes,
+    draws_triangles,
+    primitives,
+    read_faces,
+    read_positions,
+    read_triangles,
+    read_weights,
+)
+from .skins import Bind, read_bind, read_skeleton
+
+
+@dataclass(eq=False)
+class StoredPart:
+    """Vertices that are stored together: one vertex buffer bound to one skin."""
+
+    label: str
+    primitives: list[tuple[int, int]]
+    """(mesh, primitive) that draw from it."""
+    skin: int
+    rows: slice
+    """Its vertices in the rig."""
+    joints: Sequence[int]
+    """Joint of the rig for each joint of the skin."""
+    origin: NDArray[np.intp] | None = None
+    """Of the stored vertices, those that they were split from; see `gltf_seams`."""
+
+
+@dataclass(frozen=True, eq=False)
+class GltfSource:
+    """What a rig remembers of its glTF file, for saving."""
+
+    document: Document
+    parts: list[StoredPart]
+    skeleton: Skeleton
+    nodes: list[int]
+    """The node of each joint."""
+    inverse: NDArray[np.float64]
+    """Inverse bind matrix of each joint, for vertices in the rig's space, shape (j, 4, 4)."""
+    faces: tuple[StoredFaces, ...] = ()
+    attached: tuple[int, ...] = ()
+    """The node of each attachment."""
+
+
+def read_gltf(path: Path) -> Rig:
+    """Load a GLB or glTF file; see `cutcell.load`."""
+    try:
+        document = read_document(path)
+        decompress_meshopt(document)
+        decompress_draco(document)
+        document.allow()  # what was compressed is larger now
+        return read_rig(document, path)
+    except CutcellError:
+        raise
+    except (TypeError, ValueError, KeyError, IndexError, AttributeError, OverflowError) as e:
+        # Fields that no check above looked at, in a document that is not what it says.
+        raise FileError(f"its glTF document is malformed ({type(e).__name__}: {e})") from e
+
+
+def read_rig(document: Document, path: Path, world: NDArray | None = None) -> Rig:
+    """Return what a document with plain accessors holds; `world` is of `read_bind`."""
+    nodes = Nodes(document)
+    skinned = _skinned_nodes(nodes)
+    if not skinned:
+        rig = read_bare(document, nodes, path.stem)
+        document.forget()
+        return rig
+    for i in skinned:
+        document.item("skins", nodes.raw[i]["skin"], document.label("nodes", i))
+    skins = list(dict.fromkeys(nodes.raw[i]["skin"] for i in skinned))
+    bind = read_bind(document, nodes, skins, world)
+    stored = _read_parts(document, nodes, skinned, bind)
+    parts = stored.parts
+    if not sum(len(corners) for corners in stored.faces):
+        raise MeshError("its skinned meshes have no triangles")
+    mesh = TriangleMesh(np.concatenate(stored.vertices), np.concatenate(stored.faces))  # type: ignore[arg-type]
+    weights, sums = _dense(document, parts, stored.weights, len(mesh.vertices), len(bind.nodes))
+    stored_deform = read_deform(document, bind.skins, len(bind.nodes))
+    skeleton, told = with_deform(mesh, read_skeleton(nodes, bind), weights, stored_deform)
+    attached = _read_attachments(document, nodes, bind)
+    inverse = np.array(bind.inverse)
+    clips = read_clips(document, nodes, bind.nodes, inverse, bind.world)
+    document.forget()
+    return Rig(
+        mesh,
+        skeleton,
+        weights,
+        clips=clips,
+        attachments=tuple(attached.values()),
+        name=path.stem,
+        world=bind.world,
+        allowed=_allowed(parts, len(mesh.vertices), len(bind.nodes)),
+        parts=tuple(stored.named),
+        left_out=left_out_meshes(document, nodes, skinned, attached),
+        warnings=(*document.warnings, *told),
+        weight_sums=sums,
+        source=GltfSource(
+            document, parts, skeleton, bind.nodes, inverse, tuple(stored.drawn), tuple(attached)
+        ),
+    )
+
+
+def _skinned_nodes(nodes: Nodes) -> list[int]:
+    """Return the nodes with a skinned mesh, those of the default scene if it has any."""
+    skinned = [i for i, n in enumerate(nodes.raw) if "skin" in n and "mesh" in n]
+    if not skinned and not any("mesh" in n for n in nodes.raw):
+        raise FileError("has no mesh")
+    return sorted(set(skinned) & set(nodes.in_scene())) or skinned
+
+
+class _Stored(NamedTuple):
+    """What is stored of the skinned meshes; vertices and weights are those of `parts`."""
+
+    parts: list[StoredPart]
+    vertices: list[NDArray]
+    weights: list[ReadWeights]
+    faces: list[NDArray]
+    drawn: list[StoredFaces]
+    named: list[Part]
+
+
+def _read_parts(document: Document, nodes: Nodes, skinned: list[int], bind: Bind) -> _Stored:
+    """Read every vertex buffer once, however many primitives draw from it.
+
+    A mesh that stands in the scene twice, with two skins, is read for the first: both
+    draw with the same stored weights.
+    """
+    parts: dict[Any, StoredPart] = {}
+    _, vertices, weights, faces, drawn, named = stored = _Stored([], [], [], [], [], [])
+    hidden = hidden_nodes(nodes)
+    seen: set[int] = set()
+    total = triangles = 0
+    for i in skinned:
+        mesh, skin, first = nodes.raw[i]["mesh"], nodes.raw[i]["skin"], total
+        document.item("meshes", mesh, document.label("nodes", i))
+        if mesh in seen:
+            continue
+        seen.add(mesh)
+        for k, primitive in enumerate(primitives(document, mesh, document.label("nodes", i))):
+            if not draws_triangles(primitive):
+                continue
+            label = f"{document.label('meshes', mesh)}, primitive {k}"
+            positions = read_positions(document, primitive, label)
+            corners = read_faces(document, primitive, len(positions), label)
+            key = (skin, _vertex_key(primitive, label))
+            if key not in parts:
+                document.allowance.take(positions.nbytes, label)
+                joints = len(bind.skins[skin])
+                read = read_weights(document, primitive, len(positions), joints, label)
+                origin, read = merged(read_origin(document, primitive, positions, label), read)
+                if origin is not None:
+                    positions = positions[: vertex_count(origin)]
+                rows = slice(total, total := total + len(positions))
+                parts[key] = StoredPart(label, [], skin, rows, bind.skins[skin], origin)
+                vertices.append(_moved(positions, bind.to_rig[skin]))
+                weights.append(read)
+            origin = parts[key].origin
+            if origin is not None:
+                corners = origin[corners]
+            parts[key].primitives.append((mesh, k))
+            is_mirrored = bool(np.linalg.det(bind.to_rig[skin][:3, :3]) < 0)
+            if is_mirrored:
+                corners = corners[:, ::-1]  # what was outside stays outside
+            start, rows = (
+                parts[key].rows.start,
+                slice(triangles, triangles := triangles + len(corners)),
+            )
+            faces.append(corners + start)
+            drawn.append(StoredFaces(mesh, k, start, rows, is_mirrored, origin=origin))
+        if total > first:
+            rows = slice(first, total)
+            named.append(Part(mesh_name(document, nodes, i), rows, i in hidden))
+    return stored._replace(parts=list(parts.values()))
+
+
+def _vertex_key(primitive: dict[str, Any], label: str) -> tuple:
+    found = attributes(primitive, label)
+    names = ("POSITION", "JOINTS_", "WEIGHTS_", SPLIT_FROM)
+    return tuple(sorted((k, v) for k, v in found.items() if k.startswith(names)))
+
+
+def _moved(points: NDArray, matrix: NDArray) -> NDArray:
+    if np.array_equal(matrix, np.eye(4)):
+        return points
+    return points @ matrix[:3, :3].T + matrix[:3, 3]
+
+
+def _dense(
+    document: Document,
+    parts: list[StoredPart],
+    stored: list[ReadWeights],
+    vertices: int,
+    joints: int,
+) -> tuple[NDArray | None, NDArray | None]:
+    """Return the weights of all parts, and what each row summed to in the file."""
+    if all(read.weights is None for read in stored):
+        return None, None
+    document.allowance.take_weights(vertices, joints)
+    weights, sums = np.zeros((vertices, joints)), np.zeros(vertices)
+    for part, read in zip(parts, stored, strict=True):
+        if read.weights is not None and read.sums is not None:
+            weights[part.rows, part.joints] = read.weights
+            sums[part.rows] = read.sums
+    return weights, sums
+
+
+def _allowed(parts: list[StoredPart], vertices: int, joints: int) -> NDArray | None:
+    if all(len(part.joints) == joints for part in parts):
+        return None
+    allowed = np.zeros((vertices, joints), bool)
+    for part in parts:
+        allowed[part.rows, part.joints] = True
+    return allowed
+
+
+def _read_attachments(document: Document, nodes: Nodes, bind: Bind) -> dict[int, Attachment]:
+    """Return the attachment of each node that has one."""
+    place = {node: j for j, node in enumerate(bind.nodes)}
+    hidden = hidden_nodes(nodes)
+    found: dict[int, Attachment] = {}
+    nearest = nodes.nearest(place)
+    # From the mesh up to the joint by the local transforms: a joint that is scaled to nothing at
+    # rest (a hidden weapon) could not be inverted.
+    local = nodes.relative_to(bind.nodes)
+    for i, node in enumerate(nodes.raw):
+        if "mesh" not in node or "skin" in node or nearest[i] < 0:
+            continue
+        joint = place[nearest[i]]
+        vertices, faces, drawn = read_triangles(document, node["mesh"], document.label("nodes", i))
+        if not drawn or not local[i, :3, :3].any():
+            continue
+        document.allowance.take(vertices.nbytes + faces.nbytes, document.label("nodes", i))
+        to_rig = np.linalg.inv(bind.inverse[joint]) @ local[i]
+        if np.linalg.det(to_rig[:3, :3]) < 0:
+            faces = faces[:, ::-1]
+        name = node.get("name") or f"attachment {len(found)}"
+        try:
+            mesh = TriangleMesh(_moved(vertices, to_rig), faces)  # type: ignore[arg-type]
+        except MeshError as e:
+            raise MeshError(f"{document.label('nodes', i)}: {e}") from None
+        found[i] = Attachment(str(name), mesh, joint, i in hidden or vanishes(nodes, i))
+    return found

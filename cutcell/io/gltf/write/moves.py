@@ -1,0 +1,172 @@
+"""Joints of a glTF document that stand elsewhere at rest: nodes, bind matrices, motions.
+
+A joint's frame moves within itself by d, which takes three edits. Its inverse bind matrices,
+of every skin, become T(-d) IBM. Its node is shifted by what d is in its parent's frame; all that
+hangs on it by -d, so that it stays where it is. Keys of translations, which are absolute, are
+shifted by as much as the node that they move. A vertex stands at rest where it stood.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pygltflib
+from numpy.typing import ArrayLike, NDArray
+
+from ....errors import SkeletonError
+from ....rig.rig import Rig
+from ..container import Document
+from ..nodes import Nodes
+from ..read.accessors import read_accessor
+from .storage import Storage
+
+BINDS = "inverseBindMatrices"
+"""What a skin calls them."""
+
+
+def node_shifts(
+    local: NDArray[np.float64], parents: ArrayLike, own: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Return how far nodes are shifted in their parents' frames when frames move.
+
+    Parameters
+    ----------
+    local : array, shape (k, 4, 4)
+        Each node's matrix at rest.
+    parents : array_like, shape (k,), int
+        -1 for none.
+    own : array, shape (k, 3)
+        By how much each node moves, in its own frame.
+
+    Returns
+    -------
+    array, shape (k, 3)
+    """
+    above = np.asarray(parents)
+    shifts = np.einsum("kab,kb->ka", local[:, :3, :3], own)
+    return shifts - np.where(above[:, None] >= 0, own[above], 0.0)
+
+
+@dataclass(frozen=True, eq=False)
+class NewValues:
+    """Values that take the place of an accessor's.
+
+    Parameters
+    ----------
+    owner : dict
+        What refers to them, under `key`.
+    key : str
+    values : array, shape (n, 3) or (n, 16), float32
+    old : int
+        The accessor that they replace.
+    """
+
+    owner: dict[str, Any]
+    key: str
+    values: NDArray[np.float32]
+    old: int
+
+
+def take_moves(document: dict[str, Any], rig: Rig) -> list[NewValues]:
+    """Shift the nodes of joints that were moved, and take out of a document what is replaced.
+
+    Raises
+    ------
+    SkeletonError
+        A skin without inverse bind matrices, whose joints are where the nodes are.
+    """
+    source, by = rig.source, own_moves(rig)
+    if not by.any():
+        return []
+    nodes = Nodes(source.document)
+    own = np.zeros((len(nodes.raw), 3))
+    own[source.nodes] = by
+    shifts = node_shifts(nodes.local, nodes.parents, own)
+    for i in np.flatnonzero(shifts.any(axis=1)).tolist():
+        _shift(document["nodes"][i], shifts[i])
+    found = _binds(document, source.document, own)
+    return found + _translations(document, source.document, shifts)
+
+
+def own_moves(rig: Rig) -> NDArray[np.float64]:
+    """Return how far each joint of a rig's file has moved, shape (j, 3), in its own frame."""
+    source = rig.source
+    by = np.zeros_like(source.skeleton.joints)
+    origin = np.arange(len(by)) if rig.origin is None else rig.origin
+    there = origin >= 0
+    by[origin[there]] = rig.skeleton.joints[there] - source.skeleton.joints[origin[there]]
+    moved: NDArray[np.float64] = np.einsum("jab,jb->ja", source.inverse[:, :3, :3], by)
+    return moved
+
+
+def store_moves(storage: Storage, found: list[NewValues]) -> None:
+    """Store what `take_moves` found."""
+    stored: dict[tuple[int, bytes], int] = {}
+    for new in found:
+        same = new.old, new.values.tobytes()
+        if same not in stored:
+            stored[same] = storage.store(new.values, new.old, of_mesh=False)
+        new.owner[new.key] = stored[same]
+
+
+def _shift(node: dict[str, Any], shift: NDArray[np.float64]) -> None:
+    if "matrix" in node:
+        place = np.add(node["matrix"][12:15], shift)
+        node["matrix"][12:15] = place.tolist()
+    else:
+        node["translation"] = np.add(node.get("translation", [0, 0, 0]), shift).tolist()
+
+
+def no_binds(label: str) -> SkeletonError:
+    """Return the refusal of a skin whose joints are where the nodes are."""
+    return SkeletonError(
+        f"{label} has no inverse bind matrices, so that its joints cannot be moved within "
+        "its mesh; set the rig's source to None to write a new file instead"
+    )
+
+
+def _binds(document: dict[str, Any], loaded: Document, own: NDArray[np.float64]) -> list[NewValues]:
+    found = []
+    for i, skin in enumerate(document.get("skins", [])):
+        shift = own[skin["joints"]]
+        if not shift.any():
+            continue
+        label = loaded.label("skins", i)
+        if BINDS not in skin:
+            raise no_binds(label)
+        old = skin.pop(BINDS)
+        values = read_accessor(loaded, old, "MAT4", label).astype(np.float64)
+        values[: len(shift), 12:15] -= shift
+        found.append(NewValues(skin, BINDS, values.astype("<f4"), old))
+    return found
+
+
+def _translations(
+    document: dict[str, Any], loaded: Document, shifts: NDArray[np.float64]
+) -> list[NewValues]:
+    found = []
+    for i, animation in enumerate(document.get("animations", [])):
+        label = loaded.label("animations", i)
+        samplers, channels = animation["samplers"], animation["channels"]
+        uses = Counter(channel["sampler"] for channel in channels)
+        for channel in channels:
+            target = channel["target"]
+            node = target.get("node")
+            if target.get("path") != "translation" or node is None or not shifts[node].any():
+                continue
+            sampler = samplers[channel["sampler"]]
+            if uses[channel["sampler"]] > 1:  # what moves other nodes, too, stays
+                sampler = dict(sampler)
+                channel["sampler"] = len(samplers)
+                samplers.append(sampler)
+            old = sampler.pop("output")
+            values = read_accessor(loaded, old, "VEC3", label).astype(np.float64)
+            if sampler.get("interpolation") == pygltflib.ANIM_CUBICSPLINE:
+                values[1::3] += shifts[node]  # between the tangents
+            else:
+                values += shifts[node]
+            found.append(NewValues(sampler, "output", values.astype("<f4"), old))
+    return found

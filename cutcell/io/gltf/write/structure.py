@@ -1,0 +1,260 @@
+"""Joints of a glTF document that are added, removed or hung on others: nodes and skins.
+
+A joint goes on to move against its parent as it did (`skinning.restructure`). So a node that is
+hung on another joint stands behind a node that does not move, which leads from the bind frame of
+the new parent to that of the old one: no key of any motion changes. A removed joint stays as such
+a node, too; no skin names it any more. Nodes keep their numbers.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ....errors import SkeletonError
+from ....rig.rig import Rig, with_origin
+from ..nodes import Nodes
+from ..read.accessors import read_accessor
+from ..read.read import GltfSource, StoredPart
+from .moves import BINDS, NewValues, no_binds, own_moves
+
+
+def take_structure(
+    document: dict[str, Any], rig: Rig, moves: list[NewValues]
+) -> tuple[list[StoredPart], list[NewValues]]:
+    """Change the nodes and skins of a document to those of a rig with other joints.
+
+    Parameters
+    ----------
+    document : dict
+        Whose joints were moved already, see `take_moves`.
+    rig : Rig
+    moves : list of NewValues
+        What `take_moves` found.
+
+    Returns
+    -------
+    parts : list of StoredPart
+        With the rig's joints.
+    found : list of NewValues
+        The moves, with the bind matrices of other joints in place of theirs.
+
+    Raises
+    ------
+    SkeletonError
+        A skin without inverse bind matrices, or of whose joints none is left.
+    """
+    source: GltfSource = rig.source
+    has_its_joints = rig.origin is None or np.array_equal(rig.origin, np.arange(len(source.nodes)))
+    if has_its_joints and np.array_equal(rig.skeleton.parents, source.skeleton.parents):
+        return source.parts, moves
+    edit = _Edit(document, rig)
+    edit.still_removed()
+    edit.hang_added()
+    edit.hang_elsewhere()
+    return edit.skins(moves)
+
+
+class _Edit:
+    """A document on its way to other joints."""
+
+    def __init__(self, document: dict[str, Any], rig: Rig) -> None:
+        self.document, self.rig = document, rig
+        source: GltfSource = rig.source
+        self.source = source
+        self.nodes = Nodes(replace(source.document, json=document, _checked={}))
+        self.parents = source.skeleton.parents
+        self._base = -1
+        self.inverse = source.inverse.copy()
+        self.inverse[:, :3, 3] -= own_moves(rig)
+        origin = rig.origin
+        assert origin is not None
+        self.origin = origin
+        self.number = {int(f): j for j, f in enumerate(origin) if f >= 0}
+        self.node = {j: source.nodes[f] for f, j in self.number.items()}
+        """The node of each of the rig's joints."""
+        self.bind = {j: self.inverse[f] for f, j in self.number.items()}
+        """The inverse bind matrix of each of the rig's joints."""
+
+    def still_removed(self) -> None:
+        """Let nothing move the nodes of removed joints against their parents."""
+        removed = [f for f in range(len(self.source.nodes)) if f not in self.number]
+        for f in removed:
+            node = self.source.nodes[f]
+            before = self._behind(f)
+            matrix = np.linalg.inv(before) @ self._frame_above(f) @ np.linalg.inv(self.inverse[f])
+            _set_matrix(self.document["nodes"][node], matrix)
+        still = {self.source.nodes[f] for f in removed}
+        kept = []
+        for animation in self.document.get("animations", []):
+            animation["channels"] = [
+                channel
+                for channel in animation["channels"]
+                if channel["target"].get("node") not in still
+                or channel["target"].get("path") == "weights"
+            ]
+            if animation["channels"]:  # glTF has no motion of nothing
+                kept.append(animation)
+        if "animations" in self.document:
+            self.document["animations"] = kept
+            if not kept:
+                del self.document["animations"]
+
+    def hang_added(self) -> None:
+        """Make nodes for joints that were added, turned as their parents are."""
+        skeleton = self.rig.skeleton
+        for j in np.argsort(skeleton.depth, kind="stable").tolist():
+            if self.origin[j] >= 0:
+                continue
+            above, place = int(skeleton.parents[j]), skeleton.joints[j]
+            new: dict[str, Any] = {"name": skeleton.names[j]}
+            frame = np.eye(4) if above < 0 else np.linalg.inv(self.bind[above])
+            frame[:3, 3] = place
+            self.bind[j] = np.linalg.inv(frame)
+            if above < 0:
+                self.node[j] = self._add_root(new, self.rig.world @ frame)
+            else:
+                new["translation"] = (self.bind[above] @ [*place, 1])[:3].tolist()
+                self.node[j] = self._add(new, self.node[above])
+
+    def hang_elsewhere(self) -> None:
+        """Hang the nodes of joints on those of their new parents."""
+        for f, j in self.number.items():
+            above = int(self.parents[f])
+            while above >= 0 and above not in self.number:
+                above = int(self.parents[above])
+            wanted = int(self.rig.skeleton.parents[j])
+            if wanted == (self.number[above] if above >= 0 else -1):
+                continue
+            frame = np.linalg.inv(self._frame_above(f)) @ self._behind(f)
+            node = self.node[j]
+            holder: dict[str, Any] = {"children": [node]}
+            self._take_off(node)
+            if wanted < 0:
+                self._add_root(holder, self.rig.world @ frame)
+            else:
+                _set_matrix(holder, self.bind[wanted] @ frame)
+                self._add(holder, self.node[wanted])
+
+    def skins(self, moves: list[NewValues]) -> tuple[list[StoredPart], list[NewValues]]:
+        """Let the skins name the rig's joints, and say where they are bound."""
+        source, found = self.source, list(moves)
+        columns: dict[int, list[int]] = {}
+        for part in source.parts:
+            if part.skin not in columns:
+                columns[part.skin], new = self._skin(part, found)
+                found.append(new)
+        return [replace(part, joints=columns[part.skin]) for part in source.parts], found
+
+    def _skin(self, part: StoredPart, found: list[NewValues]) -> tuple[list[int], NewValues]:
+        skin, loaded = self.document["skins"][part.skin], self.source.document
+        label = loaded.label("skins", part.skin)
+        stored = loaded.json["skins"][part.skin]
+        if BINDS not in stored:
+            raise no_binds(label)
+        before = read_accessor(loaded, stored[BINDS], "MAT4", label).astype(np.float64)
+        values = before
+        for move in [move for move in found if move.owner is skin and move.key == BINDS]:
+            values = move.values.astype(np.float64)
+            found.remove(move)
+        skin.pop(BINDS, None)
+        slots = [slot for slot, f in enumerate(part.joints) if f in self.number]
+        joints = [self.number[part.joints[slot]] for slot in slots]
+        like = with_origin(self.rig.skeleton, self.origin)
+        added = [
+            j
+            for j in np.flatnonzero(self.origin < 0).tolist()
+            if max(int(self.origin[like[j]]), 0) in part.joints
+        ]
+        if not joints + added:
+            raise SkeletonError(f"of {label} no joint is left; keep at least one")
+        # A skin's own space may be another than the rig's.
+        to_rig = np.linalg.inv(self.source.inverse[part.joints[0]]) @ before[0].reshape(4, 4).T
+        rows = [values[slot] for slot in slots]
+        rows += [(self.bind[j] @ to_rig).T.ravel() for j in added]
+        columns = joints + added
+        skin["joints"] = [self.node[j] for j in columns]
+        new = NewValues(skin, BINDS, np.array(rows).astype("<f4"), stored[BINDS])
+        return columns, new
+
+    def _frame_above(self, f: int) -> NDArray[np.float64]:
+        """Return the inverse bind matrix of what a file's joint hangs on; the world's for a root.
+
+        A skinning matrix of the parent is its world matrix times this.
+        """
+        above = int(self.parents[f])
+        found: NDArray[np.float64] = self.inverse[above] if above >= 0 else self.rig.world
+        return found
+
+    def _behind(self, f: int) -> NDArray[np.float64]:
+        """Return the matrix at rest of what a joint's node hangs on, seen from its parent joint.
+
+        Seen from the scene for a root.
+        """
+        above = int(self.parents[f])
+        stop = self.source.nodes[above] if above >= 0 else -1
+        node, matrix = self.nodes.parents[self.source.nodes[f]], np.eye(4)
+        while node != stop:
+            matrix = self.nodes.local[node] @ matrix
+            node = self.nodes.parents[node]
+        return matrix
+
+    def _roots(self) -> list[list[int]]:
+        scenes = self.document.get("scenes", [])
+        return [scene["nodes"] for scene in scenes if "nodes" in scene]
+
+    def _add(self, node: dict[str, Any], on: int) -> int:
+        """Add a node that hangs on another one."""
+        nodes = self.document["nodes"]
+        nodes.append(node)
+        nodes[on].setdefault("children", []).append(len(nodes) - 1)
+        return len(nodes) - 1
+
+    def _add_root(self, node: dict[str, Any], world: NDArray[np.float64]) -> int:
+        """Add a node beside the first root joint: the joints of a skin need a common ancestor."""
+        first = self.source.nodes[int(np.flatnonzero(self.parents < 0)[0])]
+        base = self.nodes.parents[first]
+        if base < 0:
+            base = self._base if self._base >= 0 else self._new_base()
+            _set_matrix(node, world)
+        else:
+            _set_matrix(node, np.linalg.inv(self.nodes.world[base]) @ world)
+        for skin in {part.skin for part in self.source.parts}:
+            self.document["skins"][skin].pop("skeleton", None)  # it need not be above this one
+        return self._add(node, base)
+
+    def _new_base(self) -> int:
+        """Add a node on which all nodes hang that root joints were."""
+        roots = {self.source.nodes[f] for f in np.flatnonzero(self.parents < 0)}
+        roots = {node for node in roots if self.nodes.parents[node] < 0}
+        nodes = self.document["nodes"]
+        nodes.append({"name": "skeleton", "children": sorted(roots)})
+        self._base = len(nodes) - 1
+        for listed in self._roots():
+            if roots & set(listed):
+                listed[:] = [node for node in listed if node not in roots] + [self._base]
+        return self._base
+
+    def _take_off(self, node: int) -> None:
+        """Let a node hang on nothing, and stand in no scene by itself."""
+        for roots in self._roots():
+            if node in roots:
+                roots.remove(node)
+        for owner in self.document["nodes"]:
+            if node in owner.get("children", []):
+                owner["children"].remove(node)
+                if not owner["children"]:
+                    del owner["children"]
+
+
+def _set_matrix(node: dict[str, Any], matrix: NDArray[np.float64]) -> None:
+    """Give a node a matrix in place of what told where it is."""
+    for key in ("translation", "rotation", "scale", "matrix"):
+        node.pop(key, None)
+    if not np.allclose(matrix, np.eye(4), rtol=0, atol=1e-12):
+        exact = matrix.copy()
+        exact[3] = [0, 0, 0, 1]
+        node["matrix"] = exact.T.ravel().tolist()

@@ -1,0 +1,1 @@
+"""Base colours, images and alpha modes of a file, for display and for new GLB files."""

@@ -1,0 +1,201 @@
+"""What colours the faces of a rig, whatever its file's format.
+
+Images are handed over as they are stored; nothing is decoded here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable, Iterable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...errors import CutcellError
+
+REPEAT, CLAMP, MIRROR = 0, 1, 2
+"""How an image goes on beyond its border."""
+BLENDED = 9
+"""Added to how an image goes on, where what is behind shines through by alpha."""
+OPAQUE = 255
+CUTOFF = 0.5
+"""Where alpha cuts a surface, if the material does not tell."""
+
+
+@dataclass(frozen=True)
+class StoredImage:
+    """An image as a file stores it: what people call it, and its bytes."""
+
+    name: str
+    content: bytes
+
+
+@dataclass(frozen=True)
+class Layer:
+    """A way in which an image is used.
+
+    Parameters
+    ----------
+    image : int
+    nearest : bool
+        Whether its pixels are to be seen as squares.
+    cutoff : float, optional
+        Nothing is there where its alpha is less; None where alpha cuts nothing.
+    blended : bool
+        Whether what is behind shines through by its alpha.
+    color : tuple of int, optional
+        What is shown where the image cannot be, red, green and blue; the tints when left out.
+    """
+
+    image: int
+    nearest: bool = False
+    cutoff: float | None = None
+    blended: bool = False
+    color: tuple[int, ...] | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class FaceColors:
+    """What colours the corners of some faces.
+
+    Parameters
+    ----------
+    corners : array, shape (m, 3, 4), float32
+        Of each corner: where it lies in the image, from the upper left corner of it; the
+        number of the layer, -1 for none; and how the image goes on, 3 across + down (see `REPEAT`),
+        `BLENDED` added where alpha counts for what is behind.
+    tints : array, shape (m, 3, 3), uint8
+        What the image is multiplied by, or the colour where there is none; sRGB.
+    opacity : array, shape (m, 3), uint8
+        What the image's alpha is multiplied by; less than 255 only where `BLENDED` is added.
+    materials : array, shape (m,), int32
+        The number of each face's material among `Materials.names`, -1 for none.
+    """
+
+    corners: NDArray[np.float32]
+    tints: NDArray[np.uint8]
+    opacity: NDArray[np.uint8]
+    materials: NDArray[np.int32]
+
+    def of(self, rows: slice) -> FaceColors:
+        """Return those of some faces, as views."""
+        return FaceColors(
+            self.corners[rows], self.tints[rows], self.opacity[rows], self.materials[rows]
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class Materials:
+    """The base colours of a rig.
+
+    Parameters
+    ----------
+    body : FaceColors
+        Of the faces of `rig.mesh`.
+    attachments : tuple of FaceColors
+        Of those of each attachment.
+    layers : tuple of Layer
+    images : tuple of StoredImage
+    notes : tuple of str
+        What could not be read, in sentences.
+    names : tuple of str
+        Of the materials; empty where one has no name.
+    """
+
+    body: FaceColors
+    attachments: tuple[FaceColors, ...]
+    layers: tuple[Layer, ...]
+    images: tuple[StoredImage, ...]
+    notes: tuple[str, ...] = ()
+    names: tuple[str, ...] = ()
+
+
+class Collected:
+    """The images, their uses and what is to be told of materials; each is listed once."""
+
+    def __init__(self, notes: Iterable[str] = ()) -> None:
+        self.layers: dict[Layer, int] = {}
+        self._materials: dict[Hashable, tuple[int, str]] = {}
+        self._images: dict[Hashable, StoredImage] = {}
+        self._notes: dict[str, None] = dict.fromkeys(notes)
+
+    @property
+    def images(self) -> tuple[StoredImage, ...]:
+        """The images, in the order of their numbers."""
+        return tuple(self._images.values())
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What could not be read, in sentences."""
+        return tuple(self._notes)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The names of the materials, in the order of their numbers."""
+        return tuple(name for _, name in self._materials.values())
+
+    def material(self, key: Hashable, name: str) -> int:
+        """Return the number of a material; `key` is the file's own."""
+        return self._materials.setdefault(key, (len(self._materials), name))[0]
+
+    def layer(self, use: Layer, stored: Callable[[], StoredImage]) -> int:
+        """Return the number of a use of an image.
+
+        Parameters
+        ----------
+        use : Layer
+            Its `image` is by the file's numbers.
+        stored : callable
+            Reads the image, if that was not done before.
+        """
+        if use.image not in self._images:
+            self._images[use.image] = stored()
+        use = replace(use, image=list(self._images).index(use.image))
+        return self.layers.setdefault(use, len(self.layers))
+
+    def note(self, label: str, error: Exception) -> None:
+        """Keep in mind what could not be read of a material."""
+        why = str(error) if isinstance(error, CutcellError) else "it is malformed"
+        self._notes[f"{label} is used without what could not be read of it: {why}"] = None
+
+
+Paint = Callable[[Any, NDArray, FaceColors], None]
+"""Fills the colours of one piece of a mesh, given what colours it, and its faces by the vertices'
+own numbers there."""
+
+
+def face_colors(
+    faces: NDArray[np.int32], pieces: Iterable[tuple[Any, int, slice]], paint: Paint
+) -> FaceColors | None:
+    """Return the colours of faces.
+
+    Parameters
+    ----------
+    faces : array, shape (m, 3)
+    pieces : iterable of (object, int, slice)
+        What colours a piece, its first vertex, and its faces.
+    paint : callable
+        See `Paint`.
+
+    Returns
+    -------
+    FaceColors or None
+        None if these are not the faces of the pieces.
+    """
+    colors = FaceColors(
+        np.zeros((len(faces), 3, 4), np.float32),
+        np.full((len(faces), 3, 3), OPAQUE, np.uint8),
+        np.full((len(faces), 3), OPAQUE, np.uint8),
+        np.full(len(faces), -1, np.int32),
+    )
+    colors.corners[..., 2] = -1
+    end = 0
+    for piece, first, rows in pieces:
+        if rows.start != end or rows.stop > len(faces):
+            return None
+        end = rows.stop
+        with np.errstate(all="ignore"):  # a file may hold any number
+            paint(piece, faces[rows] - first, colors.of(rows))
+    np.nan_to_num(colors.corners, copy=False)
+    return colors if end == len(faces) else None

@@ -1,0 +1,196 @@
+"""Base colours for a glTF document that cutcell made itself, with one plain material."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...rig.rig import Rig
+from ..gltf.container import Document
+from ..gltf.embedded import image_notes
+from ..gltf.read.accessors import find_accessor
+from ..gltf.write.seams import MOST_VERTICES, SPLIT_FROM, split_at_seams
+from ..gltf.write.storage import Storage
+from .face_colors import Collected, FaceColors, face_colors
+from .gltf_palette import Group, Palette, Uses, attributes_of
+from .surfaces import SurfacePaint, Surfaces
+from .transfer import has_materials, read_materials
+
+
+def with_rig_colors(document: dict[str, Any], data: bytes, rig: Rig) -> Storage | None:
+    """Give a new document the base colours of a rig's file.
+
+    Parameters
+    ----------
+    document : dict
+        To be edited. The body is its first mesh, then come the attachments.
+    data : bytes
+        Its buffer.
+    rig : Rig
+
+    Returns
+    -------
+    Storage or None
+        None, and the document is as it was, where the rig's file has no colours.
+    """
+    found = read_materials(rig) if has_materials(rig) else None
+    if found is None:
+        return None
+    meshes = dict(enumerate([found.body, *found.attachments]))
+    return _colored(document, data, meshes, Uses(found.layers, found.images, found.names))
+
+
+def with_surface_colors(storage: Storage, surfaces: Surfaces | None) -> Storage:
+    """Give a document that was made of another format the base colours of that file.
+
+    Parameters
+    ----------
+    storage : Storage
+        Of the document; no other edits may follow but of the one that is returned.
+    surfaces : Surfaces, optional
+        By the numbers of the document's meshes.
+    """
+    if surfaces is None or not surfaces.coloured:
+        return storage
+    document, data = storage.document, storage.finish()
+    found = Collected(surfaces.notes)
+    paint = SurfacePaint(surfaces, found)
+    view = Document(surfaces.path, document, [data])
+    meshes = {}
+    for number, surface in surfaces.meshes.items():
+        faces = _faces(view, number)
+        piece = surface, 0, slice(0, len(faces))
+        colors = face_colors(faces, [piece], paint)
+        if colors is not None:
+            meshes[number] = colors
+    return _colored(document, data, meshes, Uses(list(found.layers), found.images, found.names))
+
+
+def color_notes(rig: Rig) -> tuple[str, ...]:
+    """Say what a new document cannot hold of the base colours of a rig's file."""
+    if not has_materials(rig):
+        return ()
+    found = read_materials(rig)
+    if found is None:
+        return ("its materials are not saved: its faces are no longer those of its file",)
+    return (*found.notes, *image_notes(found.images))
+
+
+class _Mesh(NamedTuple):
+    """What is to be stored of a mesh with one primitive.
+
+    Parameters
+    ----------
+    old : dict of str to int
+        The accessors that are given up: "indices", the weights', other attributes' if vertices
+        were split.
+    arrays : dict of str to array
+        By attribute, of all vertices; weights stand last.
+    faces : array, shape (m, 3)
+    groups : list of Group
+        Empty where the mesh keeps the plain material.
+    """
+
+    old: dict[str, int]
+    arrays: dict[str, NDArray]
+    faces: NDArray[np.intp]
+    groups: list[Group]
+
+
+def _colored(
+    document: dict[str, Any], data: bytes, meshes: Mapping[int, FaceColors], uses: Uses
+) -> Storage:
+    """Return the storage of a document each of whose meshes has one primitive.
+
+    Weights are stored behind all else, as they are when the document is read and saved again.
+    """
+    view, palette = Document(Path(), document, [data]), Palette(uses)
+    count = len(document["meshes"])
+    taken = [_take(view, number, meshes.get(number), palette) for number in range(count)]
+    storage = Storage(document, [data], [i for mesh in taken for i in mesh.old.values()])
+    plain = palette.store(storage)
+    for mesh, found in zip(document["meshes"], taken, strict=True):
+        _store(storage, mesh["primitives"], found, plain)
+    for mesh, found in zip(document["meshes"], taken, strict=True):
+        weights = {name: values for name, values in found.arrays.items() if _is_weight(name)}
+        stored = {name: storage.store(weights[name], found.old[name]) for name in weights}
+        for primitive in mesh["primitives"]:
+            primitive["attributes"].update(stored)
+    if all(mesh.groups for mesh in taken):
+        document["materials"].pop()
+    return storage
+
+
+def _take(view: Document, number: int, colors: FaceColors | None, palette: Palette) -> _Mesh:
+    """Take out of a mesh what is to be stored anew."""
+    (primitive,) = view.json["meshes"][number]["primitives"]
+    named = primitive["attributes"]
+    count = view.json["accessors"][named["POSITION"]]["count"]
+    faces, origin = _faces(view, number).astype(np.intp), np.arange(count)
+    old: dict[str, int] = {}
+    arrays: dict[str, NDArray] = {}
+    groups: list[Group] = []
+    if colors is not None:
+        groups, values = palette.groups(colors)
+        faces, origin = split_at_seams(faces, count, values)
+        of_vertex = np.zeros((len(origin), values.shape[2]), np.float32)
+        of_vertex[faces] = values
+        arrays |= attributes_of(groups, of_vertex)
+        old["indices"] = primitive.pop("indices")
+    is_split = len(origin) > count
+    if is_split and "JOINTS_0" in named and count <= MOST_VERTICES:
+        arrays[SPLIT_FROM] = origin[:, None].astype("<f4")
+    for name in sorted(named, key=_is_weight):
+        if is_split or _is_weight(name):
+            old[name] = named.pop(name)
+            arrays[name] = _raw(view, old[name])[origin]
+    return _Mesh(old, arrays, faces, groups)
+
+
+def _store(storage: Storage, primitives: list[dict[str, Any]], mesh: _Mesh, plain: int) -> None:
+    """Store all of a mesh but its weights; its primitives have their vertices in common."""
+    (primitive,) = primitives
+    if not mesh.groups:
+        primitive["material"] = plain
+        return
+    named = primitive["attributes"]
+    for name, values in mesh.arrays.items():
+        if _is_weight(name):
+            continue
+        number = named[name] = storage.store(values, mesh.old.get(name))
+        if name == "POSITION":
+            low, high = values.min(axis=0).tolist(), values.max(axis=0).tolist()
+            storage.accessors[number].update(min=low, max=high)
+        elif name == "COLOR_0":
+            storage.accessors[number]["normalized"] = True
+    count = storage.accessors[named["POSITION"]]["count"]
+    kind = "<u2" if count < np.iinfo(np.uint16).max else "<u4"
+    primitives.clear()
+    for k, group in enumerate(mesh.groups):
+        corners = mesh.faces[group.rows].reshape(-1, 1).astype(kind)
+        uses = {"TEXCOORD_0": group.textured, "COLOR_0": group.varied}
+        primitives.append({
+            **primitive,
+            "attributes": {name: at for name, at in named.items() if uses.get(name, True)},
+            "indices": storage.store(corners, None if k else mesh.old["indices"]),
+            "material": group.material,
+        })  # fmt: skip
+
+
+def _is_weight(name: str) -> bool:
+    return name.startswith(("JOINTS_", "WEIGHTS_"))
+
+
+def _faces(view: Document, number: int) -> NDArray[np.int32]:
+    (primitive,) = view.json["meshes"][number]["primitives"]
+    return _raw(view, primitive["indices"]).reshape(-1, 3).astype(np.int32)
+
+
+def _raw(view: Document, number: int) -> NDArray:
+    """Return an accessor's elements as they are stored."""
+    kind = view.json["accessors"][number]["type"]
+    return find_accessor(view, number, kind, "the document").base.array()

@@ -1,0 +1,209 @@
+"""The colours of faces and their corners as glTF's materials, textures and images."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...runtime.colors import linear
+from ..gltf.embedded import Embedded, embedded
+from ..gltf.write.storage import Storage
+from ..names import whole_characters
+from .face_colors import BLENDED, OPAQUE, FaceColors, Layer, StoredImage
+from .gltf_textures import NEAREST, WRAPS
+
+REPEATED = 10497
+SIDES = {way: number for number, way in WRAPS.items()}
+FULL = 2**16 - 1
+PLAIN = "plain"
+
+
+class Uses(NamedTuple):
+    """What the numbers in `FaceColors` mean; see `Materials`."""
+
+    layers: Sequence[Layer]
+    images: Sequence[StoredImage]
+    names: Sequence[str]
+
+
+class Group(NamedTuple):
+    """Faces that have one material.
+
+    Parameters
+    ----------
+    material : int
+        In the document.
+    rows : array, shape (k,)
+        The faces, ascending.
+    textured, varied : bool
+        Whether they have texture coordinates, and colours by vertex.
+    """
+
+    material: int
+    rows: NDArray[np.intp]
+    textured: bool
+    varied: bool
+
+
+@dataclass(frozen=True)
+class _Look:
+    """What makes a material: number of the name, layer, wrapping, and factor as bytes."""
+
+    name: int
+    layer: int
+    wrap: int
+    factor: tuple[int, ...]
+
+
+class Palette:
+    """The materials of a document that is being made.
+
+    Parameters
+    ----------
+    uses : Uses
+    """
+
+    def __init__(self, uses: Uses) -> None:
+        self._uses = uses
+        self._embedded = embedded(uses.images)
+        self._looks: dict[_Look, int] = {}
+
+    def groups(self, colors: FaceColors) -> tuple[list[Group], NDArray[np.float32]]:
+        """Part faces by material.
+
+        Parameters
+        ----------
+        colors : FaceColors
+            Of m faces.
+
+        Returns
+        -------
+        groups : list of Group
+            In the order of their first faces.
+        values : array, shape (m, 3, 6), float32
+            Of each corner: texture coordinates, or 0; and red, green, blue and alpha, linear, from
+            0 to 65,535, which a factor is multiplied by.
+        """
+        layers, rgba = self._shown(colors)
+        # How an image goes on matters where there is one; blending also where a colour is.
+        counts = (layers >= 0) | (rgba[..., 3] < OPAQUE).any(axis=1)
+        kinds = np.column_stack([colors.materials, layers, colors.corners[:, 0, 3] * counts])
+        found, first, of_face = np.unique(
+            kinds.astype(int), axis=0, return_index=True, return_inverse=True
+        )
+        of_face = of_face.reshape(-1)
+        ends = np.cumsum(np.bincount(of_face))
+        faces = np.split(np.argsort(of_face, kind="stable"), ends[:-1])
+        values = np.zeros((len(kinds), 3, 6), np.float32)
+        values[..., 2:] = FULL
+        groups = []
+        for k in np.argsort(first).tolist():
+            name, layer, wrap = found[k].tolist()
+            rows = faces[k]
+            corners = rgba[rows]
+            varied = bool((corners != corners[0, 0]).any())
+            factor = (OPAQUE,) * 4 if varied else tuple(corners[0, 0].tolist())
+            if varied:
+                values[rows, :, 2:5] = np.round(FULL * linear(corners[..., :3]))
+                values[rows, :, 5] = corners[..., 3] * (FULL / OPAQUE)
+            if layer >= 0:
+                values[rows, :, :2] = colors.corners[rows, :, :2] + 0.0  # -0 is 0
+            look = _Look(name, layer, wrap, factor)
+            number = self._looks.setdefault(look, len(self._looks))
+            groups.append(Group(number, rows, layer >= 0, varied))
+        return groups, values
+
+    def _shown(self, colors: FaceColors) -> tuple[NDArray[np.intp], NDArray[np.uint8]]:
+        """Return the layer of each face, -1 where its image cannot be taken in, and its colours.
+
+        These have the shape (m, 3, 4): red, green, blue and opacity, sRGB.
+        """
+        layers = colors.corners[:, 0, 2].astype(int)
+        rgba = np.concatenate([colors.tints, colors.opacity[..., None]], axis=2)
+        for k, use in enumerate(self._uses.layers):
+            if self._embedded[use.image].problem:
+                rows = layers == k
+                layers[rows] = -1
+                if use.color is not None:
+                    rgba[rows, :, :3] = use.color
+        return layers, rgba
+
+    def store(self, storage: Storage) -> int:
+        """Put the materials before the one of a document, and return the number of that."""
+        document = storage.document
+        document["materials"] = [*map(self._material, self._looks), *document["materials"]]
+        if any(look.layer >= 0 for look in self._looks):
+            self._store_images(storage)
+        return len(self._looks)
+
+    def _store_images(self, storage: Storage) -> None:
+        document = storage.document
+        samplers: dict[tuple[int, bool], int] = {}
+        images: dict[int, int] = {}
+        textures: dict[tuple[int, int | None], int] = {}
+        for look, material in zip(self._looks, document["materials"], strict=False):
+            if look.layer < 0:
+                continue
+            use = self._uses.layers[look.layer]
+            image = images.setdefault(use.image, len(images))
+            plainly = look.wrap % BLENDED == 0 and not use.nearest
+            key = (look.wrap % BLENDED, use.nearest)
+            sampler = None if plainly else samplers.setdefault(key, len(samplers))
+            texture = textures.setdefault((image, sampler), len(textures))
+            material["pbrMetallicRoughness"]["baseColorTexture"] = {"index": texture}
+        document["images"] = [
+            _image(self._uses.images[k].name, self._embedded[k], storage) for k in images
+        ]
+        document["textures"] = [
+            {"source": image} if sampler is None else {"source": image, "sampler": sampler}
+            for image, sampler in textures
+        ]
+        if samplers:
+            document["samplers"] = [_sampler(wrap, nearest) for wrap, nearest in samplers]
+
+    def _material(self, look: _Look) -> dict[str, Any]:
+        base: dict[str, Any] = {"metallicFactor": 0.0, "roughnessFactor": 0.8}
+        if look.factor != (OPAQUE,) * 4:
+            *rgb, alpha = look.factor
+            base["baseColorFactor"] = [*linear(rgb).tolist(), alpha / OPAQUE]
+        name = whole_characters(self._uses.names[look.name]) if look.name >= 0 else PLAIN
+        made: dict[str, Any] = {"name": name} if name else {}
+        made |= {"pbrMetallicRoughness": base, "doubleSided": True}
+        use = self._uses.layers[look.layer] if look.layer >= 0 else None
+        if look.wrap >= BLENDED or (use is not None and use.blended):
+            made["alphaMode"] = "BLEND"
+        elif use is not None and use.cutoff is not None:
+            made |= {"alphaMode": "MASK", "alphaCutoff": use.cutoff}
+        return made
+
+
+def _image(label: str, image: Embedded, storage: Storage) -> dict[str, Any]:
+    name = whole_characters(label).partition('"')[2].rpartition('"')[0]
+    made = {"bufferView": storage.add_view(image.content), "mimeType": image.kind}
+    return {"name": name, **made} if name else made
+
+
+def _sampler(wrap: int, nearest: bool) -> dict[str, Any]:
+    across, down = (SIDES.get(way, REPEATED) for way in divmod(wrap, 3))
+    return {"wrapS": across, "wrapT": down, **({"magFilter": NEAREST} if nearest else {})}
+
+
+def attributes_of(
+    groups: list[Group], values: NDArray[np.float32]
+) -> Iterator[tuple[str, NDArray]]:
+    """Yield texture coordinates and colours of vertices, as they are stored, where any are used.
+
+    Parameters
+    ----------
+    groups : list of Group
+    values : array, shape (n, 6)
+        Of each vertex; see `Palette.groups`.
+    """
+    if any(group.textured for group in groups):
+        yield "TEXCOORD_0", values[:, :2].astype("<f4")
+    if any(group.varied for group in groups):
+        yield "COLOR_0", values[:, 2:].astype("<u2")

@@ -1,0 +1,162 @@
+"""Materials of Wavefront OBJ: the colours of vertices, and what a .mtl file beside it says.
+
+Nothing here stops a mesh from being read: what is wrong is a note.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from functools import cached_property
+from itertools import pairwise
+from math import isfinite
+from pathlib import Path
+
+import numpy as np
+
+from ...errors import FileError
+from ...rig.rig import TriangleMesh
+from ..files import read_text
+from ..files_beside import read_beside
+from ..meshes.obj import numbered_words
+from .mtl import parse_mtl
+from .surfaces import ImageFile, Material, Surface, Surfaces
+
+LARGEST = 2**24
+"""Bytes of a .mtl file."""
+MOST_LIBRARIES = 64
+COLOURED = re.compile(r"^[ \t]*(usemtl[ \t]|v([ \t]+\S+){6,7}[ \t]*\r?$)", re.MULTILINE)
+
+
+@dataclass(frozen=True, eq=False)
+class ColouredObj:
+    """An OBJ with materials or colours; they are read when somebody asks, as few do.
+
+    Parameters
+    ----------
+    path : Path
+        Its .mtl files and images lie beside it.
+    mesh : TriangleMesh
+        As `parse_obj` reads it.
+    """
+
+    path: Path
+    mesh: TriangleMesh
+
+    @classmethod
+    def of(cls, path: Path, text: str, mesh: TriangleMesh) -> ColouredObj | None:
+        """Return it; None where `text` names no materials and gives vertices no colours."""
+        return cls(path, mesh) if COLOURED.search(text) else None
+
+    @cached_property
+    def surfaces(self) -> Surfaces:
+        """What colours the mesh; nothing if the file has gone meanwhile."""
+        try:
+            return _surfaces(self.path, read_text(self.path), self.mesh)
+        except FileError:
+            return Surfaces(self.path, {})
+
+
+def _surfaces(path: Path, text: str, mesh: TriangleMesh) -> Surfaces:
+    said = _read(text)
+    materials, images, notes = _materials(path, said)
+    count = len(mesh.faces)
+    uv = np.array(said.places, float).reshape(-1, 2)
+    at = np.array(said.corners, int).reshape(-1, 3)
+    places = None
+    if len(at) == count and (known := (at >= 0) & (at < len(uv))).any():
+        found = np.where(known[..., None], uv[np.where(known, at, 0)], 0)
+        places = np.stack([found[..., 0], 1 - found[..., 1]], axis=2).astype(np.float32)
+    colors = None
+    if len(said.colors) == len(mesh.vertices):
+        values = np.clip(np.nan_to_num(np.array(said.colors)), 0, 1)
+        colors = np.round(255 * values).astype(np.uint8)[mesh.faces]
+    material = np.full(count, -1, np.int32)
+    if len(said.materials) == count:
+        material[:] = said.materials
+    surface = Surface(mesh.faces, material, places, colors)
+    return Surfaces(path, {0: surface}, materials, images, notes)
+
+
+@dataclass
+class _Said:
+    """What the lines of an OBJ say; of each triangle, in the order of `parse_obj`."""
+
+    libraries: list[str] = field(default_factory=list)
+    names: dict[str, int] = field(default_factory=dict)
+    places: list[tuple[float, float]] = field(default_factory=list)
+    colors: list[list[float]] = field(default_factory=list)
+    corners: list[tuple[int, int, int]] = field(default_factory=list)
+    materials: list[int] = field(default_factory=list)
+
+
+def _read(text: str) -> _Said:
+    said, material = _Said(), -1
+    for _, words in numbered_words(text):
+        kind = words[0]
+        if kind == "f":
+            at = [_place(word, len(said.places)) for word in words[1:]]
+            fan = [(at[0], b, c) for b, c in pairwise(at[1:])]
+            said.corners += fan
+            said.materials += [material] * len(fan)
+        elif kind == "vt":
+            u, v, *_ = [*words[1:3], "0", "0"]  # the second may be missing
+            said.places.append((_number(u), _number(v)))
+        elif kind == "v" and len(words) in (7, 8):
+            said.colors.append([_number(word) for word in words[4:7]])
+        elif kind == "usemtl":
+            material = said.names.setdefault(" ".join(words[1:]), len(said.names))
+        elif kind == "mtllib":
+            said.libraries.append(" ".join(words[1:]))
+    return said
+
+
+def _place(word: str, count: int) -> int:
+    """Return which texture coordinates a corner names, counted from 0; -1 for none."""
+    parts = word.split("/")
+    try:
+        index = int(parts[1])
+    except (IndexError, ValueError):
+        return -1
+    at = index - 1 if index > 0 else count + index
+    return at if 0 <= at < 2**31 and index else -1
+
+
+def _number(word: str) -> float:
+    try:
+        value = float(word)
+    except ValueError:
+        return 0.0
+    return value if isfinite(value) else 0.0
+
+
+def _materials(
+    path: Path, said: _Said
+) -> tuple[tuple[Material, ...], tuple[ImageFile, ...], tuple[str, ...]]:
+    """Return the materials by the numbers that faces have, their images, and what is missing."""
+    known: dict[str, Material] = {}
+    images: dict[tuple[str, ...], int] = {}
+    notes: dict[str, None] = {}
+    for label, names in list(_libraries(said.libraries))[:MOST_LIBRARIES]:
+        try:
+            text = read_beside(path, names, label, LARGEST).decode("utf-8", "replace")
+        except FileError as error:
+            notes[f"the materials of {path.name} are not used: {error}"] = None
+            continue
+        known = {**parse_mtl(text, images), **known}
+    missing = [name for name in said.names if name not in known]
+    if missing and not notes:
+        named = ", ".join(f'"{name[:80]}"' for name in missing[:3])
+        notes[f"no .mtl file tells of the materials that faces have ({named})"] = None
+    found = tuple(known.get(name, Material(name)) for name in said.names)
+    return found, tuple(map(ImageFile, images)), tuple(notes)
+
+
+def _libraries(lines: list[str]) -> Iterator[tuple[str, tuple[str, ...]]]:
+    """Return what to call each .mtl file, and its names: a line is one name, or some."""
+    for line in dict.fromkeys(lines):
+        words = line.split()
+        several = len(words) > 1 and all(word.lower().endswith(".mtl") for word in words)
+        for name in words if several else [line]:
+            yield f"{name[:80]}", (name,)

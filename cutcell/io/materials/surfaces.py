@@ -1,0 +1,229 @@
+"""Materials of formats that tell them by face and corner: OBJ, FBX and others that are no glTF."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...errors import CutcellError, FileError
+from ..files_beside import read_beside
+from .face_colors import BLENDED, OPAQUE, REPEAT, Collected, FaceColors, Layer, StoredImage
+
+WHITE = (1.0, 1.0, 1.0)
+
+
+@dataclass(frozen=True, eq=False)
+class Surface:
+    """What a file tells of a mesh's faces.
+
+    Parameters
+    ----------
+    faces : array, shape (m, 3), int32
+        As they were read.
+    material : array, shape (m,), int32
+        Of each face, -1 for none.
+    places : array, shape (m, 3, 2), float32, optional
+        Where each corner lies in the image, from the upper left corner of it.
+    colors : array, shape (m, 3, 3), uint8, optional
+        Of each corner, sRGB.
+    """
+
+    faces: NDArray[np.int32]
+    material: NDArray[np.int32]
+    places: NDArray[np.float32] | None = None
+    colors: NDArray[np.uint8] | None = None
+
+
+@dataclass(frozen=True)
+class Material:
+    """The base colour of a material.
+
+    Parameters
+    ----------
+    name : str
+    color : tuple of float
+        Red, green and blue from 0 to 1, sRGB.
+    image : int
+        -1 for none.
+    wrap : int
+        How the image goes on, 3 across + down (see `face_colors.REPEAT`).
+    opacity : float
+        From 0 to 1.
+    blended : bool
+        Whether the image's alpha counts.
+    replaced : bool
+        Whether the image takes the place of the colour, and is not multiplied by it.
+    """
+
+    name: str
+    color: tuple[float, ...] = WHITE
+    image: int = -1
+    wrap: int = 4 * REPEAT
+    opacity: float = 1.0
+    blended: bool = False
+    replaced: bool = False
+
+    @property
+    def tint(self) -> tuple[int, ...]:
+        """The colour as bytes."""
+        return tuple(np.round(255 * np.clip(np.nan_to_num(self.color), 0, 1)).astype(int).tolist())
+
+
+@dataclass(frozen=True)
+class ImageFile:
+    """An image that a file brings, or only names.
+
+    Parameters
+    ----------
+    names : tuple of str
+        Of a file beside, as far as the file tells; the first that is there is taken.
+    content : bytes
+        Empty where it lies in a file beside.
+    """
+
+    names: tuple[str, ...]
+    content: bytes = b""
+
+
+@dataclass(frozen=True, eq=False)
+class Surfaces:
+    """The materials of a file, and which faces have them.
+
+    Parameters
+    ----------
+    path : Path
+        The file; images lie in its folder.
+    meshes : mapping of int to Surface
+        By the numbers of the meshes in the document that was made of the file; else 0 alone.
+    materials : tuple of Material
+    images : tuple of ImageFile
+    notes : tuple of str
+        What could not be read, in sentences.
+    """
+
+    path: Path
+    meshes: Mapping[int, Surface]
+    materials: tuple[Material, ...] = ()
+    images: tuple[ImageFile, ...] = ()
+    notes: tuple[str, ...] = ()
+
+    @cached_property
+    def coloured(self) -> bool:
+        """Whether there is more to see than one grey."""
+        used = {int(k) for one in self.meshes.values() for k in np.unique(one.material)}
+        found = [self.materials[k] for k in used if k >= 0]
+        if any(one.image >= 0 for one in found):
+            return True
+        shades = {one.color for one in found} | ({WHITE} if -1 in used else set())
+        grey = len(shades) == 1 and all(len(set(shade)) == 1 for shade in shades)
+        return (bool(shades) and not grey) or any(_varied(one) for one in self.meshes.values())
+
+
+def _varied(surface: Surface) -> bool:
+    colors = surface.colors
+    return colors is not None and bool((colors != colors[0, 0, 0]).any())
+
+
+class SurfacePaint:
+    """Colours faces of surfaces, one mesh after the other; see `face_colors.Paint`."""
+
+    def __init__(self, surfaces: Surfaces, found: Collected) -> None:
+        self.surfaces, self.found = surfaces, found
+
+    def __call__(self, surface: Surface | None, at: NDArray, colors: FaceColors) -> None:
+        """Fill the rows of one mesh; `at` are its vertices by its own numbers."""
+        where = None if surface is None else stored_corners(surface.faces, at)
+        if surface is None or where is None:
+            return
+        material = surface.material[where[:, 0] // 3]
+        places = None if surface.places is None else surface.places.reshape(-1, 2)[where]
+        for k in np.unique(material[material >= 0]).tolist():
+            rows = np.flatnonzero(material == k)
+            one = self.surfaces.materials[k]
+            colors.materials[rows] = self.found.material(k, one.name)
+            colors.tints[rows] = one.tint
+            through = one.blended or one.opacity < 1
+            colors.opacity[rows] = round(OPAQUE * min(max(one.opacity, 0), 1))
+            colors.corners[rows, :, 3] = BLENDED * through
+            try:
+                layer = self._layer(one, places)
+            except CutcellError as error:
+                self.found.note(f'material "{one.name}"' if one.name else "a material", error)
+                continue
+            if layer >= 0 and places is not None:
+                if one.replaced:
+                    colors.tints[rows] = OPAQUE
+                colors.corners[rows, :, 2:] = layer, one.wrap + BLENDED * through
+                colors.corners[rows, :, :2] = np.where(np.isfinite(places[rows]), places[rows], 0)
+        if surface.colors is not None:
+            colors.tints[:] = np.round(colors.tints * (surface.colors.reshape(-1, 3)[where] / 255))
+
+    def _layer(self, material: Material, places: NDArray | None) -> int:
+        """Return the number of a material's use of its image; -1 for none."""
+        if material.image < 0:
+            return -1
+        if places is None:
+            raise FileError("its mesh has no texture coordinates")
+        instead = material.tint if material.replaced else None
+        use = Layer(material.image, blended=material.blended, color=instead)
+        return self.found.layer(use, lambda: self._stored(material.image))
+
+    def _stored(self, number: int) -> StoredImage:
+        image = self.surfaces.images[number]
+        label = image_label(image)
+        content = image.content or read_beside(self.surfaces.path, image.names, label)
+        return StoredImage(label, content)
+
+
+def image_label(image: ImageFile) -> str:
+    """Return how to name an image to people."""
+    name = next((n for n in image.names if n), "")
+    last = name.replace("\\", "/").rsplit("/", 1)[-1]
+    return f'image "{last[:80]}"' if last else "an image"
+
+
+def stored_corners(stored: NDArray, faces: NDArray) -> NDArray[np.intp] | None:
+    """Find faces among those that a file stores: some may be left out now, or turned round.
+
+    Parameters
+    ----------
+    stored : array, shape (m, 3)
+    faces : array, shape (k, 3)
+        In the order of those that are stored.
+
+    Returns
+    -------
+    array, shape (k, 3), or None
+        For each corner its number among the stored ones, 3 face + corner; None where a face is not
+        stored.
+    """
+    order = np.arange(3 * len(stored)).reshape(-1, 3)
+    for way in (order, order[:, ::-1]):
+        if np.array_equal(stored.reshape(-1)[way], faces):
+            return way
+    both = np.sort(np.concatenate([stored, faces]), axis=1)
+    which = np.unique(both, axis=0, return_inverse=True)[1].reshape(-1)
+    ours, theirs = which[: len(stored)], which[len(stored) :]
+    # Of faces with the same corners the first is the first, and so on.
+    sorted_ours = np.argsort(ours, kind="stable")
+    at = np.searchsorted(ours[sorted_ours], theirs) + _repeats(theirs)
+    known = at < len(stored)
+    rows = sorted_ours[np.where(known, at, 0)]
+    if not known.all() or (ours[rows] != theirs).any():
+        return None
+    corner = (stored[rows][:, None, :] == faces[:, :, None]).argmax(axis=2)
+    return 3 * rows[:, None] + corner
+
+
+def _repeats(values: NDArray) -> NDArray[np.intp]:
+    """Return how many equal values come before each."""
+    order = np.argsort(values, kind="stable")
+    held = values[order]
+    before = np.empty(len(values), np.intp)
+    before[order] = np.arange(len(values)) - np.searchsorted(held, held)
+    return before

@@ -1,0 +1,144 @@
+"""The base colours that a rig's file gives it: glTF's materials, or those of other formats."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from numpy.typing import NDArray
+
+from ...rig.rig import Rig
+from ..gltf.bare import BareSource
+from ..gltf.container import Document
+from ..gltf.read.primitives import primitives, read_triangles
+from ..gltf.read.read import GltfSource
+from ..gltf.write.seams import own_corners
+from .face_colors import Collected, FaceColors, Materials, face_colors
+from .gltf_materials import PrimitivePaint, is_coloured
+from .obj_materials import ColouredObj
+from .surfaces import SurfacePaint, Surfaces
+
+BYTES_PER_FACE = 3 * (4 * 4 + 4)
+
+
+def has_materials(rig: Rig) -> bool:
+    """Tell whether a rig's file colours it: by an image, by vertex, or not in one grey alone."""
+    source = _source(rig)
+    if isinstance(source, Surfaces):
+        return source.coloured
+    if not isinstance(source, GltfSource | BareSource):
+        return False
+    if source.document.surfaces is not None:
+        return source.document.surfaces.coloured
+    nodes, document = source.document.items("nodes"), source.document
+    drawn = [primitive for primitive, _, _ in _of_body(document, source)]
+    for node in _attached(source):
+        drawn += primitives(document, nodes[node]["mesh"], document.label("nodes", node))
+    return is_coloured(document, drawn)
+
+
+def read_materials(rig: Rig) -> Materials | None:
+    """Return the base colours that a rig's file gives it.
+
+    What cannot be read is shown in the material's factor, or white, and told in `notes`.
+
+    Parameters
+    ----------
+    rig : Rig
+        Its faces may have been repaired, its joints corrected, or a skeleton been given to it.
+
+    Returns
+    -------
+    Materials or None
+        None where the rig's file has none, or its faces are no longer that file's.
+    """
+    source = _source(rig)
+    if isinstance(source, Surfaces):
+        found = Collected(source.notes)
+        pieces = [(surface, 0, slice(0, len(rig.mesh.faces))) for surface in source.meshes.values()]
+        body = face_colors(rig.mesh.faces, pieces, SurfacePaint(source, found))
+        return _complete(body, [], found)
+    if not isinstance(source, GltfSource | BareSource):
+        return None
+    attached = _attached(source)
+    if len(attached) != len(rig.attachments):
+        return None
+    # Its own store of what was decoded: others may read the same document now, or forget.
+    stored = source.document
+    document = Document(stored.path, stored.json, stored.buffers, stored.size)
+    document.surfaces = stored.surfaces
+    found, paint = _paint(document)
+    taken = len(rig.mesh.faces) + sum(len(one.mesh.faces) for one in rig.attachments)
+    document.allowance.take(taken * BYTES_PER_FACE, "its materials")
+    faces = _own_faces(rig, source, document)
+    if faces is None:
+        return None
+    body = face_colors(faces, _of_body(document, source), paint)
+    hung = [
+        face_colors(one.mesh.faces, _of_node(document, node), paint)
+        for one, node in zip(rig.attachments, attached, strict=True)
+    ]
+    return _complete(body, hung, found)
+
+
+def _source(rig: Rig) -> Any:
+    return rig.source.surfaces if isinstance(rig.source, ColouredObj) else rig.source
+
+
+def _complete(
+    body: FaceColors | None, hung: list[FaceColors | None], found: Collected
+) -> Materials | None:
+    whole = [colors for colors in hung if colors is not None]
+    if body is None or len(whole) < len(hung):
+        return None
+    layers = tuple(found.layers)
+    return Materials(body, tuple(whole), layers, found.images, found.notes, found.names)
+
+
+def _paint(document: Document) -> tuple[Collected, Any]:
+    surfaces = document.surfaces
+    if surfaces is None:
+        found = Collected()
+        return found, PrimitivePaint(document, found)
+    found = Collected(surfaces.notes)
+    return found, SurfacePaint(surfaces, found)
+
+
+def _attached(source: GltfSource | BareSource) -> tuple[int, ...]:
+    return source.attached if isinstance(source, GltfSource) else ()
+
+
+def _own_faces(rig: Rig, source: GltfSource | BareSource, document: Document) -> NDArray | None:
+    """Return the body's faces by the numbers that their vertices have in the document.
+
+    None where these are not the document's faces.
+    """
+    faces = rig.mesh.faces
+    for one in source.faces:
+        if one.origin is None or one.rows.stop > len(faces):
+            continue
+        own = own_corners(document, one, rig.mesh.faces[one.rows] - one.first_vertex)
+        if own is None:
+            return None
+        faces = faces.copy() if faces is rig.mesh.faces else faces
+        faces[one.rows] = own + one.first_vertex
+    return faces
+
+
+def _of_body(
+    document: Document, source: GltfSource | BareSource
+) -> Iterator[tuple[Any, int, slice]]:
+    for one in source.faces:
+        primitive = primitives(document, one.mesh, "the document")[one.primitive]
+        yield _what(document, one.mesh, primitive), one.first_vertex, one.rows
+
+
+def _of_node(document: Document, number: int) -> Iterator[tuple[Any, int, slice]]:
+    mesh = document.items("nodes")[number]["mesh"]
+    for one in read_triangles(document, mesh, document.label("nodes", number))[2]:
+        yield _what(document, mesh, one.primitive), one.first_vertex, one.rows
+
+
+def _what(document: Document, mesh: int, primitive: dict[str, Any]) -> Any:
+    """Return what colours a primitive: it, or a surface of the format that it was made of."""
+    return primitive if document.surfaces is None else document.surfaces.meshes.get(mesh)

@@ -1,0 +1,1 @@
+"""Mesh files without a skin, and skeletons in JSON beside them."""

@@ -1,0 +1,1 @@
+"""FBX and USD: a subprocess reads the scene, which becomes a glTF document."""

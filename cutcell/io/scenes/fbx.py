@@ -1,0 +1,48 @@
+"""FBX files: read in a process of their own, then as the glTF document that they amount to."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from ...errors import FileError
+from ...isolated.run import WorkFailedError, run_apart
+from ...rig.rig import Rig
+from ..files import read_bytes
+from ..gltf.read.read import read_rig
+from .document import scene_document
+from .joints import scene_world
+
+BINARY = b"Kaydara FBX Binary"
+SECONDS, SECONDS_A_MEGABYTE = 60.0, 5.0
+LEAST_MEMORY, MEMORY_A_BYTE = 2**30, 100
+"""What reading may take. Text takes some 20 bytes for each of its own; arrays may be packed."""
+LOST = (
+    "of an FBX, the meshes, skeleton, weights and clips are read, and of its materials the base "
+    "colours with their images; it is saved as a GLB without what else its materials have, and "
+    "without morph targets"
+)
+
+
+def read_fbx(path: Path) -> Rig:
+    """Load an FBX file; see `cutcell.load`.
+
+    Raises
+    ------
+    FileError
+        Not such a file, or damaged.
+    """
+    data = read_bytes(path)
+    if not data.startswith(BINARY) and b"FBX" not in data[:4096]:
+        raise FileError("is not an FBX file: neither binary nor text in its first lines says so")
+    seconds = SECONDS + SECONDS_A_MEGABYTE * len(data) / 2**20
+    memory = LEAST_MEMORY + MEMORY_A_BYTE * len(data)
+    try:
+        job = {"data": np.frombuffer(data, np.uint8)}
+        scene = run_apart("fbx", job, seconds, "the FBX reader", memory)
+    except WorkFailedError as e:
+        raise FileError(f"cannot be read as FBX: {e}") from None
+    document = scene_document(scene, path, "cutcell, from FBX")
+    document.warnings.append(LOST)
+    return read_rig(document, path, scene_world(scene))

@@ -1,0 +1,109 @@
+"""Which nodes of a scene are the joints of which mesh, and how each was bound."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..gltf.nodes import compose
+
+
+@dataclass(frozen=True, eq=False)
+class SceneSkin:
+    """The joints of a mesh, as nodes, and their inverse bind matrices, shape (j, 4, 4)."""
+
+    joints: list[int]
+    inverse: NDArray[np.float64]
+
+
+def scene_skins(scene: Mapping[str, NDArray]) -> dict[int, SceneSkin]:
+    """Return the skin of each mesh that has one.
+
+    A skin names the joints that hold a vertex. The other bones of the same tree (fingertips,
+    roots, helpers) join the first mesh that is bound to it, where they stand at rest beside
+    the nearest bone above that it knows. In a scene without any weights each mesh that hangs
+    on no bone is bound to all bones as they stand.
+    """
+    parents = scene["node_parents"].tolist()
+    world = _worlds(scene["node_transforms"], parents)
+    bones = np.flatnonzero(scene["node_bones"]).tolist()
+    meshes = range(len(scene["mesh_names"]))
+    skins = {
+        k: SceneSkin(scene[f"mesh_{k}_joints"].tolist(), scene[f"mesh_{k}_inverse"])
+        for k in meshes
+        if f"mesh_{k}_joints" in scene and len(scene[f"mesh_{k}_joints"])
+    }
+    if not skins:
+        return _unbound(scene, parents, world, bones)
+    taken: set[int] = {joint for skin in skins.values() for joint in skin.joints}
+    for k, skin in list(skins.items()):
+        trees = {_above(joint, parents)[-1] for joint in skin.joints}
+        more = [b for b in bones if b not in taken and _above(b, parents)[-1] in trees]
+        skins[k] = _with_more(skin, more, parents, world)
+        taken.update(more)
+    return skins
+
+
+def scene_world(scene: Mapping[str, NDArray]) -> NDArray | None:
+    """Return where the first skinned mesh stands, which its joints in a pose may not tell."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        skinned = scene_skins(scene)
+    if not skinned:
+        return None
+    first = min(skinned)
+    with np.errstate(over="ignore", invalid="ignore"):
+        world = _worlds(scene["node_transforms"], scene["node_parents"].tolist())
+        stands = world[int(scene["mesh_nodes"][first])] @ scene[f"mesh_{first}_place"]
+        return stands if _inverse(stands)[1] else None
+
+
+def _worlds(transforms: NDArray, parents: list[int]) -> NDArray:
+    world = compose(transforms[:, :3], transforms[:, 3:7], transforms[:, 7:])
+    for i, parent in enumerate(parents):  # a parent stands before its children
+        if parent >= 0:
+            world[i] = world[parent] @ world[i]
+    return world
+
+
+def _above(node: int, parents: list[int]) -> list[int]:
+    """Return a node and those above it, without the scene's root."""
+    chain = [node]
+    while parents[node] > 0:
+        chain.append(node := parents[node])
+    return chain
+
+
+def _with_more(skin: SceneSkin, more: list[int], parents: list[int], world: NDArray) -> SceneSkin:
+    place = {joint: k for k, joint in enumerate(skin.joints)}
+    added = []
+    for bone in more:
+        known = next((a for a in _above(bone, parents) if a in place), skin.joints[0])
+        inverse, solvable = _inverse(world[bone])
+        if solvable:
+            added.append((bone, inverse @ world[known] @ skin.inverse[place[known]]))
+    return SceneSkin(
+        [*skin.joints, *(bone for bone, _ in added)],
+        np.concatenate([skin.inverse, np.array([m for _, m in added]).reshape(-1, 4, 4)]),
+    )
+
+
+def _unbound(
+    scene: Mapping[str, NDArray], parents: list[int], world: NDArray, bones: list[int]
+) -> dict[int, SceneSkin]:
+    found = [(bone, *_inverse(world[bone])) for bone in bones]
+    able = [(bone, inverse) for bone, inverse, solvable in found if solvable]
+    skins = {}
+    for k, node in enumerate(scene["mesh_nodes"].tolist()):
+        if able and not set(_above(node, parents)) & set(bones):
+            here = world[node] @ scene[f"mesh_{k}_place"]
+            inverse = np.array([matrix @ here for _, matrix in able])
+            skins[k] = SceneSkin([bone for bone, _ in able], inverse)
+    return skins
+
+
+def _inverse(matrix: NDArray) -> tuple[NDArray, bool]:
+    solvable = np.isfinite(matrix).all() and abs(np.linalg.det(matrix)) > 1e-300
+    return (np.linalg.inv(matrix) if solvable else matrix), bool(solvable)

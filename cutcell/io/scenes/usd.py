@@ -1,0 +1,43 @@
+"""USD files with UsdSkel: read in a process of their own, where usd-core is installed."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from ...errors import FileError
+from ...isolated.run import WorkFailedError, run_apart
+from ...rig.rig import Rig
+from ..files import read_bytes
+from ..gltf.read.read import read_rig
+from .document import scene_document
+from .joints import scene_world
+
+USD = (".usd", ".usda", ".usdc", ".usdz")
+SECONDS, MEMORY = 120.0, 2**32
+LOST = (
+    "of a USD, the meshes, skeletons, weights and motion are read, and of its materials the base "
+    "colours with their images; it is saved as a GLB without what else its materials have, and "
+    "without blend shapes"
+)
+
+
+def read_usd(path: Path) -> Rig:
+    """Load a USD file; see `cutcell.load`.
+
+    Raises
+    ------
+    FileError
+        Not such a file, damaged, or usd-core is not installed.
+    """
+    read_bytes(path)  # says what it says of every file: not there, a folder, empty
+    try:
+        scene = run_apart(
+            "usd", {"path": np.array(str(path.resolve()))}, SECONDS, "the USD reader", MEMORY
+        )
+    except WorkFailedError as e:
+        raise FileError(f"cannot be read as USD: {e}") from None
+    document = scene_document(scene, path, "cutcell, from USD")
+    document.warnings.append(LOST)
+    return read_rig(document, path, scene_world(scene))

@@ -1,0 +1,83 @@
+"""Read a job, do it, write its result: arrays by name, or in `failed` why there are none.
+
+The result also tells the `seconds` that the task took, the process's start left out.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from importlib import import_module
+from pathlib import Path
+from time import perf_counter
+
+import numpy as np
+
+TASKS = {
+    "tetgen": "tetrahedra:by_tetgen",
+    "tetwild": "tetrahedra:by_tetwild",
+    "bbw": "smooth:bounded",
+    "biharmonic": "smooth:unbounded",
+    "quasi_harmonic": "quasi_harmonic:quasi_harmonic",
+    "cage": "cage:make_cage",
+    "draco": "draco:decode",
+    "fbx": "fbx:read",
+    "usd": "usd:read",
+    "images": "images:as_png",
+    "network_recipes": ".networks.worker:recipes",
+    "network_weights": ".networks.worker:weights",
+}
+"""Module, of this package or beside it, and function of each task; it takes the job's arrays, and
+returns the result's."""
+
+EXTRAS = {
+    "draco": "cutcell",
+    "fbx": "cutcell",
+    "usd": "cutcell[usd]",
+    "images": "pillow",
+    "network_recipes": "cutcell[networks]",
+    "network_weights": "cutcell[networks]",
+}
+"""What installs the library of a task, where it is not `cutcell[copyleft]`."""
+
+
+def main(task: str, job_path: str, result_path: str, memory: str = "0") -> None:
+    """Do one task."""
+    module, function = TASKS[task].split(":")
+    limit_memory(int(memory))
+    with np.load(job_path) as job:
+        given = {name: job[name] for name in job.files}
+    begin = perf_counter()
+    try:
+        result = getattr(import_module(f".{module}", "cutcell.isolated"), function)(**given)
+    except ModuleNotFoundError as error:
+        extra = EXTRAS.get(task, "cutcell[copyleft]")
+        failed = f"{error.name} is not installed; try: pip install '{extra}'"
+        result = {"failed": failed}
+    except (RuntimeError, ValueError, MemoryError) as error:
+        result = {"failed": str(error) or type(error).__name__}
+    np.savez(result_path, **result, seconds=perf_counter() - begin)
+
+
+def limit_memory(allowance: int) -> None:
+    """Let this process take so many more bytes, 0 for any; only Linux sees to it.
+
+    A lower limit that this process began with stays.
+    """
+    try:
+        import resource
+
+        pages = int(Path("/proc/self/statm").read_text().split()[0])
+    except (ImportError, OSError):
+        return
+    if allowance:
+        soft, hard = resource.getrlimit(resource.RLIMIT_AS)
+        most = pages * resource.getpagesize() + allowance
+        if soft != resource.RLIM_INFINITY:
+            most = min(most, soft)
+        resource.setrlimit(resource.RLIMIT_AS, (most, hard))
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
+    os._exit(0)  # the result is written; some libraries crash as they are taken down

@@ -1,0 +1,179 @@
+"""FBX, binary and text, 6.1 to 7.7: read by ufbx, handed on as the arrays of a scene.
+
+`cutcell.io.scenes.document` says what the arrays are. ufbx' bindings let go of list elements too
+often: each list is walked once and kept (`fbx_kept`), and the process must end without cleaning up.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import ufbx
+
+from .fbx_kept import keep, kept
+from .fbx_materials import FbxPalette, surface
+
+FRAMES_A_SECOND = 30.0
+MOST_TRIANGLES_OF_A_FACE = 10_000
+
+
+def read(data):
+    """Read a file.
+
+    Parameters
+    ----------
+    data : array, shape (b,), uint8
+        The file's bytes.
+
+    Returns
+    -------
+    dict
+        The arrays of a scene.
+
+    Raises
+    ------
+    RuntimeError
+        It cannot be read; the sentence says why.
+    """
+    try:
+        scene = ufbx.load_memory(data.tobytes(), **options())
+    except ufbx.UfbxError as error:
+        raise RuntimeError(f"it is damaged ({error})") from None
+    keep(scene)
+    nodes = kept(scene.nodes)
+    place = {node.element_id: i for i, node in enumerate(nodes)}
+    parents = [place[p.element_id] if (p := node.parent) else -1 for node in nodes]
+    found = {
+        "node_names": np.array([node.name for node in nodes], np.str_),
+        "node_parents": np.array(parents),
+        "node_transforms": np.array([transform(node.local_transform) for node in nodes]),
+        "node_hidden": np.array([not node.visible for node in nodes]),
+        "node_bones": np.array([node.attrib_type == ufbx.ElementType.BONE for node in nodes]),
+    }
+    names: list[str] = []
+    at: list[int] = []
+    palette = FbxPalette()
+    for mesh in kept(scene.meshes):
+        places = kept(mesh.instances)
+        if not mesh.num_faces or not places:
+            continue
+        corners, polygons = triangles(mesh)
+        shape = geometry(mesh, corners)
+        skins = kept(mesh.skin_deformers)
+        # A skin holds for one place of a mesh; other meshes may stand anywhere.
+        for node in places[:1] if skins else places:
+            k = len(names)
+            names.append(node.name or mesh.name)
+            at.append(place[node.element_id])
+            found |= {f"mesh_{k}_{key}": value for key, value in shape.items()}
+            colours = surface(mesh, node, corners, polygons, palette)
+            found |= {f"mesh_{k}_{key}": value for key, value in colours.items()}
+            found[f"mesh_{k}_place"] = matrix(node.geometry_to_node)
+            if skins:
+                skin = influences(skins, place)
+                found |= {f"mesh_{k}_{key}": value for key, value in skin.items()}
+    found |= {"mesh_names": np.array(names, np.str_), "mesh_nodes": np.array(at, int)}
+    return found | palette.arrays() | clips(scene, place)
+
+
+def options():
+    """Return how to read: in the file's units, with the root leading to metres, y up."""
+    axis = ufbx.CoordinateAxis
+    return {
+        "target_axes": ufbx.CoordinateAxes(axis.POSITIVE_X, axis.POSITIVE_Y, axis.POSITIVE_Z),
+        "target_unit_meters": 1.0,
+        "space_conversion": ufbx.SpaceConversion.TRANSFORM_ROOT,
+        "geometry_transform_handling": ufbx.GeometryTransformHandling.PRESERVE,
+        "inherit_mode_handling": ufbx.InheritModeHandling.HELPER_NODES,
+        "index_error_handling": ufbx.IndexErrorHandling.ABORT_LOADING,
+    }
+
+
+def matrix(columns):
+    """Return a 3 x 4 matrix of ufbx as an array, shape (4, 4)."""
+    full = np.eye(4)
+    full[:3] = np.array([tuple(column) for column in columns]).T
+    return full
+
+
+def transform(one):
+    """Return translation, rotation (x, y, z, w) and scale in a row, shape (10,)."""
+    return [*one.translation, *one.rotation, *one.scale]
+
+
+def triangles(mesh):
+    """Cut polygons into fans; return corners by the mesh's numbers, and the polygon of each."""
+    begin, count = np.array([tuple(face) for face in mesh.faces]).T
+    fans = []
+    for k in range(1, min(int(count.max()), MOST_TRIANGLES_OF_A_FACE) - 1):
+        polygons = np.flatnonzero(count > k + 1)
+        start = begin[polygons]
+        fans.append(np.stack([start, start + k, start + k + 1, polygons], axis=1))
+    found = np.concatenate(fans) if fans else np.zeros((0, 4), int)
+    found = found[np.argsort(found[:, 0], kind="stable")]
+    return found[:, :3], found[:, 3]
+
+
+def geometry(mesh, corners):
+    """Return a mesh's control points, and its triangles."""
+    vertices = np.array(list(mesh.vertex_indices), int)
+    points = np.array([tuple(point) for point in mesh.vertices], float).reshape(-1, 3)
+    return {"vertices": points, "faces": vertices[corners]}
+
+
+def influences(skins, place):
+    """Return the joints of a mesh, their inverse bind matrices, and the weights."""
+    clusters = [c for skin in skins for c in kept(skin.clusters)]
+    bones = kept(c.bone_node for c in clusters)
+    joints = list(dict.fromkeys(place[b.element_id] for b in bones if b is not None))
+    inverse = [np.eye(4)] * len(joints)
+    rows, columns, values = [], [], []
+    for cluster, bone in zip(clusters, bones, strict=True):
+        if bone is None:
+            continue
+        column = joints.index(place[bone.element_id])
+        inverse[column] = matrix(cluster.geometry_to_bone)
+        rows.append(np.array(list(cluster.vertices), int))
+        values.append(np.array(list(cluster.weights), float))
+        columns.append(np.full(len(rows[-1]), column))
+    return {
+        "joints": np.array(joints, int),
+        "inverse": np.array(inverse).reshape(-1, 4, 4),
+        "rows": np.concatenate([*rows, np.zeros(0, int)]),
+        "columns": np.concatenate([*columns, np.zeros(0, int)]),
+        "values": np.concatenate([*values, np.zeros(0)]),
+    }
+
+
+def clips(scene, place):
+    """Return every animation as keys of its nodes, from time 0 on, to be joined by lines."""
+    names: list[str] = []
+    tracks: list[tuple[int, ...]] = []
+    keys = [np.zeros((0, 5))]
+    for stack in kept(scene.anim_stacks):
+        baked = ufbx.bake_anim(
+            scene,
+            stack.anim,
+            trim_start_time=True,
+            resample_rate=FRAMES_A_SECOND,
+            maximum_sample_rate=FRAMES_A_SECOND,
+            key_reduction_enabled=True,
+            key_reduction_rotation=True,
+        )
+        keep(baked)
+        before = len(tracks)
+        for node in kept(baked.nodes):
+            moves = (node.translation_keys, node.rotation_keys, node.scale_keys)
+            for path, moved in enumerate(moves):
+                rows = [(key.time, *key.value) for key in moved]
+                if rows and node.element_id in place:
+                    values = np.zeros((len(rows), 5))
+                    values[:, : len(rows[0])] = rows
+                    keys.append(values)
+                    tracks.append((len(names), place[node.element_id], path, len(rows)))
+        if len(tracks) > before:
+            names.append(stack.name)
+    return {
+        "clip_names": np.array(names, np.str_),
+        "tracks": np.array(tracks, int).reshape(-1, 4),
+        "keys": np.concatenate(keys),
+    }

@@ -1,0 +1,142 @@
+"""What colours the meshes of an FBX: base colours, their images, and where corners lie in these.
+
+`cutcell.io.materials.scene_surfaces` says what the arrays are.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import ufbx
+
+from .fbx_kept import keep, kept
+from .palette import Palette
+
+CLAMPED = ufbx.WrapMode.CLAMP
+LONGEST = 1000
+"""Characters of an image's name that are handed on."""
+UNSEEN = 0.02
+"""Opacity of what nobody would model: many programs write 0 and mean 1."""
+
+
+class FbxPalette(Palette):
+    """The materials of an FBX, by its elements."""
+
+    def __init__(self):
+        super().__init__()
+        self.textures: list = []
+        self._numbers: dict[int, int] = {}
+
+    def number(self, material):
+        """Return the number of a material, -1 for none."""
+        if material is None:
+            return -1
+        known = self._numbers.get(material.element_id)
+        if known is not None:
+            return known
+        keep(material)
+        texture = base_texture(material)
+        image, wrap = -1, 0
+        if texture is not None:
+            names = (texture.relative_filename, texture.filename, texture.absolute_filename)
+            image = self.add_image(tuple(name[:LONGEST] for name in names), texture.content)
+            across, down = (way == CLAMPED for way in (texture.wrap_u, texture.wrap_v))
+            wrap = 3 * int(across) + int(down)
+        color, cut = base_color(material), is_cut(material)
+        number = self.add_material(material.name, color, opacity(material), image, wrap, cut)
+        self._numbers[material.element_id] = number
+        self.textures.append(texture)
+        return number
+
+
+def base_texture(material):
+    """Return the texture of the base colour that has a file; None if there is none."""
+    for found in (material.pbr.base_color, material.fbx.diffuse_color):
+        texture = found.texture
+        if texture is None or not found.texture_enabled:
+            continue
+        keep(texture)
+        for one in [texture, *kept(texture.file_textures)]:
+            if one.type == ufbx.TextureType.FILE and (one.filename or len(one.content)):
+                return one
+    return None
+
+
+def base_color(material):
+    """Return red, green and blue, times the factor."""
+    for found, factor in (
+        (material.pbr.base_color, material.pbr.base_factor),
+        (material.fbx.diffuse_color, material.fbx.diffuse_factor),
+    ):
+        if found.has_value:
+            share = factor.value_vec4.x if factor.has_value else 1.0
+            return tuple(share * x for x in tuple(found.value_vec4)[:3])
+    return (1.0, 1.0, 1.0)
+
+
+def opacity(material):
+    """Return how opaque a material is, from 0 to 1."""
+    if material.pbr.opacity.has_value:
+        found = material.pbr.opacity.value_vec4.x
+    else:
+        color, factor = material.fbx.transparency_color, material.fbx.transparency_factor
+        if not color.has_value or not factor.has_value:
+            return 1.0
+        found = 1 - factor.value_vec4.x * sum(tuple(color.value_vec4)[:3]) / 3
+    return float(found) if UNSEEN < found < 1 else 1.0
+
+
+def is_cut(material):
+    """Tell whether an image says where a material is not."""
+    maps = (material.pbr.opacity, material.fbx.transparency_color, material.fbx.transparency_factor)
+    return any(one.texture is not None and one.texture_enabled for one in maps)
+
+
+def surface(mesh, node, corners, polygons, palette):
+    """Return what colours the triangles of a mesh at a place.
+
+    Parameters
+    ----------
+    mesh, node
+    corners : array, shape (m, 3)
+        Of the mesh's polygons, by their numbers in the file.
+    polygons : array, shape (m,)
+        That each triangle is a part of.
+    palette : FbxPalette
+    """
+    materials = kept(node.materials) or kept(mesh.materials)
+    numbers = np.array([*(palette.number(one) for one in materials), -1])
+    which = np.array(list(mesh.face_material), int)
+    which = which[polygons] if len(which) else np.zeros(len(polygons), int)
+    known = (which >= 0) & (which < len(materials))
+    material = numbers[np.where(known, which, -1)]
+    found = {"materials": material}
+    if mesh.vertex_color.exists:
+        values, indices = stored(mesh.vertex_color)
+        colors = values[indices[corners]][..., :3]
+        found["colors"] = np.round(255 * np.clip(np.nan_to_num(colors), 0, 1)).astype(np.uint8)
+    textured = [k for k in np.unique(material) if k >= 0 and palette.textures[k] is not None]
+    if textured and mesh.vertex_uv.exists:
+        sets = {one.name: one.vertex_uv for one in kept(mesh.uv_sets)}
+        wanted = {palette.textures[k].uv_set for k in textured}
+        known = {name: stored(sets.get(name) or mesh.vertex_uv) for name in wanted}
+        places = np.zeros((*corners.shape, 2), np.float32)
+        for k in textured:
+            texture, rows = palette.textures[k], np.flatnonzero(material == k)
+            values, indices = known[texture.uv_set]
+            places[rows] = in_image(values[indices[corners[rows]]], texture)
+        found["places"] = places
+    return found
+
+
+def stored(attribute):
+    """Return the values of an attribute, and which each corner has."""
+    values = np.array([tuple(value) for value in attribute.values], float)
+    return values, np.array(list(attribute.indices), int)
+
+
+def in_image(uv, texture):
+    """Return where texture coordinates lie in the image, from its upper left corner."""
+    if texture.has_uv_transform:
+        columns = np.array([tuple(column) for column in texture.uv_to_texture])
+        uv = uv @ columns[:2, :2] + columns[3, :2]
+    return np.stack([uv[..., 0], 1 - uv[..., 1]], axis=-1)

@@ -1,0 +1,121 @@
+"""Give work to a process of its own, so that nothing it does ends this one."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from contextvars import ContextVar
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..errors import CutcellError
+from ..runtime.subprocesses import python_environment
+
+COMMAND = (sys.executable, "-m", "cutcell.isolated")
+LIMIT = 120.0
+"""Seconds that any such process may take, unless told otherwise."""
+
+ASK_EVERY = 0.1
+"""Seconds between two questions whether the result is still wanted."""
+
+_WANTED: ContextVar[Callable[[], object]] = ContextVar("_WANTED", default=lambda: None)
+
+
+@contextmanager
+def stoppable(wanted: Callable[[], object]) -> Iterator[None]:
+    """Let a function be asked, in this block, whether what runs apart is still wanted.
+
+    Parameters
+    ----------
+    wanted : callable
+        Raises, `cutcell.Cancelled` for one, when it is not: the process is ended then, and
+        the exception goes through.
+    """
+    token = _WANTED.set(wanted)
+    try:
+        yield
+    finally:
+        _WANTED.reset(token)
+
+
+class WorkFailedError(CutcellError):
+    """Work in a process of its own has no result; its caller says what that means."""
+
+
+def run_apart(
+    task: str, job: Mapping[str, Any], limit: float, who: str, memory: int = 0
+) -> dict[str, Any]:
+    """Do a task of `cutcell.isolated`.
+
+    Parameters
+    ----------
+    task : str
+        See `cutcell.isolated.__main__`.
+    job : mapping of names to arrays
+    limit : float
+        Seconds after which to give up.
+    who : str
+        Whose fault a crash is, for the message.
+    memory : int
+        Bytes that the task may take, 0 for any; only Linux sees to it.
+
+    Returns
+    -------
+    dict of arrays
+
+    Raises
+    ------
+    WorkFailedError
+        There is no result; the sentence says why.
+    Exception
+        Whatever `stoppable` was given raises.
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        job_path, result_path = Path(folder, "job.npz"), Path(folder, "result.npz")
+        np.savez(job_path, **job)
+        command = [*COMMAND, task, str(job_path), str(result_path), str(memory)]
+        done = _done(command, folder, limit, who)
+        if done.returncode != 0 or not result_path.exists():
+            raise WorkFailedError(_last_words(done, who))
+        with np.load(result_path) as result:
+            found = {name: result[name] for name in result.files}
+    if "failed" in found:
+        raise WorkFailedError(str(found["failed"]))
+    return found
+
+
+def _done(command: list[str], folder: str, limit: float, who: str) -> subprocess.CompletedProcess:
+    wanted, end = _WANTED.get(), time.monotonic() + limit
+    # Some leave files where they run.
+    process = subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=folder,
+        env=python_environment(),
+    )  # fmt: skip
+    with process:
+        try:
+            while True:
+                wanted()
+                left = end - time.monotonic()
+                try:
+                    out, err = process.communicate(timeout=max(min(ASK_EVERY, left), 0))
+                except subprocess.TimeoutExpired:
+                    if left <= 0:
+                        raise WorkFailedError(f"{who} took longer than {limit:g} seconds") from None
+                    continue
+                return subprocess.CompletedProcess(command, process.returncode, out, err)
+        except BaseException:
+            process.kill()
+            raise
+
+
+def _last_words(done: subprocess.CompletedProcess, who: str) -> str:
+    if done.returncode < 0:
+        return f"{who} crashed (signal {-done.returncode})"
+    lines = done.stderr.strip().splitlines() or ["it said nothing"]
+    return f"{who} stopped with exit code {done.returncode}: {lines[-1]}"

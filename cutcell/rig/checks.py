@@ -1,0 +1,131 @@
+"""Checks of parameters at the public doors."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection
+from numbers import Real
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import CutcellError, ParameterError
+
+LONG = 60
+"""Characters of a wrong value that are shown, at most."""
+LARGEST = 1e60
+"""Of coordinates that are computed with: products of a few of them must not overflow."""
+
+
+def check_integer(name: str, value: Any, low: int, high: int, why: str = "") -> int:
+    """Return `value` as an int, or say which range it must lie in.
+
+    Raises
+    ------
+    ParameterError
+        Not a whole number, or outside `low` to `high`.
+    """
+    if not _is_real(value) or not low <= value <= high or int(value) != value:
+        reason = f"; {why}" if why else ""
+        raise ParameterError(
+            f"{name} must be a whole number from {low} to {high:,}, not {shown(value)}{reason}"
+        )
+    return int(value)
+
+
+def check_number(name: str, value: Any, low: float, high: float, why: str = "") -> float:
+    """Return `value` as a float, or say which range it must lie in.
+
+    Raises
+    ------
+    ParameterError
+        Not a number, or outside `low` to `high`.
+    """
+    if not _is_real(value) or not low <= _as_float(value) <= high:  # also catches nan
+        reason = f"; {why}" if why else ""
+        raise ParameterError(
+            f"{name} must be a number from {low:g} to {high:g}, not {shown(value)}{reason}"
+        )
+    return _as_float(value)
+
+
+def check_flag(name: str, value: Any) -> bool:
+    """Return `value` as a bool, or say that it must be one.
+
+    Raises
+    ------
+    ParameterError
+        Neither True nor False.
+    """
+    if type(value).__name__ not in ("bool", "bool_"):  # numpy's is called either way
+        raise ParameterError(f"{name} must be True or False, not {shown(value)}")
+    return bool(value)
+
+
+def check_choice(name: str, value: Any, choices: Collection[Any]) -> Any:
+    """Return the one of `choices` that `value` is equal to, or list them.
+
+    Raises
+    ------
+    ParameterError
+        Not one of them.
+    """
+    if isinstance(value, str) or value is None or _is_real(value):
+        for choice in choices:
+            if choice == value:
+                return choice
+    listed = ", ".join(repr(c) for c in choices)
+    raise ParameterError(f"{name} must be one of {listed}, not {shown(value)}")
+
+
+def check_positions(points: NDArray[np.float64], what: str, error: type[CutcellError]) -> None:
+    """Refuse points whose coordinates are too large to compute with.
+
+    Parameters
+    ----------
+    points : array, shape (n, 3)
+    what : str
+        What one of them is called.
+    error : type
+        What to raise.
+
+    Raises
+    ------
+    error
+        A coordinate is larger than `LARGEST`.
+    """
+    far = np.flatnonzero((np.abs(points) > LARGEST).any(axis=1))
+    if len(far):
+        position = ", ".join(f"{x:.3g}" for x in points[far[0]])
+        raise error(
+            f"{what} {far[0]} lies at ({position}), too far out to compute with "
+            f"(the limit is {LARGEST:g}; {len(far)} of {len(points)} are so); move or delete it, "
+            "or scale the whole character down"
+        )
+
+
+def one_line(text: object) -> str:
+    """Write what may be several lines, a library's error for example, on one."""
+    return " ".join(str(text).split())
+
+
+def shown(value: Any) -> str:
+    """Write a wrong value on one line, and not all of it if it is long."""
+    try:
+        text = one_line(repr(value))
+    except Exception:  # a number of thousands of digits has no text, others may be broken
+        return f"something of the type {type(value).__name__}"
+    return text if len(text) <= LONG else f"{text[: LONG - 3]}..."
+
+
+def _is_real(value: Any) -> bool:
+    """Tell whether this is one real number, of Python or numpy; truth values are none."""
+    return isinstance(value, Real) and not isinstance(value, bool) and value == value
+
+
+def _as_float(value: Any) -> float:
+    try:
+        return float(value)
+    except OverflowError:  # an integer of hundreds of digits
+        return math.inf if value > 0 else -math.inf

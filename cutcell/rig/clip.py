@@ -1,0 +1,259 @@
+"""Clips: how the joints of a rig move, sampled when somebody looks."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol, runtime_checkable
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..errors import ParameterError
+from .transforms import composed, relative
+
+
+class Motion(Protocol):
+    """What a clip is sampled from: the channels of a file, frames, or anything else."""
+
+    @property
+    def joints(self) -> int:
+        """How many joints it moves."""
+
+    @property
+    def duration(self) -> float:
+        """Length in seconds."""
+
+    @property
+    def times(self) -> NDArray[np.float64]:
+        """Times of the frames that show it, shape (f,), seconds, ascending from 0."""
+
+    def sample(self, seconds: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the skinning matrices at times (f,) from 0 to `duration`: (f, j, 4, 4)."""
+
+
+@runtime_checkable
+class Movable(Protocol):
+    """A motion that knows by itself how it goes on when joints stand elsewhere at rest."""
+
+    def moved(
+        self, joints: NDArray[np.float64], parents: NDArray[np.int32], by: NDArray[np.float64]
+    ) -> Motion:
+        """Return it for joints that were moved; see `Clip.moved`."""
+
+
+@dataclass(frozen=True, eq=False, init=False)
+class Clip:
+    """A motion of a rig's joints.
+
+    It holds what its file holds, and is sampled when it is played: `sample` does so at any times,
+    `cutcell.pose.pose_at` over and over. Made from frames, it is mixed linearly between them.
+
+    Parameters
+    ----------
+    name : str
+    times : array_like, shape (f,), float64, optional
+        Seconds, ascending from 0.
+    transforms : array_like, shape (f, j, 4, 4), float64, optional
+        Skinning matrices: they take a point of the rest mesh, held by one joint, to where it is
+        at that time.
+    motion : Motion, optional
+        What to sample, in the place of frames.
+
+    Raises
+    ------
+    ParameterError
+        Frames that do not fit each other, or neither frames nor a motion, or both.
+    """
+
+    name: str
+    motion: Motion
+
+    def __init__(
+        self,
+        name: str,
+        times: ArrayLike | None = None,
+        transforms: ArrayLike | None = None,
+        *,
+        motion: Motion | None = None,
+    ) -> None:
+        framed = times is not None and transforms is not None
+        if framed == (motion is not None) or (times is None) != (transforms is None):
+            raise ParameterError("a clip needs times and transforms, or else a motion")
+        object.__setattr__(self, "name", name)
+        object.__setattr__(self, "motion", motion or Frames(times, transforms))  # type: ignore[arg-type]
+
+    @property
+    def duration(self) -> float:
+        """Length in seconds."""
+        return self.motion.duration
+
+    @property
+    def joints(self) -> int:
+        """How many joints it moves."""
+        return self.motion.joints
+
+    @property
+    def times(self) -> NDArray[np.float64]:
+        """Times of the frames that show it, shape (f,), seconds, ascending from 0.
+
+        A file's clip has up to 30 a second and 3,600 in all.
+        """
+        return self.motion.times
+
+    @property
+    def transforms(self) -> NDArray[np.float64]:
+        """Skinning matrices at `times`, shape (f, j, 4, 4): 128 bytes a frame and joint.
+
+        A file's clip is sampled anew for each look at this.
+        """
+        if isinstance(self.motion, Frames):
+            return self.motion.transforms
+        return self.sample(self.times)
+
+    def sample(self, seconds: ArrayLike) -> NDArray[np.float64]:
+        """Return the skinning matrices at some times.
+
+        Parameters
+        ----------
+        seconds : array_like, shape () or (f,), float64
+            The motion stands still before 0 and after `duration`.
+
+        Returns
+        -------
+        array, shape (j, 4, 4) or (f, j, 4, 4), float64
+
+        Raises
+        ------
+        ParameterError
+            A time that is not finite, or a clip without frames.
+        CutcellError
+            What the file holds leads to matrices that are not finite.
+        """
+        times = np.asarray(seconds, np.float64)
+        if not np.isfinite(times).all():
+            raise ParameterError(f"seconds must be finite numbers, not {seconds!r}")
+        at = np.clip(times.reshape(-1), 0, self.duration)
+        return self.motion.sample(at).reshape(*times.shape, self.joints, 4, 4)
+
+    def moved(
+        self, joints: NDArray[np.float64], parents: NDArray[np.int32], by: NDArray[np.float64]
+    ) -> Clip:
+        """Return the same motion of joints that stand elsewhere at rest.
+
+        Each turns as before, about its new place. Where it shifts against its parent it goes on to
+        do so by as much as before.
+
+        Parameters
+        ----------
+        joints : array, shape (j, 3), float64
+            Where they stood.
+        parents : array, shape (j,), int32
+        by : array, shape (j, 3), float64
+            How far each was moved.
+        """
+        given = joints, parents, by
+        motion = self.motion
+        moved = motion.moved(*given) if isinstance(motion, Movable) else Moved(motion, *given)
+        return Clip(self.name, motion=moved)
+
+
+class Frames:
+    """A motion given as frames.
+
+    Parameters
+    ----------
+    times : array_like, shape (f,), float64
+    transforms : array_like, shape (f, j, 4, 4), float64
+    """
+
+    def __init__(self, times: ArrayLike, transforms: ArrayLike) -> None:
+        self.times = np.array(times, np.float64)
+        self.transforms = np.array(transforms, np.float64)
+        count = len(self.times) if self.times.ndim == 1 else -1
+        shape = self.transforms.shape
+        if len(shape) != 4 or shape[0] != count or shape[2:] != (4, 4):
+            raise ParameterError(
+                f"transforms have the shape {shape}, but times, {self.times.shape}, need "
+                "(f, j, 4, 4) for (f,)"
+            )
+        self.times.flags.writeable = self.transforms.flags.writeable = False
+
+    @property
+    def joints(self) -> int:
+        """How many joints it moves."""
+        return self.transforms.shape[1]
+
+    @property
+    def duration(self) -> float:
+        """Length in seconds."""
+        return float(self.times[-1]) if len(self.times) else 0.0
+
+    def sample(self, seconds: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the skinning matrices at times, mixed linearly between frames."""
+        if not len(self.times):
+            raise ParameterError("a clip without frames cannot be played")
+        final = len(self.times) - 1
+        right = np.searchsorted(self.times, seconds, side="right").clip(min(1, final), final)
+        left = np.maximum(right - 1, 0)
+        span = self.times[right] - self.times[left]
+        # Without a span it is the end, at which several frames may stand: the last one holds.
+        gone = np.divide(seconds - self.times[left], span, out=0 * span + 1, where=span > 0)
+        share = gone.clip(0, 1)[:, None, None, None]
+        return (1 - share) * self.transforms[left] + share * self.transforms[right]
+
+
+@dataclass(frozen=True, eq=False)
+class Moved:
+    """Another motion, of joints that stand elsewhere at rest; see `Clip.moved`.
+
+    Parameters
+    ----------
+    motion : Motion
+    before : array, shape (j, 3), float64
+        Where the joints stood.
+    parents : array, shape (j,), int32
+    by : array, shape (j, 3), float64
+        How far each was moved.
+    """
+
+    motion: Motion
+    before: NDArray[np.float64]
+    parents: NDArray[np.int32]
+    by: NDArray[np.float64]
+
+    @property
+    def joints(self) -> int:
+        """How many joints it moves."""
+        return self.motion.joints
+
+    @property
+    def duration(self) -> float:
+        """Length in seconds."""
+        return self.motion.duration
+
+    @property
+    def times(self) -> NDArray[np.float64]:
+        """Times of the frames that show it, shape (f,), seconds, ascending from 0."""
+        return self.motion.times
+
+    def moved(
+        self, joints: NDArray[np.float64], parents: NDArray[np.int32], by: NDArray[np.float64]
+    ) -> Moved:
+        """Return it for joints that were moved again."""
+        return Moved(self.motion, self.before, self.parents, self.by + by)
+
+    def sample(self, seconds: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return skinning matrices at some times, shape (f, j, 4, 4)."""
+        world = self.motion.sample(seconds).copy()
+        world[..., :3, 3] += _rotated(world, self.before)
+        own, held = relative(world, self.parents), self.parents >= 0
+        own[..., :3, 3] += self.by
+        own[:, held, :3, 3] -= self.by[self.parents[held]]
+        world = composed(own, self.parents)
+        world[..., :3, 3] -= _rotated(world, self.before + self.by)
+        return world
+
+
+def _rotated(matrices: NDArray[np.float64], points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return points (j, 3), each by the linear part of matrices (f, j, 4, 4): (f, j, 3)."""
+    return np.einsum("fjab,jb->fja", matrices[..., :3, :3], points)

@@ -1,0 +1,106 @@
+"""Where points are relative to a body, from its triangles alone: no graph, nothing compiled."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from ...geometry.triangles import normals
+from ..rig import TriangleMesh
+
+SPACING = 0.02
+"""Of the longest side: samples of the surface are about as far apart."""
+CELL = SPACING / 2
+"""Of the longest side: samples that lie in one cell of this size become one."""
+MOST_SPLITS = 50
+"""Along each side of a triangle, whatever its size."""
+INSIDE = 0.3
+"""Of the winding number, of either sign: open meshes are never whole, and some are inside out."""
+BLOCK = 2_000_000
+"""Pairs of point and sample that are looked at together."""
+
+
+class Body:
+    """Samples of a surface, each with the area that it stands for.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+    """
+
+    def __init__(self, mesh: TriangleMesh) -> None:
+        low, high = mesh.bounds
+        self.size = float((high - low).max())
+        corners = (mesh.vertices[mesh.faces] - low) / self.size
+        self._low = low
+        self._corners = corners
+        self._points, self._areas = _merged(*_samples(corners))
+        self._tree = cKDTree(self._points)
+
+    def to_unit(self, points: NDArray) -> NDArray[np.float64]:
+        """Scale points so that the longest side of the body is one."""
+        return (points - self._low) / self.size
+
+    def to_surface(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Measure from points (p, 3) to the surface, to about `SPACING` / 2."""
+        return np.asarray(self._tree.query(points)[0])
+
+    def inside(self, points: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """Tell for points (p, 3) at least `SPACING` from the surface whether it encloses them."""
+        winding = np.zeros(len(points))
+        step = max(1, BLOCK // len(self._points))
+        for first in range(0, len(points), step):
+            away = self._points - points[first : first + step, None]
+            cubed = np.einsum("psi,psi->ps", away, away) ** 1.5
+            winding[first : first + step] = (
+                np.einsum("psi,si->ps", away, self._areas) / cubed
+            ).sum(axis=1)
+        return np.abs(winding) > INSIDE * 4 * np.pi
+
+    def encloses(self, point: NDArray[np.float64]) -> bool:
+        """Tell whether the surface encloses a point (3,), however close it is."""
+        a, b, c = np.moveaxis(self._corners - point, 1, 0)
+        la, lb, lc = (np.linalg.norm(x, axis=1) for x in (a, b, c))
+        volume = np.einsum("mi,mi->m", a, np.cross(b, c))
+        dots = [np.einsum("mi,mi->m", x, y) for x, y in ((a, b), (b, c), (c, a))]
+        below = la * lb * lc + dots[0] * lc + dots[1] * la + dots[2] * lb
+        return bool(abs(np.arctan2(volume, below).sum()) > INSIDE * 2 * np.pi)
+
+
+def _samples(corners: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Cut triangles (m, 3, 3) into equal ones that are small; return middles and area vectors."""
+    sides = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
+    splits = np.clip(np.ceil(sides / SPACING), 1, MOST_SPLITS).astype(int)
+    area = normals(corners) / 2
+    points: list[NDArray] = []
+    areas: list[NDArray] = []
+    for n in np.unique(splits):
+        mine = splits == n
+        weights = _middles(int(n))
+        points.append(np.einsum("sc,mci->msi", weights, corners[mine]).reshape(-1, 3))
+        areas.append(np.repeat(area[mine] / n**2, len(weights), axis=0))
+    return np.concatenate(points), np.concatenate(areas)
+
+
+def _merged(
+    points: NDArray[np.float64], areas: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Merge the samples in each cell of a grid, so that fine meshes have no more than coarse."""
+    cell = np.floor(points / CELL).astype(np.int64)
+    key = (cell * [1 << 42, 1 << 21, 1]).sum(axis=1)
+    where, count = np.unique(key, return_inverse=True, return_counts=True)[1:]
+
+    def summed(values: NDArray[np.float64]) -> NDArray[np.float64]:
+        return np.stack([np.bincount(where, x, len(count)) for x in values.T], axis=1)
+
+    return summed(points) / count[:, None], summed(areas)
+
+
+def _middles(splits: int) -> NDArray[np.float64]:
+    """Return barycentric coordinates of the middles of a triangle's splits² parts."""
+    i, j = (x.ravel() for x in np.mgrid[:splits, :splits])
+    up = np.stack([i, j], axis=1)[i + j < splits] + 1 / 3
+    down = np.stack([i, j], axis=1)[i + j < splits - 1] + 2 / 3
+    first_two = np.concatenate([up, down]) / splits
+    return np.column_stack([first_two, 1 - first_two.sum(axis=1)])

@@ -1,0 +1,191 @@
+"""Which joints may carry weight, from their names and from where they lie in the body."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from ..rig import FAR_OUTSIDE, Skeleton, TriangleMesh
+from .body import SPACING, Body
+from .names import is_control, is_end_marker, is_fingertip, is_root, is_socket, may_be_control
+
+OUTSIDE = 0.04
+"""Of the longest side: a joint that is farther from the body moves none of it."""
+FEW_BONES = 0.15
+"""Of the longest side: as far from the body a root may lie whose children are all that there is."""
+SAME_PLACE = 0.01
+"""Of the longest side: a control this near to another joint stands for it."""
+THROUGH_BODY = 0.5
+"""Part of a link between two joints that must run in or near the body for it to be a bone."""
+ALONG = np.linspace(0.1, 0.9, 9)
+"""Where a link is looked at."""
+NOTHING_BEYOND = 0.15
+"""Lengths of the bone before: a last joint with less skin beyond it marks the end of that bone."""
+ENOUGH_NEAR = 0.5
+"""Part of the joints that must be near the mesh for it to be a body, not a garment."""
+
+MOST_JOINTS = 2_000
+"""Of a body; where there are more, only names count, for places would take minutes."""
+
+BONE = "in or near the body"
+
+
+@dataclass(frozen=True, eq=False)
+class DeformJoints:
+    """Which joints may carry weight, and why.
+
+    Parameters
+    ----------
+    deform : array, shape (j,), bool
+    reason : tuple of str
+        For each joint, a phrase.
+    """
+
+    deform: NDArray[np.bool_]
+    reason: tuple[str, ...]
+
+
+def deform_joints(mesh: TriangleMesh, skeleton: Skeleton) -> DeformJoints:
+    """Tell bones from controls, end markers, sockets and roots, without looking at weights.
+
+    Names decide where riggers and exporters have words for it; else where a joint lies: what is
+    outside of the body moves nothing, and neither does a joint with no skin beyond it at the end
+    of a bone. In garments and props, where most joints are away from the mesh, only names count.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+    skeleton : Skeleton
+        Its own `deform` is not looked at.
+
+    Returns
+    -------
+    DeformJoints
+        At least one joint may carry weight.
+
+    Raises
+    ------
+    SkeletonError
+        The skeleton has no joints.
+    """
+    skeleton.require_joints()
+    found = _Guess(mesh, skeleton)
+    found.by_name()
+    if found.is_body:
+        found.by_place()
+    if not found.deform.any():  # a rig of nothing but controls: then they are what moves it
+        return DeformJoints(np.ones(len(skeleton.joints), bool), (BONE,) * len(skeleton.joints))
+    return DeformJoints(found.deform, tuple(found.reason))
+
+
+class _Guess:
+    def __init__(self, mesh: TriangleMesh, skeleton: Skeleton) -> None:
+        self.names, self.parents = skeleton.names, skeleton.parents
+        self.children = skeleton.children
+        self.leaves_first = np.argsort(-skeleton.depth, kind="stable").tolist()
+        self.body = Body(mesh)
+        self.joints = self.body.to_unit(skeleton.joints)
+        self.vertices = self.body.to_unit(mesh.vertices[np.unique(mesh.faces)])
+        self.distance = np.zeros(len(self.joints))
+        self.is_body = False
+        if len(self.joints) <= MOST_JOINTS:
+            self.distance = self.body.to_surface(self.joints)
+            deep = np.flatnonzero(self.distance > SPACING)
+            self.distance[deep[self.body.inside(self.joints[deep])]] = 0.0
+            self.is_body = bool((self.distance <= OUTSIDE).mean() >= ENOUGH_NEAR)
+        self.deform = np.ones(len(self.joints), bool)
+        self.reason = [BONE] * len(self.joints)
+
+    def by_name(self) -> None:
+        """Rule out what is called an end marker, a socket, or a control of another joint."""
+        for j in self.leaves_first:
+            is_marker = is_end_marker(self.names[j]) or is_fingertip(self.names[j])
+            if is_marker and not len(self._bones_below(j)):
+                self._rule_out(j, "end marker, by its name")
+            elif is_socket(self.names[j]):
+                self._rule_out(j, "holds things, by its name")
+            elif is_control(self.names[j]):
+                self._rule_out(j, "control, by its name")
+        self._by_name_and_place(np.array([may_be_control(name) for name in self.names]))
+
+    def _by_name_and_place(self, unsure: NDArray[np.bool_]) -> None:
+        """Rule out what may be a control and stands where another joint does, or in the air."""
+        others = np.flatnonzero(self.deform & ~unsure)
+        tree = cKDTree(self.joints[others]) if len(others) else None
+        for j in reversed(self.leaves_first):
+            if not (self.deform[j] and unsure[j]):
+                continue
+            away, k = tree.query(self.joints[j]) if tree else (np.inf, 0)
+            parent = self.parents[j]
+            if away <= SAME_PLACE:
+                at = self.names[others[k]]
+                self._rule_out(j, f'control at the place of "{at}"')
+            elif self.distance[j] > SPACING:
+                self._rule_out(j, "control outside of the body")
+            elif parent >= 0 and "control" in self.reason[parent]:
+                self._rule_out(j, "part of a control")
+
+    def by_place(self) -> None:
+        """Rule out what is away from the body, roots on the floor, and ends of bones.
+
+        What is very far away is in other units, which `Rig` refuses.
+        """
+        for j in self.leaves_first:
+            if not self.deform[j]:
+                continue
+            below = self._bones_below(j)
+            if not len(below) and self._ends_a_bone(j):
+                self._rule_out(j, "end marker: no skin beyond it")
+            elif OUTSIDE < self.distance[j] < FAR_OUTSIDE and not self._leads_into_body(j, below):
+                self._rule_out(j, "outside of the body")
+            elif self.parents[j] < 0 and self._stands_beside(j, below):
+                self._rule_out(j, "root beside the body")
+
+    def _rule_out(self, joint: int, reason: str) -> None:
+        self.deform[joint], self.reason[joint] = False, reason
+
+    def _bones_below(self, joint: int) -> NDArray[np.intp]:
+        children = self.children[joint]
+        return children[self.deform[children]]
+
+    def _stands_beside(self, joint: int, below: NDArray[np.intp]) -> bool:
+        """Tell whether a root lies outside, and moves others rather than skin."""
+        chained = any(len(self._bones_below(k)) for k in below)
+        is_all = self.deform.sum() == 1 + len(below)
+        if is_all and not chained and self.distance[joint] <= FEW_BONES:
+            return False  # it moves what the few parts that hang on it do not
+        if 0 < self.distance[joint] <= SPACING and self.body.encloses(self.joints[joint]):
+            return False
+        outside = self.distance[joint] > 0 and len(below) > 0
+        return outside and (is_root(self.names[joint]) or not self._leads_into_body(joint, below))
+
+    def _leads_into_body(self, joint: int, others: NDArray[np.intp]) -> bool:
+        """Tell whether a link to any of the others runs through the body."""
+        away = self.joints[others] - self.joints[joint]
+        points = (self.joints[joint] + ALONG[:, None] * away[:, None]).reshape(-1, 3)
+        near = self.body.to_surface(points) <= OUTSIDE
+        near[~near] = self.body.inside(points[~near])
+        return bool((near.reshape(-1, len(ALONG)).mean(axis=1) >= THROUGH_BODY).any())
+
+    def _ends_a_bone(self, joint: int) -> bool:
+        """Tell whether a last joint lies at the end of a chain of bones, with no skin beyond."""
+        parents, joints = self.parents, self.joints
+        parent = parents[joint]
+        if parent < 0 or parents[parent] < 0 or len(self.children[parent]) > 1:
+            return False
+        bone = joints[joint] - joints[parent]
+        length = np.linalg.norm(bone)
+        if length == 0 or length > 3 * np.linalg.norm(joints[parent] - joints[parents[parent]]):
+            return False
+        away = self.vertices - joints[joint]
+        apart = np.linalg.norm(away, axis=1)
+        beyond = (away @ bone) / length
+        around = (apart < length) & (beyond > -0.05 * length)
+        return bool(
+            around.any()
+            and beyond[around].max() < NOTHING_BEYOND * length
+            and apart[around].max() < length / 2
+        )

@@ -1,0 +1,238 @@
+"""Parallel work by threads that run kernels without Python's lock.
+
+numba's own parallel loops are not used: with its plain threading layer the process ends when two
+threads, say two sessions of the page, start such a loop at once.
+"""
+
+import os
+import threading
+import time
+from collections.abc import Callable, Iterable
+from concurrent.futures import Future, ThreadPoolExecutor, wait
+from contextvars import copy_context
+from functools import cache
+from itertools import pairwise
+from typing import Any, TypeVar
+from weakref import WeakSet
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import Cancelled
+from .progress import Progress, silent
+
+Item = TypeVar("Item")
+Result = TypeVar("Result")
+Second = TypeVar("Second")
+
+POLL_EVERY = 0.1
+"""Seconds between two reports of a long kernel's progress."""
+MANY_STEPS = 50_000
+"""Kernels of fewer steps end before the first report."""
+
+MAX_ABANDONED = 3
+"""Threads that may go on after their work was cancelled, until they report again."""
+
+_here = threading.local()
+_abandoned: WeakSet[threading.Thread] = WeakSet()
+
+
+def threads() -> int:
+    """Return how many threads kernels run on; NUMBA_NUM_THREADS sets it."""
+    return int(getattr(numba.config, "NUMBA_NUM_THREADS"))  # noqa: B009
+
+
+def in_threads(
+    work: Callable[[Item], Result],
+    items: Iterable[Item],
+    tell: Callable[[float], None] = lambda done: None,
+) -> list[Result]:
+    """Apply `work`, which should spend its time in nogil kernels, to each item in parallel.
+
+    The calling thread takes part, and does not wait for a thread that has not started: small work
+    takes less time than waking one. Nested calls run in the thread that makes them.
+
+    Parameters
+    ----------
+    work : callable
+    items : iterable
+    tell : callable
+        Called with the fraction done after each item, by one thread at a time. What it raises
+        is passed on, and ends the work.
+    """
+    items = list(items)
+    results: dict[int, Result] = {}
+    waiting, telling = iter(enumerate(items)), threading.Lock()
+
+    def take() -> None:
+        try:
+            for index, item in waiting:
+                results[index] = work(item)
+                with telling:
+                    tell(len(results) / len(items))
+        except BaseException:
+            for _ in waiting:  # leave none to the others
+                pass
+            raise
+
+    if len(items) < 2 or threads() < 2 or getattr(_here, "is_worker", False):
+        take()
+        return [results[index] for index in range(len(items))]
+    helpers = [_pool(threads() - 1).submit(take) for _ in range(min(threads(), len(items)) - 1)]
+    _here.is_worker = True
+    try:
+        take()
+    finally:
+        _here.is_worker = False
+        started = [helper for helper in helpers if not helper.cancel()]
+        for helper in started:
+            helper.exception()  # wait for all, whatever one of them raises
+    for helper in started:
+        helper.result()
+    return [results[index] for index in range(len(items))]
+
+
+def run_parallel(one: Callable[[], Result], other: Callable[[], Second]) -> tuple[Result, Second]:
+    """Run two functions in parallel, see `in_threads`; return both results."""
+    results: list[Any] = in_threads(lambda task: task(), (one, other))
+    return results[0], results[1]
+
+
+def submit(work: Callable[[], Result]) -> Callable[[], Result]:
+    """Run a function in another thread; return a function that waits for its result.
+
+    If no thread has started it by then, it runs in the thread that waits.
+    """
+    if threads() < 2 or getattr(_here, "is_worker", False):
+        return work
+    task = _pool(threads() - 1).submit(work)
+    return lambda: work() if task.cancel() else task.result()
+
+
+def watched(
+    work: Callable[[NDArray[np.int64]], Result], steps: int, tell: Callable[[float], None]
+) -> Result:
+    """Report the progress of a long kernel ten times a second, and let it be stopped.
+
+    Parameters
+    ----------
+    work : callable
+        Calls the kernel, with an array of two numbers: the kernel writes to the first how many
+        steps it has done, and returns early, with anything, once the second is not 0.
+    steps : int
+        How many there are.
+    tell : callable
+        Called with the fraction done. What it raises is passed on, and stops the kernel.
+    """
+    pace = np.zeros(2, np.int64)
+    if steps < MANY_STEPS:
+        return work(pace)
+    result: Future[Result] = Future()
+
+    def run() -> None:
+        _mark_worker()
+        try:
+            result.set_result(work(pace))
+        except BaseException as error:
+            result.set_exception(error)
+
+    runner = threading.Thread(target=run, name="cutcell-watched")
+    runner.start()
+    try:
+        while True:
+            if wait([result], POLL_EVERY).done:
+                return result.result()
+            tell(pace[0] / steps)
+    finally:
+        pace[1] = 1
+        runner.join()
+
+
+def cancellable(work: Callable[[Progress], Result], progress: Progress, first_stage: str) -> Result:
+    """Do work that can be cancelled at any moment, however long its steps take.
+
+    The work runs in a thread of its own. The calling thread repeats the last report ten times a
+    second, and passes on at once what `progress` raises. The work then ends at its next report,
+    with no one waiting for it. While `MAX_ABANDONED` such threads go on, new work waits.
+
+    Parameters
+    ----------
+    work : callable
+        Called with the progress to report to.
+    progress : callable
+        Called by one thread at a time.
+    first_stage : str
+        What is reported until the work does.
+    """
+    if progress is silent or getattr(_here, "is_worker", False) or getattr(_here, "is_run", False):
+        return work(progress)
+    relay, result = _Relay(progress, first_stage), Future[Result]()
+    context = copy_context()
+
+    def run() -> None:
+        _here.is_run = True
+        try:
+            result.set_result(context.run(work, relay.report))
+        except BaseException as error:
+            result.set_exception(error)
+
+    runner = threading.Thread(target=run, name="cutcell-work", daemon=True)
+    try:
+        while sum(thread.is_alive() for thread in _abandoned) >= MAX_ABANDONED:
+            relay.repeat()
+            time.sleep(POLL_EVERY)
+        runner.start()
+        while not wait([result], POLL_EVERY).done:
+            relay.repeat()
+        return result.result()
+    finally:
+        relay.is_over = True
+        _abandoned.add(runner)
+
+
+class _Relay:
+    """Reports of one thread, repeated by another, until it is over."""
+
+    def __init__(self, progress: Progress, stage: str) -> None:
+        self.is_over = False
+        self._progress = progress
+        self._last = stage, 0.0
+        self._lock = threading.Lock()
+
+    def report(self, stage: str, fraction: float) -> None:
+        """Pass a report on."""
+        with self._lock:
+            if self.is_over:
+                raise Cancelled
+            self._last = stage, fraction
+            self._progress(stage, fraction)
+
+    def repeat(self) -> None:
+        """Report the last one again, unless one is being passed on."""
+        if self._lock.acquire(blocking=False):
+            try:
+                self._progress(*self._last)
+            finally:
+                self._lock.release()
+
+
+def parts(count: int, at_once: int = 0) -> list[slice]:
+    """Divide `count` items into slices, more than there are threads, so that none idles."""
+    pieces = max(1, min(count, at_once or 4 * threads()))
+    bounds = [count * k // pieces for k in range(pieces + 1)]
+    return [slice(a, b) for a, b in pairwise(bounds)]
+
+
+@cache
+def _pool(count: int) -> ThreadPoolExecutor:
+    return ThreadPoolExecutor(count, "cutcell", initializer=_mark_worker)
+
+
+def _mark_worker() -> None:
+    _here.is_worker = True
+
+
+# A forked process would inherit the pool, but none of its threads.
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_pool.cache_clear)

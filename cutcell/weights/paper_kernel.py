@@ -1,0 +1,126 @@
+"""The kernel of the paper (section 3.2, equation 1; Dionne & de Lasa 2013)."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..runtime.compiled import compiled
+from ..runtime.threads import in_threads, parts
+from .prune import keep_largest
+
+
+def paper_kernel(
+    distance: NDArray[np.float64], diagonal: float, alpha: float
+) -> NDArray[np.float64]:
+    """Apply the paper's falloff and normalise over the joints.
+
+        w = (1 / ((1 - alpha) d/D + alpha (d/D)^2))^2
+
+    Parameters
+    ----------
+    distance : array, shape (j, n)
+        d; infinite for joints without influence.
+    diagonal : float
+        D, in the unit of the distances.
+    alpha : float
+        Smoothness: 0 falls off like d^-2, 1 like d^-4.
+
+    Returns
+    -------
+    array, shape (n, j)
+        Rows sum to one. A vertex that touches bones (d = 0) follows these alone: the limit
+        of the formula.
+    """
+    weights = np.empty(distance.shape[::-1])
+    in_threads(
+        lambda part: _paper_kernel(distance, diagonal, alpha, weights, part.start, part.stop),
+        parts(len(weights)),
+    )
+    return weights
+
+
+def pruned_paper_kernel(
+    distance: NDArray[np.float64],
+    diagonal: float,
+    alpha: float,
+    max_influences: int | None,
+    threshold: float,
+    priority: NDArray[np.intp],
+) -> NDArray[np.float64]:
+    """Apply the paper's falloff and prune in one pass, without a matrix in between.
+
+    The result is that of `paper_kernel` and `prune`. The page calls it while a slider moves.
+
+    Parameters
+    ----------
+    distance, diagonal, alpha
+        See `paper_kernel`.
+    max_influences, threshold, priority
+        See `prune`.
+
+    Returns
+    -------
+    array, shape (n, j)
+    """
+    most = len(distance) if max_influences is None else max_influences
+    weights = np.zeros(distance.shape[::-1])
+    in_threads(
+        lambda part: _pruned_paper_kernel(
+            distance, diagonal, alpha, most, threshold, priority, weights, part.start, part.stop
+        ),
+        parts(len(weights)),
+    )
+    return weights
+
+
+BLOCK_ROWS = 64
+"""Vertices at a time: distances are stored by joint, and a block of rows fits into the cache."""
+
+
+@compiled
+def _paper_kernel(distance, diagonal, alpha, weights, begin, stop):
+    for first in range(begin, stop, BLOCK_ROWS):
+        _kernel_rows(
+            distance, diagonal, alpha, first, weights[first : min(first + BLOCK_ROWS, stop)]
+        )
+
+
+@compiled
+def _pruned_paper_kernel(
+    distance, diagonal, alpha, most, threshold, priority, weights, begin, stop
+):
+    rows = np.empty((BLOCK_ROWS, len(distance)))
+    kept = np.empty(len(priority), np.intp)
+    for first in range(begin, stop, BLOCK_ROWS):
+        count = min(BLOCK_ROWS, stop - first)
+        _kernel_rows(distance, diagonal, alpha, first, rows[:count])
+        for v in range(count):
+            keep_largest(rows[v], most, threshold, priority, kept, weights[first + v])
+
+
+@compiled
+def _kernel_rows(distance, diagonal, alpha, first, rows):
+    for j in range(len(distance)):
+        for v in range(len(rows)):
+            x = distance[j, first + v] / diagonal
+            rows[v, j] = (1 - alpha) * x + alpha * x * x if x < np.inf else np.inf
+    for v in range(len(rows)):
+        _normalise(rows[v])
+
+
+@compiled
+def _normalise(row):
+    least = np.inf
+    for steepness in row:
+        least = min(least, steepness)
+    # Relative to the nearest joint nothing overflows, however small the distances are.
+    total = 0.0
+    for j, steepness in enumerate(row):
+        if steepness == np.inf:
+            row[j] = 0.0
+            continue
+        ratio = least / steepness if steepness > 0 else 1.0
+        row[j] = ratio * ratio
+        total += ratio * ratio
+    row /= total

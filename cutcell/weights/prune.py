@@ -1,0 +1,90 @@
+"""Pruning: few influences a vertex, as files and graphics cards want them."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..runtime.compiled import compiled
+from ..runtime.progress import Tell
+from ..runtime.threads import in_threads, parts, threads
+
+EQUAL = 1 + 1e-9
+"""Weights that differ by less than this factor count as equal. Two bones that meet in a joint weigh
+the same wherever that joint is the nearest point of both, and rounding must not choose."""
+
+A_PART = 2_000_000
+"""Weights of one part of the work, which takes some hundredths of a second."""
+
+
+def prune(
+    weights: NDArray[np.float64],
+    max_influences: int | None,
+    threshold: float,
+    priority: NDArray[np.intp],
+    tell: Tell = lambda done: None,
+) -> NDArray[np.float64]:
+    """Keep the largest weights of each vertex and make them sum to one again.
+
+    Parameters
+    ----------
+    weights : array, shape (n, j)
+        Rows sum to one.
+    max_influences : int or None
+        Weights kept a vertex, at most; None keeps all.
+    threshold : float
+        Of those that are left, weights below it are dropped; a vertex always keeps its
+        largest.
+    priority : array, shape (j,)
+        The joints in the order in which they are kept among equal weights.
+    tell : callable
+        See `progress.Tell`.
+
+    Returns
+    -------
+    array, shape (n, j)
+    """
+    most = weights.shape[1] if max_influences is None else max_influences
+    pruned = np.zeros(weights.shape)
+    in_threads(
+        lambda part: _prune(weights[part], most, threshold, priority, pruned[part]),
+        parts(len(weights), threads() + weights.size // A_PART),
+        tell,
+    )
+    return pruned
+
+
+@compiled
+def _prune(weights, most, threshold, priority, pruned):
+    kept = np.empty(len(priority), np.intp)
+    for v in range(len(weights)):
+        keep_largest(weights[v], most, threshold, priority, kept, pruned[v])
+
+
+@compiled
+def keep_largest(row, most, threshold, priority, kept, pruned):
+    """Prune one vertex: see `prune`. `pruned` is all zeros, and `kept` has room for all joints."""
+    count = 0
+    for joint in priority:
+        weight = row[joint]
+        if weight == 0:
+            continue
+        if count < most:
+            count += 1
+        elif weight <= EQUAL * row[kept[count - 1]]:
+            continue
+        rank = count - 1
+        while rank > 0 and EQUAL * row[kept[rank - 1]] < weight:
+            kept[rank] = kept[rank - 1]
+            rank -= 1
+        kept[rank] = joint
+    # Now the largest come first.
+    total = 0.0
+    for k in range(count):
+        total += row[kept[k]]
+    least = threshold * total
+    while count > 1 and row[kept[count - 1]] < least:
+        count -= 1
+        total -= row[kept[count]]
+    for k in range(count):
+        pruned[kept[k]] = row[kept[k]] / total

@@ -1,0 +1,1 @@
+"""The falloff "rig": from distances to weights as artists paint them."""

@@ -1,0 +1,174 @@
+"""The connected components of a mesh, and which bones lie inside each of them."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...geodesics import Bones
+from ...geometry.sorting import sort_into
+from ...geometry.union_find import join, numbered
+from ...runtime.compiled import compiled, no_refcount
+from ...runtime.threads import in_threads
+
+POINTS = 9
+"""Samples along each bone."""
+CELLS = 64
+"""Along each side of the grid that sorts the samples, so that a face visits those under it only."""
+INSIDE = 0.5
+"""A point is inside a component if this part of six rays from it leave the component."""
+
+
+@compiled
+def label_components(faces, count):
+    """Return the connected component of each of `count` welded vertices, numbered from 0."""
+    first = np.arange(count)
+    for f in range(len(faces)):
+        low = join(first, faces[f, 0], faces[f, 1])
+        join(first, low, faces[f, 2])
+    return numbered(first)[0]
+
+
+def bone_containment(
+    points: NDArray[np.float64],
+    faces: NDArray[np.int32],
+    component: NDArray[np.int32],
+    bones: Bones,
+) -> NDArray[np.float64]:
+    """Measure which part of each bone lies inside each component.
+
+    Parameters
+    ----------
+    points : array, shape (k, 3)
+    faces : array, shape (m, 3)
+    component : array, shape (k,)
+        Of each welded vertex; see `label_components`.
+    bones : Bones
+
+    Returns
+    -------
+    array, shape (components, b)
+        0 to 1.
+    """
+    along = (np.arange(POINTS) + 0.5) / POINTS
+    samples = bones.start[:, None] + along[:, None] * (bones.end - bones.start)[:, None]
+    samples = samples.reshape(-1, 3)
+    count = int(component.max()) + 1
+    of_face = component[faces[:, 0]]
+
+    def along_axis(axis: int) -> tuple[NDArray, NDArray, NDArray]:
+        turn = [(axis + 1) % 3, (axis + 2) % 3, axis]
+        seen = np.ascontiguousarray(points[:, turn]), np.ascontiguousarray(samples[:, turn])
+        face, sample, sign = _intersect(*seen, faces)
+        return of_face[face], sample, sign
+
+    hits = in_threads(along_axis, range(3))
+    which, sample, sign = (np.concatenate(parts) for parts in zip(*hits, strict=True))
+    key, number = np.unique(which.astype(np.int64) * len(samples) + sample, return_inverse=True)
+    # Each hit belongs to the ray up or to the ray down, one of six.
+    inside = np.bincount(number, sign / 6, minlength=len(key)) > INSIDE - 1e-9
+    containment = np.zeros((count, len(bones.joint)))
+    inside_of, bone = key[inside] // len(samples), key[inside] % len(samples) // POINTS
+    np.add.at(containment, (inside_of, bone), 1 / POINTS)
+    return containment
+
+
+def _intersect(
+    points: NDArray[np.float64], samples: NDArray[np.float64], faces: NDArray[np.int32]
+) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int8]]:
+    """Intersect all lines through samples along the third axis with the faces.
+
+    Returns the face, the sample, and +1 where a ray from the sample leaves through the face,
+    -1 where it enters.
+    """
+    start, order = _sort_into_columns(samples)
+    samples = samples[order]
+    room = 8 * len(samples)
+    while True:
+        face, sample, sign = (
+            np.empty(room, np.int64),
+            np.empty(room, np.int64),
+            np.empty(room, np.int8),
+        )
+        count = _list_hits(points, faces, samples, start, face, sample, sign)
+        if count <= room:
+            return face[:count], order[sample[:count]], sign[:count]
+        room = count
+
+
+@compiled
+def _sort_into_columns(samples):
+    """Return where the samples of each column of the grid begin, and their order."""
+    column = np.empty(len(samples), np.int64)
+    for s in range(len(samples)):
+        column[s] = _cell(samples[s, 0]) * CELLS + _cell(samples[s, 1])
+    return sort_into(column, CELLS * CELLS)
+
+
+@no_refcount
+def _list_hits(points, faces, samples, start, face, sample, sign):
+    """Return how many ray hits there are, also beyond the room for them.
+
+    Samples in column i * CELLS + j of the grid are those from start[i * CELLS + j] on.
+    """
+    count = 0
+    for f in range(len(faces)):
+        a, b, c = faces[f, 0], faces[f, 1], faces[f, 2]
+        low_u = min(points[a, 0], points[b, 0], points[c, 0])
+        high_u = max(points[a, 0], points[b, 0], points[c, 0])
+        low_v = min(points[a, 1], points[b, 1], points[c, 1])
+        high_v = max(points[a, 1], points[b, 1], points[c, 1])
+        for i in range(_cell(low_u), _cell(high_u) + 1):
+            first, last = i * CELLS + _cell(low_v), i * CELLS + _cell(high_v)
+            for s in range(start[first], start[last + 1]):
+                u, v = samples[s, 0], samples[s, 1]
+                if not (low_u <= u < high_u and low_v <= v <= high_v):
+                    continue
+                facing = _crosses(points, faces[f], u, v)
+                if facing == 0:
+                    continue
+                if count < len(face):
+                    is_ahead = _height(points[a], points[b], points[c], u, v) > samples[s, 2]
+                    face[count], sample[count] = f, s
+                    sign[count] = facing if is_ahead else -facing
+                count += 1
+    return count
+
+
+@no_refcount
+def _crosses(points, corners, u, v):
+    """Tell whether a line passes through a face: +1 where that faces up, -1 down, 0 if not."""
+    # On the line u = const, how many edges of the face lie on the side of larger v.
+    above, turn = 0, 0
+    for k in range(3):
+        i, j = corners[k], corners[(k + 1) % 3]
+        up = 1 if (points[j, 0] > u) and (points[i, 0] <= u) else 0
+        down = 1 if (points[i, 0] > u) and (points[j, 0] <= u) else 0
+        if up + down == 0:
+            continue
+        if down:  # one order of the ends, so that both faces of an edge agree
+            i, j = j, i
+        share = (u - points[i, 0]) / (points[j, 0] - points[i, 0])
+        if points[i, 1] + share * (points[j, 1] - points[i, 1]) > v:
+            above += 1
+            turn += up - down
+    # turn is +1 where the face is seen turning clockwise from above: facing down
+    return -turn if above == 1 else 0
+
+
+@compiled(inline="always")
+def _cell(u):
+    return min(max(int(u * CELLS), 0), CELLS - 1)
+
+
+@no_refcount
+def _height(a, b, c, u, v):
+    """Return where the plane through three points is over (u, v)."""
+    x1, y1, z1 = b[0] - a[0], b[1] - a[1], b[2] - a[2]
+    x2, y2, z2 = c[0] - a[0], c[1] - a[1], c[2] - a[2]
+    cross = x1 * y2 - x2 * y1
+    if cross == 0:
+        return a[2]
+    s = ((u - a[0]) * y2 - (v - a[1]) * x2) / cross
+    t = ((v - a[1]) * x1 - (u - a[0]) * y1) / cross
+    return a[2] + s * z1 + t * z2

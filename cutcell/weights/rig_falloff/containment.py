@@ -1,0 +1,94 @@
+"""What follows from the components that bones lie in: a penalty across them, and rigid parts."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...geodesics import Bones
+from .components import bone_containment
+from .surface_operators import SurfaceOperators
+
+PENALTY = 2.0
+"""Added to the factor 1 of a bone's distance, for the surface of a component that the bone is
+outside of while it is inside another one."""
+
+
+def joint_containment(surface: SurfaceOperators, bones: Bones, joints: int) -> NDArray[np.float64]:
+    """Measure which part of each joint's bones lies inside each component.
+
+    Of several bones of a joint, the one that is inside a component most counts there.
+
+    Returns
+    -------
+    array, shape (components, j)
+        0 to 1.
+    """
+    if not surface.component.any():  # a lone component: no bone belongs more to another
+        return np.ones((1, joints))
+    of_bone = bone_containment(surface.points, surface.faces, surface.component, bones)
+    containment = np.zeros((len(of_bone), joints))
+    for bone, joint in enumerate(bones.joint):
+        containment[:, joint] = np.maximum(containment[:, joint], of_bone[:, bone])
+    return containment
+
+
+def cross_component_penalty(containment: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the factor by which each joint's distance grows on each component.
+
+    An arm whose mesh is a component of its own reaches into the shoulder, and its bone with it;
+    the surface of the chest there is not the arm's. No factor is on the component that contains
+    most of a joint's bone, nor on one that contains more of this bone than of any other.
+
+    Parameters
+    ----------
+    containment : array, shape (components, j)
+        See `joint_containment`.
+
+    Returns
+    -------
+    array, shape (components, j)
+        1 to 3; 1 for components without bones.
+    """
+    of_joint, of_component = containment.max(axis=0), containment.max(axis=1, keepdims=True)
+    belongs = np.divide(
+        containment,
+        np.minimum(of_joint, of_component),
+        out=np.ones_like(containment),
+        where=containment > 0,
+    )
+    belongs[(containment == 0) & (of_joint > 0)] = 0
+    penalty = 1 + PENALTY * (1 - np.minimum(belongs, 1))
+    penalty[of_component[:, 0] == 0] = 1
+    return penalty
+
+
+def make_rigid(
+    containment: NDArray[np.float64],
+    component: NDArray[np.int32],
+    weights: NDArray[np.float64],
+    by_itself: NDArray[np.bool_] | None = None,
+) -> NDArray[np.float64]:
+    """Let components that contain bones of one joint only follow that joint: plates, wheels.
+
+    Parameters
+    ----------
+    containment : array, shape (components, j)
+        See `joint_containment`.
+    component : array, shape (k,)
+        Of each welded vertex.
+    weights : array, shape (k, j)
+    by_itself : array, shape (components,), bool, optional
+        Components that do not.
+
+    Returns
+    -------
+    array, shape (k, j)
+    """
+    alone = np.count_nonzero(containment, axis=1) == 1
+    rigid = (alone if by_itself is None else alone & ~by_itself)[component]
+    if not rigid.any():
+        return weights
+    result = weights.copy()
+    result[rigid] = np.eye(containment.shape[1])[containment.argmax(axis=1)[component[rigid]]]
+    return result

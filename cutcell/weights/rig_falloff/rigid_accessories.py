@@ -1,0 +1,147 @@
+"""Rigid accessories: small components without bones follow what they are attached to."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csr_array
+
+from ...geodesics.bones import TIE
+from ...geodesics.nearest import NodeGrid
+from ...graph import CutCellGraph
+from ...runtime.compiled import no_refcount
+from .surface_operators import SurfaceOperators
+
+SMALL = 0.25
+"""Of the longest side: a component up to this large may be an accessory."""
+CONTACT = 1.0
+"""Lattice cells: an accessory touches the body wherever it is at most this much farther from it
+than at its nearest vertex."""
+DOMINANT = 0.6
+"""An accessory follows one joint alone if that joint has more than this part of the body's weight
+where they touch, or is the strongest on more than this part of the contact."""
+
+
+def attach_accessories(
+    graph: CutCellGraph,
+    surface: SurfaceOperators,
+    containment: NDArray[np.float64],
+    weights: NDArray[np.float64],
+    by_itself: NDArray[np.bool_] | None = None,
+) -> NDArray[np.float64]:
+    """Let small components without bones follow what they sit on: eyes, buttons, horns, armour.
+
+    Each moves rigidly, by the mean weights of the rest of the mesh where they touch.
+
+    Parameters
+    ----------
+    graph : CutCellGraph
+    surface : SurfaceOperators
+    containment : array, shape (components, j)
+        See `joint_containment`.
+    weights : array, shape (k, j)
+    by_itself : array, shape (components,), bool, optional
+        Components that do not.
+
+    Returns
+    -------
+    array, shape (k, j)
+    """
+    points, component, areas = surface.points, surface.component, surface.areas
+    # What has no area, such as a vertex without a face, touches nothing.
+    has_area = np.bincount(component, areas, len(containment)) > 0
+    is_small = _longest_sides(points, component) <= SMALL
+    is_accessory = has_area & is_small & (containment.max(axis=1) == 0)
+    if by_itself is not None:
+        is_accessory &= ~by_itself
+    if not is_accessory.any():
+        return weights
+    on_body = ~is_accessory[component]
+    # A mesh that is in patches all over is no body with things on it.
+    if areas[on_body].sum() < areas.sum() / 2:
+        return weights
+    return attach(graph, surface, is_accessory, weights)
+
+
+def attach(
+    graph: CutCellGraph,
+    surface: SurfaceOperators,
+    is_accessory: NDArray[np.bool_],
+    weights: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """Let some components, shape (components,), follow the others where they touch them.
+
+    `weights` and what is returned have the shape (k, j).
+    """
+    points, component, areas = surface.points, surface.component, surface.areas
+    on_body = ~is_accessory[component]
+    attached = np.flatnonzero(~on_body)
+    distance, corners = _nearest_on_body(graph, on_body, points[attached])
+    label = component[attached]
+    least = np.full(len(is_accessory), np.inf)
+    np.minimum.at(least, label, distance)
+    touching = np.flatnonzero(distance <= least[label] + CONTACT / graph.lattice.resolution)
+    rows = _contact_weights(
+        weights[corners[touching]].mean(axis=1),
+        areas[attached[touching]] + 1e-12,
+        label[touching],
+        len(is_accessory),
+    )
+    result = weights.copy()
+    result[attached] = rows[label]
+    return result
+
+
+def _contact_weights(
+    touched: NDArray[np.float64],
+    areas: NDArray[np.float64],
+    component: NDArray[np.int32],
+    components: int,
+) -> NDArray[np.float64]:
+    """Average the weights touched (c, j) over each component's contact: (components, j)."""
+    entries = areas, (component, np.arange(len(component)))
+    gather = csr_array(entries, (components, len(component)))
+    joints = np.eye(touched.shape[1])
+    total = np.maximum(gather.sum(axis=1), 1e-300)[:, None]
+    mean = gather @ touched / total
+    strongest = gather @ joints[touched.argmax(axis=1)] / total
+    share = np.where(strongest.max(axis=1, keepdims=True) > DOMINANT, strongest, mean)
+    alone = share.max(axis=1) > DOMINANT
+    mean[alone] = joints[share[alone].argmax(axis=1)]
+    return mean
+
+
+def _longest_sides(
+    points: NDArray[np.float64], component: NDArray[np.int32]
+) -> NDArray[np.float64]:
+    low = np.full((int(component.max()) + 1, 3), np.inf)
+    high = -low
+    _bound(points, component, low, high)
+    return (high - low).max(axis=1)
+
+
+@no_refcount
+def _bound(points, component, low, high):
+    for p in range(len(points)):
+        for axis in range(3):
+            low[component[p], axis] = min(low[component[p], axis], points[p, axis])
+            high[component[p], axis] = max(high[component[p], axis], points[p, axis])
+
+
+def _nearest_on_body(
+    graph: CutCellGraph, on_body: NDArray[np.bool_], points: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
+    """Measure from points to the body's surface: its vertices, and where rays hit it.
+
+    Returns the distances, and for the nearest node of each point the three welded vertices that
+    its weights are the mean of.
+    """
+    first = graph.first_surface
+    chosen = np.zeros(len(graph.nodes), np.bool_)
+    chosen[: len(on_body)] = on_body
+    chosen[first:] = on_body[graph.faces[graph.triangle[first:], 0]]
+    of, node = NodeGrid(graph.nodes, chosen, graph.lattice.resolution).nearest(points, TIE)
+    node = node[np.searchsorted(of, np.arange(len(points)))]  # the first of equals
+    distance = np.linalg.norm(graph.nodes[node] - points, axis=1)
+    on_face = graph.faces[graph.triangle[node]]
+    return distance, np.where(node[:, None] < first, node[:, None], on_face).astype(np.int32)

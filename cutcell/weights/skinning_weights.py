@@ -1,0 +1,158 @@
+"""Skinning weights from bone distances (paper section 3.2)."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Unpack
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import ParameterError
+from ..geodesics import BoneDistances
+from ..graph import CutCellGraph
+from ..method import ANIMATION, Method, MethodName, WeightOptions, method_of
+from ..runtime.progress import Progress, Tell, share_of, silent
+from ..runtime.threads import in_threads, parts, threads
+from .adjustments import Adjustments
+from .paper_kernel import paper_kernel, pruned_paper_kernel
+from .prune import A_PART, prune
+from .rig_falloff.pipeline import permitted, rig_weights
+from .rig_falloff.surface_operators import SurfaceOperators
+
+
+def skinning_weights(
+    distances: BoneDistances,
+    *,
+    method: Method | MethodName = ANIMATION,
+    allowed: NDArray[np.bool_] | None = None,
+    adjustments: Adjustments | None = None,
+    progress: Progress = silent,
+    **options: Unpack[WeightOptions],
+) -> NDArray[np.float64]:
+    """Turn distances into weights.
+
+    Parameters
+    ----------
+    distances : BoneDistances
+    method : Method, "animation" or "paper"
+        Its falloff, alpha, greatest number of influences and threshold count here. `distances`
+        must be those of enough joints for it.
+    allowed : array, shape (n, j), bool, optional
+        Which joints each vertex may follow; see `Rig.allowed`.
+    adjustments : Adjustments, optional
+        What `bind` makes of `Corrections`.
+    progress : callable
+        See `cutcell.runtime.progress`; the stage is called "weights".
+    **options
+        Single options of the method: `falloff` ("paper" is equation 1, "rig" is made to animate
+        with, see docs/falloff.md), `alpha`, `max_influences`, `threshold`.
+
+    Returns
+    -------
+    array, shape (n, j), float64
+        Not negative, finite, rows sum to one.
+
+    Raises
+    ------
+    ParameterError
+        A parameter is out of its range, or the distances are of too few joints.
+
+    References
+    ----------
+    Paper section 3.2, equation 1.
+    """
+    method = method_of(method, **options)
+    known, needed = distances.nearest_joints, method.joints_needed
+    if known is not None and (needed is None or needed > known):
+        raise ParameterError(
+            f"max_influences is {method.max_influences}, but the distances were measured from the "
+            f"{known} nearest joints of each vertex alone: measure them again with this method"
+        )
+
+    def tell(done: float) -> None:
+        progress("weights", done)
+
+    if adjustments is not None and method.falloff == "paper":
+        distances = _divided(distances, adjustments.gain)
+    graph, alpha = distances.graph, method.alpha  # alpha is None with the falloff "rig"
+    kept = method.max_influences, method.threshold, _by_position(distances)
+    if allowed is not None:  # vertices that were welded may follow different joints
+        if alpha is not None:
+            weights = paper_kernel(distances.joint, graph.lattice.diagonal, alpha)
+        else:
+            surface = SurfaceOperators.of(graph)
+            weights = rig_weights(distances, surface, tell, adjustments=adjustments)
+            weights = weights[graph.vertex_node]
+        return prune(permitted(weights, distances.joint, allowed), *kept)
+    if alpha is not None:
+        welded = pruned_paper_kernel(distances.at_welded, graph.lattice.diagonal, alpha, *kept)
+    else:
+        welded = rig_weights(
+            distances,
+            SurfaceOperators.of(graph),
+            share_of(tell, 0, 0.8),
+            adjustments=adjustments,
+        )
+        welded = prune(welded, *kept, share_of(tell, 0.8, 0.9))
+    return of_vertices(graph, welded, share_of(tell, 0.9, 1))
+
+
+def of_vertices(
+    graph: CutCellGraph, welded: NDArray[np.float64], tell: Tell = lambda done: None
+) -> NDArray[np.float64]:
+    """Return the weights (n, j) of all vertices, from those (k, j) of welded ones."""
+    weights = np.empty((len(graph.vertex_node), welded.shape[1]))
+    in_threads(
+        lambda part: welded.take(graph.vertex_node[part], 0, out=weights[part], mode="clip"),
+        parts(len(weights), threads() + weights.size // A_PART),
+        tell,
+    )
+    return weights
+
+
+def keep_strongest(
+    distances: BoneDistances,
+    weights: NDArray[np.float64],
+    max_influences: int | None = ANIMATION.max_influences,
+    threshold: float = ANIMATION.threshold,
+) -> NDArray[np.float64]:
+    """Keep the largest weights of each vertex: the last step of `skinning_weights`.
+
+    Weights of many influences can be kept, and pruned again as often as that is changed.
+
+    Parameters
+    ----------
+    distances : BoneDistances
+        What the weights were made from.
+    weights : array, shape (n, j)
+        Rows sum to one.
+    max_influences, threshold
+        See `Method`.
+
+    Returns
+    -------
+    array, shape (n, j), float64
+        Rows sum to one.
+
+    Raises
+    ------
+    ParameterError
+        A parameter is out of its range.
+    """
+    method = Method(max_influences=max_influences, threshold=threshold)
+    return prune(weights, method.max_influences, method.threshold, _by_position(distances))
+
+
+def _divided(distances: BoneDistances, gain: NDArray[np.float64]) -> BoneDistances:
+    """Divide the distances of each joint by its gain."""
+    of = distances.of_vertices
+    of = None if of is None else of / gain[:, None]
+    return replace(distances, at_welded=distances.at_welded / gain[:, None], of_vertices=of)
+
+
+def _by_position(distances: BoneDistances) -> NDArray[np.intp]:
+    """Order the joints by where they are, so that ties do not hang on how they are numbered."""
+    positions = np.full((len(distances.at_welded), 3), np.inf)
+    positions[distances.bones.joint] = distances.bones.start
+    return np.lexsort(positions.T[::-1])

@@ -1,0 +1,93 @@
+"""Small inputs that take every path through a binding, so that all of it is compiled."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..graph import INTERIOR, MESH, CutCellGraph, Lattice
+from ..graph.interior import InteriorPoints
+from ..rig.rig import Skeleton, TriangleMesh
+
+AROUND = 16
+"""Vertices around the tube: its open ends are holes too wide for a few triangles."""
+MISSING = 5, 25, 45, 65, 85
+"""Faces of the tube that leave small holes: enough holes for a tree of them."""
+TETRAHEDRON = np.array([[0.3, 0, 0.5], [0.35, 0, 0.5], [0.3, 0.05, 0.5], [0.3, 0, 0.55]])
+"""Beside the tube: there is work for several components only. It is inside out."""
+MOEBIUS_BAND = np.array(
+    [[0.3, 0, 0.1], [0.3, 0, 0.2], [0.4, 0, 0.15], [0.4, 0.1, 0.1], [0.3, 0.1, 0.15]]
+)
+"""Five faces that cannot be oriented consistently."""
+SIDE = 8
+"""Lattice points along each side of the block."""
+
+
+def tube() -> TriangleMesh:
+    """Return a tube with holes, and beside it a tetrahedron and a Moebius band."""
+    turn = np.linspace(0, 2 * np.pi, AROUND, endpoint=False)
+    heights = np.linspace(0, 1, 5)
+    rings = [np.stack([np.cos(turn) / 5, np.sin(turn) / 5, np.full(AROUND, z)], 1) for z in heights]
+    here = np.arange((len(heights) - 1) * AROUND)
+    beside = here // AROUND * AROUND + (here + 1) % AROUND
+    faces = [[here, beside, beside + AROUND], [here, beside + AROUND, here + AROUND]]
+    whole = np.concatenate([np.stack(face, axis=1) for face in faces])
+    cut = np.delete(whole, MISSING, axis=0)
+    count = len(rings) * AROUND
+    tetrahedron = np.array([[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]]) + count
+    band = (np.arange(5)[:, None] + np.arange(3)) % 5 + count + len(TETRAHEDRON)
+    vertices = np.concatenate([*rings, TETRAHEDRON, MOEBIUS_BAND])
+    return TriangleMesh(vertices, np.concatenate([cut, tetrahedron, band]))
+
+
+def chain() -> Skeleton:
+    """Return more joints than a vertex has distances of.
+
+    The last is so far away that its labels outlast the queue's buckets.
+    """
+    joints = np.zeros((8, 3))
+    joints[:, 2] = np.linspace(0.1, 0.9, 8)
+    joints[-1] = 3
+    return Skeleton(joints, np.array([*range(-1, 6), -1]))
+
+
+def block_graph() -> CutCellGraph:
+    """Make a graph of the tube without `build_graph`, so that nothing has to be compiled for it.
+
+    All lattice points of the cube are taken to lie inside, and no ray to hit the surface: each
+    vertex has an edge to the lattice point that is nearest.
+    """
+    mesh = tube()
+    lattice = Lattice.around(mesh, SIDE)
+    vertices = lattice.to_unit(mesh.vertices)
+    first = len(vertices)
+    number = np.arange(SIDE**3, dtype=np.int32).reshape(SIDE, SIDE, SIDE)
+    points = (np.stack(np.unravel_index(number.ravel(), number.shape), axis=1) + 0.5) / SIDE
+    column = np.arange(SIDE * SIDE + 1)
+    ends = np.zeros(SIDE * SIDE, np.int32)
+    stretches = InteriorPoints(SIDE, column, ends, ends + SIDE - 1, column * SIDE)
+
+    sides = np.sort(mesh.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+    of_mesh = np.unique(sides, axis=0)
+    around = np.pad(number, 1, constant_values=-1)
+    up = [np.roll(around, -1, axis)[1:-1, 1:-1, 1:-1].ravel() for axis in range(3)]
+    inside = [first + np.stack([number.ravel(), to], axis=1)[to >= 0] for to in up]
+    cell = np.clip((vertices * SIDE).astype(int), 0, SIDE - 1)
+    ties = np.stack([np.arange(first), first + number[tuple(cell.T)]], axis=1)
+
+    nodes = np.concatenate([vertices, points])
+    edges = np.concatenate([of_mesh, *inside, ties]).astype(np.int32)
+    return CutCellGraph(
+        nodes=nodes,
+        node_kind=np.repeat(np.array([MESH, INTERIOR], np.uint8), (first, len(points))),
+        edges=edges,
+        lengths=np.linalg.norm(nodes[edges[:, 0]] - nodes[edges[:, 1]], axis=1),
+        edge_kind=(np.arange(len(edges)) >= len(of_mesh)).astype(np.uint8),
+        triangle=np.full(len(nodes), -1, np.int32),
+        vertex_node=np.arange(first, dtype=np.int32),
+        faces=mesh.faces.astype(np.int32),
+        lattice=lattice,
+        is_closed=False,
+        connectivity="any",
+        interior=stretches,
+        inverted=np.zeros(len(mesh.faces), bool),
+    )

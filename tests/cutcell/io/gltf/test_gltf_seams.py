@@ -1,0 +1,115 @@
+"""Vertices that are split at seams, and merged when the file is loaded again."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.testing import assert_array_equal
+
+import cutcell
+from cutcell.io.gltf.container import read_document
+from cutcell.io.gltf.read.faces import with_faces
+from cutcell.io.gltf.write.seams import split_at_seams
+from cutcell.io.materials.transfer import has_materials, read_materials
+from tests.cutcell.io.gltf.gltf_builder import FACES
+from tests.cutcell.io.materials.test_gltf_colored import SKIN_PNG, check_same, load_again, load_obj
+from tests.cutcell.io.materials.test_obj_materials import RED, SKIN, lines
+
+
+def naive_split(faces, count, values):
+    """Return corners' numbers, made one by one: where values are new to a vertex it is a copy."""
+    known, origin, found = {}, list(range(count)), []
+    for vertex, value in zip(
+        faces.ravel().tolist(), values.reshape(-1, values.shape[2]), strict=True
+    ):
+        mine = known.setdefault(vertex, {})
+        key = tuple(value.tolist())
+        if key not in mine and mine:
+            origin.append(vertex)
+        found.append(mine.setdefault(key, vertex if not mine else len(origin) - 1))
+    return np.reshape(found, faces.shape), np.array(origin)
+
+
+@pytest.mark.parametrize("different", [1, 2, 50])
+@pytest.mark.parametrize("seed", range(5))
+def test_it_is_what_a_slow_one_makes(seed, different):
+    rng = np.random.default_rng(seed)
+    faces = rng.integers(0, 9, (20, 3))
+    values = rng.integers(0, different, (20, 3, 2)).astype(np.float32)
+    split, origin = split_at_seams(faces, 10, values)
+    expected, expected_origin = naive_split(faces, 10, values)
+    assert_array_equal(origin[split], faces)
+    assert_array_equal(origin[:10], np.arange(10))
+    assert len(origin) == len(expected_origin)
+    pairs = {*zip(split.ravel().tolist(), expected.ravel().tolist(), strict=True)}
+    assert len(pairs) == len({a for a, _ in pairs}) == len({b for _, b in pairs})
+    kept = split < 10
+    assert_array_equal(kept, expected < 10)
+
+
+def test_without_seams_nothing_is_split():
+    faces = np.array([[0, 1, 2], [2, 1, 3]])
+    values = np.arange(4)[faces][..., None].astype(np.float32)
+    split, origin = split_at_seams(faces, 5, values)
+    assert_array_equal(split, faces)
+    assert_array_equal(origin, np.arange(5))
+
+
+class TestSavedAgain:
+    """A file with split vertices is a glTF document like others."""
+
+    @pytest.fixture
+    def first(self, tmp_path):
+        rig = load_obj(tmp_path, lines("red", "skin"), RED + SKIN, skin=SKIN_PNG)
+        found = load_again(tmp_path, rig)
+        stored = found.source.document.json["accessors"][0]["count"]
+        assert stored > len(found.mesh.vertices)
+        return found
+
+    def test_other_weights(self, first, tmp_path):
+        other = first.with_weights(np.eye(2)[np.arange(12) % 2])
+        check_same(other, load_again(tmp_path, other))
+
+    def test_the_same_weights_give_the_same_bytes(self, first, tmp_path):
+        cutcell.save(tmp_path / "a.glb", first)
+        cutcell.save(tmp_path / "b.glb", cutcell.load(tmp_path / "a.glb"))
+        assert (tmp_path / "a.glb").read_bytes() == (tmp_path / "b.glb").read_bytes()
+
+    def test_repaired_faces_keep_their_colours(self, first, tmp_path):
+        kept, turned = np.ones(len(FACES), bool), np.zeros(len(FACES), bool)
+        kept[[2, 15]], turned[[4, 16]] = False, True
+        mended = with_faces(first, kept, turned)
+        check_same(mended, load_again(tmp_path, mended))
+
+    def test_faces_that_are_not_the_files_have_no_colours(self, first):
+        faces = np.concatenate([first.mesh.faces[1:], first.mesh.faces[1:2]])
+        mesh = cutcell.TriangleMesh(first.mesh.vertices, faces)
+        assert read_materials(replace(first, mesh=mesh)) is None
+
+    @pytest.mark.parametrize("what", ["position", "weight", "number", "not a number", "kind"])
+    def test_copies_that_another_program_changed_count_for_themselves(self, first, tmp_path, what):
+        document = read_document(tmp_path / "out.glb")
+        (one, *_) = document.json["meshes"][0]["primitives"]
+        named = one["attributes"]
+        name = {"position": "POSITION", "weight": "WEIGHTS_0"}.get(what, "_SPLIT_FROM")
+        accessor = document.json["accessors"][named[name]]
+        view = document.json["bufferViews"][accessor["bufferView"]]
+        data = bytearray(document.buffers[0])
+        start = view["byteOffset"] + accessor["byteOffset"]
+        end = start + accessor["count"] * view["byteStride"]
+        values = np.frombuffer(data[start:end], "<f4").copy()
+        if what == "weight":
+            values = values.reshape(-1, 4)
+            values[-1] = np.where(values[-1] == 1, 0, 0.5)
+        else:
+            values[-1] = {"position": 9, "number": 99, "not a number": np.nan}.get(what, 0)
+        if what == "kind":
+            accessor |= {"type": "VEC4", "count": accessor["count"] // 4}
+        data[start:end] = values.tobytes()
+        (tmp_path / "out.bin").write_bytes(data)
+        document.json["buffers"][0]["uri"] = "out.bin"
+        (tmp_path / "out.gltf").write_text(json.dumps(document.json))
+        found = cutcell.load(tmp_path / "out.gltf")
+        assert len(found.mesh.vertices) > len(first.mesh.vertices)
+        assert has_materials(found)

@@ -1,0 +1,201 @@
+"""Compiled kernels are found again; where they cannot be kept or read, they are compiled."""
+
+import errno
+import hashlib
+import os
+import pickle
+import subprocess
+import sys
+from ast import literal_eval
+from importlib.util import find_spec
+from pathlib import Path
+
+import pytest
+
+from cutcell.runtime import compile_cache
+from cutcell.runtime.compiled import compiled
+from tests.conftest import ROOT
+
+
+def one_more(number):
+    return number + 1
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    monkeypatch.setattr(compile_cache, "folders", lambda: (tmp_path,))
+    monkeypatch.setattr(compile_cache, "refusals", [])
+    return tmp_path
+
+
+def outcome(number=1):
+    """Call the kernel as a new process would: say what it returns, and if it was compiled."""
+    kernel = compiled(one_more)
+    found = kernel(number)
+    return found, "loaded" if kernel.stats.cache_hits else "compiled"
+
+
+def test_a_kernel_is_compiled_once_for_each_type(folder):
+    assert outcome() == (2, "compiled")
+    assert outcome() == (2, "loaded")
+    assert outcome(1.5) == (2.5, "compiled")
+    assert outcome(1.5) == (2.5, "loaded")
+    assert outcome() == (2, "loaded")
+    assert len(list(folder.iterdir())) == 2
+    assert not compile_cache.refusals
+
+
+def test_a_first_compile_is_logged_once(folder, monkeypatch, caplog):
+    caplog.set_level("INFO", "cutcell.compile")
+    for number in (1, 1.5):
+        compile_cache.announce.cache_clear()
+        outcome(number)
+        outcome(number)
+    assert [record.name for record in caplog.records] == ["cutcell.compile"] * 2
+    compile_cache.mark_complete()
+    compile_cache.announce.cache_clear()
+    outcome(1j)
+    assert len(caplog.records) == 2, "the others are there: this one takes a moment"
+
+
+def with_checksum(content):
+    return hashlib.sha256(content).digest() + content
+
+
+DAMAGES = {
+    "empty": lambda content: b"",
+    "cut short": lambda content: content[:1000],
+    "zeros at its end": lambda content: content[:1000] + bytes(len(content) - 1000),
+    "damaged machine code": lambda content: content.replace(b"\x7fELF", b"\x7fELf"),
+    "not a pickle": lambda content: with_checksum(b"something else"),
+    "another pickle": lambda content: with_checksum(pickle.dumps((1, 2))),
+}
+
+
+@pytest.mark.parametrize("damage", DAMAGES.values(), ids=DAMAGES)
+def test_a_damaged_file_is_compiled_again(damage, folder):
+    outcome()
+    (file,) = folder.iterdir()
+    content = file.read_bytes()
+    file.write_bytes(damage(content))
+    assert file.read_bytes() != content
+    assert outcome() == (2, "compiled")
+    assert outcome() == (2, "loaded")
+
+
+def test_a_folder_in_place_of_a_file_is_no_harm(folder):
+    outcome()
+    (file,) = folder.iterdir()
+    file.unlink()
+    file.mkdir()
+    assert outcome() == (2, "compiled")
+    assert "directory" in compile_cache.refusals[0]
+
+
+def test_on_a_full_disk_kernels_stay_in_memory(folder, monkeypatch):
+    def write_some(path, content):
+        with open(path, "wb") as file:
+            file.write(content[:10])
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(Path, "write_bytes", write_some)
+    assert outcome() == (2, "compiled")
+    assert not list(folder.iterdir())
+    assert "No space left" in compile_cache.refusals[0]
+    compile_cache.mark_complete()
+    assert not compile_cache.is_complete()
+
+
+def test_the_next_folder_is_taken_where_one_takes_nothing(folder, monkeypatch):
+    file, good = folder / "file", folder / "good"
+    file.write_text("not a folder")
+    monkeypatch.setattr(compile_cache, "folders", lambda: (file, good))
+    assert outcome() == (2, "compiled")
+    assert outcome() == (2, "loaded")
+    compile_cache.mark_complete()
+    assert compile_cache.is_complete()
+    monkeypatch.setattr(compile_cache, "folders", lambda: (file,))
+    assert outcome() == (2, "compiled")
+    assert not compile_cache.is_complete()
+
+
+def test_what_another_compiler_or_another_source_made_is_not_taken(folder, monkeypatch):
+    outcome()
+    monkeypatch.setattr(compile_cache, "_digest", lambda path: "another source")
+    assert outcome() == (2, "compiled")
+    monkeypatch.setattr(compile_cache, "_digest", lambda path: Path("nowhere").read_text())
+    assert outcome() == (2, "compiled")  # in an archive
+    assert len(list(folder.iterdir())) == 2
+
+
+@pytest.mark.parametrize(
+    "what", ["numba.__version__", "sys.implementation.cache_tag", "sys.platform"]
+)
+def test_each_compiler_has_a_set_of_its_own(what, monkeypatch):
+    name = compile_cache._set_name.__wrapped__()
+    assert name == compile_cache._set_name.__wrapped__()
+    monkeypatch.setattr(f"cutcell.runtime.compile_cache.{what}", "another")
+    assert name != compile_cache._set_name.__wrapped__()
+
+
+@pytest.mark.parametrize("part", ["sorting.py", "graph", "geodesics", "skinning"])
+def test_a_change_of_any_source_makes_all_kernels_stale(part, tmp_path, monkeypatch):
+    for path in ("sorting.py", "graph/a.py", "geodesics/a.py", "skinning/a.py", "io/a.py"):
+        (tmp_path / path).parent.mkdir(exist_ok=True)
+        (tmp_path / path).write_text("one")
+    monkeypatch.setattr(compile_cache, "PACKAGE", tmp_path)
+
+    def name():
+        compile_cache._digest.cache_clear()
+        return compile_cache._set_name.__wrapped__()
+
+    before = name()
+    (tmp_path / "io" / "a.py").write_text("another")
+    assert name() == before
+    changed = tmp_path / part
+    (changed / "a.py" if changed.is_dir() else changed).write_text("another")
+    assert name() != before
+    compile_cache._digest.cache_clear()
+
+
+def test_the_sources_of_all_kernels_are_known():
+    known = {
+        path for pattern in compile_cache.SOURCES for path in compile_cache.PACKAGE.glob(pattern)
+    }
+    command = (
+        "import sys, cutcell.weights.warm_up; from numba.core.dispatcher import Dispatcher; "
+        "print([k.__module__ for m in list(sys.modules.values()) for k in vars(m).values()"
+        " if isinstance(k, Dispatcher) and k.__module__.startswith('cutcell')])"
+    )
+    done = subprocess.run([sys.executable, "-c", command], capture_output=True, text=True, cwd=ROOT)
+    modules = {"cutcell.runtime.compile_cache", *literal_eval(done.stdout)}
+    assert len(modules) > 10
+    assert {Path(find_spec(module).origin) for module in modules} <= known
+
+
+def test_no_kernel_uses_the_cache_of_numba():
+    files = compile_cache.PACKAGE.rglob("*.py")
+    using = [file.name for file in files if "njit" in file.read_text(encoding="utf-8")]
+    assert using == ["compiled.py"]
+
+
+def test_old_sets_are_removed_but_for_a_few(tmp_path, monkeypatch):
+    for age in range(6):
+        old = tmp_path / f"kernels-{age}"
+        old.mkdir()
+        os.utime(old, (1e9 - age, 1e9 - age))
+    (tmp_path / "other").mkdir()
+    monkeypatch.setattr(compile_cache, "folders", lambda: (tmp_path / "kernels-new",))
+    monkeypatch.setattr(compile_cache, "refusals", [])
+    compile_cache.mark_complete()
+    left = {"kernels-new", "kernels-0", "kernels-1", "kernels-2", "other"}
+    assert {path.name for path in tmp_path.iterdir()} == left
+
+
+def test_without_a_home_there_is_no_folder_for_the_user(monkeypatch):
+    monkeypatch.setattr(compile_cache.AppDirs, "user_cache_dir", "~/.cache/cutcell")
+    (folder,) = compile_cache.folders.__wrapped__()
+    assert folder.parent == compile_cache.PACKAGE / "__pycache__"
+    monkeypatch.setitem(vars(compile_cache.config), "CACHE_DIR", "chosen")
+    chosen, _ = compile_cache.folders.__wrapped__()
+    assert chosen.parent == Path("chosen").absolute()

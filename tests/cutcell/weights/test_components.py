@@ -1,0 +1,135 @@
+"""Components contain the bones that they should, and accessories follow what they sit on."""
+
+import numpy as np
+import pytest
+
+from cutcell import Rig, Skeleton, TriangleMesh, bind, build_graph, winding_number
+from cutcell.geodesics import Bones
+from cutcell.weights.rig_falloff.components import POINTS, bone_containment, label_components
+from cutcell.weights.rig_falloff.containment import cross_component_penalty, make_rigid
+from cutcell.weights.rig_falloff.rigid_accessories import attach_accessories
+from cutcell.weights.rig_falloff.surface_operators import SurfaceOperators
+from tests import meshes
+from tests.bars import grid_box
+
+
+def joined(*parts):
+    first = np.cumsum([0, *(len(v) for v, _ in parts)])
+    faces = [f + n for (_, f), n in zip(parts, first, strict=False)]
+    return np.concatenate([v for v, _ in parts]), np.concatenate(faces)
+
+
+def test_components_are_what_edges_join():
+    vertices, faces = joined(meshes.box(), meshes.ball(1))
+    component = label_components(faces, len(vertices) + 1)  # and a vertex that no face uses
+    np.testing.assert_array_equal(component, [0] * 8 + [1] * (len(vertices) - 8) + [2])
+
+
+@pytest.mark.parametrize("name", [*meshes.CLOSED, "tube"])
+def test_bones_are_contained_where_the_winding_number_says(name):
+    vertices, faces = meshes.ALL[name]()
+    rng = np.random.default_rng(0)
+    start, end = rng.random((2, 40, 3))
+    bones = Bones(start, end, np.arange(40, dtype=np.int32))
+    component = np.zeros(len(vertices), np.int32)
+    contained = bone_containment(vertices, faces, component, bones)[0]
+    along = (np.arange(POINTS) + 0.5) / POINTS
+    points = start[:, None] + along[:, None] * (end - start)[:, None]
+    inside = winding_number(TriangleMesh(vertices, faces), points.reshape(-1, 3)) > 0.5
+    expected = inside.reshape(40, POINTS).mean(axis=1)
+    if name == "tube":  # open: near its mouths six rays cannot know
+        assert np.abs(contained - expected).mean() < 0.1
+    else:
+        np.testing.assert_allclose(contained, expected, atol=1e-9)
+
+
+def test_points_on_edges_are_counted_once():
+    vertices, faces = meshes.box()  # its diagonals meet the axis of the bone
+    bones = Bones(np.array([[0.5, 0.5, 0.3]]), np.array([[0.5, 0.5, 0.7]]), np.zeros(1, np.int32))
+    contained = bone_containment(vertices, faces, np.zeros(8, int), bones)
+    assert contained[0, 0] == pytest.approx(1)
+
+
+def test_a_bone_in_another_component_counts_as_farther():
+    containment = np.array([[1.0, 0.2, 0.0], [0.0, 0.8, 0.0], [0.0, 0.0, 0.0]])
+    penalty = cross_component_penalty(containment)
+    np.testing.assert_allclose(penalty[0], [1, 2.5, 1])
+    np.testing.assert_allclose(penalty[1], [3, 1, 1])
+    np.testing.assert_allclose(penalty[2], 1)  # it contains no bone
+    # No penalty either where a bone is most of what a component contains, as one within another.
+    half = np.array([[1.0, 0.5], [0.0, 0.25]])
+    np.testing.assert_allclose(cross_component_penalty(half), [[1, 1], [3, 1]])
+    np.testing.assert_allclose(cross_component_penalty(containment[:1]), 1)
+
+
+def button(at):
+    vertices, faces = meshes.box(-0.04, 0.04)
+    return vertices + at, faces
+
+
+def test_a_button_follows_what_it_sits_on():
+    body = grid_box(20)
+    vertices, faces = joined(body, button([0.85, 0.1, 0.23]))
+    skeleton = Skeleton([[0.1, 0.1, 0.1], [0.5, 0.1, 0.1]], [-1, 0])
+    weights = bind(Rig(TriangleMesh(vertices, faces), skeleton), 32).weights
+    np.testing.assert_allclose(weights[-8:], [[0, 1]] * 8, atol=1e-12)
+    # Across the joint it takes the mean of both, and still moves as one.
+    vertices, faces = joined(body, button([0.5, 0.1, 0.23]))
+    weights = bind(Rig(TriangleMesh(vertices, faces), skeleton), 32).weights
+    np.testing.assert_allclose(weights[-8:], weights[[-1] * 8], atol=1e-12)
+    assert 0.3 < weights[-1, 0] < 0.7
+
+
+def test_a_body_in_patches_has_no_accessories():
+    vertices, faces = grid_box(4)
+    soup = vertices[faces].reshape(-1, 3) + np.repeat(np.arange(len(faces)) * 1e-3, 3)[:, None]
+    triangles = np.arange(len(soup)).reshape(-1, 3)
+    graph = build_graph(TriangleMesh(soup, triangles), 16, connectivity="any")
+    surface = SurfaceOperators.of(graph)
+    containment = np.zeros((int(surface.component.max()) + 1, 2))
+    containment[0, 0] = 1
+    weights = np.random.default_rng(0).random((len(surface.points), 2))
+    assert attach_accessories(graph, surface, containment, weights) is weights
+
+
+def test_the_operators_of_a_graph_are_computed_once():
+    graph = build_graph(TriangleMesh(*meshes.box()), 4)
+    assert SurfaceOperators.of(graph) is SurfaceOperators.of(graph)
+
+
+def test_a_lone_component_has_no_penalty():
+    penalty = cross_component_penalty(np.array([[0.2, 0.0, 1.0]]))
+    np.testing.assert_array_equal(penalty, 1.0)
+
+
+def test_a_component_with_bones_of_one_joint_follows_it_alone():
+    containment = np.array([[0.2, 0.0, 0.0], [0.8, 1.0, 0.0], [0.0, 0.0, 0.0]])
+    component = np.array([0, 0, 1, 2])
+    weights = np.full((4, 3), 1 / 3)
+    followed = make_rigid(containment, component, weights)
+    np.testing.assert_array_equal(followed[:2], [[1, 0, 0]] * 2)
+    np.testing.assert_array_equal(followed[2:], weights[2:])
+
+
+def test_an_armoured_limb_is_rigid():
+    lower, upper = grid_box(8), grid_box(8)
+    vertices, faces = joined((lower[0] * [0.5, 1, 1], lower[1]), (upper[0] * [0.5, 1, 1], upper[1]))
+    vertices[len(lower[0]) :, 0] += 0.51  # they touch nowhere, else they would be one component
+    skeleton = Skeleton([[0.02, 0.1, 0.1], [0.52, 0.1, 0.1]], [-1, 0])
+    weights = bind(Rig(TriangleMesh(vertices, faces), skeleton), 32).weights
+    np.testing.assert_array_equal(weights[: len(lower[0]), 0], 1)
+    np.testing.assert_array_equal(weights[len(lower[0]) :, 1], 1)
+
+
+def test_what_has_no_area_is_no_accessory():
+    vertices, faces = grid_box(8)
+    far = np.array([[1, 0, 0], [2, 0, 0], [3, 0, 0]])
+    lines = (
+        np.vstack([vertices, far * 1e5, -far * 1e5]),
+        np.vstack([faces, np.arange(6).reshape(2, 3) + len(vertices)]),
+    )
+    stray = np.vstack([vertices, [[1e20, 0, 0]]]), faces
+    skeleton = Skeleton([[0.1, 0.1, 0.1], [0.5, 0.1, 0.1]], [-1, 0])
+    for mesh in (lines, stray):
+        weights = bind(Rig(TriangleMesh(*mesh), skeleton), 16).weights
+        np.testing.assert_allclose(weights.sum(axis=1), 1)
