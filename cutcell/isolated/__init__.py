@@ -1,5 +1,5 @@
-"""Work that is done in processes of its own, since its libraries may crash or never end.
+"""Tasks that run in a subprocess, because their libraries may crash or never end.
 
-`python -m cutcell.isolated TASK JOB.npz RESULT.npz MEMORY`. Nothing here is imported by the rest of
-cutcell, nor imports it: see `cutcell.isolated.run` for the other side.
+`run.run_isolated` starts ``python -m cutcell.isolated TASK JOB.npz RESULT.npz MEMORY``. The tasks
+themselves import nothing of the core but `runtime`.
 """

@@ -1,4 +1,4 @@
-"""Give work to a process of its own, so that nothing it does ends this one."""
+"""Run a task in a subprocess, so that a crash does not end this process."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _WANTED: ContextVar[Callable[[], object]] = ContextVar("_WANTED", default=lambda
 
 @contextmanager
 def stoppable(wanted: Callable[[], object]) -> Iterator[None]:
-    """Let a function be asked, in this block, whether what runs apart is still wanted.
+    """Within this block, poll a function while a subprocess runs; it raises to cancel.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ class WorkFailedError(CutcellError):
     """Work in a process of its own has no result; its caller says what that means."""
 
 
-def run_apart(
+def run_isolated(
     task: str, job: Mapping[str, Any], limit: float, who: str, memory: int = 0
 ) -> dict[str, Any]:
     """Do a task of `cutcell.isolated`.

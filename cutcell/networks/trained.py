@@ -20,7 +20,7 @@ from ..baselines import BaselineBinding
 from ..baselines.body import Body
 from ..baselines.frame import Run, bind_by
 from ..errors import FileError
-from ..isolated.run import run_apart
+from ..isolated.run import run_isolated
 from ..method import PAPER
 from ..rig.rig import Rig
 from ..runtime.memory import BYTES_PER_WEIGHT, check_room
@@ -113,7 +113,7 @@ class TrainedNetwork:
             "deform": rig.skeleton.deform,
             **({} if prior is None else {"prior": prior}),
         }
-        found = run_apart("network_weights", job, LIMIT, "the network")
+        found = run_isolated("network_weights", job, LIMIT, "the network")
         return partial(_of_body, found["vertices"], found["weights"])
 
     def _check_memory(self, rig: Rig) -> None:
@@ -175,7 +175,7 @@ def trained_networks(
     check_torch()
     runs = [run for folder in folders for run in _runs(Path(folder))]
     job = {"folders": np.array([str(run.resolve()) for run in runs], np.str_)}
-    read = run_apart("network_recipes", job, LIMIT, "torch")
+    read = run_isolated("network_recipes", job, LIMIT, "torch")
     found = []
     for run, recipe, problem in zip(runs, read["recipes"], read["problems"], strict=True):
         if recipe:

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.random import Generator
 
-from tests.cutcell.io import compressed, fbx_builder
+from tests.cutcell.io.gltf import compressed, fbx_builder
 from tests.cutcell.io.gltf.gltf_builder import (
     COLUMN,
     FACES,

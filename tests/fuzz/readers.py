@@ -60,7 +60,7 @@ def check(number: int) -> None:
     """Load a case, play and save what could be loaded."""
     warnings.simplefilter("error")
     for module in (fbx, gltf_draco, usd):
-        module.run_apart = _forked  # type: ignore[attr-defined]
+        module.run_isolated = _forked  # type: ignore[attr-defined]
     with tempfile.TemporaryDirectory() as folder:
         saved = number // len(NAMES) % SAVED == 0
         check_files(Path(folder), files_of(number), saved)
@@ -111,7 +111,7 @@ def _ours(do: Any, names: list[str]) -> Any:
 def _forked(
     task: str, job: Mapping[str, Any], limit: float, who: str, memory: int = 0
 ) -> dict[str, Any]:
-    """Stand in for `run_apart`: a copy of this process does the work, which starts at once."""
+    """Stand in for `run_isolated`: a copy of this process does the work, which starts at once."""
     read, write = os.pipe()
     child = os.fork()
     if not child:

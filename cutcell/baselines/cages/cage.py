@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...geodesics import distance_to_segment
-from ...isolated.run import LIMIT, WorkFailedError, run_apart
+from ...isolated.run import LIMIT, WorkFailedError, run_isolated
 from ..body import Body, Same
 from ..volumes.voxels import PAD, voxelize
 
@@ -68,7 +68,7 @@ def _make(given: Same) -> tuple[Cage | None, str, float]:
     used = body.points[np.unique(body.faces)]
     job = {"solid": voxelize(body).solid, "points": used * size + PAD, "faces": FACES}
     try:
-        found = run_apart("cage", job, LIMIT, "libigl's cage")
+        found = run_isolated("cage", job, LIMIT, "libigl's cage")
     except WorkFailedError as error:
         return None, str(error), perf_counter() - begin
     vertices = (found["vertices"] - PAD) / size

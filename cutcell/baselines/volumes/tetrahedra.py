@@ -9,7 +9,7 @@ from time import perf_counter
 import numpy as np
 from numpy.typing import NDArray
 
-from ...isolated.run import WorkFailedError, run_apart
+from ...isolated.run import WorkFailedError, run_isolated
 from ..body import Body, Same
 
 HANDLES = 5
@@ -77,10 +77,10 @@ def _fill(given: Same) -> tuple[Tetrahedra | None, str, float]:
     job = {"points": body.points[used], "faces": faces.reshape(-1, 3), "handles": handles}
     warnings: tuple[str, ...] = ()
     try:
-        found = run_apart("tetgen", job, limit, "TetGen")
+        found = run_isolated("tetgen", job, limit, "TetGen")
     except WorkFailedError as first:
         try:
-            found = run_apart("tetwild", job | {"edge": EDGE}, limit, "fTetWild")
+            found = run_isolated("tetwild", job | {"edge": EDGE}, limit, "fTetWild")
         except WorkFailedError as second:
             return None, f"{first}; {second}", perf_counter() - begin
         warnings = (f"{first}; fTetWild filled it, nearly",)

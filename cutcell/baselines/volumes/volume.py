@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ...isolated.run import LIMIT, WorkFailedError, run_apart
+from ...isolated.run import LIMIT, WorkFailedError, run_isolated
 from ...method import PAPER, Leaf
 from ...rig.checks import check_integer, check_number
 from ...rig.rig import Rig
@@ -165,7 +165,7 @@ def _bind(
             "iterations": iterations,
         }
         try:
-            result = run_apart(solver, job, limit, SOLVERS[solver])
+            result = run_isolated(solver, job, limit, SOLVERS[solver])
         except WorkFailedError:
             run.end("weights")
             raise

@@ -8,7 +8,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from ...isolated.run import WorkFailedError, run_apart
+from ...isolated.run import WorkFailedError, run_isolated
 from ..materials.face_colors import StoredImage
 from ..materials.gltf_images import SIGNATURES
 
@@ -69,7 +69,7 @@ def _as_png(contents: tuple[bytes, ...]) -> tuple[Embedded, ...]:
     }
     seconds = SECONDS + SECONDS_A_MEGABYTE * len(data) / 2**20
     try:
-        found = run_apart("images", job, seconds, "the decoder of images", MEMORY)
+        found = run_isolated("images", job, seconds, "the decoder of images", MEMORY)
     except WorkFailedError as error:
         return tuple(Embedded(problem=str(error)) for _ in contents)
     return tuple(

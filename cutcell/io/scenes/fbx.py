@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from ...errors import FileError
-from ...isolated.run import WorkFailedError, run_apart
+from ...isolated.run import WorkFailedError, run_isolated
 from ...rig.rig import Rig
 from ..files import read_bytes
 from ..gltf.read.read import read_rig
@@ -40,7 +40,7 @@ def read_fbx(path: Path) -> Rig:
     memory = LEAST_MEMORY + MEMORY_A_BYTE * len(data)
     try:
         job = {"data": np.frombuffer(data, np.uint8)}
-        scene = run_apart("fbx", job, seconds, "the FBX reader", memory)
+        scene = run_isolated("fbx", job, seconds, "the FBX reader", memory)
     except WorkFailedError as e:
         raise FileError(f"cannot be read as FBX: {e}") from None
     document = scene_document(scene, path, "cutcell, from FBX")

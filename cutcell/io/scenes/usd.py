@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from ...errors import FileError
-from ...isolated.run import WorkFailedError, run_apart
+from ...isolated.run import WorkFailedError, run_isolated
 from ...rig.rig import Rig
 from ..files import read_bytes
 from ..gltf.read.read import read_rig
@@ -33,7 +33,7 @@ def read_usd(path: Path) -> Rig:
     """
     read_bytes(path)  # says what it says of every file: not there, a folder, empty
     try:
-        scene = run_apart(
+        scene = run_isolated(
             "usd", {"path": np.array(str(path.resolve()))}, SECONDS, "the USD reader", MEMORY
         )
     except WorkFailedError as e:

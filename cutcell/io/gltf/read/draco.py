@@ -13,7 +13,7 @@ import pygltflib
 from numpy.typing import NDArray
 
 from ....errors import FileError
-from ....isolated.run import WorkFailedError, run_apart
+from ....isolated.run import WorkFailedError, run_isolated
 from ..container import Document, whole
 from .accessors import WIDTHS, component
 from .decompressed import Additions, forget_extension
@@ -83,7 +83,7 @@ def _decode(document: Document, views: list[int]) -> dict[str, NDArray]:
     seconds = LEAST_SECONDS + SECONDS_A_MEGABYTE * len(data) / 2**20
     memory = LEAST_MEMORY + MEMORY_A_BYTE * len(data)
     try:
-        return run_apart("draco", job, seconds, "the Draco decoder", memory)
+        return run_isolated("draco", job, seconds, "the Draco decoder", memory)
     except WorkFailedError as e:
         raise FileError(f"its Draco compression cannot be undone: {e}") from None
 

@@ -192,7 +192,7 @@ class TestObj:
         def fails(*args):
             raise WorkFailedError("PIL is not installed; try: pip install 'pillow'")
 
-        monkeypatch.setattr("cutcell.io.gltf.embedded.run_apart", fails)
+        monkeypatch.setattr("cutcell.io.gltf.embedded.run_isolated", fails)
         rig = obj(lines("skin"), SKIN, skin=picture("TGA", side=6))
         assert read_materials(again(rig)).images == ()
         assert "try: pip install 'pillow'" in saving_notes(Path("out.glb"), rig)[0]

@@ -30,14 +30,14 @@ def test_what_is_no_longer_wanted_ends_with_its_process(sleeping):
             raise Cancelled
 
     with apart.stoppable(wanted), pytest.raises(Cancelled):
-        apart.run_apart("bbw", {}, 600.0, "the sleeper")
+        apart.run_isolated("bbw", {}, 600.0, "the sleeper")
     assert time.monotonic() - begin < 300
     assert not sleepers()
 
 
 def test_what_takes_too_long_is_ended_and_says_so(sleeping):
     with pytest.raises(WorkFailedError, match=r"the sleeper took longer than 0\.3 seconds"):
-        apart.run_apart("bbw", {}, 0.3, "the sleeper")
+        apart.run_isolated("bbw", {}, 0.3, "the sleeper")
     assert not sleepers()
 
 
@@ -48,7 +48,7 @@ def test_nobody_is_asked_outside_the_block(sleeping):
     with apart.stoppable(never):
         pass
     with pytest.raises(WorkFailedError):
-        apart.run_apart("bbw", {}, 0.1, "the sleeper")
+        apart.run_isolated("bbw", {}, 0.1, "the sleeper")
 
 
 @pytest.mark.parametrize(
