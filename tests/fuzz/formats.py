@@ -13,7 +13,8 @@ from typing import Any
 import numpy as np
 from numpy.random import Generator
 
-from tests.cutcell.io.gltf import compressed, fbx_builder
+from tests.cutcell.io import fbx_builder
+from tests.cutcell.io.gltf import compressed
 from tests.cutcell.io.gltf.gltf_builder import (
     COLUMN,
     FACES,
