@@ -63,13 +63,7 @@ class Options(GraphOptions, DistanceOptions, WeightOptions):
 
 
 def check_resolution(resolution: Any) -> int:
-    """Return how many cells a lattice has along each side.
-
-    Raises
-    ------
-    ParameterError
-        Not a whole number from 2 to 1024.
-    """
+    """Return how many cells a lattice has along each side."""
     why = "it counts the cells along the mesh's longest side, 64 suits most characters"
     return check_integer("resolution", resolution, MIN_RESOLUTION, MAX_RESOLUTION, why)
 
@@ -214,23 +208,7 @@ METHODS: dict[MethodName, Method] = {"animation": ANIMATION, "paper": PAPER}
 
 
 def method_of(method: Method | MethodName, resolution: int | None = None, **options: Any) -> Method:
-    """Return a method that is given as such or by its name, with single options on top.
-
-    Parameters
-    ----------
-    method : Method, "animation" or "paper"
-    resolution : int, optional
-        The method's own when left out.
-    **options
-        Any other of the parameters of `Method`.
-
-    Raises
-    ------
-    TypeError
-        There is no such option.
-    ParameterError
-        There is no such method, or an option is out of its range or has no effect.
-    """
+    """Return a method that is given as such or by its name, with single options on top."""
     if not isinstance(method, Method):
         method = METHODS[check_choice("method", method, METHODS)]
     if resolution is not None:

@@ -42,13 +42,7 @@ class Body:
 
     @classmethod
     def of(cls, rig: Rig, leaf: Leaf = "point", resolution: int = 64) -> Body:
-        """Prepare a rig; see `bone_segments` for `leaf`, `Lattice.around` for `resolution`.
-
-        Raises
-        ------
-        ParameterError
-            An unknown `leaf`, or a resolution out of range.
-        """
+        """Prepare a rig; see `bone_segments` for `leaf`, `Lattice.around` for `resolution`."""
         lattice = Lattice.around(rig.mesh, resolution)
         points, index = weld(lattice.to_unit(rig.mesh.vertices))
         faces = index[rig.mesh.faces]

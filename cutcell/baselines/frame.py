@@ -60,17 +60,7 @@ stages but the last, "weights". Numbers that are negative or not finite are drop
 
 
 def bind_by(solve: Solve, rig: Rig, method: Method) -> BaselineBinding:
-    """Bind a rig by a method.
-
-    Parameters
-    ----------
-    solve : callable
-        See `Solve`. If it raises `WorkFailedError`, the result says why it failed.
-    rig : Rig
-    method : Method
-        Its resolution and leaf bones make the body; its greatest number of influences and its
-        threshold prune the weights.
-    """
+    """Bind a rig by a method."""
     run = Run()
     body = Body.of(rig, method.leaf, method.resolution)
     try:

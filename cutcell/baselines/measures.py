@@ -61,32 +61,7 @@ class MeasuredDistance:
 def measure_distance(
     rig: Rig, distances: BoneDistances, joint: int, measure: Measure, method: Method
 ) -> MeasuredDistance:
-    """Measure how far the skin is from a joint's bones.
-
-    Parameters
-    ----------
-    rig : Rig
-    distances : BoneDistances
-        Of the same rig: where its bones are.
-    joint : int
-        One that may carry weight.
-    measure : {"straight", "surface", "voxel", "6", "26", "any"}
-        Through the air; along the mesh's edges alone; along voxels, through 26 neighbours (Dionne
-        & de Lasa 2013); along the cut-cell graph with 6 or 26 neighbours, or at any angle in it.
-    method : Method
-        Its resolution is that of the voxels and of the graph; its winding threshold and samples
-        count, too.
-
-    Returns
-    -------
-    MeasuredDistance
-
-    Raises
-    ------
-    ParameterError
-        An unknown measure.
-        Or the joint may carry no weight.
-    """
+    """Measure how far the skin is from a joint's bones."""
     check_choice("measure", measure, MEASURES)
     if joint not in distances.bones.joint:
         raise ParameterError(f"joint {joint} has no bone: it may not carry weight")

@@ -21,21 +21,7 @@ def path_lengths(
 ) -> NDArray[np.float64]:
     """Compute how far every node is from each set of sources (Dijkstra's algorithm).
 
-    Parameters
-    ----------
-    count : int
-        Nodes.
-    links : array, shape (e, 2)
-        Each pair of neighbours once.
-    lengths : array, shape (e,)
-        Greater than zero.
-    sources, starts : lists of arrays
-        For each set its nodes, and the distances at which they start.
-
-    Returns
-    -------
-    array, shape (sets, count), float64
-        Infinite where no path leads.
+    Shapes: links (e, 2), lengths (e,); returns (sets, count).
     """
     a, b = links.T
     both = (np.concatenate([a, b]), np.concatenate([b, a]))

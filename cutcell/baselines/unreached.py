@@ -15,18 +15,7 @@ NEAREST = 3
 def follow_nearest(body: Body, distance: NDArray[np.float64], why: str) -> tuple[str, ...]:
     """Give vertices that no bone reaches straight distances to their nearest bones, in place.
 
-    Parameters
-    ----------
-    body : Body
-    distance : array, shape (b, k)
-        Infinite where a bone does not reach a vertex.
-    why : str
-        The end of a sentence that says why none does.
-
-    Returns
-    -------
-    tuple of str
-        A warning where there are such vertices.
+    Shapes: distance (b, k).
     """
     lost = np.flatnonzero(~np.isfinite(distance).any(axis=0))
     if len(lost) == 0:

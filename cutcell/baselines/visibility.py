@@ -32,16 +32,7 @@ class Blockers:
     ) -> NDArray[np.bool_]:
         """Tell which segments meet a triangle that does not have their first end as a corner.
 
-        Parameters
-        ----------
-        vertex : array, shape (q,), int
-            The welded vertices where the segments begin.
-        target : array, shape (q, 3), float64
-            Where they end; a triangle right there does not block.
-
-        Returns
-        -------
-        array, shape (q,), bool
+        Shapes: vertex (q,), target (q, 3); returns (q,).
         """
         tree = (self.faces, self.low, self.high, self.child, self.first)
         vertex = vertex.astype(np.int64)

@@ -112,20 +112,7 @@ def over_surface(
 ) -> NDArray[np.float64]:
     """Measure from every bone to what it does not see, over the surface.
 
-    Parameters
-    ----------
-    body : Body
-    straight : array, shape (b, k)
-    seen : array, shape (b, k), bool
-        Where the distance is straight. A bone that nothing sees is straight from all.
-    progress : callable
-        See `cutcell.runtime.progress`.
-
-    Returns
-    -------
-    array, shape (b, k)
-        In the unit cube. `APART` is added to the straight distance where no path over the surface
-        leads from a bone, but from others; infinite where it leads from none.
+    Shapes: straight (b, k), seen (b, k); returns (b, k).
     """
     graph = _along_edges(body)
     distance = np.where(seen, straight, np.inf)

@@ -86,10 +86,6 @@ def exit_by_output(run: Callable[[], Any]) -> None:
     """Run a program; turn a full or closed standard output into one sentence and an exit code.
 
     Whoever reads a pipe may stop when it has read enough: that needs no sentence.
-
-    Raises
-    ------
-    SystemExit
     """
     try:
         with checked_output():

@@ -261,13 +261,7 @@ def generate(
 
 
 def two_or_more(paths: list[Path], what: str) -> list[Path]:
-    """Return the paths of a command that takes inputs and an output.
-
-    Raises
-    ------
-    ParameterError
-        There is but one.
-    """
+    """Return the paths of a command that takes inputs and an output."""
     from ..errors import ParameterError
 
     if len(paths) < 2:

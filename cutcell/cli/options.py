@@ -241,13 +241,7 @@ Lock = Annotated[
 
 
 def chosen_method(name: str, **options: Any) -> Method:
-    """Return the method of that name with the options that were given, as texts where they may be.
-
-    Raises
-    ------
-    ParameterError
-        There is no such method, or an option is out of its range or has no effect.
-    """
+    """Return the method of that name with the given options, which may be texts."""
     from ..method import METHODS, method_of
     from ..rig.checks import check_choice
 

@@ -11,13 +11,7 @@ MOST_NAMES = 12
 
 
 def report_rows(document: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
-    """Say in words what a command has found, as pairs of a name and a text.
-
-    Parameters
-    ----------
-    document : mapping
-        What the command prints with `--json`.
-    """
+    """Say in words what a command has found, as pairs of a name and a text."""
     mesh, graph, skeleton = document["mesh"], document["graph"], document["skeleton"]
     yield (
         "mesh",

@@ -18,22 +18,7 @@ KINDS = {"mesh": MESH, "interior": INTERIOR, "surface": SURFACE}
 
 
 def summarize_mesh(mesh: TriangleMesh, graph: CutCellGraph) -> dict[str, Any]:
-    """Count the elements of a mesh once equal positions are welded.
-
-    Parameters
-    ----------
-    mesh : TriangleMesh
-    graph : CutCellGraph
-        Built from this mesh.
-
-    Returns
-    -------
-    dict
-        Counts of `vertices`, `welded_vertices`, `triangles` and `components`; of
-        `open_edges`, with one triangle, and of `non_manifold_edges`, with more than two;
-        whether the mesh is `closed`: it has no boundary, each edge is used as often one
-        way as the other.
-    """
+    """Count the elements of a mesh once equal positions are welded."""
     faces = graph.vertex_node[mesh.faces].astype(np.int64)
     faces = faces[(faces != np.roll(faces, 1, axis=1)).all(axis=1)]  # welded to nothing
     ends = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
@@ -51,15 +36,7 @@ def summarize_mesh(mesh: TriangleMesh, graph: CutCellGraph) -> dict[str, Any]:
 
 
 def summarize_parts(rig: Rig) -> dict[str, list[dict[str, Any]]]:
-    """List the meshes of a rig's file by name.
-
-    Returns
-    -------
-    dict
-        `parts`, those that the rig's mesh is made of: `name`, `first` vertex, number of
-        `vertices`, whether the file has it `hidden`; `attachments`: `name`, `joint`, `hidden`;
-        `left_out`: `name`, `why`.
-    """
+    """List the meshes of a rig's file by name."""
     return {
         "parts": [
             {
@@ -88,15 +65,7 @@ def summarize_skeleton(skeleton: Skeleton) -> dict[str, int]:
 
 
 def summarize_graph(graph: CutCellGraph) -> dict[str, Any]:
-    """Count the nodes and edges of each kind.
-
-    Returns
-    -------
-    dict
-        `resolution`; `nodes` and `edges`, each with the counts of `mesh`, `interior`,
-        `surface` and their `total`; `components`, connected ones;
-        `largest_component`, the share of all nodes in the largest of them, 0 to 1.
-    """
+    """Count the nodes and edges of each kind."""
     labels = connected_components(graph.csr(), directed=False)[1]
     sizes = np.bincount(labels)
     return {
@@ -109,14 +78,7 @@ def summarize_graph(graph: CutCellGraph) -> dict[str, Any]:
 
 
 def summarize_fallback(distances: BoneDistances) -> dict[str, Any]:
-    """Count the vertices that no path reached, by the reason.
-
-    Returns
-    -------
-    dict
-        `vertices`, how many; `share` of all vertices, 0 to 1; `reasons`, the count for
-        each reason that occurred, in words.
-    """
+    """Count the vertices that no path reached, by the reason."""
     codes = np.asarray(distances.fallback)
     counts = {int(code): int((codes == code).sum()) for code in np.unique(codes) if code}
     total = sum(counts.values())

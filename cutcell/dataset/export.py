@@ -85,11 +85,6 @@ def rignet_distances(entry: Entry) -> NDArray[np.float32]:
     """Return the distances of all bones to all vertices as RigNet has them, shape (n, b).
 
     In the units of the mesh, bones in RigNet's order, a finite number everywhere.
-
-    Raises
-    ------
-    FileError
-        The store was made without the distances of single bones.
     """
     if not len(entry.bone_joints):
         raise FileError("the store has no distances of single bones; bind again with --bones")

@@ -148,16 +148,7 @@ def share(part: float, whole: float) -> str:
 
 
 def count(number: int, one: str, verb: str = "") -> str:
-    """Return a number with its noun, and a verb if one follows: "1 face is", "3,109 faces are".
-
-    Parameters
-    ----------
-    number : int
-    one : str
-        The noun, of one.
-    verb : str
-        Of many: "are", "have", "lie", ...
-    """
+    """Return a number with its noun, and a verb if one follows: "1 face is", "3,109 faces are"."""
     noun = one if number == 1 else _MANY.get(one, one + "s")
     if verb and number == 1:
         verb = _ONE.get(verb, verb + "s")

@@ -48,17 +48,7 @@ def intersecting_faces(
 ) -> tuple[NDArray[np.bool_], bool]:
     """Tell which faces pass through another that they share no vertex with.
 
-    Parameters
-    ----------
-    points : array, shape (k, 3)
-        In the unit cube.
-    faces : array, shape (w, 3), int32
-
-    Returns
-    -------
-    array, shape (w,), bool
-    is_whole : bool
-        Whether all pairs were tested.
+    Shapes: points (k, 3), faces (w, 3); returns (w,).
     """
     corners = points[faces]
     low, high = corners.min(axis=1), corners.max(axis=1)

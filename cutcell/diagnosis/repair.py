@@ -43,19 +43,7 @@ class Repaired:
 
 
 def repair(rig: Rig, findings: Sequence[Finding]) -> Repaired:
-    """Repair what was found of a rig.
-
-    Parameters
-    ----------
-    rig : Rig
-    findings : sequence of Finding
-        Of this rig, each with a `repair`.
-
-    Returns
-    -------
-    Repaired
-        The rig keeps its glTF document: saving it writes faces and weights, and nothing else.
-    """
+    """Repair what was found of a rig."""
     before, found = rig, {finding.code: finding for finding in findings}
     kept = []
     for code, mend in WEIGHTS.items():  # of vertices, whose numbers stay

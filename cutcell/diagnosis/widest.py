@@ -21,17 +21,7 @@ def connected_weights(
     the one whose least weight is greatest; that least weight is kept (morphological reconstruction
     by dilation). An island keeps what the valley around it holds. Anchored weights stay.
 
-    Parameters
-    ----------
-    weights : array, shape (k, j)
-        Per welded vertex.
-    anchored : array, shape (k, j), bool
-    edges : array, shape (e, 2)
-
-    Returns
-    -------
-    array, shape (k, j)
-        At most `weights`.
+    Shapes: weights (k, j), anchored (k, j), edges (e, 2); returns (k, j).
 
     References
     ----------

@@ -29,15 +29,7 @@ def binding_warnings(
 ) -> tuple[str, ...]:
     """Return what a person should know about weights and what they were computed from.
 
-    Parameters
-    ----------
-    rig : Rig
-        With the corrections of its skeleton, see `corrected_rig`.
-    distances : BoneDistances
-    weights : array, shape (n, j)
-    corrections : Corrections
-    locked : sequence of int or str
-        Joints that are locked besides those of the corrections.
+    Shapes: weights (n, j).
     """
     is_locked = locked_joints(rig, [*locked, *locked_by(corrections)])
     return (

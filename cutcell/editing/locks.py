@@ -21,30 +21,7 @@ def lock_joints(
 ) -> NDArray[np.float64]:
     """Put back the rig's own weights of some joints; the others share what these leave.
 
-    Parameters
-    ----------
-    rig : Rig
-        With the weights to keep.
-    weights : array, shape (n, j)
-        What was computed; rows sum to one.
-    locked : sequence of int or str
-        Joints by index or by name.
-    max_influences : int or None
-        Joints a vertex may follow. Locked ones come first.
-
-    Returns
-    -------
-    array, shape (n, j)
-        Rows sum to one. Locked joints have the file's weights exactly. Where no other joint has
-        computed weight, or `max_influences` leaves no room for one, all joints have the file's. A
-        vertex without any weight in the file keeps what was computed.
-
-    Raises
-    ------
-    ParameterError
-        There is no such joint; the sentence names those that sound alike.
-    WeightsError
-        The rig has no weights to keep.
+    Shapes: weights (n, j); returns (n, j).
     """
     is_locked = locked_joints(rig, locked)
     if not is_locked.any() or rig.weights is None:
@@ -61,15 +38,7 @@ def lock_joints(
 
 
 def locked_joints(rig: Rig, locked: Sequence[int | str]) -> NDArray[np.bool_]:
-    """Tell of each joint whether it is locked, shape (j,).
-
-    Raises
-    ------
-    ParameterError
-        There is no such joint, or `locked` is no list of joints.
-    WeightsError
-        The rig has no weights to keep.
-    """
+    """Tell of each joint whether it is locked, shape (j,)."""
     if isinstance(locked, str) or not isinstance(locked, Sequence | np.ndarray):
         raise ParameterError(
             f"locked must be a list of joints, by index or by name, not {shown(locked)}"
@@ -86,13 +55,7 @@ def locked_joints(rig: Rig, locked: Sequence[int | str]) -> NDArray[np.bool_]:
 
 
 def joint_index(skeleton: Skeleton, joint: int | str) -> int:
-    """Return the index of a joint that is given by its index or its name.
-
-    Raises
-    ------
-    ParameterError
-        There is no such joint.
-    """
+    """Return the index of a joint that is given by its index or its name."""
     names = list(skeleton.names)
     if isinstance(joint, str):
         if joint in names:

@@ -55,18 +55,7 @@ class SurfaceReach:
     ) -> NDArray[np.float64]:
         """Return how far all welded vertices are from the nearest of some, over the surface.
 
-        Parameters
-        ----------
-        vertices : array, shape (s,), int
-            Welded vertices.
-        begin : array, shape (s,)
-            How far each of these is already.
-        limit : float
-            Vertices farther than this are infinitely far.
-
-        Returns
-        -------
-        array, shape (k,)
+        Shapes: vertices (s,), begin (s,); returns (k,).
         """
         ways, count = self.lengths, len(self.points)
         first = np.full(count, np.inf)

@@ -88,13 +88,7 @@ def refine_weights(
 def check_refinement(
     rig: Rig, smoothing: int, symmetric: bool, locked: Sequence[int | str]
 ) -> None:
-    """Refuse what `refine_weights` would, before weights are computed.
-
-    Raises
-    ------
-    ParameterError, MeshError, WeightsError
-        What is asked is out of range, or the rig is not made for it.
-    """
+    """Refuse what `refine_weights` would, before weights are computed."""
     check_integer("smoothing", smoothing, 0, MOST_PASSES)
     if check_flag("symmetric", symmetric):
         find_mirror(rig)

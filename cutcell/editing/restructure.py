@@ -23,19 +23,6 @@ def restructured(rig: Rig, corrections: Corrections) -> Rig:
     joint above it that stays, and where there is none to the first below it. A joint of the file
     goes on to move against its parent as it did; what is added does not move against its parent,
     and the motion of what is removed is dropped.
-
-    Parameters
-    ----------
-    rig : Rig
-        As its file has it; one that was restructured before is returned as it is.
-    corrections : Corrections
-
-    Raises
-    ------
-    ParameterError
-        A joint that the rig does not have.
-    SkeletonError
-        No joint would be left, two would share a name, or hang on each other in a circle.
     """
     if rig.origin is not None or not corrections.structural:
         return rig
@@ -76,22 +63,7 @@ def restructured_skeleton(
 ) -> tuple[Skeleton, NDArray[np.int_]]:
     """Return the skeleton that corrections make, its joints where they were, and their origin.
 
-    Parameters
-    ----------
-    old : Skeleton
-        As the file has it.
-    corrections : Corrections
-
-    Returns
-    -------
-    skeleton : Skeleton
-    origin : array, shape (j,), int
-        Which of the old joints each one is; -1 where it was added.
-
-    Raises
-    ------
-    ParameterError, SkeletonError
-        See `restructured`.
+    Returns shapes origin (j,).
     """
     if not corrections.structural:
         return old, np.arange(len(old.joints))

@@ -23,23 +23,7 @@ def smooth_weights(
     Welded vertices count as one, so seams stay closed. Nothing flows between components that
     no edge joins, however close they are.
 
-    Parameters
-    ----------
-    mesh : TriangleMesh
-    weights : array, shape (n, j)
-        Rows sum to one.
-    passes : int
-        0 to 1000. Each carries weight across one edge.
-
-    Returns
-    -------
-    array, shape (n, j)
-        Rows sum to one.
-
-    Raises
-    ------
-    ParameterError
-        `passes` is out of its range.
+    Shapes: weights (n, j); returns (n, j).
     """
     passes = check_integer("smoothing", passes, 0, MOST_PASSES)
     if passes == 0:

@@ -170,12 +170,7 @@ class Stroke:
     def pass_over(self, corners: NDArray[np.integer], shares: NDArray[np.float64]) -> None:
         """Lead the brush over points of the surface.
 
-        Parameters
-        ----------
-        corners : array, shape (s, c), int
-            Vertices around each point.
-        shares : array, shape (s, c)
-            What each counts for the place; rows sum to one.
+        Shapes: corners (s, c), shares (s, c).
         """
         reach = self._surface.reach
         welded = reach.index[corners]

@@ -47,14 +47,7 @@ class Mirror:
 
 
 def find_mirror(rig: Rig) -> Mirror:
-    """Find the plane, orthogonal to x, y or z, across which most vertices have a partner.
-
-    Raises
-    ------
-    MeshError
-        Less than half of the vertices have a partner across any such plane, or no two joints
-        lie on different sides of it.
-    """
+    """Find the plane, orthogonal to x, y or z, across which most vertices have a partner."""
     used = np.zeros(len(rig.mesh.vertices), bool)
     used[rig.mesh.faces] = True
     diagonal = float(np.linalg.norm(np.ptp(rig.mesh.bounds, axis=0)))
@@ -84,12 +77,6 @@ def find_joint_mirror(rig: Rig) -> Mirror:
     """Find the plane, orthogonal to x, y or z, across which most joints have a partner.
 
     Unlike for `find_mirror` the mesh need not be mirrored: hair seldom is. No vertex is paired.
-
-    Raises
-    ------
-    SkeletonError
-        Less than half of the joints have a partner across any such plane, or no two joints lie
-        on different sides of it.
     """
     joints = rig.skeleton.joints
     if not len(joints):
@@ -119,17 +106,7 @@ def find_joint_mirror(rig: Rig) -> Mirror:
 def mirror_weights(weights: NDArray[np.float64], mirror: Mirror) -> NDArray[np.float64]:
     """Average the weights of each vertex with its partner's, left and right exchanged.
 
-    Parameters
-    ----------
-    weights : array, shape (n, j)
-        Rows sum to one.
-    mirror : Mirror
-
-    Returns
-    -------
-    array, shape (n, j)
-        Rows sum to one. Vertices without a partner, and those that follow a joint without
-        one, stay as they were.
+    Shapes: weights (n, j); returns (n, j).
     """
     alone = mirror.joint < 0
     partner = mirror.vertex
@@ -144,15 +121,7 @@ def mirror_weights(weights: NDArray[np.float64], mirror: Mirror) -> NDArray[np.f
 def balance(weights: NDArray[np.float64], mirror: Mirror) -> NDArray[np.float64]:
     """Where pruning took one of a pair from a vertex on the plane, take the other too.
 
-    Parameters
-    ----------
-    weights : array, shape (n, j)
-    mirror : Mirror
-
-    Returns
-    -------
-    array, shape (n, j)
-        Rows sum to what they did.
+    Shapes: weights (n, j); returns (n, j).
     """
     middle = np.flatnonzero(mirror.vertex == np.arange(len(mirror.vertex)))
     swap = np.where(mirror.joint < 0, np.arange(len(mirror.joint)), mirror.joint)

@@ -176,13 +176,7 @@ def _put_samples(start, end, counts, points, bone):
 
 
 def node_grid(graph: CutCellGraph) -> NodeGrid:
-    """Sort the nodes that have edges into a grid.
-
-    Raises
-    ------
-    MeshError
-        The graph has no edges, so that nothing can be reached.
-    """
+    """Sort the nodes that have edges into a grid."""
     if not graph.connected.any():
         raise MeshError("every triangle of the mesh has collapsed into a point")
     return NodeGrid(graph.nodes, graph.connected, graph.lattice.resolution)

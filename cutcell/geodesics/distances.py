@@ -281,23 +281,7 @@ def bone_distances(
 
 
 def distances_from(graph: CutCellGraph, bones: Bones, samples: int, joints: int) -> BoneDistances:
-    """Compute the distances of given bones to each vertex along a graph.
-
-    Parameters
-    ----------
-    graph : CutCellGraph
-    bones : Bones
-        In the unit cube; of all joints, or of some.
-    samples : int
-        See `find_sources`.
-    joints : int
-        j, with or without bones.
-
-    Returns
-    -------
-    BoneDistances
-        Infinite where no path leads.
-    """
+    """Compute the distances of given bones to each vertex along a graph."""
     contraction = _contracted(graph)() if graph.connectivity == "any" else None
     sources = find_sources(graph, bones, samples, sorted_nodes(graph), contraction)
     targets = nodes_on_mesh(graph)

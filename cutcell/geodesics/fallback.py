@@ -26,19 +26,7 @@ def straight_to_nearest(
 ) -> NDArray[np.float64]:
     """Compute straight distances to the nearest bones of each point; infinity to all others.
 
-    Parameters
-    ----------
-    points : array, shape (p, 3)
-    bones : Bones
-        b of them.
-    nearest : int
-        k, how many bones each point may follow.
-    allowed : array, shape (p, b), optional
-        Which bones each point may follow; all when left out.
-
-    Returns
-    -------
-    array, shape (b, p)
+    Shapes: points (p, 3), allowed (p, b); returns (b, p).
     """
     distance = np.stack(
         [

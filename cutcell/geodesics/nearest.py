@@ -43,17 +43,7 @@ class NodeGrid:
     ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         """Find the nearest nodes of each point: all that are equally near up to rounding.
 
-        Parameters
-        ----------
-        points : array, shape (p, 3)
-            Anywhere.
-        tie : float
-            Relative: how much farther a node may be than the nearest.
-
-        Returns
-        -------
-        point, node : arrays, shape (f,), int64
-            Pairs, ascending by point.
+        Shapes: points (p, 3); returns point, node (f,).
         """
         room = 8 * len(points)  # the middle of a lattice cell is equally near to all corners
         while True:

@@ -38,22 +38,7 @@ def shortest_paths(
 ) -> NDArray[np.float64]:
     """Compute the length of the shortest path from each bone to each target node.
 
-    Parameters
-    ----------
-    graph : CutCellGraph
-    sources : Sources
-        Paths of a bone begin at its sources, each at its own distance to the bone.
-    bones : int
-        b, the number of bones.
-    targets : array, shape (t,), int32
-        Nodes whose distances are wanted.
-    progress : callable
-        Called with the stage "distances".
-
-    Returns
-    -------
-    array, shape (b, t), float64
-        Infinite where no path leads.
+    Shapes: targets (t,); returns (b, t).
     """
     rank, adjacency = _sort_along_body(graph)
     groups = -(-bones // SIMD_WIDTH)

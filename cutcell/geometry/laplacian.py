@@ -16,16 +16,7 @@ would outweigh all."""
 def cotangent_laplacian(points: NDArray[np.float64], faces: NDArray[np.int32]) -> csr_array:
     """Return the stiffness matrix of linear elements; positive, rows sum to zero.
 
-    Parameters
-    ----------
-    points : array, shape (k, 3)
-    faces : array, shape (m, 3)
-        Any triangles; at an edge of more than two all count.
-
-    Returns
-    -------
-    csr_array, shape (k, k)
-        Minus half the cotangents of the angles that face each edge.
+    Shapes: points (k, 3), faces (m, 3); returns (k, k).
     """
     start, column, value = stiffness(points, faces)
     matrix = csr_array((value, column, start), shape=(len(points),) * 2)

@@ -23,18 +23,7 @@ def order_by_place(points: NDArray[np.float64]) -> NDArray[np.intp]:
 def sort_into(group, count):
     """Sort items by group, the items of each in order (counting sort).
 
-    Parameters
-    ----------
-    group : array, shape (n,), of integers
-        0 to count - 1; items with less are left out.
-    count : int
-
-    Returns
-    -------
-    start : array, shape (count + 1,), int64
-        Where each group begins.
-    order : array, shape (start[-1],), int64
-        The items.
+    Shapes: group (n,); returns start (count + 1,), order (start[-1],).
     """
     start = np.zeros(count + 1, np.int64)
     for item in range(len(group)):

@@ -7,15 +7,7 @@ from numpy.typing import NDArray
 def normals(corners: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return normals that are as long as twice the area.
 
-    Parameters
-    ----------
-    corners : array, shape (..., 3, 3)
-        Triangles, corner by corner.
-
-    Returns
-    -------
-    array, shape (..., 3)
-        They point to where the corners are seen counter-clockwise.
+    Shapes: corners (..., 3, 3); returns (..., 3).
     """
     first = corners[..., 0, :]
     return np.cross(corners[..., 1, :] - first, corners[..., 2, :] - first)

@@ -25,18 +25,7 @@ def weld(
     The result is sorted along an oblique direction, so it does not depend on the order of the
     input.
 
-    Parameters
-    ----------
-    points : array, shape (n, 3)
-    tolerance : float
-        In the units of the points.
-
-    Returns
-    -------
-    welded : array, shape (k, 3)
-        The welded vertices: of each group the point that comes first along that direction.
-    index : array, shape (n,), int32
-        The welded vertex of each point.
+    Shapes: points (n, 3); returns welded (k, 3), index (n,).
     """
     x, y, z = points.T
     projection = OBLIQUE[0] * x + OBLIQUE[1] * y + OBLIQUE[2] * z

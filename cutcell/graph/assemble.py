@@ -34,26 +34,7 @@ def assemble(
 ) -> CutCellGraph:
     """Build the graph from the hits of the rays and their intervals inside.
 
-    Parameters
-    ----------
-    vertices : array, shape (n, 3), float64
-        Of the welded mesh, in the unit cube.
-    vertex_node : array, int32
-        The welded vertex of each vertex of the mesh.
-    faces, mesh_edges : arrays, shapes (m, 3) and (e, 2), int32
-        Of the welded mesh.
-    is_closed : bool
-    hits, inside : of the rays along x, y and z
-    lattice : Lattice
-    connectivity : {6, 26, "any"}
-    inverted : array, shape (m,), bool
-        Which of the faces were flipped.
-    winding_threshold : float
-
-    Raises
-    ------
-    ParameterError
-        The graph would not fit in memory.
+    Shapes: vertices (n, 3), inverted (m,).
     """
     resolution = lattice.resolution
     points = interior_points(inside, resolution)

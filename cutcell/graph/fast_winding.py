@@ -102,26 +102,7 @@ def fast_intervals(
 ) -> InsideIntervals:
     """Find the kept segments along one axis by libigl's fast winding number at midpoints.
 
-    Parameters
-    ----------
-    vertices : array, shape (n, 3), float64
-        Unit-cube coordinates.
-    faces : array, shape (m, 3), int32
-    hits : RayHits
-        Of the rays along `axis`.
-    resolution, axis : int
-    winding_threshold : float
-        tau: segments with at least this winding number are kept.
-
-    Returns
-    -------
-    InsideIntervals
-        Those of `inside_intervals`, except for segments whose winding number is nearly tau.
-
-    Raises
-    ------
-    MissingLibraryError
-        libigl is not installed.
+    Shapes: vertices (n, 3), faces (m, 3).
 
     References
     ----------

@@ -28,19 +28,7 @@ def fill_edges(
 ) -> None:
     """List the kept segments along one axis as edges.
 
-    Parameters
-    ----------
-    inside : InsideIntervals
-    start : array, shape (r + 1,)
-        See `edge_starts`.
-    axis : int
-    points : InteriorPoints
-    first_point : int
-        The node of the first interior point.
-    ends : tuple of two arrays, shape (c,)
-        Positions of the axis' hits, and their nodes.
-    edges, lengths : arrays, shapes (e, 2) and (e,)
-        Written to.
+    Shapes: start (r + 1,), ends (c,).
     """
     intervals = inside.ray, inside.first, inside.last, inside.low, inside.high, start
     where = points.resolution, axis, first_point
@@ -85,19 +73,7 @@ def lattice_steps(
 ) -> NDArray[np.int32]:
     """List the neighbours of interior points along the axes.
 
-    Parameters
-    ----------
-    nodes : array, shape (N, 3)
-    edges : array, shape (e, 2), int32
-        Kept segments; those that end on the surface are left out.
-    first, last : int
-        The interior points are the nodes from `first` to before `last`.
-
-    Returns
-    -------
-    array, shape (last - first, 6), int32
-        The neighbour of each point upward along x, y, z and downward along x, y, z, if the whole
-        segment between is kept and not cut by the surface; else -1.
+    Shapes: nodes (N, 3), edges (e, 2); returns (last - first, 6).
     """
     return _lattice_steps(nodes, edges, first, last)
 
@@ -120,17 +96,7 @@ def _lattice_steps(nodes, edges, first, last):
 def diagonal_edges(steps: NDArray[np.int32], first_point: int) -> NDArray[np.int32]:
     """List the face and body diagonals of cells whose twelve edges all lie inside.
 
-    Parameters
-    ----------
-    steps : array, shape (p, 6), int32
-        See `lattice_steps`.
-    first_point : int
-        The node of the first interior point.
-
-    Returns
-    -------
-    array, shape (d, 2), int32
-        Each diagonal once, also where two cells share it.
+    Shapes: steps (p, 6); returns (d, 2).
     """
     cell = _mark_cells(steps)
     edges = np.empty((0, 2), np.int32)

@@ -45,22 +45,7 @@ def check_estimate(
     connectivity: int | str,
     tell: Tell = lambda done: None,
 ) -> None:
-    """Refuse a graph that would surely take more memory than is free, before rays are cast.
-
-    Parameters
-    ----------
-    vertices, faces, boundary
-        Of the welded mesh, in the unit cube.
-    resolution, winding_threshold, connectivity
-        As of the graph.
-    tell : callable
-        See `progress.Tell`.
-
-    Raises
-    ------
-    ParameterError
-        It would not fit; the sentence says which resolution would.
-    """
+    """Refuse a graph that would surely take more memory than is free, before rays are cast."""
     hits = expected_hits(vertices, faces, resolution)
     _refuse_over(lambda scale: BYTES_PER_HIT * hits * scale**2, resolution, CERTAIN)
     sides = np.ptp(np.clip(vertices, 0, 1), axis=0)  # vertices without faces may lie anywhere
@@ -87,22 +72,7 @@ def check_memory(
     connectivity: int | str,
     certain: float = 1,
 ) -> None:
-    """Refuse a graph that would take more memory than is free.
-
-    Parameters
-    ----------
-    vertices, points, surface : float
-        How many nodes of each kind the graph will have.
-    resolution : int
-    connectivity : {6, 26, "any"}
-    certain : float
-        How many times as much as is free it must take to be refused.
-
-    Raises
-    ------
-    ParameterError
-        It would not fit; the sentence says which resolution would.
-    """
+    """Refuse a graph that would take more memory than is free."""
 
     def needed(scale: float) -> float:
         # Points fill the volume, surface nodes the surface, and vertices stay as they are.

@@ -37,26 +37,7 @@ MAX_LAYERS = 100_000
 def cast_rays_open3d(
     vertices: NDArray[np.float64], faces: NDArray[np.int32], resolution: int, axis: int
 ) -> RayHits:
-    """Cast the rays of one axis by Open3D's RaycastingScene.list_intersections, in float32.
-
-    Parameters
-    ----------
-    vertices, faces, resolution, axis
-        As for `rays.cast_rays`.
-
-    Returns
-    -------
-    RayHits
-        Those of `cast_rays`, but for rays within float32 rounding of an edge, and for
-        layers at one place in float32, of which Open3D reports one: triangles with the
-        same corners are told apart here, others are not. Positions are computed again in
-        double precision, on the triangles that were hit.
-
-    Raises
-    ------
-    MissingLibraryError
-        Open3D, or the system library libusb that it loads, is not installed.
-    """
+    """Cast the rays of one axis by Open3D's RaycastingScene.list_intersections, in float32."""
     o3d = optional_library("open3d", 'rays="open3d"', "open3d")
     scene = o3d.t.geometry.RaycastingScene()
     scene.add_triangles(
@@ -76,24 +57,6 @@ def cast_rays_embree(
     Embree reports the first triangle that a ray meets. Each ray is cast again from a float32 step
     behind it, and all are cast in both directions: a triangle hidden within that step behind
     another is the first hit from the other side.
-
-    Parameters
-    ----------
-    vertices, faces, resolution, axis
-        As for `rays.cast_rays`.
-
-    Returns
-    -------
-    RayHits
-        Those of `cast_rays`, but for rays within float32 rounding of an edge, and for
-        three or more layers within a float32 step: triangles with the same corners are
-        told apart, others may not be. Positions are computed again in double precision,
-        on the triangles that were hit.
-
-    Raises
-    ------
-    MissingLibraryError
-        embreex is not installed.
     """
     scene = _embree_scene(vertices, faces)
     hits = [_follow(scene, vertices, faces, resolution, axis, direction) for direction in (1, -1)]
@@ -102,13 +65,7 @@ def cast_rays_embree(
 
 
 def optional_library(module: str, option: str, package: str) -> ModuleType:
-    """Import the library that an option needs.
-
-    Raises
-    ------
-    MissingLibraryError
-        It is not installed, or cannot be loaded.
-    """
+    """Import the library that an option needs."""
     try:
         return import_module(module)
     except ModuleNotFoundError as error:

@@ -64,19 +64,7 @@ def cast_rays(
 ) -> RayHits:
     """Cast the R x R rays along one axis through the lattice points of the unit cube.
 
-    Parameters
-    ----------
-    vertices : array, shape (n, 3), float64
-        Unit-cube coordinates.
-    faces : array, shape (m, 3), int32
-    resolution : int
-        R.
-    axis : int
-        0, 1, 2 for x, y, z.
-
-    Returns
-    -------
-    RayHits
+    Shapes: vertices (n, 3), faces (m, 3).
     """
     return _cast(vertices, faces, resolution, (axis,))[0]
 

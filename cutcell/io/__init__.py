@@ -134,19 +134,7 @@ def save(path: str | os.PathLike[str], rig: Rig) -> tuple[Path, ...]:
 
 
 def check_output(path: Path, rig: Rig | None = None) -> None:
-    """Meet what would stop `save` before the work whose result is to be saved.
-
-    Parameters
-    ----------
-    path : Path
-    rig : Rig, optional
-        Its weights do not matter.
-
-    Raises
-    ------
-    FileError, MeshError, SkeletonError
-        See `save`.
-    """
+    """Meet what would stop `save` before the work whose result is to be saved."""
     kind = path.suffix.lower()
     with naming(path):
         if kind not in SAVED:
@@ -171,14 +159,7 @@ def _not_written(path: Path) -> str:
 
 
 def saving_notes(path: Path, rig: Rig) -> tuple[str, ...]:
-    """Say what `save` leaves out of the colours of a rig's file, in sentences.
-
-    Parameters
-    ----------
-    path : Path
-        The file to be written. Formats that hold no colours at all have no notes.
-    rig : Rig
-    """
+    """Say what `save` leaves out of the colours of a rig's file, in sentences."""
     if path.suffix.lower() not in GLTF or keeps_document(rig):
         return ()
     return color_notes(rig)

@@ -32,19 +32,7 @@ class Allowance:
         self.take(vertices * joints * 8.0, what)
 
     def take(self, needed: float, what: str) -> None:
-        """Count bytes that are about to be taken.
-
-        Parameters
-        ----------
-        needed : float
-        what : str
-            What takes them, for the error.
-
-        Raises
-        ------
-        FileError
-            A file of this size has no good reason to ask for so much.
-        """
+        """Count bytes that are about to be taken."""
         self._left -= needed
         if self._left < 0:
             raise FileError(

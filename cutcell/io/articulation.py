@@ -30,14 +30,7 @@ REQUIRED = ("vertices", "faces", "joints", "bones")
 
 
 def read_articulation(path: Path) -> Rig:
-    """Load an Articulation-XL rig.
-
-    Raises
-    ------
-    FileError
-        Not such a file, an array is missing, or it holds pickled objects: those could run
-        any code when read, and are never opened.
-    """
+    """Load an Articulation-XL rig."""
     arrays = _arrays(read_bytes(path))
     missing = [name for name in REQUIRED if name not in arrays]
     if missing:

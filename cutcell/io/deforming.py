@@ -26,21 +26,7 @@ def with_deform(
 ) -> tuple[Skeleton, list[str]]:
     """Find out which joints may carry weight, and say what a person may want to change.
 
-    Parameters
-    ----------
-    mesh : TriangleMesh
-    skeleton : Skeleton
-        Its `deform` is replaced.
-    weights : array, shape (n, j), or None
-        What the file has.
-    stored : array, shape (j,), optional
-        Whether each joint deforms by what the file stores under `KEY`, 1 or 0; -1 where it stores
-        nothing.
-
-    Returns
-    -------
-    skeleton : Skeleton
-    warnings : list of str
+    Shapes: weights (n, j), stored (j,).
     """
     if not len(skeleton.joints):
         return skeleton, []

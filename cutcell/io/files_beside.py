@@ -18,21 +18,6 @@ def read_beside(path: Path, names: Iterable[str], label: str, largest: int = LAR
     A file may come from a stranger, over the page; it must not reach other files. Names are those
     of the machine that it was made on: where one leads elsewhere, the file is looked for under its
     last part in the folder itself.
-
-    Parameters
-    ----------
-    path : Path
-        The file that names them.
-    names : iterable of str
-    label : str
-        What is looked for, for the error.
-    largest : int
-        Bytes that are read at most.
-
-    Raises
-    ------
-    FileError
-        None is there, or it is too large, or cannot be read.
     """
     folder = path.parent.resolve()
     for name in _tried(names):

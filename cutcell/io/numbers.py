@@ -21,24 +21,7 @@ DIGITS = 7
 def save_numbers(path: str | Path, rig: Rig, **tables: ArrayLike) -> None:
     """Save numbers of every vertex and joint.
 
-    Parameters
-    ----------
-    path : str or Path
-        Ends in ".csv": one table, a row a vertex and a column a joint, with a first column
-        of vertex numbers and a first row of joint names, none of which a spreadsheet takes for
-        a formula (`display.spreadsheet_cell`). Or in ".npz": all tables, and beside them
-        "joint_names" (j,), "parents" (j,) and "vertex_indices" (n,).
-    rig : Rig
-        What the numbers belong to.
-    **tables : array_like, shape (n, j)
-        By name, such as `weights=binding.weights`; a CSV holds one of them.
-
-    Raises
-    ------
-    FileError
-        Another ending, a folder that is not there, or a file that cannot be written.
-    ParameterError
-        No table, several for a CSV, one of another shape, or not of real numbers.
+    Shapes: **tables (n, j).
     """
     path = Path(path)
     shape = (len(rig.mesh.vertices), len(rig.skeleton.joints))

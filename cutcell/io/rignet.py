@@ -177,11 +177,6 @@ def check_mesh_file(path: Path, mesh: TriangleMesh) -> bool:
     """Tell whether the mesh stands beside a rig file already; it then stays as it is.
 
     Its texture coordinates, normals and materials are not the rig's to write again.
-
-    Raises
-    ------
-    FileError
-        A file of that name is there, and holds something else.
     """
     obj = _mesh_goal(path)
     if not os.path.lexists(obj):

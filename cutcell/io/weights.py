@@ -43,14 +43,7 @@ def summed(
 
     A weight that is negative or not a finite number counts as none.
 
-    Parameters
-    ----------
-    rows, columns, values : array, shape (k,)
-        Vertex, joint and weight of each influence; what occurs twice is added.
-    shape : (int, int)
-        Vertices and joints.
-    owner : str
-        Whose weights they are, for the warning.
+    Shapes: rows, columns, values (k,).
     """
     with np.errstate(invalid="ignore"):  # a signalling NaN becomes a quiet one
         values = values.astype(np.float64)

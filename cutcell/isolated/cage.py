@@ -15,24 +15,7 @@ PAD = 4
 def make_cage(solid, points, faces):
     """Wrap solid voxels in a surface of few triangles that still holds all points.
 
-    Parameters
-    ----------
-    solid : array, shape (a, b, c), bool
-        Voxel (i, j, k) is the unit cube that starts at that corner.
-    points : array, shape (k, 3)
-        What must be inside, in the same lengths.
-    faces : int
-        Triangles wanted; twice as many, and again, while a point is left outside.
-
-    Returns
-    -------
-    dict
-        `vertices` (n, 3) and `faces` (m, 3), counter-clockwise seen from outside.
-
-    Raises
-    ------
-    RuntimeError
-        No cage holds all points.
+    Shapes: solid (a, b, c), points (k, 3).
     """
     away = distance_transform_edt(~np.pad(solid, PAD))
     # libigl counts x fastest.

@@ -8,23 +8,7 @@ import DracoPy
 def decode(data, ends):
     """Decode meshes.
 
-    Parameters
-    ----------
-    data : array, shape (b,), uint8
-        Compressed meshes, one after the other.
-    ends : array, shape (k,), int
-        Where each ends.
-
-    Returns
-    -------
-    dict
-        `faces_K` (m, 3) uint32 of mesh K, and `values_K_ID` (n, width) for each attribute's
-        unique ID.
-
-    Raises
-    ------
-    RuntimeError
-        A mesh cannot be decoded; it is named by its number.
+    Shapes: data (b,), ends (k,).
     """
     found, start = {}, 0
     for k, end in enumerate(ends.tolist()):

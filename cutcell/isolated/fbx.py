@@ -19,20 +19,7 @@ MOST_TRIANGLES_OF_A_FACE = 10_000
 def read(data):
     """Read a file.
 
-    Parameters
-    ----------
-    data : array, shape (b,), uint8
-        The file's bytes.
-
-    Returns
-    -------
-    dict
-        The arrays of a scene.
-
-    Raises
-    ------
-    RuntimeError
-        It cannot be read; the sentence says why.
+    Shapes: data (b,).
     """
     try:
         scene = ufbx.load_memory(data.tobytes(), **options())

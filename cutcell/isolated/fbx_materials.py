@@ -94,14 +94,7 @@ def is_cut(material):
 def surface(mesh, node, corners, polygons, palette):
     """Return what colours the triangles of a mesh at a place.
 
-    Parameters
-    ----------
-    mesh, node
-    corners : array, shape (m, 3)
-        Of the mesh's polygons, by their numbers in the file.
-    polygons : array, shape (m,)
-        That each triangle is a part of.
-    palette : FbxPalette
+    Shapes: corners (m, 3), polygons (m,).
     """
     materials = kept(node.materials) or kept(mesh.materials)
     numbers = np.array([*(palette.number(one) for one in materials), -1])

@@ -16,17 +16,7 @@ LARGEST = 2**26
 def as_png(data, ends):
     """Encode images of other formats.
 
-    Parameters
-    ----------
-    data : array, shape (b,), uint8
-        Images, one after the other.
-    ends : array, shape (k,), int
-        Where each ends.
-
-    Returns
-    -------
-    dict
-        `png_K` (b,) uint8 of image K, or in `problem_K` why there is none.
+    Shapes: data (b,), ends (k,).
     """
     found: dict[str, Any] = {}
     start = 0

@@ -19,36 +19,14 @@ class Palette:
         self._contents: list[bytes] = []
 
     def add_material(self, name, color, opacity, image, wrap, cut):
-        """List a material; return its number.
-
-        Parameters
-        ----------
-        name : str
-        color : sequence of 3 float
-            sRGB.
-        opacity : float
-        image : int
-            -1 for none.
-        wrap : int
-            How the image goes on; see `cutcell.io.materials.face_colors.REPEAT`.
-        cut : bool
-            Whether the image's alpha counts.
-        """
+        """List a material; return its number."""
         self._names.append(name[:NAME])
         self._values.append((*color, opacity))
         self._uses.append((image, wrap, int(cut)))
         return len(self._names) - 1
 
     def add_image(self, names, content):
-        """List an image, if that was not done; return its number.
-
-        Parameters
-        ----------
-        names : tuple of 3 str
-            Of a file beside.
-        content : bytes
-            Empty where it lies in a file beside.
-        """
+        """List an image, if that was not done; return its number."""
         key = (names, len(content))
         if key not in self._images:
             self._images[key] = len(self._contents)

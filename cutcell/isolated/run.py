@@ -29,14 +29,7 @@ _WANTED: ContextVar[Callable[[], object]] = ContextVar("_WANTED", default=lambda
 
 @contextmanager
 def stoppable(wanted: Callable[[], object]) -> Iterator[None]:
-    """Within this block, poll a function while a subprocess runs; it raises to cancel.
-
-    Parameters
-    ----------
-    wanted : callable
-        Raises, `cutcell.Cancelled` for one, when it is not: the process is ended then, and
-        the exception goes through.
-    """
+    """Within this block, poll a function while a subprocess runs; it raises to cancel."""
     token = _WANTED.set(wanted)
     try:
         yield
@@ -51,31 +44,7 @@ class WorkFailedError(CutcellError):
 def run_isolated(
     task: str, job: Mapping[str, Any], limit: float, who: str, memory: int = 0
 ) -> dict[str, Any]:
-    """Do a task of `cutcell.isolated`.
-
-    Parameters
-    ----------
-    task : str
-        See `cutcell.isolated.__main__`.
-    job : mapping of names to arrays
-    limit : float
-        Seconds after which to give up.
-    who : str
-        Whose fault a crash is, for the message.
-    memory : int
-        Bytes that the task may take, 0 for any; only Linux sees to it.
-
-    Returns
-    -------
-    dict of arrays
-
-    Raises
-    ------
-    WorkFailedError
-        There is no result; the sentence says why.
-    Exception
-        Whatever `stoppable` was given raises.
-    """
+    """Do a task of `cutcell.isolated`."""
     with tempfile.TemporaryDirectory() as folder:
         job_path, result_path = Path(folder, "job.npz"), Path(folder, "result.npz")
         np.savez(job_path, **job)

@@ -12,40 +12,14 @@ from scipy.spatial import cKDTree
 def bounded(nodes, tets, handles, column, iterations):
     """Compute bounded biharmonic weights, by libigl's active set solver.
 
-    Parameters
-    ----------
-    nodes : array, shape (n, 3)
-    tets : array, shape (t, 4)
-    handles : array, shape (h, 3)
-        Where weights are given.
-    column : array, shape (h,)
-        Which weight is 1 there.
-    iterations : int
-
-    Returns
-    -------
-    dict
-        `weights` (n, c), one column for each number in `column`.
+    Shapes: nodes (n, 3), tets (t, 4), handles (h, 3), column (h,).
     """
     fixed, values = constraints(cKDTree(nodes), handles, column)
     return {"weights": igl.bbw(nodes, tets, fixed, values, max_iter=int(iterations))}
 
 
 def unbounded(nodes, tets, handles, column, iterations=0):
-    """Compute biharmonic weights: the same energy without bounds, by one linear system.
-
-    Parameters
-    ----------
-    nodes, tets, handles, column
-        As for `bounded`.
-    iterations
-        Of no use here.
-
-    Returns
-    -------
-    dict
-        `weights` (n, c).
-    """
+    """Compute biharmonic weights: the same energy without bounds, by one linear system."""
     del iterations
     fixed, values = constraints(cKDTree(nodes), handles, column)
     energy = smoothness(nodes, tets)

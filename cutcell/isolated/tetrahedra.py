@@ -18,24 +18,7 @@ CANDIDATES = 32
 def by_tetgen(points, faces, handles):
     """Fill a closed surface exactly; all points and handles are nodes of the result.
 
-    Parameters
-    ----------
-    points : array, shape (k, 3)
-        Of the surface; all of them used.
-    faces : array, shape (m, 3)
-    handles : array, shape (h, 3)
-        Points wanted inside.
-
-    Returns
-    -------
-    dict
-        `nodes` (n, 3), `tets` (t, 4), and the place of each point in them: it is the mean
-        of the nodes `corners` (k, 4) with the weights `shares` (k, 4).
-
-    Raises
-    ------
-    RuntimeError
-        There are no such tetrahedra.
+    Shapes: points (k, 3), faces (m, 3), handles (h, 3).
     """
     from igl.copyleft import tetgen
 
@@ -59,25 +42,7 @@ def by_tetgen(points, faces, handles):
 
 
 def by_tetwild(points, faces, handles, edge):
-    """Fill any surface, open or not, up to a thousandth of its diagonal.
-
-    Parameters
-    ----------
-    points, faces, handles
-        As for `by_tetgen`.
-    edge : float
-        Wanted length of edges, of the diagonal.
-
-    Returns
-    -------
-    dict
-        As of `by_tetgen`; points outside are nearest to a side or corner.
-
-    Raises
-    ------
-    RuntimeError
-        There are no such tetrahedra.
-    """
+    """Fill any surface, open or not, up to a thousandth of its diagonal."""
     from pytetwild import tetrahedralize
 
     found = tetrahedralize(

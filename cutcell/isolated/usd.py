@@ -14,22 +14,7 @@ from .usd_materials import UsdPalette, surface
 
 
 def read(path):
-    """Read a file, and what it refers to in its own folder.
-
-    Parameters
-    ----------
-    path : array of one str
-
-    Returns
-    -------
-    dict
-        The arrays of a scene.
-
-    Raises
-    ------
-    RuntimeError
-        It cannot be read, or refers to files elsewhere; the sentence says why.
-    """
+    """Read a file, and what it refers to in its own folder."""
     file = Path(str(path)).resolve()
     try:
         return read_stage(file)
@@ -189,12 +174,7 @@ class Scene:
 def triangles(mesh):
     """Cut a mesh's polygons into fans of triangles, counter-clockwise.
 
-    Returns
-    -------
-    faces, corners : array, shape (m, 3)
-        The vertices, and the numbers of the corners in the file.
-    polygons : array, shape (m,)
-        That each triangle is a part of.
+    Returns shapes faces, corners (m, 3), polygons (m,).
     """
     count = np.array(mesh.GetFaceVertexCountsAttr().Get() or [], int)
     corners = np.array(mesh.GetFaceVertexIndicesAttr().Get() or [], int)

@@ -112,15 +112,7 @@ def reader_of(texture):
 def surface(prim, corners, polygons, faces, palette):
     """Return what colours the triangles of a mesh.
 
-    Parameters
-    ----------
-    prim
-    corners : array, shape (m, 3)
-        Of the mesh's polygons, by their numbers in the file.
-    polygons : array, shape (m,)
-        That each triangle is a part of.
-    faces : array, shape (m, 3)
-    palette : UsdPalette
+    Shapes: corners (m, 3), polygons (m,), faces (m, 3).
     """
     binding = UsdShade.MaterialBindingAPI(prim)
     material = np.full(len(faces), palette.number(binding.ComputeBoundMaterial()[0]))

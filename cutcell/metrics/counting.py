@@ -49,13 +49,7 @@ def vertex_shares(mesh: TriangleMesh, count: str = "welded") -> NDArray[np.float
 
 
 def checked_shares(shares: ArrayLike | None, count: int) -> NDArray[np.float64]:
-    """Return shares of `count` vertices that sum to one; even ones for None.
-
-    Raises
-    ------
-    ParameterError
-        Another number of shares, negative ones, or nothing but zeros.
-    """
+    """Return shares of `count` vertices that sum to one; even ones for None."""
     if shares is None:
         return np.full(count, 1.0 / count)
     array = np.asarray(shares, np.float64)

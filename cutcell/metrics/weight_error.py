@@ -111,13 +111,7 @@ def unweighted(weights: ArrayLike, shares: ArrayLike | None = None) -> float:
 def checked_pair(
     predicted: ArrayLike, reference: ArrayLike
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return both as arrays (n, j) of weights that can be compared.
-
-    Raises
-    ------
-    WeightsError
-        They cannot.
-    """
+    """Return both as arrays (n, j) of weights that can be compared."""
     ours = checked_weights(predicted, "predicted")
     theirs = checked_weights(reference, "reference")
     if ours.shape != theirs.shape:
@@ -129,13 +123,7 @@ def checked_pair(
 
 
 def checked_weights(weights: ArrayLike, name: str) -> NDArray[np.float64]:
-    """Return weights as an array (n, j) whose rows sum to one or are zero.
-
-    Raises
-    ------
-    WeightsError
-        No such array; names the first row at fault.
-    """
+    """Return weights as an array (n, j) whose rows sum to one or are zero."""
     try:
         array = np.asarray(weights, np.float64)
     except (TypeError, ValueError):

@@ -34,17 +34,7 @@ CLOSEST = 1e-3
 
 
 def drawn(sample: Sample, points: int, rng: np.random.Generator, augment: bool = False) -> Sample:
-    """Return some points of a sample, turned about the vertical and scaled by chance.
-
-    Parameters
-    ----------
-    sample : Sample
-    points : int
-        How many at most.
-    rng : numpy.random.Generator
-    augment : bool
-        Whether to leave out joints and parts, pose it, and spread the points by chance, too.
-    """
+    """Return some points of a sample, turned about the vertical and scaled by chance."""
     if augment:
         sample = _with_less_surface(sample, rng)
         sample = sample.part(_spread(sample, points, rng))
@@ -61,16 +51,7 @@ def without_joints(sample: Sample, left_out: NDArray[np.bool_]) -> Sample:
     The weight of a joint that is left out, and its share of the prior, go to the nearest ancestor
     that is kept: an artist without that joint would have painted its part for the joint above.
 
-    Parameters
-    ----------
-    sample : Sample
-    left_out : array, shape (j,), bool
-        Roots are kept all the same: their weight would have nowhere to go.
-
-    Returns
-    -------
-    Sample
-        Bones that lost a child end in the mean of the children that are left.
+    Shapes: left_out (j,).
     """
     parents, count = sample.parents, len(sample.parents)
     keep = ~np.asarray(left_out) | (parents < 0)
@@ -106,12 +87,7 @@ def posed(sample: Sample, rotations: NDArray) -> Sample:
     Prior and neighbours stay: they are measured through the body and along its surface, which the
     pose takes along. What carries no weight stays where it is.
 
-    Parameters
-    ----------
-    sample : Sample
-        With a target.
-    rotations : array, shape (j, 3, 3)
-        Of each joint, about the axes of the sample.
+    Shapes: rotations (j, 3, 3).
     """
     assert sample.target is not None
     turns = forward_kinematics(Skeleton(sample.joints, sample.parents), rotations)

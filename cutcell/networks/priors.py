@@ -50,25 +50,7 @@ def prior_of(
 ) -> NDArray[np.float64] | None:
     """Compute a prior of a rig.
 
-    Parameters
-    ----------
-    name : str
-        Of `PRIORS`.
-    rig : Rig
-    resolution : int
-        R, for the methods that have a lattice.
-    progress : callable
-        See `cutcell.runtime.progress`; for the methods that tell of theirs.
-
-    Returns
-    -------
-    array, shape (n, j), or None
-        None for the prior "none".
-
-    Raises
-    ------
-    WeightsError
-        The method gives no weights; the sentence says why.
+    Returns shapes (n, j).
     """
     method = PRIORS[check_choice("prior", name, PRIORS)]
     if method is None:

@@ -152,17 +152,6 @@ def deal_rig(rig: Rig, count: int) -> Iterator[Sample]:
 
     Neighbours are farther apart where fewer points are drawn: to a network a sample of all
     vertices is not what it learned from.
-
-    Parameters
-    ----------
-    rig : Rig
-    count : int
-        Points of each, about.
-
-    Yields
-    ------
-    Sample
-        Without prior and target.
     """
     welded = _Welded.of(rig)
     order = np.random.default_rng(0).permutation(len(welded.places))

@@ -63,30 +63,7 @@ class TrainedNetwork:
         threshold: float = 0.0,
         progress: Progress = silent,
     ) -> BaselineBinding:
-        """Bind a rig; its resolution is the one that the network was trained with.
-
-        Parameters
-        ----------
-        rig : Rig
-        max_influences, threshold
-            See `skinning_weights`.
-        progress : callable
-            See `cutcell.runtime.progress`; of the prior.
-
-        Returns
-        -------
-        BaselineBinding
-            Stages "prior", "network", "weights". `failed` says why torch gave nothing.
-
-        Raises
-        ------
-        TooLargeError
-            It would not fit in memory.
-        WeightsError
-            The prior cannot be computed.
-        MissingLibraryError
-            torch is not installed.
-        """
+        """Bind a rig; its resolution is the one that the network was trained with."""
         check_torch()
         self._check_memory(rig)
         recipe = self.recipe

@@ -102,13 +102,7 @@ def load_network(folder: Path) -> tuple[nn.Module, Recipe]:
 
 
 def read_recipe(folder: Path) -> Recipe:
-    """Return the recipe of a trained network; nothing else of it is read.
-
-    Raises
-    ------
-    FileError
-        There is none in the folder, or one of another version.
-    """
+    """Return the recipe of a trained network; nothing else of it is read."""
     path = folder / "network.pt"
     try:
         return Recipe(**json.loads(_read(path, in_parts=True)["recipe"]))

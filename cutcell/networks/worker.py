@@ -19,18 +19,7 @@ from .samples import deal_rig
 
 
 def recipes(folders: NDArray[np.str_]) -> dict[str, NDArray]:
-    """Read the recipes of trained networks.
-
-    Parameters
-    ----------
-    folders : array of str
-
-    Returns
-    -------
-    dict
-        "recipes": array of str, as JSON, or empty where there is none to be had; "problems": array
-        of str, which says why.
-    """
+    """Read the recipes of trained networks."""
     from .training import read_recipe
 
     found, problems = [], []

@@ -18,24 +18,7 @@ EXACT = 2**53
 def as_array(
     value: Any, dtype: Any, shape: tuple[int | None, ...], name: str, error: type[Exception]
 ) -> NDArray:
-    """Return what is given as an array: a copy, unless nobody can write to what is given.
-
-    Parameters
-    ----------
-    value : array_like
-    dtype : numpy type
-    shape : tuple
-        None where any size will do.
-    name : str
-        For the sentence.
-    error : type
-        What to raise.
-
-    Raises
-    ------
-    error
-        Not an array of numbers, or of another shape.
-    """
+    """Return what is given as an array: a copy, unless nobody can write to what is given."""
     try:
         array = np.asarray(value)
         empty = [0 if size is None else size for size in shape]

@@ -19,13 +19,7 @@ LARGEST = 1e60
 
 
 def check_integer(name: str, value: Any, low: int, high: int, why: str = "") -> int:
-    """Return `value` as an int, or say which range it must lie in.
-
-    Raises
-    ------
-    ParameterError
-        Not a whole number, or outside `low` to `high`.
-    """
+    """Return `value` as an int, or say which range it must lie in."""
     if not _is_real(value) or not low <= value <= high or int(value) != value:
         reason = f"; {why}" if why else ""
         raise ParameterError(
@@ -35,13 +29,7 @@ def check_integer(name: str, value: Any, low: int, high: int, why: str = "") -> 
 
 
 def check_number(name: str, value: Any, low: float, high: float, why: str = "") -> float:
-    """Return `value` as a float, or say which range it must lie in.
-
-    Raises
-    ------
-    ParameterError
-        Not a number, or outside `low` to `high`.
-    """
+    """Return `value` as a float, or say which range it must lie in."""
     if not _is_real(value) or not low <= _as_float(value) <= high:  # also catches nan
         reason = f"; {why}" if why else ""
         raise ParameterError(
@@ -51,26 +39,14 @@ def check_number(name: str, value: Any, low: float, high: float, why: str = "") 
 
 
 def check_flag(name: str, value: Any) -> bool:
-    """Return `value` as a bool, or say that it must be one.
-
-    Raises
-    ------
-    ParameterError
-        Neither True nor False.
-    """
+    """Return `value` as a bool, or say that it must be one."""
     if type(value).__name__ not in ("bool", "bool_"):  # numpy's is called either way
         raise ParameterError(f"{name} must be True or False, not {shown(value)}")
     return bool(value)
 
 
 def check_choice(name: str, value: Any, choices: Collection[Any]) -> Any:
-    """Return the one of `choices` that `value` is equal to, or list them.
-
-    Raises
-    ------
-    ParameterError
-        Not one of them.
-    """
+    """Return the one of `choices` that `value` is equal to, or list them."""
     if isinstance(value, str) or value is None or _is_real(value):
         for choice in choices:
             if choice == value:
@@ -82,18 +58,7 @@ def check_choice(name: str, value: Any, choices: Collection[Any]) -> Any:
 def check_positions(points: NDArray[np.float64], what: str, error: type[CutcellError]) -> None:
     """Refuse points whose coordinates are too large to compute with.
 
-    Parameters
-    ----------
-    points : array, shape (n, 3)
-    what : str
-        What one of them is called.
-    error : type
-        What to raise.
-
-    Raises
-    ------
-    error
-        A coordinate is larger than `LARGEST`.
+    Shapes: points (n, 3).
     """
     far = np.flatnonzero((np.abs(points) > LARGEST).any(axis=1))
     if len(far):

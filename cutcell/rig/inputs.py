@@ -52,11 +52,6 @@ def as_mesh(mesh: MeshLike) -> TriangleMesh:
     """Return a mesh of ours for one of several kinds.
 
     Positions in C-contiguous float64 are used where they are, anything else is copied.
-
-    Raises
-    ------
-    MeshError
-        It is none of these kinds, has faces that are no triangles, or see `TriangleMesh`.
     """
     if isinstance(mesh, TriangleMesh):
         return mesh
@@ -73,15 +68,7 @@ def as_mesh(mesh: MeshLike) -> TriangleMesh:
 
 
 def as_rig(rig: RigLike) -> Rig:
-    """Return a rig of ours for one of several kinds.
-
-    Raises
-    ------
-    CutcellError
-        It is none of these kinds.
-    MeshError, SkeletonError
-        See `as_mesh` and `Skeleton`.
-    """
+    """Return a rig of ours for one of several kinds."""
     if isinstance(rig, Rig):
         return rig
     if isinstance(rig, tuple | list) and len(rig) == 4:
@@ -96,13 +83,7 @@ def as_rig(rig: RigLike) -> Rig:
 
 
 def as_skeleton(skeleton: SkeletonLike) -> Skeleton:
-    """Return a skeleton of ours for one of several kinds.
-
-    Raises
-    ------
-    SkeletonError
-        It is none of these kinds, or see `Skeleton`.
-    """
+    """Return a skeleton of ours for one of several kinds."""
     if isinstance(skeleton, Skeleton):
         return skeleton
     if isinstance(skeleton, tuple | list) and len(skeleton) == 2:

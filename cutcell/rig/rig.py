@@ -380,11 +380,7 @@ class Rig:
 def with_origin(skeleton: Skeleton, origin: NDArray[np.integer]) -> NDArray[np.int_]:
     """Return for each joint the nearest one, it or above it, that the file has; else the first.
 
-    Parameters
-    ----------
-    skeleton : Skeleton
-    origin : array, shape (j,)
-        See `Rig.origin`.
+    Shapes: origin (j,).
     """
     found = np.arange(len(origin))
     while len(open_ := np.flatnonzero((origin[found] < 0) & (skeleton.parents[found] >= 0))):

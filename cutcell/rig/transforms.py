@@ -9,15 +9,7 @@ from numpy.typing import NDArray
 def relative(transforms: NDArray, parents: NDArray) -> NDArray[np.float64]:
     """Return each joint's transform relative to its parent's; a root's stays.
 
-    Parameters
-    ----------
-    transforms : array, shape (..., j, 4, 4)
-    parents : array, shape (j,), int
-        -1 for a root.
-
-    Returns
-    -------
-    array, shape (..., j, 4, 4), float64
+    Shapes: transforms (..., j, 4, 4), parents (j,); returns (..., j, 4, 4).
     """
     own, held = transforms.astype(np.float64), np.flatnonzero(parents >= 0)
     own[..., held, :, :] = inverses(transforms[..., parents[held], :, :]) @ own[..., held, :, :]
@@ -30,16 +22,7 @@ def composed(own: NDArray, parents: NDArray) -> NDArray[np.float64]:
     After step k each joint holds the product over its nearest 2^k ancestors, so that a
     chain of n joints takes log2(n) steps, whatever order the joints come in.
 
-    Parameters
-    ----------
-    own : array, shape (..., j, 4, 4)
-        Relative to the parent.
-    parents : array, shape (j,), int
-        -1 for a root.
-
-    Returns
-    -------
-    array, shape (..., j, 4, 4), float64
+    Shapes: own (..., j, 4, 4), parents (j,); returns (..., j, 4, 4).
     """
     transforms, above = own.astype(np.float64), parents.copy()
     while (held := np.flatnonzero(above >= 0)).size:

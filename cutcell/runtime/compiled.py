@@ -10,15 +10,7 @@ from .compile_cache import CompileCache
 
 
 def compiled(function: Callable | None = None, **options: Any) -> Any:
-    """Compile a function that runs without Python's lock, and keep it (`compile_cache`).
-
-    Parameters
-    ----------
-    function : callable
-        Left out where the decorator is used with options.
-    **options
-        Of `numba.njit`.
-    """
+    """Compile a function that runs without Python's lock, and keep it (`compile_cache`)."""
     if function is None:
         return lambda function: compiled(function, **options)
     dispatcher = njit(nogil=True, **options)(function)

@@ -45,20 +45,7 @@ _ESCAPES = _Escapes()
 
 
 def printable(text: str, most: int = MOST_OF_A_MESSAGE) -> str:
-    r"""Return a text on one line, in which nothing is hidden.
-
-    Parameters
-    ----------
-    text : str
-    most : int
-        Letters; what is longer is cut.
-
-    Returns
-    -------
-    str
-        With an escape, such as ``\x1b``, in the place of each control character, line end,
-        direction mark or lone surrogate.
-    """
+    r"""Return a text on one line, in which nothing is hidden."""
     if len(text) > most:
         text = text[: most - 1] + "…"
     return text if text.isprintable() else text.translate(_ESCAPES)
@@ -106,14 +93,7 @@ def json_escape(text: str) -> str:
 
 
 def without_folders(text: str, known: Iterable[Path] = ()) -> str:
-    """Return a message that tells the names of files, and not where they are.
-
-    Parameters
-    ----------
-    text : str
-    known : iterable of Path
-        Folders whose names may hold anything, spaces for one; others are found by their form.
-    """
+    """Return a message that tells the names of files, and not where they are."""
     for folder in sorted({str(path) for path in known}, key=len, reverse=True):
         if len(folder) > 1:
             inner = r"[\\/](?:[^\s\\/\"':;,()]+[\\/])*"

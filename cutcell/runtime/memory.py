@@ -25,19 +25,7 @@ NO_LIMIT = 2**60
 
 
 def check_matrix(vertices: int, joints: int, copies: int = 1) -> None:
-    """Refuse weights of so many vertices and joints if they do not fit in memory.
-
-    Parameters
-    ----------
-    vertices, joints : int
-    copies : int
-        How many matrices of this size are there at a time.
-
-    Raises
-    ------
-    TooLargeError
-        They would not fit.
-    """
+    """Refuse weights of so many vertices and joints if they do not fit in memory."""
     needed = float(vertices) * joints * copies * BYTES_PER_WEIGHT
     check_room(
         needed,
@@ -47,13 +35,7 @@ def check_matrix(vertices: int, joints: int, copies: int = 1) -> None:
 
 
 def check_room(needed: float, what: str, advice: str) -> None:
-    """Refuse what takes more bytes than are free.
-
-    Raises
-    ------
-    TooLargeError
-        It would not fit.
-    """
+    """Refuse what takes more bytes than are free."""
     free = available_memory(needed / SHARE) * SHARE
     if needed > free:
         raise TooLargeError(

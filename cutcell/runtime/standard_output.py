@@ -44,11 +44,6 @@ def checked_output() -> Iterator[None]:
     """Raise `OutputError` in this block, or at its end, where standard output is full or closed.
 
     What its encoding lacks is escaped.
-
-    Raises
-    ------
-    OutputError
-        What was printed is lost, or a part of it.
     """
     before, output = sys.stdout, _open()
     sys.stdout = output

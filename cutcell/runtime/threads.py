@@ -52,14 +52,6 @@ def in_threads(
 
     The calling thread takes part, and does not wait for a thread that has not started: small work
     takes less time than waking one. Nested calls run in the thread that makes them.
-
-    Parameters
-    ----------
-    work : callable
-    items : iterable
-    tell : callable
-        Called with the fraction done after each item, by one thread at a time. What it raises
-        is passed on, and ends the work.
     """
     items = list(items)
     results: dict[int, Result] = {}
@@ -113,18 +105,7 @@ def submit(work: Callable[[], Result]) -> Callable[[], Result]:
 def watched(
     work: Callable[[NDArray[np.int64]], Result], steps: int, tell: Callable[[float], None]
 ) -> Result:
-    """Report the progress of a long kernel ten times a second, and let it be stopped.
-
-    Parameters
-    ----------
-    work : callable
-        Calls the kernel, with an array of two numbers: the kernel writes to the first how many
-        steps it has done, and returns early, with anything, once the second is not 0.
-    steps : int
-        How many there are.
-    tell : callable
-        Called with the fraction done. What it raises is passed on, and stops the kernel.
-    """
+    """Report the progress of a long kernel ten times a second, and let it be stopped."""
     pace = np.zeros(2, np.int64)
     if steps < MANY_STEPS:
         return work(pace)
@@ -155,15 +136,6 @@ def cancellable(work: Callable[[Progress], Result], progress: Progress, first_st
     The work runs in a thread of its own. The calling thread repeats the last report ten times a
     second, and passes on at once what `progress` raises. The work then ends at its next report,
     with no one waiting for it. While `MAX_ABANDONED` such threads go on, new work waits.
-
-    Parameters
-    ----------
-    work : callable
-        Called with the progress to report to.
-    progress : callable
-        Called by one thread at a time.
-    first_stage : str
-        What is reported until the work does.
     """
     if progress is silent or getattr(_here, "is_worker", False) or getattr(_here, "is_run", False):
         return work(progress)

@@ -34,21 +34,6 @@ def replacing(*paths: Path) -> Iterator[list[Path]]:
     """Give temporary files to be written; they take the place of `paths` when the block is left.
 
     If the block raises, or a file cannot be written, the old files stay as they were.
-
-    Parameters
-    ----------
-    *paths : Path
-        Put in place in this order: the one that refers to the others comes last.
-
-    Yields
-    ------
-    list of Path
-        An empty file for each, in the same folder, with the same ending.
-
-    Raises
-    ------
-    FileError
-        The disk is full, the folder cannot be written to, or the like.
     """
     with ExitStack() as stack:
         try:
@@ -66,18 +51,7 @@ def replacing(*paths: Path) -> Iterator[list[Path]]:
 
 
 def write_all(contents: Mapping[Path, bytes]) -> None:
-    """Write files, all or none; folders that are not there are made.
-
-    Parameters
-    ----------
-    contents : mapping of Path to bytes
-        In the order in which they are put in place, see `replacing`.
-
-    Raises
-    ------
-    FileError
-        They cannot be written. What was there is as it was.
-    """
+    """Write files, all or none; folders that are not there are made."""
     try:
         for path in contents:
             path.parent.mkdir(parents=True, exist_ok=True)
@@ -89,14 +63,7 @@ def write_all(contents: Mapping[Path, bytes]) -> None:
 
 
 def check_place(path: Path) -> None:
-    """Meet what would stop a file from being written before the work that it shall hold.
-
-    Raises
-    ------
-    FileError
-        No such folder, or one that cannot be written to; a folder of that name; a name that the
-        system does not take.
-    """
+    """Meet what would stop a file from being written before the work that it shall hold."""
     if not path.absolute().parent.is_dir():
         raise FileError(f"{path.name}: there is no folder {path.parent} to save it in")
     try:

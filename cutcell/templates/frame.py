@@ -29,11 +29,7 @@ def mirror_axis(nodes: NDArray[np.float64]) -> int:
 def standing(nodes: NDArray[np.float64], *, tall: bool) -> NDArray[np.float64]:
     """Return the axes of a body that stands: left, up and front, rows of (3, 3).
 
-    Parameters
-    ----------
-    nodes : array, shape (n, 3)
-    tall : bool
-        Whether it is taller than it is deep, as those on two legs are.
+    Shapes: nodes (n, 3).
     """
     extent = np.ptp(nodes, axis=0)
     side = mirror_axis(nodes)

@@ -29,13 +29,7 @@ KNUCKLES = np.array([1.0, 0.58, 0.28])
 
 
 def place(body: Interior) -> Joints:
-    """Return where the joints are: the hand, and three of each finger, the thumb first.
-
-    Raises
-    ------
-    SkeletonError
-        There are fewer than three fingers.
-    """
+    """Return where the joints are: the hand, and three of each finger, the thumb first."""
     wrist, tips = _ends(body)
     lengths = {tip: _length(body, tip, [t for t in tips if t != tip], wrist) for tip in tips}
     longest = max(lengths.values(), default=0.0)

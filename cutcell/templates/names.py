@@ -11,11 +11,5 @@ TEMPLATES: tuple[Template, ...] = get_args(Template)
 
 
 def check_template(name: str) -> Template:
-    """Return the template of a name.
-
-    Raises
-    ------
-    ParameterError
-        There is none.
-    """
+    """Return the template of a name."""
     return cast(Template, check_choice("template", name, TEMPLATES))

@@ -17,20 +17,7 @@ def paper_kernel(
 
         w = (1 / ((1 - alpha) d/D + alpha (d/D)^2))^2
 
-    Parameters
-    ----------
-    distance : array, shape (j, n)
-        d; infinite for joints without influence.
-    diagonal : float
-        D, in the unit of the distances.
-    alpha : float
-        Smoothness: 0 falls off like d^-2, 1 like d^-4.
-
-    Returns
-    -------
-    array, shape (n, j)
-        Rows sum to one. A vertex that touches bones (d = 0) follows these alone: the limit
-        of the formula.
+    Shapes: distance (j, n); returns (n, j).
     """
     weights = np.empty(distance.shape[::-1])
     in_threads(
@@ -52,16 +39,7 @@ def pruned_paper_kernel(
 
     The result is that of `paper_kernel` and `prune`. The page calls it while a slider moves.
 
-    Parameters
-    ----------
-    distance, diagonal, alpha
-        See `paper_kernel`.
-    max_influences, threshold, priority
-        See `prune`.
-
-    Returns
-    -------
-    array, shape (n, j)
+    Returns shapes (n, j).
     """
     most = len(distance) if max_influences is None else max_influences
     weights = np.zeros(distance.shape[::-1])

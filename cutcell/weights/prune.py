@@ -26,23 +26,7 @@ def prune(
 ) -> NDArray[np.float64]:
     """Keep the largest weights of each vertex and make them sum to one again.
 
-    Parameters
-    ----------
-    weights : array, shape (n, j)
-        Rows sum to one.
-    max_influences : int or None
-        Weights kept a vertex, at most; None keeps all.
-    threshold : float
-        Of those that are left, weights below it are dropped; a vertex always keeps its
-        largest.
-    priority : array, shape (j,)
-        The joints in the order in which they are kept among equal weights.
-    tell : callable
-        See `progress.Tell`.
-
-    Returns
-    -------
-    array, shape (n, j)
+    Shapes: weights (n, j), priority (j,); returns (n, j).
     """
     most = weights.shape[1] if max_influences is None else max_influences
     pruned = np.zeros(weights.shape)

@@ -48,14 +48,6 @@ def make_cage(body: Body) -> tuple[Cage | None, str, float]:
 
     Parts that are nearer to each other than three voxels become one: the body's lattice
     says how large these are. The last cage made is remembered.
-
-    Returns
-    -------
-    cage : Cage or None
-    failed : str
-        Why there is none.
-    seconds : float
-        That it took the first time.
     """
     return _make(Same(body, body.lattice.resolution))
 

@@ -32,24 +32,7 @@ def harmonic_values(
     On the cage the values are linear in each triangle; inside they have no Laplacian. All
     columns are solved for instead of one coordinate for each vertex: the same, with less work.
 
-    Parameters
-    ----------
-    vertices : array, shape (c, 3)
-    faces : array, shape (m, 3)
-    points : array, shape (n, 3)
-    values : array, shape (c, j)
-    resolution : int
-        Cells along a unit length.
-
-    Returns
-    -------
-    array, shape (n, j)
-        Within the bounds of the values; nan outside the cage.
-
-    Raises
-    ------
-    WorkFailedError
-        The equations could not be solved.
+    Shapes: vertices (c, 3), faces (m, 3), points (n, 3), values (c, j); returns (n, j).
     """
     origin = vertices.min(axis=0) - MARGIN / resolution
     shape = np.ceil((vertices.max(axis=0) - origin) * resolution).astype(int) + MARGIN

@@ -20,19 +20,7 @@ def mean_values(
 ) -> NDArray[np.float64]:
     """Carry values from a cage's vertices to points, by their mean value coordinates.
 
-    Parameters
-    ----------
-    vertices : array, shape (c, 3)
-    faces : array, shape (m, 3)
-        Closed and consistently oriented.
-    points : array, shape (n, 3)
-        Inside or outside.
-    values : array, shape (c, j)
-
-    Returns
-    -------
-    array, shape (n, j)
-        Linear functions are carried exactly; coordinates may be negative.
+    Shapes: vertices (c, 3), faces (m, 3), points (n, 3), values (c, j); returns (n, j).
     """
     cage = np.ascontiguousarray(vertices, np.float64), np.ascontiguousarray(faces, np.int64)
     points = np.ascontiguousarray(points, np.float64)

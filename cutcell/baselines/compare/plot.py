@@ -22,23 +22,7 @@ LEAST = 0.05
 
 
 def plot_comparison(comparison: Comparison, path: str | Path) -> None:
-    """Draw, for each method, its deformation error and L1 on every rig, and their medians.
-
-    Parameters
-    ----------
-    comparison : Comparison
-    path : str or Path
-        Ends in .png, .svg or .pdf.
-
-    Raises
-    ------
-    FileError
-        The file cannot be written, or has another ending.
-    MissingLibraryError
-        Matplotlib is not installed.
-    ParameterError
-        No method has a result.
-    """
+    """Draw, for each method, its deformation error and L1 on every rig, and their medians."""
     path = check_plot(path)
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
@@ -79,15 +63,7 @@ def plot_comparison(comparison: Comparison, path: str | Path) -> None:
 
 
 def check_plot(path: str | Path) -> Path:
-    """Meet what would stop a plot before the work that it shows.
-
-    Raises
-    ------
-    FileError
-        The file cannot be a plot, or its folder is not there.
-    MissingLibraryError
-        Matplotlib is not installed.
-    """
+    """Meet what would stop a plot before the work that it shows."""
     path = Path(path)
     if path.suffix.lower() not in ENDINGS:
         raise FileError(f'{path.name}: a plot cannot be "{path.suffix}"; end in .png, .svg or .pdf')

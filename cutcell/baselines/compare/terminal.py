@@ -18,18 +18,7 @@ NUMBERS, ROOMY_NUMBERS = 5 * 5 + 7 + 5 + 8 * 2, 8 + 9 + 2 * 2 + 1
 
 
 def comparison_table(comparison: Comparison, width: int) -> RenderableType:
-    """Lay out a comparison: one rig in full, or several with medians, means and the worst.
-
-    Parameters
-    ----------
-    comparison : Comparison
-    width : int
-        Columns of the terminal.
-
-    Returns
-    -------
-    rich renderable
-    """
+    """Lay out a comparison: one rig in full, or several with medians, means and the worst."""
     parts: list[RenderableType] = []
     if len(comparison.rigs) == 1:
         parts.append(_one_rig(comparison.rigs[0], width))

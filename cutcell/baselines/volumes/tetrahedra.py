@@ -50,20 +50,6 @@ def tetrahedra(body: Body, limit: float) -> tuple[Tetrahedra | None, str, float]
     """Fill a body: by TetGen, or else by fTetWild. The last one filled is remembered.
 
     TetGen needs a closed surface that does not cut itself; few real characters have one.
-
-    Parameters
-    ----------
-    body : Body
-    limit : float
-        Seconds that either may take.
-
-    Returns
-    -------
-    found : Tetrahedra or None
-    failed : str
-        Why there are none.
-    seconds : float
-        That it took the first time.
     """
     return _fill(Same(body, limit))
 

@@ -87,17 +87,7 @@ def voxel(
 def voxel_distances(body: Body, run: Run | None = None) -> NDArray[np.float64]:
     """Measure how far every welded vertex is from every bone along solid voxels.
 
-    Parameters
-    ----------
-    body : Body
-        Its lattice says how many voxels.
-    run : Run, optional
-        Is told when the voxels and their links are there: the stage "graph".
-
-    Returns
-    -------
-    array, shape (b, k)
-        In the unit cube; infinite where no path leads.
+    Returns shapes (b, k).
     """
     voxels = voxelize(body)
     links, lengths = voxels.links()

@@ -56,13 +56,7 @@ class Voxels:
     def links(
         self, connectivity: Literal[6, 26] = 26
     ) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
-        """List neighbours that share a face (6), or an edge or a corner too (26).
-
-        Returns
-        -------
-        arrays, shapes (e, 2) and (e,)
-            Each pair once, and the distances of their centres.
-        """
+        """List neighbours that share a face (6), or an edge or a corner too (26)."""
         pairs, lengths = [], []
         inner = self.number[1:-1, 1:-1, 1:-1]
         for step in NEIGHBOURS[np.abs(NEIGHBOURS).sum(axis=1) <= (1 if connectivity == 6 else 3)]:
@@ -75,18 +69,6 @@ class Voxels:
 
 def voxelize(body: Body, fill: Literal["flood", "spans"] = "flood") -> Voxels:
     """Mark all voxels that the surface touches, and all that it encloses.
-
-    Parameters
-    ----------
-    body : Body
-        Its lattice says how many voxels: R along each side of the unit cube.
-    fill : {"flood", "spans"}
-        "flood": what a flood from outside does not reach. "spans": what lies between the first
-        and the last voxel of the surface along at least two of the three axes.
-
-    Returns
-    -------
-    Voxels
 
     References
     ----------

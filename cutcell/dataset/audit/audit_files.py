@@ -87,13 +87,7 @@ def _json(value: Any) -> bytes:
 
 
 def read_verdicts(folder: Path) -> dict[tuple[str, str], str]:
-    """Return what a person said of the pairs of an audit; nothing where there is none.
-
-    Raises
-    ------
-    FileError
-        The file holds something else.
-    """
+    """Return what a person said of the pairs of an audit; nothing where there is none."""
     path = folder / VERDICTS
     if not path.exists():
         return {}

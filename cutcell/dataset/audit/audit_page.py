@@ -21,13 +21,6 @@ def write_audit_report(audit: Audit, path: Path) -> None:
 
     Each row has a character and its nearest matches, with their vertices, faces and distance;
     those with the nearest match come first.
-
-    Raises
-    ------
-    FileError
-        It cannot be written.
-    MissingLibraryError
-        Pillow is not installed.
     """
     document = audit.to_dict()
     counts = {

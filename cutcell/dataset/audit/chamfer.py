@@ -100,18 +100,7 @@ def close_joints(
 ) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
     """Find the pairs whose joints are closer than a limit: stage 1.
 
-    Parameters
-    ----------
-    a, b : Block
-    limit : float
-        T_J.
-    same : bool
-        Whether both are the same block: then each pair counts once, and none is of one character.
-
-    Returns
-    -------
-    pairs : array, shape (c, 2), int32
-    distances : array, shape (c,), float64
+    Returns shapes pairs (c, 2), distances (c,).
     """
     pairs = np.empty((len(a) * len(b), 2), np.int32)
     distances = np.empty(len(pairs))
@@ -127,17 +116,7 @@ def close_surfaces(
 ) -> NDArray[np.float64]:
     """Compute how far apart the surfaces of pairs are: stage 2.
 
-    Parameters
-    ----------
-    a, b : Block
-    pairs : array, shape (c, 2), int32
-    limit : float
-        T_V.
-
-    Returns
-    -------
-    array, shape (c,), float64
-        The squared Chamfer distance where it is less than the limit, infinity elsewhere.
+    Shapes: pairs (c, 2); returns (c,).
     """
     distances = np.empty(len(pairs))
     _close_surfaces(

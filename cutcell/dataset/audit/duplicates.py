@@ -193,19 +193,7 @@ class Audit:
 
 
 def clusters(count: int, pairs: Sequence[Pair], threshold: float, least: int) -> NDArray[np.int64]:
-    """Cluster characters by DBSCAN on 1 - exp(-D / T_V), eps 0.5; -1 for those in no cluster.
-
-    Parameters
-    ----------
-    count : int
-        Characters.
-    pairs : sequence of Pair
-        Those of less than the threshold; all others have dissimilarity 1.
-    threshold : float
-        T_V.
-    least : int
-        MinPts.
-    """
+    """Cluster characters by DBSCAN on 1 - exp(-D / T_V), eps 0.5; -1 for those in no cluster."""
     try:
         from sklearn.cluster import DBSCAN
     except ImportError:

@@ -88,16 +88,7 @@ class Likeness:
 
 
 def likeness(a: Traits, b: Traits, surface: float, reach: float) -> Likeness:
-    """Measure a pair.
-
-    Parameters
-    ----------
-    a, b : Traits
-    surface : float
-        Their Chamfer distance.
-    reach : float
-        See `chamfer.reach_of`; NaN where it was not measured.
-    """
+    """Measure a pair."""
     faces = min(a.faces, b.faces) / max(a.faces, b.faces)
     same = a.tree == b.tree
     bones = degrees = mirrored = None
@@ -141,14 +132,7 @@ def _kind(
 
 
 def same_skeletons(traits: Sequence[Traits], other: Sequence[Traits] | None) -> NDArray[np.int64]:
-    """Find the pairs of equal trees whose bone lengths agree, whatever their pose; shape (c, 2).
-
-    Parameters
-    ----------
-    traits : sequence of Traits
-    other : sequence of Traits or None
-        Of the second set; None to compare the first with itself.
-    """
+    """Find the pairs of equal trees whose bone lengths agree, whatever their pose; shape (c, 2)."""
     from sklearn.neighbors import NearestNeighbors
 
     groups = _by_tree(traits)

@@ -31,15 +31,7 @@ figcaption { font-size: 13px; overflow-wrap: anywhere } img { width: 100%; heigh
 
 
 def write_bind_report(report: BindReport, path: Path) -> None:
-    """Write what `bind_all` did as a page: counts, times, failures, the worst by each metric.
-
-    Raises
-    ------
-    FileError
-        It cannot be written.
-    MissingLibraryError
-        Pillow is not installed.
-    """
+    """Write what `bind_all` did as a page: counts, times, failures, the worst by each metric."""
     good = [row for row in report.rows if not row["error"]]
     parts = [
         table(bind_counts(report).items()),

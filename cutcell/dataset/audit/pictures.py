@@ -23,22 +23,7 @@ HUE_STEP = 0.61803
 def picture(vertices: NDArray, faces: NDArray, weights: NDArray | None = None) -> str:
     """Draw a mesh, each part in the colour of the joint that it follows most.
 
-    Parameters
-    ----------
-    vertices : array, shape (n, 3)
-        With y up.
-    faces : array, shape (m, 3)
-    weights : array, shape (n, j), optional
-
-    Returns
-    -------
-    str
-        A PNG as a data URI.
-
-    Raises
-    ------
-    MissingLibraryError
-        Pillow is not installed.
+    Shapes: vertices (n, 3), faces (m, 3), weights (n, j).
     """
     try:
         from PIL import Image, ImageDraw

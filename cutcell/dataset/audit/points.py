@@ -31,22 +31,7 @@ class SurfacePoints:
 def sample_surface(vertices: ArrayLike, faces: ArrayLike, count: int, seed: int) -> SurfacePoints:
     """Draw points on a mesh, as many a face as its area asks for.
 
-    Parameters
-    ----------
-    vertices : array_like, shape (n, 3)
-    faces : array_like of int, shape (m, 3)
-    count : int
-    seed : int
-        The same points for the same seed.
-
-    Returns
-    -------
-    SurfacePoints
-
-    Raises
-    ------
-    MeshError
-        The faces have no area.
+    Shapes: vertices (n, 3), faces (m, 3).
     """
     places, corners = np.asarray(vertices, np.float64), np.asarray(faces)
     a, b, c = (places[corners[:, k]] for k in range(3))
@@ -98,13 +83,7 @@ class Normalised:
 
 
 def normalised(rig: Rig, count: int, seed: int = 0) -> Normalised:
-    """Move a character to the middle of the unit cube, its longest side 1, and draw points on it.
-
-    Raises
-    ------
-    MeshError
-        The faces have no area.
-    """
+    """Scale a character into the unit cube, and draw points on it."""
     low, high = rig.mesh.bounds
     size, middle = float((high - low).max()), (low + high) / 2
     vertices = (rig.mesh.vertices - middle) / size + 0.5

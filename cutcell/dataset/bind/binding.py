@@ -228,13 +228,7 @@ class _Room:
         self._freed = threading.Condition()
 
     def take(self, size: int, total: int) -> None:
-        """Wait for room.
-
-        Raises
-        ------
-        TooLargeError
-            There would be none even if nothing else ran.
-        """
+        """Wait for room."""
         if size > total:
             raise TooLargeError(
                 f"it would need about {gigabytes(size)} of memory, and {gigabytes(total)} are "
@@ -257,22 +251,7 @@ _room = _Room()
 def bind_apart(
     content: Content, key: str, parameters: Parameters, limit: float, slots: int
 ) -> Outcome:
-    """Bind one asset in a process of its own: what a Dask worker does.
-
-    Parameters
-    ----------
-    content, key, parameters
-        See `work.bind_content`.
-    limit : float
-        Seconds.
-    slots : int
-        How many processes like this one share the machine's memory.
-
-    Returns
-    -------
-    Outcome
-        Its record is `passing` where the error is not the asset's.
-    """
+    """Bind one asset in a process of its own: what a Dask worker does."""
     with lend_runner() as runner:
         total = int(available_memory() * SHARE / slots) + _room._taken
         taken: list[int] = []

@@ -55,13 +55,7 @@ class Cluster:
         return list(self._client.scatter(things, hash=False)) if things else []
 
     def next_result(self) -> tuple[str, Any]:
-        """Wait for a job; return its key, and its result or the exception that it ended with.
-
-        Raises
-        ------
-        CutcellError
-            The scheduler was lost.
-        """
+        """Wait for a job; return its key, and its result or the exception that it ended with."""
         future = next(self._done)
         self._under_way -= 1
         key = future.key.removeprefix("cutcell-")
@@ -80,24 +74,7 @@ class Cluster:
 
 @contextmanager
 def connected(scheduler: str | None, workers: int | None, processes: bool) -> Iterator[Cluster]:
-    """Give a cluster: that of an address, or one in this process.
-
-    Parameters
-    ----------
-    scheduler : str or None
-        Address.
-    workers : int or None
-        Jobs at a time here; None for as many as there are cores.
-    processes : bool
-        Whether the workers here are processes.
-
-    Raises
-    ------
-    MissingLibraryError
-        Dask is not installed.
-    CutcellError
-        There is no scheduler at the address.
-    """
+    """Give a cluster: that of an address, or one in this process."""
     try:
         import dask
         from distributed import Client, LocalCluster

@@ -69,22 +69,7 @@ class Runner:
         limit: float,
         room: Callable[[int], None] = lambda size: None,
     ) -> Outcome:
-        """Bind one asset; see `work.bind_content`.
-
-        Parameters
-        ----------
-        content, key, parameters
-            See `work.bind_content`.
-        limit : float
-            Seconds that it may take, start and compilation left out.
-        room : callable
-            Called with the bytes that it needs before they are taken; may wait, or raise.
-
-        Raises
-        ------
-        AssetLostError
-            The process crashed, or took longer.
-        """
+        """Bind one asset; see `work.bind_content`."""
         process = self._started()
         self._send(process, (content, key, parameters))
         needed = self._receive(process, limit, key)
@@ -211,13 +196,7 @@ def write(pipe: IO[bytes], message: Any) -> None:
 
 
 def read(pipe: IO[bytes]) -> Any:
-    """Read a message.
-
-    Raises
-    ------
-    EOFError
-        The other end is gone.
-    """
+    """Read a message."""
     head = pipe.read(LENGTH.size)
     if len(head) < LENGTH.size:
         raise EOFError

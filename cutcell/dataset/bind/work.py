@@ -36,22 +36,7 @@ def bind_content(
     parameters: Parameters,
     reckoned: Callable[[int], None] = lambda size: None,
 ) -> Outcome:
-    """Bind one asset.
-
-    Parameters
-    ----------
-    content : Content
-    key : str
-        Names its files.
-    parameters : Parameters
-    reckoned : callable
-        Called with the bytes of memory that it will take, before it takes them.
-
-    Returns
-    -------
-    Outcome
-        With an `error` where it cannot be bound; nothing is raised for that.
-    """
+    """Bind one asset."""
     seconds: dict[str, float] = {}
     record: dict[str, Any] = {"version": __version__, "error": "", "warnings": []}
     try:

@@ -50,21 +50,7 @@ class Limbs:
 
 
 def melted(limbs: Limbs, detail: int, blend: float) -> Rig:
-    """Return a character whose limbs are one smooth surface, with weights.
-
-    Parameters
-    ----------
-    limbs : Limbs
-    detail : int
-        Samples along the longest side.
-    blend : float
-        Over what distance limbs melt into each other, as a share of the longest side.
-
-    Raises
-    ------
-    MissingLibraryError
-        scikit-image is not installed.
-    """
+    """Return a character whose limbs are one smooth surface, with weights."""
     try:
         from skimage.measure import marching_cubes
     except ImportError:

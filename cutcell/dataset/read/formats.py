@@ -31,11 +31,6 @@ def read_unirig(data: bytes, name: str) -> Rig:
 
     `vertices` (N, 3), `faces` (F, 3), `joints` (J, 3), `parents` (J,) with None for the root,
     `names` (J,), `skin` (N, J). `parents` is pickled, and read as data alone.
-
-    Raises
-    ------
-    FileError, MeshError, SkeletonError, WeightsError
-        It is none, or what it holds cannot be used.
     """
     found = _members(data, name)
     missing = [k for k in ("vertices", "faces", "joints", "parents") if found.get(k) is None]
@@ -102,11 +97,6 @@ def read_samples(path: Path, names: list[str]) -> Iterator[tuple[str, bytes]]:
 
     Such a file has edges and no faces where it was made to evaluate: then the triangles are the
     circles of three edges, turned to agree with their neighbours.
-
-    Raises
-    ------
-    FileError, MeshError, SkeletonError, WeightsError
-        The sample cannot be used.
     """
     with _opened(path) as file:
         for name in names:
@@ -156,21 +146,7 @@ def _sample(group: Any, name: str) -> Rig:
 def faces_of_edges(vertices: NDArray, edges: NDArray) -> NDArray[np.int64]:
     """Find the triangles of a mesh of which only the edges are known.
 
-    Parameters
-    ----------
-    vertices : array, shape (n, 3)
-    edges : array, shape (e, 2)
-        In any direction, once or more often.
-
-    Returns
-    -------
-    array, shape (m, 3)
-        Turned to agree with their neighbours, and outwards where that can be told.
-
-    Raises
-    ------
-    FileError
-        A tenth of the edges is in no triangle: faces had more than three corners.
+    Shapes: vertices (n, 3), edges (e, 2); returns (m, 3).
     """
     import trimesh
 

@@ -97,19 +97,7 @@ class Source:
 
 
 def read_content(content: Content, folder: Path) -> Rig:
-    """Return the rig of some bytes.
-
-    Parameters
-    ----------
-    content : Content
-    folder : Path
-        An empty folder that files may be written to.
-
-    Raises
-    ------
-    CutcellError
-        They are no rig.
-    """
+    """Return the rig of some bytes."""
     first = next(iter(content.files))
     if content.kind == "stored":
         return _stored(content.files[first], folder)

@@ -88,29 +88,7 @@ SHORT = 8
 
 
 def plain_objects(stream: IO[bytes], what: str, most_bytes: int = MOST_BYTES) -> Iterator[Any]:
-    """Yield the entries of a pickled list, or of a pickled array of objects, one at a time.
-
-    Parameters
-    ----------
-    stream : binary file
-        Stands at the beginning of the pickle.
-    what : str
-        Names it in errors.
-    most_bytes : int
-        That one entry may take.
-
-    Yields
-    ------
-    object
-        Dictionaries, lists and tuples of arrays, texts and numbers. A `Refused` stands for
-        whatever else there was, at its place.
-
-    Raises
-    ------
-    FileError
-        The stream is no pickle or a damaged one, or an entry is too large. What came before has
-        been yielded.
-    """
+    """Yield the entries of a pickled list, or of a pickled array of objects, one at a time."""
     machine = _Machine(what, most_bytes)
     limited = _Limited(stream, machine)
     try:

@@ -107,18 +107,7 @@ def find_blocks(
     They are laid out from the middle of the cube, alike on both sides, so that a mirror-symmetric
     body gets mirror-symmetric blocks.
 
-    Parameters
-    ----------
-    places : array, shape (p, 3)
-        The lattice points inside, in the unit cube.
-    resolution : int
-    steps : array, shape (p, 6), int32
-        See `lattice_steps`.
-
-    Returns
-    -------
-    array, shape (p,), int32
-        The innermost point of the block of each lattice point inside; -1 for points in none.
+    Shapes: places (p, 3), steps (p, 6); returns (p,).
     """
     return _find_blocks(places, resolution, steps)
 

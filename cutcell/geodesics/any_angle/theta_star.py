@@ -66,35 +66,7 @@ def any_angle_paths(
 ) -> NDArray[np.float64]:
     """Compute the length of the shortest any-angle path from each joint to each node.
 
-    Parameters
-    ----------
-    graph : CutCellGraph
-        With connectivity "any".
-    contraction : Contraction
-        Of the graph.
-    sources : Sources
-        Kept nodes with line of sight to their bone.
-    bones : Bones
-        In the unit cube. Paths begin on any bone of a joint; for distances of single bones,
-        give each a joint of its own.
-    targets : array, shape (t,), int32
-        Nodes whose distances are wanted.
-    nearest : int, optional
-        k: a node gets the distances of its k nearest joints and, unless `least` is given, of at
-        most k others; of all joints if left out.
-    within : float
-        If `nearest` is given: leave out joints farther than this factor times the nearest one,
-        which counts as at least half a lattice cell away.
-    least : array, shape (K,), optional
-        What `least_distances` returns, if the nearest joint may be none of these bones'.
-    progress : callable
-        Called with the stage "distances".
-
-    Returns
-    -------
-    array, shape (j, t), float64
-        For the joints with bones, ascending. Infinite where no path leads and for joints that
-        are not among the nearest.
+    Shapes: targets (t,), least (K,); returns (j, t).
     """
     ranking = _ranked(contraction, bones, sources)
     count = len(ranking.joints)

@@ -80,12 +80,7 @@ class Chains:
 def find_chains(skeleton: Skeleton, joints: NDArray[np.float64], probe: BodyProbe) -> Chains:
     """Find the bone chains of a skeleton.
 
-    Parameters
-    ----------
-    skeleton : Skeleton
-    joints : array, shape (j, 3)
-        Its joints in the unit cube.
-    probe : BodyProbe
+    Shapes: joints (j, 3).
     """
     near = probe.near(joints)
     near |= _leads_in(skeleton, joints, near, probe)
@@ -217,11 +212,7 @@ def _inferred_bones(
 def _clear_choice(far: NDArray[np.float64], places: NDArray[np.float64]) -> NDArray[np.intp]:
     """Find the nearest candidate of each, shape (n,); -1 if another one is about as near.
 
-    Parameters
-    ----------
-    far : array, shape (n, m)
-        Distances; infinite for those that are no candidates.
-    places : array, shape (m, 3)
+    Shapes: far (n, m), places (m, 3).
     """
     if far.size == 0:
         return np.full(len(far), -1)

@@ -51,21 +51,7 @@ def fit_bones(
 ) -> tuple[Bones, NDArray[np.bool_]]:
     """Find the bones of every joint that may carry weight.
 
-    Parameters
-    ----------
-    graph : CutCellGraph
-    skeleton : Skeleton
-        In the units of the graph's mesh.
-    grid : NodeGrid
-        Of the graph's nodes.
-
-    Returns
-    -------
-    bones : Bones
-        In the unit cube, ordered by joint.
-    aimed : array, shape (b,), bool
-        Leaf bones whose direction neither a joint nor the rest orientation gives; see
-        `aim_leaf_bones`.
+    Returns shapes aimed (b,).
     """
     probe = BodyProbe(graph, grid)
     chains = find_chains(skeleton, graph.lattice.to_unit(skeleton.joints), probe)
@@ -122,11 +108,7 @@ def _leaf_lengths(
     Each ends where it leaves the body (`reach`), or where it comes nearer, through the body, to
     the bone of another joint than to its own joint: a jaw does not continue through the skull.
 
-    Returns
-    -------
-    length : array, shape (t,)
-    on_axis : array, shape (t,), bool
-        Those that point along the rest axis of their joint.
+    Returns shapes length (t,), on_axis (t,).
     """
     joint = bones.joint[leaf]
     place, onward = chains.joints[joint], chains.onward[joint]
@@ -172,21 +154,7 @@ def aim_leaf_bones(
 ) -> Bones:
     """End leaf bones in the middle of the skin that they move.
 
-    Parameters
-    ----------
-    graph : CutCellGraph
-    bones : Bones
-        In the unit cube.
-    aimed : array, shape (b,), bool
-        Which to aim.
-    distance : array, shape (t, k)
-        From each of these to the welded vertices. Infinite where it is not needed.
-    nearest : array, shape (k,)
-        From the nearest of all joints.
-
-    Returns
-    -------
-    Bones
+    Shapes: aimed (b,), distance (t, k), nearest (k,).
     """
     end = bones.end.copy()
     points = graph.nodes[: len(nearest)]

@@ -94,18 +94,7 @@ class BodyProbe:
     ) -> NDArray[np.float64]:
         """Compute where rays come nearer, through the body, to other segments than to their start.
 
-        Parameters
-        ----------
-        start, direction : arrays, shape (p, 3)
-        limit : array, shape (p,)
-            The length of each ray.
-        others : p pairs of arrays, shape (b, 3)
-            Start and end of the segments for each ray.
-
-        Returns
-        -------
-        array, shape (p,)
-            At most `limit`.
+        Shapes: start, direction (p, 3), limit (p,), others (b, 3); returns (p,).
         """
         table, step = self._graph.interior.table, 2 * STEP / self.resolution
         return np.array(

@@ -23,17 +23,7 @@ def rest_directions(skeleton: Skeleton, joints: NDArray[np.float64]) -> NDArray[
     Modelling programs orient joints so that one local axis, nearly always +Y, runs along the bone.
     Joints with one child show which axis it is; leaf joints have it, too.
 
-    Parameters
-    ----------
-    skeleton : Skeleton
-    joints : array, shape (j, 3)
-        Its joints in the unit cube.
-
-    Returns
-    -------
-    array, shape (j, 3), or None
-        Unit vectors in the mesh's frame. None where the file does not hold the joints' rest
-        orientation, or where no axis points along most bones.
+    Shapes: joints (j, 3); returns (j, 3).
     """
     if skeleton.orientations is None:
         return None

@@ -22,21 +22,7 @@ def taut(
 ) -> list[int]:
     """Find the shortest path that is made of some points of a path and ends on the bone.
 
-    Parameters
-    ----------
-    inside : Inside
-    points : array, shape (n, 3)
-        A path along edges, to a node next to the bone.
-    field : array, shape (n,)
-        The distance of each point from the bone.
-    feet : array, shape (n, 3)
-        The point of the bone that is nearest to each.
-
-    Returns
-    -------
-    list of int
-        The points that the path is made of, ascending, the first among them; from the last of
-        them it leads straight to the bone.
+    Shapes: points (n, 3), field (n,), feet (n, 3).
     """
     count = len(points)
     start, end = np.triu_indices(count + 1, 1)

@@ -40,23 +40,7 @@ def exposure(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Measure how much of the outside is seen from the front and from the back of patches.
 
-    Parameters
-    ----------
-    vertices : array, shape (n, 3)
-        In the unit cube.
-    faces : array, shape (m, 3), int32
-    patch : array, shape (m,), int32
-        Of each face.
-    wanted : array, shape (p,), bool
-        Which patches to measure.
-    tell : callable
-        See `progress.Tell`.
-
-    Returns
-    -------
-    front, back : arrays, shape (p,)
-        Share of rays that escape, weighted by the cosine to the face's normal; zero for patches
-        that were not to be measured.
+    Shapes: vertices (n, 3), faces (m, 3), patch (m,), wanted (p,); returns front, back (p,).
 
     References
     ----------

@@ -74,19 +74,7 @@ def find_inverted(
 ) -> NDArray[np.bool_]:
     """Tell which welded faces are inside out.
 
-    Parameters
-    ----------
-    vertices : array, shape (n, 3)
-        In the unit cube.
-    faces : array, shape (m, 3), int32
-    partner : array, shape (3 m,), int32
-        See `surface.edges.MeshEdges`.
-    tell : callable
-        See `progress.Tell`.
-
-    Returns
-    -------
-    array, shape (m,), bool
+    Shapes: vertices (n, 3), faces (m, 3), partner (3 m,); returns (m,).
     """
     a, b, c = faces.T
     proper = (a != b) & (b != c) & (c != a)

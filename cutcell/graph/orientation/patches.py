@@ -50,14 +50,7 @@ def find_patches(
     the two orientations of a component, the one that flips less area is taken. A component that
     is not orientable (a Moebius strip) is left as it is, and divided into several patches.
 
-    Parameters
-    ----------
-    vertices : array, shape (n, 3)
-    faces : array, shape (m, 3), int32
-        Welded.
-    partner : array, shape (3 m,), int32
-        See `surface.edges.MeshEdges`.
-    areas : array, shape (m,)
+    Shapes: vertices (n, 3), faces (m, 3), partner (3 m,), areas (m,).
     """
     flips, patch, is_plain, is_orientable = _flood(faces, partner, areas)
     if is_plain:

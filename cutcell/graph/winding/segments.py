@@ -58,12 +58,6 @@ def _keep_segments(
     Writes the intervals as `rows` (ray, first, last, low, high). When `listing` it has no results
     yet and lists the queries: the row of the expansions, and what `query_points` takes. `points`
     is a workspace.
-
-    Returns
-    -------
-    next_ray : int
-    filled : tuple of 3 ints
-        Number of intervals, of queries, and of segments that are undecided when listing.
     """
     resolution, tau, classes, boundary = shared[:4]
     expansions = classes.expansions

@@ -123,13 +123,7 @@ def is_gltf(data: bytes) -> bool:
 
 
 def read_document(path: Path) -> Document:
-    """Read a GLB or glTF file with all its buffers.
-
-    Raises
-    ------
-    FileError
-        Not a glTF 2.0 file, cut short, or one of its buffers is not there.
-    """
+    """Read a GLB or glTF file with all its buffers."""
     data = read_bytes(path)
     binary: bytes | None = None
     others: list[tuple[int, bytes]] = []

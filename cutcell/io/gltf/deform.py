@@ -19,12 +19,7 @@ def store_deform(
 ) -> None:
     """Store which joints deform.
 
-    Parameters
-    ----------
-    document : dict
-    skins : iterable of (int, sequence of int)
-        A skin, and the joint of the rig for each of its joints.
-    deform : array, shape (j,)
+    Shapes: deform (j,).
     """
     for skin, joints in skins:
         extras = document["skins"][skin].setdefault("extras", {})

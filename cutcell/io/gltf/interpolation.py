@@ -13,20 +13,7 @@ def sample(
 ) -> NDArray:  # fmt: skip
     """Interpolate channels with common keys.
 
-    Parameters
-    ----------
-    before, after : array, shape (f,), seconds
-        The keys around each time; equal where it is outside of all keys.
-    left, right : array, shape (f, c, width), or (f, c, 3, width) for a cubic spline
-        The values there. A spline's three are in-tangent, value, out-tangent.
-    how : {"LINEAR", "STEP", "CUBICSPLINE"}
-    times : array, shape (f,), seconds
-        Values are held before the first and after the last key.
-    path : {"translation", "rotation", "scale"}
-
-    Returns
-    -------
-    array, shape (f, c, width)
+    Shapes: before, after (f,), left, right (f, c, width), times (f,); returns (f, c, width).
     """
     if how == pygltflib.ANIM_STEP:
         return left

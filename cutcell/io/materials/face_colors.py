@@ -140,15 +140,7 @@ class Collected:
         return self._materials.setdefault(key, (len(self._materials), name))[0]
 
     def layer(self, use: Layer, stored: Callable[[], StoredImage]) -> int:
-        """Return the number of a use of an image.
-
-        Parameters
-        ----------
-        use : Layer
-            Its `image` is by the file's numbers.
-        stored : callable
-            Reads the image, if that was not done before.
-        """
+        """Return the number of a use of an image."""
         if use.image not in self._images:
             self._images[use.image] = stored()
         use = replace(use, image=list(self._images).index(use.image))
@@ -170,18 +162,7 @@ def face_colors(
 ) -> FaceColors | None:
     """Return the colours of faces.
 
-    Parameters
-    ----------
-    faces : array, shape (m, 3)
-    pieces : iterable of (object, int, slice)
-        What colours a piece, its first vertex, and its faces.
-    paint : callable
-        See `Paint`.
-
-    Returns
-    -------
-    FaceColors or None
-        None if these are not the faces of the pieces.
+    Shapes: faces (m, 3).
     """
     colors = FaceColors(
         np.zeros((len(faces), 3, 4), np.float32),

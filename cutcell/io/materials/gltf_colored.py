@@ -22,21 +22,7 @@ from .transfer import has_materials, read_materials
 
 
 def with_rig_colors(document: dict[str, Any], data: bytes, rig: Rig) -> Storage | None:
-    """Give a new document the base colours of a rig's file.
-
-    Parameters
-    ----------
-    document : dict
-        To be edited. The body is its first mesh, then come the attachments.
-    data : bytes
-        Its buffer.
-    rig : Rig
-
-    Returns
-    -------
-    Storage or None
-        None, and the document is as it was, where the rig's file has no colours.
-    """
+    """Give a new document the base colours of a rig's file."""
     found = read_materials(rig) if has_materials(rig) else None
     if found is None:
         return None
@@ -45,15 +31,7 @@ def with_rig_colors(document: dict[str, Any], data: bytes, rig: Rig) -> Storage 
 
 
 def with_surface_colors(storage: Storage, surfaces: Surfaces | None) -> Storage:
-    """Give a document that was made of another format the base colours of that file.
-
-    Parameters
-    ----------
-    storage : Storage
-        Of the document; no other edits may follow but of the one that is returned.
-    surfaces : Surfaces, optional
-        By the numbers of the document's meshes.
-    """
+    """Give a document that was made of another format the base colours of that file."""
     if surfaces is None or not surfaces.coloured:
         return storage
     document, data = storage.document, storage.finish()

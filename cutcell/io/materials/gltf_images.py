@@ -24,11 +24,6 @@ def carry_images(storage: Storage, document: Document, target: Path) -> dict[Pat
 
     A ``.gltf`` that becomes a ``.glb``, or a ``.glb`` that moves, takes them in; a ``.gltf``
     that moves takes them along. A file that is not there is left as it is named.
-
-    Returns
-    -------
-    dict
-        Files to write beside the document.
     """
     source = document.path
     moved = os.path.realpath(source.parent) != os.path.realpath(target.parent)

@@ -75,18 +75,7 @@ class Palette:
     def groups(self, colors: FaceColors) -> tuple[list[Group], NDArray[np.float32]]:
         """Part faces by material.
 
-        Parameters
-        ----------
-        colors : FaceColors
-            Of m faces.
-
-        Returns
-        -------
-        groups : list of Group
-            In the order of their first faces.
-        values : array, shape (m, 3, 6), float32
-            Of each corner: texture coordinates, or 0; and red, green, blue and alpha, linear, from
-            0 to 65,535, which a factor is multiplied by.
+        Returns shapes values (m, 3, 6).
         """
         layers, rgba = self._shown(colors)
         # How an image goes on matters where there is one; blending also where a colour is.
@@ -197,11 +186,7 @@ def attributes_of(
 ) -> Iterator[tuple[str, NDArray]]:
     """Yield texture coordinates and colours of vertices, as they are stored, where any are used.
 
-    Parameters
-    ----------
-    groups : list of Group
-    values : array, shape (n, 6)
-        Of each vertex; see `Palette.groups`.
+    Shapes: values (n, 6).
     """
     if any(group.textured for group in groups):
         yield "TEXCOORD_0", values[:, :2].astype("<f4")

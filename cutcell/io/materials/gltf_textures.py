@@ -64,13 +64,7 @@ def layer(
 
 
 def stored_image(document: Document, number: Any) -> StoredImage:
-    """Return an image as it is stored.
-
-    Raises
-    ------
-    FileError
-        It is not there.
-    """
+    """Return an image as it is stored."""
     image = document.item("images", number, "a texture")
     name = document.label("images", number)
     if "uri" in image:

@@ -19,14 +19,7 @@ NUMBERS = ("-o", "-s", "-t", "-mm")
 
 
 def parse_mtl(text: str, images: dict[tuple[str, ...], int]) -> dict[str, Material]:
-    """Return the materials of a file by name.
-
-    Parameters
-    ----------
-    text : str
-    images : dict
-        The numbers of images by the names of their files; new ones are added.
-    """
+    """Return the materials of a file by name."""
     found: dict[str, Material] = {}
     said: dict[str, list[str]] = {}
     name = None

@@ -22,15 +22,7 @@ from .surfaces import ImageFile, Material, Surface, Surfaces
 def scene_surfaces(
     scene: Mapping[str, NDArray], path: Path, numbers: Mapping[int, int]
 ) -> Surfaces | None:
-    """Return what colours the meshes of a scene; None if nothing does.
-
-    Parameters
-    ----------
-    scene : mapping of str to array
-    path : Path
-    numbers : mapping of int to int
-        Of its meshes, in the document.
-    """
+    """Return what colours the meshes of a scene; None if nothing does."""
     meshes = {number: _surface(scene, k) for k, number in numbers.items() if _is_coloured(scene, k)}
     if not meshes:
         return None

@@ -190,17 +190,7 @@ def image_label(image: ImageFile) -> str:
 def stored_corners(stored: NDArray, faces: NDArray) -> NDArray[np.intp] | None:
     """Find faces among those that a file stores: some may be left out now, or turned round.
 
-    Parameters
-    ----------
-    stored : array, shape (m, 3)
-    faces : array, shape (k, 3)
-        In the order of those that are stored.
-
-    Returns
-    -------
-    array, shape (k, 3), or None
-        For each corner its number among the stored ones, 3 face + corner; None where a face is not
-        stored.
+    Shapes: stored (m, 3), faces (k, 3); returns (k, 3).
     """
     order = np.arange(3 * len(stored)).reshape(-1, 3)
     for way in (order, order[:, ::-1]):

@@ -41,16 +41,6 @@ def read_materials(rig: Rig) -> Materials | None:
     """Return the base colours that a rig's file gives it.
 
     What cannot be read is shown in the material's factor, or white, and told in `notes`.
-
-    Parameters
-    ----------
-    rig : Rig
-        Its faces may have been repaired, its joints corrected, or a skeleton been given to it.
-
-    Returns
-    -------
-    Materials or None
-        None where the rig's file has none, or its faces are no longer that file's.
     """
     source = _source(rig)
     if isinstance(source, Surfaces):

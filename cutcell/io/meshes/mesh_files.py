@@ -23,15 +23,7 @@ MESHES = (".obj", ".ply", ".stl", ".off")
 
 
 def read_soup(path: Path, skeleton: Path | None) -> Rig:
-    """Load a mesh and its skeleton, if it has one; the mesh comes without weights.
-
-    Parameters
-    ----------
-    path : Path
-        The mesh.
-    skeleton : Path, optional
-        The skeleton; ``NAME.skeleton.json`` or ``NAME.json`` beside the mesh when left out.
-    """
+    """Load a mesh and its skeleton, if it has one; the mesh comes without weights."""
     mesh, surfaces = read_mesh(path)
     found = skeleton or skeleton_file(path)
     if found is None:

@@ -19,13 +19,6 @@ def parse_obj(text: str) -> TriangleMesh:
 
     Texture coordinates, normals, groups and materials are passed over; `ColouredObj` reads what
     colours the faces.
-
-    Raises
-    ------
-    FileError
-        A line that cannot be read; the error gives its number.
-    MeshError
-        No faces, or a face with a vertex that is not there.
     """
     vertices: list[list[float]] = []
     faces: list[tuple[int, int, int]] = []

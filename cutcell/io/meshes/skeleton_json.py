@@ -24,15 +24,7 @@ def skeleton_file(path: Path) -> Path | None:
 
 
 def read_skeleton_json(path: Path) -> tuple[Skeleton, bool]:
-    """Read a skeleton, and whether the file says which joints may carry weight.
-
-    Raises
-    ------
-    FileError
-        Not JSON, or not of the form that ``docs/formats.md`` describes.
-    SkeletonError
-        A joint is unusable: no position, a parent that is not there, a cycle.
-    """
+    """Read a skeleton, and whether the file says which joints may carry weight."""
     with naming(path):
         text = read_text(path)
         try:

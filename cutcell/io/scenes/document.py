@@ -35,15 +35,7 @@ MOST_INFLUENCES = 64
 
 
 def scene_document(scene: Mapping[str, NDArray], path: Path, generator: str) -> Document:
-    """Return a scene as a document.
-
-    Raises
-    ------
-    FileError
-        It has no meshes, or a node's place is not finite.
-    MeshError
-        A mesh's faces or weights are of vertices that it does not have.
-    """
+    """Return a scene as a document."""
     if not len(scene["mesh_names"]):
         raise FileError("has no mesh")
     bad = np.flatnonzero(~np.isfinite(scene["node_transforms"]).all(axis=1))

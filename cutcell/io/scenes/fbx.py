@@ -26,13 +26,7 @@ LOST = (
 
 
 def read_fbx(path: Path) -> Rig:
-    """Load an FBX file; see `cutcell.load`.
-
-    Raises
-    ------
-    FileError
-        Not such a file, or damaged.
-    """
+    """Load an FBX file; see `cutcell.load`."""
     data = read_bytes(path)
     if not data.startswith(BINARY) and b"FBX" not in data[:4096]:
         raise FileError("is not an FBX file: neither binary nor text in its first lines says so")

@@ -24,13 +24,7 @@ LOST = (
 
 
 def read_usd(path: Path) -> Rig:
-    """Load a USD file; see `cutcell.load`.
-
-    Raises
-    ------
-    FileError
-        Not such a file, damaged, or usd-core is not installed.
-    """
+    """Load a USD file; see `cutcell.load`."""
     read_bytes(path)  # says what it says of every file: not there, a folder, empty
     try:
         scene = run_isolated(

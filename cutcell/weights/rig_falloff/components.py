@@ -37,18 +37,7 @@ def bone_containment(
 ) -> NDArray[np.float64]:
     """Measure which part of each bone lies inside each component.
 
-    Parameters
-    ----------
-    points : array, shape (k, 3)
-    faces : array, shape (m, 3)
-    component : array, shape (k,)
-        Of each welded vertex; see `label_components`.
-    bones : Bones
-
-    Returns
-    -------
-    array, shape (components, b)
-        0 to 1.
+    Shapes: points (k, 3), faces (m, 3), component (k,); returns (components, b).
     """
     along = (np.arange(POINTS) + 0.5) / POINTS
     samples = bones.start[:, None] + along[:, None] * (bones.end - bones.start)[:, None]

@@ -19,10 +19,7 @@ def joint_containment(surface: SurfaceOperators, bones: Bones, joints: int) -> N
 
     Of several bones of a joint, the one that is inside a component most counts there.
 
-    Returns
-    -------
-    array, shape (components, j)
-        0 to 1.
+    Returns shapes (components, j).
     """
     if not surface.component.any():  # a lone component: no bone belongs more to another
         return np.ones((1, joints))
@@ -40,15 +37,7 @@ def cross_component_penalty(containment: NDArray[np.float64]) -> NDArray[np.floa
     the surface of the chest there is not the arm's. No factor is on the component that contains
     most of a joint's bone, nor on one that contains more of this bone than of any other.
 
-    Parameters
-    ----------
-    containment : array, shape (components, j)
-        See `joint_containment`.
-
-    Returns
-    -------
-    array, shape (components, j)
-        1 to 3; 1 for components without bones.
+    Shapes: containment (components, j); returns (components, j).
     """
     of_joint, of_component = containment.max(axis=0), containment.max(axis=1, keepdims=True)
     belongs = np.divide(
@@ -71,19 +60,8 @@ def make_rigid(
 ) -> NDArray[np.float64]:
     """Let components that contain bones of one joint only follow that joint: plates, wheels.
 
-    Parameters
-    ----------
-    containment : array, shape (components, j)
-        See `joint_containment`.
-    component : array, shape (k,)
-        Of each welded vertex.
-    weights : array, shape (k, j)
-    by_itself : array, shape (components,), bool, optional
-        Components that do not.
-
-    Returns
-    -------
-    array, shape (k, j)
+    Shapes: containment (components, j), component (k,), weights (k, j), by_itself (components,);
+    returns (k, j).
     """
     alone = np.count_nonzero(containment, axis=1) == 1
     rigid = (alone if by_itself is None else alone & ~by_itself)[component]

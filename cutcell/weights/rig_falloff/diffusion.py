@@ -62,16 +62,7 @@ class Diffusion:
     ) -> Diffusion:
         """Factorise the equation's matrix.
 
-        Parameters
-        ----------
-        surface : SurfaceOperators
-            Of k welded vertices.
-        depth : array, shape (k,)
-            Distance to the nearest bone through the body, in the unit cube.
-        resolution : int
-            R, of the lattice that distances were measured on.
-        tell : callable
-            See `progress.Tell`.
+        Shapes: depth (k,).
         """
         depth = np.maximum(depth, LEAST_CELLS / resolution)
         # A vertex without area conducts nothing; any positive number makes it keep its own weights.

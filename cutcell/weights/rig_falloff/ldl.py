@@ -28,14 +28,7 @@ def fill_reducing_ordering(start, column):
     Adjacency is kept as cliques. At first these are the edges; to eliminate an unknown unites its
     cliques into one. An unknown's degree is bounded from above.
 
-    Parameters
-    ----------
-    start, column : arrays, shapes (k + 1,) and (e,), int32
-        Of a symmetric matrix.
-
-    Returns
-    -------
-    array, shape (k,), int32
+    Returns shapes (k,).
 
     References
     ----------
@@ -152,19 +145,7 @@ def _relist(v, clique, start, member_of, memberships, size, outside):
 def factorise(start, column, value, diagonal, order, pace):
     """Compute L D Lᵀ of a positive definite matrix, row after row.
 
-    Parameters
-    ----------
-    start, column, value : arrays, shapes (k + 1,), (e,), (e,)
-        Of a symmetric matrix; its diagonal is not looked at.
-    diagonal : array, shape (k,)
-    order : array, shape (k,), int32
-        See `fill_reducing_ordering`.
-    pace : array, shape (2,), int64
-        See `threads.watched`: a row is a step.
-
-    Returns
-    -------
-    Factors
+    Shapes: diagonal (k,), order (k,), pace (2,).
 
     References
     ----------

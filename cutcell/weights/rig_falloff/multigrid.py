@@ -163,12 +163,7 @@ class Multigrid:
         The coarser levels are solved first, in the same way. Then the solution is improved where
         it is not negligible: weights of a joint are zero on most of a character.
 
-        Returns
-        -------
-        array, shape (r,)
-            The unknowns where it is not negligible.
-        array, shape (r, RIGHT_SIDES)
-            The solution there.
+        Returns shapes (r,), (r, RIGHT_SIDES).
         """
         return self._solve(right, TOLERANCE, tell)
 

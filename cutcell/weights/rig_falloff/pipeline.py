@@ -35,23 +35,7 @@ def rig_weights(
 ) -> NDArray[np.float64]:
     """Turn distances into weights for animation.
 
-    Parameters
-    ----------
-    distances : BoneDistances
-        Best with bones fitted to the body, `leaf="fit"`.
-    surface : SurfaceOperators
-        Of their graph.
-    tell : callable
-        See `progress.Tell`.
-    record : callable
-        See `Record`: "penalty", "radius" and "beyond" of the `Division`; and weights (k, j) after
-        the steps "falloff", "spread" and "rigid".
-    adjustments : Adjustments, optional
-
-    Returns
-    -------
-    array, shape (k, j)
-        Per welded vertex. Rows sum to one.
+    Returns shapes (k, j).
     """
     division, diffusion = run_parallel(
         lambda: Division.by(distances, surface, adjustments),
@@ -108,16 +92,7 @@ def permitted(
 ) -> NDArray[np.float64]:
     """Take away what a vertex may not follow; one left with nothing follows its nearest joint.
 
-    Parameters
-    ----------
-    weights : array, shape (n, j)
-    distance : array, shape (j, n)
-    allowed : array, shape (n, j)
-
-    Returns
-    -------
-    array, shape (n, j)
-        Rows sum to one.
+    Shapes: weights (n, j), distance (j, n), allowed (n, j); returns (n, j).
     """
     kept = np.where(allowed, weights, 0.0)
     lost = np.flatnonzero(kept.sum(axis=1) == 0)

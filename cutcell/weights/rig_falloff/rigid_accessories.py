@@ -33,19 +33,7 @@ def attach_accessories(
 
     Each moves rigidly, by the mean weights of the rest of the mesh where they touch.
 
-    Parameters
-    ----------
-    graph : CutCellGraph
-    surface : SurfaceOperators
-    containment : array, shape (components, j)
-        See `joint_containment`.
-    weights : array, shape (k, j)
-    by_itself : array, shape (components,), bool, optional
-        Components that do not.
-
-    Returns
-    -------
-    array, shape (k, j)
+    Shapes: containment (components, j), weights (k, j), by_itself (components,); returns (k, j).
     """
     points, component, areas = surface.points, surface.component, surface.areas
     # What has no area, such as a vertex without a face, touches nothing.

@@ -90,18 +90,7 @@ def classify_cells(
     winding_threshold: float,
     tell: Tell = lambda done: None,
 ) -> CellClasses:
-    """Bound the caps' winding number over the cells of the lattice.
-
-    Parameters
-    ----------
-    clusters : Clusters
-        Of the caps.
-    resolution : int
-    winding_threshold : float
-        tau.
-    tell : callable
-        See `progress.Tell`.
-    """
+    """Bound the caps' winding number over the cells of the lattice."""
     blocks = -(-resolution // BLOCK)
     coarse = np.full((blocks,) * 3, CONSTANT + int(np.ceil(winding_threshold)), np.int32)
     corners, top = np.zeros((0, 3), np.int64), BLOCK

@@ -103,23 +103,7 @@ def variation(local, half):
 def add_far_clusters(clusters, among, local, near, q, reach):
     """Add the clusters that are far from a ball to its expansion, and list the others.
 
-    Parameters
-    ----------
-    clusters : Clusters
-    among : array, int32
-        Disjoint clusters.
-    local : array, shape (SIZE,)
-        An expansion around q; the clusters of negligible error are added.
-    near : array, int32
-        Gets disjoint clusters with all other caps; as long as there are caps.
-    q : tuple of 3 floats
-    reach : float
-        Radius of the ball around q.
-
-    Returns
-    -------
-    count : int
-        Number of near clusters. They are not much smaller than the ball.
+    Shapes: local (SIZE,).
     """
     count = 0
     leaves = len(clusters.start) - 1
@@ -144,23 +128,7 @@ def add_far_clusters(clusters, among, local, near, q, reach):
 def add_clusters(clusters, among, local, q, reach, tolerance):
     """Add clusters to the local expansion of a ball; stop once its error is useless.
 
-    Parameters
-    ----------
-    clusters : Clusters
-    among : array, int32
-        Disjoint clusters.
-    local : array, shape (SIZE,)
-        An expansion around q; changed.
-    q : tuple of 3 floats
-    reach : float
-        Radius of the ball around q.
-    tolerance : float
-        Clusters of a larger error are split.
-
-    Returns
-    -------
-    is_crossed : bool
-        Whether a cap crosses the ball: then the expansion is valid up to whole numbers.
+    Shapes: local (SIZE,).
     """
     is_crossed = False
     leaves = len(clusters.start) - 1

@@ -56,24 +56,7 @@ def query_points(
 ) -> NDArray[np.uint8]:
     """Decide whether midpoints are inside.
 
-    Parameters
-    ----------
-    expansions : LocalExpansions
-        Of the ambiguous cells.
-    clusters : Clusters
-        Of all caps.
-    row : array, shape (q,), int32
-        The row of `expansions` for each midpoint.
-    queries : array, shape (q, 4)
-        Each midpoint, and its slack: the crossings ahead, caps included, less tau. The midpoint is
-        inside if the caps' winding number is at most its slack.
-    tell : callable
-        See `progress.Tell`.
-
-    Returns
-    -------
-    array, shape (q,), uint8
-        INSIDE, OUTSIDE or UNDECIDED.
+    Shapes: row (q,), queries (q, 4); returns (q,).
     """
     start, order = sort_into(row, len(expansions.centre))
     results = np.empty(len(row), np.uint8)

@@ -33,24 +33,7 @@ TINY = 1e-300
 def caps_winding_numbers(clusters, among, centre, reach, tolerance, points, count):
     """Sum the winding numbers of caps at some points.
 
-    Parameters
-    ----------
-    clusters : Clusters
-    among : array, int32
-        Disjoint clusters: those to sum.
-    centre, reach
-        Of a ball that holds all points.
-    tolerance : float
-        Clusters of a larger error are split.
-    points : array, shape (WORKSPACE,)
-        Holds the points; gets the winding number at each, see `VALUE` and `CLEAR`.
-    count : int
-        How many there are, at most BATCH.
-
-    Returns
-    -------
-    error : float
-        A bound of the errors.
+    Shapes: points (WORKSPACE,).
     """
     error, leaves, unscaled = 0.0, len(clusters.start) - 1, 0
     for i in range(count):

@@ -82,20 +82,7 @@ class Accessor:
 def read_accessor(document: Document, index: Any, kind: str, user: str) -> NDArray:
     """Return an accessor's values.
 
-    Parameters
-    ----------
-    document : Document
-    index : int
-        The accessor.
-    kind : str
-        The type it must have, such as "VEC3".
-    user : str
-        Who refers to it, for the error.
-
-    Returns
-    -------
-    array, shape (count, width)
-        float64 for floats and normalised integers, else the stored integer type.
+    Returns shapes (count, width).
     """
     found = find_accessor(document, index, kind, user)
     if index not in document.decoded:

@@ -37,16 +37,7 @@ def read_clips(
 ) -> tuple[Clip, ...]:
     """Return every animation that moves a joint.
 
-    Parameters
-    ----------
-    document : Document
-    nodes : Nodes
-    joints : list of int
-        The node of each joint.
-    inverse : array, shape (j, 4, 4)
-        Inverse bind matrices, for vertices in the rig's space.
-    world : array, shape (4, 4)
-        From the rig's space to the scene.
+    Shapes: inverse (j, 4, 4), world (4, 4).
     """
     animations = document.items("animations")
     if not animations:

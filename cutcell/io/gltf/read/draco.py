@@ -26,13 +26,7 @@ MEMORY_A_BYTE, LEAST_MEMORY = 500, 2**29
 
 
 def decompress_draco(document: Document) -> None:
-    """Replace compressed primitives by plain ones; the numbers of accessors stay.
-
-    Raises
-    ------
-    FileError
-        A primitive cannot be decoded, or does not hold what it announces.
-    """
+    """Replace compressed primitives by plain ones; the numbers of accessors stay."""
     found = _compressed(document)
     packed = [(user, primitive, own) for user, primitive, own in found if not _plain(document, own)]
     views = list(dict.fromkeys(own["bufferView"] for _, _, own in packed))

@@ -25,10 +25,7 @@ def with_faces(rig: Rig, kept: NDArray[np.bool_], turned: NDArray[np.bool_]) -> 
     One that came from glTF can still be saved into its document. There a primitive keeps one
     face at least: it may not be empty.
 
-    Parameters
-    ----------
-    rig : Rig
-    kept, turned : arrays, shape (m,), bool
+    Shapes: kept, turned (m,).
     """
     faces = np.where(turned[:, None], rig.mesh.faces[:, [0, 2, 1]], rig.mesh.faces)
     source = rig.source

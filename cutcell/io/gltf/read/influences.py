@@ -11,17 +11,7 @@ from ...weights import normalised
 def pack_influences(weights: NDArray) -> tuple[NDArray, NDArray]:
     """Sort each row's influences into slots of four.
 
-    Parameters
-    ----------
-    weights : array, shape (n, j), float64
-        On the joints of one skin; rows sum to one, or to zero.
-
-    Returns
-    -------
-    joints : array, shape (s, n, 4), uint16
-        Heaviest first; a slot without weight names joint 0, as glTF asks.
-    shares : array, shape (s, n, 4), float32
-        Rows sum to one as exactly as float32 can, over all s sets together.
+    Shapes: weights (n, j); returns joints (s, n, 4), shares (s, n, 4).
     """
     rounded = normalised(weights).astype(np.float32)
     # What rounding took or gave goes to the heaviest, where it matters least, before they are

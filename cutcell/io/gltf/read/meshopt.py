@@ -24,13 +24,7 @@ triangles: 1 byte for each, that is 3 indices of 4 bytes."""
 
 
 def decompress_meshopt(document: Document) -> None:
-    """Replace the compressed buffer views of a document by what they hold, under their numbers.
-
-    Raises
-    ------
-    FileError
-        A view cannot be decoded, or claims to hold more than its bytes can.
-    """
+    """Replace the compressed buffer views of a document by what they hold, under their numbers."""
     additions = Additions(document)
     found = [
         (i, view, name)

@@ -41,14 +41,7 @@ def vanishes(nodes: Nodes, node: int) -> bool:
 def left_out_meshes(
     document: Document, nodes: Nodes, bound: Iterable[int], attached: Iterable[int]
 ) -> tuple[LeftOut, ...]:
-    """List the meshes that no part and no attachment shows, with the reason.
-
-    Parameters
-    ----------
-    document, nodes
-    bound, attached : iterables of int
-        The nodes whose meshes the rig holds.
-    """
+    """List the meshes that no part and no attachment shows, with the reason."""
     here = set(nodes.in_scene())
     kept = {*bound, *attached}
     found = []

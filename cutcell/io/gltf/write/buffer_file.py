@@ -22,15 +22,6 @@ def buffer_file(path: Path, source: Document, taken: Collection[Path] = ()) -> P
 
     A file that is there is replaced only if it is the buffer of the document that is replaced.
     One that the rig was read from is replaced only if its document is.
-
-    Parameters
-    ----------
-    path : Path
-        Where the document will stand.
-    source : Document
-        What it was read from.
-    taken : collection of Path
-        Files that will be written, too.
     """
     own = _buffers_of(path)
     if os.path.realpath(path) != os.path.realpath(source.path):

@@ -35,17 +35,6 @@ def new_files(rig: Rig, path: Path) -> dict[Path, bytes]:
     The base colours of the rig's file are taken along; see `materials.read_materials`.
 
     `check_fits` says whether the rig can become one.
-
-    Parameters
-    ----------
-    rig : Rig
-    path : Path
-        Where the document will stand: ``.glb``, or ``.gltf`` with a ``.bin`` beside it.
-
-    Raises
-    ------
-    WeightsError
-        The rig has no weights yet.
     """
     if rig.weights is None:
         raise WeightsError("the rig has no weights to save; bind it first")
@@ -63,14 +52,7 @@ def new_files(rig: Rig, path: Path) -> dict[Path, bytes]:
 
 
 def check_fits(rig: Rig) -> None:
-    """Refuse a rig that a new GLB cannot hold.
-
-    Raises
-    ------
-    MeshError, SkeletonError
-        A coordinate does not fit in the 32 bits that glTF has for a number, or there are too many
-        joints.
-    """
+    """Refuse a rig that a new GLB cannot hold."""
     if len(rig.skeleton.joints) > MOST_JOINTS:
         raise SkeletonError(
             f"glTF numbers at most {MOST_JOINTS:,} joints, and the skeleton has "

@@ -32,18 +32,7 @@ def node_shifts(
 ) -> NDArray[np.float64]:
     """Return how far nodes are shifted in their parents' frames when frames move.
 
-    Parameters
-    ----------
-    local : array, shape (k, 4, 4)
-        Each node's matrix at rest.
-    parents : array_like, shape (k,), int
-        -1 for none.
-    own : array, shape (k, 3)
-        By how much each node moves, in its own frame.
-
-    Returns
-    -------
-    array, shape (k, 3)
+    Shapes: local (k, 4, 4), parents (k,), own (k, 3); returns (k, 3).
     """
     above = np.asarray(parents)
     shifts = np.einsum("kab,kb->ka", local[:, :3, :3], own)
@@ -71,13 +60,7 @@ class NewValues:
 
 
 def take_moves(document: dict[str, Any], rig: Rig) -> list[NewValues]:
-    """Shift the nodes of joints that were moved, and take out of a document what is replaced.
-
-    Raises
-    ------
-    SkeletonError
-        A skin without inverse bind matrices, whose joints are where the nodes are.
-    """
+    """Shift the nodes of joints that were moved, and take out of a document what is replaced."""
     source, by = rig.source, own_moves(rig)
     if not by.any():
         return []

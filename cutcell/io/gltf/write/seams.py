@@ -29,20 +29,7 @@ def split_at_seams(
 ) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
     """Split vertices whose corners have different values.
 
-    Parameters
-    ----------
-    faces : array, shape (m, 3)
-    count : int
-        Vertices.
-    values : array, shape (m, 3, k)
-        Of each corner, all finite.
-
-    Returns
-    -------
-    faces : array, shape (m, 3)
-        Of the vertices after splitting. The first corner of each vertex keeps its number.
-    origin : array, shape (count + s,)
-        The vertex that each was split from; of the first `count`, itself.
+    Shapes: faces (m, 3), values (m, 3, k); returns faces (m, 3), origin (count + s,).
     """
     corner = faces.reshape(-1).astype(np.intp)
     keys = values.reshape(len(corner), -1)
@@ -68,20 +55,7 @@ def read_origin(
 ) -> NDArray[np.intp] | None:
     """Return which vertex each vertex of a primitive was split from.
 
-    Parameters
-    ----------
-    document : Document
-    primitive : dict
-    positions : array, shape (n, 3)
-        Of the primitive's vertices.
-    user : str
-        Who asks, for errors.
-
-    Returns
-    -------
-    array, shape (n,), or None
-        None where nothing was split, or where copies are no longer copies: then another program
-        changed the file, and each vertex counts for itself.
+    Shapes: positions (n, 3); returns (n,).
     """
     index = attributes(primitive, user).get(SPLIT_FROM)
     if index is None or document.item("accessors", index, user).get("type") != "SCALAR":
@@ -124,18 +98,7 @@ def own_corners(
 ) -> NDArray[np.int32] | None:
     """Return faces by the numbers that vertices have in a primitive, copies included.
 
-    Parameters
-    ----------
-    document : Document
-    stored : StoredFaces
-        Of the primitive.
-    faces : array, shape (k, 3)
-        Of its vertices as the rig has them; some faces may be left out, or turned round.
-
-    Returns
-    -------
-    array, shape (k, 3), or None
-        None where these are not its faces.
+    Shapes: faces (k, 3); returns (k, 3).
     """
     if stored.origin is None:
         return faces

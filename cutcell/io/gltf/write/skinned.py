@@ -46,20 +46,7 @@ def can_be_skinned(rig: Rig) -> bool:
 
 
 def skinned(rig: Rig, path: Path) -> dict[Path, bytes]:
-    """Return the files to write so that a document holds a rig's skeleton and weights.
-
-    Parameters
-    ----------
-    rig : Rig
-        See `can_be_skinned`.
-    path : Path
-        Where the document will stand: ``.glb``, or ``.gltf`` with a ``.bin`` beside it.
-
-    Raises
-    ------
-    WeightsError
-        The rig has no weights.
-    """
+    """Return the files to write so that a document holds a rig's skeleton and weights."""
     if rig.weights is None:
         raise WeightsError("the rig has no weights to save; bind it first")
     source: BareSource = rig.source

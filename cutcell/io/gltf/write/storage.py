@@ -74,14 +74,7 @@ class Storage:
 
         Arrays of one type share a buffer view if those that they replace shared one.
 
-        Parameters
-        ----------
-        values : array, shape (n, k), uint8, uint16, uint32 or float32, little-endian
-            k is 1, 2, 3, 4 or 16. A single column of integers holds indices of vertices.
-        preferred : int, optional
-            A dropped accessor, to become this one.
-        of_mesh : bool
-            Whether a mesh is drawn from it: matrices and motions are not.
+        Shapes: values (n, k).
         """
         index = preferred
         if index is None or index not in self._free_accessors:

@@ -25,28 +25,7 @@ from .moves import BINDS, NewValues, no_binds, own_moves
 def take_structure(
     document: dict[str, Any], rig: Rig, moves: list[NewValues]
 ) -> tuple[list[StoredPart], list[NewValues]]:
-    """Change the nodes and skins of a document to those of a rig with other joints.
-
-    Parameters
-    ----------
-    document : dict
-        Whose joints were moved already, see `take_moves`.
-    rig : Rig
-    moves : list of NewValues
-        What `take_moves` found.
-
-    Returns
-    -------
-    parts : list of StoredPart
-        With the rig's joints.
-    found : list of NewValues
-        The moves, with the bind matrices of other joints in place of theirs.
-
-    Raises
-    ------
-    SkeletonError
-        A skin without inverse bind matrices, or of whose joints none is left.
-    """
+    """Change the nodes and skins of a document to those of a rig with other joints."""
     source: GltfSource = rig.source
     has_its_joints = rig.origin is None or np.array_equal(rig.origin, np.arange(len(source.nodes)))
     if has_its_joints and np.array_equal(rig.skeleton.parents, source.skeleton.parents):

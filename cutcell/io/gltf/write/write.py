@@ -31,23 +31,7 @@ from .structure import take_structure
 
 
 def rewritten(rig: Rig, path: Path) -> dict[Path, bytes]:
-    """Return the files to write so that a rig's glTF document holds its weights.
-
-    Parameters
-    ----------
-    rig : Rig
-        Loaded from a GLB or glTF file; only its weights may have changed, which joints deform, its
-        joints, as corrections change them, and its faces by `with_faces`.
-    path : Path
-        Where the document will stand: ``.glb``, or ``.gltf`` with a ``.bin`` beside it.
-
-    Raises
-    ------
-    WeightsError
-        No weights, or weight on a joint that the vertex' skin does not have.
-    MeshError, SkeletonError
-        The mesh or the skeleton is no longer the document's.
-    """
+    """Return the files to write so that a rig's glTF document holds its weights."""
     source: GltfSource = rig.source
     _check_same(rig, source)
     document = json.loads(json.dumps(source.document.json))  # a copy, and quicker than deepcopy
