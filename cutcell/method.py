@@ -20,8 +20,8 @@ FALLOFFS: tuple[Falloff, ...] = get_args(Falloff)
 
 MIN_RESOLUTION = 2
 MAX_RESOLUTION = 1024
-MOST_SAMPLES = 1000
-MOST_INFLUENCES = 1024
+MAX_SAMPLES = 1000
+MAX_INFLUENCES = 1024
 
 LEAF_OF: dict[Falloff, Leaf] = {"rig": "fit", "paper": "point"}
 """The bones that each falloff is made for."""
@@ -147,7 +147,7 @@ class Method:
             "connectivity": check_choice("connectivity", self.connectivity, CONNECTIVITIES),
             "winding_threshold": check_number("winding_threshold", self.winding_threshold, 0, 1),
             "orient": check_flag("orient", self.orient),
-            "samples": check_integer("samples", self.samples, 1, MOST_SAMPLES),
+            "samples": check_integer("samples", self.samples, 1, MAX_SAMPLES),
             "leaf": check_choice("leaf", leaf, LEAVES),
             "falloff": falloff,
             "alpha": _checked_alpha(self.alpha, falloff),
@@ -155,7 +155,7 @@ class Method:
         }
         if self.max_influences is not None:
             checked["max_influences"] = check_integer(
-                "max_influences", self.max_influences, 1, MOST_INFLUENCES
+                "max_influences", self.max_influences, 1, MAX_INFLUENCES
             )
         for name, value in checked.items():
             object.__setattr__(self, name, value)

@@ -10,7 +10,7 @@ import pytest
 import cutcell
 
 ROOT = Path(__file__).resolve().parent.parent
-MOST_CALLS = 2
+MAX_CALLS = 2
 PUBLIC = ("cutcell", "cutcell.metrics", "cutcell.pose", "cutcell.baselines.methods")
 PAPER = ("algorithm 1", "algorithm 2", "equation 1", "section 4.3", "section 4.3.1")
 
@@ -47,7 +47,7 @@ def test_each_function_is_found_and_near_a_public_name(row):
     _, file, function, callers = row
     found = imported(file, function)
     assert found.__doc__
-    assert len(callers) <= MOST_CALLS
+    assert len(callers) <= MAX_CALLS
     path = [*callers, function]
     here = public(path[0])
     for name in path[1:]:

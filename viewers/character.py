@@ -21,7 +21,7 @@ CREASE = np.cos(np.radians(45))
 OUTLINE = 0.0009
 """Of a bone: in parts of the diagonal of the character's box."""
 
-MOST_AT_A_PLACE = 64
+MAX_AT_A_PLACE = 64
 """Vertices that share a normal; a heap of more is no smooth surface, and would take for ever."""
 
 
@@ -262,7 +262,7 @@ def smooth_normals(points: NDArray[np.float64], faces: NDArray) -> NDArray[np.fl
     order = np.argsort(group, kind="stable")
     group = group[order]
     total = own.copy()
-    for shift in range(1, min(int(np.bincount(group).max()), MOST_AT_A_PLACE)):
+    for shift in range(1, min(int(np.bincount(group).max()), MAX_AT_A_PLACE)):
         a, b = order[:-shift], order[shift:]
         near = (group[:-shift] == group[shift:]) & ((unit[a] * unit[b]).sum(axis=1) > CREASE)
         np.add.at(total, a[near], own[b[near]])

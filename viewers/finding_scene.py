@@ -16,7 +16,7 @@ from .marks import beads
 from .palette import MARK
 from .skin import Skin, moved, rigid_skin, skin_of_weights
 
-MOST_BEADS = 4000
+MAX_BEADS = 4000
 """Of many vertices, evenly chosen ones are marked."""
 VERTEX, JOINT = 0.0022, 0.009
 """Radii of marks, in parts of the diagonal of the character's box."""
@@ -41,7 +41,7 @@ def finding_marks(rig: Rig, finding: Finding) -> dict[str, Actor]:
             "surface", points, cells, color=MARK, clipped=False, skin=skin
         )
     size = float(np.linalg.norm(np.ptp(to_scene(rig, rig.mesh.vertices), axis=0)))
-    vertices = vertices[:: -(-len(vertices) // MOST_BEADS) or 1]
+    vertices = vertices[:: -(-len(vertices) // MAX_BEADS) or 1]
     for name, places, radius, skin in (
         ("finding vertices", rig.mesh.vertices[vertices], VERTEX, _skin_of_vertices(rig, vertices)),
         (

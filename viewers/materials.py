@@ -19,9 +19,9 @@ FORMATS = ("PNG", "JPEG", "WEBP", "BMP", "TGA")
 LARGEST = 2**26
 """Pixels of an image that is decoded: 8192 by 8192."""
 SIDES = (1024, 512, 256, 128)
-MOST_PIXELS = 2**23
+MAX_PIXELS = 2**23
 """Of all layers together: 32 MB."""
-MOST_LAYERS = 64
+MAX_LAYERS = 64
 OPAQUE = 255
 HALF = 128
 """The alpha at which layers are cut."""
@@ -74,8 +74,8 @@ def decoded(
     problems : dict of int to str
         Why some layers cannot be.
     """
-    shown, more = layers[:MOST_LAYERS], range(MOST_LAYERS, len(layers))
-    problems = dict.fromkeys(more, f"{MOST_LAYERS} images of a file are shown, it has more")
+    shown, more = layers[:MAX_LAYERS], range(MAX_LAYERS, len(layers))
+    problems = dict.fromkeys(more, f"{MAX_LAYERS} images of a file are shown, it has more")
     opened = [_opened(image) for image in images]
     side = _side(opened, len(shown))
     pixels = np.full((len(shown), side, side, 4), OPAQUE, np.uint8)
@@ -156,7 +156,7 @@ _TOO_LARGE = "it has more than 67 million pixels"
 def _side(opened: Sequence[tuple[int, int] | str], layers: int) -> int:
     """Return the side of all layers: no more than the largest needs, and all of them may take."""
     largest = max((max(one) for one in opened if not isinstance(one, str)), default=1)
-    fitting = [side for side in SIDES if layers * side * side <= MOST_PIXELS]
+    fitting = [side for side in SIDES if layers * side * side <= MAX_PIXELS]
     enough = [side for side in fitting if side >= largest]
     return min(enough, default=fitting[0]) if layers else 1
 

@@ -16,9 +16,9 @@ from cutcell_viewers.skin import skin_of_weights
 from ..scenes.weights import painted_colors
 from ..state import State
 from ..state.brush import (
-    LEAST_RADIUS,
-    LEAST_STRENGTH,
-    MOST_RADIUS,
+    MAX_RADIUS,
+    MIN_RADIUS,
+    MIN_STRENGTH,
     PAINTED,
     Selection,
     selected,
@@ -76,13 +76,13 @@ def turn_over(session: Session) -> None:
 def resize(session: Session, steps: int) -> None:
     """Make the brush larger, or smaller."""
     radius = session.state.brush_radius * LARGER**steps
-    session.state.brush_radius = min(max(radius, LEAST_RADIUS), MOST_RADIUS)
+    session.state.brush_radius = min(max(radius, MIN_RADIUS), MAX_RADIUS)
 
 
 def strengthen(session: Session, steps: int) -> None:
     """Make the brush stronger, or weaker."""
     strength = round(session.state.brush_strength + STRONGER * steps, 2)
-    session.state.brush_strength = min(max(strength, LEAST_STRENGTH), 1.0)
+    session.state.brush_strength = min(max(strength, MIN_STRENGTH), 1.0)
 
 
 def paints(state: State) -> bool:

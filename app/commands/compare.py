@@ -24,7 +24,7 @@ from cutcell.runtime.progress import Progress
 
 from ..scenes.compare import found_of
 from ..state import State
-from ..state.compare import FEWEST_VIEWS, MOST_VIEWS, NOW, offered, standard
+from ..state.compare import FEWEST_VIEWS, MAX_VIEWS, NOW, offered, standard
 from ..work.jobs import COMPARING, WAITING
 from ..work.messages import shown, told
 from .session import Session
@@ -76,7 +76,7 @@ def choose(session: Session, name: str, chosen: bool) -> None:
     names = [one for one in state.methods if one != name]
     if chosen:
         names = [one for one in offered(state.rig) if one in {*names, name}]
-    if FEWEST_VIEWS <= len(names) <= MOST_VIEWS:
+    if FEWEST_VIEWS <= len(names) <= MAX_VIEWS:
         minus = state.minus if state.minus in names else ""
         state.param.update(methods=names, minus=minus)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from cutcell.editing.corrections import Corrections
 from cutcell.errors import CutcellError
 
-from ..state.corrections import MOST_IN_ADDRESS, MOST_VERTICES, from_text, to_text
+from ..state.corrections import MAX_IN_ADDRESS, MAX_VERTICES, from_text, to_text
 from .upload_cache import Group, PageUploads
 
 KEY = "~"
@@ -38,9 +38,9 @@ class CorrectionsFile:
             They cannot be written.
         """
         if corrections is not self._said[0]:
-            few = len(corrections.vertices) <= MOST_VERTICES
+            few = len(corrections.vertices) <= MAX_VERTICES
             text = to_text(corrections) if corrections and few else ""
-            if not few or len(text) > MOST_IN_ADDRESS:
+            if not few or len(text) > MAX_IN_ADDRESS:
                 self._said = (corrections, "")  # should it fail, then once
                 text = self._kept(corrections)
             self._said = (corrections, text)

@@ -23,9 +23,9 @@ KEPT_SECONDS = 15 * 60.0
 """How long files stay when no page uses them any more."""
 
 MB = 2**20
-MOST_BYTES = 2048 * MB
+MAX_BYTES = 2048 * MB
 """Of all uploaded files together."""
-MOST_OF_A_PAGE = 500 * MB
+MAX_OF_A_PAGE = 500 * MB
 """Of those that one page has sent and that are still there."""
 SPARE_BYTES = 256 * MB
 """What uploads leave free on the disk, for others."""
@@ -157,27 +157,27 @@ class UploadCache:
         self.storage.close()
 
     def _check_page(self, size: int, owner: object) -> None:
-        if size > MOST_OF_A_PAGE:
+        if size > MAX_OF_A_PAGE:
             raise FileError(
-                f"the files have {_mb(size)} together; a page takes {_mb(MOST_OF_A_PAGE)} (the "
+                f"the files have {_mb(size)} together; a page takes {_mb(MAX_OF_A_PAGE)} (the "
                 "cutcell command takes any)"
             )
-        held = self._make_room(size, MOST_OF_A_PAGE, owner)
-        if held + size > MOST_OF_A_PAGE:
+        held = self._make_room(size, MAX_OF_A_PAGE, owner)
+        if held + size > MAX_OF_A_PAGE:
             raise FileError(
                 f"this page has sent {_mb(held)} that are still in use, and may send "
-                f"{_mb(MOST_OF_A_PAGE)}; reload it, or open the file by the cutcell command"
+                f"{_mb(MAX_OF_A_PAGE)}; reload it, or open the file by the cutcell command"
             )
 
     def _check_all(self, size: int) -> None:
-        held = self._make_room(size, MOST_BYTES)
-        if held + size > MOST_BYTES:
+        held = self._make_room(size, MAX_BYTES)
+        if held + size > MAX_BYTES:
             raise FileError(
                 f"the server holds {_mb(held)} of uploaded files that are in use, and takes "
-                f"{_mb(MOST_BYTES)}; try again when others have closed their pages"
+                f"{_mb(MAX_BYTES)}; try again when others have closed their pages"
             )
         if self.storage.free() - size < SPARE_BYTES:
-            self._make_room(MOST_BYTES, MOST_BYTES)  # whatever nobody uses
+            self._make_room(MAX_BYTES, MAX_BYTES)  # whatever nobody uses
         free = self.storage.free()
         if free - size < SPARE_BYTES:
             raise FileError(

@@ -11,7 +11,7 @@ from cutcell.runtime.display import shown_name
 from ..commands.brush import clear_selection, invert_selection
 from ..commands.moving import mirror_of
 from ..commands.session import Session
-from ..state.brush import MOST_RADIUS, selected
+from ..state.brush import MAX_RADIUS, selected
 from .parts import caption, choice, section, slider, when
 
 MODES = {"Add": "add", "Subtract": "subtract", "Replace": "replace", "Smooth": "smooth",
@@ -41,7 +41,7 @@ def brush(session: Session) -> pmui.Column:
         caption(when(_told, state.param.rig, state.param.joint, state.param.brush_mode)),
         slider(
             state.param.brush_radius, "Radius, of the character's longest side", step=0.005,
-            end=MOST_RADIUS, format="0.0 %",
+            end=MAX_RADIUS, format="0.0 %",
         ),
         slider(
             state.param.brush_strength, "Strength", step=0.05,

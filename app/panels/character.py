@@ -16,7 +16,7 @@ from ..state import State
 from ..widgets.file_drop import FileDrop
 from .parts import GAP, as_text, caption, section, unique_names
 
-MOST_FAULTS = 2
+MAX_FAULTS = 2
 """The panel Check tells of all."""
 OWN = "Your own"
 HINT = f"GLB, glTF, VRM, FBX, USD, OBJ, … · up to {MAX_UPLOAD // 2**20} MB"
@@ -73,4 +73,4 @@ def faults(state: State) -> list[str]:
     if state.diagnosis is None:
         return []
     severe = [f for f in state.diagnosis.findings if f.severity != "note"]
-    return [finding.message for finding in severe[:MOST_FAULTS]]
+    return [finding.message for finding in severe[:MAX_FAULTS]]

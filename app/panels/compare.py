@@ -13,7 +13,7 @@ from ..commands import pose as moving
 from ..commands.session import Session
 from ..scenes.compare import field_shown, found_of, title_of
 from ..state import State
-from ..state.compare import FEWEST_VIEWS, MOST_VIEWS, offered
+from ..state.compare import FEWEST_VIEWS, MAX_VIEWS, offered
 from ..widgets.methods import Methods
 from .parts import BUTTONS, GAP, caption, follow, lead, section, when
 
@@ -138,7 +138,7 @@ def rows_of(state: State) -> list[dict[str, Any]]:
         values = (None,) * 3 if one is None else (one.l1, one.deformation, one.seconds)
         if name == "artist":
             values = (*values[:2], None)  # nobody knows how long that took
-        full = len(state.methods) >= MOST_VIEWS
+        full = len(state.methods) >= MAX_VIEWS
         rows.append(
             {
                 "id": name,

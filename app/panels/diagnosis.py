@@ -19,7 +19,7 @@ from ..state import State
 from .parts import GAP, caption, lead, section, when, words
 
 ICONS = {"error": "error", "warning": "warning", "note": "info"}
-MOST_DETAILS = 8
+MAX_DETAILS = 8
 OF_PARTS = ("boneless-components", "unreachable-vertices")
 """What can be mended by a choice of what parts of the mesh follow."""
 LEFT_OUT = ("stray-weights", "joints-outside")
@@ -90,8 +90,8 @@ def _entry(session: Session, finding: Finding) -> pmui.Column:
     )
     lines = [title, _line(finding.message)]
     if is_chosen:
-        more = len(finding.details) - MOST_DETAILS
-        lines += [_line(text) for text in finding.details[:MOST_DETAILS]]
+        more = len(finding.details) - MAX_DETAILS
+        lines += [_line(text) for text in finding.details[:MAX_DETAILS]]
         lines += [_line(f"and {more} more")] if more > 0 else []
         lines.append(_line(finding.advice, "text.primary"))
         if finding.repair:

@@ -8,7 +8,7 @@ import panel_material_ui as pmui
 
 from ..commands.session import Session
 from ..state import State
-from ..state.geodesics import MEASURES, MOST_MEASURES
+from ..state.geodesics import MAX_MEASURES, MEASURES
 from .cutting import cutting
 from .parts import GAP, caption, choice, lead, section, slider, weightless, when
 
@@ -60,7 +60,7 @@ def _beside(state: State) -> list[Any]:
     for parameter in _switches(state):
         one = switch(parameter)
         full = when(
-            lambda on, *chosen: not on and sum(chosen) >= MOST_MEASURES,
+            lambda on, *chosen: not on and sum(chosen) >= MAX_MEASURES,
             parameter,
             *_switches(state),
         )

@@ -12,7 +12,7 @@ from cutcell.errors import ParameterError
 from cutcell.rig.checks import check_choice
 
 from ..state import State
-from ..state.geodesics import MEASURES, MOST_MEASURES
+from ..state.geodesics import MAX_MEASURES, MEASURES
 
 LAYERS = {
     "body": "body",
@@ -76,8 +76,8 @@ def settings_of(
     if measures is not None:
         for name in [name.strip() for name in measures.split(",")]:
             said[f"beside_{check_choice('measure', name, MEASURES)}"] = True
-        if sum(one.startswith("beside_") for one in said) > MOST_MEASURES:
-            raise ParameterError(f"at most {MOST_MEASURES} measures stand side by side")
+        if sum(one.startswith("beside_") for one in said) > MAX_MEASURES:
+            raise ParameterError(f"at most {MAX_MEASURES} measures stand side by side")
     return said
 
 

@@ -17,7 +17,7 @@ from cutcell_viewers.palette import joint_colors
 from ..state import State
 from .memo import Memo
 
-MOST_JOINTS = 4
+MAX_JOINTS = 4
 """How many joints are explained, the heaviest first."""
 
 
@@ -41,7 +41,7 @@ def explanation_facts(state: State) -> dict[int, dict[str, Any]]:
         distance is multiplied by, and why), "effective" and "steps" (name and weight).
     """
     found = explanation_of(state)
-    shares = () if found is None else found.joints[:MOST_JOINTS]
+    shares = () if found is None else found.joints[:MAX_JOINTS]
     return {share.joint: _facts(share) for share in shares}
 
 
@@ -76,7 +76,7 @@ def explained_paths(state: State, memo: Memo) -> dict[str, Actor]:
 def _tubes(state: State, found: Explanation) -> dict[str, Actor]:
     rig, tubes = state.rig, {}
     colors = joint_colors(rig.skeleton.parents)
-    for share in found.joints[:MOST_JOINTS]:
+    for share in found.joints[:MAX_JOINTS]:
         if share.path and share.weight > 0:
             points = np.array([share.path[0].start, *(piece.end for piece in share.path)])
             tube = path_tube(rig, to_scene(rig, points))

@@ -20,9 +20,9 @@ from ..state import State
 from .explain import explanation_facts
 from .memo import Memo
 
-MOST_WEIGHTS = 6
-MOST_DISTANCES = 5
-LEAST_OFFERED = 4
+MAX_WEIGHTS = 6
+MAX_DISTANCES = 5
+MIN_OFFERED = 4
 NO_WEIGHT = 5e-3
 """Weights that would be shown as 0.00 are not shown."""
 
@@ -59,9 +59,9 @@ def vertex_facts(state: State, memo: Memo) -> dict[str, Any] | None:
     artist = None if rig.weights is None else rig.weights[vertex]
     ours = binding.weights[vertex]
     either = ours if artist is None else np.maximum(ours, artist)
-    shown = [j for j in np.argsort(-either, kind="stable")[:MOST_WEIGHTS] if either[j] > NO_WEIGHT]
+    shown = [j for j in np.argsort(-either, kind="stable")[:MAX_WEIGHTS] if either[j] > NO_WEIGHT]
     distance = binding.distances.at(slice(None), vertex)
-    near = [j for j in np.argsort(distance, kind="stable")[:MOST_DISTANCES]]
+    near = [j for j in np.argsort(distance, kind="stable")[:MAX_DISTANCES]]
     which, sizes = memo("components", (binding.graph,), lambda: components(binding.graph))
     own = int(which[vertex])
     fallback = int(binding.distances.fallback[vertex])
@@ -93,10 +93,10 @@ def _offered(state: State, weights: NDArray, distance: NDArray) -> list[int]:
     held = [j for j in np.argsort(-weights, kind="stable").tolist() if weights[j] > 0]
     near = [j for j in np.argsort(distance, kind="stable").tolist() if distance[j] < np.inf]
     found = dict.fromkeys([*held, state.joint, *near])
-    return [j for j in found if allowed[j]][: max(len(held) + 1, LEAST_OFFERED)]
+    return [j for j in found if allowed[j]][: max(len(held) + 1, MIN_OFFERED)]
 
 
-MOST_NEIGHBOURS = 26
+MAX_NEIGHBOURS = 26
 """How many neighbours of a node are listed, the nearest first."""
 
 
@@ -130,7 +130,7 @@ def node_facts(state: State, memo: Memo) -> dict[str, Any] | None:
                 "kind": KINDS[graph.node_kind[other]],
                 "length": length * graph.lattice.size,
             }
-            for length, other in near[:MOST_NEIGHBOURS]
+            for length, other in near[:MAX_NEIGHBOURS]
         ],
         "triangle": None if face < 0 else [face, *state.rig.mesh.faces[face].tolist()],
         "vertices": np.flatnonzero(graph.vertex_node == node)[:8].tolist(),

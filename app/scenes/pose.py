@@ -23,7 +23,7 @@ from .weights import selection_marks, weights_look, weights_seen
 
 SWING_DEGREES = 50.0
 GHOST_OPACITY = 0.38
-MOST_NUMBERS = 2**22
+MAX_NUMBERS = 2**22
 """Of a motion, sent to the browser (16 MB): a long one of many joints has fewer frames there."""
 TOGETHER = 64
 """Frames that are sampled at a time."""
@@ -202,7 +202,7 @@ def clip_part(state: State, clip: Clip | None) -> dict[str, Any] | None:
     """Return a motion as the view is told it."""
     if clip is None or not len(times := clip.times):
         return None
-    most = max(MOST_NUMBERS // max(16 * clip.joints, 1), 2)
+    most = max(MAX_NUMBERS // max(16 * clip.joints, 1), 2)
     if len(times) > most:
         times = np.linspace(0, clip.duration, most)
     matrices = np.empty((len(times), clip.joints, 4, 4), np.float32)

@@ -25,11 +25,11 @@ from tornado.httputil import HTTPServerRequest
 from tornado.routing import Matcher, Rule
 from tornado.web import RequestHandler, StaticFileHandler
 
-MOST_SESSIONS = 64
+MAX_SESSIONS = 64
 """Pages that are open at once; each holds some 30 MB, and its character."""
 
 FULL = (
-    f"As many pages of this server are open as it holds ({MOST_SESSIONS}). Close one, or come back "
+    f"As many pages of this server are open as it holds ({MAX_SESSIONS}). Close one, or come back "
     "later."
 )
 
@@ -91,7 +91,7 @@ def guard(
 def full(context: ApplicationContext) -> bool:
     """Whether no more sessions can begin. Those that a browser has left are asked to end."""
     sessions = list(context.sessions)
-    if len(sessions) < MOST_SESSIONS:
+    if len(sessions) < MAX_SESSIONS:
         return False
     for session in sessions:
         if session.connection_count == 0:

@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 from cutcell.editing.stroke import BrushMode
 from cutcell.rig.rig import TriangleMesh
 
-LEAST_RADIUS, MOST_RADIUS = 0.005, 0.5
+MIN_RADIUS, MAX_RADIUS = 0.005, 0.5
 """Of the character's longest side."""
-LEAST_STRENGTH = 0.05
+MIN_STRENGTH = 0.05
 PAINTED = ("weights", "pose")
 """The panels on which weights are painted: at rest, and posed."""
 
@@ -39,9 +39,9 @@ class BrushChoices(param.Parameterized):
     brush: Any = param.Boolean(False, label="Paint")
     brush_mode: Any = param.Selector(default="add", objects=[*get_args(BrushMode), "select"])
     brush_radius: Any = param.Number(
-        0.06, bounds=(LEAST_RADIUS, MOST_RADIUS), doc="Part of the character's longest side."
+        0.06, bounds=(MIN_RADIUS, MAX_RADIUS), doc="Part of the character's longest side."
     )
-    brush_strength: Any = param.Number(0.5, bounds=(LEAST_STRENGTH, 1))
+    brush_strength: Any = param.Number(0.5, bounds=(MIN_STRENGTH, 1))
     brush_value: Any = param.Number(1.0, bounds=(0, 1), doc="What weights are replaced by.")
     brush_mirrored: Any = param.Boolean(True, label="The other side, too")
     brush_selection: Any = param.Parameter(

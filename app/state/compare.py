@@ -12,7 +12,7 @@ NOW = "now"
 """Stands among the methods for what the page computed, as it is set."""
 
 FEWEST_VIEWS = 2
-MOST_VIEWS = 4
+MAX_VIEWS = 4
 
 
 def offered(rig: Any) -> list[str]:

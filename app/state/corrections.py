@@ -17,11 +17,11 @@ from cutcell.editing.restructure import restructured, restructured_skeleton
 from cutcell.errors import CutcellError
 from cutcell.rig.rig import Rig
 
-MOST_IN_ADDRESS = 1500
+MAX_IN_ADDRESS = 1500
 """Letters: longer addresses are cut by some programs that pass them on."""
-MOST_VERTICES = 300
+MAX_VERTICES = 300
 """Overruled ones: more are not even tried to be written so short, which takes a while."""
-MOST_BYTES = 4 * 2**20
+MAX_BYTES = 4 * 2**20
 """Of corrections as JSON: some characters are overruled vertex by vertex."""
 
 
@@ -192,7 +192,7 @@ def from_text(text: str) -> Corrections:
     """
     try:
         packed = base64.urlsafe_b64decode(text + "=" * (-len(text) % 4))
-        plain = zlib.decompressobj().decompress(packed, MOST_BYTES)
+        plain = zlib.decompressobj().decompress(packed, MAX_BYTES)
         return Corrections.from_json(plain.decode())
     except (binascii.Error, zlib.error, UnicodeDecodeError, CutcellError) as error:
         raise ValueError(str(error)) from None

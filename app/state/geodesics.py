@@ -8,7 +8,7 @@ import param
 
 from cutcell.baselines.measures import Measure
 
-MOST_MEASURES = 4
+MAX_MEASURES = 4
 """That stand side by side."""
 
 MEASURES: dict[Measure, str] = {
@@ -49,4 +49,4 @@ class GeodesicsChoices(param.Parameterized):
     def measures(self) -> list[Measure]:
         """The measures that stand side by side; none while there is one view."""
         chosen = [name for name in MEASURES if getattr(self, f"beside_{name}")]
-        return chosen[:MOST_MEASURES]
+        return chosen[:MAX_MEASURES]

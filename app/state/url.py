@@ -12,7 +12,7 @@ from cutcell.editing.corrections import Corrections
 
 from . import State
 from .brush import BRUSH
-from .compare import FEWEST_VIEWS, MOST_VIEWS, offered, standard
+from .compare import FEWEST_VIEWS, MAX_VIEWS, offered, standard
 from .tour import TOUR
 
 OWN = frozenset({"name", "demo", "queued", "joint", "dark", "moving", "playing", "clip", "skipped",
@@ -183,7 +183,7 @@ def _turns(text: str) -> dict[int, tuple[float, ...]]:
 
 def _methods(text: str, fewest: int) -> list[str]:
     names = list(dict.fromkeys(text.split(",")))
-    if not fewest <= len(names) <= MOST_VIEWS or not {*names} <= {*offered(None), "artist"}:
+    if not fewest <= len(names) <= MAX_VIEWS or not {*names} <= {*offered(None), "artist"}:
         raise ValueError(text)
     return names
 

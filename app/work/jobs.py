@@ -18,7 +18,7 @@ Schedule = Callable[[Callable[[], Any]], Any]
 PATIENCE = 1.0
 """Seconds that others wait for work that was stopped, and goes on because it does not look."""
 
-MOST_UNRESPONSIVE = 3
+MAX_UNRESPONSIVE = 3
 """How many such jobs may go on beside those that are wanted; then others wait all the same."""
 
 
@@ -53,7 +53,7 @@ class Slots:
     def _free(self) -> bool:
         now = time.monotonic()
         unresponsive = sum(now - job.stopped > PATIENCE for job in self._held)
-        return len(self._held) - min(unresponsive, MOST_UNRESPONSIVE) < self._places
+        return len(self._held) - min(unresponsive, MAX_UNRESPONSIVE) < self._places
 
 
 COMPUTING = Slots()

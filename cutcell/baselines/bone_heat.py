@@ -18,7 +18,7 @@ from .visibility import Blockers
 
 TIE = 1e-4
 """Relative: bones this nearly as near as the nearest warm a vertex as well."""
-LEAST_DISTANCE = 1e-4
+MIN_DISTANCE = 1e-4
 """Of the longest side; a vertex on a bone itself would be infinitely warm."""
 FACING = 1.001
 """Distance is divided by half of this plus the cosine between normal and bone: surface that
@@ -79,7 +79,7 @@ def bone_heat(
                 "sees; their nearest bones warm them through the surface"
             )
         run.end("heat")
-        screening = heat / np.maximum(distance, LEAST_DISTANCE) ** 2
+        screening = heat / np.maximum(distance, MIN_DISTANCE) ** 2
         return _faded(_equilibrium(body, screening, share))
 
     return bind_by(solve, rig, method)

@@ -42,7 +42,7 @@ EPILOG = """Examples:
 
 - `cutcell explain character.glb 120 --json | jq '.joints[].steps'`  (for a script)"""
 
-MOST_JOINTS = 6
+MAX_JOINTS = 6
 """Joints that are printed; `--json` has them all."""
 
 
@@ -107,7 +107,7 @@ def _print(heading: str, found: Explanation) -> None:
     place = ", ".join(f"{x:.4g}" for x in found.position)
     table = Table(title=Text(f"{heading} at ({place})", "bold"), title_justify="left", box=None)
     table.add_column(style="dim", no_wrap=True)
-    shares = found.joints[:MOST_JOINTS]
+    shares = found.joints[:MAX_JOINTS]
     for share in shares:
         table.add_column(Text(shown_name(share.name), overflow="fold"), justify="right")
     for name, cells in _rows(shares, STEPS):

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-MOST_NAMES = 12
+MAX_NAMES = 12
 """Names listed in one row of a table; `--json` has them all."""
 
 
@@ -69,9 +69,9 @@ def _hidden(part: Mapping[str, Any]) -> str:
 def _named(items: Sequence[Mapping[str, Any]], notes: Sequence[str]) -> str:
     shown = [
         item["name"] + (f" ({note})" if note else "")
-        for item, note in zip(items[:MOST_NAMES], notes, strict=False)
+        for item, note in zip(items[:MAX_NAMES], notes, strict=False)
     ]
-    more = [f"and {len(items) - MOST_NAMES} more"] if len(items) > MOST_NAMES else []
+    more = [f"and {len(items) - MAX_NAMES} more"] if len(items) > MAX_NAMES else []
     return f"{len(items):,}: " + ", ".join(shown + more)
 
 

@@ -16,7 +16,7 @@ from ..rig.inputs import RigLike, as_rig
 from ..rig.rig import Rig
 from ..runtime.progress import Progress, silent
 from ..weights.prune import prune
-from ..weights.rig_falloff.diffusion import LEAST_CELLS
+from ..weights.rig_falloff.diffusion import MIN_CELLS
 from ..weights.rig_falloff.pipeline import TAIL
 from .subject import Subject
 from .weights import INFLUENCES, measurable
@@ -159,7 +159,7 @@ def _kept(
     through = distances.all_joints(subject.progress).T
     at_welded = np.zeros((count, weights.shape[1]))
     np.maximum.at(at_welded, welded, weights)
-    least = np.maximum(through.min(axis=1, keepdims=True), LEAST_CELLS / subject.resolution)
+    least = np.maximum(through.min(axis=1, keepdims=True), MIN_CELLS / subject.resolution)
     # Where no path leads, or none begins in the body, distances tell nothing.
     is_near = (through <= NEAR * least) | ~np.isfinite(through)
     is_near[:, ~measurable(subject, distances)] = True

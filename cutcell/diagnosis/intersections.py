@@ -16,10 +16,10 @@ from ..runtime.compiled import compiled
 from .finding import Finding, count, share
 from .subject import Subject
 
-MOST_TESTS = 5_000_000
-MOST_CELLS = 64
+MAX_TESTS = 5_000_000
+MAX_CELLS = 64
 """Along the longest side."""
-MOST_ENTRIES = 40
+MAX_ENTRIES = 40
 """Cells that a face lies in, on average: with more, the cells are made larger."""
 
 
@@ -52,14 +52,14 @@ def intersecting_faces(
     """
     corners = points[faces]
     low, high = corners.min(axis=1), corners.max(axis=1)
-    cells = int(np.clip(np.sqrt(len(faces) / 6), 1, MOST_CELLS))
+    cells = int(np.clip(np.sqrt(len(faces) / 6), 1, MAX_CELLS))
     while cells > 1:
         first, last = (np.clip((x * cells).astype(np.int64), 0, cells - 1) for x in (low, high))
-        if (last - first + 1).prod(axis=1).sum() <= MOST_ENTRIES * len(faces):
+        if (last - first + 1).prod(axis=1).sum() <= MAX_ENTRIES * len(faces):
             break
         cells //= 2
     first, last = (np.clip((x * cells).astype(np.int64), 0, cells - 1) for x in (low, high))
-    found, is_whole = _cross(points, faces, low, high, first, last, cells, MOST_TESTS)
+    found, is_whole = _cross(points, faces, low, high, first, last, cells, MAX_TESTS)
     return found, bool(is_whole)
 
 

@@ -16,7 +16,7 @@ OUTSIDE, FAR_OUTSIDE = 0.05, 0.15
 """Of the longest side: a joint this far from the body is told, and most likely wrong."""
 SAME = 1e-5
 """Of the longest side: joints this near to each other lie in one place."""
-MOST_LINES = 40
+MAX_LINES = 40
 
 
 def check_joints(subject: Subject) -> Iterator[Finding]:
@@ -137,5 +137,5 @@ def _named(subject: Subject, joints: NDArray[np.intp], notes: list[str]) -> tupl
         f"{_name(subject, j)}{': ' if note else ''}{note}"
         for j, note in zip(joints.tolist(), notes, strict=True)
     ]
-    more = len(lines) - MOST_LINES
-    return (*lines[:MOST_LINES], *([f"and {more} more"] if more > 0 else []))
+    more = len(lines) - MAX_LINES
+    return (*lines[:MAX_LINES], *([f"and {more} more"] if more > 0 else []))

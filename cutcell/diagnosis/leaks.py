@@ -31,7 +31,7 @@ ASYMMETRIC = 0.01
 """Of the vertices that may differ as much: artists mend single ones."""
 DEGREES = 45.0
 """How far a joint turns in the pose that shows a finding."""
-MOST_LINES = 40
+MAX_LINES = 40
 
 
 def check_leaks(subject: Subject) -> Iterator[Finding]:
@@ -69,7 +69,7 @@ def _stray(
         details=tuple(
             f"{shown_name(names[j])}: {100 * held[j]:.2g}% of the weight, nearest to "
             f"{share(owned[j], 1)} of the surface"
-            for j in found[np.argsort(-owned[found])][:MOST_LINES]
+            for j in found[np.argsort(-owned[found])][:MAX_LINES]
         ),
         pose=pose_of(subject, worst, np.flatnonzero(nearest == worst)),
     )
@@ -127,7 +127,7 @@ def _islands(
         repair=CLEANED,
         vertices=vertices,
         joints=np.array(joints),
-        details=tuple(lines[:MOST_LINES]),
+        details=tuple(lines[:MAX_LINES]),
         pose=pose_of(subject, worst[1], vertices),
     )
 

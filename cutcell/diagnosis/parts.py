@@ -30,7 +30,7 @@ SAMPLES = 600
 """Vertices at which thickness is measured."""
 ENOUGH = 1.2
 """Cells that a part must be thick to hold lattice points nearly everywhere."""
-MOST_LINES = 40
+MAX_LINES = 40
 """Parts or joints that are told one by one."""
 
 
@@ -190,10 +190,10 @@ def _lines(subject: Subject, pieces: NDArray[np.integer]) -> tuple[str, ...]:
     lines = [
         f"{count(int(sizes[p]), 'vertex', 'follow')} "
         f"{shown_name(_holder(subject, np.flatnonzero(piece == p)))}"
-        for p in order[:MOST_LINES]
+        for p in order[:MAX_LINES]
     ]
-    if len(order) > MOST_LINES:
-        lines.append(f"and {len(order) - MOST_LINES} more")
+    if len(order) > MAX_LINES:
+        lines.append(f"and {len(order) - MAX_LINES} more")
     return tuple(lines)
 
 

@@ -33,7 +33,7 @@ MOVES = 1e-3
 """A vertex that follows a joint less does not count as moved by it."""
 ALL = 1 - 1e-9
 """A vertex that follows a joint as much follows it wholly."""
-MOST_LINES = 40
+MAX_LINES = 40
 
 
 def check_sweep(subject: Subject) -> Iterator[Finding]:
@@ -200,4 +200,4 @@ def _lines(subject: Subject, found: list[_Seen], told: Callable[[_Seen], str]) -
     for seen in found:
         name = shown_name(subject.rig.skeleton.names[seen.pose.joint])
         best.setdefault(seen.pose.joint, f"{name}: {told(seen)}, about {seen.pose.axis}")
-    return tuple(best.values())[:MOST_LINES]
+    return tuple(best.values())[:MAX_LINES]

@@ -33,7 +33,7 @@ SEAMS = 0.05
 """Of all places on the surface: where more of them tear, it is no accident of a few layers."""
 CLEANED = "take away what cannot be true through the body, there alone"
 """How weight that is too far from its joint is repaired."""
-MOST_LINES = 40
+MAX_LINES = 40
 
 
 def check_weights(subject: Subject) -> Iterator[Finding]:
@@ -138,7 +138,7 @@ def _leaked(
     found, joints = np.unique(vertex), np.unique(joint)
     names = subject.rig.skeleton.names
     lines = []
-    for j in joints[:MOST_LINES]:
+    for j in joints[:MAX_LINES]:
         mine = vertex[joint == j]
         lines.append(
             f"{shown_name(names[j])}: up to {weights[mine, j].max():.0%} of "

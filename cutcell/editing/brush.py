@@ -14,7 +14,7 @@ from ..rig.rig import Rig
 from .stroke import Brush, PaintSurface, Stroke
 from .symmetry import find_joint_mirror
 
-MOST_INFLUENCES = 2**15
+MAX_INFLUENCES = 2**15
 
 
 def paint_weights(
@@ -88,7 +88,7 @@ def paint_weights(
         raise ParameterError(f"stroke must hold vertices from 0 to {count - 1}")
     mirror = find_joint_mirror(rig) if check_flag("mirrored", mirrored) else None
     if max_influences is not None:
-        check_integer("max_influences", max_influences, 1, MOST_INFLUENCES)
+        check_integer("max_influences", max_influences, 1, MAX_INFLUENCES)
     if within is not None:
         within = as_array(within, np.bool_, (count,), "within", WeightsError)
     begun = Stroke(

@@ -16,8 +16,8 @@ from ..rig.checks import check_choice, check_flag, check_integer, check_number, 
 from ..runtime.writing import write_all
 
 How = Literal["glued", "touching", "itself"]
-LEAST_GAIN, MOST_GAIN = 0.05, 20.0
-MOST_VERTEX = 2**31 - 2
+MIN_GAIN, MAX_GAIN = 0.05, 20.0
+MAX_VERTEX = 2**31 - 2
 FARTHEST = 1e30
 ROUNDING = 1e-9
 """Of weights that sum to one."""
@@ -62,7 +62,7 @@ class JointCorrection:
         if self.deform is not None:
             check_flag("deform", self.deform)
         check_flag("locked", self.locked)
-        object.__setattr__(self, "gain", check_number("gain", self.gain, LEAST_GAIN, MOST_GAIN))
+        object.__setattr__(self, "gain", check_number("gain", self.gain, MIN_GAIN, MAX_GAIN))
         if self.radius is not None:
             radius = check_number("radius", self.radius, 0, 1e30)
             if radius == 0:
@@ -166,7 +166,7 @@ class Corrections:
             if not isinstance(joint, str):
                 raise ParameterError(f"joints go by their names, not by {shown(joint)}")
         for vertex in self.parts:
-            check_integer("the vertex of a part", vertex, 0, MOST_VERTEX)
+            check_integer("the vertex of a part", vertex, 0, MAX_VERTEX)
         found = _mapping("vertices", self.vertices)
         object.__setattr__(self, "vertices", {v: _weights(v, w) for v, w in found.items()})
         object.__setattr__(self, "removed", _names("removed", self.removed))
@@ -223,7 +223,7 @@ class Corrections:
             value = _known(where, value, ["vertex", *(f.name for f in fields(PartCorrection))])
             if "vertex" not in value or "how" not in value:
                 raise ParameterError(f'{where} needs "vertex" and "how"')
-            vertex = check_integer(f"vertex of {where}", value.pop("vertex"), 0, MOST_VERTEX)
+            vertex = check_integer(f"vertex of {where}", value.pop("vertex"), 0, MAX_VERTEX)
             parts[vertex] = _made(PartCorrection, where, value)
         vertices = {}
         for key, weights in _mapping("vertices", data.get("vertices", {})).items():
@@ -311,7 +311,7 @@ class _Weights(dict[str, float]):
 
 
 def _weights(vertex: Any, weights: Any) -> dict[str, float]:
-    check_integer("a vertex", vertex, 0, MOST_VERTEX)
+    check_integer("a vertex", vertex, 0, MAX_VERTEX)
     if isinstance(weights, _Weights):
         return weights
     where = f"vertex {vertex}"

@@ -13,7 +13,7 @@ from ..rig.checks import check_flag, check_integer
 from ..rig.rig import Rig
 from ..weights.prune import prune
 from .locks import lock_joints, locked_joints
-from .smoothing import MOST_PASSES, smooth_weights
+from .smoothing import MAX_PASSES, smooth_weights
 from .symmetry import balance, find_mirror, mirror_weights
 
 
@@ -89,7 +89,7 @@ def check_refinement(
     rig: Rig, smoothing: int, symmetric: bool, locked: Sequence[int | str]
 ) -> None:
     """Refuse what `refine_weights` would, before weights are computed."""
-    check_integer("smoothing", smoothing, 0, MOST_PASSES)
+    check_integer("smoothing", smoothing, 0, MAX_PASSES)
     if check_flag("symmetric", symmetric):
         find_mirror(rig)
     locked_joints(rig, locked)

@@ -10,7 +10,7 @@ from ..geometry.weld import WELD_TOLERANCE, weld
 from ..rig.checks import check_integer
 from ..rig.rig import TriangleMesh
 
-MOST_PASSES = 1000
+MAX_PASSES = 1000
 STEP = 0.5
 """How far a pass moves a vertex towards its neighbours: half way, so that nothing oscillates."""
 
@@ -25,7 +25,7 @@ def smooth_weights(
 
     Shapes: weights (n, j); returns (n, j).
     """
-    passes = check_integer("smoothing", passes, 0, MOST_PASSES)
+    passes = check_integer("smoothing", passes, 0, MAX_PASSES)
     if passes == 0:
         return weights
     side = np.ptp(mesh.bounds, axis=0).max()

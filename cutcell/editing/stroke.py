@@ -27,7 +27,7 @@ FARTHEST = 1e30
 SPREAD = 1 / 8
 """Squared radii: for how long weights diffuse where they are smoothed, so that after it a point is
 half a radius wide (a standard deviation along each axis)."""
-LEAST_AREA = 1e-12
+MIN_AREA = 1e-12
 """Of the largest around a vertex: faces without any are no reason not to be solved for."""
 ON_THE_OTHER_SIDE = 0.25
 """Radii: how far from a vertex a mirrored stroke may pass to touch the surface there."""
@@ -108,7 +108,7 @@ class PaintSurface:
         flow.data = np.maximum(-flow.data, 0)
         laplacian = csr_array(diags_array(flow.sum(axis=1)) - flow)
         areas = vertex_areas(points / size, faces)
-        return laplacian, np.maximum(areas, LEAST_AREA * areas.max()) * size**2
+        return laplacian, np.maximum(areas, MIN_AREA * areas.max()) * size**2
 
 
 class Stroke:

@@ -20,7 +20,7 @@ VERTEX_TOLERANCE = 1e-3
 JOINT_TOLERANCE = 3e-2
 """The same for joints, which artists set by eye."""
 
-LEAST_SHARE = 0.5
+MIN_SHARE = 0.5
 """Of the vertices that must have a partner, for the character to count as mirrored."""
 
 
@@ -64,7 +64,7 @@ def find_mirror(rig: Rig) -> Mirror:
             if found > share:
                 best, share = Mirror(axis, position, vertex, joint), found
     matched = 0.0 if best is None else float((best.vertex[used] >= 0).mean())
-    if best is None or matched < LEAST_SHARE:
+    if best is None or matched < MIN_SHARE:
         raise MeshError(
             f"{rig.name} is not mirrored across x, y or z: at best {matched:.0%} of its vertices "
             "have a partner on the other side of a left and a right joint; bind it without "
@@ -95,7 +95,7 @@ def find_joint_mirror(rig: Rig) -> Mirror:
             found = float((joint >= 0).mean()) + 0.1 * exact
             if found > share:
                 best, share = Mirror(axis, position, np.empty(0, np.intp), joint), found
-    if best is None or (best.joint >= 0).mean() < LEAST_SHARE:
+    if best is None or (best.joint >= 0).mean() < MIN_SHARE:
         raise SkeletonError(
             f"the skeleton of {rig.name} is not mirrored across x, y or z: less than half of its "
             "joints have a partner on the other side"

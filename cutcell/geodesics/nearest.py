@@ -14,7 +14,7 @@ from ..runtime.compiled import compiled
 
 IN_A_CELL = 4
 """Lattice cells along each side of a cell of the grid."""
-MOST_CELLS = 64
+MAX_CELLS = 64
 """Along each side of the grid: limits its memory to that of the nodes."""
 
 
@@ -35,7 +35,7 @@ class NodeGrid:
         self, nodes: NDArray[np.float64], chosen: NDArray[np.bool_], resolution: int
     ) -> None:
         self._nodes, self._resolution = nodes, resolution
-        self._side = max(1, min(resolution // IN_A_CELL, MOST_CELLS))
+        self._side = max(1, min(resolution // IN_A_CELL, MAX_CELLS))
         self._start, self._order = _sort_into_cells(nodes, chosen, self._side)
 
     def nearest(

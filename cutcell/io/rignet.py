@@ -22,7 +22,7 @@ from .meshes.obj import numbered_words, numbers, one_number, parse_obj, write_ob
 from .names import whole_characters
 from .weights import NO_WEIGHTS, ReadWeights, summed
 
-MOST_DIGITS = 20
+MAX_DIGITS = 20
 """Of a vertex' number."""
 
 
@@ -131,7 +131,7 @@ def _weights(said: _Text, vertices: int, names: tuple[str, ...], owner: str) -> 
     place = {name: j for j, name in enumerate(names)}
     rows, columns, values = [], [], []
     for line, words in said.skin:
-        known = words and words[0].isdecimal() and len(words[0]) <= MOST_DIGITS
+        known = words and words[0].isdecimal() and len(words[0]) <= MAX_DIGITS
         vertex = int(words[0]) if known else -1
         if not 0 <= vertex < vertices:
             raise WeightsError(

@@ -13,7 +13,7 @@ from .fbx_kept import keep, kept
 from .fbx_materials import FbxPalette, surface
 
 FRAMES_A_SECOND = 30.0
-MOST_TRIANGLES_OF_A_FACE = 10_000
+MAX_TRIANGLES_OF_A_FACE = 10_000
 
 
 def read(data):
@@ -91,7 +91,7 @@ def triangles(mesh):
     """Cut polygons into fans; return corners by the mesh's numbers, and the polygon of each."""
     begin, count = np.array([tuple(face) for face in mesh.faces]).T
     fans = []
-    for k in range(1, min(int(count.max()), MOST_TRIANGLES_OF_A_FACE) - 1):
+    for k in range(1, min(int(count.max()), MAX_TRIANGLES_OF_A_FACE) - 1):
         polygons = np.flatnonzero(count > k + 1)
         start = begin[polygons]
         fans.append(np.stack([start, start + k, start + k + 1, polygons], axis=1))

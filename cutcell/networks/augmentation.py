@@ -23,7 +23,7 @@ SCALES = 0.8, 1.25
 """A character is made that much smaller or larger, by chance."""
 LESS_SURFACE, FEWER_JOINTS, OTHER_POSE, BY_AREA = 0.25, 0.5, 0.5, 0.5
 """How often each is done."""
-MOST_LEFT_OUT = 0.5
+MAX_LEFT_OUT = 0.5
 """Of the joints that have a parent."""
 LARGEST_PART, HOLE = 0.5, 0.15
 """Of the points: a component that is dropped has at most so many, a hole about so many."""
@@ -144,7 +144,7 @@ def _spread(sample: Sample, points: int, rng: np.random.Generator) -> NDArray[np
 def _with_fewer_joints(sample: Sample, rng: np.random.Generator) -> Sample:
     if rng.random() >= FEWER_JOINTS:
         return sample
-    share = rng.uniform(0, MOST_LEFT_OUT)
+    share = rng.uniform(0, MAX_LEFT_OUT)
     return without_joints(sample, rng.random(len(sample.parents)) < share)
 
 

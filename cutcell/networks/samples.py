@@ -25,7 +25,7 @@ FAR = 0.25
 """Of the longest side: points farther apart along the surface are no neighbours."""
 LENGTHS = 50_000_000
 """Lengths of paths that are kept at a time, each 8 bytes."""
-MOST_HOPS = 16
+MAX_HOPS = 16
 """Bones between two joints are counted up to so many."""
 
 
@@ -249,11 +249,11 @@ def _along_surface(places: NDArray, faces: NDArray, chosen: NDArray) -> NDArray[
 
 
 def hops_between(parents: NDArray) -> NDArray[np.int64]:
-    """Count the bones between each two joints, shape (j, j); MOST_HOPS where they are more."""
+    """Count the bones between each two joints, shape (j, j); MAX_HOPS where they are more."""
     held = np.flatnonzero(parents >= 0)
     links = coo_array((np.ones(len(held)), (parents[held], held)), shape=(len(parents),) * 2)
     hops = shortest_path(links.tocsr(), directed=False, unweighted=True)
-    return np.minimum(hops, MOST_HOPS).astype(np.int64)
+    return np.minimum(hops, MAX_HOPS).astype(np.int64)
 
 
 def joints_below(parents: NDArray) -> NDArray[np.float32]:

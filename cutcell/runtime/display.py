@@ -11,11 +11,11 @@ import unicodedata
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-MOST_LETTERS = 80
+MAX_LETTERS = 80
 """Of a name."""
-MOST_NAMES = 6
+MAX_NAMES = 6
 """Of a list of names."""
-MOST_OF_A_MESSAGE = 2000
+MAX_OF_A_MESSAGE = 2000
 
 FORMULA = tuple("=+-@\t\r＝＋－＠")
 """What a spreadsheet takes a cell for a formula by."""
@@ -44,7 +44,7 @@ class _Escapes(dict[int, str]):
 _ESCAPES = _Escapes()
 
 
-def printable(text: str, most: int = MOST_OF_A_MESSAGE) -> str:
+def printable(text: str, most: int = MAX_OF_A_MESSAGE) -> str:
     r"""Return a text on one line, in which nothing is hidden."""
     if len(text) > most:
         text = text[: most - 1] + "…"
@@ -53,13 +53,13 @@ def printable(text: str, most: int = MOST_OF_A_MESSAGE) -> str:
 
 def shown_name(name: str) -> str:
     """Return a name as it is shown: printable, and not too long."""
-    return printable(name, MOST_LETTERS)
+    return printable(name, MAX_LETTERS)
 
 
 def listed(names: Sequence[str]) -> str:
     """Return the first of some names, and how many more there are."""
-    more = f" and {len(names) - MOST_NAMES} more" if len(names) > MOST_NAMES else ""
-    return ", ".join(names[:MOST_NAMES]) + more
+    more = f" and {len(names) - MAX_NAMES} more" if len(names) > MAX_NAMES else ""
+    return ", ".join(names[:MAX_NAMES]) + more
 
 
 def spreadsheet_cell(name: str) -> str:

@@ -15,14 +15,14 @@ NAMES = {
     4: ("index", "middle", "ring", "pinky"),
 }
 """Of the fingers beside the thumb, by how many there are."""
-LEAST_LENGTH = 0.3
+MIN_LENGTH = 0.3
 """Of the longest one: what is shorter is no finger."""
-MOST_ENDS = 16
+MAX_ENDS = 16
 CLIMB = 5
 """Lattice cells: how far is looked for what is still farther from the palm."""
 BACK = -0.3
 """Cosine of the angle between a finger and all of them: what is less points to the wrist."""
-LEAST_OF_HAND = 0.25
+MIN_OF_HAND = 0.25
 """Of the way from the wrist to the farthest tip: as long is the longest finger at least."""
 KNUCKLES = np.array([1.0, 0.58, 0.28])
 """Of the way from the tip of a finger to the palm."""
@@ -33,9 +33,9 @@ def place(body: Interior) -> Joints:
     wrist, tips = _ends(body)
     lengths = {tip: _length(body, tip, [t for t in tips if t != tip], wrist) for tip in tips}
     longest = max(lengths.values(), default=0.0)
-    if longest < LEAST_OF_HAND * body.distances(wrist).max():
+    if longest < MIN_OF_HAND * body.distances(wrist).max():
         tips = []
-    tips = [tip for tip in tips if lengths[tip] > LEAST_LENGTH * longest]
+    tips = [tip for tip in tips if lengths[tip] > MIN_LENGTH * longest]
     if len(tips) < 3:
         raise SkeletonError(
             "no three fingers were found in the mesh; choose another template, such as chain"
@@ -77,7 +77,7 @@ def _ends(body: Interior) -> tuple[int, list[int]]:
     far = body.distances(centre)
     tips: list[int] = []
     nearest = far.copy()
-    for _ in range(MOST_ENDS):
+    for _ in range(MAX_ENDS):
         tip = int(nearest.argmax())
         nearest = np.minimum(nearest, body.distances(tip))
         tip = _climbed(body, far, tip)
@@ -85,9 +85,7 @@ def _ends(body: Interior) -> tuple[int, list[int]]:
             tips.append(tip)
     fingers: list[int] = []
     for tip in sorted(tips, key=lambda tip: -far[tip]):
-        if all(
-            body.branch(tip, other, centre) > LEAST_OF_HAND / 2 * far.max() for other in fingers
-        ):
+        if all(body.branch(tip, other, centre) > MIN_OF_HAND / 2 * far.max() for other in fingers):
             fingers.append(tip)  # none of a finger whose tip is known
     ways = body.points - body.points[centre]
     ways = ways / np.maximum(np.linalg.norm(ways, axis=1, keepdims=True), 1e-9)

@@ -12,7 +12,7 @@ from scipy.spatial import cKDTree
 
 from ..graph.cutcell_graph import INTERIOR, MESH, SURFACE, CutCellGraph
 
-LEAST_DEPTH = 0.5
+MIN_DEPTH = 0.5
 """Of a lattice cell: what lies on the surface counts as this deep, so that paths have a cost."""
 
 
@@ -114,7 +114,7 @@ class Interior:
     def _costs(self) -> csr_array:
         rows = np.repeat(np.arange(len(self.points)), np.diff(self._lengths.indptr))
         columns = self._lengths.indices
-        deep = (self.depth[rows] + self.depth[columns]) / 2 + LEAST_DEPTH * self.cell
+        deep = (self.depth[rows] + self.depth[columns]) / 2 + MIN_DEPTH * self.cell
         costs = self._lengths.data / deep**2
         return csr_array((costs, columns, self._lengths.indptr), shape=self._lengths.shape)
 

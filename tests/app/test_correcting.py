@@ -17,7 +17,7 @@ from cutcell_app.panels.joints import joints
 from cutcell_app.scenes import resolve
 from cutcell_app.scenes.facts import vertex_facts
 from cutcell_app.scenes.warnings import warnings
-from cutcell_app.state.corrections import MOST_IN_ADDRESS, from_text, to_text
+from cutcell_app.state.corrections import MAX_IN_ADDRESS, from_text, to_text
 from cutcell_app.state.tour import TOUR
 from cutcell_app.state.url import from_query
 from cutcell_app.widgets.joint_tree import JointTree
@@ -181,7 +181,7 @@ def test_what_an_address_has_no_room_for_is_kept_by_the_server(bound, loop):
     settled(bound, loop)
     said = from_query(bound.view.told("address"), bound.state)[1]["corrections"]
     assert said.startswith("~")
-    assert len(to_text(many)) > MOST_IN_ADDRESS > len(said)
+    assert len(to_text(many)) > MAX_IN_ADDRESS > len(said)
     correct.clear(bound)
     settled(bound, loop)
     bound.arrival = {"corrections": said}

@@ -187,7 +187,7 @@ def test_a_browser_that_cannot_show_the_view_gets_all_else(here, begun, monkeypa
 
 def test_when_the_server_is_full_it_says_so_and_takes_visitors_again(here, monkeypatch):
     wait_until(lambda: not here.sessions)
-    monkeypatch.setattr(handlers, "MOST_SESSIONS", 2)
+    monkeypatch.setattr(handlers, "MAX_SESSIONS", 2)
     visitors = [Visitor(here.address, "?rig=robot") for _ in range(2)]
     assert len(here.sessions) == 2
     answer = get(here)

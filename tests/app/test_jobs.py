@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from cutcell_app.work.jobs import MOST_UNRESPONSIVE, PATIENCE, Gate, Jobs, Newest, on_its_thread
+from cutcell_app.work.jobs import MAX_UNRESPONSIVE, PATIENCE, Gate, Jobs, Newest, on_its_thread
 
 
 @pytest.fixture
@@ -185,7 +185,7 @@ def test_stopped_work_that_does_not_look_holds_nobody_up_for_long(loop, told):
 
 def test_only_so_much_of_it_goes_on_beside_what_is_wanted(loop, told):
     go, deaf = threading.Event(), Jobs(loop)
-    for _ in range(MOST_UNRESPONSIVE + 1):
+    for _ in range(MAX_UNRESPONSIVE + 1):
         started = threading.Event()
         deaf.start(deaf_work(go, started), nothing, nothing, nothing)
         assert started.wait(PATIENCE + 120)

@@ -11,8 +11,8 @@ from cutcell_app.commands.brush import STEPS, in_steps, radius_of
 from cutcell_app.panels.brush import brush as section_of_brush
 from cutcell_app.scenes import resolve
 from cutcell_app.scenes.weights import painted_colors
-from cutcell_app.state.brush import LEAST_RADIUS, LEAST_STRENGTH, selected
-from cutcell_app.state.corrections import MOST_IN_ADDRESS, MOST_VERTICES, to_text
+from cutcell_app.state.brush import MIN_RADIUS, MIN_STRENGTH, selected
+from cutcell_app.state.corrections import MAX_IN_ADDRESS, MAX_VERTICES, to_text
 from cutcell_app.state.url import from_query
 from tests.viewers.arm import arm_rig
 
@@ -139,7 +139,7 @@ def test_a_stroke_that_is_cancelled_or_changes_nothing_leaves_nothing(painter, l
     state.brush_value = 0.0
     away = int(state.weights[:, 2].argmin())
     assert state.weights[away, 2] == 0
-    state.brush_radius = LEAST_RADIUS
+    state.brush_radius = MIN_RADIUS
     stroke(painter, away)
     assert not state.corrections
     assert painter.history.now is steps, "no step to undo"
@@ -201,10 +201,10 @@ def test_what_is_painted_stays_with_the_address_and_after_rebinding(painter, loo
         stroke(painter, vertex)
         settled(painter, loop)
     held = state.corrections
-    assert len(held.vertices) > MOST_VERTICES
-    assert len(to_text(held)) > MOST_IN_ADDRESS
+    assert len(held.vertices) > MAX_VERTICES
+    assert len(to_text(held)) > MAX_IN_ADDRESS
     said = from_query(painter.view.told("address"), state)[1]["corrections"]
-    assert len(said) < MOST_IN_ADDRESS
+    assert len(said) < MAX_IN_ADDRESS
     painter.arrival = {"corrections": said}
     loading.show_rig(painter, arm_rig())
     settled(painter, loop)
@@ -226,7 +226,7 @@ def test_keys_and_switches(painter, loop):
     for _ in range(40):
         keys.act(painter, "brush smaller")
         keys.act(painter, "brush weaker")
-    assert (state.brush_radius, state.brush_strength) == (LEAST_RADIUS, LEAST_STRENGTH)
+    assert (state.brush_radius, state.brush_strength) == (MIN_RADIUS, MIN_STRENGTH)
     for _ in range(20):
         keys.act(painter, "brush stronger")
     assert state.brush_strength == 1

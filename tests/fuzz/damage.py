@@ -38,7 +38,7 @@ ODD_JSON: list[Any] = [
     {"node": 0}, {"bufferView": 0},
 ]  # fmt: skip
 
-MOST_PLACES = 5000
+MAX_PLACES = 5000
 """Of a tree that is damaged once more."""
 
 
@@ -47,7 +47,7 @@ def tree(rng: Generator, document: Any) -> Any:
     document = copy.deepcopy(document)
     for _ in range(_few(rng)):
         places = list(_places(document))
-        if not 0 < len(places) < MOST_PLACES:  # nothing, or what grew by thousands already
+        if not 0 < len(places) < MAX_PLACES:  # nothing, or what grew by thousands already
             break
         owner, key = places[rng.integers(len(places))]
         _change(rng, owner, key, places)

@@ -14,8 +14,8 @@ from cutcell_viewers.camera import Camera
 from cutcell_viewers.character import body
 from cutcell_viewers.description import Description
 from cutcell_viewers.materials import (
-    MOST_LAYERS,
-    MOST_PIXELS,
+    MAX_LAYERS,
+    MAX_PIXELS,
     as_textures,
     decoded,
     load_textures,
@@ -68,11 +68,11 @@ def test_large_images_become_smaller_and_many_become_smaller_still():
     many = [Layer(0, cutoff=k / 100) for k in range(20)]
     pixels, _ = decoded(images(large), many)
     assert pixels.shape[1] == 512
-    assert pixels.size <= 4 * MOST_PIXELS
-    more = [Layer(0, cutoff=k / 100) for k in range(MOST_LAYERS + 3)]
+    assert pixels.size <= 4 * MAX_PIXELS
+    more = [Layer(0, cutoff=k / 100) for k in range(MAX_LAYERS + 3)]
     pixels, problems = decoded(images(png(squares(4))), more)
-    assert len(pixels) == MOST_LAYERS
-    assert sorted(problems) == list(range(MOST_LAYERS, MOST_LAYERS + 3))
+    assert len(pixels) == MAX_LAYERS
+    assert sorted(problems) == list(range(MAX_LAYERS, MAX_LAYERS + 3))
 
 
 def test_squares_stay_squares_where_the_file_wants_them():

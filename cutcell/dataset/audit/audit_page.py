@@ -12,8 +12,8 @@ from .duplicates import Audit, Pair
 from .page import figure, table, write_page
 from .pictures import picture
 
-MOST_ROWS = 60
-MOST_MATCHES = 5
+MAX_ROWS = 60
+MAX_MATCHES = 5
 
 
 def write_audit_report(audit: Audit, path: Path) -> None:
@@ -41,17 +41,17 @@ def write_audit_report(audit: Audit, path: Path) -> None:
         matches[pair.a].append(pair)
     pictures = _Pictures()
     rows = list(matches.items())
-    for k, pairs in rows[:MOST_ROWS]:
+    for k, pairs in rows[:MAX_ROWS]:
         figures = [figure(*pictures.of(audit.sources[k], []))]
-        for pair in pairs[:MOST_MATCHES]:
+        for pair in pairs[:MAX_MATCHES]:
             far = "" if pair in audit.posed else f"D {pair.surface:.2g}, {pair.tier}"
             said = audit.verdict(pair)
             verdict = f"a person said: {said}" if said else ""
             lines = [line for line in (far, _told(pair), verdict) if line]
             figures.append(figure(*pictures.of(audit.other_sources[pair.b], lines)))
         parts.append(f"<section>{''.join(figures)}</section>")
-    if len(rows) > MOST_ROWS:
-        parts.append(f"<p>and {len(rows) - MOST_ROWS:,} more; pairs.parquet lists all.</p>")
+    if len(rows) > MAX_ROWS:
+        parts.append(f"<p>and {len(rows) - MAX_ROWS:,} more; pairs.parquet lists all.</p>")
     if audit.failed:
         parts.append(f"<h2>Could not be read</h2>{table(list(audit.failed.items())[:500])}")
     write_page(path, f"Audit of {document['assets']:,} assets", parts)

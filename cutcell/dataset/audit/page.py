@@ -16,7 +16,7 @@ from .pictures import picture
 
 WORST = 5
 """Assets that are shown for each metric."""
-MOST_FAILURES = 500
+MAX_FAILURES = 500
 LOW_IS_BAD = ("precision", "recall")
 
 STYLE = """
@@ -66,9 +66,9 @@ def _failures(report: BindReport) -> str:
     failures = list(report.failures.items())
     if not failures:
         return "<h2>Failures</h2><p>None.</p>"
-    rest = len(failures) - MOST_FAILURES
+    rest = len(failures) - MAX_FAILURES
     more = f"<p>and {rest:,} more; the manifest lists all.</p>" if rest > 0 else ""
-    return f"<h2>Failures</h2>{table(failures[:MOST_FAILURES])}{more}"
+    return f"<h2>Failures</h2>{table(failures[:MAX_FAILURES])}{more}"
 
 
 def _worst(store: Path, rows: Sequence[Mapping[str, Any]], metric: str) -> list[str]:

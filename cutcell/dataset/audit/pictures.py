@@ -15,7 +15,7 @@ SIZE = 220
 LARGER = 2
 """Drawn so many times as large, and then made smaller: that smooths the edges."""
 TURN, TILT = np.radians(-30.0), np.radians(12.0)
-MOST_FACES = 40_000
+MAX_FACES = 40_000
 GREY = np.array([0.72, 0.75, 0.8])
 HUE_STEP = 0.61803
 
@@ -32,8 +32,8 @@ def picture(vertices: NDArray, faces: NDArray, weights: NDArray | None = None) -
             "reports are drawn by pillow, which is not installed; try: pip install "
             "'cutcell[dataset]'"
         ) from None
-    if len(faces) > MOST_FACES:
-        faces = faces[:: -(-len(faces) // MOST_FACES)]
+    if len(faces) > MAX_FACES:
+        faces = faces[:: -(-len(faces) // MAX_FACES)]
     seen = _turned(np.asarray(vertices, float))
     used = seen[np.unique(faces)]
     low, high = used.min(axis=0), used.max(axis=0)

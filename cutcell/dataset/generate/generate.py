@@ -17,7 +17,7 @@ from .shapes import Limbs, boxed, melted
 Kind = Literal["body", "hand", "beast", "octopus", "robot", "person"]
 KINDS: tuple[Kind, ...] = get_args(Kind)
 """What can be generated; "person" takes the package anny."""
-LEAST_DETAIL, MOST_DETAIL = 12, 512
+MIN_DETAIL, MAX_DETAIL = 12, 512
 HOLES, LOOSE, SOUP = 0.15, 0.15, 0.1
 """Shares of characters with holes, with loose parts, and whose triangles share no vertices."""
 
@@ -58,7 +58,7 @@ def generate(kind: Kind, seed: int, *, detail: int = 48, clean: bool = False) ->
     """
     kind = check_choice("kind", kind, KINDS)
     seed = check_integer("seed", seed, 0, 2**63 - 1)
-    detail = check_integer("detail", detail, LEAST_DETAIL, MOST_DETAIL)
+    detail = check_integer("detail", detail, MIN_DETAIL, MAX_DETAIL)
     check_flag("clean", clean)
     random = np.random.default_rng([KINDS.index(kind), seed])
     if kind == "person":

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from ...errors import FileError
 
-MOST_BYTES = 2**30
+MAX_BYTES = 2**30
 """Of one asset in the pickle."""
 DEPTH = 20
 """Containers inside each other."""
@@ -87,7 +87,7 @@ SHORT = 8
 """Entries of a tuple that is remembered, such as the shape of an array."""
 
 
-def plain_objects(stream: IO[bytes], what: str, most_bytes: int = MOST_BYTES) -> Iterator[Any]:
+def plain_objects(stream: IO[bytes], what: str, most_bytes: int = MAX_BYTES) -> Iterator[Any]:
     """Yield the entries of a pickled list, or of a pickled array of objects, one at a time."""
     machine = _Machine(what, most_bytes)
     limited = _Limited(stream, machine)

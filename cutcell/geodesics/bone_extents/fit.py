@@ -36,13 +36,13 @@ REGION_POWER = 20
 PART_OF_REACH = 0.5
 """A bone along a rest axis ends half-way to where it would leave the body: further out the skin is
 close to its end."""
-LEAST_CELLS = 2.0
+MIN_CELLS = 2.0
 """Lattice cells: such a bone is at least this long, if the body is still near there. Shorter ones
 have hardly any direction."""
 UNDER_SKIN = 0.35
 """A joint lies close under the skin if that is nearer than this part of the room around the
 joint."""
-LEAST_ROOM = 1.5
+MIN_ROOM = 1.5
 """Lattice cells: with less room than this the part is not meaningful."""
 
 
@@ -116,7 +116,7 @@ def _leaf_lengths(
     if chains.rest is None:
         return length, np.zeros(len(joint), np.bool_)
     length *= PART_OF_REACH
-    least = LEAST_CELLS / probe.resolution
+    least = MIN_CELLS / probe.resolution
     on_axis = probe.near(place + onward * least) | (length > least)
     return np.where(on_axis, np.maximum(length, least), length), on_axis
 
@@ -142,7 +142,7 @@ def _close_under_skin(places: NDArray[np.float64], probe: BodyProbe) -> NDArray[
     apart = cdist(places, places)
     nearby = ((apart > SAME_PLACE) & (apart < room[:, None])).any(axis=1)
     close = probe.to_skin(places) < UNDER_SKIN * room
-    return nearby & close & (room > LEAST_ROOM / probe.resolution)
+    return nearby & close & (room > MIN_ROOM / probe.resolution)
 
 
 def aim_leaf_bones(

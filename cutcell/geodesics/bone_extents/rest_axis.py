@@ -11,7 +11,7 @@ ALONG = np.cos(np.radians(10))
 """An axis points along a bone if it is within 10 degrees of it."""
 MOST = 0.6
 """Share of the bones to an only child that must agree on the axis."""
-LEAST_BONES = 3
+MIN_BONES = 3
 """Fewer bones are no evidence."""
 SHORTEST = 1e-3
 """Of the longest side: shorter bones have no direction."""
@@ -34,7 +34,7 @@ def rest_directions(skeleton: Skeleton, joints: NDArray[np.float64]) -> NDArray[
         if np.count_nonzero(length > SHORTEST) == 1:
             only = length.argmax()
             local.append(skeleton.orientations[j].T @ (away[only] / length[only]))
-    if len(local) < LEAST_BONES:
+    if len(local) < MIN_BONES:
         return None
     # Columns: how many bones run along x, y, z, -x, -y, -z.
     signed = np.hstack([np.array(local), -np.array(local)])

@@ -13,7 +13,7 @@ from ...rig.rig import Rig
 from ..gltf.container import Document
 from ..gltf.embedded import image_notes
 from ..gltf.read.accessors import find_accessor
-from ..gltf.write.seams import MOST_VERTICES, SPLIT_FROM, split_at_seams
+from ..gltf.write.seams import MAX_VERTICES, SPLIT_FROM, split_at_seams
 from ..gltf.write.storage import Storage
 from .face_colors import Collected, FaceColors, face_colors
 from .gltf_palette import Group, Palette, Uses, attributes_of
@@ -120,7 +120,7 @@ def _take(view: Document, number: int, colors: FaceColors | None, palette: Palet
         arrays |= attributes_of(groups, of_vertex)
         old["indices"] = primitive.pop("indices")
     is_split = len(origin) > count
-    if is_split and "JOINTS_0" in named and count <= MOST_VERTICES:
+    if is_split and "JOINTS_0" in named and count <= MAX_VERTICES:
         arrays[SPLIT_FROM] = origin[:, None].astype("<f4")
     for name in sorted(named, key=_is_weight):
         if is_split or _is_weight(name):

@@ -25,7 +25,7 @@ from .surfaces import ImageFile, Material, Surface, Surfaces
 
 LARGEST = 2**24
 """Bytes of a .mtl file."""
-MOST_LIBRARIES = 64
+MAX_LIBRARIES = 64
 COLOURED = re.compile(r"^[ \t]*(usemtl[ \t]|v([ \t]+\S+){6,7}[ \t]*\r?$)", re.MULTILINE)
 
 
@@ -138,7 +138,7 @@ def _materials(
     known: dict[str, Material] = {}
     images: dict[tuple[str, ...], int] = {}
     notes: dict[str, None] = {}
-    for label, names in list(_libraries(said.libraries))[:MOST_LIBRARIES]:
+    for label, names in list(_libraries(said.libraries))[:MAX_LIBRARIES]:
         try:
             text = read_beside(path, names, label, LARGEST).decode("utf-8", "replace")
         except FileError as error:

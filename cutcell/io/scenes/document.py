@@ -30,7 +30,7 @@ CODES = {"f4": pygltflib.FLOAT, "u1": pygltflib.UNSIGNED_BYTE, "u2": pygltflib.U
          "u4": pygltflib.UNSIGNED_INT}  # fmt: skip
 KINDS = {1: "SCALAR", 3: "VEC3", 4: "VEC4", 16: "MAT4"}
 PATHS = (("translation", 3), ("rotation", 4), ("scale", 3))
-MOST_INFLUENCES = 64
+MAX_INFLUENCES = 64
 """Of one vertex, the strongest; sixteen sets of glTF hold them."""
 
 
@@ -197,7 +197,7 @@ def _packed(
     order = np.lexsort((-values, rows))
     rows, columns, values = rows[order], columns[order], values[order]
     slot = np.arange(len(rows)) - np.searchsorted(rows, rows)
-    most = min(int(slot.max()) + 1, MOST_INFLUENCES)
+    most = min(int(slot.max()) + 1, MAX_INFLUENCES)
     shape = (count, -(-most // 4) * 4)
     where, share = np.zeros(shape, int), np.zeros(shape)
     fits = slot < most

@@ -16,7 +16,7 @@ from .joints import scene_world
 
 BINARY = b"Kaydara FBX Binary"
 SECONDS, SECONDS_A_MEGABYTE = 60.0, 5.0
-LEAST_MEMORY, MEMORY_A_BYTE = 2**30, 100
+MIN_MEMORY, MEMORY_A_BYTE = 2**30, 100
 """What reading may take. Text takes some 20 bytes for each of its own; arrays may be packed."""
 LOST = (
     "of an FBX, the meshes, skeleton, weights and clips are read, and of its materials the base "
@@ -31,7 +31,7 @@ def read_fbx(path: Path) -> Rig:
     if not data.startswith(BINARY) and b"FBX" not in data[:4096]:
         raise FileError("is not an FBX file: neither binary nor text in its first lines says so")
     seconds = SECONDS + SECONDS_A_MEGABYTE * len(data) / 2**20
-    memory = LEAST_MEMORY + MEMORY_A_BYTE * len(data)
+    memory = MIN_MEMORY + MEMORY_A_BYTE * len(data)
     try:
         job = {"data": np.frombuffer(data, np.uint8)}
         scene = run_isolated("fbx", job, seconds, "the FBX reader", memory)

@@ -7,7 +7,7 @@ from torch import Tensor, nn
 
 from ..batches import Batch
 from ..losses import weight_loss
-from ..samples import MOST_HOPS
+from ..samples import MAX_HOPS
 from .layers import CrossAttention, PointEncoder, masked_softmax, normed
 
 SHARP = 10.0
@@ -38,7 +38,7 @@ class Puppeteer(nn.Module):
         super().__init__()
         self.encoder = PointEncoder(width, encoder_layers)
         self.joints = normed([6, width, width])
-        self.hops = nn.Embedding(MOST_HOPS + 1, heads)
+        self.hops = nn.Embedding(MAX_HOPS + 1, heads)
         self.among = nn.ModuleList(CrossAttention(width, heads) for _ in range(layers))
         self.to_points = nn.ModuleList(CrossAttention(width, heads) for _ in range(layers))
         self.to_joints = nn.ModuleList(CrossAttention(width, heads) for _ in range(layers))

@@ -13,7 +13,7 @@ SPACING = 0.02
 """Of the longest side: samples of the surface are about as far apart."""
 CELL = SPACING / 2
 """Of the longest side: samples that lie in one cell of this size become one."""
-MOST_SPLITS = 50
+MAX_SPLITS = 50
 """Along each side of a triangle, whatever its size."""
 INSIDE = 0.3
 """Of the winding number, of either sign: open meshes are never whole, and some are inside out."""
@@ -71,7 +71,7 @@ class Body:
 def _samples(corners: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Cut triangles (m, 3, 3) into equal ones that are small; return middles and area vectors."""
     sides = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
-    splits = np.clip(np.ceil(sides / SPACING), 1, MOST_SPLITS).astype(int)
+    splits = np.clip(np.ceil(sides / SPACING), 1, MAX_SPLITS).astype(int)
     area = normals(corners) / 2
     points: list[NDArray] = []
     areas: list[NDArray] = []

@@ -27,7 +27,7 @@ NOTHING_BEYOND = 0.15
 ENOUGH_NEAR = 0.5
 """Part of the joints that must be near the mesh for it to be a body, not a garment."""
 
-MOST_JOINTS = 2_000
+MAX_JOINTS = 2_000
 """Of a body; where there are more, only names count, for places would take minutes."""
 
 BONE = "in or near the body"
@@ -91,7 +91,7 @@ class _Guess:
         self.vertices = self.body.to_unit(mesh.vertices[np.unique(mesh.faces)])
         self.distance = np.zeros(len(self.joints))
         self.is_body = False
-        if len(self.joints) <= MOST_JOINTS:
+        if len(self.joints) <= MAX_JOINTS:
             self.distance = self.body.to_surface(self.joints)
             deep = np.flatnonzero(self.distance > SPACING)
             self.distance[deep[self.body.inside(self.joints[deep])]] = 0.0

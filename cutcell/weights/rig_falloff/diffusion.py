@@ -19,7 +19,7 @@ from .surface_operators import SurfaceOperators
 
 SHARPNESS = 3.0
 """c: weights spread over about 1 / sqrt(c) of the distance from surface to bone."""
-LEAST_CELLS = 0.25
+MIN_CELLS = 0.25
 """Lattice cells: a vertex on a bone itself would keep its weights whatever is around it."""
 
 
@@ -64,7 +64,7 @@ class Diffusion:
 
         Shapes: depth (k,).
         """
-        depth = np.maximum(depth, LEAST_CELLS / resolution)
+        depth = np.maximum(depth, MIN_CELLS / resolution)
         # A vertex without area conducts nothing; any positive number makes it keep its own weights.
         screening = np.maximum(surface.areas, 1e-12) * SHARPNESS / depth**2
         start, column, value = surface.stiffness

@@ -20,17 +20,17 @@ POWER = 20
 FACING_LEAST = 1 / RIG_REACH
 """Surface covers the bones that it looks away from. The distance of a bone that it looks right at
 is divided by this, that of one that it looks away from by 1."""
-LEAST_CELLS = 0.01
+MIN_CELLS = 0.01
 """Lattice cells: distances that are all shorter are equal."""
 RADIUS_FACTOR = 1.5
 """Surface that is this many times as far from a bone as the median of that bone's surface is not
 about that bone. The edges of a square bar are 1.41 times as far as the middle of its sides."""
-LEAST_RADIUS = 0.5
+MIN_RADIUS = 0.5
 """Lattice cells: no bone has a smaller radius than this."""
 CONNECTED = 0.02
 """Of the longest side: a bone that ends as near as this to where another joint's bone begins leads
 on to it."""
-LEAST_SHARE = 1e-3
+MIN_SHARE = 1e-3
 """A vertex with a smaller share of a joint does not count as that joint's surface."""
 
 
@@ -110,7 +110,7 @@ class Division:
             np.searchsorted(bones.joint, np.arange(joints + 1)),
             bones.start,
             bones.end,
-            LEAST_CELLS / self.distances.graph.lattice.resolution,
+            MIN_CELLS / self.distances.graph.lattice.resolution,
             self.radius,
             chosen,
             self.weights,
@@ -164,7 +164,7 @@ def _mark_beyond(distance, weights, radius, found):
     for v in range(len(weights)):
         found[v] = False
         for j in range(len(distance)):
-            if weights[v, j] > LEAST_SHARE and distance[j, v] > radius[j]:
+            if weights[v, j] > MIN_SHARE and distance[j, v] > radius[j]:
                 found[v] = True
 
 
@@ -202,7 +202,7 @@ def _radii(
     chin, is not the neck's even if no other bone is nearer. Where a leaf bone ends is only a
     guess, so that its surface may be at any distance: its radius is infinite.
     """
-    entry = np.flatnonzero(weights > LEAST_SHARE)
+    entry = np.flatnonzero(weights > MIN_SHARE)
     vertex, joint = np.divmod(entry, len(distance))
     length, area = distance[joint, vertex], weights.ravel()[entry] * (areas[vertex] + 1e-12)
     # By joint, then by length: one sort of sums takes a third of the time of two sorts.
@@ -213,7 +213,7 @@ def _radii(
     median = np.searchsorted(total, (before[:-1] + before[1:]) / 2)
     radius = np.full(len(distance), np.inf)
     known = _leads_on(bones, len(distance)) & (first[1:] > first[:-1])
-    least = LEAST_RADIUS / resolution
+    least = MIN_RADIUS / resolution
     radius[known] = RADIUS_FACTOR * np.maximum(length[median[known]], least)
     return radius
 

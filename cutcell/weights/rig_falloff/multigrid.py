@@ -26,7 +26,7 @@ from .ldl import Factors, factorise, fill_reducing_ordering, substitute
 
 COARSEST = 20_000
 """Unknowns of a level that is factorised, as that takes less time than one more level."""
-LEAST_COARSENING = 0.7
+MIN_COARSENING = 0.7
 """A level is the coarsest one if the next would have more than this part of its unknowns."""
 TOLERANCE = 1e-4
 """Iterations end when the error that is left is estimated to be smaller, of values from 0 to 1."""
@@ -41,7 +41,7 @@ LEAST = 1e-300
 """Instead of zero, where a right side is zero."""
 UNGROUPED = -(2**31)
 """The group of an unknown that is in none yet."""
-MOST_STEPS = 30
+MAX_STEPS = 30
 """On surfaces there are about five. After so many the rest is solved for by factors."""
 STRONG = 0.08
 """Neighbours are grouped if the entry between them is at least this part of those on the diagonal:
@@ -149,7 +149,7 @@ class Multigrid:
         levels: list[Level] = []
         while matrix.shape[0] > COARSEST:
             level = Level.of(matrix)
-            if level.interpolation.shape[1] > LEAST_COARSENING * matrix.shape[0]:
+            if level.interpolation.shape[1] > MIN_COARSENING * matrix.shape[0]:
                 break
             levels.append(level)
             matrix = level.coarser()
@@ -207,8 +207,8 @@ class Multigrid:
         matrix = self.matrix
         x, direction = np.zeros_like(residual), np.zeros_like(residual)
         before, last = np.ones(RIGHT_SIDES), np.inf
-        for count in range(MOST_STEPS):
-            tell(count / MOST_STEPS)
+        for count in range(MAX_STEPS):
+            tell(count / MAX_STEPS)
             step = self._cycle(residual)
             size = max(step.max(initial=0), -step.min(initial=0))
             rate = min(size / last, SLOWEST_RATE) if count else FIRST_RATE

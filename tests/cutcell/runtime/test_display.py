@@ -19,7 +19,7 @@ from cutcell.io.numbers import save_numbers
 from cutcell.metrics import Turn
 from cutcell.rig.rig import Rig, Skeleton, TriangleMesh
 from cutcell.runtime.display import (
-    MOST_LETTERS,
+    MAX_LETTERS,
     json_safe,
     printable,
     shown_name,
@@ -66,7 +66,7 @@ def test_what_people_write_stays(name):
 
 
 def test_long_names_are_cut():
-    assert len(shown_name("a" * 10**6)) == MOST_LETTERS
+    assert len(shown_name("a" * 10**6)) == MAX_LETTERS
     assert shown_name("a" * 10**6).endswith("a…")
 
 

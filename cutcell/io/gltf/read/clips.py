@@ -20,11 +20,11 @@ from ..write.moves import node_shifts
 from .accessors import Accessor, find_accessor, read_accessor
 
 FRAMES_A_SECOND = 30
-MOST_FRAMES = 3600
+MAX_FRAMES = 3600
 """Two minutes at full rate; a longer clip is shown by frames that are farther apart."""
 TOGETHER = 2**18
 """Matrices of nodes that are sampled together: what it takes on the way stays small."""
-MOST_MATRICES, LEVEL = 2**22, 100
+MAX_MATRICES, LEVEL = 2**22, 100
 """Of nodes in all frames, and what a level of the hierarchy costs beside its own, in matrices: a
 chain of thousands of nodes is shown by fewer frames, too."""
 
@@ -112,7 +112,7 @@ class Channels:
         if self.duration <= 0:
             return np.zeros(1)
         cost = len(self.tree.parents) + LEVEL * len(self.tree.levels) / self._step
-        frames = min(self.duration * FRAMES_A_SECOND + 1e-6, MOST_FRAMES, MOST_MATRICES / cost)
+        frames = min(self.duration * FRAMES_A_SECOND + 1e-6, MAX_FRAMES, MAX_MATRICES / cost)
         return np.linspace(0, self.duration, max(math.floor(frames), 1) + 1)
 
     @property

@@ -20,8 +20,8 @@ from .decompressed import Additions, forget_extension
 from .primitives import attributes, primitives
 
 EXTENSION = "KHR_draco_mesh_compression"
-SECONDS_A_MEGABYTE, LEAST_SECONDS = 10.0, 10.0
-MEMORY_A_BYTE, LEAST_MEMORY = 500, 2**29
+SECONDS_A_MEGABYTE, MIN_SECONDS = 10.0, 10.0
+MEMORY_A_BYTE, MIN_MEMORY = 500, 2**29
 """What the decoder may take: a byte holds up to some 20 vertices of a regular grid."""
 
 
@@ -74,8 +74,8 @@ def _decode(document: Document, views: list[int]) -> dict[str, NDArray]:
     pieces = [_bytes(document, view) for view in views]
     data = b"".join(pieces)
     job = {"data": np.frombuffer(data, np.uint8), "ends": np.cumsum([len(p) for p in pieces])}
-    seconds = LEAST_SECONDS + SECONDS_A_MEGABYTE * len(data) / 2**20
-    memory = LEAST_MEMORY + MEMORY_A_BYTE * len(data)
+    seconds = MIN_SECONDS + SECONDS_A_MEGABYTE * len(data) / 2**20
+    memory = MIN_MEMORY + MEMORY_A_BYTE * len(data)
     try:
         return run_isolated("draco", job, seconds, "the Draco decoder", memory)
     except WorkFailedError as e:

@@ -23,8 +23,8 @@ from ..read.influences import pack_influences
 from .buffer_file import buffer_file, relative_uri
 
 CODES = {"f": gl.FLOAT, "u1": gl.UNSIGNED_BYTE, "u2": gl.UNSIGNED_SHORT, "u4": gl.UNSIGNED_INT}
-MOST_JOINTS = 2**16
-MOST_SHIFT = 1e-3
+MAX_JOINTS = 2**16
+MAX_SHIFT = 1e-3
 """How far rounding to 32 bits may move a point, in sizes of the mesh."""
 KINDS = {1: gl.SCALAR, 3: gl.VEC3, 4: gl.VEC4, 16: gl.MAT4}
 
@@ -53,9 +53,9 @@ def new_files(rig: Rig, path: Path) -> dict[Path, bytes]:
 
 def check_fits(rig: Rig) -> None:
     """Refuse a rig that a new GLB cannot hold."""
-    if len(rig.skeleton.joints) > MOST_JOINTS:
+    if len(rig.skeleton.joints) > MAX_JOINTS:
         raise SkeletonError(
-            f"glTF numbers at most {MOST_JOINTS:,} joints, and the skeleton has "
+            f"glTF numbers at most {MAX_JOINTS:,} joints, and the skeleton has "
             f"{len(rig.skeleton.joints):,}; save it as .npz or .txt"
         )
     meshes = {"its mesh": rig.mesh}
@@ -73,7 +73,7 @@ def _check_places(
         size = np.ptp(mesh.bounds, axis=0).max()
         stored = points.astype(np.float32).astype(np.float64)
     shifts = np.abs(stored - points).max(axis=1, initial=0)
-    bad = np.flatnonzero(~(np.isfinite(stored).all(axis=1) & (shifts <= MOST_SHIFT * size)))
+    bad = np.flatnonzero(~(np.isfinite(stored).all(axis=1) & (shifts <= MAX_SHIFT * size)))
     if len(bad):
         x, y, z = points[bad[0]]
         raise error(

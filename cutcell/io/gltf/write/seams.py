@@ -20,7 +20,7 @@ from ..read.accessors import read_accessor
 from ..read.primitives import StoredFaces, attributes, primitives, read_faces
 
 SPLIT_FROM = "_SPLIT_FROM"
-MOST_VERTICES = 2**24
+MAX_VERTICES = 2**24
 """As far as float32 counts; glTF allows no 32-bit integers here."""
 
 

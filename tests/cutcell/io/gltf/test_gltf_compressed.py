@@ -115,7 +115,7 @@ class TestDracoDetails:
             loaded(draco_column())
         code = "import time; time.sleep(600)"
         monkeypatch.setattr("cutcell.isolated.run.COMMAND", (sys.executable, "-c", code))
-        monkeypatch.setattr("cutcell.io.gltf.read.draco.LEAST_SECONDS", 0.2)
+        monkeypatch.setattr("cutcell.io.gltf.read.draco.MIN_SECONDS", 0.2)
         with pytest.raises(F, match=r"^rig\.glb: its Draco .* took longer than"):
             loaded(draco_column())
 
