@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ..geodesics import Bones, bone_segments, distance_to_segment
+from ..geodesics import Bones, bone_segments
+from ..geometry.segments import closest_on_segment, distance_to_segment
 from ..geometry.weld import weld
 from ..graph import Lattice
 from ..method import Leaf
@@ -58,10 +59,7 @@ class Body:
 
     def closest_on(self, bone: int) -> NDArray[np.float64]:
         """Return the point of a bone that is closest to each welded vertex, shape (k, 3)."""
-        start, along = self.bones.start[bone], self.bones.end[bone] - self.bones.start[bone]
-        squared = along @ along
-        travel = (self.points - start) @ along / (squared if squared > 0 else 1.0)
-        return start + np.clip(travel, 0, 1)[:, None] * along
+        return closest_on_segment(self.points, self.bones.start[bone], self.bones.end[bone])[0]
 
     def joint_minimum(self, distance: NDArray[np.float64]) -> NDArray[np.float64]:
         """Take the least over the bones of each joint: (b, k) to (j, k), else infinite."""

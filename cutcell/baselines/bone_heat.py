@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array, diags_array
-from scipy.sparse.csgraph import connected_components
+from scipy.sparse import diags_array
 from scipy.sparse.linalg import splu
 
 from ..geometry.laplacian import cotangent_laplacian, vertex_areas, vertex_normals
 from ..method import PAPER, Leaf
 from ..rig.checks import check_number
 from ..rig.rig import Rig
+from ..weights.rig_falloff.components import label_components
 from .body import Body
 from .frame import BaselineBinding, Run, bind_by
 from .visibility import Blockers
@@ -136,10 +136,7 @@ def _nearness(body: Body) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
 
 def _dark_components(body: Body, warm: NDArray[np.bool_]) -> NDArray[np.intp]:
     """List the vertices on components of the mesh without any warm vertex."""
-    count = len(body.points)
-    links = np.concatenate([body.faces[:, [0, 1]], body.faces[:, [1, 2]]])
-    matrix = coo_array((np.ones(len(links)), links.T), shape=(count, count))
-    component = connected_components(matrix, directed=False)[1]
+    component = label_components(body.faces, len(body.points))
     return np.flatnonzero(~(np.bincount(component, warm) > 0)[component])
 
 

@@ -14,8 +14,10 @@ from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import cKDTree
 
 from ..errors import ParameterError
-from ..geodesics import BoneDistances, Bones, distance_to_segment, shortest_path
+from ..geodesics import BoneDistances, Bones, shortest_path
 from ..geodesics.distances import distances_from
+from ..geometry.edges import find_edges
+from ..geometry.segments import closest_on_segment, distance_to_segment
 from ..graph import build_graph
 from ..method import Method
 from ..rig.checks import check_choice
@@ -85,10 +87,8 @@ def _straight(body: Body) -> MeasuredDistance:
     def path_from(vertex: int) -> NDArray[np.float64]:
         point = body.points[body.index[vertex]]
         nearest = distance_to_segment(point, start, end).argmin()
-        along = end[nearest] - start[nearest]
-        squared = along @ along
-        part = np.clip((point - start[nearest]) @ along / squared, 0, 1) if squared > 0 else 0.0
-        return body.lattice.to_file(np.stack([point, start[nearest] + part * along]))
+        foot, _ = closest_on_segment(point, start[nearest], end[nearest])
+        return body.lattice.to_file(np.stack([point, foot]))
 
     return _measured(body.straight().min(axis=0)[body.index], path_from)
 
@@ -103,8 +103,7 @@ def _over_surface(body: Body) -> MeasuredDistance:
         found = tree.query(one + np.linspace(0, 1, steps)[:, None] * (other - one))[1]
         near.append(used[np.unique(found)])
         away.append(distance_to_segment(points[near[-1]], one, other))
-    ends = np.concatenate([body.faces[:, [0, 1]], body.faces[:, [1, 2]], body.faces[:, [2, 0]]])
-    edges = np.unique(np.sort(ends, axis=1), axis=0)
+    edges = find_edges(body.faces).edges
     lengths = np.linalg.norm(points[edges[:, 0]] - points[edges[:, 1]], axis=1)
     reached, before = _search(
         len(points), edges, lengths, np.concatenate(near), np.concatenate(away)

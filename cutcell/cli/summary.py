@@ -10,6 +10,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from ..geodesics import FALLBACK_REASONS, BoneDistances
+from ..geometry.triangles import face_edges
 from ..graph import INTERIOR, MESH, SURFACE, CutCellGraph
 from ..rig.rig import Rig, Skeleton, TriangleMesh
 
@@ -21,14 +22,13 @@ def summarize_mesh(mesh: TriangleMesh, graph: CutCellGraph) -> dict[str, Any]:
     """Count the elements of a mesh once equal positions are welded."""
     faces = graph.vertex_node[mesh.faces].astype(np.int64)
     faces = faces[(faces != np.roll(faces, 1, axis=1)).all(axis=1)]  # welded to nothing
-    ends = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
-    uses = np.unique(ends, axis=0, return_counts=True)[1]
+    edges, uses = np.unique(face_edges(faces), axis=0, return_counts=True)
     welded = int((graph.node_kind == MESH).sum())
     return {
         "vertices": len(mesh.vertices),
         "welded_vertices": welded,
         "triangles": len(mesh.faces),
-        "components": _components(ends, welded),
+        "components": _components(edges, welded),
         "open_edges": int((uses == 1).sum()),
         "non_manifold_edges": int((uses > 2).sum()),
         "closed": bool(graph.is_closed),
@@ -100,8 +100,8 @@ def _by_kind(kinds: NDArray[np.uint8]) -> dict[str, int]:
     return counts | {"total": len(kinds)}
 
 
-def _components(ends: NDArray[np.int64], count: int) -> int:
+def _components(edges: NDArray[np.int64], count: int) -> int:
     """Count the connected components; vertices without edges are left out."""
-    links = coo_array((np.ones(len(ends), bool), (ends[:, 0], ends[:, 1])), shape=(count, count))
+    links = coo_array((np.ones(len(edges), bool), edges.T), shape=(count, count))
     labels = connected_components(links, directed=False)[1]
-    return len(np.unique(labels[ends]))
+    return len(np.unique(labels[edges]))

@@ -13,6 +13,8 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import shortest_path
 
 from ..errors import FileError, MissingLibraryError
+from ..geometry.segments import distance_to_segment
+from ..geometry.triangles import face_edges
 from ..io.meshes.obj import write_obj
 from ..io.rignet import word_names
 from ..rig.checks import check_choice
@@ -94,16 +96,9 @@ def rignet_distances(entry: Entry) -> NDArray[np.float32]:
         ends = entry.joints[entry.bone_joints]
         for bone in np.flatnonzero(lost.any(axis=0)):
             at = lost[:, bone]
-            straight = _to_segment(entry.vertices[at], *ends[bone])
+            straight = distance_to_segment(entry.vertices[at], *ends[bone])
             distances[at, bone] = (UNREACHED * entry.scale + straight).astype(np.float32)
     return distances
-
-
-def _to_segment(points: NDArray, start: NDArray, end: NDArray) -> NDArray:
-    along = (end - start).astype(np.float64)
-    squared = max(float(along @ along), 1e-30)
-    t = np.clip((points - start) @ along / squared, 0, 1)
-    return np.linalg.norm(points - start - t[:, None] * along, axis=1)
 
 
 def _rignet(out: Path, name: str, entry: Entry) -> dict[Path, bytes]:
@@ -202,8 +197,6 @@ def _puppeteer_sample(name: str, entry: Entry, seed: int) -> dict[str, Any]:
     count = len(entry.joints)
     links = coo_array((np.ones(len(held)), (bones[:, 0], bones[:, 1])), shape=(count, count))
     hops = shortest_path(links.tocsr(), directed=False, unweighted=True)
-    sides = np.sort(np.concatenate([entry.faces[:, [0, 1]], entry.faces[:, [1, 2]],
-                                    entry.faces[:, [2, 0]]]), axis=1)  # fmt: skip
     there = np.concatenate([points.places, face_normals[points.face]], axis=1)
     return {
         "pc_w_norm": there.astype(np.float32),
@@ -214,7 +207,7 @@ def _puppeteer_sample(name: str, entry: Entry, seed: int) -> dict[str, Any]:
         "file_name": np.bytes_(name.encode()),
         "vertices": entry.vertices,
         "faces": entry.faces,
-        "edges": np.unique(sides, axis=0).astype(np.int64),
+        "edges": np.unique(face_edges(entry.faces), axis=0).astype(np.int64),
         "skin": entry.weights if entry.artist is None else entry.artist,
         "prior": entry.weights,
         "prior_points": at_points(entry.weights, entry.faces, points).astype(np.float32),

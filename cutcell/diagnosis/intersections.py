@@ -11,7 +11,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from ..geometry.vectors import between, cross, dot
+from ..geometry.vectors import between, cross, dot, triangle_normal
 from ..runtime.compiled import compiled
 from .finding import Finding, count, share
 from .subject import Subject
@@ -120,7 +120,7 @@ def _share_a_vertex(faces, f, g):
 def _pierces(points, faces, f, g):
     """Tell whether a side of face f passes through the inside of face g."""
     a, b, c = points[faces[g, 0]], points[faces[g, 1]], points[faces[g, 2]]
-    normal = cross(between(a, b), between(a, c))
+    normal = triangle_normal(a, b, c)
     heights = (
         dot(normal, between(a, points[faces[f, 0]])),
         dot(normal, between(a, points[faces[f, 1]])),

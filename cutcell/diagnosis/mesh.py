@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from ..geometry.triangles import face_edges
 from .cracks import find_cracks
 from .finding import Finding, count, share
 from .intersections import find_intersections
@@ -125,7 +126,7 @@ def _non_manifold(subject: Subject) -> Iterator[Finding]:
     faces = subject.faces
     if not len(faces):
         return
-    sides = np.sort(faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+    sides = face_edges(faces)
     key = sides[:, 0].astype(np.int64) * len(subject.points) + sides[:, 1]
     _, which, uses = np.unique(key, return_inverse=True, return_counts=True)
     edges = int((uses > 2).sum())

@@ -8,8 +8,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ..geodesics import BoneDistances, distance_to_segment
+from ..geodesics import BoneDistances
 from ..geodesics.fallback import REACHED
+from ..geometry.segments import distance_to_segment
 from ..runtime.display import shown_name
 from .finding import Finding, count
 from .subject import Subject

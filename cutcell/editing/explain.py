@@ -13,10 +13,10 @@ from ..geodesics import (
     PIECES,
     BoneDistances,
     bone_distances,
-    distance_to_segment,
     trace_path,
 )
 from ..geodesics.fallback import REACHED
+from ..geometry.segments import distance_to_segment
 from ..graph import build_graph
 from ..method import ANIMATION, Method, MethodName, Options, method_of
 from ..rig.checks import check_integer

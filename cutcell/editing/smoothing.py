@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
+from ..geometry.edges import find_edges
 from ..geometry.weld import WELD_TOLERANCE, weld
 from ..rig.checks import check_integer
 from ..rig.rig import TriangleMesh
@@ -46,12 +47,11 @@ def _gather(welded: NDArray[np.int32]) -> csr_array:
 
 def _step(faces: NDArray[np.int32], vertices: int) -> csr_array:
     """Return one pass as a matrix: half the vertex, half the mean of its neighbours."""
-    ends = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
-    ends = ends[ends[:, 0] != ends[:, 1]]
-    ends = np.unique(np.concatenate([ends, ends[:, ::-1]]), axis=0)
-    degree = np.bincount(ends[:, 0], minlength=vertices)
+    low, high = find_edges(faces).edges.T
+    start, end = np.concatenate([low, high]), np.concatenate([high, low])
+    degree = np.bincount(start, minlength=vertices)
     stay = np.where(degree > 0, 1 - STEP, 1.0)
-    rows = np.concatenate([ends[:, 0], np.arange(vertices)])
-    columns = np.concatenate([ends[:, 1], np.arange(vertices)])
-    values = np.concatenate([STEP / degree[ends[:, 0]], stay])
+    rows = np.concatenate([start, np.arange(vertices)])
+    columns = np.concatenate([end, np.arange(vertices)])
+    values = np.concatenate([STEP / degree[start], stay])
     return csr_array((values, (rows, columns)), shape=(vertices, vertices))

@@ -1,7 +1,7 @@
 """Bones, their distances through the body, and what to do where there are none."""
 
 from ..method import LEAVES
-from .bones import Bones, Sources, bone_samples, bone_segments, distance_to_segment
+from .bones import Bones, Sources, bone_samples, bone_segments
 from .distances import BoneDistances, bone_distances
 from .fallback import FALLBACK_REASONS
 from .tracing.paths import PIECES, TracedPath, path_length, shortest_path, trace_path
@@ -17,7 +17,6 @@ __all__ = [
     "bone_distances",
     "bone_samples",
     "bone_segments",
-    "distance_to_segment",
     "path_length",
     "shortest_path",
     "trace_path",

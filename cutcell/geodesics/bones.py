@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from ..errors import MeshError
+from ..geometry.segments import distance_to_segment
 from ..graph import CutCellGraph
 from ..method import LEAVES
 from ..rig.checks import check_choice
@@ -81,20 +82,6 @@ def bone_segments(skeleton: Skeleton, leaf: str = "point") -> Bones:
             end.append(tail)
             joint.append(j)
     return Bones(np.array(start), np.array(end), np.array(joint, np.int32))
-
-
-def distance_to_segment(points: ArrayLike, start: ArrayLike, end: ArrayLike) -> NDArray:
-    """Compute the distance from points (..., 3) to segments (..., 3), broadcast."""
-    points, start, end = (np.asarray(x, np.float64) for x in (points, start, end))
-    along, away = end - start, points - start
-    squared = _dot(along, along)
-    fraction = np.clip(_dot(away, along) / np.where(squared > 0, squared, 1), 0, 1)
-    apart = away - fraction[..., None] * along
-    return np.sqrt(_dot(apart, apart))
-
-
-def _dot(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
-    return np.einsum("...i,...i->...", a, b)  # faster than a sum over the last axis
 
 
 @dataclass(frozen=True, eq=False)

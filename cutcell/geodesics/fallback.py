@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from .bones import Bones, distance_to_segment
+from ..geometry.segments import distance_to_segment
+from .bones import Bones
 
 REACHED, UNUSED, UNREACHED, NOT_ALLOWED = range(4)
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ..geometry.sorting import sort_into
+from ..geometry.counting_sort import counting_sort
 from ..runtime.compiled import compiled
 
 IN_A_CELL = 4
@@ -75,7 +75,7 @@ def _sort_into_cells(nodes, chosen, side):
         if chosen[n]:
             x, y, z = _cell(nodes[n, 0], side), _cell(nodes[n, 1], side), _cell(nodes[n, 2], side)
             cell[n] = (x * side + y) * side + z
-    return sort_into(cell, side * side * side)
+    return counting_sort(cell, side * side * side)
 
 
 @compiled

@@ -1,4 +1,4 @@
-"""The edges of a mesh with their signed incidence, and the faces on either half_edge of them."""
+"""The edges of a mesh with their signed incidence, and the faces on either side of them."""
 
 from __future__ import annotations
 

@@ -7,10 +7,10 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from ..runtime.compiled import compiled
+from .vectors import between, cross, dot, length, triangle_normal
 
 THINNEST = 1e-4
-"""Height of a triangle, as part of its longest side, below which it counts as no thinner: needles
-would outweigh all."""
+"""Minimum height of a triangle, as part of its longest side: needles would outweigh all."""
 
 
 def cotangent_laplacian(points: NDArray[np.float64], faces: NDArray[np.int32]) -> csr_array:
@@ -32,7 +32,22 @@ def vertex_areas(points, faces):
     corner gets half, the others a quarter each.
     """
     total = np.zeros(len(points))
-    _add_areas(points, faces, total)
+    for f in range(len(faces)):
+        p, q, r = points[faces[f, 0]], points[faces[f, 1]], points[faces[f, 2]]
+        area = length(triangle_normal(p, q, r)) / 2
+        # The cotangent at each corner, and its part of the triangle.
+        at_p, at_q, at_r = _cotangent(p, q, r), _cotangent(q, r, p), _cotangent(r, p, q)
+        if min(at_p, at_q, at_r) < 0:
+            of_p = area / 2 if at_p < 0 else area / 4
+            of_q = area / 2 if at_q < 0 else area / 4
+            of_r = area / 2 if at_r < 0 else area / 4
+        else:  # half of each side's part belongs to either of its ends
+            qr, rp, pq = between(q, r), between(r, p), between(p, q)
+            by_p, by_q, by_r = at_p * dot(qr, qr), at_q * dot(rp, rp), at_r * dot(pq, pq)
+            of_p, of_q, of_r = (by_q + by_r) / 8, (by_r + by_p) / 8, (by_p + by_q) / 8
+        total[faces[f, 0]] += of_p
+        total[faces[f, 1]] += of_q
+        total[faces[f, 2]] += of_r
     return total
 
 
@@ -40,12 +55,16 @@ def vertex_areas(points, faces):
 def vertex_normals(points, faces):
     """Return unit normals, shape (k, 3): the faces' average by area; zero where there is none."""
     normals = np.zeros((len(points), 3))
-    _add_normals(points, faces, normals)
+    for f in range(len(faces)):
+        n = triangle_normal(points[faces[f, 0]], points[faces[f, 1]], points[faces[f, 2]])
+        for corner in range(3):
+            for axis in range(3):
+                normals[faces[f, corner], axis] += n[axis]
     for k in range(len(points)):
-        x, y, z = normals[k, 0], normals[k, 1], normals[k, 2]
-        length = np.sqrt(x * x + y * y + z * z)
-        if length > 0:
-            normals[k, 0], normals[k, 1], normals[k, 2] = x / length, y / length, z / length
+        size = length(normals[k])
+        if size > 0:
+            for axis in range(3):
+                normals[k, axis] /= size
     return normals
 
 
@@ -68,10 +87,10 @@ def stiffness(points, faces):
         for corner in range(3):
             p, q, r = faces[f, corner], faces[f, (corner + 1) % 3], faces[f, (corner + 2) % 3]
             half = _cotangent(points[p], points[q], points[r]) / 2
-            for here, there in ((q, r), (r, q)):
-                column[cursor[here]], value[cursor[here]] = there, -half
-                value[start[here]] += half
-                cursor[here] += 1
+            for row, neighbour in ((q, r), (r, q)):
+                column[cursor[row]], value[cursor[row]] = neighbour, -half
+                value[start[row]] += half
+                cursor[row] += 1
     return _merge(start, column, value)
 
 
@@ -96,57 +115,8 @@ def _merge(start, column, value):
 @compiled
 def _cotangent(p, q, r):
     """Return the cotangent of the angle at p; zero where two corners coincide."""
-    ax, ay, az = q[0] - p[0], q[1] - p[1], q[2] - p[2]
-    bx, by, bz = r[0] - p[0], r[1] - p[1], r[2] - p[2]
-    x, y, z = ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
-    cx, cy, cz = bx - ax, by - ay, bz - az
-    longest = max(
-        ax * ax + ay * ay + az * az, bx * bx + by * by + bz * bz, cx * cx + cy * cy + cz * cz
-    )
+    pq, pr, qr = between(p, q), between(p, r), between(q, r)
+    longest = max(dot(pq, pq), dot(pr, pr), dot(qr, qr))
     # The same for all three corners: then the matrix stays positive for any thin triangle.
-    double_area = max(np.sqrt(x * x + y * y + z * z), THINNEST * longest)
-    return (ax * bx + ay * by + az * bz) / double_area if longest > 0 else 0.0
-
-
-@compiled
-def _across(p, q, r):
-    ax, ay, az = q[0] - p[0], q[1] - p[1], q[2] - p[2]
-    bx, by, bz = r[0] - p[0], r[1] - p[1], r[2] - p[2]
-    return ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
-
-
-@compiled
-def _add_normals(points, faces, normals):
-    for f in range(len(faces)):
-        x, y, z = _across(points[faces[f, 0]], points[faces[f, 1]], points[faces[f, 2]])
-        for corner in range(3):
-            normals[faces[f, corner], 0] += x
-            normals[faces[f, corner], 1] += y
-            normals[faces[f, corner], 2] += z
-
-
-@compiled
-def _add_areas(points, faces, total):
-    for f in range(len(faces)):
-        p, q, r = points[faces[f, 0]], points[faces[f, 1]], points[faces[f, 2]]
-        x, y, z = _across(p, q, r)
-        area = np.sqrt(x * x + y * y + z * z) / 2
-        # The cotangent at each corner, and its part of the triangle.
-        at_p, at_q, at_r = _cotangent(p, q, r), _cotangent(q, r, p), _cotangent(r, p, q)
-        if min(at_p, at_q, at_r) < 0:
-            of_p = area / 2 if at_p < 0 else area / 4
-            of_q = area / 2 if at_q < 0 else area / 4
-            of_r = area / 2 if at_r < 0 else area / 4
-        else:  # half of each side's part belongs to either of its ends
-            by_p, by_q, by_r = at_p * _apart(q, r), at_q * _apart(r, p), at_r * _apart(p, q)
-            of_p, of_q, of_r = (by_q + by_r) / 8, (by_r + by_p) / 8, (by_p + by_q) / 8
-        total[faces[f, 0]] += of_p
-        total[faces[f, 1]] += of_q
-        total[faces[f, 2]] += of_r
-
-
-@compiled
-def _apart(p, q):
-    """Return the squared distance of two points."""
-    x, y, z = p[0] - q[0], p[1] - q[1], p[2] - q[2]
-    return x * x + y * y + z * z
+    double_area = max(length(cross(pq, pr)), THINNEST * longest)
+    return dot(pq, pr) / double_area if longest > 0 else 0.0

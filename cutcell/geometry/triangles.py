@@ -1,4 +1,4 @@
-"""Normals and areas of triangles, by the positions of their corners."""
+"""Normals, areas and edges of triangles."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,11 +15,15 @@ def normals(corners: NDArray[np.float64]) -> NDArray[np.float64]:
 
 def unit_normals(corners: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return normals of length one, shape (..., 3); zero for triangles without area."""
-    found = normals(corners)
-    return found / np.maximum(np.linalg.norm(found, axis=-1, keepdims=True), 1e-300)
+    vectors = normals(corners)
+    return vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-300)
 
 
 def areas(corners: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return areas, shape (...), of triangles (..., 3, 3)."""
-    found: NDArray[np.float64] = np.linalg.norm(normals(corners), axis=-1) / 2
-    return found
+    return np.asarray(np.linalg.norm(normals(corners), axis=-1) / 2)
+
+
+def face_edges(faces: NDArray) -> NDArray:
+    """Return the three edges of each face, lower vertex first, shape (3 m, 2), with repeats."""
+    return np.sort(faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)

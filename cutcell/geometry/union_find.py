@@ -1,7 +1,6 @@
-"""Groups that grow together (union-find, Tarjan 1975); the lowest member stands for its group.
+"""Disjoint sets (union-find, Tarjan 1975), each represented by its lowest member.
 
-`first` is an array that begins as `np.arange(count)`: each member names one of its group that is
-no later than itself.
+`first` begins as `np.arange(count)`: each entry is a member of the same set, no later than itself.
 """
 
 from __future__ import annotations
@@ -12,8 +11,8 @@ from ..runtime.compiled import compiled
 
 
 @compiled(inline="always")
-def root(first, i):
-    """Return the lowest member of i's group."""
+def find(first, i):
+    """Return the lowest member of the set of i."""
     while first[i] != i:
         first[i] = first[first[i]]
         i = first[i]
@@ -21,22 +20,22 @@ def root(first, i):
 
 
 @compiled(inline="always")
-def join(first, i, j):
-    """Make one group of those of i and j; return its lowest member."""
-    a, b = root(first, i), root(first, j)
+def union(first, i, j):
+    """Merge the sets of i and j; return the lowest member."""
+    a, b = find(first, i), find(first, j)
     low = min(a, b)
     first[max(a, b)] = low
     return low
 
 
 @compiled
-def numbered(first):
-    """Return the number of each member's group, in the order of the lowest, and the lowest."""
+def labels(first):
+    """Return each member's set, numbered by its lowest member, and these lowest members."""
     count = len(first)
     group, lowest = np.empty(count, np.int32), np.empty(count, np.int64)
     groups = 0
     for i in range(count):
-        low = root(first, i)
+        low = find(first, i)
         if low == i:
             group[i], lowest[groups] = groups, i
             groups += 1

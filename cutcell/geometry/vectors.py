@@ -29,3 +29,17 @@ def cross(a, b):
 def length(a):
     """Return the Euclidean length."""
     return np.sqrt(dot(a, a))
+
+
+@compiled(inline="always")
+def triangle_normal(a, b, c):
+    """Return the normal of a triangle, as long as twice its area."""
+    return cross(between(a, b), between(a, c))
+
+
+@compiled(inline="always")
+def segment_fraction(a, b, point):
+    """Return where the segment from a, 0, to b, 1, is closest to a point."""
+    along = between(a, b)
+    squared = dot(along, along)
+    return min(max(dot(between(a, point), along) / squared, 0.0), 1.0) if squared > 0 else 0.0

@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..runtime.compiled import compiled
-from .union_find import join, numbered
+from .union_find import labels, union
+from .vectors import between, dot
 
 WELD_TOLERANCE = 1e-6
 """Of the bounding box's longest side: far above float32 rounding, far below any detail."""
@@ -70,14 +71,12 @@ def _merge(projection, points, tolerance, slack):
     for i in range(count):
         j = i + 1
         while j < count and projection[j] - projection[i] <= slack[i]:
-            x = points[j, 0] - points[i, 0]
-            y = points[j, 1] - points[i, 1]
-            z = points[j, 2] - points[i, 2]
-            squared = x * x + y * y + z * z
+            displacement = between(points[i], points[j])
+            squared = dot(displacement, displacement)
             if squared <= tolerance * tolerance:
-                join(first, i, j)
+                union(first, i, j)
             if squared == 0:  # j lies at the same point and will meet whatever follows
                 break
             j += 1
-    group, lowest = numbered(first)
+    group, lowest = labels(first)
     return points[lowest], group

@@ -21,7 +21,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from ..geometry.vectors import between, cross
+from ..geometry.vectors import triangle_normal
 from ..runtime.compiled import compiled, copy_to
 from ..runtime.progress import Tell
 from ..runtime.threads import in_threads, threads
@@ -161,7 +161,7 @@ def _projected_area(vertices, faces):
     total = 0.0
     for f in range(len(faces)):
         a, b, c = vertices[faces[f, 0]], vertices[faces[f, 1]], vertices[faces[f, 2]]
-        normal = cross(between(a, b), between(a, c))
+        normal = triangle_normal(a, b, c)
         total += abs(normal[0]) + abs(normal[1]) + abs(normal[2])
     return total / 2
 

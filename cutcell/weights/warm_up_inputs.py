@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..geometry.triangles import face_edges
 from ..graph import INTERIOR, MESH, CutCellGraph, Lattice
 from ..graph.interior import InteriorPoints
 from ..rig.rig import Skeleton, TriangleMesh
@@ -66,8 +67,7 @@ def block_graph() -> CutCellGraph:
     ends = np.zeros(SIDE * SIDE, np.int32)
     stretches = InteriorPoints(SIDE, column, ends, ends + SIDE - 1, column * SIDE)
 
-    sides = np.sort(mesh.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
-    of_mesh = np.unique(sides, axis=0)
+    of_mesh = np.unique(face_edges(mesh.faces), axis=0)
     around = np.pad(number, 1, constant_values=-1)
     up = [np.roll(around, -1, axis)[1:-1, 1:-1, 1:-1].ravel() for axis in range(3)]
     inside = [first + np.stack([number.ravel(), to], axis=1)[to >= 0] for to in up]

@@ -9,7 +9,7 @@ from time import perf_counter
 import numpy as np
 from numpy.typing import NDArray
 
-from ...geodesics import distance_to_segment
+from ...geometry.segments import distance_to_segment
 from ...isolated.run import LIMIT, WorkFailedError, run_isolated
 from ..body import Body, Same
 from ..volumes.voxels import PAD, voxelize

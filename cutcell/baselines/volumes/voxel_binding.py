@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from ...geometry.edges import find_edges
 from ...method import PAPER, Leaf
 from ...rig.rig import Rig
 from ...weights.paper_kernel import paper_kernel
@@ -199,8 +200,7 @@ def _unirig_links(body: Body, voxels: Voxels) -> tuple[NDArray, NDArray]:
     """Link voxels, vertices with the nearest voxel, and vertices along edges."""
     between, lengths = voxels.links(connectivity=6)
     count = len(body.points)
-    ends = np.concatenate([body.faces[:, [0, 1]], body.faces[:, [1, 2]], body.faces[:, [2, 0]]])
-    edges = np.unique(np.sort(ends, axis=1), axis=0)
+    edges = find_edges(body.faces).edges
     along = np.linalg.norm(body.points[edges[:, 0]] - body.points[edges[:, 1]], axis=1)
     away, nearest = cKDTree(voxels.centres).query(body.points)
     near = np.flatnonzero(away < UNIRIG_REACH / voxels.resolution)

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...errors import MeshError
+from ...geometry.triangles import normals
 from ...rig.rig import Rig
 
 
@@ -54,8 +55,7 @@ def mesh_normals(
 ) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
     """Return unit normals of the faces (m, 3) and of the vertices (n, 3); zero where none is."""
     places, corners = np.asarray(vertices, np.float64), np.asarray(faces)
-    a, b, c = (places[corners[:, k]] for k in range(3))
-    across = np.cross(b - a, c - a)
+    across = normals(places[corners])
     by_vertex = np.zeros((len(places), 3))
     for k in range(3):
         np.add.at(by_vertex, corners[:, k], across)

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...errors import MissingLibraryError
+from ...geometry.segments import closest_on_segment
 from ...rig.rig import Rig, Skeleton, TriangleMesh
 
 INFLUENCES = 4
@@ -125,10 +126,8 @@ def weights_of(vertices: NDArray, limbs: Limbs) -> NDArray[np.float64]:
 
 def _distance(points: NDArray, limbs: Limbs, k: int) -> NDArray:
     """Estimate the signed distance from a limb, a cone with round ends."""
-    start, along = limbs.starts[k], limbs.ends[k] - limbs.starts[k]
+    nearest, t = closest_on_segment(points, limbs.starts[k], limbs.ends[k])
     wide, narrow = limbs.radii[k]
-    t = np.clip((points - start) @ along / max(float(along @ along), 1e-12), 0, 1)
-    nearest = start + t[..., None] * along
     return np.sqrt(((points - nearest) ** 2).sum(axis=-1)) - (wide + (narrow - wide) * t)
 
 

@@ -13,6 +13,7 @@ from numpy.lib import format as npy
 from numpy.typing import NDArray
 
 from ...errors import CutcellError, FileError, MissingLibraryError, SkeletonError, WeightsError
+from ...geometry.triangles import face_edges
 from ...io.articulation import HEADERS, articulation_bytes
 from ...io.deforming import with_deform
 from ...io.weights import normalised
@@ -165,8 +166,7 @@ def faces_of_edges(vertices: NDArray, edges: NDArray) -> NDArray[np.int64]:
     if not faces:
         raise FileError("its edges make no triangles; save its faces as well")
     found = np.array(faces)
-    used = np.unique(np.sort(np.concatenate([found[:, [0, 1]], found[:, [1, 2]],
-                                             found[:, [0, 2]]]), axis=1), axis=0)  # fmt: skip
+    used = np.unique(face_edges(found), axis=0)
     if len(used) < RECOVERED * len(pairs):
         raise FileError(
             f"only {len(used):,} of its {len(pairs):,} edges lie in a triangle; its faces had more "

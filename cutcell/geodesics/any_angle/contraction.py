@@ -17,7 +17,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ...geometry.sorting import order_by_place, sort_into
+from ...geometry.counting_sort import counting_sort, spatial_order
 from ...graph import INTERIOR, SURFACE, CutCellGraph
 from ...graph.inside_edges import lattice_steps
 from ...graph.interior import OUTSIDE
@@ -83,7 +83,7 @@ def contract(graph: CutCellGraph) -> Contraction:
 def _sorted_by_place(contracted: Contraction, vertices: int) -> Contraction:
     """Renumber mesh vertices by place. Paths remain the same."""
     order = np.arange(len(contracted.node))
-    order[:vertices] = order_by_place(contracted.places[:vertices])
+    order[:vertices] = spatial_order(contracted.places[:vertices])
     rank = np.empty(len(order), np.int32)
     rank[order] = np.arange(len(order))
     size = np.diff(contracted.indptr)[order]
@@ -163,7 +163,7 @@ def _contract(nodes, edges, block, mesh):
     kept = np.empty_like(edges)
     count = _keep_edges(nodes, edges, block, mesh, representative, number, kept)
     # Kept nodes are below 0 here, and left out.
-    start, order = sort_into(representative[first_surface:] - mesh, len(block))
+    start, order = counting_sort(representative[first_surface:] - mesh, len(block))
     count = _add_shortcuts(edges, ends, start, order, mesh, number, kept, count)
     indptr, indices = _list_neighbours(kept[:count], len(node))
     places, crossing = np.empty((len(node), 3)), 0

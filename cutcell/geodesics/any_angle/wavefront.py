@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.distance import cdist
 
-from ...geometry.sorting import sort_into
+from ...geometry.counting_sort import counting_sort
 from ...runtime.compiled import compiled
 from ..bones import Bones, Sources
 from .labels import NO_JOINT, find_room, no_labels
@@ -92,7 +92,7 @@ def _rank(order, start, end, joint, bone):
             count += 1
         rank[row] = rank_of[joint[b]]
     own = row_of[bone]
-    _, by_bone = sort_into(own, len(order))
+    _, by_bone = counting_sort(own, len(order))
     return joints[:count], places[:count], table, rank, own[by_bone], by_bone
 
 

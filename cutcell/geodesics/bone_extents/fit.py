@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.distance import cdist
 
+from ...geometry.vectors import length, triangle_normal
 from ...graph import CutCellGraph
 from ...rig.rig import Skeleton
 from ...runtime.compiled import no_refcount
@@ -184,12 +185,7 @@ def _sum_regions(points, area, distance, nearest, total, middle):
 def _add_areas(points, faces, areas):
     """Add twice the area of each triangle to all its corners."""
     for f in range(len(faces)):
-        a, b, c = faces[f, 0], faces[f, 1], faces[f, 2]
-        squared = 0.0
-        for axis in range(3):
-            i, j = (axis + 1) % 3, (axis + 2) % 3
-            normal = (points[b, i] - points[a, i]) * (points[c, j] - points[a, j])
-            normal -= (points[b, j] - points[a, j]) * (points[c, i] - points[a, i])
-            squared += normal * normal
+        a, b, c = points[faces[f, 0]], points[faces[f, 1]], points[faces[f, 2]]
+        double_area = length(triangle_normal(a, b, c))
         for corner in range(3):
-            areas[faces[f, corner]] += np.sqrt(squared)
+            areas[faces[f, corner]] += double_area

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ...geometry.vectors import segment_fraction
 from ...graph import CutCellGraph
 from ...graph.interior import OUTSIDE, point_number
 from ...runtime.compiled import compiled
@@ -149,10 +150,7 @@ def _distance_to_others(point, direction, limit, start, end, step, resolution, t
     for k in range(1, int(limit / step) + 1):
         here = point + k * step * direction
         for b in range(len(start)):
-            along = end[b] - start[b]
-            squared = (along * along).sum()
-            t = ((here - start[b]) * along).sum() / squared if squared > 0 else 0.0
-            there = start[b] + min(max(t, 0.0), 1.0) * along - here
+            there = start[b] + segment_fraction(start[b], end[b], here) * (end[b] - start[b]) - here
             if (there * there).sum() > (NEARER * k * step) ** 2:
                 continue
             inside = 0

@@ -9,9 +9,10 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.sparse.csgraph import dijkstra
 
 from ...errors import ParameterError
+from ...geometry.segments import closest_on_segment, distance_to_segment
 from ...graph import INTERIOR, MESH, SURFACE, CutCellGraph
 from ...rig.checks import check_integer
-from ..bones import Bones, distance_to_segment
+from ..bones import Bones
 from ..distances import BoneDistances
 from .inside import Inside
 from .taut import taut
@@ -178,11 +179,7 @@ def _nearest_on(bones: Bones, points: NDArray[np.float64]) -> NDArray[np.float64
     """Return the point nearest to each of some points on any bone, shape (p, 3)."""
     distance = distance_to_segment(points[:, None], bones.start, bones.end)
     nearest = distance.argmin(axis=1)
-    start, along = bones.start[nearest], (bones.end - bones.start)[nearest]
-    squared = (along**2).sum(axis=1)
-    fraction = ((points - start) * along).sum(axis=1) / np.where(squared > 0, squared, 1)
-    foot: NDArray[np.float64] = start + np.clip(fraction, 0, 1)[:, None] * along
-    return foot
+    return closest_on_segment(points, bones.start[nearest], bones.end[nearest])[0]
 
 
 def _pieces(

@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ...geometry.sorting import sort_into
+from ...geometry.counting_sort import counting_sort
 from ...geometry.triangles import areas, unit_normals
 from ...runtime.compiled import compiled
 from ...runtime.progress import Tell
@@ -127,14 +127,14 @@ def _escape(points, own, vertices, faces):
     column = np.empty(len(points), np.int64)
     for q in range(len(points)):
         column[q] = int(points[q, 0] * COLUMNS) * COLUMNS + int(points[q, 1] * COLUMNS)
-    start, order = sort_into(column, COLUMNS * COLUMNS)
+    start, order = counting_sort(column, COLUMNS * COLUMNS)
     is_free = np.ones((len(points), 2), np.bool_)
     hidden = 0
     for f in range(len(faces)):
         if 2 * hidden > len(order):  # in a soup a few faces hide nearly all points
             for q in order:
                 column[q] = column[q] if is_free[q, 0] or is_free[q, 1] else -1
-            start, order = sort_into(column, COLUMNS * COLUMNS)
+            start, order = counting_sort(column, COLUMNS * COLUMNS)
             hidden = 0
         a, b, c = faces[f, 0], faces[f, 1], faces[f, 2]
         low_u = min(vertices[a, 0], vertices[b, 0], vertices[c, 0])

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...geometry.triangles import normals
-from ...geometry.union_find import join, numbered
-from ...geometry.vectors import between, cross, dot, length
+from ...geometry.union_find import labels, union
+from ...geometry.vectors import between, dot, length, triangle_normal
 from ...runtime.compiled import compiled
 
 NONE = -1
@@ -89,7 +89,7 @@ def measure_faces(vertices, faces):
     middle = 0.5, 0.5, 0.5
     for f in range(len(faces)):
         a, b, c = vertices[faces[f, 0]], vertices[faces[f, 1]], vertices[faces[f, 2]]
-        normal = cross(between(a, b), between(a, c))
+        normal = triangle_normal(a, b, c)
         areas[f], volumes[f] = length(normal) / 2, dot(between(middle, a), normal) / 6
     return areas, volumes
 
@@ -149,8 +149,8 @@ def _split(faces, partner, flips):
         if other < half_edge:
             continue
         if _is_consistent(faces, flips, half_edge, other):
-            join(first, half_edge // 3, other // 3)
-    return numbered(first)[0]
+            union(first, half_edge // 3, other // 3)
+    return labels(first)[0]
 
 
 @compiled

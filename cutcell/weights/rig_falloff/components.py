@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...geodesics import Bones
-from ...geometry.sorting import sort_into
-from ...geometry.union_find import join, numbered
+from ...geometry.counting_sort import counting_sort
+from ...geometry.union_find import labels, union
 from ...runtime.compiled import compiled, no_refcount
 from ...runtime.threads import in_threads
 
@@ -24,9 +24,9 @@ def label_components(faces, count):
     """Return the connected component of each of `count` welded vertices, numbered from 0."""
     first = np.arange(count)
     for f in range(len(faces)):
-        low = join(first, faces[f, 0], faces[f, 1])
-        join(first, low, faces[f, 2])
-    return numbered(first)[0]
+        low = union(first, faces[f, 0], faces[f, 1])
+        union(first, low, faces[f, 2])
+    return labels(first)[0]
 
 
 def bone_containment(
@@ -91,7 +91,7 @@ def _sort_into_columns(samples):
     column = np.empty(len(samples), np.int64)
     for s in range(len(samples)):
         column[s] = _cell(samples[s, 0]) * CELLS + _cell(samples[s, 1])
-    return sort_into(column, CELLS * CELLS)
+    return counting_sort(column, CELLS * CELLS)
 
 
 @no_refcount

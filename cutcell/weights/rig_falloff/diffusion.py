@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
-from ...geometry.sorting import order_by_place
+from ...geometry.counting_sort import spatial_order
 from ...runtime.compiled import compiled
 from ...runtime.progress import Shares, Tell
 from ...runtime.threads import in_threads, parts, watched
@@ -72,7 +72,7 @@ class Diffusion:
             value = value.copy()
             value[start[:-1]] += screening
             matrix = csr_array((value, column, start), (len(screening),) * 2)
-            order = order_by_place(surface.points)
+            order = spatial_order(surface.points)
             return cls(screening, Multigrid.of(matrix[order][:, order]), order)
         known = *surface.stiffness, value[start[:-1]] + screening, surface.order
         factors = watched(lambda pace: factorise(*known, pace), len(screening), tell)

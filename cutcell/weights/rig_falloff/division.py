@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from scipy.spatial.distance import cdist
 
 from ...geodesics import BoneDistances, Bones
+from ...geometry.vectors import segment_fraction
 from ...method import RIG_REACH
 from ...runtime.compiled import no_refcount
 from ..adjustments import Adjustments
@@ -173,11 +174,7 @@ def _facing(point, normal, start, end, first, last):
     """Return how much a surface looks away from the nearest of some bones, `FACING_LEAST` to 1."""
     nearest, cosine = np.inf, 0.0
     for b in range(first, last):
-        along, squared = 0.0, 0.0
-        for c in range(3):
-            along += (point[c] - start[b, c]) * (end[b, c] - start[b, c])
-            squared += (end[b, c] - start[b, c]) ** 2
-        t = min(max(along / squared, 0.0), 1.0) if squared > 0 else 0.0
+        t = segment_fraction(start[b], end[b], point)
         length, out = 0.0, 0.0
         for c in range(3):
             displacement = point[c] - start[b, c] - t * (end[b, c] - start[b, c])

@@ -7,11 +7,11 @@ import pytest
 import trimesh
 
 from cutcell import ParameterError, Skeleton, TriangleMesh, load
-from cutcell.geodesics import distance_to_segment
 from cutcell.geodesics.any_angle.contraction import _sorted_by_place, contract
 from cutcell.geodesics.any_angle.theta_star import SPAN, any_angle_paths, least_distances
 from cutcell.geodesics.any_angle.wavefront import partition_sources
 from cutcell.geodesics.bones import find_sources, node_grid
+from cutcell.geometry.segments import distance_to_segment
 from cutcell_assets import demo_path
 from tests import meshes
 from tests.bars import fork

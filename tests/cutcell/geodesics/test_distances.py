@@ -14,8 +14,9 @@ from cutcell import (
     WeightsError,
     bone_segments,
 )
-from cutcell.geodesics import FALLBACK_REASONS, distance_to_segment
+from cutcell.geodesics import FALLBACK_REASONS
 from cutcell.geodesics.fallback import NOT_ALLOWED, REACHED, UNREACHED, UNUSED
+from cutcell.geometry.segments import distance_to_segment
 from tests import meshes, naive
 from tests.paper import bone_distances, build_graph
 

@@ -23,7 +23,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ....geometry.vectors import between, cross, dot, length
+from ....geometry.vectors import between, cross, dot, length, segment_fraction, triangle_normal
 from ....runtime.compiled import compiled, no_refcount
 from .clusters import error_bound, next_cluster
 from .multipole import add_multipole
@@ -253,16 +253,14 @@ def _biot_savart(a, b, la, lb):
 @compiled(inline="always")
 def _distance_to_edge(a, b):
     """Return the distance of the origin to the edge between a and b."""
-    e = between(a, b)
-    squared = dot(e, e)
-    t = min(max(-dot(a, e) / squared, 0.0), 1.0) if squared > 0 else 0.0
+    e, t = between(a, b), segment_fraction(a, b, (0.0, 0.0, 0.0))
     return length((a[0] + t * e[0], a[1] + t * e[1], a[2] + t * e[2]))
 
 
 @compiled
 def _is_within(a, b, c, reach):
     """Tell whether a triangle comes within reach of the origin; its edge a, b is left out."""
-    n = cross(between(a, b), between(a, c))
+    n = triangle_normal(a, b, c)
     height = dot(a, n)
     if height * height > reach * reach * dot(n, n):
         return False

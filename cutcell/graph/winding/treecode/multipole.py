@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ....geometry.vectors import between, cross, length
+from ....geometry.vectors import length, triangle_normal
 from ....runtime.compiled import compiled
 
 SIZE = 19
@@ -68,7 +68,7 @@ def _squared(a):
 @compiled
 def add_triangle(p, a, b, c):
     """Add the moments of a triangle, its corners relative to the centre; return its area."""
-    normal = cross(between(a, b), between(a, c))
+    normal = triangle_normal(a, b, c)
     normal = normal[0] / 2, normal[1] / 2, normal[2] / 2
     total = a[0] + b[0] + c[0], a[1] + b[1] + c[1], a[2] + b[2] + c[2]
     p[0] += normal[0]

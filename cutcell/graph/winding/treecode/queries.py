@@ -13,7 +13,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from ....geometry.sorting import sort_into
+from ....geometry.counting_sort import counting_sort
 from ....geometry.vectors import between, length
 from ....runtime.compiled import no_refcount
 from ....runtime.progress import Tell
@@ -58,7 +58,7 @@ def query_points(
 
     Shapes: row (q,), queries (q, 4); returns (q,).
     """
-    start, order = sort_into(row, len(expansions.centre))
+    start, order = counting_sort(row, len(expansions.centre))
     results = np.empty(len(row), np.uint8)
     every = np.array([ROOT], np.int32)
 

@@ -5,7 +5,7 @@ import pytest
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from cutcell.geometry.union_find import join, numbered, root
+from cutcell.geometry.union_find import find, labels, union
 
 
 @pytest.mark.parametrize("links", [0, 20, 60, 300])
@@ -13,8 +13,8 @@ def test_groups_equal_connected_components(links):
     ends = np.random.default_rng(links).integers(0, 100, (links, 2))
     first = np.arange(100)
     for i, j in ends:
-        assert join(first, i, j) == root(first, i) == root(first, j)
-    group, lowest = numbered(first)
+        assert union(first, i, j) == find(first, i) == find(first, j)
+    group, lowest = labels(first)
     graph = coo_array((np.ones(links), tuple(ends.T)), shape=(100, 100))
     count, expected = connected_components(graph, directed=False)
     assert len(lowest) == count

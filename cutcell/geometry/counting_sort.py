@@ -1,26 +1,25 @@
-"""Items sorted into groups in linear time, and points by place."""
+"""Sorting in linear time: items by group, points by cell of a grid."""
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..runtime.compiled import compiled
 
-PLACES = 64
-"""Cells along each side of the grid that points are sorted into."""
+CELLS = 64
+"""Along each side of the grid that points are sorted into."""
 
 
-def order_by_place(points: NDArray[np.float64]) -> NDArray[np.intp]:
+def spatial_order(points: NDArray[np.float64]) -> NDArray[np.intp]:
     """Order points, shape (n, 3), in the unit cube by the cells of a grid that they are in.
 
-    What belongs to near points is then near in memory, too. Of many points it would otherwise be
-    read from memory one by one, as little of it fits into the cache.
+    Near points are then near in memory, so that large meshes make better use of the cache.
     """
-    x, y, z = (points * PLACES).astype(np.int64).T
-    return np.argsort((x * PLACES + y) * PLACES + z, kind="stable")
+    x, y, z = (points * CELLS).astype(np.int64).T
+    return np.argsort((x * CELLS + y) * CELLS + z, kind="stable")
 
 
 @compiled
-def sort_into(group, count):
+def counting_sort(group, count):
     """Sort items by group, the items of each in order (counting sort).
 
     Shapes: group (n,); returns start (count + 1,), order (start[-1],).
