@@ -14,14 +14,14 @@ from numpy.typing import NDArray
 from .editing.binding_warnings import binding_warnings
 from .editing.correct import (
     adjustments_of,
+    apply_vertex_overrides,
     corrected_parts,
     corrected_rig,
     joints_measured,
     locked_by,
-    overruled,
 )
 from .editing.corrections import Corrections
-from .editing.refine import Touches, check_refinement, refine_weights
+from .editing.refine import RefineOptions, check_refinement, refine_weights
 from .errors import ParameterError, SkeletonError
 from .geodesics import BoneDistances, bone_distances
 from .graph import CutCellGraph, build_graph
@@ -81,7 +81,7 @@ def bind(
     """Compute skinning weights for a rig.
 
     It is the stages one after the other, each with the same method: `build_graph`,
-    `bone_distances`, `skinning_weights`, and last what touches weights up, `refine_weights`.
+    `bone_distances`, `skinning_weights`, and last `refine_weights`.
 
     Parameters
     ----------
@@ -133,8 +133,8 @@ def bind(
     rig = corrected_rig(rig, corrections)
     if corrections.joints:
         locked = [*locked, *locked_by(corrections)]
-    touches: Touches = {"smoothing": smoothing, "symmetric": symmetric, "locked": locked}
-    _check(rig, method, touches)
+    refinement: RefineOptions = {"smoothing": smoothing, "symmetric": symmetric, "locked": locked}
+    _check(rig, method, refinement)
     if graph is not None:
         _check_graph(graph, rig, method)
     if not is_compiled():
@@ -144,7 +144,7 @@ def bind(
     first_stage = "graph" if graph is None else "distances"
 
     def work(report: Progress) -> Binding:
-        return _bind(rig, method, corrections, touches, graph, report)
+        return _bind(rig, method, corrections, refinement, graph, report)
 
     return cancellable(work, progress, first_stage)
 
@@ -153,7 +153,7 @@ def _bind(
     rig: Rig,
     method: Method,
     corrections: Corrections,
-    touches: Touches,
+    refinement: RefineOptions,
     graph: CutCellGraph | None,
     progress: Progress,
 ) -> Binding:
@@ -184,10 +184,10 @@ def _bind(
             progress=progress,
         )
         weights = corrected_parts(rig, graph, weights, corrections)
-        weights = refine_weights(rig, weights, method=method, **touches)
-        weights = overruled(rig, weights, corrections)
+        weights = refine_weights(rig, weights, method=method, **refinement)
+        weights = apply_vertex_overrides(rig, weights, corrections)
         progress("weights", 1.0)
-    warnings = binding_warnings(rig, distances, weights, corrections, touches["locked"])
+    warnings = binding_warnings(rig, distances, weights, corrections, refinement["locked"])
     return Binding(weights, graph, distances, seconds, warnings)
 
 
@@ -197,12 +197,12 @@ def _begin_what_follows(graph: CutCellGraph, method: Method) -> None:
         SurfaceOperators.begin(graph)
 
 
-def _check(rig: Rig, method: Method, touches: Touches) -> None:
+def _check(rig: Rig, method: Method, refinement: RefineOptions) -> None:
     """Refuse what a stage would refuse, before the first one has begun."""
     Lattice.around(rig.mesh, method.resolution)
     rig.skeleton.require_joints()
     check_positions(rig.skeleton.joints, "joint", SkeletonError)
-    check_refinement(rig, **touches)
+    check_refinement(rig, **refinement)
     check_matrix(len(rig.mesh.vertices), len(rig.skeleton.joints), COPIES)
 
 

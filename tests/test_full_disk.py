@@ -22,7 +22,7 @@ from pathlib import Path
 import cutcell
 from cutcell.baselines.compare import compare
 from cutcell.baselines.compare.plot import plot_comparison
-from cutcell.io.numbers import save_numbers
+from cutcell_app.files.table_export import save_numbers
 from tests.cutcell.baselines.test_compare import character
 from tests.viewers.arm import arm_rig
 from cutcell_viewers import film

@@ -9,7 +9,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cutcell.editing.correct import corrected_parts, corrected_rig, locked_by, overruled
+from cutcell.editing.correct import (
+    apply_vertex_overrides,
+    corrected_parts,
+    corrected_rig,
+    locked_by,
+)
 from cutcell.editing.corrections import Corrections, JointCorrection, PartCorrection
 from cutcell.editing.locks import lock_joints, locked_joints
 from cutcell.errors import CutcellError, ParameterError
@@ -201,5 +206,5 @@ def finished(
         return weights
     weights = corrected_parts(rig, graph, weights, corrections)
     weights = lock_joints(rig, weights, locked_by(corrections), max_influences)
-    done: NDArray[np.float64] = overruled(rig, weights, corrections)
+    done: NDArray[np.float64] = apply_vertex_overrides(rig, weights, corrections)
     return done

@@ -11,7 +11,6 @@ from typing import Any
 
 import cutcell
 from cutcell.io import binary_ending
-from cutcell.io.numbers import save_numbers
 from cutcell.rig.rig import Clip
 from cutcell.runtime.progress import Progress
 from cutcell_viewers.camera import Camera
@@ -22,6 +21,7 @@ from cutcell_viewers.worker import draw_apart
 
 from ..files.graph_numbers import save_graph
 from ..files.receive import safe_name
+from ..files.table_export import save_numbers
 from ..scenes import Memo, following, resolve
 from ..scenes.pose import SWING_DEGREES, clip_of
 from ..state import State

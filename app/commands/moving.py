@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from cutcell.binding import Binding
-from cutcell.editing import middle_of_limb
+from cutcell.editing import cross_section_centre
 from cutcell.editing.correct import corrected_rig
 from cutcell.editing.corrections import Corrections, JointCorrection
 from cutcell.editing.symmetry import Mirror, find_joint_mirror
@@ -127,7 +127,7 @@ def put_back(session: Session) -> None:
 def centre(session: Session) -> None:
     """Put the chosen joint into the middle of the limb."""
     try:
-        place = middle_of_limb(session.state.rig, session.state.joint)
+        place = cross_section_centre(session.state.rig, session.state.joint)
     except CutcellError as error:
         session.fail(error)
         return

@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 
 import cutcell
-from cutcell.baselines.measures import Measure, MeasuredDistance, measure_distance
 from cutcell.geodesics import BoneDistances, path_length
 from cutcell.rig.rig import Rig
 from cutcell_viewers.character import to_scene
@@ -21,6 +20,7 @@ from cutcell_viewers.palette import BODY
 
 from ..state import State
 from ..state.geodesics import MEASURES
+from ..work.measured_distance import Measure, MeasuredDistance, measure_distance
 from .common import SEE_PATH, character
 from .memo import Memo
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import param
 
-from cutcell.baselines.measures import Measure
+from ..work.measured_distance import Measure
 
 MAX_MEASURES = 4
 """That stand side by side."""

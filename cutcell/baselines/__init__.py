@@ -1,4 +1,4 @@
-"""Other methods to bind a rig, all with one signature, to measure ours against."""
+"""Other methods to bind a rig, all with one signature, for comparison."""
 
 from .frame import BaselineBinding
 from .methods import METHODS, Baseline

@@ -1,4 +1,4 @@
-"""A rig as the methods see it: welded, in the unit cube, with its bones."""
+"""A rig prepared for the methods: welded, in the unit cube, with its bones."""
 
 from __future__ import annotations
 

@@ -153,6 +153,6 @@ def _equilibrium(
 
 def _faded(weights: NDArray[np.float64]) -> NDArray[np.float64]:
     low, high = FADE
-    kept = np.clip((weights - low) / (high - low), 0, 1) * np.maximum(weights, 0)
-    empty = kept.sum(axis=1) <= 0
-    return np.where(empty[:, None], weights, kept)
+    faded = np.clip((weights - low) / (high - low), 0, 1) * np.maximum(weights, 0)
+    empty = faded.sum(axis=1) <= 0
+    return np.where(empty[:, None], weights, faded)

@@ -27,9 +27,9 @@ class BaselineBinding:
     seconds : dict of str to float
         Time taken by each stage.
     warnings : tuple of str
-        What a person should know about the result, in sentences.
+        Warnings about the result.
     failed : str
-        Why there are no weights, in a sentence; empty where there are.
+        Why there are no weights; empty where there are.
     """
 
     weights: NDArray[np.float64] | None
@@ -39,7 +39,7 @@ class BaselineBinding:
 
 
 class Run:
-    """What one run of a method notes: the time of each stage, and warnings."""
+    """The time of each stage of a run of a method, and its warnings."""
 
     def __init__(self) -> None:
         self.seconds: dict[str, float] = {}
@@ -47,7 +47,7 @@ class Run:
         self._since = perf_counter()
 
     def end(self, stage: str, seconds: float | None = None) -> None:
-        """Add to a stage the time since the last one ended, or the time that it says it took."""
+        """Add the time since the last stage ended, or `seconds`, to a stage."""
         now = perf_counter()
         spent = now - self._since if seconds is None else seconds
         self.seconds[stage] = self.seconds.get(stage, 0.0) + spent
@@ -55,7 +55,7 @@ class Run:
 
 
 Solve = Callable[[Body, Run], NDArray[np.float64]]
-"""A method's own part: the weights of the welded vertices, shape (k, j), of a body. It ends all
+"""The solver of a method: the weights of the welded vertices, shape (k, j), of a body. It ends all
 stages but the last, "weights". Numbers that are negative or not finite are dropped later."""
 
 
@@ -64,10 +64,10 @@ def bind_by(solve: Solve, rig: Rig, method: Method) -> BaselineBinding:
     run = Run()
     body = Body.of(rig, method.leaf, method.resolution)
     try:
-        found = solve(body, run)
+        welded = solve(body, run)
     except WorkFailedError as error:
         return BaselineBinding(None, run.seconds, tuple(run.warnings), str(error))
-    weights, warnings = _finish(rig, body, found, method)
+    weights, warnings = _finish(rig, body, welded, method)
     run.end("weights")
     return BaselineBinding(weights, run.seconds, (*run.warnings, *warnings))
 
@@ -75,7 +75,7 @@ def bind_by(solve: Solve, rig: Rig, method: Method) -> BaselineBinding:
 def _finish(
     rig: Rig, body: Body, weights: NDArray[np.float64], method: Method
 ) -> tuple[NDArray[np.float64], tuple[str, ...]]:
-    """Give the weights of welded vertices (k, j) back to the file's: (n, j), and warnings.
+    """Return the weights of the file's vertices, (n, j), from those of welded ones, and warnings.
 
     Negative numbers and joints that may carry no weight are dropped; a vertex that is left
     with none follows its nearest bone. Rows sum to one.

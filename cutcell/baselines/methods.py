@@ -1,4 +1,4 @@
-"""The register of methods, and the two that are no baseline: ours and the artist."""
+"""The register of methods, with cutcell and the artist's weights."""
 
 from __future__ import annotations
 
@@ -45,10 +45,10 @@ def _bind(rig: Rig, method: Method, resolution: int, options: dict[str, Any]) ->
 
 
 def known_options(method: Baseline, **options: Any) -> dict[str, Any]:
-    """Return those options that a method knows."""
-    known = signature(method).parameters
-    every = any(one.kind is one.VAR_KEYWORD for one in known.values())
-    return {name: value for name, value in options.items() if every or name in known}
+    """Return the options that a method accepts."""
+    parameters = signature(method).parameters
+    every = any(one.kind is one.VAR_KEYWORD for one in parameters.values())
+    return {name: value for name, value in options.items() if every or name in parameters}
 
 
 def artist(rig: Rig) -> BaselineBinding:

@@ -30,11 +30,11 @@ def path_lengths(
     graph = matrix.indptr.astype(np.int64), matrix.indices.astype(np.int64), matrix.data
     source = np.concatenate(sources).astype(np.int64)
     start = np.concatenate(starts).astype(np.float64)
-    found = in_threads(
+    blocks = in_threads(
         lambda part: _search(*graph, first[part.start : part.stop + 1], source, start),
         parts(len(sources)),
     )
-    return np.concatenate(found)
+    return np.concatenate(blocks)
 
 
 @compiled

@@ -30,17 +30,17 @@ class Blockers:
     def blocked(
         self, vertex: NDArray[np.integer], target: NDArray[np.float64]
     ) -> NDArray[np.bool_]:
-        """Tell which segments meet a triangle that does not have their first end as a corner.
+        """Return which segments meet a triangle that does not have their first end as a corner.
 
         Shapes: vertex (q,), target (q, 3); returns (q,).
         """
         tree = (self.faces, self.low, self.high, self.child, self.first)
         vertex = vertex.astype(np.int64)
-        found = in_threads(
+        blocks = in_threads(
             lambda part: _blocked(self.points, *tree, vertex[part], target[part]),
             parts(len(vertex)),
         )
-        return np.concatenate(found)
+        return np.concatenate(blocks)
 
 
 def _build(points, faces):
@@ -51,9 +51,9 @@ def _build(points, faces):
     low, high, child, first = [], [], [], []
 
     def add(begin: int, end: int) -> int:
-        own = order[begin:end]
-        low.append(least[own].min(axis=0))
-        high.append(most[own].max(axis=0))
+        triangles = order[begin:end]
+        low.append(least[triangles].min(axis=0))
+        high.append(most[triangles].max(axis=0))
         child.append((-1, -1))
         first.append((begin, end))
         return len(low) - 1

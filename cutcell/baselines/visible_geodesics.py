@@ -1,4 +1,4 @@
-"""RigNet's distance: straight to what a bone sees, over the surface to all else."""
+"""RigNet's distance: straight along lines of sight from bones, over the surface elsewhere."""
 
 from __future__ import annotations
 
@@ -81,11 +81,11 @@ def visibility(
 
     def solve(body: Body, run: Run) -> NDArray[np.float64]:
         straight = body.straight()
-        seen = visible(body, progress)
+        is_visible = visible(body, progress)
         if reach is not None:
-            seen &= straight <= _farthest(straight, seen, reach)[:, None]
+            is_visible &= straight <= _farthest(straight, is_visible, reach)[:, None]
         run.end("visibility")
-        distance = over_surface(body, straight, seen, progress)
+        distance = over_surface(body, straight, is_visible, progress)
         run.warnings += follow_nearest(body, distance, NO_PATH)
         run.end("distances")
         return paper_kernel(body.joint_minimum(distance), body.lattice.diagonal, alpha)
@@ -94,30 +94,30 @@ def visibility(
 
 
 def visible(body: Body, progress: Progress = silent) -> NDArray[np.bool_]:
-    """Tell which welded vertices see each bone, shape (b, k): nothing is on the way to it."""
+    """Return whether each welded vertex has line of sight to each bone, shape (b, k)."""
     blockers = Blockers(body.points, body.faces)
     every, count = np.arange(len(body.points)), len(body.bones.joint)
-    seen = np.empty((count, len(every)), bool)
+    is_visible = np.empty((count, len(every)), bool)
     for b in range(count):
         progress("visibility", b / count)
-        seen[b] = ~blockers.blocked(every, body.closest_on(b))
-    return seen
+        is_visible[b] = ~blockers.blocked(every, body.closest_on(b))
+    return is_visible
 
 
 def over_surface(
     body: Body,
     straight: NDArray[np.float64],
-    seen: NDArray[np.bool_],
+    is_visible: NDArray[np.bool_],
     progress: Progress = silent,
 ) -> NDArray[np.float64]:
-    """Measure from every bone to what it does not see, over the surface.
+    """Measure over the surface from every bone to vertices without line of sight.
 
     Shapes: straight (b, k), seen (b, k); returns (b, k).
     """
     graph = _along_edges(body)
-    distance = np.where(seen, straight, np.inf)
-    for b, (row, own, sees) in enumerate(zip(distance, straight, seen, strict=True)):
-        progress("distances", b / len(seen))
+    distance = np.where(is_visible, straight, np.inf)
+    for b, (row, to_bone, sees) in enumerate(zip(distance, straight, is_visible, strict=True)):
+        progress("distances", b / len(is_visible))
         if not sees.any():
             continue
         length, _, nearest = dijkstra(
@@ -128,23 +128,23 @@ def over_surface(
             return_predecessors=True,
         )
         led = np.isfinite(length)
-        row[led] = length[led] + own[nearest[led]]
-    blind = ~seen.any(axis=1)
+        row[led] = length[led] + to_bone[nearest[led]]
+    blind = ~is_visible.any(axis=1)
     led = np.isfinite(distance).any(axis=0)
     distance[blind] = np.where(led, straight[blind], np.inf)
-    apart = ~np.isfinite(distance) & led
-    distance[apart] = straight[apart] + APART
+    no_path = ~np.isfinite(distance) & led
+    distance[no_path] = straight[no_path] + APART
     return distance
 
 
 def _farthest(
-    straight: NDArray[np.float64], seen: NDArray[np.bool_], reach: float
+    straight: NDArray[np.float64], is_visible: NDArray[np.bool_], reach: float
 ) -> NDArray[np.float64]:
     """Return from how far each bone is seen, (b,)."""
     return np.array(
         [
-            reach * np.percentile(own[sees], NEAR_SHARE) if sees.any() else 0.0
-            for own, sees in zip(straight, seen, strict=True)
+            reach * np.percentile(to_bone[sees], NEAR_SHARE) if sees.any() else 0.0
+            for to_bone, sees in zip(straight, is_visible, strict=True)
         ]
     )
 

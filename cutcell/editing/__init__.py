@@ -1,10 +1,10 @@
-"""What a person changes: corrections, brush strokes, locks, symmetry, smoothing."""
+"""Manual edits: corrections, brush strokes, locks, symmetry, smoothing."""
 
 from .brush import paint_weights
 from .correct import corrected_rig
 from .corrections import Corrections, JointCorrection, PartCorrection
 from .explain import Explanation, JointShare, Piece, explain
-from .limb import middle_of_limb
+from .limb import cross_section_centre
 from .refine import refine_weights
 from .stroke import Brush
 
@@ -17,8 +17,8 @@ __all__ = [
     "PartCorrection",
     "Piece",
     "corrected_rig",
+    "cross_section_centre",
     "explain",
-    "middle_of_limb",
     "paint_weights",
     "refine_weights",
 ]

@@ -1,4 +1,4 @@
-"""What a person should know about a binding, in sentences."""
+"""Warnings about a binding, as sentences."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def binding_warnings(
     corrections: Corrections,
     locked: Sequence[int | str] = (),
 ) -> tuple[str, ...]:
-    """Return what a person should know about weights and what they were computed from.
+    """Return warnings about weights and the data that they were computed from.
 
     Shapes: weights (n, j).
     """
@@ -35,8 +35,8 @@ def binding_warnings(
     return (
         *_of_distances(distances.graph, distances),
         *_weightless(rig, weights),
-        *_overruled_by_locks(rig, distances.graph, corrections, is_locked),
-        *_overruling_locks(rig, corrections, is_locked),
+        *_blocked_by_locks(rig, distances.graph, corrections, is_locked),
+        *_breaking_locks(rig, corrections, is_locked),
     )
 
 
@@ -71,22 +71,22 @@ def _weightless(rig: Rig, weights: NDArray[np.float64]) -> Iterator[str]:
         )
 
 
-def _overruled_by_locks(
+def _blocked_by_locks(
     rig: Rig, graph: CutCellGraph, corrections: Corrections, is_locked: NDArray[np.bool_]
 ) -> Iterator[str]:
-    """Say which parts do not move as they are corrected to, as locked joints keep weight there."""
+    """Report parts whose corrections have no effect, as locked joints keep weight there."""
     if rig.weights is None or not is_locked.any():
         return
     for vertex, part in corrections.parts.items():
         if part.how == "itself":
             continue
         component = SurfaceOperators.of(graph).component[graph.vertex_node]
-        wanted, binding = np.zeros(len(is_locked)), "follows what it touches"
+        corrected, binding = np.zeros(len(is_locked)), "follows what it touches"
         if part.joint is not None:
-            wanted[joint_index(rig.skeleton, part.joint)] = 1
+            corrected[joint_index(rig.skeleton, part.joint)] = 1
             binding = f'is glued to "{part.joint}"'
-        own = rig.weights[component == component[vertex]]
-        keeping = is_locked & (np.abs(own - wanted) > SAME).any(axis=0)
+        stored = rig.weights[component == component[vertex]]
+        keeping = is_locked & (np.abs(stored - corrected) > SAME).any(axis=0)
         if keeping.any():
             yield (
                 f"the part of vertex {vertex} {binding}, but these joints are locked and keep the "
@@ -94,18 +94,18 @@ def _overruled_by_locks(
             )
 
 
-def _overruling_locks(
+def _breaking_locks(
     rig: Rig, corrections: Corrections, is_locked: NDArray[np.bool_]
 ) -> Iterator[str]:
-    """Say which locked joints do not keep the file's weights, as vertices are set by hand."""
+    """Report locked joints whose weights change, as vertices are set by hand."""
     if rig.weights is None or not is_locked.any() or not corrections.vertices:
         return
     column = {rig.skeleton.names[j]: j for j in np.flatnonzero(is_locked)}
-    given = np.zeros((len(corrections.vertices), len(is_locked)))
-    for row, held in enumerate(corrections.vertices.values()):
-        for name in held.keys() & column.keys():
-            given[row, column[name]] = held[name]
-    differs = np.abs(given - rig.weights[list(corrections.vertices)]) > SAME
+    overrides = np.zeros((len(corrections.vertices), len(is_locked)))
+    for row, weights in enumerate(corrections.vertices.values()):
+        for name in weights.keys() & column.keys():
+            overrides[row, column[name]] = weights[name]
+    differs = np.abs(overrides - rig.weights[list(corrections.vertices)]) > SAME
     changed = is_locked & differs.any(axis=0)
     if changed.any():
         count = int(differs[:, changed].any(axis=1).sum())

@@ -32,7 +32,7 @@ def paint_weights(
     """Paint the weight of a joint along a stroke of a brush.
 
     Distances run over the surface, so that a brush on one leg does not reach the other, and no
-    other connected component. Vertices in one place count as one.
+    other connected component. Welded vertices get the same weights.
 
     Parameters
     ----------
@@ -74,12 +74,12 @@ def paint_weights(
     >>> brush = cutcell.Brush(radius=0.1, strength=0.5)
     >>> painted = cutcell.paint_weights(rig, weights, "Hand.L", [1017], brush)  # doctest: +SKIP
     """
-    given = np.asarray(weights, float)
+    before = np.asarray(weights, float)
     count = len(rig.mesh.vertices)
-    if given.shape != (count, len(rig.skeleton.names)):
+    if before.shape != (count, len(rig.skeleton.names)):
         raise WeightsError(
             f"weights must have the shape ({count}, {len(rig.skeleton.names)}), one row a vertex "
-            f"and one column a joint, not {given.shape}"
+            f"and one column a joint, not {before.shape}"
         )
     passed = np.asarray(stroke)
     if passed.ndim != 1 or not (passed.size and np.issubdtype(passed.dtype, np.integer)):
@@ -92,11 +92,11 @@ def paint_weights(
     if within is not None:
         within = as_array(within, np.bool_, (count,), "within", WeightsError)
     begun = Stroke(
-        PaintSurface(rig.mesh), rig, given, joint, brush, mirror=mirror,
+        PaintSurface(rig.mesh), rig, before, joint, brush, mirror=mirror,
         locked=locked, max_influences=max_influences, within=within,
     )  # fmt: skip
     begun.pass_over(passed[:, None], np.ones((len(passed), 1)))
     vertices, rows = begun.painted()
-    result = given.copy()
+    result = before.copy()
     result[vertices] = rows
     return result

@@ -1,4 +1,4 @@
-"""Applying a person's corrections to a rig and to its weights."""
+"""Apply corrections to a rig and to its weights."""
 
 from __future__ import annotations
 
@@ -19,8 +19,7 @@ from .locks import joint_index
 from .restructure import restructured
 
 JOINTS_FOR_GAINS = 8
-"""Nearest joints of each vertex that distances are measured from where one has a gain: with a
-longer reach it may count although others are nearer."""
+"""Nearest joints of each vertex to measure if any joint has a gain: gains change which are near."""
 
 
 def corrected_rig(rig: Rig, corrections: Corrections) -> Rig:
@@ -34,17 +33,17 @@ def corrected_rig(rig: Rig, corrections: Corrections) -> Rig:
     Returns
     -------
     Rig
-        With the joints, names and parents that the corrections tell of, where they put them, and
-        with those that may carry weight: what `cutcell.bind` binds, and `cutcell.save` is to be
-        given. The skeleton's structure is not changed a second time.
+        With the corrected joints, names, parents, positions and deforming joints: the rig that
+        `cutcell.bind` binds and that `cutcell.save` needs. Applying the
+        corrections again changes nothing.
 
     Raises
     ------
     ParameterError
         A joint or a vertex that the rig does not have, or weights that its file cannot store.
     SkeletonError
-        No joint would be left, or none to carry weight; two would share a name, or hang on each
-        other in a circle; or one stands too far from the mesh.
+        No joint would be left, or none to carry weight; two would share a name, or be each other's
+        ancestors; or one is too far from the mesh.
     """
     rig = restructured(rig, corrections)
     count = len(rig.mesh.vertices)
@@ -58,7 +57,7 @@ def corrected_rig(rig: Rig, corrections: Corrections) -> Rig:
     for vertex, weights in corrections.vertices.items():
         for name in weights:
             if name not in index:
-                joint_index(rig.skeleton, name)  # tells which sound alike
+                joint_index(rig.skeleton, name)  # raises, with similar names
             joint = index[name]
             if rig.allowed is not None and not rig.allowed[vertex, joint]:
                 raise ParameterError(f'the file cannot store weight of "{name}" at vertex {vertex}')
@@ -103,9 +102,9 @@ def adjustments_of(rig: Rig, graph: CutCellGraph, corrections: Corrections) -> A
     if not len(itself) and (gain == 1).all() and np.isnan(radius).all():
         return None
     component = SurfaceOperators.of(graph).component
-    by_itself = np.zeros(component.max() + 1, np.bool_)
-    by_itself[component[graph.vertex_node[itself]]] = True
-    return Adjustments(gain, radius, by_itself)
+    is_independent = np.zeros(component.max() + 1, np.bool_)
+    is_independent[component[graph.vertex_node[itself]]] = True
+    return Adjustments(gain, radius, is_independent)
 
 
 def corrected_parts(
@@ -119,45 +118,45 @@ def corrected_parts(
     component = surface.component[node]
     touching = np.zeros(component.max() + 1, np.bool_)
     for vertex, part in corrections.parts.items():
-        mine = component == component[vertex]
+        in_part = component == component[vertex]
         if part.joint is not None:
             joint = joint_index(rig.skeleton, part.joint)
-            if rig.allowed is not None and not rig.allowed[mine, joint].all():
+            if rig.allowed is not None and not rig.allowed[in_part, joint].all():
                 raise ParameterError(
                     f'the file cannot store weight of "{part.joint}" for the part of '
                     f"vertex {vertex}"
                 )
-            weights[mine] = np.eye(weights.shape[1])[joint]
+            weights[in_part] = np.eye(weights.shape[1])[joint]
         touching[component[vertex]] = part.how == "touching"
     if touching.all():
         raise ParameterError("every component is to follow where it touches, and none is left")
     if touching.any():
         first = np.unique(node, return_index=True)[1]
         attached = attach(graph, surface, touching, weights[first])
-        mine = touching[component]
-        rows = attached[node[mine]]
+        in_part = touching[component]
+        rows = attached[node[in_part]]
         if rig.allowed is not None:
-            rows = np.where(rig.allowed[mine], rows, 0.0)
+            rows = np.where(rig.allowed[in_part], rows, 0.0)
         total = rows.sum(axis=1, keepdims=True)
-        weights[mine] = np.divide(rows, total, out=weights[mine], where=total > 0)
+        weights[in_part] = np.divide(rows, total, out=weights[in_part], where=total > 0)
     return weights
 
 
-def overruled(
+def apply_vertex_overrides(
     rig: Rig, weights: NDArray[np.float64], corrections: Corrections
 ) -> NDArray[np.float64]:
-    """Put the weights that a person gives to single vertices."""
+    """Replace the weights of single vertices by those that were set by hand."""
     if not corrections.vertices:
         return weights
-    weights, index, given = weights.copy(), _first_of(rig), corrections.vertices
-    weights[list(given)] = 0
-    row = [vertex for vertex, held in given.items() for _ in held]
-    column = [index[name] for held in given.values() for name in held]
-    weights[row, column] = [value for held in given.values() for value in held.values()]
+    weights, index, overrides = weights.copy(), _first_of(rig), corrections.vertices
+    weights[list(overrides)] = 0
+    row = [vertex for vertex, joints in overrides.items() for _ in joints]
+    column = [index[name] for joints in overrides.values() for name in joints]
+    weights[row, column] = [value for joints in overrides.values() for value in joints.values()]
     return weights
 
 
 def _first_of(rig: Rig) -> dict[str, int]:
-    """Return the first joint of each name; a brush may overrule most vertices."""
+    """Return the first joint of each name: a brush may override most vertices."""
     names = rig.skeleton.names
     return dict(zip(reversed(names), reversed(range(len(names))), strict=True))

@@ -1,4 +1,4 @@
-"""What a person corrects of a binding, as data that is kept and applied at every binding."""
+"""Corrections of a binding, as data that is stored and applied at every binding."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ ROUNDING = 1e-9
 
 @dataclass(frozen=True)
 class JointCorrection:
-    """What is corrected of a joint.
+    """Corrections of a joint.
 
     Parameters
     ----------
@@ -36,13 +36,13 @@ class JointCorrection:
     gain : float
         Its reach, 0.05 to 20: its distances are divided by this.
     radius : float, optional
-        In the file's units: surface farther from its bones counts as more than proportionally
-        far. Measured from the body when left out. The paper's falloff has none.
+        In the file's units: beyond it, distances grow by their square. Measured from the body when
+        left out. The paper's falloff has none.
     position : sequence of 3 float, optional
-        Where it stands at rest, in the file's units; see `Rig.with_joints`. As in the file when
+        Its rest position, in the file's units; see `Rig.with_joints`. As in the file when
         left out.
     parent : str, optional
-        The joint that it hangs on, "" for none; as in the file when left out.
+        The parent joint, "" for none; as in the file when left out.
     added : bool
         Whether the file does not have it. It needs a position and a parent.
     was : str, optional
@@ -125,7 +125,7 @@ class Corrections:
     parts : mapping of int to PartCorrection
         By any vertex of the connected component.
     vertices : mapping of int to mappings of str to float
-        Weights that overrule what is computed for a vertex; they are scaled to sum to one.
+        Weights that override the computed ones of a vertex; they are scaled to sum to one.
     removed : sequence of str
         Joints of the file that are taken out, by the file's names. Their children go to their
         parents.
@@ -133,7 +133,7 @@ class Corrections:
     Raises
     ------
     ParameterError
-        Something is out of its range; the sentence says what and where.
+        A value is out of its range; the message says which and where.
 
     Examples
     --------
@@ -155,20 +155,20 @@ class Corrections:
 
     def __post_init__(self) -> None:
         for name, kind in (("joints", JointCorrection), ("parts", PartCorrection)):
-            held = _mapping(name, getattr(self, name))
-            for key, value in held.items():
+            entries = _mapping(name, getattr(self, name))
+            for key, value in entries.items():
                 if not isinstance(value, kind):
                     raise ParameterError(
                         f"{name}: {shown(key)} must be a {kind.__name__}, not {shown(value)}"
                     )
-            object.__setattr__(self, name, held)
+            object.__setattr__(self, name, entries)
         for joint in self.joints:
             if not isinstance(joint, str):
                 raise ParameterError(f"joints go by their names, not by {shown(joint)}")
         for vertex in self.parts:
             check_integer("the vertex of a part", vertex, 0, MAX_VERTEX)
-        found = _mapping("vertices", self.vertices)
-        object.__setattr__(self, "vertices", {v: _weights(v, w) for v, w in found.items()})
+        vertices = _mapping("vertices", self.vertices)
+        object.__setattr__(self, "vertices", {v: _weights(v, w) for v, w in vertices.items()})
         object.__setattr__(self, "removed", _names("removed", self.removed))
 
     def __bool__(self) -> bool:
@@ -189,8 +189,8 @@ class Corrections:
             As of `json.dumps`; None for a single line, which for many vertices takes far less time.
         """
         data = {
-            "joints": {name: _said(one) for name, one in self.joints.items()},
-            "parts": [{"vertex": v, **_said(part)} for v, part in self.parts.items()],
+            "joints": {name: _changed_fields(one) for name, one in self.joints.items()},
+            "parts": [{"vertex": v, **_changed_fields(part)} for v, part in self.parts.items()],
             "vertices": {str(v): dict(weights) for v, weights in self.vertices.items()},
             "removed": list(self.removed),
         }
@@ -203,13 +203,13 @@ class Corrections:
         Raises
         ------
         ParameterError
-            It is no JSON, or not of this form; the sentence says where.
+            It is not JSON, or not of this form; the message says where.
         """
         try:
             data = json.loads(text)
         except (ValueError, RecursionError) as error:
             raise ParameterError(f"corrections are no JSON: {one_line(error)}") from None
-        data = _known("corrections", data, [f.name for f in fields(cls)])
+        data = _checked_keys("corrections", data, [f.name for f in fields(cls)])
         joints = {
             name: _made(JointCorrection, f'the joint "{one_line(name)}"', value)
             for name, value in _mapping("joints", data.get("joints", {})).items()
@@ -220,7 +220,9 @@ class Corrections:
         parts = {}
         for number, value in enumerate(listed):
             where = f"part {number}"
-            value = _known(where, value, ["vertex", *(f.name for f in fields(PartCorrection))])
+            value = _checked_keys(
+                where, value, ["vertex", *(f.name for f in fields(PartCorrection))]
+            )
             if "vertex" not in value or "how" not in value:
                 raise ParameterError(f'{where} needs "vertex" and "how"')
             vertex = check_integer(f"vertex of {where}", value.pop("vertex"), 0, MAX_VERTEX)
@@ -259,29 +261,29 @@ class Corrections:
         write_all({Path(path): (self.to_json() + "\n").encode()})
 
 
-def _said(correction: JointCorrection | PartCorrection) -> dict[str, Any]:
-    """Return the fields that are not as they are by default."""
+def _changed_fields(correction: JointCorrection | PartCorrection) -> dict[str, Any]:
+    """Return the fields that differ from their defaults."""
     standard = {f.name: f.default for f in fields(correction)}
     return {k: v for k, v in asdict(correction).items() if v != standard[k]}
 
 
 def _made(kind: Any, where: str, value: Any) -> Any:
     try:
-        return kind(**_known(where, value, [f.name for f in fields(kind)]))
+        return kind(**_checked_keys(where, value, [f.name for f in fields(kind)]))
     except ParameterError as error:
         text = str(error)
         raise ParameterError(text if text.startswith(where) else f"{where}: {text}") from None
 
 
-def _known(where: str, value: Any, names: list[str]) -> dict[str, Any]:
+def _checked_keys(where: str, value: Any, names: list[str]) -> dict[str, Any]:
     """Return a copy of a mapping whose keys are all known."""
-    held = _mapping(where, value)
-    for key in held:
+    entries = _mapping(where, value)
+    for key in entries:
         if key not in names:
             close = get_close_matches(str(key), names, n=1)
             instead = f'did you mean "{close[0]}"?' if close else f"there is {', '.join(names)}"
             raise ParameterError(f"{where} has no {shown(key)}; {instead}")
-    return held
+    return entries
 
 
 def _mapping(where: str, value: Any) -> dict[Any, Any]:
@@ -318,13 +320,13 @@ def _weights(vertex: Any, weights: Any) -> dict[str, float]:
     for joint in _mapping(where, weights):
         if not isinstance(joint, str):
             raise ParameterError(f"joints of {where} go by their names, not by {shown(joint)}")
-    held = {
+    checked = {
         joint: check_number(f"the weight of {where} for {shown(joint)}", value, 0, 1e9)
         for joint, value in weights.items()
     }
-    total = sum(held.values())
+    total = sum(checked.values())
     if not total > 0:
         raise ParameterError(f"{where} needs a weight above 0 for at least one joint")
     if abs(total - 1) < ROUNDING:
-        return _Weights(held)  # as they were written
-    return _Weights({joint: value / total for joint, value in held.items()})
+        return _Weights(checked)  # as they were written
+    return _Weights({joint: value / total for joint, value in checked.items()})

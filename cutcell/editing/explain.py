@@ -31,11 +31,11 @@ from ..weights.rig_falloff.surface_operators import SurfaceOperators
 from ..weights.skinning_weights import keep_strongest, skinning_weights
 from .correct import (
     adjustments_of,
+    apply_vertex_overrides,
     corrected_parts,
     corrected_rig,
     joints_measured,
     locked_by,
-    overruled,
 )
 from .corrections import Corrections
 from .locks import lock_joints
@@ -301,7 +301,7 @@ def _corrected(
     )
     weights = corrected_parts(rig, distances.graph, weights, corrections)
     weights = lock_joints(rig, weights, locked_by(corrections), method.max_influences)
-    found: NDArray[np.float64] = overruled(rig, weights, corrections)[vertex]
+    found: NDArray[np.float64] = apply_vertex_overrides(rig, weights, corrections)[vertex]
     return found
 
 

@@ -13,19 +13,19 @@ from ..rig.rig import Rig, Skeleton
 DIRECTIONS = 96
 """In the plane across the limb, in which the skin is looked for."""
 ROUNDS = 16
-"""The middle of what is seen from a point is nearer to the limb's; seen from there it is nearer."""
+"""Iterations: the centroid of the section visible from a point is nearer to the centre."""
 FARTHEST = 2.0
 """Times the lower quartile of the distances to the skin: where a limb opens into the trunk, what is
 farther is the trunk's."""
-SEEN = 0.75
-"""Part of the directions that must meet skin."""
+MIN_HIT_SHARE = 0.75
+"""Of the directions, which must meet skin."""
 
 
-def middle_of_limb(rig: Rig, joint: int) -> NDArray[np.float64]:
-    """Find the middle of the limb that a joint is in.
+def cross_section_centre(rig: Rig, joint: int) -> NDArray[np.float64]:
+    """Find the centre of the limb's cross-section at a joint.
 
-    In the plane through the joint across its bones it is the centroid of what is seen from there:
-    another limb that the plane cuts does not count.
+    It is the centroid of the section by the plane through the joint across its bones, as far as it
+    is visible from the joint: other limbs in the plane are ignored.
 
     Parameters
     ----------
@@ -52,8 +52,8 @@ def middle_of_limb(rig: Rig, joint: int) -> NDArray[np.float64]:
     middle, most = np.zeros(2), np.inf
     inside = bool(winding_number(rig.mesh, place[None])[0] > 0.5)
     for _ in range(ROUNDS):
-        skin = _seen(start - middle, end - middle)
-        if not inside or len(skin) < SEEN * DIRECTIONS:
+        skin = _visible_section(start - middle, end - middle)
+        if not inside or len(skin) < MIN_HIT_SHARE * DIRECTIONS:
             raise SkeletonError(
                 f'joint "{rig.skeleton.names[joint]}" is not in the body, so that there is no limb '
                 "around it; move it into the body first"
@@ -70,9 +70,11 @@ def _along(skeleton: Skeleton, joint: int) -> NDArray[np.float64]:
     """Return the direction of the bones at a joint, of length 1: in by one, out by the others."""
     place, parent = skeleton.joints[joint], skeleton.parents[joint]
     children = skeleton.joints[skeleton.children[joint]]
-    ways = [children.mean(axis=0) - place] if len(children) else []
-    ways += [place - skeleton.joints[parent]] if parent >= 0 else []
-    units = [way / np.linalg.norm(way) for way in ways if way.any()]
+    displacements = [children.mean(axis=0) - place] if len(children) else []
+    displacements += [place - skeleton.joints[parent]] if parent >= 0 else []
+    units = [
+        direction / np.linalg.norm(direction) for direction in displacements if direction.any()
+    ]
     total = np.sum(units, axis=0) if units else np.zeros(3)
     length = float(np.linalg.norm(total))
     if length > 1e-3:
@@ -99,20 +101,20 @@ def _section(
     return flat[:, 0], flat[:, 1]
 
 
-def _seen(start: NDArray[np.float64], end: NDArray[np.float64]) -> NDArray[np.float64]:
+def _visible_section(start: NDArray[np.float64], end: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the nearest points of segments (s, 2) in each direction from 0, as far as any is."""
     angle = 2 * np.pi * np.arange(DIRECTIONS) / DIRECTIONS
-    way = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    direction = np.stack([np.cos(angle), np.sin(angle)], axis=1)
     edge = end - start
-    facing = _cross(way[:, None], edge)
+    facing = _cross(direction[:, None], edge)
     with np.errstate(divide="ignore", invalid="ignore"):
         far = _cross(start, edge) / facing
-        share = _cross(start, way[:, None]) / facing
+        share = _cross(start, direction[:, None]) / facing
     far = np.where((far > 0) & (share >= 0) & (share <= 1), far, np.inf).min(axis=1, initial=np.inf)
     hit = np.isfinite(far)
     if hit.any():
         far = np.minimum(far, FARTHEST * np.quantile(far[hit], 0.25))
-    return way[hit] * far[hit, None]
+    return direction[hit] * far[hit, None]
 
 
 def _centroid(corners: NDArray[np.float64]) -> NDArray[np.float64]:

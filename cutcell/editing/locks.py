@@ -26,19 +26,19 @@ def lock_joints(
     is_locked = locked_joints(rig, locked)
     if not is_locked.any() or rig.weights is None:
         return weights
-    kept = np.where(is_locked, rig.weights, 0.0)
+    locked_weights = np.where(is_locked, rig.weights, 0.0)
     free = np.where(is_locked, 0.0, weights)
     if max_influences is not None:
-        free = _largest(free, max_influences - (kept > 0).sum(axis=1))
+        free = _largest(free, max_influences - (locked_weights > 0).sum(axis=1))
     others = np.where(is_locked, 0.0, rig.weights)
     share, rest = free.sum(axis=1, keepdims=True), others.sum(axis=1, keepdims=True)
-    result = kept + np.divide(free * rest, share, out=others, where=share > 0)
+    result = locked_weights + np.divide(free * rest, share, out=others, where=share > 0)
     has_weight = rig.weights.any(axis=1, keepdims=True)
     return np.where(has_weight, result, weights)
 
 
 def locked_joints(rig: Rig, locked: Sequence[int | str]) -> NDArray[np.bool_]:
-    """Tell of each joint whether it is locked, shape (j,)."""
+    """Return whether each joint is locked, shape (j,)."""
     if isinstance(locked, str) or not isinstance(locked, Sequence | np.ndarray):
         raise ParameterError(
             f"locked must be a list of joints, by index or by name, not {shown(locked)}"
@@ -61,19 +61,19 @@ def joint_index(skeleton: Skeleton, joint: int | str) -> int:
         if joint in names:
             return names.index(joint)
         close = get_close_matches(joint, names, n=3, cutoff=0.4) or names[:3]
-        asked = one_line(joint)[:LONG]
+        query = one_line(joint)[:LONG]
         if not names:
-            raise ParameterError(f'there is no joint "{asked}": the mesh has no skeleton')
+            raise ParameterError(f'there is no joint "{query}": the mesh has no skeleton')
         raise ParameterError(
-            f'there is no joint "{asked}" among the {len(names)} of the skeleton; there is '
+            f'there is no joint "{query}" among the {len(names)} of the skeleton; there is '
             + ", ".join(f'"{name}"' for name in close)
         )
     return check_integer("joint", joint, 0, len(names) - 1, "or the name of one")
 
 
-def _largest(weights: NDArray[np.float64], room: NDArray[np.intp]) -> NDArray[np.float64]:
+def _largest(weights: NDArray[np.float64], count: NDArray[np.intp]) -> NDArray[np.float64]:
     """Keep the `room` largest weights of each row; ties go to the lower index."""
     order = np.argsort(-weights, axis=1, kind="stable")
     rank = np.empty_like(order)
     np.put_along_axis(rank, order, np.arange(weights.shape[1])[None, :], axis=1)
-    return np.where(rank < room[:, None], weights, 0.0)
+    return np.where(rank < count[:, None], weights, 0.0)

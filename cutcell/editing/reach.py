@@ -16,7 +16,7 @@ from ..rig.rig import TriangleMesh
 
 @dataclass(frozen=True, eq=False)
 class SurfaceReach:
-    """A welded mesh, and the ways over it.
+    """A welded mesh, and the paths over it.
 
     Parameters
     ----------
@@ -27,7 +27,7 @@ class SurfaceReach:
     index : array, shape (n,), int32
         The welded vertex of each vertex of the mesh.
     lengths : csr_array, shape (k, k)
-        Of the edges, and of the straight ways between the corners that face an edge: without those
+        Of the edges, and of the straight paths between the corners that face an edge: without those
         distances across a grid would be up to 41 % too long, with them up to 8 %.
     """
 
@@ -38,12 +38,12 @@ class SurfaceReach:
 
     @classmethod
     def of(cls, mesh: TriangleMesh) -> SurfaceReach:
-        """Weld a mesh, and find the ways over it."""
+        """Weld a mesh, and find the paths over it."""
         size = float(np.ptp(mesh.bounds, axis=0).max())
         points, index = weld(mesh.vertices, WELD_TOLERANCE * size)
         faces = np.ascontiguousarray(index[mesh.faces])
-        found = find_edges(faces)
-        edges, partner = found.edges, found.partner
+        mesh_edges = find_edges(faces)
+        edges, partner = mesh_edges.edges, mesh_edges.partner
         sides = np.linalg.norm(points[edges[:, 0]] - points[edges[:, 1]], axis=1)
         across, straight = _across(points, faces, partner)
         pairs = np.concatenate([edges, across])
@@ -53,29 +53,29 @@ class SurfaceReach:
     def distances(
         self, vertices: NDArray[np.integer], begin: NDArray[np.float64], limit: float
     ) -> NDArray[np.float64]:
-        """Return how far all welded vertices are from the nearest of some, over the surface.
+        """Return the distance over the surface of each welded vertex to the nearest of `vertices`.
 
         Shapes: vertices (s,), begin (s,); returns (k,).
         """
-        ways, count = self.lengths, len(self.points)
+        graph, count = self.lengths, len(self.points)
         first = np.full(count, np.inf)
         np.minimum.at(first, vertices, np.maximum(begin, np.finfo(float).tiny))
         seeds = np.flatnonzero(np.isfinite(first))
         # One more node, from which all begin: then a single search finds the nearest.
-        indices = np.concatenate([ways.indices, seeds.astype(ways.indices.dtype)])
-        pointers = np.append(ways.indptr, len(indices)).astype(ways.indptr.dtype)
-        data = np.concatenate([ways.data, first[seeds]])
+        indices = np.concatenate([graph.indices, seeds.astype(graph.indices.dtype)])
+        pointers = np.append(graph.indptr, len(indices)).astype(graph.indptr.dtype)
+        data = np.concatenate([graph.data, first[seeds]])
         whole = csr_array((data, indices, pointers), shape=(count + 1, count + 1))
-        found: NDArray[np.float64] = dijkstra(whole, indices=count, limit=limit)
-        return found[:count]
+        distances: NDArray[np.float64] = dijkstra(whole, indices=count, limit=limit)
+        return distances[:count]
 
 
 def _across(
     points: NDArray[np.float64], faces: NDArray[np.int32], partner: NDArray[np.int32]
 ) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
-    """Return the pairs of corners that face an edge and see each other across it, and how far.
+    """Return pairs of corners with line of sight across an edge, and their distances.
 
-    Both triangles are laid into one plane; the straight way must cross their edge.
+    Both triangles are laid into one plane; the straight path must cross their edge.
     """
     half = np.flatnonzero(partner > np.arange(len(partner)))
     other = partner[half]
@@ -86,17 +86,17 @@ def _across(
     length = np.linalg.norm(along, axis=1)
     with np.errstate(divide="ignore", invalid="ignore"):
         along /= length[:, None]
-        (x_c, y_c), (x_d, y_d) = (_beside(points[q] - points[a], along) for q in (c, d))
+        (x_c, y_c), (x_d, y_d) = (_coordinates(points[q] - points[a], along) for q in (c, d))
         crossing = (x_c * y_d + x_d * y_c) / (y_c + y_d)
-        seen = (crossing > 0) & (crossing < length) & (c != d)
-    pairs = np.stack([c, d], axis=1)[seen]
-    return pairs, np.hypot(x_c - x_d, y_c + y_d)[seen]
+        is_straight = (crossing > 0) & (crossing < length) & (c != d)
+    pairs = np.stack([c, d], axis=1)[is_straight]
+    return pairs, np.hypot(x_c - x_d, y_c + y_d)[is_straight]
 
 
-def _beside(
+def _coordinates(
     point: NDArray[np.float64], along: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return how far points lie along directions, and how far beside them."""
+    """Return the coordinates of points along directions and orthogonal to them."""
     x = (point * along).sum(axis=1)
     return x, np.linalg.norm(point - x[:, None] * along, axis=1)
 

@@ -1,4 +1,4 @@
-"""Touching weights up: smoothing, symmetry, and joints whose weights an artist has painted."""
+"""Refine weights: smoothing, symmetry, and joints whose weights an artist has painted."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from .smoothing import MAX_PASSES, smooth_weights
 from .symmetry import balance, find_mirror, mirror_weights
 
 
-class Touches(TypedDict):
-    """What can be asked of the weights of one character, see `refine_weights`."""
+class RefineOptions(TypedDict):
+    """Options of `refine_weights`."""
 
     smoothing: int
     symmetric: bool
@@ -63,12 +63,12 @@ def refine_weights(
     Returns
     -------
     array, shape (n, j)
-        Rows sum to one; `weights` itself when nothing is asked.
+        Rows sum to one; `weights` itself if all options are off.
 
     Raises
     ------
     ParameterError, MeshError, WeightsError
-        What is asked is out of range, or the rig is not made for it.
+        An option is out of range, or the rig does not allow it.
     """
     method = method_of(method, **options)
     symmetric = check_flag("symmetric", symmetric)
@@ -96,9 +96,9 @@ def check_refinement(
 
 
 def _permitted(rig: Rig, weights: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Take away what the file cannot store, unless a row would be left empty."""
+    """Remove weights that the file cannot store, unless a row would be left empty."""
     if rig.allowed is None:
         return weights
-    kept = np.where(rig.allowed, weights, 0.0)
-    total = kept.sum(axis=1, keepdims=True)
-    return np.divide(kept, total, out=weights.copy(), where=total > 0)
+    storable = np.where(rig.allowed, weights, 0.0)
+    total = storable.sum(axis=1, keepdims=True)
+    return np.divide(storable, total, out=weights.copy(), where=total > 0)

@@ -17,12 +17,12 @@ from .locks import joint_index
 
 
 def restructured(rig: Rig, corrections: Corrections) -> Rig:
-    """Return a rig whose joints are added, removed, renamed and reparented as corrections tell.
+    """Return a rig whose joints are added, removed, renamed and reparented by corrections.
 
-    Joints of the file come first, in its order. What a removed joint held goes to the nearest
-    joint above it that stays, and where there is none to the first below it. A joint of the file
-    goes on to move against its parent as it did; what is added does not move against its parent,
-    and the motion of what is removed is dropped.
+    Joints of the file come first, in its order. Weights of a removed joint go to its nearest
+    remaining ancestor, or else to its first remaining descendant. A joint of the file
+    keeps its motion relative to its parent; added joints do not move relative to theirs, and the
+    motion of removed joints is dropped.
     """
     if rig.origin is not None or not corrections.structural:
         return rig
@@ -71,8 +71,8 @@ def restructured_skeleton(
     for name in corrections.removed:
         removed[joint_index(old, name)] = True
     names = _names(old, removed, corrections)
-    kept = np.flatnonzero(~removed)
-    origin = np.concatenate([kept, np.full(len(names) - len(kept), -1)])
+    staying = np.flatnonzero(~removed)
+    origin = np.concatenate([staying, np.full(len(names) - len(staying), -1)])
     if not len(origin):
         raise SkeletonError(
             "by the corrections no joint of the skeleton is left; keep at least one"
@@ -111,17 +111,17 @@ def _skeleton(
     origin: NDArray[np.int_],
     corrections: Corrections,
 ) -> Skeleton:
-    """Return the new skeleton; joints of the file stand where they stood."""
-    kept, count = origin[origin >= 0], len(names)
+    """Return the new skeleton; joints of the file keep their positions."""
+    staying, count = origin[origin >= 0], len(names)
     parents = np.full(count, -1)
     number = np.cumsum(~removed) - 1
-    for j, was in enumerate(kept):
+    for j, was in enumerate(staying):
         above = old.parents[was]
         while above >= 0 and removed[above]:
             above = old.parents[above]
         parents[j] = number[above] if above >= 0 else -1
     joints, deform = np.zeros((count, 3)), np.ones(count, np.bool_)
-    joints[: len(kept)], deform[: len(kept)] = old.joints[kept], old.deform[kept]
+    joints[: len(staying)], deform[: len(staying)] = old.joints[staying], old.deform[staying]
     for j, name in enumerate(names):
         one = corrections.joints.get(name)
         if one is None:
@@ -140,8 +140,8 @@ def _skeleton(
         return plain
     axes = np.tile(np.eye(3), (count, 1, 1))
     like = with_origin(plain, origin)
-    known = origin[like] >= 0
-    axes[known] = old.orientations[origin[like[known]]]
+    from_file = origin[like] >= 0
+    axes[from_file] = old.orientations[origin[like[from_file]]]
     return replace(plain, orientations=axes)
 
 
@@ -167,7 +167,7 @@ class Restructured:
     ----------
     motion : Motion
     places : array, shape (i, 3)
-        Where the joints that it moves stand.
+        Positions of the joints that it moves.
     before : array, shape (i,), int
         Their parents.
     parents : array, shape (j,), int
@@ -200,16 +200,16 @@ class Restructured:
     def moved(
         self, joints: NDArray[np.float64], parents: NDArray[np.int32], by: NDArray[np.float64]
     ) -> Restructured:
-        """Return it for joints that were moved: those that the motion knows are in it, too."""
-        own, known = np.zeros_like(self.places), self.origin >= 0
-        own[self.origin[known]] = by[known]
-        moved = Clip("", motion=self.motion).moved(self.places, self.before, own).motion
-        return replace(self, motion=moved, places=self.places + own)
+        """Return the motion of moved joints."""
+        displacement, from_file = np.zeros_like(self.places), self.origin >= 0
+        displacement[self.origin[from_file]] = by[from_file]
+        moved = Clip("", motion=self.motion).moved(self.places, self.before, displacement).motion
+        return replace(self, motion=moved, places=self.places + displacement)
 
     def sample(self, seconds: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return skinning matrices at some times, shape (f, j, 4, 4)."""
         before = relative(self.motion.sample(seconds), self.before)
-        own = np.tile(np.eye(4), (len(before), len(self.origin), 1, 1))
-        known = self.origin >= 0
-        own[:, known] = before[:, self.origin[known]]
-        return composed(own, self.parents)
+        local = np.tile(np.eye(4), (len(before), len(self.origin), 1, 1))
+        from_file = self.origin >= 0
+        local[:, from_file] = before[:, self.origin[from_file]]
+        return composed(local, self.parents)

@@ -21,7 +21,7 @@ def smooth_weights(
 ) -> NDArray[np.float64]:
     """Average weights with those of the neighbours along mesh edges, again and again.
 
-    Welded vertices count as one, so seams stay closed. Nothing flows between components that
+    Vertices are welded first, so seams stay closed. Nothing flows between components that
     no edge joins, however close they are.
 
     Shapes: weights (n, j); returns (n, j).

@@ -72,7 +72,7 @@ class Brush:
 
 
 class PaintSurface:
-    """What strokes over one mesh have in common, worked out once.
+    """Data that all strokes over one mesh share.
 
     Parameters
     ----------
@@ -84,24 +84,24 @@ class PaintSurface:
 
     @cached_property
     def _used(self) -> tuple[NDArray[np.int32], Any]:
-        """The welded vertices that faces have, and what finds the nearest of them."""
+        """The welded vertices that faces have, and a tree of them."""
         used = np.unique(self.reach.faces)
         return used, cKDTree(self.reach.points[used])
 
     def nearest(
         self, places: NDArray[np.float64], limit: float
     ) -> tuple[NDArray[np.bool_], NDArray[np.int32]]:
-        """Return which of some places have a vertex within a limit, and the nearest of these."""
+        """Return which positions have a vertex within a limit, and the nearest of these."""
         used, tree = self._used
         gap, near = tree.query(places, distance_upper_bound=limit)
-        found = np.isfinite(gap)
-        return found, used[near[found]]
+        is_near = np.isfinite(gap)
+        return is_near, used[near[is_near]]
 
     @cached_property
     def diffusion(self) -> tuple[csr_array, NDArray[np.float64]]:
         """The Laplacian with no negative weight, so that nothing overshoots; and areas."""
         points, faces = self.reach.points, self.reach.faces
-        # In the unit of the mesh's size, which the kernels' tolerances are made for.
+        # Scaled to unit size, which the tolerances of the kernels assume.
         size = float(np.ptp(points, axis=0).max()) or 1.0
         flow = cotangent_laplacian(points / size, faces)
         flow.setdiag(0)
@@ -158,7 +158,7 @@ class Stroke:
             for one in self._joints:
                 self._check(one)
         sides = 1 if mirror is None or (partner < 0 and brush.mode != "smooth") else 2
-        self._far = np.full((sides, len(surface.reach.points)), np.inf)
+        self._distance = np.full((sides, len(surface.reach.points)), np.inf)
 
     def _check(self, joint: int) -> None:
         name = self._rig.skeleton.names[joint]
@@ -177,31 +177,33 @@ class Stroke:
         around = reach.points[welded]
         points = (around * shares[:, :, None]).sum(axis=1)
         begin = np.linalg.norm(around - points[:, None], axis=2)
-        self._pass(0, welded.ravel(), begin.ravel())
-        if len(self._far) < 2:
+        self._accumulate(0, welded.ravel(), begin.ravel())
+        if len(self._distance) < 2:
             return
         mirror = self._mirror
         assert mirror is not None
         points, around = points.copy(), around.reshape(-1, 3).copy()
-        for some in (points, around):
-            some[:, mirror.axis] = 2 * mirror.position - some[:, mirror.axis]
-        found, near = self._surface.nearest(around, ON_THE_OTHER_SIDE * self._brush.radius)
-        point = np.repeat(np.arange(len(points)), corners.shape[1])[found]
-        self._pass(1, near, np.linalg.norm(reach.points[near] - points[point], axis=1))
+        for positions in (points, around):
+            positions[:, mirror.axis] = 2 * mirror.position - positions[:, mirror.axis]
+        is_near, near = self._surface.nearest(around, ON_THE_OTHER_SIDE * self._brush.radius)
+        point = np.repeat(np.arange(len(points)), corners.shape[1])[is_near]
+        self._accumulate(1, near, np.linalg.norm(reach.points[near] - points[point], axis=1))
 
-    def _pass(self, side: int, vertices: NDArray[np.integer], begin: NDArray[np.float64]) -> None:
+    def _accumulate(
+        self, side: int, vertices: NDArray[np.integer], begin: NDArray[np.float64]
+    ) -> None:
         far = self._surface.reach.distances(vertices, begin, self._brush.radius)
-        np.minimum(self._far[side], far, out=self._far[side])
+        np.minimum(self._distance[side], far, out=self._distance[side])
 
     def touched(self) -> NDArray[np.intp]:
         """Return the vertices that were touched so far, shape (v,)."""
-        near = self._far.min(axis=0) < self._brush.radius
+        near = self._distance.min(axis=0) < self._brush.radius
         return np.flatnonzero(near[self._surface.reach.index] & self._within)
 
     def painted(self) -> tuple[NDArray[np.intp], NDArray[np.float64]]:
         """Return the vertices that were touched so far, shape (v,), and their weights, (v, j)."""
         brush, index, vertices = self._brush, self._surface.reach.index, self.touched()
-        inside = np.maximum(1 - np.square(self._far / brush.radius), 0)
+        inside = np.maximum(1 - np.square(self._distance / brush.radius), 0)
         covered = brush.strength * np.square(inside)
         if not len(vertices):
             return vertices, self._weights[vertices]
@@ -213,56 +215,62 @@ class Stroke:
             goal = self._diffused(covered.max(axis=0), vertices)
             moved = rows + cover.max(axis=0)[:, None] * (goal - rows)
         elif len(cover) == 2 and self._joints[0] == self._joints[-1]:
-            moved = rows + self._change(rows, cover.max(axis=0), self._joints[0], can)
+            moved = rows + self._weight_delta(rows, cover.max(axis=0), self._joints[0], can)
         else:
             changes = zip(self._joints, cover, strict=True)
-            moved = rows + sum(self._change(rows, part, joint, can) for joint, part in changes)
-        return vertices, self._whole(rows, np.where(can, moved, 0.0))
+            moved = rows + sum(
+                self._weight_delta(rows, part, joint, can) for joint, part in changes
+            )
+        return vertices, self._renormalise(rows, np.where(can, moved, 0.0))
 
-    def _change(
+    def _weight_delta(
         self, rows: NDArray[np.float64], cover: NDArray[np.float64], joint: int, can: NDArray
     ) -> NDArray[np.float64]:
-        """Return what a joint wins or loses, and what the others that may change lose or win."""
+        """Return the change of a joint's weight, and the opposite changes of unlocked joints."""
         others = np.where(self._locked, 0.0, rows)
-        held, others[:, joint] = rows[:, joint], 0.0
+        weight, others[:, joint] = rows[:, joint], 0.0
         rest = others.sum(axis=1)
         step = {
-            "add": cover, "subtract": -cover, "replace": cover * (self._brush.value - held),
+            "add": cover, "subtract": -cover, "replace": cover * (self._brush.value - weight),
         }[self._brush.mode]  # fmt: skip
-        step = np.where(can[:, joint] & (rest > 0), np.clip(step, -held, rest), 0.0)
+        step = np.where(can[:, joint] & (rest > 0), np.clip(step, -weight, rest), 0.0)
         change = others * np.divide(-step, rest, out=np.zeros_like(rest), where=rest > 0)[:, None]
         change[:, joint] = step
         return change
 
-    def _whole(self, before: NDArray[np.float64], rows: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Let the joints that are neither locked nor painted, and not too many, share the rest."""
-        kept = np.where(self._locked, before, 0.0)
+    def _renormalise(
+        self, before: NDArray[np.float64], rows: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """Share the rest among joints that are neither locked nor painted, and not too many."""
+        locked = np.where(self._locked, before, 0.0)
         free = np.where(self._locked, 0.0, np.maximum(rows, 0.0))
-        if self._most is not None and ((free > 0) | (kept > 0)).sum(axis=1).max() > self._most:
-            free = self._strongest(free, self._most - (kept > 0).sum(axis=1))
-        rest = np.maximum(before.sum(axis=1) - kept.sum(axis=1), 0)
+        if self._most is not None and ((free > 0) | (locked > 0)).sum(axis=1).max() > self._most:
+            free = self._strongest(free, self._most - (locked > 0).sum(axis=1))
+        rest = np.maximum(before.sum(axis=1) - locked.sum(axis=1), 0)
         painted = np.zeros_like(free)
         if self._brush.mode != "smooth":
             painted[:, self._joints] = free[:, self._joints]
         others, left = free - painted, rest - painted.sum(axis=1)
         fits = (others.sum(axis=1) > 0) & (left >= 0)
-        whole = kept + np.where(fits[:, None], painted + _scaled(others, left), _scaled(free, rest))
+        whole = locked + np.where(
+            fits[:, None], painted + _scaled(others, left), _scaled(free, rest)
+        )
         return np.where(free.any(axis=1, keepdims=True), whole, before)
 
     def _strongest(
-        self, free: NDArray[np.float64], room: NDArray[np.integer]
+        self, free: NDArray[np.float64], count: NDArray[np.integer]
     ) -> NDArray[np.float64]:
-        """Keep as many joints of each row as there is room for, the painted ones first."""
+        """Keep the `count` largest weights of each row, the painted joints first."""
         order = free.copy()
         if self._brush.mode != "smooth":
             order[:, self._joints] += order[:, self._joints] > 0
         rank = np.argsort(np.argsort(-order, axis=1, kind="stable"), axis=1, kind="stable")
-        return np.where(rank < room[:, None], free, 0.0)
+        return np.where(rank < count[:, None], free, 0.0)
 
     def _diffused(
         self, cover: NDArray[np.float64], vertices: NDArray[np.intp]
     ) -> NDArray[np.float64]:
-        """Return weights of vertices that are covered, after they diffused where that is."""
+        """Return weights of covered vertices after diffusion within the brush."""
         reach = self._surface.reach
         laplacian, areas = self._surface.diffusion
         inner = np.flatnonzero(cover > 0)
@@ -275,10 +283,10 @@ class Stroke:
         is_inner = cover[around] > 0
         time, area = SPREAD * self._brush.radius**2, areas[inner]
         system = csr_array(diags_array(area) + time * rows[:, inner]).tocsc()
-        given = area[:, None] * start[np.ix_(is_inner, used)]
-        given -= time * (rows[:, around[~is_inner]] @ start[np.ix_(~is_inner, used)])
+        right = area[:, None] * start[np.ix_(is_inner, used)]
+        right -= time * (rows[:, around[~is_inner]] @ start[np.ix_(~is_inner, used)])
         goal = np.zeros((len(inner), start.shape[1]))
-        goal[:, used] = splu(system).solve(given)
+        goal[:, used] = splu(system).solve(right)
         return goal[np.searchsorted(inner, reach.index[vertices])]
 
 

@@ -26,7 +26,7 @@ MIN_SHARE = 0.5
 
 @dataclass(frozen=True, eq=False)
 class Mirror:
-    """A plane of symmetry, and who is whose mirror image.
+    """A plane of symmetry, and the mirror image of each vertex and joint.
 
     Parameters
     ----------
@@ -60,9 +60,9 @@ def find_mirror(rig: Rig) -> Mirror:
             if not np.any((joint >= 0) & (joint != np.arange(len(joint)))):
                 continue
             vertex = _vertex_partners(rig.mesh.vertices, axis, position, diagonal)
-            found = float((vertex[used] >= 0).mean()) * float((joint >= 0).mean())
-            if found > share:
-                best, share = Mirror(axis, position, vertex, joint), found
+            score = float((vertex[used] >= 0).mean()) * float((joint >= 0).mean())
+            if score > share:
+                best, share = Mirror(axis, position, vertex, joint), score
     matched = 0.0 if best is None else float((best.vertex[used] >= 0).mean())
     if best is None or matched < MIN_SHARE:
         raise MeshError(
@@ -92,9 +92,9 @@ def find_joint_mirror(rig: Rig) -> Mirror:
                 continue
             gap = _reflected(joints, axis, position)[joint >= 0] - joints[joint[joint >= 0]]
             exact = 1 - float(np.linalg.norm(gap, axis=1).mean()) / (JOINT_TOLERANCE * diagonal)
-            found = float((joint >= 0).mean()) + 0.1 * exact
-            if found > share:
-                best, share = Mirror(axis, position, np.empty(0, np.intp), joint), found
+            score = float((joint >= 0).mean()) + 0.1 * exact
+            if score > share:
+                best, share = Mirror(axis, position, np.empty(0, np.intp), joint), score
     if best is None or (best.joint >= 0).mean() < MIN_SHARE:
         raise SkeletonError(
             f"the skeleton of {rig.name} is not mirrored across x, y or z: less than half of its "

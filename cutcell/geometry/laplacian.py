@@ -53,7 +53,7 @@ def vertex_areas(points, faces):
 
 @compiled
 def vertex_normals(points, faces):
-    """Return unit normals, shape (k, 3): the faces' average by area; zero where there is none."""
+    """Return unit normals, shape (k, 3): averages of faces by area; zero where there is none."""
     normals = np.zeros((len(points), 3))
     for f in range(len(faces)):
         n = triangle_normal(points[faces[f, 0]], points[faces[f, 1]], points[faces[f, 2]])

@@ -20,8 +20,8 @@ def distance_to_segment(points: ArrayLike, start: ArrayLike, end: ArrayLike) -> 
     points, start, end = (np.asarray(x, np.float64) for x in (points, start, end))
     along, away = end - start, points - start
     # Rounded less than the distance to `closest_on_segment`.
-    apart = away - _fraction(away, along)[..., None] * along
-    return np.sqrt(_dot(apart, apart))
+    nearest = away - _fraction(away, along)[..., None] * along
+    return np.sqrt(_dot(nearest, nearest))
 
 
 def _fraction(away: NDArray[np.float64], along: NDArray[np.float64]) -> NDArray[np.float64]:

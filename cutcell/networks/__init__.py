@@ -1,7 +1,7 @@
 """Networks that learn skinning weights, with a prior of another method or without.
 
 They need torch: ``pip install 'cutcell[networks]'``. Nothing of it is imported before a name below
-is asked for; `docs/networks.md` tells the heads and what they learned.
+is used; `docs/networks.md` describes the heads and their results.
 """
 
 from __future__ import annotations

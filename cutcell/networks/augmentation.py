@@ -1,8 +1,7 @@
-"""What a network gets to see of a sample in one epoch, changed by chance.
+"""Random changes of a sample for one epoch of training.
 
-Always: other points, another heading, another size. With augmentation also what another artist or
-another download would have changed: joints left out, parts missing, another pose, and points that
-are spread as those of another mesh.
+Points, heading and size always change. Augmentation also leaves out joints and parts, poses the
+rig, and draws points by area instead of by vertex, as between artists and files.
 """
 
 from __future__ import annotations
@@ -20,7 +19,7 @@ from ..rig.rig import Skeleton
 from .samples import Sample
 
 SCALES = 0.8, 1.25
-"""A character is made that much smaller or larger, by chance."""
+"""Range of random scales of a character."""
 LESS_SURFACE, FEWER_JOINTS, OTHER_POSE, BY_AREA = 0.25, 0.5, 0.5, 0.5
 """How often each is done."""
 MAX_LEFT_OUT = 0.5
@@ -34,7 +33,7 @@ CLOSEST = 1e-3
 
 
 def drawn(sample: Sample, points: int, rng: np.random.Generator, augment: bool = False) -> Sample:
-    """Return some points of a sample, turned about the vertical and scaled by chance."""
+    """Return random points of a sample, turned about the vertical and scaled at random."""
     if augment:
         sample = _with_less_surface(sample, rng)
         sample = sample.part(_spread(sample, points, rng))
@@ -58,34 +57,34 @@ def without_joints(sample: Sample, left_out: NDArray[np.bool_]) -> Sample:
     heir = np.arange(count)
     while (out := ~keep[heir]).any():
         heir[out] = parents[heir[out]]
-    kept = np.flatnonzero(keep)
+    staying = np.flatnonzero(keep)
     place = np.full(count, -1)
-    place[kept] = np.arange(len(kept))
-    above = parents[kept]
+    place[staying] = np.arange(len(staying))
+    above = parents[staying]
     parent = np.where(above >= 0, place[heir[above]], -1)
-    tails = sample.tails[kept]
+    tails = sample.tails[staying]
     for joint in np.unique(place[heir[parents[~keep]]]):
-        children = kept[parent == joint]
-        ends = children if len(children) else kept[[joint]]
+        children = staying[parent == joint]
+        ends = children if len(children) else staying[[joint]]
         tails[joint] = sample.joints[ends].mean(axis=0)
-    into = np.zeros((count, len(kept)), np.float32)
+    into = np.zeros((count, len(staying)), np.float32)
     into[np.arange(count), place[heir]] = 1
     return replace(
         sample,
-        joints=sample.joints[kept],
+        joints=sample.joints[staying],
         tails=tails,
         parents=parent,
         prior=None if sample.prior is None else sample.prior @ into,
         target=None if sample.target is None else sample.target @ into,
-        deform=sample.deform[kept],
+        deform=sample.deform[staying],
     )
 
 
 def posed(sample: Sample, rotations: NDArray) -> Sample:
     """Return the sample in another pose, by the artist's weights.
 
-    Prior and neighbours stay: they are measured through the body and along its surface, which the
-    pose takes along. What carries no weight stays where it is.
+    Prior and neighbours stay: they are measured through the body and along its surface, which move
+    with the pose. Points without weight do not move.
 
     Shapes: rotations (j, 3, 3).
     """
@@ -93,18 +92,18 @@ def posed(sample: Sample, rotations: NDArray) -> Sample:
     turns = forward_kinematics(Skeleton(sample.joints, sample.parents), rotations)
     normals = linear_blend_skinning(sample.normals, sample.target, _turned_only(turns))
     length = np.linalg.norm(normals, axis=1, keepdims=True)
-    own = np.eye(len(turns))
+    identity = np.eye(len(turns))
     return replace(
         sample,
         points=linear_blend_skinning(sample.points, sample.target, turns).astype(np.float32),
         normals=(normals / np.maximum(length, 1e-9)).astype(np.float32),
-        joints=linear_blend_skinning(sample.joints, own, turns).astype(np.float32),
-        tails=linear_blend_skinning(sample.tails, own, turns).astype(np.float32),
+        joints=linear_blend_skinning(sample.joints, identity, turns).astype(np.float32),
+        tails=linear_blend_skinning(sample.tails, identity, turns).astype(np.float32),
     )
 
 
 def components(sample: Sample) -> NDArray[np.int32]:
-    """Tell the connected component of each point, shape (p,), as far as neighbours tell."""
+    """Return the connected component of each point in the graph of neighbours, shape (p,)."""
     count = len(sample.points)
     one = np.repeat(np.arange(count), sample.neighbours.shape[1])
     links = coo_array((np.ones(len(one)), (one, sample.neighbours.ravel())), shape=(count, count))
@@ -112,13 +111,13 @@ def components(sample: Sample) -> NDArray[np.int32]:
 
 
 def surface_shares(sample: Sample) -> NDArray[np.float64]:
-    """Return how much surface each point stands for, shape (p,): its ring's radius squared."""
+    """Return the area around each point, shape (p,), up to a factor: its ring's radius squared."""
     away = np.linalg.norm(sample.points[sample.ring] - sample.points[:, None], axis=2)
     return np.maximum(away.max(axis=1), CLOSEST).astype(np.float64) ** 2
 
 
 def _with_less_surface(sample: Sample, rng: np.random.Generator) -> Sample:
-    """Drop a component, or cut a hole where there is none to drop, some of the time."""
+    """Drop a component at random, or cut a hole if there is none to drop."""
     if rng.random() >= LESS_SURFACE:
         return sample
     label = components(sample)
@@ -133,7 +132,7 @@ def _with_less_surface(sample: Sample, rng: np.random.Generator) -> Sample:
 
 
 def _spread(sample: Sample, points: int, rng: np.random.Generator) -> NDArray[np.int64]:
-    """Draw points: each vertex alike, as a mesh has them, or each part of the surface alike."""
+    """Draw points uniformly over the vertices, or over the surface."""
     if rng.random() >= BY_AREA:
         return rng.permutation(len(sample.points))[:points]
     shares = surface_shares(sample)

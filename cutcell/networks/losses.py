@@ -18,11 +18,13 @@ def weight_loss(weights: Tensor, batch: Batch) -> Tensor:
     the closed form of `cutcell.metrics.deformation_error`, summed over the joints.
     """
     assert batch.target is not None
-    there, wanted = batch.flat(weights), batch.flat(batch.target)
-    off = (there - wanted).abs()
-    some = wanted > 0
-    entropy = -(wanted * there.clamp(min=1e-9).log()).sum(dim=1).mean()
-    sides = off[some].mean() + off[~some].mean() if (~some).any() else off[some].mean()
+    predicted, target = batch.flat(weights), batch.flat(batch.target)
+    off = (predicted - target).abs()
+    positive = target > 0
+    entropy = -(target * predicted.clamp(min=1e-9).log()).sum(dim=1).mean()
+    sides = (
+        off[positive].mean() + off[~positive].mean() if (~positive).any() else off[positive].mean()
+    )
     turned = (weights - batch.target) @ batch.below.transpose(1, 2)
     arms = (batch.points[:, :, None] - batch.joints[:, None]).square().sum(dim=3)
     moved = batch.flat(arms * turned.square() * batch.joint_mask[:, None]).sum(dim=1).mean()

@@ -1,4 +1,4 @@
-"""Heads, sizes and priors by name; nothing of torch is needed to know them."""
+"""Names of heads, sizes and priors, without torch."""
 
 from __future__ import annotations
 
@@ -11,4 +11,4 @@ HEADS: tuple[HeadName, ...] = get_args(HeadName)
 SIZES: tuple[SizeName, ...] = get_args(SizeName)
 PRIOR_NAMES: tuple[PriorName, ...] = get_args(PriorName)
 TITLES: dict[str, str] = {"rignet": "RigNet", "unirig": "UniRig", "puppeteer": "Puppeteer"}
-"""What people call the heads."""
+"""Display names of the heads."""

@@ -56,10 +56,10 @@ def prior_of(
     if method is None:
         return None
     options = known_options(method, resolution=resolution, progress=progress)
-    found = method(rig, **options)
-    if found.weights is None:
-        raise WeightsError(f"the prior {name} cannot be computed: {found.failed}")
-    return found.weights
+    binding = method(rig, **options)
+    if binding.weights is None:
+        raise WeightsError(f"the prior {name} cannot be computed: {binding.failed}")
+    return binding.weights
 
 
 @cache
@@ -118,21 +118,21 @@ class Samples:
         self.sources = find_sources(paths)
         self._cache = cache or cache_folder()
 
-    def load(self, tell: Callable[[str], None] = lambda text: None) -> list[Sample]:
-        """Return the samples of all rigs that have weights, computing what is not there yet.
+    def load(self, report: Callable[[str], None] = lambda text: None) -> list[Sample]:
+        """Return the samples of all rigs that have weights, computing those that are not cached.
 
         Parameters
         ----------
-        tell : callable
-            Called with a sentence for each rig that is left out.
+        report : callable
+            Called with the reason for each rig that is left out.
         """
-        found = []
+        samples = []
         for source in self.sources:
             try:
-                found.append(self._sample(source))
+                samples.append(self._sample(source))
             except CutcellError as error:
-                tell(f"{source.name} is left out: {error}")
-        return found
+                report(f"{source.name} is left out: {error}")
+        return samples
 
     def _sample(self, source: Source) -> Sample:
         key = self._key(source)
@@ -171,12 +171,12 @@ def _with_weights(source: Source) -> Rig:
 def _write(path: Path, arrays: dict) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
     packed = io.BytesIO()
-    kept = {key: value for key, value in arrays.items() if isinstance(value, np.ndarray)}
-    np.savez_compressed(packed, **kept)  # type: ignore[arg-type]
+    stored = {key: value for key, value in arrays.items() if isinstance(value, np.ndarray)}
+    np.savez_compressed(packed, **stored)  # type: ignore[arg-type]
     write_all({path: packed.getvalue()})
 
 
 def _read_sample(path: Path, name: str) -> Sample:
     with np.load(path) as arrays:
-        kept = {key: arrays[key] for key in arrays.files}
-    return Sample(**{"name": name, "prior": None, "target": None, **kept})
+        stored = {key: arrays[key] for key in arrays.files}
+    return Sample(**{"name": name, "prior": None, "target": None, **stored})

@@ -1,4 +1,4 @@
-"""What makes a network; nothing of torch is needed to know it."""
+"""Recipes of networks, without torch."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from .names import HEADS, PRIOR_NAMES, SIZES, TITLES
 
 @dataclass(frozen=True)
 class Recipe:
-    """What makes a network; the same recipe gives the same numbers on a CPU.
+    """Settings that determine a network; on a CPU, even its parameters.
 
     Parameters
     ----------
@@ -25,8 +25,8 @@ class Recipe:
     resolution : int
         R of the prior.
     augment : bool
-        Whether joints and parts are left out, other poses taken and points spread otherwise, by
-        chance; see `augmentation.drawn`. Networks of earlier versions were trained without.
+        Whether joints, parts, poses and points are changed at random; see
+        `augmentation.drawn`. Networks of earlier versions were trained without.
     """
 
     head: str
@@ -48,13 +48,13 @@ class Recipe:
 
     @property
     def name(self) -> str:
-        """What it is called among methods, such as "rignet-cutcell-tiny-0"."""
+        """Its name among methods, such as "rignet-cutcell-tiny-0"."""
         name = f"{self.head}-{self.prior}-{self.size}-{self.seed}"
         return f"{name}-augmented" if self.augment else name
 
     @property
     def title(self) -> str:
-        """What people read, such as "RigNet with cutcell, tiny, seed 0"."""
+        """Its title, such as "RigNet with cutcell, tiny, seed 0"."""
         prior = "without prior" if self.prior == "none" else f"with {self.prior}"
         title = f"{TITLES[self.head]} {prior}, {self.size}, seed {self.seed}"
         return f"{title}, augmented" if self.augment else title

@@ -1,4 +1,4 @@
-"""What a network gets to see of a rig: points of its surface, joints, bones and a prior."""
+"""Inputs of a network from a rig: points of its surface, joints, bones and a prior."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ MAX_HOPS = 16
 
 @dataclass(frozen=True, eq=False)
 class Sample:
-    """A rig as a network sees it, in longest sides, its middle at the origin.
+    """Inputs of a network from a rig, in longest sides, centred at the origin.
 
     Only joints that may carry weight are in it; the parent of each is the nearest of them above.
 
@@ -83,22 +83,22 @@ class Sample:
         """Return the sample of some of its points only."""
         place = np.full(len(self.points), -1)
         place[chosen] = np.arange(len(chosen))
-        there = place[self.neighbours[chosen]]
-        there[there == np.arange(len(chosen))[:, None]] = -1
-        order = np.argsort(there < 0, axis=1, kind="stable")
-        there = np.take_along_axis(there, order, axis=1)
+        neighbours = place[self.neighbours[chosen]]
+        neighbours[neighbours == np.arange(len(chosen))[:, None]] = -1
+        order = np.argsort(neighbours < 0, axis=1, kind="stable")
+        neighbours = np.take_along_axis(neighbours, order, axis=1)
         return replace(
             self,
             points=self.points[chosen],
             normals=self.normals[chosen],
             prior=None if self.prior is None else self.prior[chosen],
             target=None if self.target is None else self.target[chosen],
-            neighbours=np.where(there >= 0, there, np.arange(len(chosen))[:, None]),
+            neighbours=np.where(neighbours >= 0, neighbours, np.arange(len(chosen))[:, None]),
             vertices=self.vertices[chosen],
         )
 
     def parts(self, count: int, rng: np.random.Generator) -> list[NDArray[np.int64]]:
-        """Deal the points by chance into parts of about `count`; 0 for one part of all."""
+        """Split the points at random into parts of about `count`; 0 for one part."""
         order = rng.permutation(len(self.points))
         return np.array_split(order, max(1, round(len(order) / count)) if count else 1)
 
@@ -242,21 +242,23 @@ def _along_surface(places: NDArray, faces: NDArray, chosen: NDArray) -> NDArray[
         lengths = np.take_along_axis(away, order, axis=1)
         by_length = np.argsort(lengths, axis=1, kind="stable")
         order = np.take_along_axis(order, by_length, axis=1)
-        there = np.isfinite(np.take_along_axis(lengths, by_length, axis=1))
+        is_near = np.isfinite(np.take_along_axis(lengths, by_length, axis=1))
         nearest[rows] = rows[:, None]
-        nearest[rows, : order.shape[1]] = np.where(there, order, rows[:, None])
+        nearest[rows, : order.shape[1]] = np.where(is_near, order, rows[:, None])
     return nearest
 
 
 def hops_between(parents: NDArray) -> NDArray[np.int64]:
     """Count the bones between each two joints, shape (j, j); MAX_HOPS where they are more."""
-    held = np.flatnonzero(parents >= 0)
-    links = coo_array((np.ones(len(held)), (parents[held], held)), shape=(len(parents),) * 2)
+    children = np.flatnonzero(parents >= 0)
+    links = coo_array(
+        (np.ones(len(children)), (parents[children], children)), shape=(len(parents),) * 2
+    )
     hops = shortest_path(links.tocsr(), directed=False, unweighted=True)
     return np.minimum(hops, MAX_HOPS).astype(np.int64)
 
 
 def joints_below(parents: NDArray) -> NDArray[np.float32]:
-    """Tell which joints move along when each turns, shape (j, j); see `Skeleton.subtree`."""
+    """Return which joints each joint moves, shape (j, j); see `Skeleton.subtree`."""
     places = np.zeros((len(parents), 3))
     return Skeleton(places, parents).subtree.astype(np.float32)

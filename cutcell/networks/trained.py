@@ -1,7 +1,4 @@
-"""Trained networks as methods beside the others; torch runs in a process of its own.
-
-A network that crashes, or that nobody waits for any more, ends that process and nothing else.
-"""
+"""Trained networks as methods. A crash of torch, or cancelling, ends only a subprocess."""
 
 from __future__ import annotations
 
@@ -35,7 +32,7 @@ LIMIT = 600.0
 TORCH_BYTES = 400_000_000
 """What torch takes before it has done anything."""
 HIDDEN_BYTES = 16_384
-"""Of the widest layers, for each point and joint that are looked at together."""
+"""Of the widest layers, for each point and joint of a batch."""
 
 
 @dataclass(frozen=True)
@@ -45,10 +42,10 @@ class TrainedNetwork:
     Parameters
     ----------
     folder : Path
-        Of `cutcell networks train`; what is in there when the network is asked.
+        Of `cutcell networks train`; read at each call.
     recipe : Recipe
     title : str
-        What people read.
+        For tables and menus.
     """
 
     folder: Path
@@ -71,9 +68,9 @@ class TrainedNetwork:
         def solve(body: Body, run: Run) -> NDArray[np.float64]:
             prior = prior_of(recipe.prior, rig, recipe.resolution, progress)
             run.end("prior")
-            found = self._predicted(rig, prior)
+            predict = self._predicted(rig, prior)
             run.end("network")
-            return found(body)
+            return predict(body)
 
         method = PAPER.with_options(max_influences=max_influences, threshold=threshold)
         return bind_by(solve, rig, method)
@@ -90,8 +87,8 @@ class TrainedNetwork:
             "deform": rig.skeleton.deform,
             **({} if prior is None else {"prior": prior}),
         }
-        found = run_isolated("network_weights", job, LIMIT, "the network")
-        return partial(_of_body, found["vertices"], found["weights"])
+        result = run_isolated("network_weights", job, LIMIT, "the network")
+        return partial(_of_body, result["vertices"], result["weights"])
 
     def _check_memory(self, rig: Rig) -> None:
         path = self.folder / "network.pt"
@@ -111,9 +108,9 @@ class TrainedNetwork:
 
 
 def _of_body(vertices: NDArray, weights: NDArray, body: Body) -> NDArray[np.float64]:
-    """Give weights of some vertices of the rig to all welded vertices, (k, j).
+    """Return weights of all welded vertices, (k, j), from those of some vertices.
 
-    What no face uses follows what is nearest.
+    Vertices without faces follow their nearest.
     """
     full = np.zeros((len(body.points), weights.shape[1]))
     at = body.index[vertices]
@@ -125,7 +122,7 @@ def _of_body(vertices: NDArray, weights: NDArray, body: Body) -> NDArray[np.floa
 
 
 def trained_networks(
-    folders: Iterable[Path], tell: Callable[[str], None] = lambda text: None
+    folders: Iterable[Path], report: Callable[[str], None] = lambda text: None
 ) -> dict[str, TrainedNetwork]:
     """Find trained networks.
 
@@ -133,8 +130,8 @@ def trained_networks(
     ----------
     folders : iterable of Path
         Folders of `cutcell networks train`, or folders that hold such.
-    tell : callable
-        Called with a sentence for each that is left out because it cannot be used.
+    report : callable
+        Called with the reason for each that cannot be used.
 
     Returns
     -------
@@ -153,17 +150,17 @@ def trained_networks(
     runs = [run for folder in folders for run in _runs(Path(folder))]
     job = {"folders": np.array([str(run.resolve()) for run in runs], np.str_)}
     read = run_isolated("network_recipes", job, LIMIT, "torch")
-    found = []
+    usable = []
     for run, recipe, problem in zip(runs, read["recipes"], read["problems"], strict=True):
         if recipe:
-            found.append((run, Recipe(**json.loads(str(recipe)))))
+            usable.append((run, Recipe(**json.loads(str(recipe)))))
         else:
-            tell(f"left out: {problem}")
-    if runs and not found:
+            report(f"left out: {problem}")
+    if runs and not usable:
         raise FileError(f"none of the networks can be used: {read['problems'][0]}")
-    counts = Counter(recipe.name for _, recipe in found)
+    counts = Counter(recipe.name for _, recipe in usable)
     methods: dict[str, TrainedNetwork] = {}
-    for run, recipe in found:
+    for run, recipe in usable:
         name, title = recipe.name, recipe.title
         if counts[name] > 1:
             title = f"{title} ({run.name})"

@@ -1,4 +1,4 @@
-"""Training a head on rigs, kept after each epoch, so that it goes on where it stopped."""
+"""Training of a head on rigs, saved after each epoch, so that it can be resumed."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from .recipe import Recipe
 from .samples import Sample
 
 BATCH = 2
-"""Characters that are looked at together."""
+"""Characters in a batch."""
 RATE = 2e-3
 """AdamW's learning rate, the same all the time, so that any training can be gone on with."""
 LARGEST_GRADIENT = 1.0
@@ -36,7 +36,7 @@ def train(
     samples: Sequence[Sample],
     epochs: int,
     folder: Path | None = None,
-    tell: Callable[[int, float], Any] = lambda epoch, loss: None,
+    report: Callable[[int, float], Any] = lambda epoch, loss: None,
 ) -> nn.Module:
     """Train a network, or go on with what is in the folder.
 
@@ -48,10 +48,10 @@ def train(
     samples : sequence of Sample
         With the recipe's prior.
     epochs : int
-        How often each character is looked at, those of earlier runs included.
+        Epochs in all, earlier runs included.
     folder : Path, optional
         Gets `network.pt` after each epoch, and `log.csv`: epoch, loss, seconds.
-    tell : callable
+    report : callable
         Called after each epoch with its number and its mean loss.
 
     Returns
@@ -79,7 +79,7 @@ def train(
             _keep(recipe, network, optimizer, epoch + 1, folder)
             with (folder / "log.csv").open("a", encoding="utf-8") as log:
                 log.write(f"{epoch + 1},{loss:.6f},{perf_counter() - begin:.3f}\n")
-        tell(epoch + 1, loss)
+        report(epoch + 1, loss)
     return network
 
 
@@ -92,10 +92,10 @@ def load_network(folder: Path) -> tuple[nn.Module, Recipe]:
         There is none in the folder, or one of another version.
     """
     path = folder / "network.pt"
-    kept, recipe = _read(path, in_parts=True), read_recipe(folder)
+    stored, recipe = _read(path, in_parts=True), read_recipe(folder)
     network = create_network(recipe.head, recipe.size, recipe.seed)
     try:
-        network.load_state_dict(kept["network"])
+        network.load_state_dict(stored["network"])
     except RuntimeError:
         raise FileError(f"{path}: {ANOTHER_VERSION}") from None
     return network.eval(), recipe
@@ -123,8 +123,8 @@ def _epoch(
     losses = []
     groups = np.array_split(rng.permutation(len(samples)), -(-len(samples) // BATCH))
     for chosen in groups:
-        seen = [drawn(samples[k], recipe.points, rng, recipe.augment) for k in chosen]
-        batch = collate(seen).to(device)
+        drawn_samples = [drawn(samples[k], recipe.points, rng, recipe.augment) for k in chosen]
+        batch = collate(drawn_samples).to(device)
         loss = _loss(network, batch, device)
         optimizer.zero_grad()
         loss.backward()
@@ -164,33 +164,33 @@ def _keep(
 def _resume(
     recipe: Recipe, network: nn.Module, optimizer: torch.optim.Optimizer, folder: Path
 ) -> int:
-    """Take over what is in the folder, and return how many epochs it has learned."""
+    """Load the network in the folder, and return its epochs."""
     path = folder / "network.pt"
     if not path.exists():
         folder.mkdir(parents=True, exist_ok=True)
         write_all({folder / "log.csv": b"epoch,loss,seconds\n"})
         return 0
-    kept = _read(path)
+    stored = _read(path)
     if read_recipe(folder) != recipe:
         raise FileError(
-            f"{folder}: holds a network of another recipe, {kept['recipe']}; name another folder"
+            f"{folder}: holds a network of another recipe, {stored['recipe']}; name another folder"
         )
-    network.load_state_dict(kept["network"])
-    optimizer.load_state_dict(kept["optimizer"])
-    return int(kept["epoch"])
+    network.load_state_dict(stored["network"])
+    optimizer.load_state_dict(stored["optimizer"])
+    return int(stored["epoch"])
 
 
 def _read(path: Path, in_parts: bool = False) -> dict[str, Any]:
-    """Read a file; in parts: only what is asked for, and not what the optimizer remembers."""
+    """Read a file; `in_parts` maps it, so that the optimizer's state is not read."""
     try:
-        kept = torch.load(path, map_location="cpu", weights_only=True, mmap=in_parts)
+        stored = torch.load(path, map_location="cpu", weights_only=True, mmap=in_parts)
     except OSError as error:
         raise FileError(f"{path}: cannot be read ({reason(error)})") from None
     except Exception:
         raise FileError(f"{path}: is no network that cutcell trained") from None
     parts = {"recipe": str, "epoch": int, "network": dict, "optimizer": dict}
-    if not isinstance(kept, dict) or any(
-        not isinstance(kept.get(name), kind) for name, kind in parts.items()
+    if not isinstance(stored, dict) or any(
+        not isinstance(stored.get(name), kind) for name, kind in parts.items()
     ):
         raise FileError(f"{path}: is no network that cutcell trained")
-    return kept
+    return stored

@@ -1,8 +1,4 @@
-"""Tasks of `cutcell.isolated` that need torch: what goes wrong ends a process of its own.
-
-A task takes arrays and returns arrays; see `trained` for who asks. torch is imported by the task:
-where it is missing, the process says so.
-"""
+"""Tasks of `cutcell.isolated` that need torch: they take arrays and return arrays."""
 
 from __future__ import annotations
 
@@ -22,16 +18,16 @@ def recipes(folders: NDArray[np.str_]) -> dict[str, NDArray]:
     """Read the recipes of trained networks."""
     from .training import read_recipe
 
-    found, problems = [], []
+    texts, problems = [], []
     for folder in folders:
         recipe, problem = "", ""
         try:
             recipe = json.dumps(asdict(read_recipe(Path(str(folder)))))
         except CutcellError as error:
             problem = str(error)
-        found.append(recipe)
+        texts.append(recipe)
         problems.append(problem)
-    return {"recipes": np.array(found), "problems": np.array(problems)}
+    return {"recipes": np.array(texts), "problems": np.array(problems)}
 
 
 def weights(
@@ -72,11 +68,11 @@ def weights(
 
     network, recipe = load_network(Path(str(folder)))
     rig = Rig(TriangleMesh(vertices, faces), Skeleton(joints, parents, deform=deform))
-    where, found = [], []
+    where, parts = [], []
     # Drawn as densely as in training, and then looked at as many together.
     for sample in deal_rig(rig, 4 * recipe.points):
         part = np.zeros((len(sample.points), len(joints)))
         part[:, sample.deform] = predict(network, [sample.with_prior(prior)], recipe.points)[0]
         where.append(sample.vertices)
-        found.append(part)
-    return {"vertices": np.concatenate(where), "weights": np.concatenate(found)}
+        parts.append(part)
+    return {"vertices": np.concatenate(where), "weights": np.concatenate(parts)}

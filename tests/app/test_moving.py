@@ -9,7 +9,7 @@ import trimesh
 
 import cutcell
 from cutcell import Corrections, JointCorrection
-from cutcell.editing import middle_of_limb
+from cutcell.editing import cross_section_centre
 from cutcell.errors import SkeletonError
 from cutcell.rig.rig import Skeleton, TriangleMesh
 from cutcell_app.commands import keys, loading, moving
@@ -185,9 +185,9 @@ def test_the_middle_of_a_limb_is_not_of_what_lies_beside_it():
     rig = cutcell.Rig(
         TriangleMesh(vertices, faces), Skeleton([[0, 0, -1.5], off, [0, 0, 1.5]], [-1, 0, 1])
     )
-    found = middle_of_limb(rig, 1)
+    found = cross_section_centre(rig, 1)
     assert np.linalg.norm(found[:2]) < 0.02
     assert found[2] == pytest.approx(0.3, abs=0.05)
     outside = rig.with_joints([[0, 0, -1.5], [0.33, 0, 0], [0, 0, 1.5]])
     with pytest.raises(SkeletonError, match="not in the body"):
-        middle_of_limb(outside, 1)
+        cross_section_centre(outside, 1)

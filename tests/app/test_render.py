@@ -12,7 +12,7 @@ import cutcell
 import cutcell_viewers
 from cutcell.cli.app import app
 from cutcell.errors import FileError, ParameterError
-from cutcell.io.numbers import save_numbers
+from cutcell_app.files.table_export import save_numbers
 from cutcell_app.render import VIEWS, Choices, check, describe, find_bone, find_clip, order
 from cutcell_assets import demo_path
 from tests.viewers.arm import arm_rig

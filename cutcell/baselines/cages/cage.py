@@ -53,19 +53,19 @@ def make_cage(body: Body) -> tuple[Cage | None, str, float]:
 
 
 @lru_cache(maxsize=2)
-def _make(given: Same) -> tuple[Cage | None, str, float]:
-    body = given.body
+def _make(key: Same) -> tuple[Cage | None, str, float]:
+    body = key.body
     begin = perf_counter()
     size = body.lattice.resolution
     used = body.points[np.unique(body.faces)]
     job = {"solid": voxelize(body).solid, "points": used * size + PAD, "faces": FACES}
     try:
-        found = run_isolated("cage", job, LIMIT, "libigl's cage")
+        hull = run_isolated("cage", job, LIMIT, "libigl's cage")
     except WorkFailedError as error:
         return None, str(error), perf_counter() - begin
-    vertices = (found["vertices"] - PAD) / size
+    vertices = (hull["vertices"] - PAD) / size
     bones = body.bones
     ends = zip(bones.start, bones.end, strict=True)
     distance = np.stack([distance_to_segment(vertices, start, end) for start, end in ends])
     joint = bones.joint[distance.argmin(axis=0)]
-    return Cage(vertices, found["faces"], joint), "", perf_counter() - begin
+    return Cage(vertices, hull["faces"], joint), "", perf_counter() - begin

@@ -47,8 +47,8 @@ def harmonic_values(
     count = int(inside.sum())
     number[inside] = np.arange(count)
     number[border] = count + np.arange(len(cells))
-    known = at_border[nearest]
-    field = np.concatenate([_solve(number, inside, known), known])
+    border_values = at_border[nearest]
+    field = np.concatenate([_solve(number, inside, border_values), border_values])
     return _interpolate(number, field, (points - origin) * resolution - 0.5)
 
 
@@ -56,56 +56,56 @@ def _sampled(
     vertices: NDArray, faces: NDArray, values: NDArray, spacing: float
 ) -> tuple[NDArray, NDArray]:
     """Spread points over triangles, no farther apart than `spacing`; with their values."""
-    where, found = [], []
+    where, sampled = [], []
     corners = vertices[faces]
     longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
     counts = np.ceil(longest / spacing).astype(int)
     for n in np.unique(counts):
-        some = faces[counts == n]
+        equal = faces[counts == n]
         spots = [(i, j, n - i - j) for i, j in product(range(n + 1), repeat=2) if i + j <= n]
         share = np.array(spots) / n
-        where.append(np.einsum("sc,mcx->msx", share, vertices[some]).reshape(-1, 3))
-        found.append(np.einsum("sc,mcx->msx", share, values[some]).reshape(-1, values.shape[1]))
-    return np.concatenate(where), np.concatenate(found)
+        where.append(np.einsum("sc,mcx->msx", share, vertices[equal]).reshape(-1, 3))
+        sampled.append(np.einsum("sc,mcx->msx", share, values[equal]).reshape(-1, values.shape[1]))
+    return np.concatenate(where), np.concatenate(sampled)
 
 
-def _solve(number: NDArray, inside: NDArray, known: NDArray) -> NDArray[np.float64]:
+def _solve(number: NDArray, inside: NDArray, border_values: NDArray) -> NDArray[np.float64]:
     """Make each cell inside the mean of its six neighbours; `known` are those of the border."""
     count = int(inside.sum())
     cells = np.argwhere(inside)
     rows, columns = [], []
     for axis, step in product(range(3), (-1, 1)):
-        beside = cells.copy()
-        beside[:, axis] += step
+        neighbours = cells.copy()
+        neighbours[:, axis] += step
         rows.append(np.arange(count))
-        columns.append(number[tuple(beside.T)])
+        columns.append(number[tuple(neighbours.T)])
     row, column = np.concatenate(rows), np.concatenate(columns)
     free = column < count
     one = np.ones(len(row))
     matrix = coo_array((-one[free], (row[free], column[free])), shape=(count, count)).tocsr()
     matrix.setdiag(6.0)
-    shape = (count, len(known))
+    shape = (count, len(border_values))
     outer = coo_array((one[~free], (row[~free], column[~free] - count)), shape=shape).tocsr()
-    right = outer @ known
-    found = np.zeros_like(right)
+    right = outer @ border_values
+    solution = np.zeros_like(right)
     for column_ in np.flatnonzero(right.any(axis=0)):
-        found[:, column_], failed = cg(matrix, right[:, column_], rtol=ACCURACY)
+        solution[:, column_], failed = cg(matrix, right[:, column_], rtol=ACCURACY)
         if failed:
             raise WorkFailedError("the harmonic equations could not be solved")
-    return found
+    return solution
 
 
 def _interpolate(number: NDArray, field: NDArray, points: NDArray) -> NDArray[np.float64]:
     """Take the values at points between the centres of cells, of those that have one."""
     low = np.floor(points).astype(int)
     part = points - low
-    total, found = np.zeros(len(points)), np.zeros((len(points), field.shape[1]))
+    total, weighted = np.zeros(len(points)), np.zeros((len(points), field.shape[1]))
     for corner in product((0, 1), repeat=3):
         cell = np.clip(low + corner, 0, np.array(number.shape) - 1)
         index = number[tuple(cell.T)]
         share = np.where(corner, part, 1 - part).prod(axis=1) * (index >= 0)
         total += share
-        found += share[:, None] * field[index]
+        weighted += share[:, None] * field[index]
     return np.divide(
-        found, total[:, None], out=np.full_like(found, np.nan), where=total[:, None] > 0
+        weighted, total[:, None], out=np.full_like(weighted, np.nan), where=total[:, None] > 0
     )

@@ -24,8 +24,8 @@ def mean_values(
     """
     cage = np.ascontiguousarray(vertices, np.float64), np.ascontiguousarray(faces, np.int64)
     points = np.ascontiguousarray(points, np.float64)
-    found = in_threads(lambda part: _coordinates(*cage, points[part]) @ values, parts(len(points)))
-    return np.concatenate(found)
+    blocks = in_threads(lambda part: _coordinates(*cage, points[part]) @ values, parts(len(points)))
+    return np.concatenate(blocks)
 
 
 @compiled

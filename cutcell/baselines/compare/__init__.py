@@ -1,4 +1,4 @@
-"""Several methods on several rigs, measured against the artists' weights."""
+"""Several methods on several rigs, measured against weights by artists."""
 
 from .markdown import comparison_markdown
 from .run import compare

@@ -20,11 +20,11 @@ def comparison_markdown(comparison: Comparison) -> str:
     str
         Ends with a line break. Failures are named below the tables.
     """
-    shown = ("l1", "precision", "recall", "deformation", "clips", "crosstalk", "seconds")
+    measures = ("l1", "precision", "recall", "deformation", "clips", "crosstalk", "seconds")
     lines = ["## All rigs: median, mean (rigs)", ""]
     lines += _table(
-        ["method", *(MEASURES[name] for name in shown), "no weight", "worst deformation"],
-        [_summary_row(comparison, method, shown) for method in comparison.methods],
+        ["method", *(MEASURES[name] for name in measures), "no weight", "worst deformation"],
+        [_summary_row(comparison, method, measures) for method in comparison.methods],
     )
     for name in ("l1", "deformation", "clips", "crosstalk", "seconds"):
         rows = [
@@ -42,11 +42,13 @@ def comparison_markdown(comparison: Comparison) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _summary_row(comparison: Comparison, method: str, shown: Sequence[str]) -> list[str]:
+def _summary_row(comparison: Comparison, method: str, measures: Sequence[str]) -> list[str]:
     cells = []
-    for name in shown:
-        found = comparison.statistic(method, name)
-        cells.append(f"{text(found.median, name)}, {text(found.mean, name)} ({found.count})")
+    for name in measures:
+        statistic = comparison.statistic(method, name)
+        cells.append(
+            f"{text(statistic.median, name)}, {text(statistic.mean, name)} ({statistic.count})"
+        )
     none = comparison.statistic(method, "unweighted").mean
     worst = comparison.statistic(method, "deformation")
     cells.append("–" if none is None else f"{none:.1%}")

@@ -77,13 +77,13 @@ def check_plot(path: str | Path) -> Path:
 
 def _sorted(comparison: Comparison) -> list[str]:
     """List the methods that have a result, the artist's left out, least deformation first."""
-    found = {
+    medians = {
         name: comparison.statistic(name, "deformation").median
         for name in comparison.methods
         if name != "artist"
     }
-    known = {name: value for name, value in found.items() if value is not None}
-    return sorted(known, key=lambda name: known[name])
+    finite = {name: value for name, value in medians.items() if value is not None}
+    return sorted(finite, key=lambda name: finite[name])
 
 
 def _panel(axes: Any, comparison: Comparison, methods: list[str], measure: str) -> None:
@@ -93,15 +93,15 @@ def _panel(axes: Any, comparison: Comparison, methods: list[str], measure: str) 
     for row, name in enumerate(methods):
         index = comparison.methods.index(name)
         values = [getattr(rig.scores[index], measure) for rig in comparison.rigs]
-        known = [k for k, value in enumerate(values) if value is not None]
-        x = [max(values[k], LEAST if measure == "deformation" else 0) for k in known]
-        color, found = _color(name), comparison.statistic(name, measure)
+        scored = [k for k, value in enumerate(values) if value is not None]
+        x = [max(values[k], LEAST if measure == "deformation" else 0) for k in scored]
+        color, statistic = _color(name), comparison.statistic(name, measure)
         axes.plot(
-            x, row + shake[known], "o", color=color, alpha=0.45, markersize=4.5, markeredgewidth=0
+            x, row + shake[scored], "o", color=color, alpha=0.45, markersize=4.5, markeredgewidth=0
         )
-        axes.plot([found.median] * 2, [row - 0.33, row + 0.33], color=color, linewidth=2.6)
+        axes.plot([statistic.median] * 2, [row - 0.33, row + 0.33], color=color, linewidth=2.6)
         axes.plot(
-            found.mean, row, "D", color="white", markersize=4.8, markeredgecolor=color, zorder=3
+            statistic.mean, row, "D", color="white", markersize=4.8, markeredgecolor=color, zorder=3
         )
     axes.grid(axis="x", color=FAINT, linewidth=0.7)
     axes.set_axisbelow(True)

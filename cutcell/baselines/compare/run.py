@@ -1,4 +1,4 @@
-"""Bind rigs by several methods, and measure each against the artists' weights."""
+"""Bind rigs by several methods, and measure each against weights by artists."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ from ..methods import known_options
 from .scores import Comparison, MethodScore, RigScore
 
 GAP_RESOLUTION = 64
-"""Of the graph that tells which parts are far from each other through the body."""
+"""Of the graph for the distances through the body between parts."""
 
 
 def compare(
@@ -43,7 +43,7 @@ def compare(
     turned: Turned = "deform",
     progress: Progress = silent,
 ) -> Comparison:
-    """Bind every rig by every method and measure all against the rigs' own weights.
+    """Bind every rig by every method and measure all against the weights of the rigs.
 
     Parameters
     ----------
@@ -83,7 +83,7 @@ def compare(
 def _chosen(
     methods: Sequence[str] | Mapping[str, Baseline] | None, options: Mapping[str, Any]
 ) -> dict[str, Baseline]:
-    """Look methods up, and give each those options that it knows."""
+    """Look methods up, and bind the options that each accepts."""
     if methods is None:
         methods = METHODS
     if not isinstance(methods, Mapping):
@@ -108,8 +108,8 @@ def _compare_rig(
     scores = []
     for done, (name, method) in enumerate(methods.items()):
         progress(rig.name, (done + 1) / (len(methods) + 1))
-        found = _attempt(method, rig)
-        scores.append(_score(name, rig, found, share, gaps, turned))
+        binding = _attempt(method, rig)
+        scores.append(_score(name, rig, binding, share, gaps, turned))
     progress(rig.name, 1.0)
     joints = int(rig.skeleton.deform.sum())
     counts = (len(rig.mesh.vertices), joints, len(rig.clips), len(gaps))
@@ -117,11 +117,11 @@ def _compare_rig(
 
 
 def _attempt(method: Baseline, rig: Rig) -> BaselineBinding:
-    """Bind by one method; whatever it dies of, the others go on."""
+    """Bind by one method; report a failure instead of raising it."""
     try:
         return method(rig)
     except (ParameterError, Cancelled):
-        raise  # the same for all rigs: whoever asked must know
+        raise  # the same for all rigs
     except CutcellError as error:
         return BaselineBinding(None, failed=str(error))
     except Exception as error:
@@ -133,28 +133,28 @@ def _attempt(method: Baseline, rig: Rig) -> BaselineBinding:
 def _score(
     name: str,
     rig: Rig,
-    found: BaselineBinding,
+    binding: BaselineBinding,
     share: NDArray[np.float64],
     gaps: NDArray[np.int32],
     turned: Turned,
 ) -> MethodScore:
-    seconds = float(sum(found.seconds.values()))
-    if found.weights is None or rig.weights is None:
-        return MethodScore(name, found.failed, seconds=seconds, warnings=found.warnings)
-    precision, recall = precision_recall(found.weights, rig.weights, shares=share)
-    error = deformation_error(rig, found.weights, rig.weights, joints=turned)
-    clips = [clip.largest for clip in clip_error(rig, found.weights, rig.weights)]
+    seconds = float(sum(binding.seconds.values()))
+    if binding.weights is None or rig.weights is None:
+        return MethodScore(name, binding.failed, seconds=seconds, warnings=binding.warnings)
+    precision, recall = precision_recall(binding.weights, rig.weights, shares=share)
+    error = deformation_error(rig, binding.weights, rig.weights, joints=turned)
+    clips = [clip.largest for clip in clip_error(rig, binding.weights, rig.weights)]
     return MethodScore(
         name,
-        l1=weight_l1(found.weights, rig.weights, share),
+        l1=weight_l1(binding.weights, rig.weights, share),
         precision=_number(precision),
         recall=_number(recall),
         deformation=error.mean,
         clips=float(np.mean(clips)) if clips else None,
-        unweighted=unweighted(found.weights, share),
-        crosstalk=_number(crosstalk(found.weights, gaps).mean),
+        unweighted=unweighted(binding.weights, share),
+        crosstalk=_number(crosstalk(binding.weights, gaps).mean),
         seconds=seconds,
-        warnings=found.warnings,
+        warnings=binding.warnings,
         worst=tuple(error.worst(3)),
     )
 

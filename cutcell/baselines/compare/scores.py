@@ -1,4 +1,4 @@
-"""What methods make of rigs: numbers, and what they come to over all rigs."""
+"""Scores of methods on rigs, and their statistics over all rigs."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from ...metrics import Turn
 
 @dataclass(frozen=True)
 class MethodScore:
-    """What one method makes of one rig. None: it failed, or there is nothing to measure.
+    """Scores of one method on one rig. None: it failed, or there is nothing to measure.
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ class MethodScore:
 
 @dataclass(frozen=True)
 class RigScore:
-    """What all methods make of one rig.
+    """Scores of all methods on one rig.
 
     Parameters
     ----------
@@ -95,7 +95,7 @@ class Statistic:
 
 @dataclass(frozen=True)
 class Comparison:
-    """All rigs, and what they come to.
+    """Scores of all methods on all rigs.
 
     Parameters
     ----------
@@ -107,13 +107,13 @@ class Comparison:
     methods: tuple[str, ...]
 
     def statistic(self, method: str, measure: str) -> Statistic:
-        """Sum up a measure, a field of `MethodScore`, over the rigs where a method has it.
+        """Summarise a measure, a field of `MethodScore`, over the rigs where a method has it.
 
         The worst is the lowest precision and recall, and the highest of all else.
         """
         index = self.methods.index(method)
-        found = [(getattr(rig.scores[index], measure), rig.name) for rig in self.rigs]
-        values = [(value, name) for value, name in found if value is not None]
+        pairs = [(getattr(rig.scores[index], measure), rig.name) for rig in self.rigs]
+        values = [(value, name) for value, name in pairs if value is not None]
         if not values:
             return Statistic(0, None, None, None, "")
         pick = min if measure in ("precision", "recall") else max
@@ -125,12 +125,12 @@ class Comparison:
 
     def failures(self) -> dict[tuple[str, str], list[str]]:
         """Group what failed: the names of the rigs by method and reason."""
-        found: dict[tuple[str, str], list[str]] = {}
+        failures: dict[tuple[str, str], list[str]] = {}
         for rig in self.rigs:
             for score in rig.scores:
                 if score.failed:
-                    found.setdefault((score.method, score.failed), []).append(rig.name)
-        return found
+                    failures.setdefault((score.method, score.failed), []).append(rig.name)
+        return failures
 
     def to_dict(self) -> dict[str, Any]:
         """Return all of it as plain lists, dicts and numbers, for JSON."""
@@ -151,15 +151,15 @@ class Comparison:
     def merged(self, other: Comparison) -> Comparison:
         """Add another comparison: its methods to these rigs, its rigs to these.
 
-        Where both have a method on a rig, the other one's score counts. Rigs that lack a
-        method of the result get a score that says so.
+        Where both have a method on a rig, the other one's score is taken. Rigs that lack a
+        method of the result get a failed score.
         """
         methods = tuple(dict.fromkeys((*self.methods, *other.methods)))
         rigs = {rig.name: rig for rig in self.rigs}
         for rig in other.rigs:
-            known = rigs.get(rig.name, rig)
-            found = {score.method: score for score in (*known.scores, *rig.scores)}
-            rigs[rig.name] = replace(rig, scores=tuple(found.values()))
+            earlier = rigs.get(rig.name, rig)
+            by_method = {score.method: score for score in (*earlier.scores, *rig.scores)}
+            rigs[rig.name] = replace(rig, scores=tuple(by_method.values()))
         return Comparison(tuple(_complete(rig, methods) for rig in rigs.values()), methods)
 
 
@@ -177,11 +177,11 @@ MEASURES = {
 
 
 def _complete(rig: RigScore, methods: Iterable[str]) -> RigScore:
-    found = {score.method: score for score in rig.scores}
+    by_method = {score.method: score for score in rig.scores}
     missing = "not measured"
     return replace(
         rig,
-        scores=tuple(found.get(name) or MethodScore(name, failed=missing) for name in methods),
+        scores=tuple(by_method.get(name) or MethodScore(name, failed=missing) for name in methods),
     )
 
 

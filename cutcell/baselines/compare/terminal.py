@@ -30,8 +30,8 @@ def comparison_table(comparison: Comparison, width: int) -> RenderableType:
     for (method, reason), names in failures.items():
         which = "all rigs" if len(names) == len(comparison.rigs) else ", ".join(names)
         on = "" if len(comparison.rigs) == 1 else f" on {which}"
-        told = printable(f"{method} failed{on}")
-        parts.append(Text.assemble((told, "bold yellow"), f": {printable(reason)}"))
+        heading = printable(f"{method} failed{on}")
+        parts.append(Text.assemble((heading, "bold yellow"), f": {printable(reason)}"))
     return Group(*parts)
 
 
@@ -78,23 +78,23 @@ def _summary(comparison: Comparison, width: int) -> Table:
     count = len(comparison.rigs)
     title = f"{count} rigs: median and mean of the L1 of weights, and of deformation in cm²"
     table = _table(title, "method", "L1", "mean", "cm²", "mean", "worst")
-    # What the other columns leave: the name of a rig is all that may be cut.
-    taken = max(map(len, comparison.methods)) + NUMBERS + (ROOMY_NUMBERS if width >= ROOMY else 0)
-    table.add_column("on", no_wrap=True, overflow="ellipsis", max_width=max(width - taken, 6))
+    # Only the name of a rig may be truncated, to the width that the other columns leave.
+    others = max(map(len, comparison.methods)) + NUMBERS + (ROOMY_NUMBERS if width >= ROOMY else 0)
+    table.add_column("on", no_wrap=True, overflow="ellipsis", max_width=max(width - others, 6))
     for name in ("clips cm²", "crosstalk") if width >= ROOMY else ():
         _add_numbers(table, name)
     for name in ("seconds", "rigs"):
         _add_numbers(table, name)
     for method in comparison.methods:
-        found = {name: comparison.statistic(method, name) for name in FIELDS}
-        l1, deformation = found["l1"], found["deformation"]
+        statistics = {name: comparison.statistic(method, name) for name in FIELDS}
+        l1, deformation = statistics["l1"], statistics["deformation"]
         cells: list[str | Text] = [text(l1.median, "l1"), text(l1.mean, "l1")]
         for value in (deformation.median, deformation.mean, deformation.worst):
             cells.append(text(value, "deformation"))
         cells.append(Text(shown_name(deformation.worst_rig) if deformation.worst else ""))
         if width >= ROOMY:
-            cells += [text(found[name].median, name) for name in ("clips", "crosstalk")]
-        cells.append(text(found["seconds"].median, "seconds"))
+            cells += [text(statistics[name].median, name) for name in ("clips", "crosstalk")]
+        cells.append(text(statistics["seconds"].median, "seconds"))
         missing = l1.count < count
         share = Text(f"{l1.count}/{count}", "yellow" if missing else "")
         table.add_row(method, *cells, share)

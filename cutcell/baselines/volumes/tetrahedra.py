@@ -22,7 +22,7 @@ EDGE = 0.05
 
 @dataclass(frozen=True, eq=False)
 class Tetrahedra:
-    """What fills a body.
+    """Tetrahedra that fill a body.
 
     Parameters
     ----------
@@ -32,7 +32,7 @@ class Tetrahedra:
     used : array, shape (k,)
         These vertices in the body.
     handles, joint : arrays, shapes (h, 3), (h,)
-        Points on the bones, and whose they are.
+        Points on the bones, and their joints.
     warnings : tuple of str
     """
 
@@ -55,27 +55,27 @@ def tetrahedra(body: Body, limit: float) -> tuple[Tetrahedra | None, str, float]
 
 
 @lru_cache(maxsize=2)
-def _fill(given: Same) -> tuple[Tetrahedra | None, str, float]:
-    body, limit = given.body, given.option
+def _fill(key: Same) -> tuple[Tetrahedra | None, str, float]:
+    body, limit = key.body, key.option
     begin = perf_counter()
     used, faces = np.unique(body.faces, return_inverse=True)
     handles, joint = _handles(body)
     job = {"points": body.points[used], "faces": faces.reshape(-1, 3), "handles": handles}
     warnings: tuple[str, ...] = ()
     try:
-        found = run_isolated("tetgen", job, limit, "TetGen")
+        mesh = run_isolated("tetgen", job, limit, "TetGen")
     except WorkFailedError as first:
         try:
-            found = run_isolated("tetwild", job | {"edge": EDGE}, limit, "fTetWild")
+            mesh = run_isolated("tetwild", job | {"edge": EDGE}, limit, "fTetWild")
         except WorkFailedError as second:
             return None, f"{first}; {second}", perf_counter() - begin
         warnings = (f"{first}; fTetWild filled it, nearly",)
     seconds = perf_counter() - begin
     filled = Tetrahedra(
-        nodes=found["nodes"],
-        tets=found["tets"],
-        corners=found["corners"],
-        shares=found["shares"],
+        nodes=mesh["nodes"],
+        tets=mesh["tets"],
+        corners=mesh["corners"],
+        shares=mesh["shares"],
         used=used,
         handles=handles,
         joint=joint,

@@ -33,7 +33,7 @@ def bbw(
 
     TetGen fills the body; where it cannot (few real characters are closed and do not cut
     themselves), fTetWild does. Where a library fails, crashes or takes too long, the result
-    says so.
+    has failed.
 
     Parameters
     ----------

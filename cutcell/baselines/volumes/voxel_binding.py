@@ -40,7 +40,7 @@ def voxel(
     """Bind by distances along solid voxels.
 
     Voxels that a bone runs through are at distance 0; from there paths lead through the
-    26 neighbours of each voxel. A vertex adds the distance to the centre of its own voxel.
+    26 neighbours of each voxel. A vertex adds the distance to the centre of its voxel.
 
     Parameters
     ----------
@@ -100,9 +100,9 @@ def voxel_distances(body: Body, run: Run | None = None) -> NDArray[np.float64]:
     ]
     starts = [np.zeros(len(nodes)) for nodes in sources]
     by_voxel = path_lengths(len(voxels.centres), links, lengths, sources, starts)
-    own = voxels.at(body.points)
-    inside = np.linalg.norm(body.points - voxels.centres[own], axis=1)
-    return by_voxel[:, own] + inside
+    voxel_of = voxels.at(body.points)
+    inside = np.linalg.norm(body.points - voxels.centres[voxel_of], axis=1)
+    return by_voxel[:, voxel_of] + inside
 
 
 def voxel_unirig(
@@ -118,8 +118,8 @@ def voxel_unirig(
     Solid are the voxels of the surface, and those between its first and last voxel along at least
     two axes. Each is linked to its six neighbours at three times the distance; a vertex to the
     nearest voxel, if it is within the size of one, and along the mesh's edges. Each joint starts
-    at the nearest node. Where no path leads from a joint, it counts as far as the farthest that
-    one leads from.
+    at the nearest node. Where no path leads from a joint, its distance is the largest
+    finite one.
 
     Parameters
     ----------

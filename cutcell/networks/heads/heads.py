@@ -82,13 +82,13 @@ def predict(
         where there are fewer. 0 for all.
     """
     network.eval()
-    found = []
+    predictions = []
     for sample in samples:
         weights = np.empty((len(sample.points), len(sample.joints)))
         for chosen in sample.parts(points, np.random.default_rng(0)):
             weights[chosen] = _predict(network, sample.part(chosen))
-        found.append(weights / weights.sum(axis=1, keepdims=True))
-    return found
+        predictions.append(weights / weights.sum(axis=1, keepdims=True))
+    return predictions
 
 
 def _predict(network: nn.Module, sample: Sample) -> NDArray[np.float64]:

@@ -1,4 +1,4 @@
-"""What the heads are made of beside PyTorch's own modules."""
+"""Layers of the heads besides PyTorch's modules."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from torch import Tensor, nn
 from ..batches import Batch
 
 LEAST = 1e-4
-"""Added to a prior before its logarithm: what it gives nothing can still be learned."""
+"""Added to a prior before its logarithm, so that joints without prior can be learned."""
 
 
 def mlp(widths: Sequence[int]) -> nn.Sequential:
@@ -32,14 +32,14 @@ def normed(widths: Sequence[int]) -> nn.Sequential:
 
 def edge_features(features: Tensor, neighbours: Tensor) -> Tensor:
     """Return each point's features beside the difference to each neighbour's, (p, k, 2 c)."""
-    own = features[:, None].expand(-1, neighbours.shape[1], -1)
-    return torch.cat([own, features[neighbours] - own], dim=2)
+    centre = features[:, None].expand(-1, neighbours.shape[1], -1)
+    return torch.cat([centre, features[neighbours] - centre], dim=2)
 
 
 class PointEncoder(nn.Module):
     """Features of points from places, normals and neighbours.
 
-    A small one of our own, trained with the head. The published networks have large ones,
+    A small encoder, trained with the head. The published networks have large ones,
     pretrained elsewhere: PTv3 and Michelangelo in UniRig, PartField's in Puppeteer.
 
     Parameters
@@ -90,16 +90,16 @@ class CrossAttention(nn.Module):
         self.last = nn.LayerNorm(width)
 
     def forward(
-        self, asking: Tensor, asked: Tensor, mask: Tensor, bias: Tensor | None = None
+        self, queries: Tensor, keys: Tensor, mask: Tensor, bias: Tensor | None = None
     ) -> Tensor:
         """Return (s, q, width); `mask` (s, k) is true for what may be looked at."""
         # As numbers: PyTorch wants both masks to be of one type.
         closed = torch.zeros(mask.shape, device=mask.device).masked_fill(~mask, float("-inf"))
-        found, _ = self.attention(
-            asking, asked, asked, key_padding_mask=closed, attn_mask=bias, need_weights=False
+        attended, _ = self.attention(
+            queries, keys, keys, key_padding_mask=closed, attn_mask=bias, need_weights=False
         )
-        asking = self.after(asking + found)
-        return self.last(asking + self.forth(asking))
+        queries = self.after(queries + attended)
+        return self.last(queries + self.forth(queries))
 
 
 def masked_softmax(logits: Tensor, batch: Batch) -> Tensor:

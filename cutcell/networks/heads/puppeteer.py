@@ -18,7 +18,7 @@ class Puppeteer(nn.Module):
     """Puppeteer's head, with the prior beside the features of the points.
 
     Joints attend to each other, with a bias for the bones between them, then points and joints to
-    each other. The prior of a point is pooled: the mean of the joints' features, weighted by the
+    each other. The prior of a point is pooled: the mean of the features of joints, weighted by the
     prior. So the order of joints cannot matter, as it would in a padded list.
 
     Parameters
@@ -26,11 +26,11 @@ class Puppeteer(nn.Module):
     width, heads, layers : int
         Of the attention.
     encoder_layers : int
-        Of our own encoder, see `PointEncoder`.
+        Of `PointEncoder`.
 
     References
     ----------
-    Song et al. 2025 (Puppeteer), section 4; paper section 4.1. The paper does not tell widths;
+    Song et al. 2025 (Puppeteer), section 4; paper section 4.1. The paper does not give widths;
     ours are in `heads.py`.
     """
 

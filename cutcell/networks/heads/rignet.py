@@ -73,10 +73,10 @@ class RigNet(nn.Module):
         """Return the soft cross-entropy over the five bones."""
         chosen, shares = self._shares(batch)
         assert batch.target is not None
-        wanted = batch.flat(batch.target).gather(1, chosen)
-        total = wanted.sum(dim=1, keepdim=True)
-        wanted = wanted / total.clamp(min=1e-6)
-        return -(wanted * shares.clamp(min=1e-9).log()).sum(dim=1).mean()
+        target = batch.flat(batch.target).gather(1, chosen)
+        total = target.sum(dim=1, keepdim=True)
+        target = target / total.clamp(min=1e-6)
+        return -(target * shares.clamp(min=1e-9).log()).sum(dim=1).mean()
 
     def finish(self, weights: Tensor, batch: Batch) -> Tensor:
         """Average over the one-ring, and drop what is below half of the largest."""
@@ -98,18 +98,22 @@ class RigNet(nn.Module):
         rank = rank.masked_fill(~batch.joint_mask[:, None], -1)
         count = min(BONES, rank.shape[2])
         best, chosen = (batch.flat(x) for x in rank.topk(count, dim=2))
-        there = best >= 0
-        features = torch.cat([batch.flat(batch.points), self._bones(batch, near, chosen, there)], 1)
+        exists = best >= 0
+        features = torch.cat(
+            [batch.flat(batch.points), self._bones(batch, near, chosen, exists)], 1
+        )
         logits = self._logits(features, batch)[:, :count]
-        return chosen, torch.softmax(logits.float().masked_fill(~there, float("-inf")), dim=1)
+        return chosen, torch.softmax(logits.float().masked_fill(~exists, float("-inf")), dim=1)
 
-    def _bones(self, batch: Batch, near: Tensor, chosen: Tensor, there: Tensor) -> Tensor:
+    def _bones(self, batch: Batch, near: Tensor, chosen: Tensor, exists: Tensor) -> Tensor:
         """Return the features of the chosen bones, (all, 40); zero where there are fewer."""
         sample = torch.nonzero(batch.point_mask)[:, :1].expand_as(chosen)
         bones = torch.cat([batch.joints, batch.tails, batch.leaf[:, :, None]], dim=2)
-        found = torch.cat([bones[sample, chosen], batch.flat(near).gather(1, chosen)[..., None]], 2)
-        found = (found * there[:, :, None]).flatten(1)
-        return nn.functional.pad(found, (0, BONES * EACH - found.shape[1]))
+        features = torch.cat(
+            [bones[sample, chosen], batch.flat(near).gather(1, chosen)[..., None]], 2
+        )
+        features = (features * exists[:, :, None]).flatten(1)
+        return nn.functional.pad(features, (0, BONES * EACH - features.shape[1]))
 
     def _logits(self, features: Tensor, batch: Batch) -> Tensor:
         features = self.first(features)

@@ -26,7 +26,7 @@ class UniRig(nn.Module):
     bone_layers, point_layers : int
         Rounds in which bones attend to bones and the surface, and points to bones.
     encoder_layers : int
-        Of our own encoder, see `PointEncoder`.
+        Of `PointEncoder`.
 
     References
     ----------
@@ -81,8 +81,8 @@ class UniRig(nn.Module):
 
     def _scores(self, points: Tensor, bones: Tensor, batch: Batch) -> Tensor:
         """Return the attention of each point to each bone by all heads, (s, p, j, heads)."""
-        asking = self.ask(points).unflatten(2, (self.heads, -1))
-        asked = self.answer(bones).unflatten(2, (self.heads, -1))
-        scores = torch.einsum("sphc,sjhc->spjh", asking, asked) / points.shape[2] ** 0.5
+        queries = self.ask(points).unflatten(2, (self.heads, -1))
+        keys = self.answer(bones).unflatten(2, (self.heads, -1))
+        scores = torch.einsum("sphc,sjhc->spjh", queries, keys) / points.shape[2] ** 0.5
         closed = ~batch.joint_mask[:, None, :, None]
         return torch.softmax(scores.masked_fill(closed, float("-inf")), dim=2)

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 import cutcell
-from cutcell.baselines.measures import MEASURES, measure_distance
 from cutcell.geodesics import path_length
 from cutcell_app.commands import loading
 from cutcell_app.scenes import following, resolve
@@ -13,6 +12,7 @@ from cutcell_app.scenes.measures import WAITING, measured_of, measuring
 from cutcell_app.state import State
 from cutcell_app.state.geodesics import MEASURES as NAMED
 from cutcell_app.state.url import from_query, to_query
+from cutcell_app.work.measured_distance import MEASURES, measure_distance
 from cutcell_viewers.palette import BODY
 from tests.viewers.arm import arm_rig
 

@@ -15,7 +15,6 @@ from cutcell.baselines.compare.markdown import comparison_markdown
 from cutcell.baselines.compare.scores import Comparison, MethodScore, RigScore
 from cutcell.baselines.compare.terminal import comparison_table
 from cutcell.cli.console import print_json, print_line, print_table, print_warnings, progress_bars
-from cutcell.io.numbers import save_numbers
 from cutcell.metrics import Turn
 from cutcell.rig.rig import Rig, Skeleton, TriangleMesh
 from cutcell.runtime.display import (
@@ -26,6 +25,7 @@ from cutcell.runtime.display import (
     spreadsheet_cell,
     without_folders,
 )
+from cutcell_app.files.table_export import save_numbers
 
 NASTY = {
     "colour": "\x1b[31mred\x1b[0m",

@@ -9,10 +9,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..errors import FileError, ParameterError
-from ..rig.rig import Rig
-from ..runtime.display import spreadsheet_cell
-from ..runtime.writing import check_place, write_all
+from cutcell.errors import FileError, ParameterError
+from cutcell.rig.rig import Rig
+from cutcell.runtime.display import spreadsheet_cell
+from cutcell.runtime.writing import check_place, write_all
 
 DIGITS = 7
 """Significant digits of a CSV's numbers: what 32 bits hold."""

@@ -13,18 +13,18 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import cKDTree
 
-from ..errors import ParameterError
-from ..geodesics import BoneDistances, Bones, shortest_path
-from ..geodesics.distances import distances_from
-from ..geometry.edges import find_edges
-from ..geometry.segments import closest_on_segment, distance_to_segment
-from ..graph import build_graph
-from ..method import Method
-from ..rig.checks import check_choice
-from ..rig.rig import Rig
-from .body import Body
-from .volumes.voxel_binding import voxels_of_bone
-from .volumes.voxels import PAD, Voxels, voxelize
+from cutcell.baselines.body import Body
+from cutcell.baselines.volumes.voxel_binding import voxels_of_bone
+from cutcell.baselines.volumes.voxels import PAD, Voxels, voxelize
+from cutcell.errors import ParameterError
+from cutcell.geodesics import BoneDistances, Bones, shortest_path
+from cutcell.geodesics.distances import distances_from
+from cutcell.geometry.edges import find_edges
+from cutcell.geometry.segments import closest_on_segment, distance_to_segment
+from cutcell.graph import build_graph
+from cutcell.method import Method
+from cutcell.rig.checks import check_choice
+from cutcell.rig.rig import Rig
 
 Measure = Literal["straight", "surface", "voxel", "6", "26", "any"]
 MEASURES: tuple[Measure, ...] = get_args(Measure)
