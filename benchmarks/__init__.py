@@ -2,6 +2,6 @@
 
 from numba import get_num_threads
 
-# Numba looks for its threads' library when they are first needed. Embree and Open3D bring a
+# Numba looks for its threading library when threads are first needed. Embree and Open3D bring a
 # TBB that is too old for it, and it warns if that one is there already: be first.
 get_num_threads()

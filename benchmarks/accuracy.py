@@ -42,7 +42,7 @@ class Errors:
 def measure(shape: Shape, resolution: int, connectivity: int | str, repeats: int = 1) -> Errors:
     """Compare the distances of a shape with the true ones.
 
-    Each source is a joint of its own, without children: a bone that is a point.
+    Each source is a separate joint without children: a bone that is a point.
 
     Raises
     ------
@@ -57,22 +57,22 @@ def measure(shape: Shape, resolution: int, connectivity: int | str, repeats: int
         graph = build_graph(shape.mesh, resolution, connectivity=connectivity)  # type: ignore[arg-type]
         distances = bone_distances(graph, skeleton, method="paper")
         spent.append(perf_counter() - begin)
-    found = distances.joint[:, shape.targets] * graph.lattice.size
+    measured = distances.joint[:, shape.targets] * graph.lattice.size
     cell = graph.lattice.size / resolution
     far = shape.distance >= NEAR * cell
     unreached = int((distances.fallback[shape.targets] != 0).sum())
-    error = np.abs(found[far] / shape.distance[far] - 1)
+    error = np.abs(measured[far] / shape.distance[far] - 1)
     return Errors(float(error.mean()), float(error.max()), float(np.median(spent)), unreached)
 
 
 def order(resolutions: Sequence[int], errors: Sequence[float]) -> str:
     """Fit p in error ~ R^-p by least squares, over errors above rounding."""
-    known = np.array(errors) > EXACT
-    if not known[-1]:
+    is_inexact = np.array(errors) > EXACT
+    if not is_inexact[-1]:
         return "exact"
-    if known.sum() < 2:
+    if is_inexact.sum() < 2:
         return "-"
-    scale, error = np.array(resolutions)[known], np.array(errors)[known]
+    scale, error = np.array(resolutions)[is_inexact], np.array(errors)[is_inexact]
     return f"{-np.polyfit(np.log(scale), np.log(error), 1)[0]:.2f}"
 
 
@@ -136,19 +136,19 @@ def _add(accuracy, cost, name, connectivity, row, base, resolutions) -> None:
     cost.add(name, connectivity, *times)
 
 
-def arguments(given: Sequence[str] | None = None) -> argparse.Namespace:
+def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
     """Read the command line."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.accuracy", description=__doc__)
     parser.add_argument("--resolutions", type=int, nargs="+", default=[16, 32, 64, 128])
     parser.add_argument("--shapes", nargs="+", choices=SHAPES, default=list(SHAPES))
     parser.add_argument("--repeats", type=int, default=1)
     parser.add_argument("--markdown", type=Path, metavar="OUT")
-    return parser.parse_args(given)
+    return parser.parse_args(argv)
 
 
-def main(given: Sequence[str] | None = None) -> None:
+def main(argv: Sequence[str] | None = None) -> None:
     """Print the tables, and write them too if a file is named."""
-    options = arguments(given)
+    options = arguments(argv)
     publish(tables(options), options.markdown)
 
 

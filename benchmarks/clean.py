@@ -1,8 +1,8 @@
-"""What `cutcell.clean` makes of damaged weights, of other methods' and of artists' own.
+"""Effects of `cutcell.clean` on damaged weights, on those of other methods and of artists.
 
     python -m benchmarks.clean [SET...] [--resolution 64] [--near 2 3 4] [--out docs/clean.md]
 
-Sets are rigs, wild and train, folders in ../shared/data. The artists' weights are the truth: they
+Sets are rigs, wild and train, folders in ../shared/data. Weights by artists are the truth: they
 are damaged in known ways, replaced by those of other methods, and cleaned as they are.
 """
 
@@ -44,15 +44,15 @@ def leaked(rig: Rig, resolution: int) -> NDArray[np.float64] | None:
     if not len(gaps):
         return None
     weights = _weights(rig).copy()
-    for here, there in (gaps.T, gaps.T[::-1]):
-        vertex, first = np.unique(here, return_index=True)
-        mixed = (1 - LEAKED) * _weights(rig)[vertex] + LEAKED * _weights(rig)[there[first]]
+    for one_side, other_side in (gaps.T, gaps.T[::-1]):
+        vertex, first = np.unique(one_side, return_index=True)
+        mixed = (1 - LEAKED) * _weights(rig)[vertex] + LEAKED * _weights(rig)[other_side[first]]
         weights[vertex] = mixed
     return weights
 
 
 def noisy(rig: Rig, resolution: int) -> NDArray[np.float64]:
-    """Let some vertices, chosen by chance, follow another joint, also chosen by chance."""
+    """Let random vertices follow another random joint."""
     rng = np.random.default_rng(SEED)
     weights = _weights(rig).copy()
     chosen = np.flatnonzero(rng.random(len(weights)) < NOISY)
@@ -118,29 +118,29 @@ def measure(rig: Rig, name: str, resolution: int, kinds: Sequence[str]) -> Found
     def errors(weights: NDArray[np.float64]) -> tuple[float, float]:
         return weight_l1(weights, truth, shares), deformation_error(rig, weights, truth).mean
 
-    found = Found(name, *errors(cutcell.clean(rig, resolution).weights))
+    results = Found(name, *errors(cutcell.clean(rig, resolution).weights))
     for kind in kinds:
         weights = KINDS[kind](rig, resolution)
         if weights is not None:
             cleaned = cutcell.clean(rig.with_weights(weights), resolution).weights
-            found.errors[kind] = (*errors(weights), *errors(cleaned))
-    return found
+            results.errors[kind] = (*errors(weights), *errors(cleaned))
+    return results
 
 
 def own_table(groups: dict[str, list[Found]]) -> Table:
-    """Say how far artists' weights change."""
+    """Report the change of weights by artists."""
     columns = ["set", "characters", "unchanged", "L1 median", "L1 worst", "cm² worst", "worst"]
-    note = f"The change of artists' own weights; it is to stay below {ALLOWED} in L1."
-    table = Table("Artists' own weights, cleaned", columns, note)
-    for group, found in groups.items():
-        worst = max(found, key=lambda one: one.changed)
+    note = f"The change of weights by artists; the limit is {ALLOWED} in L1."
+    table = Table("Weights by artists, cleaned", columns, note)
+    for group, results in groups.items():
+        worst = max(results, key=lambda one: one.changed)
         table.add(
             group,
-            len(found),
-            sum(one.changed == 0 for one in found),
-            f"{np.median([one.changed for one in found]):.4f}",
+            len(results),
+            sum(one.changed == 0 for one in results),
+            f"{np.median([one.changed for one in results]):.4f}",
             f"{worst.changed:.4f}",
-            f"{max(one.moved for one in found):.3f}",
+            f"{max(one.moved for one in results):.3f}",
             worst.name,
         )
     return table
@@ -159,15 +159,15 @@ def error_table(groups: dict[str, list[Found]]) -> Table:
         "worse",
     ]
     note = (
-        "Means over the characters, against the artists' weights; `worse`: characters whose L1 "
+        "Means over the characters, against weights by artists; `worse`: characters whose L1 "
         "grew. Leaks: 40 % of the weight of vertices on either side of a gap is the other side's. "
-        "Noise: a tenth of the vertices give 30 % to a joint chosen by chance. Islands: three "
+        "Noise: a tenth of the vertices give 30 % to a random joint. Islands: three "
         "patches of 2 % of the vertices follow a joint elsewhere."
     )
     table = Table("Weights before and after", columns, note)
-    for group, found in groups.items():
+    for group, results in groups.items():
         for kind in KINDS:
-            rows = np.array([one.errors[kind] for one in found if kind in one.errors])
+            rows = np.array([one.errors[kind] for one in results if kind in one.errors])
             if len(rows):
                 l1, moved, l1_after, moved_after = rows.mean(axis=0)
                 table.add(
@@ -188,8 +188,8 @@ def each_table(groups: dict[str, list[Found]]) -> Table:
     columns = ["character", "own", *KINDS]
     note = "L1: the change of the artist's own weights; of the others before and after."
     table = Table("Each character", columns, note)
-    for found in groups.values():
-        for one in found:
+    for results in groups.values():
+        for one in results:
             cells = []
             for kind in KINDS:
                 errors = one.errors.get(kind)
@@ -202,20 +202,20 @@ def near_table(rigs: dict[str, Rig], nears: Sequence[float], resolution: int) ->
     """Say what other limits of what is near do."""
     columns = ["near", "own, worst L1", "worst", f"own over {ALLOWED}", *DAMAGES]
     note = (
-        "A joint is near a vertex that is at most so many times as far as from the nearest "
+        "A joint is near a vertex within this many times the distance of the nearest joint "
         f"({cleaning.NEAR:g} by default). Of damaged weights the mean L1 after; rigs and wild."
     )
     table = Table("What is near", columns, note)
     default = cleaning.NEAR
     for near in nears:
         cleaning.NEAR = near
-        found = [measure(rig, name, resolution, DAMAGES) for name, rig in rigs.items()]
-        worst = max(found, key=lambda one: one.changed)
+        results = [measure(rig, name, resolution, DAMAGES) for name, rig in rigs.items()]
+        worst = max(results, key=lambda one: one.changed)
         after = [
-            np.mean([one.errors[kind][2] for one in found if kind in one.errors] or [np.nan])
+            np.mean([one.errors[kind][2] for one in results if kind in one.errors] or [np.nan])
             for kind in DAMAGES
         ]
-        over = sum(one.changed >= ALLOWED for one in found)
+        over = sum(one.changed >= ALLOWED for one in results)
         table.add(
             f"{near:g}",
             f"{worst.changed:.4f}",
@@ -237,31 +237,31 @@ def _carrying(rig: Rig) -> NDArray[np.intp]:
     return np.flatnonzero(_weights(rig).any(axis=0))
 
 
-def main(given: Sequence[str] | None = None) -> None:
+def main(argv: Sequence[str] | None = None) -> None:
     """Read the command line, measure, print."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.clean", description=__doc__)
     parser.add_argument("sets", nargs="*", metavar="SET", help=f"of {', '.join(SETS)}")
     parser.add_argument("--resolution", type=int, default=64)
     parser.add_argument("--near", nargs="*", type=float, default=[2, 2.5, 3, 4, 6])
     parser.add_argument("--out", type=Path, help="a document with marks for it")
-    options = parser.parse_args(given)
+    options = parser.parse_args(argv)
     if unknown := [name for name in options.sets if name not in SETS]:
         parser.error(f"no set {unknown[0]}; there are {', '.join(SETS)}")
     groups: dict[str, list[Found]] = {}
-    kept: dict[str, Rig] = {}
+    rigs: dict[str, Rig] = {}
     for group in options.sets or SETS:
         for name, rig in characters(group):
-            found = measure(rig, name, options.resolution, list(KINDS))
-            groups.setdefault(group, []).append(found)
+            results = measure(rig, name, options.resolution, list(KINDS))
+            groups.setdefault(group, []).append(results)
             if group != "train":
-                kept[name] = rig
-            print(f"{group} {name}: {found.changed:.4f}", flush=True)
+                rigs[name] = rig
+            print(f"{group} {name}: {results.changed:.4f}", flush=True)
     if not groups:
         parser.error(f"no characters in {SHARED}")
-    listed = {group: found for group, found in groups.items() if group != "train"}
+    listed = {group: results for group, results in groups.items() if group != "train"}
     tables = [own_table(groups), error_table(groups)]
-    if options.near and kept:
-        tables.append(near_table(kept, options.near, options.resolution))
+    if options.near and rigs:
+        tables.append(near_table(rigs, options.near, options.resolution))
     if listed:
         tables.append(each_table(listed))
     text = "\n\n".join(table.markdown() for table in tables)

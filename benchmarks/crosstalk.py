@@ -66,9 +66,9 @@ def bound(
 ) -> BaselineBinding:
     """Bind with those options that a method knows."""
     options = {"resolution": resolution, "max_influences": None}
-    known = signature(method).parameters
-    every = any(p.kind is p.VAR_KEYWORD for p in known.values())
-    return method(rig, **{key: value for key, value in options.items() if every or key in known})
+    options = signature(method).parameters
+    every = any(p.kind is p.VAR_KEYWORD for p in options.values())
+    return method(rig, **{key: value for key, value in options.items() if every or key in options})
 
 
 def strongest(weights: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -86,29 +86,29 @@ def crosstalk_table(methods: Sequence[str], places: Sequence[Place] = PLACES) ->
         "Weight that both sides of a gap give to the same joints, of 1: with all the joints that "
         "a vertex follows / with its strongest joint alone. The artist's is 0.",
     )
-    found: dict[str, list[str]] = {name: [] for name in methods}
+    rows: dict[str, list[str]] = {name: [] for name in methods}
     for place in places:
         rig = cutcell.load(ROOT / "assets" / f"{place.demo}.glb")
         pairs = gaps(place, rig)
         for name in methods:
             weights = bound(METHODS[name], rig, place.resolution).weights
             if weights is None:
-                found[name].append("failed")
+                rows[name].append("failed")
             else:
                 both = (crosstalk(w, pairs).mean for w in (weights, strongest(weights)))
-                found[name].append(" / ".join(f"{value:.3f}" for value in both))
-            print(f"{place.name}: {name}: {found[name][-1]}", file=sys.stderr, flush=True)
-    for name, cells in found.items():
+                rows[name].append(" / ".join(f"{value:.3f}" for value in both))
+            print(f"{place.name}: {name}: {rows[name][-1]}", file=sys.stderr, flush=True)
+    for name, cells in rows.items():
         table.add(name, *cells)
     return table
 
 
-def main(given: Sequence[str] | None = None) -> None:
+def main(argv: Sequence[str] | None = None) -> None:
     """Read the command line, measure, print or write."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.crosstalk", description=__doc__)
     parser.add_argument("--methods", help="names with commas between; all when left out")
     parser.add_argument("--out", type=Path, help="a document with marks for it")
-    options = parser.parse_args(given)
+    options = parser.parse_args(argv)
     names = options.methods.split(",") if options.methods else sorted(set(METHODS) - {"artist"})
     if unknown := [name for name in names if name not in METHODS]:
         sys.exit(f"unknown: {', '.join(unknown)}; known: {', '.join(METHODS)}")

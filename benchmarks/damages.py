@@ -45,8 +45,8 @@ def _with_mesh(rig: Rig, vertices: NDArray, faces: NDArray, rows: NDArray | None
 def _with_joints(rig: Rig, joints: NDArray, parents: NDArray | None = None) -> Rig:
     skeleton = rig.skeleton
     parents = skeleton.parents if parents is None else parents
-    found = Skeleton(joints, parents, skeleton.names, skeleton.deform)
-    return replace(rig, skeleton=found, source=None, clips=())
+    changed = Skeleton(joints, parents, skeleton.names, skeleton.deform)
+    return replace(rig, skeleton=changed, source=None, clips=())
 
 
 def _size(rig: Rig) -> float:
@@ -148,7 +148,7 @@ def add_fins(rig: Rig, seed: int) -> Damaged:
 
 
 def split_seams(rig: Rig, seed: int) -> Damaged:
-    """Give each corner a vertex of its own."""
+    """Give each corner a separate vertex."""
     rows = rig.mesh.faces.ravel()
     faces = np.arange(len(rows)).reshape(-1, 3)
     return Damaged(
@@ -196,14 +196,14 @@ def press_limb(rig: Rig, seed: int) -> Damaged:
     assert rig.weights is not None
     follows = rig.weights @ rig.skeleton.subtree.T > 0.5
     joint = int(np.abs(follows.mean(axis=0) - 0.1).argmin())
-    mine = np.flatnonzero(follows[:, joint])
+    chosen = np.flatnonzero(follows[:, joint])
     lattice = Lattice.around(rig.mesh, 64)
     unit = lattice.to_unit(rig.mesh.vertices)
-    axis = int(np.ptp(unit[mine], axis=0).argmin())
-    along = unit[mine, axis]
+    axis = int(np.ptp(unit[chosen], axis=0).argmin())
+    along = unit[chosen, axis]
     middle = np.round(along.mean() * 64) / 64  # between two planes of lattice points
-    unit[mine, axis] = middle + (along - along.mean()) / np.ptp(along) * 0.5 / 64
-    return Damaged(_with_mesh(rig, lattice.to_file(unit), rig.mesh.faces), mine, "vertices")
+    unit[chosen, axis] = middle + (along - along.mean()) / np.ptp(along) * 0.5 / 64
+    return Damaged(_with_mesh(rig, lattice.to_file(unit), rig.mesh.faces), chosen, "vertices")
 
 
 def flatten(rig: Rig, seed: int) -> Damaged:
@@ -272,16 +272,16 @@ def coincident_joints(rig: Rig, seed: int) -> Damaged:
 def joint_on_parent(rig: Rig, seed: int) -> Damaged:
     """Move a joint to where its parent is."""
     skeleton = rig.skeleton
-    held = skeleton.deform & (skeleton.parents >= 0)
-    held &= skeleton.deform[np.maximum(skeleton.parents, 0)]
-    joint = int(np.flatnonzero(held)[-1]) if held.any() else 0
+    has_parent = skeleton.deform & (skeleton.parents >= 0)
+    has_parent &= skeleton.deform[np.maximum(skeleton.parents, 0)]
+    joint = int(np.flatnonzero(has_parent)[-1]) if has_parent.any() else 0
     joints = skeleton.joints.copy()
     joints[joint] = joints[skeleton.parents[joint]]
     return Damaged(_with_joints(rig, joints), np.array([joint]), "joints")
 
 
 def flat_hierarchy(rig: Rig, seed: int) -> Damaged:
-    """Let no joint hang on another."""
+    """Make every joint a root."""
     count = len(rig.skeleton.joints)
     flat = _with_joints(rig, rig.skeleton.joints, np.full(count, -1))
     return Damaged(flat, np.arange(count), "joints")
@@ -291,14 +291,14 @@ def add_control(rig: Rig, seed: int) -> Damaged:
     """Add a joint that animators pull limbs by, on the floor beside the body."""
     skeleton, count = rig.skeleton, len(rig.skeleton.joints)
     place = rig.mesh.bounds[0] - 0.1 * _size(rig)
-    found = Skeleton(
+    with_control = Skeleton(
         np.concatenate([skeleton.joints, [place]]),
         np.append(skeleton.parents, -1),
         (*skeleton.names, "IK_Foot_Pole"),
         np.append(skeleton.deform, False),
     )
     plain = replace(rig, weights=None, allowed=None, weight_sums=None, source=None, clips=())
-    more = replace(plain, skeleton=found)
+    more = replace(plain, skeleton=with_control)
     if rig.weights is not None:
         more = more.with_weights(np.column_stack([rig.weights, np.zeros(len(rig.weights))]))
     return Damaged(more, np.array([count]), "joints")
@@ -316,17 +316,17 @@ def unused_joint(rig: Rig, seed: int) -> Damaged:
     weights[:, joint] = 0
     deform = skeleton.deform.copy()
     deform[joint] = False
-    found = Skeleton(skeleton.joints, skeleton.parents, skeleton.names, deform)
-    damaged = replace(rig, skeleton=found, source=None, clips=()).with_weights(weights)
+    with_joint = Skeleton(skeleton.joints, skeleton.parents, skeleton.names, deform)
+    damaged = replace(rig, skeleton=with_joint, source=None, clips=()).with_weights(weights)
     return Damaged(damaged, np.array([joint]), "joints")
 
 
 def _patch(rig: Rig, seed: int, share: int = 20) -> NDArray[np.intp]:
     """Return vertices around one, with all that lie where these do."""
     used = np.unique(rig.mesh.faces)
-    mine = used[_around(rig.mesh.vertices[used], max(len(used) // share, 6), seed)]
+    chosen = used[_around(rig.mesh.vertices[used], max(len(used) // share, 6), seed)]
     place = weld(Lattice.around(rig.mesh, 2).to_unit(rig.mesh.vertices))[1]
-    return np.intersect1d(np.flatnonzero(np.isin(place, place[mine])), used)
+    return np.intersect1d(np.flatnonzero(np.isin(place, place[chosen])), used)
 
 
 def leak_weights(rig: Rig, seed: int) -> Damaged:
@@ -336,14 +336,14 @@ def leak_weights(rig: Rig, seed: int) -> Damaged:
     leaf = rig.skeleton.joints[_leaf(rig)]
     used = np.unique(rig.mesh.faces)
     near = used[np.argsort(np.linalg.norm(rig.mesh.vertices[used] - leaf, axis=1))]
-    mine = np.sort(near[: max(len(used) // 30, 6)])
+    chosen = np.sort(near[: max(len(used) // 30, 6)])
     away = np.linalg.norm(rig.skeleton.joints[joints] - leaf, axis=1)
     inside = cKDTree(rig.mesh.vertices[used]).query(rig.skeleton.joints[joints])[0]
     far = joints[np.where(inside < 0.15 * _size(rig), away, -1).argmax()]
     weights = rig.weights.copy()
-    weights[mine] *= 0.6
-    weights[mine, far] += 0.4
-    return Damaged(replace(rig, source=None).with_weights(weights), mine, "vertices")
+    weights[chosen] *= 0.6
+    weights[chosen, far] += 0.4
+    return Damaged(replace(rig, source=None).with_weights(weights), chosen, "vertices")
 
 
 def _reread(rig: Rig, folder: Path, change: Callable[[dict[str, NDArray]], None]) -> Rig:
@@ -359,60 +359,60 @@ def _reread(rig: Rig, folder: Path, change: Callable[[dict[str, NDArray]], None]
 
 def nan_weights(rig: Rig, seed: int, folder: Path) -> Damaged:
     """Write weights that are no numbers."""
-    mine = _patch(rig, seed)
+    chosen = _patch(rig, seed)
 
     def change(arrays: dict[str, NDArray]) -> None:
-        where = np.isin(arrays["skinning_weights_row"], mine)
+        where = np.isin(arrays["skinning_weights_row"], chosen)
         arrays["skinning_weights_value"][where] = np.nan
 
-    return Damaged(_reread(rig, folder, change), mine, "vertices")
+    return Damaged(_reread(rig, folder, change), chosen, "vertices")
 
 
 def unnormalised_weights(rig: Rig, seed: int, folder: Path) -> Damaged:
     """Write weights that sum to three quarters."""
-    mine = _patch(rig, seed)
+    chosen = _patch(rig, seed)
 
     def change(arrays: dict[str, NDArray]) -> None:
-        where = np.isin(arrays["skinning_weights_row"], mine)
+        where = np.isin(arrays["skinning_weights_row"], chosen)
         arrays["skinning_weights_value"][where] *= 0.75
 
-    return Damaged(_reread(rig, folder, change), mine, "vertices")
+    return Damaged(_reread(rig, folder, change), chosen, "vertices")
 
 
 def no_weights(rig: Rig, seed: int) -> Damaged:
     """Take all weight from a patch of skin."""
     assert rig.weights is not None
-    mine = _patch(rig, seed)
+    chosen = _patch(rig, seed)
     weights = rig.weights.copy()
-    weights[mine] = 0
-    return Damaged(replace(rig, source=None).with_weights(weights), mine, "vertices")
+    weights[chosen] = 0
+    return Damaged(replace(rig, source=None).with_weights(weights), chosen, "vertices")
 
 
 def many_influences(rig: Rig, seed: int) -> Damaged:
     """Let a patch of skin follow six joints."""
     assert rig.weights is not None
-    mine = _patch(rig, seed)
+    chosen = _patch(rig, seed)
     joints = np.flatnonzero(rig.skeleton.deform)
-    middle = rig.mesh.vertices[mine].mean(axis=0)
+    middle = rig.mesh.vertices[chosen].mean(axis=0)
     near = joints[np.argsort(np.linalg.norm(rig.skeleton.joints[joints] - middle, axis=1))[:6]]
     weights = rig.weights.copy()
-    weights[mine] = 0
-    weights[np.ix_(mine, near)] = 1 / len(near)
-    return Damaged(replace(rig, source=None).with_weights(weights), mine, "vertices")
+    weights[chosen] = 0
+    weights[np.ix_(chosen, near)] = 1 / len(near)
+    return Damaged(replace(rig, source=None).with_weights(weights), chosen, "vertices")
 
 
 def tear_seams(rig: Rig, seed: int) -> Damaged:
     """Let the corners of faces that meet follow different joints."""
     split = split_seams(rig, seed).rig
     assert split.weights is not None
-    mine = _patch(split, seed, share=8)
-    mine = mine[mine % 2 == 0]
+    chosen = _patch(split, seed, share=8)
+    chosen = chosen[chosen % 2 == 0]
     joints = np.flatnonzero(rig.skeleton.deform)
     weights = split.weights.copy()
-    weights[mine] *= 0.8
-    weights[mine, joints[0]] += 0.2
-    kept = np.abs(weights[mine] - split.weights[mine]).sum(axis=1) > 0.05
-    return Damaged(split.with_weights(weights), mine[kept], "vertices")
+    weights[chosen] *= 0.8
+    weights[chosen, joints[0]] += 0.2
+    staying = np.abs(weights[chosen] - split.weights[chosen]).sum(axis=1) > 0.05
+    return Damaged(split.with_weights(weights), chosen[staying], "vertices")
 
 
 DAMAGES: dict[str, tuple[str, Callable[..., Damaged]]] = {

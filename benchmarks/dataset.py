@@ -70,14 +70,14 @@ def build_archive(path: Path, count: int, mark: Path) -> None:
     for k in range(count):
         rig = generate(KINDS_HERE[k % 5], k // 5, detail=DETAIL)
         rows, columns = np.nonzero(rig.weights)
-        held = np.flatnonzero(rig.skeleton.parents >= 0)
+        children = np.flatnonzero(rig.skeleton.parents >= 0)
         plural = "s" if k % 2 else ""
         entries.append(
             {
                 "vertices": np.array(rig.mesh.vertices, np.float32),
                 "faces": np.array(rig.mesh.faces),
                 "joints": np.array(rig.skeleton.joints, np.float32),
-                "bones": np.stack([rig.skeleton.parents[held], held], axis=1),
+                "bones": np.stack([rig.skeleton.parents[children], children], axis=1),
                 "root_index": 0,
                 "uuid": f"{rig.name}",
                 "joint_names": list(rig.skeleton.names),
@@ -101,10 +101,10 @@ def build_archive(path: Path, count: int, mark: Path) -> None:
     np.savez_compressed(path, array)
 
 
-def timed(*words: object) -> tuple[float, float, subprocess.CompletedProcess]:
+def timed(*arguments: object) -> tuple[float, float, subprocess.CompletedProcess]:
     """Run a command of `cutcell dataset`; return seconds, CPU seconds of all its processes."""
     before, begin = os.times(), time.perf_counter()
-    command = [sys.executable, "-m", "cutcell", "dataset", *map(str, words)]
+    command = [sys.executable, "-m", "cutcell", "dataset", *map(str, arguments)]
     done = subprocess.run(command, capture_output=True, text=True)
     after = os.times()
     cpu = after.children_user + after.children_system
@@ -143,8 +143,8 @@ def whole(count: int, folder: Path) -> list[Table]:
         written = json.loads(done.stdout)["assets"]
         table.add(f"export, {kind}", written, "-", f"{cpu / count * 1e3:.1f}", f"{seconds:.0f}")
     seconds, cpu, done = timed("audit", store, "--out", folder / "audit", "--json")
-    found = json.loads(done.stdout)
-    table.add("audit", found["assets"], "-", f"{cpu / count * 1e3:.1f}", f"{seconds:.0f}")
+    audited = json.loads(done.stdout)
+    table.add("audit", audited["assets"], "-", f"{cpu / count * 1e3:.1f}", f"{seconds:.0f}")
     why = Table("What was left out", ["asset", "why"])
     for name, text in [*split["refused"].items(), *bound["failed"].items()]:
         why.add(name, text)
@@ -153,7 +153,7 @@ def whole(count: int, folder: Path) -> list[Table]:
 
 @contextmanager
 def dask(folder: Path, workers: int) -> Iterator[tuple[str, list[subprocess.Popen]]]:
-    """Start a scheduler and workers, each worker with a folder of its own."""
+    """Start a scheduler and workers, each worker with its own folder."""
     file = folder / f"scheduler{random.getrandbits(40):x}.json"
     python = [sys.executable, "-W", "ignore", "-m"]
     quiet: dict[str, Any] = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
@@ -166,13 +166,13 @@ def dask(folder: Path, workers: int) -> Iterator[tuple[str, list[subprocess.Pope
         while not file.exists() or not file.read_text().strip():
             time.sleep(0.1)
         for k in range(workers):
-            own = folder / f"machine{k}"
-            own.mkdir(exist_ok=True)
+            worker_folder = folder / f"machine{k}"
+            worker_folder.mkdir(exist_ok=True)
             started.append(
                 subprocess.Popen(
                     [*python, "distributed.cli.dask_worker", "--scheduler-file", str(file),
-                     "--nthreads", "1", "--no-dashboard", "--local-directory", str(own)],
-                    cwd=own, **quiet)
+                     "--nthreads", "1", "--no-dashboard", "--local-directory", str(worker_folder)],
+                    cwd=worker_folder, **quiet)
             )  # fmt: skip
         yield json.loads(file.read_text())["address"], started
     finally:
@@ -201,12 +201,12 @@ def stop(pid: int) -> None:
 
 def contents(store: Path) -> dict[str, Any]:
     """Return the bytes of all files of a store, and its manifest without times."""
-    found: dict[str, Any] = {p.name: p.read_bytes() for p in store.glob("??/*.npz")}
-    found["manifest"] = [
+    files: dict[str, Any] = {p.name: p.read_bytes() for p in store.glob("??/*.npz")}
+    files["manifest"] = [
         {k: v for k, v in row.items() if not k.startswith("seconds")}
         for row in read_table(store / MANIFEST)
     ]
-    return found
+    return files
 
 
 def kills(count: int, folder: Path) -> list[Table]:
@@ -224,9 +224,9 @@ def kills(count: int, folder: Path) -> list[Table]:
     for turn in range(10):
         mode = MODES[turn % len(MODES)]
         with dask(folder, 1) as (address, parts):
-            there = [] if mode in ("command", "runner") else ["--scheduler", address]
+            extra = [] if mode in ("command", "runner") else ["--scheduler", address]
             command = [sys.executable, "-m", "cutcell", "dataset", "bind", str(made), str(store),
-                       *BIND, "--workers", "1", *there]  # fmt: skip
+                       *BIND, "--workers", "1", *extra]  # fmt: skip
             process = subprocess.Popen(command, stderr=subprocess.DEVNULL)
             before = len(list(store.glob("??/*.npz")))
             goal = before + dice.randint(1, max(1, count // 12))
@@ -236,8 +236,8 @@ def kills(count: int, folder: Path) -> list[Table]:
                 strike(mode, process, parts)
                 killed[mode].append(len(list(store.glob("??/*.npz"))))
             if mode in ("runner", "worker"):  # the run itself goes on: see that, then end it
-                wanted = len(list(store.glob("??/*.npz"))) + 2
-                while process.poll() is None and len(list(store.glob("??/*.npz"))) < wanted:
+                goal_count = len(list(store.glob("??/*.npz"))) + 2
+                while process.poll() is None and len(list(store.glob("??/*.npz"))) < goal_count:
                     time.sleep(0.05)
             stop(process.pid)
             process.wait()
@@ -267,13 +267,13 @@ def strike(mode: str, command: subprocess.Popen, parts: Sequence[subprocess.Pope
 
 
 def workers(count: int, folder: Path) -> list[Table]:
-    """Bind on one worker and on two, each with a folder of its own."""
+    """Bind on one worker and on two, each with its own folder."""
     made = folder / "made"
     timed("generate", "any", count, made, "--detail", DETAIL, "--quiet")
     table = Table(
         "Cost of an asset on one worker and on two",
         ["workers", "assets", "CPU ms an asset, workers", "all", "seconds", "same store"],
-        "Dask worker processes, each with a folder of its own and one thread. CPU time tells the "
+        "Dask worker processes, each with its own folder and one thread. CPU time tells the "
         "cost where other work shares the machine; seconds are what it took there.",
     )
     first: dict[str, Any] = {}
@@ -283,14 +283,14 @@ def workers(count: int, folder: Path) -> list[Table]:
             timed("bind", made, folder / "warm", *BIND, "--scheduler", address, "--no-bones")
             store = folder / f"store{number}"
             before = cpu_of(parts)
-            seconds, own, _ = timed("bind", made, store, *BIND, "--scheduler", address)
+            seconds, cpu, _ = timed("bind", made, store, *BIND, "--scheduler", address)
             spent = cpu_of(parts) - before
-            found = contents(store)
-            first = first or found
+            files = contents(store)
+            first = first or files
             costs.append(spent)
             table.add(number, count, f"{spent / count * 1e3:.0f}",
-                      f"{(spent + own) / count * 1e3:.0f}", f"{seconds:.1f}",
-                      found == first)  # fmt: skip
+                      f"{(spent + cpu) / count * 1e3:.0f}", f"{seconds:.1f}",
+                      files == first)  # fmt: skip
         for path in (folder / "warm").glob("??/*"):
             path.unlink()
     table.add("efficiency", "", f"{costs[0] / costs[1]:.2f}", "", "", "")
@@ -312,13 +312,13 @@ def audits(count: int, folder: Path) -> list[Table]:
         weights = np.zeros((len(rig.mesh.vertices), len(rig.skeleton.joints)))
         weights[:, 0] = 1
         cutcell.save(hidden / f"{name}.npz", rig.with_weights(weights))
-    found = audit_of([hidden])
+    audit = audit_of([hidden])
     table = Table(
         "Planted duplicates",
         ["what was done to it", "tier", "D", "kind", "reach", "bones turned"],
         "A generated beast, and the same as others would publish it.",
     )
-    for row in found.rows():
+    for row in audit.rows():
         if "original" in (row["a"], row["b"]):
             other = row["a"] if row["b"] == "original" else row["b"]
             degrees = "-" if row["degrees"] is None else f"{row['degrees']:.0f}°"
@@ -333,15 +333,15 @@ def audits(count: int, folder: Path) -> list[Table]:
     train, rigs = SHARED / "train" / "quaternius", SHARED / "rigs"
     for name, sets in (("train", [train]), ("rigs", [rigs]), ("rigs in train", [rigs, train])):
         result = audit_of(*[[one] for one in sets], poses=False)
-        ours = [of_source(source) for source in result.sources]
-        theirs = ours if len(sets) == 1 else [of_source(s) for s in result.other_sources]
-        wanted, candidates = brute(ours, None if len(sets) == 1 else theirs)
-        same = {(p.a, p.b) for p in result.pairs} == set(wanted)
-        same &= all(abs(wanted[p.a, p.b] - p.surface) < 1e-9 for p in result.pairs)
+        first = [of_source(source) for source in result.sources]
+        second = first if len(sets) == 1 else [of_source(s) for s in result.other_sources]
+        expected, candidates = brute(first, None if len(sets) == 1 else second)
+        same = {(p.a, p.b) for p in result.pairs} == set(expected)
+        same &= all(abs(expected[p.a, p.b] - p.surface) < 1e-9 for p in result.pairs)
         same &= candidates == result.candidates
         tiers = [p.tier for p in result.pairs]
         kinds = sum(p.likeness.kind in ("copy", "remeshed") for p in result.pairs)
-        number = len(ours) * (len(ours) - 1) // 2 if len(sets) == 1 else len(ours) * len(theirs)
+        number = len(first) * (len(first) - 1) // 2 if len(sets) == 1 else len(first) * len(second)
         counts = [tiers.count(t) for t in ("twin", "variant", "near")]
         real.add(name, f"{number:,}", candidates, len(tiers), *counts, kinds, same)
     return [table, real]
@@ -354,26 +354,28 @@ def of_source(source: Any) -> Normalised:
 
 
 def brute(
-    ours: Sequence[Normalised], theirs: Sequence[Normalised] | None
+    first: Sequence[Normalised], second: Sequence[Normalised] | None
 ) -> tuple[dict[tuple[int, int], float], int]:
     """Compare every pair in full."""
-    other = ours if theirs is None else theirs
+    other = first if second is None else second
     trees = [(cKDTree(o.joints.astype(float)), cKDTree(o.points.astype(float))) for o in other]
-    mine = [(cKDTree(o.joints.astype(float)), cKDTree(o.points.astype(float))) for o in ours]
-    found, candidates = {}, 0
-    for a in range(len(ours)):
-        for b in range(a + 1 if theirs is None else 0, len(other)):
-            if _both(mine[a][0], trees[b][0]) < THRESHOLD:
+    first_trees = [
+        (cKDTree(o.joints.astype(float)), cKDTree(o.points.astype(float))) for o in first
+    ]
+    surfaces, candidates = {}, 0
+    for a in range(len(first)):
+        for b in range(a + 1 if second is None else 0, len(other)):
+            if _both(first_trees[a][0], trees[b][0]) < THRESHOLD:
                 candidates += 1
-                surface = _both(mine[a][1], trees[b][1])
+                surface = _both(first_trees[a][1], trees[b][1])
                 if surface < THRESHOLD:
-                    found[a, b] = surface
-    return found, candidates
+                    surfaces[a, b] = surface
+    return surfaces, candidates
 
 
 def _both(a: cKDTree, b: cKDTree) -> float:
-    there, back = a.query(b.data)[0], b.query(a.data)[0]
-    return float((there**2).mean() + (back**2).mean())
+    forth, back = a.query(b.data)[0], b.query(a.data)[0]
+    return float((forth**2).mean() + (back**2).mean())
 
 
 def growth(count: int, folder: Path) -> list[Table]:
@@ -402,12 +404,12 @@ def growth(count: int, folder: Path) -> list[Table]:
         spent += time.process_time() - begin
         with connected(None, 1, False) as cluster:
             begin = time.process_time()
-            found = compare(ready, None, (THRESHOLD, THRESHOLD), cluster)
+            audit = compare(ready, None, (THRESHOLD, THRESHOLD), cluster)
             compared = time.process_time() - begin
         memory = sum(bytes_of(block) for block in ready.blocks)
         pairs = size * (size - 1) // 2
         table.add(
-            f"{size:,}", f"{pairs:,}", f"{found.candidates:,}", f"{len(found.pairs):,}",
+            f"{size:,}", f"{pairs:,}", f"{audit.candidates:,}", f"{len(audit.pairs):,}",
             f"{spent:.0f}", f"{compared:.0f}", f"{compared / pairs * 1e6:.1f}",
             f"{memory / 2**20:,.0f} MB",
         )  # fmt: skip

@@ -59,7 +59,7 @@ def damaged_table(rigs: Sequence[cutcell.Rig], resolution: int) -> Table:
     )
     table = Table("Damaged copies", columns, note)
     before = {rig.name: cutcell.diagnose(rig, resolution) for rig in rigs}
-    found = total = 0
+    detected = total = 0
     with tempfile.TemporaryDirectory() as folder:
         for name, (code, damage) in DAMAGES.items():
             cells = []
@@ -68,15 +68,15 @@ def damaged_table(rigs: Sequence[cutcell.Rig], resolution: int) -> Table:
                 damaged = damage(rig, 7, *more)
                 after = cutcell.diagnose(damaged.rig, resolution)
                 is_found, cell = judge(code, damaged, before[rig.name], after)
-                found, total = found + is_found, total + 1
+                detected, total = detected + is_found, total + 1
                 cells.append(cell)
             table.add(name, code, *cells)
-    table.add(f"**found: {found} of {total}**", *[""] * (len(columns) - 1))
+    table.add(f"**found: {detected} of {total}**", *[""] * (len(columns) - 1))
     return table
 
 
 def judge(code: str, damaged: Damaged, before: Diagnosis, after: Diagnosis) -> tuple[bool, str]:
-    """Tell whether the damage was found, and what a cell of the table says of it."""
+    """Return whether the damage was detected, and what a cell of the table says of it."""
     share = 0.0
     if code in after:
         named = getattr(after[code], damaged.kind)
@@ -84,8 +84,8 @@ def judge(code: str, damaged: Damaged, before: Diagnosis, after: Diagnosis) -> t
     is_found = share >= 0.5
     severity = after[code].severity if code in after else ""
     cell = severity if is_found else f"**missed** ({share:.0%})"
-    known = {f.code for f in before.findings if f.severity in SEVERE} | {code}
-    others = [f.code for f in after.findings if f.severity in SEVERE and f.code not in known]
+    expected = {f.code for f in before.findings if f.severity in SEVERE} | {code}
+    others = [f.code for f in after.findings if f.severity in SEVERE and f.code not in expected]
     return is_found, ", ".join([cell, *others])
 
 
@@ -98,7 +98,7 @@ def sound_table(paths: Sequence[Path], resolution: int) -> Table:
         rig = cutcell.load(path)
         start = time.perf_counter()
         diagnosis = cutcell.diagnose(rig, resolution)
-        taken = time.perf_counter() - start
+        spent = time.perf_counter() - start
         distances = cutcell.bind(rig, resolution=resolution).distances
         start = time.perf_counter()
         cutcell.diagnose(rig, distances=distances)
@@ -107,7 +107,7 @@ def sound_table(paths: Sequence[Path], resolution: int) -> Table:
         severe = [", ".join(f.code for f in diagnosis.of(severity)) or "-" for severity in SEVERE]
         notes = len(diagnosis.of("note"))
         count = f"{len(rig.mesh.vertices):,}"
-        table.add(name, count, *severe, notes, f"{taken:.2f}", f"{again:.2f}")
+        table.add(name, count, *severe, notes, f"{spent:.2f}", f"{again:.2f}")
     return table
 
 

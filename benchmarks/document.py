@@ -29,9 +29,9 @@ def fill(path: Path, blocks: Mapping[str, str]) -> None:
     text = path.read_text(encoding="utf-8")
     for name, block in blocks.items():
         begin, end = f"<!-- {name} -->", f"<!-- /{name} -->"
-        head, found, rest = text.partition(begin)
+        head, marks, rest = text.partition(begin)
         _, closed, tail = rest.partition(end)
-        if not found or not closed:
+        if not marks or not closed:
             raise ValueError(f"{path.name} lacks the marks {begin} and {end}")
         text = f"{head}{begin}\n{block.strip()}\n{end}{tail}"
     write_all({path: text.encode()})

@@ -42,6 +42,6 @@ def styled(rows: int, columns: int, size: tuple[float, float]) -> tuple[Figure, 
 
 
 def save(figure: Figure, path: Path, bottom: float = 0.0) -> None:
-    """Write a figure, leaving room below the axes."""
+    """Write a figure, with a margin below the axes."""
     figure.tight_layout(rect=(0, bottom, 1, 1))
     figure.savefig(path, dpi=150, facecolor="white")

@@ -3,7 +3,7 @@
     python -m benchmarks.graph_construction [RIG...] [--resolutions 8 16 32 64] [--limit 60]
 
 fTetWild aims at edges of 1/R of the longest side, TetGen keeps the surface as it is, whatever R.
-Each mesher runs in a process of its own, whose start does not count. Mandoline, the paper's third
+Each mesher runs in a subprocess, whose start does not count. Mandoline, the paper's third
 side, has no package to install and is left out.
 """
 
@@ -38,38 +38,38 @@ def construction_table(
     )
     fixed: dict[tuple[str, str], dict | str] = {}
     for resolution in options.resolutions:
-        ours, theirs = [], {name: [] for name in meshers}
+        graph_seconds, runs = [], {name: [] for name in meshers}
         for character in characters:
             mesh = character.rig.mesh
             ways = {"graph": lambda m=mesh, r=resolution: build_graph(m, r, connectivity=6)}
-            ours.append(min(in_turn(ways, options.repeats)["graph"].seconds))
+            graph_seconds.append(min(in_turn(ways, options.repeats)["graph"].seconds))
             for name in meshers:
                 key = (name, character.name) if name == "tetgen" else None
-                found = fixed.get(key) if key else None
-                if found is None:
+                run = fixed.get(key) if key else None
+                if run is None:
                     edge = 1 / resolution
-                    found = attempt(name, character, options.mesher_python, options.limit, edge)
+                    run = attempt(name, character, options.mesher_python, options.limit, edge)
                 if key:
-                    fixed[key] = found
-                theirs[name].append(found)
+                    fixed[key] = run
+                runs[name].append(run)
             print(f"R = {resolution}: {character.name}", file=sys.stderr, flush=True)
-        cells = [_cell(found, ours) for found in theirs.values()]
-        table.add(resolution, seconds(float(np.mean(ours))), *cells)
+        cells = [_cell(run, graph_seconds) for run in runs.values()]
+        table.add(resolution, seconds(float(np.mean(graph_seconds))), *cells)
     return table
 
 
-def _cell(found: list[dict | str], ours: list[float]) -> str:
+def _cell(run: list[dict | str], graph_seconds: list[float]) -> str:
     """Put the runs of one mesher into words."""
-    good = [k for k, one in enumerate(found) if not isinstance(one, str)]
+    good = [k for k, one in enumerate(run) if not isinstance(one, str)]
     if not good:
-        return ", ".join(dict.fromkeys(str(one) for one in found))
-    mean = float(np.mean([found[k]["seconds"] for k in good]))  # type: ignore[index]
-    times = ratio(mean / float(np.mean([ours[k] for k in good])))
-    some = "" if len(good) == len(found) else f", {len(good)} of {len(found)} rigs"
-    return f"{seconds(mean)} ({times}{some})"
+        return ", ".join(dict.fromkeys(str(one) for one in run))
+    mean = float(np.mean([run[k]["seconds"] for k in good]))  # type: ignore[index]
+    times = ratio(mean / float(np.mean([graph_seconds[k] for k in good])))
+    partial = "" if len(good) == len(run) else f", {len(good)} of {len(run)} rigs"
+    return f"{seconds(mean)} ({times}{partial})"
 
 
-def main(given: Sequence[str] | None = None) -> None:
+def main(argv: Sequence[str] | None = None) -> None:
     """Read the command line, measure, print."""
     parser = argparse.ArgumentParser(
         prog="python -m benchmarks.graph_construction", description=__doc__
@@ -80,7 +80,7 @@ def main(given: Sequence[str] | None = None) -> None:
     parser.add_argument("--limit", type=float, default=60.0)
     parser.add_argument("--mesher-python", default=sys.executable)
     parser.add_argument("--out", type=Path, help="a document with marks for it")
-    options = parser.parse_args(given)
+    options = parser.parse_args(argv)
     text = construction_table(load_characters(options.rigs), options, list(MESHERS)).markdown()
     print(text)
     if options.out:

@@ -2,7 +2,7 @@
 
 python -m benchmarks.growth [--rig RIG] [--resolutions 16 ... 512] [--markdown OUT]
 
-Every measurement runs in a process of its own, so that its peak memory is its own.
+Every measurement runs in a subprocess, so that peak memory is measured separately.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ def measure(case: dict) -> dict:
 def peak_memory() -> float:
     """Return the most memory that this process has held, in MB.
 
-    `ru_maxrss` starts from what the parent process held; Linux also tells the process' own.
+    `ru_maxrss` starts from what the parent process held; Linux also has that of the process.
     """
     status = Path("/proc/self/status")
     if status.exists():
@@ -63,7 +63,7 @@ def peak_memory() -> float:
 
 
 def run(case: dict, options: argparse.Namespace) -> dict | str:
-    """Measure one case in a process of its own; return what came of it, or why nothing did."""
+    """Measure one case in a subprocess; return the outcome, or the reason of a failure."""
     command = [sys.executable, "-W", "ignore", "-m", "benchmarks.growth", "--one", json.dumps(case)]
     try:
         done = subprocess.run(
@@ -97,24 +97,28 @@ def growth_table(title: str, key: str, cases: list[dict], note: str, options) ->
     )
     results = []
     for case in cases:
-        found = run(case, options)
+        outcome = run(case, options)
         print(f"{title}: {case}", file=sys.stderr, flush=True)
-        if isinstance(found, str):
-            table.add(case[key], found, *["-"] * (len(columns) - 2))
+        if isinstance(outcome, str):
+            table.add(case[key], outcome, *["-"] * (len(columns) - 2))
             continue
-        results.append(found | {"resolution": case["resolution"]})
-        above = found["peak"] - found["before"]
-        times = [seconds(found[name]) for name in (*STAGES, "seconds")]
+        results.append(outcome | {"resolution": case["resolution"]})
+        above = outcome["peak"] - outcome["before"]
+        times = [seconds(outcome[name]) for name in (*STAGES, "seconds")]
         size = f"{results[-1][key]:,}"
         table.add(
-            size, f"{found['nodes']:,}", *times, f"{found['peak']:,.0f} MB", f"{above:,.0f} MB"
+            size,
+            f"{outcome['nodes']:,}",
+            *times,
+            f"{outcome['peak']:,.0f} MB",
+            f"{above:,.0f} MB",
         )
     if len(results) > 1:
-        sizes = [found[key] for found in results]
+        sizes = [outcome[key] for outcome in results]
         grown = [
-            [found[name] for found in results] for name in ("nodes", *STAGES, "seconds", "peak")
+            [outcome[name] for outcome in results] for name in ("nodes", *STAGES, "seconds", "peak")
         ]
-        above = [max(found["peak"] - found["before"], 1) for found in results]
+        above = [max(outcome["peak"] - outcome["before"], 1) for outcome in results]
         table.add("**slope**", *(f"{slope(sizes, values):.2f}" for values in [*grown, above]))
     return table
 
@@ -148,7 +152,7 @@ def tables(options: argparse.Namespace) -> list[Table]:
     ]
 
 
-def arguments(given: Sequence[str] | None = None) -> argparse.Namespace:
+def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
     """Read the command line."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.growth", description=__doc__)
     parser.add_argument("--rig", type=Path, default=RIG)
@@ -161,15 +165,15 @@ def arguments(given: Sequence[str] | None = None) -> argparse.Namespace:
     parser.add_argument("--limit", type=float, default=300, help="seconds for one case")
     parser.add_argument("--markdown", type=Path, metavar="OUT")
     parser.add_argument("--one", type=json.loads, help=argparse.SUPPRESS)
-    options = parser.parse_args(given)
+    options = parser.parse_args(argv)
     if options.connectivity != "any":
         options.connectivity = int(options.connectivity)
     return options
 
 
-def main(given: Sequence[str] | None = None) -> None:
+def main(argv: Sequence[str] | None = None) -> None:
     """Print the tables, and write them too if a file is named."""
-    options = arguments(given)
+    options = arguments(argv)
     if options.one is not None:
         print(json.dumps(measure(options.one)))
         return

@@ -51,28 +51,28 @@ def graph_sizes(paths: Sequence[Path], resolution: int) -> dict[str, Size]:
         counts["cutcell"].append((len(graph.nodes), len(graph.edges)))
         voxels = voxelize(Body.of(rig, resolution=resolution))
         counts["voxel"].append((len(voxels.centres), len(voxels.links()[0])))
-    return {name: Size(*np.median(found, axis=0)) for name, found in counts.items()}
+    return {name: Size(*np.median(pairs, axis=0)) for name, pairs in counts.items()}
 
 
 def measured(paths: Sequence[Path], resolutions: Sequence[int]) -> dict[int, Comparison]:
     """Compare the methods at each resolution."""
     methods = {name: METHODS[name] for name in SIDES}
     warm(methods)
-    found = {}
+    comparisons = {}
     for resolution in resolutions:
         print(f"R = {resolution}", file=sys.stderr, flush=True)
-        found[resolution] = compare(
+        comparisons[resolution] = compare(
             # Clips are not in these tables, and to play all of them takes most of the time.
             (replace(cutcell.load(path), clips=()) for path in paths),
             methods,
             resolution=resolution,
         )
-    return found
+    return comparisons
 
 
-def accuracy_table(found: dict[int, Comparison]) -> Table:
+def accuracy_table(comparisons: dict[int, Comparison]) -> Table:
     """Write medians and means, the better side of each line in bold."""
-    count = len(next(iter(found.values())).rigs)
+    count = len(next(iter(comparisons.values())).rigs)
     table = Table(
         TITLE,
         ["R", "measure", *SIDES],
@@ -80,7 +80,7 @@ def accuracy_table(found: dict[int, Comparison]) -> Table:
         "neighbours; `voxel_unirig`: as UniRig prepares it. The least median and the least mean "
         "are bold.",
     )
-    for resolution, comparison in found.items():
+    for resolution, comparison in comparisons.items():
         for measure, title, digits in (("l1", "L1", 3), ("deformation", "cm²", 1)):
             statistics = [comparison.statistic(name, measure) for name in SIDES]
             columns = []
@@ -94,34 +94,37 @@ def accuracy_table(found: dict[int, Comparison]) -> Table:
     return table
 
 
-def coarse_table(found: dict[int, Comparison]) -> Table:
+def coarse_table(comparisons: dict[int, Comparison]) -> Table:
     """Put the cut-cell prior on a coarse grid beside voxels on a fine one, rig by rig."""
-    ours, theirs = ("cutcell", "cutcell_any"), ("voxel", "voxel_unirig")
-    heads = [*(f"{name}, {COARSE}" for name in ours), *(f"{name}, {FINE}" for name in theirs)]
+    cutcells, voxels = ("cutcell", "cutcell_any"), ("voxel", "voxel_unirig")
+    heads = [
+        *(f"{name}, {COARSE}" for name in cutcells),
+        *(f"{name}, {FINE}" for name in voxels),
+    ]
     table = Table(
         f"R = {COARSE} against voxels at R = {FINE}",
         ["rig", *heads],
         f"L1 / cm² of each; `ahead`: rigs on which the method at R = {COARSE} has less than voxels "
         f"at R = {FINE}.",
     )
-    values: dict[str, list[tuple[float, float]]] = {name: [] for name in (*ours, *theirs)}
-    for coarse, fine in zip(found[COARSE].rigs, found[FINE].rigs, strict=True):
-        for names, rig in ((ours, coarse), (theirs, fine)):
+    values: dict[str, list[tuple[float, float]]] = {name: [] for name in (*cutcells, *voxels)}
+    for coarse, fine in zip(comparisons[COARSE].rigs, comparisons[FINE].rigs, strict=True):
+        for names, rig in ((cutcells, coarse), (voxels, fine)):
             for score in rig.scores:
                 if score.method in names:
                     pair = float(score.l1 or np.nan), float(score.deformation or np.nan)
                     values[score.method].append(pair)
-        cells = (values[name][-1] for name in (*ours, *theirs))
+        cells = (values[name][-1] for name in (*cutcells, *voxels))
         table.add(coarse.name, *(f"{l1:.3f} / {moved:.1f}" for l1, moved in cells))
-    for their in theirs:
-        ahead = [np.array(values[our]) < np.array(values[their]) for our in ours]
+    for their in voxels:
+        ahead = [np.array(values[our]) < np.array(values[their]) for our in cutcells]
         cells = [" / ".join(str(n) for n in less.sum(axis=0)) for less in ahead]
-        cells += [f"of {len(values[their])}" if name == their else "" for name in theirs]
+        cells += [f"of {len(values[their])}" if name == their else "" for name in voxels]
         table.add(f"ahead of {their}", *cells)
     return table
 
 
-def cost_table(found: dict[int, Comparison], sizes: dict[int, dict[str, Size]]) -> Table:
+def cost_table(comparisons: dict[int, Comparison], sizes: dict[int, dict[str, Size]]) -> Table:
     """Write time and size."""
     heads = [f"{name}, time" for name in SIDES]
     table = Table(
@@ -129,20 +132,20 @@ def cost_table(found: dict[int, Comparison], sizes: dict[int, dict[str, Size]]) 
         ["R", *heads, "cut-cell nodes, edges", "voxels, links"],
         "Medians over the same rigs.",
     )
-    for resolution, comparison in found.items():
+    for resolution, comparison in comparisons.items():
         spent = [comparison.statistic(name, "seconds").median for name in SIDES]
-        held = [f"{s.nodes:,.0f}, {s.edges:,.0f}" for s in sizes[resolution].values()]
-        table.add(resolution, *(seconds(float(s or 0)) for s in spent), *held)
+        sizes_text = [f"{s.nodes:,.0f}, {s.edges:,.0f}" for s in sizes[resolution].values()]
+        table.add(resolution, *(seconds(float(s or 0)) for s in spent), *sizes_text)
     return table
 
 
-def plot(found: dict[int, Comparison], sizes: dict[int, dict[str, Size]], path: Path) -> None:
+def plot(comparisons: dict[int, Comparison], sizes: dict[int, dict[str, Size]], path: Path) -> None:
     """Draw error, time and size over R."""
     figure, axes = styled(1, 4, (11.0, 3.1))
-    resolutions = list(found)
+    resolutions = list(comparisons)
     for name in SIDES:
         for panel, measure in zip(axes, ("l1", "deformation", "seconds"), strict=False):
-            y = [found[r].statistic(name, measure).median for r in resolutions]
+            y = [comparisons[r].statistic(name, measure).median for r in resolutions]
             panel.plot(resolutions, y, "o-", color=METHOD_COLORS[name], label=name, markersize=4)
     for name in ("cutcell", "voxel"):
         y = [sizes[r][name].nodes for r in resolutions]
@@ -158,26 +161,26 @@ def plot(found: dict[int, Comparison], sizes: dict[int, dict[str, Size]], path: 
     save(figure, path, bottom=0.1)
 
 
-def main(given: Sequence[str] | None = None) -> None:
+def main(argv: Sequence[str] | None = None) -> None:
     """Read the command line, measure, print."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.gvb", description=__doc__)
     parser.add_argument("rigs", nargs="*", type=Path)
     parser.add_argument("--resolutions", nargs="+", type=int, default=[16, 32, 64, 128, 256])
     parser.add_argument("--plot", type=Path)
     parser.add_argument("--out", type=Path, help="a document with marks for it")
-    options = parser.parse_args(given)
+    options = parser.parse_args(argv)
     paths = options.rigs or sorted((SHARED / "rigs").glob("*.glb"))
     if not paths:
         sys.exit(f"there are no rigs in {SHARED / 'rigs'}; name some")
-    found = measured(paths, options.resolutions)
+    comparisons = measured(paths, options.resolutions)
     sizes = {r: graph_sizes(paths, r) for r in options.resolutions}
-    tables = [accuracy_table(found), cost_table(found, sizes)]
-    if COARSE in found and FINE in found:
-        tables.append(coarse_table(found))
+    tables = [accuracy_table(comparisons), cost_table(comparisons, sizes)]
+    if COARSE in comparisons and FINE in comparisons:
+        tables.append(coarse_table(comparisons))
     text = "\n\n".join(table.markdown() for table in tables)
     print(text)
     if options.plot:
-        plot(found, sizes, options.plot)
+        plot(comparisons, sizes, options.plot)
     if options.out:
         fill(options.out, {"gvb": text})
 

@@ -32,7 +32,7 @@ STAGES = ("graph", "distances", "weights")
 
 
 def quartered(rig: cutcell.Rig, times: int) -> cutcell.Rig:
-    """Weld a rig's mesh and divide each triangle into four, so many times."""
+    """Weld a rig's mesh and divide each triangle into four, repeatedly."""
     vertices, index = weld(rig.mesh.vertices)
     faces = index[rig.mesh.faces]
     for _ in range(times):
@@ -59,8 +59,8 @@ def row(rig: cutcell.Rig, is_compared: bool) -> list[str]:
     begin = perf_counter()
     exact = exact_weights(binding)
     took = perf_counter() - begin
-    found = rig_weights(binding.distances, SurfaceOperators.of(binding.graph))
-    return [*cells, seconds(took), f"{np.abs(found - exact).max():.1e}"]
+    outcome = rig_weights(binding.distances, SurfaceOperators.of(binding.graph))
+    return [*cells, seconds(took), f"{np.abs(outcome - exact).max():.1e}"]
 
 
 def tables(options: argparse.Namespace) -> list[Table]:
@@ -79,7 +79,7 @@ def tables(options: argparse.Namespace) -> list[Table]:
     return [table]
 
 
-def arguments(given: Sequence[str] | None = None) -> argparse.Namespace:
+def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
     """Read the command line."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.large", description=__doc__)
     parser.add_argument("--rig", type=Path, default=ROOT / "assets" / "biped.glb")
@@ -90,12 +90,12 @@ def arguments(given: Sequence[str] | None = None) -> argparse.Namespace:
         "--exact", type=int, default=2, help="compare with exact weights up to so many times"
     )
     parser.add_argument("--markdown", type=Path, metavar="OUT")
-    return parser.parse_args(given)
+    return parser.parse_args(argv)
 
 
-def main(given: Sequence[str] | None = None) -> None:
+def main(argv: Sequence[str] | None = None) -> None:
     """Print the table, and write it too if a file is named."""
-    options = arguments(given)
+    options = arguments(argv)
     publish(tables(options), options.markdown)
 
 

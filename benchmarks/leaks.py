@@ -1,4 +1,4 @@
-"""What leaks from a hand to the hip beside it: through voxels, through a cage, through ours.
+"""Leakage from a hand to the hip beside it: through voxels, through a cage, through ours.
 
     python -m benchmarks.leaks [--resolution 48] [--picture FILE.png] [--out DOCUMENT]
 
@@ -51,7 +51,7 @@ def fields(rig: Rig, resolution: int) -> dict[str, NDArray[np.float64]]:
     }
 
 
-def beside(rig: Rig) -> NDArray[np.intp]:
+def hip_near_arm(rig: Rig) -> NDArray[np.intp]:
     """Find the vertices of hip and thigh that the arm hangs beside."""
     assert rig.weights is not None
     owner = rig.weights.argmax(axis=1)
@@ -64,7 +64,7 @@ def beside(rig: Rig) -> NDArray[np.intp]:
 
 
 def leak_table(
-    found: dict[str, NDArray[np.float64]], at: NDArray[np.intp], resolution: int
+    leaks: dict[str, NDArray[np.float64]], at: NDArray[np.intp], resolution: int
 ) -> Table:
     """Write what the hip beside the arm gets."""
     table = Table(
@@ -74,13 +74,13 @@ def leak_table(
         f"{NEAR:.0%} of the longest side of the arm. Distances are parts of the longest side. "
         "The cage's vertices follow their nearest bone; ours is `bind` as it is by default.",
     )
-    for name, values in found.items():
+    for name, values in leaks.items():
         least = values[at].min() if "distance" in name else values[at].max()
         table.add(name, f"{np.median(values[at]):.3f}", f"{least:.3f}")
     return table
 
 
-def picture(rig: Rig, found: dict[str, NDArray[np.float64]], path: Path) -> None:
+def picture(rig: Rig, leaks: dict[str, NDArray[np.float64]], path: Path) -> None:
     """Draw the four fields beside each other, the arm and the hip large."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
@@ -92,7 +92,7 @@ def picture(rig: Rig, found: dict[str, NDArray[np.float64]], path: Path) -> None
     from cutcell_viewers.weights_scene import weights_scene
 
     joint = rig.skeleton.names.index(ARM[1])
-    longest = max(float(found[name].max()) for name in found if "distance" in name)
+    longest = max(float(leaks[name].max()) for name in leaks if "distance" in name)
     bounds = np.stack([rig.mesh.vertices.min(axis=0), rig.mesh.vertices.max(axis=0)])
     whole = framing(bounds, SIZE[0] / SIZE[1])
     target = np.array(whole.focal_point)
@@ -108,7 +108,7 @@ def picture(rig: Rig, found: dict[str, NDArray[np.float64]], path: Path) -> None
     )
     figure = Figure(figsize=(11.2, 3.72), facecolor="white")
     FigureCanvasAgg(figure)
-    for k, (name, values) in enumerate(found.items()):
+    for k, (name, values) in enumerate(leaks.items()):
         if "distance" in name:
             scene = distance_scene(rig, values, joint, skeleton=False)
             skin = replace(scene.actors["body"], limits=(0.0, longest))  # the same for both
@@ -124,19 +124,19 @@ def picture(rig: Rig, found: dict[str, NDArray[np.float64]], path: Path) -> None
     figure.savefig(path, dpi=110, facecolor="white")
 
 
-def main(given: Sequence[str] | None = None) -> None:
+def main(argv: Sequence[str] | None = None) -> None:
     """Read the command line, measure, print, draw."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.leaks", description=__doc__)
     parser.add_argument("--resolution", type=int, default=48)
     parser.add_argument("--picture", type=Path)
     parser.add_argument("--out", type=Path, help="a document with marks for it")
-    options = parser.parse_args(given)
+    options = parser.parse_args(argv)
     rig = cutcell.load(ROOT / "assets" / "biped.glb")
-    found = fields(rig, options.resolution)
-    text = leak_table(found, beside(rig), options.resolution).markdown()
+    leaks = fields(rig, options.resolution)
+    text = leak_table(leaks, hip_near_arm(rig), options.resolution).markdown()
     print(text)
     if options.picture:
-        picture(rig, found, options.picture)
+        picture(rig, leaks, options.picture)
     if options.out:
         fill(options.out, {"leaks": text})
 

@@ -1,9 +1,9 @@
-"""The most memory that binding takes, rig by rig, each in a process of its own.
+"""The most memory that binding takes, rig by rig, each in a subprocess.
 
 python -m benchmarks.memory [RIG...] [--resolution 256] [--connectivity any 6] [--markdown OUT]
 
 The whole process counts: Python, libraries, compiled kernels, the rig and all results. Beside it
-what the graph's own check expected of this binding, see `cutcell/graph/memory.py`.
+is the graph's estimate of this binding, see `cutcell/graph/memory.py`.
 """
 
 from __future__ import annotations
@@ -33,21 +33,21 @@ def memory_table(cases: Sequence[dict], options: argparse.Namespace) -> Table:
     )
     peaks, shares = [], []
     for case in cases:
-        found = run(case, options)
+        outcome = run(case, options)
         name = Path(case["rig"]).stem
         print(f"{name}, R={case['resolution']}, {case['connectivity']}", file=sys.stderr)
-        asked = name, case["resolution"], case["connectivity"]
-        if isinstance(found, str):
-            table.add(*asked, found, *["-"] * 4)
+        expected = name, case["resolution"], case["connectivity"]
+        if isinstance(outcome, str):
+            table.add(*expected, outcome, *["-"] * 4)
             continue
-        above = found["peak"] - found["before"]
-        peaks.append(found["peak"])
-        reckoned = needed_memory(*found["kinds"], case["connectivity"]) / 2**20
+        above = outcome["peak"] - outcome["before"]
+        peaks.append(outcome["peak"])
+        reckoned = needed_memory(*outcome["kinds"], case["connectivity"]) / 2**20
         shares.append(above / reckoned)
         table.add(
-            *asked,
-            f"{found['nodes']:,}",
-            seconds(found["seconds"]),
+            *expected,
+            f"{outcome['nodes']:,}",
+            seconds(outcome["seconds"]),
             f"{peaks[-1]:,.0f} MB",
             f"{above:,.0f} MB",
             f"{reckoned:,.0f} MB",
@@ -74,7 +74,7 @@ def tables(options: argparse.Namespace) -> list[Table]:
     return [memory_table(cases, options)]
 
 
-def arguments(given: Sequence[str] | None = None) -> argparse.Namespace:
+def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
     """Read the command line."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.memory", description=__doc__)
     parser.add_argument("rigs", nargs="*", metavar="RIG", help="all at hand when left out")
@@ -84,12 +84,12 @@ def arguments(given: Sequence[str] | None = None) -> argparse.Namespace:
     )
     parser.add_argument("--limit", type=float, default=300, help="seconds for one rig")
     parser.add_argument("--markdown", type=Path, metavar="OUT")
-    return parser.parse_args(given)
+    return parser.parse_args(argv)
 
 
-def main(given: Sequence[str] | None = None) -> None:
+def main(argv: Sequence[str] | None = None) -> None:
     """Print the table, and write it too if a file is named."""
-    options = arguments(given)
+    options = arguments(argv)
     publish(tables(options), options.markdown)
 
 

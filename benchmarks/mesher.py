@@ -1,4 +1,4 @@
-"""Fill a mesh with tetrahedra by another library: run as a script, in a process of its own.
+"""Fill a mesh with tetrahedra by another library: run as a script, in a subprocess.
 
     python benchmarks/mesher.py LIBRARY MESH.npz [EDGE]
 

@@ -1,4 +1,4 @@
-"""Volume meshers beside the graph: each in a process of its own, with a time limit."""
+"""Volume meshers beside the graph: each in a subprocess, with a time limit."""
 
 from __future__ import annotations
 
@@ -28,16 +28,16 @@ def meshers_table(characters: list[Character], options: argparse.Namespace) -> T
     table = Table(
         "Volume meshers",
         ["rig", "cutcell graph, R=64", *MESHERS],
-        "Filling the welded mesh with tetrahedra, once, in a process of its own, start not "
+        "Filling the welded mesh with tetrahedra, once, in a subprocess, start not "
         "counted; fTetWild at its default edge length, TetGen without quality demands.",
     )
     for character in characters:
         mesh = character.rig.mesh
-        ours = in_turn(
+        graph_seconds = in_turn(
             {"graph": lambda m=mesh: build_graph(m, 64, connectivity=6)}, options.repeats
         )["graph"]
         cells = [run_mesher(name, character, options) for name in MESHERS]
-        table.add(character.name, ours, *cells)
+        table.add(character.name, graph_seconds, *cells)
         print(f"{table.title}: {character.name}", file=sys.stderr, flush=True)
     return table
 

@@ -7,7 +7,7 @@
 Four ways to learn: from ../shared/data/train alone or with as many characters more, 70 generated
 and 40 people, each with augmentation and without. All look at equally many characters in all: with
 twice as many there are half as many epochs. Measured on rigs and wild, as in benchmarks.networks;
-those by MakeHuman, which people are made of, apart from the others.
+those by MakeHuman, the source of generated people, apart from the others.
 Every result is kept in the folder; the table lists all that are there. People take `pip install
 anny`. Needs cutcell[networks,dataset].
 """
@@ -73,7 +73,7 @@ class Run:
 
 @dataclass(frozen=True)
 class Result:
-    """What a run found."""
+    """Results of a run."""
 
     scores: Scores
     characters: int
@@ -89,8 +89,8 @@ class Data:
 
     def learned(self, more: bool) -> list[Sample]:
         """Return the samples to learn from."""
-        found = self._load(SHARED / "train")
-        return found + self._load(*_generated(self._options.folder / "more")) if more else found
+        samples = self._load(SHARED / "train")
+        return samples + self._load(*_generated(self._options.folder / "more")) if more else samples
 
     def measured(self) -> list[Sample]:
         """Return the samples to measure on."""
@@ -99,8 +99,8 @@ class Data:
     def _load(self, *paths: Path) -> list[Sample]:
         if paths not in self._loaded:
             prior, points = self._options.prior, 4 * self._options.points
-            kept = Samples(paths, prior=prior, points=points, cache=self._options.cache)
-            self._loaded[paths] = kept.load(print)
+            loader = Samples(paths, prior=prior, points=points, cache=self._options.cache)
+            self._loaded[paths] = loader.load(print)
         return self._loaded[paths]
 
 
@@ -129,51 +129,51 @@ def measure_run(run: Run, data: Data) -> Result:
     seconds = process_time() - begin
     test = data.measured()
     predicted = predict(network, test, run.points)
-    found = {s.name: scores(s, w) for s, w in zip(test, predicted, strict=True)}
-    return Result(found, len(learned), seconds)
+    by_name = {s.name: scores(s, w) for s, w in zip(test, predicted, strict=True)}
+    return Result(by_name, len(learned), seconds)
 
 
-def table_of(found: dict[Run, Result]) -> Table:
+def table_of(results_of: dict[Run, Result]) -> Table:
     """List all ways to learn, each beside the same head as it learns today."""
-    names, apart = unseen(next(iter(found.values())).scores)
+    names, makehuman = unseen(next(iter(results_of.values())).scores)
     note = (
         f"On {len(names)} characters by makers that are in none of the data, and L1 on "
-        f"{len(apart)} by MakeHuman, which people are made of. Means over the characters, over "
-        "the seeds ± standard deviation. `better`: than from train alone without augmentation, in "
-        "how many seeds. CPU seconds are of one training."
+        f"{len(makehuman)} by MakeHuman, the source of generated people. Means over the "
+        "characters, over the seeds ± standard deviation. `better`: than from train alone without "
+        "augmentation, in how many seeds. CPU seconds are of one training."
     )
     columns = ["size", "head", "learns from", "augmented", "characters", "epochs", "seeds", "L1"]
     columns += ["better", "precision", "recall", "cm²", "better", "L1, MakeHuman", "CPU s"]
     table = Table("Augmentation and further characters", columns, note)
-    for way in dict.fromkeys(run.way for run in found):
-        runs = sorted((run for run in found if run.way == way), key=lambda run: run.seed)
-        results = [found[run] for run in runs]
+    for way in dict.fromkeys(run.way for run in results_of):
+        runs = sorted((run for run in results_of if run.way == way), key=lambda run: run.seed)
+        results = [results_of[run] for run in runs]
         values = np.array([means(one.scores, names) for one in results])
         base = [run.today for run in runs]
         better = ["-", "-"]
-        if way != way.today and all(run in found for run in base):
-            before = np.array([means(found[run].scores, names) for run in base])
+        if way != way.today and all(run in results_of for run in base):
+            before = np.array([means(results_of[run].scores, names) for run in base])
             count = (values < before).sum(axis=0)
             better = [f"{count[at]} of {len(runs)}" for at in (0, 3)]
-        seen = results[0].characters
-        first = next((r.characters for run, r in found.items() if not run.more), seen)
-        shown = [_spread(values[:, at], 2 if at == 3 else 3) for at in range(4)]
+        characters = results[0].characters
+        first = next((r.characters for run, r in results_of.items() if not run.more), characters)
+        cells = [_spread(values[:, at], 2 if at == 3 else 3) for at in range(4)]
         table.add(
             way.size,
             way.head,
             "train, generated, people" if way.more else "train",
             "yes" if way.augment else "no",
-            seen,
-            max(1, round(way.epochs * first / seen)),
+            characters,
+            max(1, round(way.epochs * first / characters)),
             len(runs),
-            shown[0],
+            cells[0],
             better[0],
-            shown[1],
-            shown[2],
-            shown[3],
+            cells[1],
+            cells[2],
+            cells[3],
             better[1],
-            _spread(np.array([means(one.scores, apart)[0] for one in results]), 3)
-            if apart
+            _spread(np.array([means(one.scores, makehuman)[0] for one in results]), 3)
+            if makehuman
             else "-",
             f"{np.mean([one.seconds for one in results]):.0f}",
         )
@@ -187,24 +187,24 @@ def _spread(values: NDArray, digits: int) -> str:
 def unseen(measured: Iterable[str]) -> tuple[list[str], list[str]]:
     """Part characters by other makers into those by makers never seen, and MakeHuman's."""
     names = groups(measured)["other makers"]
-    apart = [name for name in names if name.startswith(MAKEHUMAN)]
-    return [name for name in names if name not in apart], apart
+    makehuman = [name for name in names if name.startswith(MAKEHUMAN)]
+    return [name for name in names if name not in makehuman], makehuman
 
 
-def report(found: dict[Run, Result], data: Data) -> str:
+def report(results: dict[Run, Result], data: Data) -> str:
     """Return what was compared and the table, as Markdown."""
-    run = next(iter(found))
-    seconds = sum(one.seconds for one in found.values())
+    run = next(iter(results))
+    seconds = sum(one.seconds for one in results.values())
     about = (
         f"Prior {run.prior}; {run.points} points of a character at a time; `train` is "
         f"{len(data.learned(False))} characters by one maker; further are {GENERATED} generated "
-        f"and {PEOPLE} people. {len(found)} trainings took {seconds / 60:.0f} minutes of CPU time "
-        f"on {machine()}."
+        f"and {PEOPLE} people. {len(results)} trainings took {seconds / 60:.0f} minutes of CPU "
+        f"time on {machine()}."
     )
-    return f"{about}\n\n{table_of(found).markdown()}"
+    return f"{about}\n\n{table_of(results).markdown()}"
 
 
-def main(given: Sequence[str] | None = None) -> None:
+def main(argv: Sequence[str] | None = None) -> None:
     """Read the command line, train what is not there yet, print."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.network_data", description=__doc__)
     parser.add_argument("--epochs", type=int, default=12)
@@ -218,17 +218,17 @@ def main(given: Sequence[str] | None = None) -> None:
     parser.add_argument("--cache", type=Path, default=cache_folder())
     parser.add_argument("--print", action="store_true", help="train nothing; print what is there")
     parser.add_argument("--out", type=Path, help="a document with marks for it")
-    options = parser.parse_args(given)
+    options = parser.parse_args(argv)
     torch.set_num_threads(1)
     data, path = Data(options), options.folder / "results.json"
     ways = [(False, False)] if options.today else product((False, True), repeat=2)
-    asked = [
+    runs_to_do = [
         Run(options.size, head, options.prior, options.epochs, options.points, more, augment, seed)
         for seed, head, (more, augment) in product(range(options.seeds), options.heads, [*ways])
     ]
-    for run in [] if options.print else asked:
-        kept = read_results(path)
-        if (key := json.dumps(asdict(run))) in kept:
+    for run in [] if options.print else runs_to_do:
+        stored = read_results(path)
+        if (key := json.dumps(asdict(run))) in stored:
             continue
         result = measure_run(run, data)
         options.folder.mkdir(parents=True, exist_ok=True)
@@ -236,14 +236,15 @@ def main(given: Sequence[str] | None = None) -> None:
         write_all({path: json.dumps({**read_results(path), key: asdict(result)}).encode()})
         names, _ = unseen(result.scores)
         print(key, *(f"{x:.3f}" for x in means(result.scores, names)), f"{result.seconds:.0f} s")
-    found = {Run(**json.loads(key)): Result(**one) for key, one in read_results(path).items()}
+    results = {Run(**json.loads(key)): Result(**one) for key, one in read_results(path).items()}
     order = {"tiny": 0, "small": 1, "full": 2}
-    found = dict(
+    results = dict(
         sorted(
-            found.items(), key=lambda one: (order[one[0].size], *map(str, asdict(one[0]).values()))
+            results.items(),
+            key=lambda one: (order[one[0].size], *map(str, asdict(one[0]).values())),
         )
     )
-    text = report(found, data)
+    text = report(results, data)
     print(text)
     if options.out:
         fill(options.out, {"network-data": text})

@@ -47,14 +47,14 @@ def draw(
             axis.axhline(alone[BIND][row], color=COLORS[BIND], linewidth=1, linestyle=(0, (4, 3)))
         for x, prior in enumerate(priors):
             color = COLORS.get(prior, INK)
-            found = [seed[row] for seed in networks.get((heads[head], prior), ())]
+            points = [seed[row] for seed in networks.get((heads[head], prior), ())]
             if prior in alone:
                 axis.plot(x, alone[prior][row], "o", mfc="white", mec=color, ms=7)
             if (heads[head], prior) in paper:
                 axis.plot(x, paper[heads[head], prior][row], "x", color=INK, ms=6, mew=1.4)
-            if found:
-                axis.hlines(np.mean(found), x - 0.3, x + 0.3, color=color, linewidth=2.4)
-                axis.plot(np.full(len(found), x), found, ".", color=color, ms=7)
+            if points:
+                axis.hlines(np.mean(points), x - 0.3, x + 0.3, color=color, linewidth=2.4)
+                axis.plot(np.full(len(points), x), points, ".", color=color, ms=7)
         axis.set_xticks(range(len(priors)), priors, rotation=35, ha="right")
         axis.set_xlim(-0.6, len(priors) - 0.4)
         axis.spines["bottom"].set(visible=True, color=FAINT)

@@ -29,15 +29,15 @@ def scores(sample: Sample, weights: NDArray) -> list[float]:
 
 def dropped(weights: NDArray) -> NDArray[np.float64]:
     """Return weights without those that the published evaluation drops."""
-    kept = np.where(weights >= PART * weights.max(axis=1, keepdims=True), weights, 0)
-    total = kept.sum(axis=1, keepdims=True)
-    return np.where(weights.sum(axis=1, keepdims=True) - total < LOST, weights, kept / total)
+    remaining = np.where(weights >= PART * weights.max(axis=1, keepdims=True), weights, 0)
+    total = remaining.sum(axis=1, keepdims=True)
+    return np.where(weights.sum(axis=1, keepdims=True) - total < LOST, weights, remaining / total)
 
 
 def _measured(sample: Sample, weights: NDArray) -> list[float]:
-    there = sample.target.any(axis=1)  # type: ignore[union-attr]
-    points, target = sample.points[there], sample.target[there]  # type: ignore[index]
-    weights = weights[there]
+    has_target = sample.target.any(axis=1)  # type: ignore[union-attr]
+    points, target = sample.points[has_target], sample.target[has_target]  # type: ignore[index]
+    weights = weights[has_target]
     corners = np.arange(len(points) - 2)[:, None] + np.arange(3)
     mesh = TriangleMesh(points, corners)
     skeleton = Skeleton(sample.joints, sample.parents)
@@ -55,6 +55,6 @@ def groups(names: Iterable[str]) -> dict[str, list[str]]:
     return parted
 
 
-def means(found: Scores, names: Sequence[str], at: slice = slice(0, 4)) -> NDArray:
+def means(by_name: Scores, names: Sequence[str], at: slice = slice(0, 4)) -> NDArray:
     """Average each measure over characters; nan where a measure has no value is left out."""
-    return np.nanmean([found[name][at] for name in names], axis=0)
+    return np.nanmean([by_name[name][at] for name in names], axis=0)

@@ -26,7 +26,7 @@ Results = dict[tuple[str, str], list[Scores]]
 
 @dataclass(frozen=True)
 class Comparison:
-    """What all runs found.
+    """Results of all runs.
 
     Parameters
     ----------
@@ -44,9 +44,9 @@ class Comparison:
     seconds: float
 
 
-def tables(found: Comparison) -> list[Table]:
+def tables(comparison: Comparison) -> list[Table]:
     """Return all tables."""
-    results, alone = found.results, found.alone
+    results, alone = comparison.results, comparison.alone
     return [
         paper_table(results),
         *(head_table(results, alone, which, False) for which in ("other makers", "same maker")),
@@ -66,18 +66,18 @@ def head_table(results: Results, alone: dict[str, Scores], which: str, after: bo
     columns = ["head", "prior", "seeds", "L1", "L1 median", "L1 worst", *MEASURES[1:]]
     table = Table(title, columns, note)
 
-    def add(head: str, prior: str, found: Sequence[Scores]) -> None:
-        each = np.array([means(one, names, at) for one in found])
-        l1 = np.array([[one[name][at][0] for name in names] for one in found])
+    def add(head: str, prior: str, scores: Sequence[Scores]) -> None:
+        each = np.array([means(one, names, at) for one in scores])
+        l1 = np.array([[one[name][at][0] for name in names] for one in scores])
         cells = [each[:, 0], np.median(l1, axis=1), l1.max(axis=1), each[:, 1], each[:, 2]]
-        if len(found) == 1:
-            shown = [f"{v[0]:.3f}" for v in cells] + [f"{each[0, 3]:.2f}"]
+        if len(scores) == 1:
+            cells = [f"{v[0]:.3f}" for v in cells] + [f"{each[0, 3]:.2f}"]
         else:
-            shown = [spread(v, 3) for v in cells] + [spread(each[:, 3], 2)]
-        table.add(head, prior, "-" if head[0] == "(" else len(found), *shown)
+            cells = [spread(v, 3) for v in cells] + [spread(each[:, 3], 2)]
+        table.add(head, prior, "-" if head[0] == "(" else len(scores), *cells)
 
-    for prior, found in alone.items():
-        add("(the prior alone)", prior, [found])
+    for prior, scores in alone.items():
+        add("(the prior alone)", prior, [scores])
     for (head, prior), runs in results.items():
         add(head, prior, runs)
     return table
@@ -86,7 +86,7 @@ def head_table(results: Results, alone: dict[str, Scores], which: str, after: bo
 def paper_table(results: Results) -> Table:
     """Put what the paper's prior changes beside what the paper says."""
     note = (
-        "What the paper's prior (cutcell) changes against what each head had before, on characters "
+        "Changes by the paper's prior (cutcell) from each head's earlier prior, on characters "
         "by other makers. `better`: in how many seeds."
     )
     columns = ["head", "before", "L1 here", "better", "cm² here", "better", "paper L1", "paper cm²"]
@@ -98,8 +98,8 @@ def paper_table(results: Results) -> Table:
         names = groups(before[0])["other makers"]
         count = min(len(before), len(after))
         before, after = before[:count], after[:count]
-        one = np.array([means(found, names)[[0, 3]] for found in before])
-        other = np.array([means(found, names)[[0, 3]] for found in after])
+        one = np.array([means(scores, names)[[0, 3]] for scores in before])
+        other = np.array([means(scores, names)[[0, 3]] for scores in after])
         better = (other < one).sum(axis=0)
         change = other.mean(axis=0) / one.mean(axis=0) - 1
         table.add(

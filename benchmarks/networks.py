@@ -45,7 +45,7 @@ class Run:
 
     @property
     def name(self) -> str:
-        """What its folder is called."""
+        """The name of its folder."""
         return f"{self.head}-{self.prior}-{self.seed}"
 
 
@@ -69,8 +69,8 @@ def samples(prior: str, sets: Sequence[str], options: argparse.Namespace) -> lis
     key = (prior, *sets)
     if key not in LOADED:
         paths = [SHARED / name for name in sets]
-        kept = Samples(paths, prior=prior, points=4 * options.points, cache=options.cache)
-        LOADED[key] = kept.load(print)
+        loader = Samples(paths, prior=prior, points=4 * options.points, cache=options.cache)
+        LOADED[key] = loader.load(print)
     return LOADED[key]
 
 
@@ -97,12 +97,14 @@ def read_results(path: Path) -> dict[str, dict]:
     return json.loads(path.read_text()) if path.exists() else {}
 
 
-def compared(kept: dict[str, dict], options: argparse.Namespace, runs: Sequence[Run]) -> Comparison:
+def compared(
+    stored: dict[str, dict], options: argparse.Namespace, runs: Sequence[Run]
+) -> Comparison:
     """Put together what earlier runs kept."""
     results: Results = {}
     seconds = 0.0
     for run in runs:
-        one = kept[_key(run, options)]
+        one = stored[_key(run, options)]
         results.setdefault((run.head, run.prior), []).append(one["scores"])
         seconds += one["seconds"]
     alone = {
@@ -115,29 +117,31 @@ def compared(kept: dict[str, dict], options: argparse.Namespace, runs: Sequence[
     return Comparison(results, alone, len(runs), seconds)
 
 
-def report(found: Comparison, options: argparse.Namespace) -> str:
+def report(comparison: Comparison, options: argparse.Namespace) -> str:
     """Return what was compared and all tables, as Markdown."""
-    measured = len(next(iter(found.results.values()))[0])
+    measured = len(next(iter(comparison.results.values()))[0])
     trained = len(samples("none", ["train"], options))
     about = (
         f"Size {options.size}; {options.epochs} epochs over {trained} characters, "
         f"{options.points} points each; up to {options.seeds} seeds; measured at up to "
-        f"{4 * options.points} vertices of each of {measured} characters. {found.runs} trainings "
-        f"took {found.seconds / 60:.0f} minutes of CPU time on {machine()}."
+        f"{4 * options.points} vertices of each of {measured} characters. {comparison.runs} "
+        f"trainings took {comparison.seconds / 60:.0f} minutes of CPU time on {machine()}."
     )
-    return "\n\n".join([about, *(table.markdown() for table in tables(found))])
+    return "\n\n".join([about, *(table.markdown() for table in tables(comparison))])
 
 
-def draw_figure(found: Comparison, path: Path) -> None:
+def draw_figure(comparison: Comparison, path: Path) -> None:
     """Draw L1 and the deformation error on characters by other makers."""
-    names = groups(next(iter(found.results.values()))[0])["other makers"]
+    names = groups(next(iter(comparison.results.values()))[0])["other makers"]
 
-    def shown(one: Scores) -> tuple[float, float]:
+    def errors_of(one: Scores) -> tuple[float, float]:
         l1, _, _, moved = means(one, names).tolist()
         return l1, moved
 
-    networks = {which: [shown(one) for one in runs] for which, runs in found.results.items()}
-    alone = {prior: shown(one) for prior, one in found.alone.items()}
+    networks = {
+        which: [errors_of(one) for one in runs] for which, runs in comparison.results.items()
+    }
+    alone = {prior: errors_of(one) for prior, one in comparison.alone.items()}
     paper = {
         (head, prior): (l1[k], moved[k])
         for head, (base, l1, moved) in PAPER.items()
@@ -156,15 +160,15 @@ def _key(run: Run, options: argparse.Namespace) -> str:
     return f"{options.size} {options.points} {run.name} {options.epochs}"
 
 
-def _before(kept: dict[str, dict], run: Run, options: argparse.Namespace) -> float:
+def _before(stored: dict[str, dict], run: Run, options: argparse.Namespace) -> float:
     """Return the CPU seconds of the same run with fewer epochs, which it went on from."""
     same, _, epochs = _key(run, options).rpartition(" ")
-    fewer = (key for key in kept if key.rpartition(" ")[0] == same)
+    fewer = (key for key in stored if key.rpartition(" ")[0] == same)
     earlier = [key for key in fewer if int(key.rpartition(" ")[2]) < int(epochs)]
-    return max((kept[key]["seconds"] for key in earlier), default=0.0)
+    return max((stored[key]["seconds"] for key in earlier), default=0.0)
 
 
-def main(given: Sequence[str] | None = None) -> None:
+def main(argv: Sequence[str] | None = None) -> None:
     """Read the command line, train what is not there yet, print."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.networks", description=__doc__)
     parser.add_argument("--epochs", type=int, default=3)
@@ -178,26 +182,26 @@ def main(given: Sequence[str] | None = None) -> None:
     parser.add_argument("--print", action="store_true", help="train nothing; print what is there")
     parser.add_argument("--out", type=Path, help="a document with marks for it")
     parser.add_argument("--figure", type=Path, help="a picture, such as docs/pictures/networks.png")
-    options = parser.parse_args(given)
+    options = parser.parse_args(argv)
     torch.set_num_threads(1)
     path = options.folder / "results.json"
     runs = [Run(*one) for one in product(options.heads, options.priors, range(options.seeds))]
-    kept = read_results(path)
+    stored = read_results(path)
     # All heads and priors by the first seed first: a run that is broken off tells most.
     for run in sorted(runs, key=lambda run: run.seed):
         key = _key(run, options)
-        if key not in kept and not options.print:
+        if key not in stored and not options.print:
             scored, seconds = measure_run(run, options)
-            kept[key] = {"scores": scored, "seconds": seconds + _before(kept, run, options)}
+            stored[key] = {"scores": scored, "seconds": seconds + _before(stored, run, options)}
             options.folder.mkdir(parents=True, exist_ok=True)
-            write_all({path: json.dumps(kept).encode()})
+            write_all({path: json.dumps(stored).encode()})
             names = groups(scored)["other makers"]
             print(key, *(f"{x:.3f}" for x in means(scored, names)), f"{seconds:.0f} s", flush=True)
-    found = compared(kept, options, [run for run in runs if _key(run, options) in kept])
-    text = report(found, options)
+    comparison = compared(stored, options, [run for run in runs if _key(run, options) in stored])
+    text = report(comparison, options)
     print(text)
     if options.figure:
-        draw_figure(found, options.figure)
+        draw_figure(comparison, options.figure)
     if options.out:
         fill(options.out, {"networks": text})
 

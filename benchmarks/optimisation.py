@@ -2,7 +2,7 @@
 
     python -m benchmarks.optimisation [RIG...] [--resolution 64] [--repeats 3]
 
-What makes tetrahedra or graph is left out, as in the paper: from there to weights.
+Making tetrahedra or graph is left out, as in the paper: from there to weights.
 """
 
 from __future__ import annotations
@@ -25,11 +25,11 @@ SOLVERS = ("biharmonic", "quasi_harmonic", "bbw")
 MAKING = {"graph", "tetrahedra"}
 
 
-def spent(found: BaselineBinding) -> float:
+def spent(binding: BaselineBinding) -> float:
     """Add up the stages after the graph or the tetrahedra."""
-    if found.weights is None:
+    if binding.weights is None:
         return np.nan
-    return sum(value for stage, value in found.seconds.items() if stage not in MAKING)
+    return sum(value for stage, value in binding.seconds.items() if stage not in MAKING)
 
 
 def optimisation_table(
@@ -44,23 +44,23 @@ def optimisation_table(
         f"times as long as {OURS[-1]} takes. Quasi-harmonic weights take twenty steps.",
     )
     for character in characters:
-        rig, taken = character.rig, {}
+        rig, spent_by = character.rig, {}
         for name in OURS:
             runs = [spent(METHODS[name](rig, resolution=resolution)) for _ in range(repeats)]
-            taken[name] = min(runs)
+            spent_by[name] = min(runs)
         for name in SOLVERS:
-            taken[name] = spent(METHODS[name](rig, limit=limit))
-        base = taken[OURS[-1]]
-        cells = [seconds(taken[name]) for name in OURS]
+            spent_by[name] = spent(METHODS[name](rig, limit=limit))
+        base = spent_by[OURS[-1]]
+        cells = [seconds(spent_by[name]) for name in OURS]
         for name in SOLVERS:
-            value = taken[name]
-            known = np.isfinite(value)
-            cells.append(f"{seconds(value)} ({ratio(value / base)})" if known else "failed")
+            value = spent_by[name]
+            finite = np.isfinite(value)
+            cells.append(f"{seconds(value)} ({ratio(value / base)})" if finite else "failed")
         table.add(f"{character.name} ({character.size})", *cells)
     return table
 
 
-def main(given: Sequence[str] | None = None) -> None:
+def main(argv: Sequence[str] | None = None) -> None:
     """Read the command line, measure, print."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.optimisation", description=__doc__)
     parser.add_argument("rigs", nargs="*", help="all at hand when left out")
@@ -68,10 +68,10 @@ def main(given: Sequence[str] | None = None) -> None:
     parser.add_argument("--repeats", type=int, default=3)
     parser.add_argument("--limit", type=float, default=LIMIT)
     parser.add_argument("--out", type=Path, help="a document with marks for it")
-    options = parser.parse_args(given)
+    options = parser.parse_args(argv)
     characters = load_characters(options.rigs)
-    found = optimisation_table(characters, options.resolution, options.repeats, options.limit)
-    text = found.markdown()
+    table = optimisation_table(characters, options.resolution, options.repeats, options.limit)
+    text = table.markdown()
     print(text)
     if options.out:
         fill(options.out, {"optimisation": text})

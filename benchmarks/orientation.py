@@ -1,4 +1,4 @@
-"""Which faces of real meshes count as inside out, and what becomes of meshes that are inverted.
+"""Which faces of real meshes are inside out, and what becomes of meshes that are inverted.
 
 python -m benchmarks.orientation [FILE ...] [--resolution R] [--markdown OUT]
 
@@ -65,8 +65,8 @@ def meshes(paths: Sequence[Path]) -> Iterator[tuple[str, TriangleMesh]]:
 
 
 def _others() -> list[Path]:
-    found = [*(SHARED / "wild").rglob("*"), *(SHARED / "train").rglob("*.npz")]
-    return sorted(path for path in found if path.suffix in (".glb", ".gltf", ".npz"))
+    others = [*(SHARED / "wild").rglob("*"), *(SHARED / "train").rglob("*.npz")]
+    return sorted(path for path in others if path.suffix in (".glb", ".gltf", ".npz"))
 
 
 def measure(mesh: TriangleMesh, resolution: int) -> tuple[list[str], bool]:
@@ -92,7 +92,7 @@ def measure(mesh: TriangleMesh, resolution: int) -> tuple[list[str], bool]:
 
 
 def in_ball(mesh: TriangleMesh) -> NDArray[np.bool_]:
-    """Tell which faces lie around one that is drawn by the mesh's own numbers, shape (m,)."""
+    """Return the faces around one that is drawn by the mesh's own numbers, shape (m,)."""
     middle = mesh.vertices[mesh.faces].mean(axis=1)
     centre = middle[np.random.default_rng(len(middle)).integers(len(middle))]
     radius = BALL * float(np.ptp(mesh.bounds, axis=0).max())

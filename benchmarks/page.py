@@ -19,7 +19,7 @@ from scripts.get_chromium import FLAGS, find
 
 from .document import PAGE_SPEED, fill
 from .page_joints import joints_table
-from .page_subjects import SIZE, Material, material, ours, theirs
+from .page_subjects import SIZE, Material, cutcell_subject, material, vtk_subject
 from .page_visitor import Visitor, served
 from .page_weights import weights_table
 from .report import circumstances
@@ -37,44 +37,44 @@ def tables(options: argparse.Namespace) -> Iterator[Table]:
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=chromium, args=list(FLAGS))
         if options.only != "joints":
-            yield from _beside(browser, options)
+            yield from _side_by_side(browser, options)
             yield weights_table(browser, options.vertices, options.weights)
         yield joints_table(browser, options.vertices, options.joints)
         browser.close()
 
 
-def _beside(browser: Browser, options: argparse.Namespace) -> list[Table]:
+def _side_by_side(browser: Browser, options: argparse.Namespace) -> list[Table]:
     scene = material(options.resolution, options.vertices)
-    subjects = {OURS: ours(scene), THEIRS: theirs(scene)}
-    taken: Taken = {}
+    subjects = {OURS: cutcell_subject(scene), THEIRS: vtk_subject(scene)}
+    times_of: Taken = {}
     moves: dict[str, list[float]] = {}
     with served(list(subjects.values()), options.port) as url:
         for _ in range(options.rounds):
             for name, subject in subjects.items():
                 visitor = Visitor(browser, url, subject)
-                _changes(visitor, name, options.changes, taken)
+                _changes(visitor, name, options.changes, times_of)
                 _moves(visitor, name, options.play, moves)
                 visitor.page.close()
-    return [_sooner(scene, taken), _moving(moves)]
+    return [_sooner(scene, times_of), _moving(moves)]
 
 
-def _changes(visitor: Visitor, name: str, changes: int, taken: Taken) -> None:
+def _changes(visitor: Visitor, name: str, changes: int, times_of: Taken) -> None:
     """Time everything that is compared, first without the graph, then with it."""
 
     def note(what: str, value: float) -> None:
-        taken.setdefault(what, {}).setdefault(name, []).append(value)
+        times_of.setdefault(what, {}).setdefault(name, []).append(value)
 
     subject = visitor.subject
     ways = {"new scalars": subject.color, "new points": subject.move, "a new pose": subject.pose}
     note("first picture", visitor.first_picture)
     turn = 0
-    for beside, repeats in (("", changes), (", graph shown", 1)):
-        if beside:
+    for suffix, repeats in (("", changes), (", graph shown", 1)):
+        if suffix:
             note("graph shown", visitor.seen_after(lambda: subject.show_graph(True)))
         for what, change in ways.items():
             for _ in range(repeats):
                 turn += 1
-                note(what + beside, visitor.seen_after(lambda c=change, t=turn: c(t)))
+                note(what + suffix, visitor.seen_after(lambda c=change, t=turn: c(t)))
 
 
 def _moves(visitor: Visitor, name: str, play: float, moves: dict[str, list[float]]) -> None:
@@ -88,23 +88,23 @@ def _moves(visitor: Visitor, name: str, play: float, moves: dict[str, list[float
         return
     for whole, drawn in ((False, "what is drawn while moving"), (True, "everything")):
         note(f"a turn, graph shown, {drawn}", *visitor.turns(whole))
-    for beside in (", graph shown", ""):
-        if not beside:
+    for suffix in (", graph shown", ""):
+        if not suffix:
             visitor.seen_after(lambda: visitor.subject.show_graph(False))
         script, frame = visitor.play(play)
-        note(f"script a frame while playing{beside}", script)
-        note(f"a frame while playing{beside}", frame)
+        note(f"script a frame while playing{suffix}", script)
+        note(f"a frame while playing{suffix}", frame)
     note("script a pose without the graphics card", *visitor.on_processor())
 
 
-def _sooner(scene: Material, taken: Taken) -> Table:
+def _sooner(scene: Material, times_of: Taken) -> Table:
     table = Table(
         "Until it is seen",
-        ["", OURS, THEIRS, "sooner by"],
+        ["", OURS, THEIRS, "speed-up"],
         f"{scene.size}; {SIZE[0]}x{SIZE[1]} pixels. From the change in Python, or from asking "
         "for the address, to changed pixels: medians, the range in brackets, in turn.",
     )
-    for what, by in taken.items():
+    for what, by in times_of.items():
         one, other = Times(tuple(by[OURS])), Times(tuple(by[THEIRS]))
         table.add(what, one, other, ratio(other.median / one.median))
     return table
@@ -113,8 +113,8 @@ def _sooner(scene: Material, taken: Taken) -> Table:
 def _moving(moves: dict[str, list[float]]) -> Table:
     table = Table(
         "While things move",
-        ["", "median", "nine in ten below"],
-        "Drawn in software: a graphics card takes the frame's larger part away. A turn lasts "
+        ["", "median", "90th percentile"],
+        "Drawn in software: with a graphics card most of a frame's time is saved. A turn lasts "
         "until its picture is finished.",
     )
     for what, values in sorted(moves.items()):
@@ -122,7 +122,7 @@ def _moving(moves: dict[str, list[float]]) -> Table:
     return table
 
 
-def arguments(given: Sequence[str] | None = None) -> argparse.Namespace:
+def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
     """Read the command line."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.page", description=__doc__)
     parser.add_argument("--rounds", type=int, default=3)
@@ -135,19 +135,19 @@ def arguments(given: Sequence[str] | None = None) -> argparse.Namespace:
     parser.add_argument("--vertices", type=int, default=20000)
     parser.add_argument("--port", type=int, default=5131)
     parser.add_argument("--write", action="store_true", help="into docs/page-speed.md")
-    return parser.parse_args(given)
+    return parser.parse_args(argv)
 
 
-def main(given: Sequence[str] | None = None) -> None:
+def main(argv: Sequence[str] | None = None) -> None:
     """Print the tables."""
-    options = arguments(given)
-    told = [circumstances()]
-    print(told[0], flush=True)
+    options = arguments(argv)
+    texts = [circumstances()]
+    print(texts[0], flush=True)
     for table in tables(options):
-        told.append(table.markdown())
-        print("", told[-1], sep="\n", flush=True)
+        texts.append(table.markdown())
+        print("", texts[-1], sep="\n", flush=True)
     if options.write:
-        fill(PAGE_SPEED, {options.only or "page": "\n\n".join(told)})
+        fill(PAGE_SPEED, {options.only or "page": "\n\n".join(texts)})
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""How soon the colours follow a joint that is dragged, on the whole page of a server of its own."""
+"""How soon the colours follow a joint that is dragged, on the whole page of its own server."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def joints_table(browser: Browser, vertices: int, moves: int) -> Table:
         rig = character(vertices)
         cutcell.save(path, replace(rig, weights=cutcell.bind(rig, 16).weights))
         with served(str(path)) as server:
-            taken = _dragged(browser, server.address, rig.skeleton.names[25], moves)
+            times_of = _dragged(browser, server.address, rig.skeleton.names[25], moves)
     table = Table(
         "A joint that is dragged",
         ["", "median", "95 %"],
@@ -51,7 +51,7 @@ def joints_table(browser: Browser, vertices: int, moves: int) -> Table:
         f"page at 1100x720 pixels; {moves} moves by {STEP} pixels. From the pointer's event in the "
         "browser, through the server, to the first frame with other colours.",
     )
-    for does, times in zip(("arrive in the browser", "are seen"), taken.T, strict=True):
+    for does, times in zip(("arrive in the browser", "are seen"), times_of.T, strict=True):
         middle, slow = (f"{1000 * value:.0f} ms" for value in np.percentile(times, [50, 95]))
         table.add(f"until other colours {does}", middle, slow)
     return table
@@ -69,17 +69,17 @@ def _dragged(browser: Browser, address: str, joint: str, moves: int) -> NDArray:
     x, y = page.evaluate("__cutcell.jointHandle()")
     page.mouse.move(x, y)
     page.mouse.down()
-    taken = []
+    times_of = []
     for move in range(moves + 2):
         page.evaluate(f"void (window.seen = ({WAIT})())")
         page.evaluate("watch.hear('pointermove')")
         page.mouse.move(x + STEP * (1 + move % 7), y + STEP * (1 + move % 5))
-        seen = page.evaluate("window.seen")
-        if seen is not None:
-            taken.append(np.array(seen) / 1000 - visitor.wait("watch.heard"))
+        seen_at = page.evaluate("window.seen")
+        if seen_at is not None:
+            times_of.append(np.array(seen_at) / 1000 - visitor.wait("watch.heard"))
         # The exact colours follow when the pointer rests.
         page.wait_for_function("__cutcell.serverRests()")
         page.wait_for_timeout(300)
     page.mouse.up()
     page.close()
-    return np.array(taken[2:])  # the first ones prepare what the others use
+    return np.array(times_of[2:])  # the first ones prepare what the others use

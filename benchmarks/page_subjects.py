@@ -43,7 +43,7 @@ class Subject:
     color: Callable[[int], None] = lambda turn: None
     move: Callable[[int], None] = lambda turn: None
     pose: Callable[[int], None] = lambda turn: None
-    show_graph: Callable[[bool], None] = lambda shown: None
+    show_graph: Callable[[bool], None] = lambda visible: None
     play: Callable[[bool], None] = lambda playing: None
 
     def page(self) -> Any:
@@ -54,7 +54,7 @@ class Subject:
 
 @dataclass(frozen=True)
 class Material:
-    """What is shown: 20k vertices, 50 bones, a graph."""
+    """The scene: 20k vertices, 50 bones, a graph."""
 
     rig: Rig
     scene: Description
@@ -104,20 +104,20 @@ def _up_to_one(values: np.ndarray) -> np.ndarray:
     return (values / np.nanmax(values)).astype(np.float32)
 
 
-def ours(material: Material) -> Subject:
+def cutcell_subject(material: Material) -> Subject:
     """Return the page's own view as a subject."""
 
     def make(subject: Subject) -> SceneView:
         view = SceneView(width=SIZE[0], height=SIZE[1])
-        shown = _with_graph(material.scene, False)
+        current = _with_graph(material.scene, False)
 
         def present(**parts: Any) -> None:
-            nonlocal shown
-            shown = replace(shown, **parts)
-            view.present(shown)
+            nonlocal current
+            current = replace(current, **parts)
+            view.present(current)
 
         def put(**changed: Any) -> None:
-            present(actors={**shown.actors, "body": replace(shown.actors["body"], **changed)})
+            present(actors={**current.actors, "body": replace(current.actors["body"], **changed)})
 
         def play(playing: bool) -> None:
             state = State(rig=material.rig)
@@ -126,16 +126,16 @@ def ours(material: Material) -> Subject:
         subject.color = lambda turn: put(scalars=material.fields[turn % CHANGES])
         subject.move = lambda turn: put(points=material.points[turn % CHANGES])
         subject.pose = lambda turn: present(pose=material.poses[turn % CHANGES])
-        subject.show_graph = lambda on: present(actors=_with_graph(shown, on).actors)
+        subject.show_graph = lambda on: present(actors=_with_graph(current, on).actors)
         subject.play = play
         view.tell(camera=camera_part(framing(material.scene.bounds, SIZE[0] / SIZE[1])))
-        view.present(shown)
+        view.present(current)
         return view
 
     return Subject("/ours", make)
 
 
-def theirs(material: Material) -> Subject:
+def vtk_subject(material: Material) -> Subject:
     """Return Panel's VTK pane as a subject: the same actors, drawn by PyVista."""
 
     def make(subject: Subject) -> pn.pane.VTK:
@@ -148,15 +148,15 @@ def theirs(material: Material) -> Subject:
         camera = framing(material.scene.bounds, SIZE[0] / SIZE[1])
         plotter.camera_position = [camera.position, camera.focal_point, camera.up]
         pane = pn.pane.VTK(plotter.render_window, width=SIZE[0], height=SIZE[1])
-        shown = material.scene.actors["body"]
+        body = material.scene.actors["body"]
 
         def put(**changed: Any) -> None:
             # Another actor: an array edited in place makes the pane crash (debugAll), and new
             # scalars on the same points never reach its picture.
-            nonlocal shown
-            shown = replace(shown, **changed)
+            nonlocal body
+            body = replace(body, **changed)
             plotter.remove_actor(added["body"], render=False)
-            added["body"] = _added(plotter, shown)
+            added["body"] = _added(plotter, body)
             pane.param.trigger("object")
 
         def show_graph(on: bool) -> None:
@@ -188,8 +188,10 @@ def _added(plotter: Any, actor: Actor) -> Any:
     )  # fmt: skip
 
 
-def _with_graph(scene: Description, shown: bool) -> Description:
-    def seen(name: str, actor: Actor) -> Actor:
-        return replace(actor, visible=shown) if actor.kind == "lines" else actor
+def _with_graph(scene: Description, visible: bool) -> Description:
+    def with_visibility(name: str, actor: Actor) -> Actor:
+        return replace(actor, visible=visible) if actor.kind == "lines" else actor
 
-    return replace(scene, actors={name: seen(name, a) for name, a in scene.actors.items()})
+    return replace(
+        scene, actors={name: with_visibility(name, a) for name, a in scene.actors.items()}
+    )

@@ -87,8 +87,8 @@ class Visitor(Watched):
             change()
 
         self.subject.document.add_next_tick_callback(act)
-        seen = self.wait("watch.changed")
-        return seen - begun[0]
+        changed_at = self.wait("watch.changed")
+        return changed_at - begun[0]
 
     def orbit(self, steps: int = 25) -> list[float]:
         """Drag over the canvas; return the seconds between frames."""
@@ -135,9 +135,9 @@ class Visitor(Watched):
         return [spent / 1000 for spent in self.page.evaluate(POSED, repeats)]
 
     def _script(self, client: Any) -> dict[str, float]:
-        told = client.send("Performance.getMetrics")["metrics"]
+        metrics = client.send("Performance.getMetrics")["metrics"]
         frames = self.page.evaluate("__cutcell.report().frames")
-        return {**{one["name"]: one["value"] for one in told}, "frames": frames}
+        return {**{one["name"]: one["value"] for one in metrics}, "frames": frames}
 
 
 TURNS = """async ([whole, steps]) => {

@@ -1,4 +1,4 @@
-"""How soon the Weights panel shows another falloff, on the whole page of a server of its own."""
+"""How soon the Weights panel shows another falloff, on the whole page of its own server."""
 
 from __future__ import annotations
 
@@ -33,9 +33,9 @@ def weights_table(browser: Browser, vertices: int, rounds: int) -> Table:
         rig = character(vertices)
         cutcell.save(path, replace(rig, weights=cutcell.bind(rig, 16).weights))
         with served(str(path)) as server:
-            taken = {
-                what: _moved(browser, server.address, slider, shown, rounds)
-                for what, (slider, shown) in SLIDERS.items()
+            times_of = {
+                what: _moved(browser, server.address, slider, colours, rounds)
+                for what, (slider, colours) in SLIDERS.items()
             }
     table = Table(
         "Another falloff",
@@ -44,13 +44,13 @@ def weights_table(browser: Browser, vertices: int, rounds: int) -> Table:
         "at 1100x720 pixels. From the key's event in the browser, through the server, to changed "
         "pixels: medians, the range in brackets.",
     )
-    for what, times in taken.items():
+    for what, times in times_of.items():
         table.add(what, Times(tuple(times)), f"{1000 * max(times):.0f} ms")
     return table
 
 
-def _moved(browser: Browser, address: str, slider: str, shown: str, rounds: int) -> list[float]:
-    visitor = Watched(browser, f"{address}/{START}&weights_shown={shown}", 1100, 720)
+def _moved(browser: Browser, address: str, slider: str, colours: str, rounds: int) -> list[float]:
+    visitor = Watched(browser, f"{address}/{START}&weights_shown={colours}", 1100, 720)
     page = visitor.page
     page.get_by_text("interior,").first.wait_for(timeout=90_000)
     page.wait_for_timeout(1500)  # the sidebar follows what was bound
@@ -58,11 +58,11 @@ def _moved(browser: Browser, address: str, slider: str, shown: str, rounds: int)
     key = "ArrowLeft" if slider == MOST else "Shift+ArrowRight"
     back = "ArrowRight" if slider == MOST else "Shift+ArrowLeft"
 
-    def seen(key: str) -> float:
+    def seconds_of(key: str) -> float:
         thumb.focus()
         return visitor.seen_after_key(key)
 
-    seen(key)  # not counted: the first one draws what was not drawn before
-    taken = [seen((back, key)[turn % 2]) for turn in range(rounds)]
+    seconds_of(key)  # not counted: the first one draws what was not drawn before
+    times_of = [seconds_of((back, key)[turn % 2]) for turn in range(rounds)]
     page.close()
-    return taken
+    return times_of

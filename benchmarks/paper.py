@@ -3,7 +3,7 @@
     python -m benchmarks.paper [PART...] [--rigs RIG...]
 
 Parts: construction, runtime, optimisation, gvb, deformation, unreachable; all when none is named,
-which takes an hour or two, most of it meshers and solvers. The first four are scripts of their own,
+which takes an hour or two, most of it meshers and solvers. The first four are separate scripts,
 run here with the options that the documents were printed with.
 """
 
@@ -42,12 +42,12 @@ SETS = ("rigs", "wild")
 
 def deformation_table(groups: dict[str, Sequence[Path]]) -> Table:
     """Measure the deformation error both ways."""
-    words = [f"{kind} {word}" for word in TURNED for kind in ("median", "mean")]
-    columns = ["set", "characters", "joints turned: deform, all", "method", *words]
+    title_words = [f"{kind} {word}" for word in TURNED for kind in ("median", "mean")]
+    columns = ["set", "characters", "joints turned: deform, all", "method", *title_words]
     note = "cm², R = 64. Over the characters of each set; the joints turned are means."
     table = Table("The deformation error both ways", columns, note)
     for group, paths in groups.items():
-        found: dict[str, list[list[float]]] = {name: [] for name in SIDES}
+        rows_of: dict[str, list[list[float]]] = {name: [] for name in SIDES}
         counts = []
         for path in paths:
             rig = cutcell.load(path)
@@ -57,14 +57,14 @@ def deformation_table(groups: dict[str, Sequence[Path]]) -> Table:
             for name in SIDES:
                 options = {} if name == "euclidean" else {"resolution": 64}
                 weights = METHODS[name](rig, **options).weights
-                found[name].append(
+                rows_of[name].append(
                     [
                         deformation_error(rig, weights, rig.weights, joints=word).mean
                         for word in TURNED
                     ]
                 )
         turned = ", ".join(f"{n:.0f}" for n in np.mean(counts, axis=0))
-        for name, rows in found.items():
+        for name, rows in rows_of.items():
             of = [f(rows, axis=0) for f in (np.median, np.mean)]
             cells = [f"{of[kind][k]:.2f}" for k in range(len(TURNED)) for kind in range(2)]
             table.add(group, len(counts), turned, name, *cells)
@@ -86,8 +86,8 @@ def unreachable_table(groups: dict[str, Sequence[Path]]) -> Table:
             name = path.parent.name if path.suffix == ".gltf" else path.stem
             shares[name] = float((distances.fallback == UNREACHED).mean())
         worst = max(shares, key=lambda name: shares[name])
-        some = sum(share > 0 for share in shares.values())
-        table.add(group, len(shares), some, f"{shares[worst]:.1%}", worst)
+        affected = sum(share > 0 for share in shares.values())
+        table.add(group, len(shares), affected, f"{shares[worst]:.1%}", worst)
     return table
 
 
@@ -98,8 +98,8 @@ def construction(rigs: Sequence[Path]) -> None:
 
 def stages(rigs: Sequence[Path]) -> None:
     """Print the paper's figure of time by stage."""
-    shown = map(str, rigs or _small())
-    runtime.main([*shown, "--resolutions", "32", "64", "128", "--out", str(PAPER)])
+    listed = map(str, rigs or _small())
+    runtime.main([*listed, "--resolutions", "32", "64", "128", "--out", str(PAPER)])
 
 
 def solvers(rigs: Sequence[Path]) -> None:
@@ -145,12 +145,12 @@ def _small() -> list[Path]:
     return [SHARED / "rigs" / f"{name}.glb" for name in SMALL]
 
 
-def main(given: Sequence[str] | None = None) -> None:
+def main(argv: Sequence[str] | None = None) -> None:
     """Read the command line, and print the parts."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.paper", description=__doc__)
     parser.add_argument("parts", nargs="*", metavar="PART", help=", ".join(PARTS))
     parser.add_argument("--rigs", nargs="*", type=Path, default=[])
-    options = parser.parse_args(given)
+    options = parser.parse_args(argv)
     if unknown := [name for name in options.parts if name not in PARTS]:
         parser.error(f"no part {unknown[0]}; there are {', '.join(PARTS)}")
     for name in options.parts or PARTS:

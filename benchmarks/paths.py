@@ -33,7 +33,7 @@ OUTSIDE = PIECES.index("outside")
 
 @dataclass(frozen=True)
 class Found:
-    """Of one rig: the largest distances outside in lattice cells, and what else is told."""
+    """Of one rig: the largest distances outside in lattice cells, and other measures."""
 
     inside: float
     told_outside: int
@@ -54,8 +54,8 @@ def outside_by(distances: BoneDistances, points: NDArray[np.float64]) -> NDArray
         # Where a mesh is open, the body ends in the air: there its edges inside tell where.
         inner = graph.edges[graph.edge_kind == 1]
         ends = np.hstack([inner, inner[:, 1:]]).astype(np.int64)  # as triangles without area
-        beside = igl.point_mesh_squared_distance(points[out], graph.nodes, ends)[0]
-        away[out] = np.sqrt(np.minimum(squared, beside)) * graph.lattice.resolution
+        to_edges = igl.point_mesh_squared_distance(points[out], graph.nodes, ends)[0]
+        away[out] = np.sqrt(np.minimum(squared, to_edges)) * graph.lattice.resolution
     return away
 
 
@@ -76,7 +76,7 @@ def measure(rig: cutcell.Rig, connectivity: int | str, paths: int, resolution: i
     rng = np.random.default_rng(17)
     joints = np.unique(distances.bones.joint)
     share = np.bincount(rng.integers(len(joints), size=paths), minlength=len(joints))
-    points, kinds, longer, spent, told = [], [], 0.0, 0.0, 0
+    points, kinds, longer, spent, outside_count = [], [], 0.0, 0.0, 0
     for joint, count in zip(joints.tolist(), share.tolist(), strict=True):
         field = distances.field(joint)
         reached = np.flatnonzero(np.isfinite(field[graph.vertex_node]))
@@ -86,12 +86,12 @@ def measure(rig: cutcell.Rig, connectivity: int | str, paths: int, resolution: i
             spent += time.perf_counter() - begin
             expected = field[graph.vertex_node[vertex]]
             longer = max(longer, path.length / max(expected, 1e-9) - 1)
-            told += bool((path.kinds == OUTSIDE).any())
-            own = samples_of(path, resolution)
-            points.append(own[0])
-            kinds.append(own[1])
+            outside_count += bool((path.kinds == OUTSIDE).any())
+            samples = samples_of(path, resolution)
+            points.append(samples[0])
+            kinds.append(samples[1])
     away, is_told = outside_by(distances, np.concatenate(points)), np.concatenate(kinds) == OUTSIDE
-    most = away[~is_told].max(initial=0), told, away[is_told].max(initial=0)
+    most = away[~is_told].max(initial=0), outside_count, away[is_told].max(initial=0)
     return Found(*most, longer, 1000 * spent / paths)
 
 
@@ -108,14 +108,14 @@ def path_table(
         "Paths stay inside",
         columns,
         f"{paths:,} random paths on each rig, R = {resolution}. `outside`: the largest distance of "
-        "any piece from the body, but of those told as outside: ways to a bone that is not in the "
-        "body. How many paths end in one, and how far out these run, is in the next columns.",
+        "any piece from the body, without those marked as outside: paths to a bone that is not in "
+        "the body. How many paths end in one, and how far out these run, is in the next columns.",
     )
     for rig in rigs:
         for connectivity in connectivities:
-            found = measure(rig, connectivity, paths, resolution)
-            cells = rig.name, connectivity, f"{found.inside:.2f}", found.told_outside
-            more = f"{found.to_bone:.2f}", f"{found.longer:.1%}", f"{found.milliseconds:.1f}"
+            rows = measure(rig, connectivity, paths, resolution)
+            cells = rig.name, connectivity, f"{rows.inside:.2f}", rows.told_outside
+            more = f"{rows.to_bone:.2f}", f"{rows.longer:.1%}", f"{rows.milliseconds:.1f}"
             table.add(*cells, *more)
             print(*cells, *more, flush=True)
     most = max(float(row[2]) for row in table.rows)
@@ -123,7 +123,7 @@ def path_table(
     return table
 
 
-def main(given: Sequence[str] | None = None) -> None:
+def main(argv: Sequence[str] | None = None) -> None:
     """Read the command line, measure, print."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("rigs", nargs="*", type=Path)
@@ -131,7 +131,7 @@ def main(given: Sequence[str] | None = None) -> None:
     parser.add_argument("--resolution", type=int, default=64)
     parser.add_argument("--connectivity", choices=[str(c) for c in CONNECTIVITIES])
     parser.add_argument("--out", type=Path, help="a document with marks for it")
-    options = parser.parse_args(given)
+    options = parser.parse_args(argv)
     rigs = [cutcell.load(path) for path in rig_paths(options.rigs)]
     chosen = [c for c in CONNECTIVITIES if options.connectivity in (None, str(c))]
     text = path_table(rigs, options.paths, options.resolution, chosen).markdown()

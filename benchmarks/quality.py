@@ -7,7 +7,7 @@
 The first form takes an hour or more, most of it tetrahedra, and keeps what it has in
 docs/quality.json after each rig: with --resume it goes on after what is there. It measures
 the rigs in ../shared/data/rigs; where ../shared/data/bone_heat holds Blender's automatic weights
-of a rig, they are a method of their own. With rigs named it only prints.
+of a rig, they are a separate method. With rigs named it only prints.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ from .shapes import small
 SAME_PLACE = 1e-4
 """Of the longest side: farther from every vertex of Blender's, one has no counterpart."""
 LIMIT = 300.0
-"""Seconds that a mesher or solver in a process of its own may take."""
+"""Seconds that a mesher or solver in a subprocess may take."""
 
 
 def blender(rig: Rig, folder: Path) -> BaselineBinding:
@@ -53,12 +53,12 @@ def blender(rig: Rig, folder: Path) -> BaselineBinding:
         column = columns(rig, [str(name) for name in data["joint_names"]])
         weights = data["weights"][row][:, column].astype(float)
         seconds = float(data["seconds"])
-    # Blender was not told which joints the artist left empty: their weight is dropped, but
+    # Blender did not know which joints the artist left empty: their weight is dropped, but
     # for vertices that have no other.
-    kept = np.where(rig.skeleton.deform, weights, 0)
-    kept = np.where(kept.any(axis=1, keepdims=True), kept, weights)
-    total = kept.sum(axis=1, keepdims=True)
-    weights = np.divide(kept, total, out=np.zeros_like(kept), where=total > 0)
+    carrying = np.where(rig.skeleton.deform, weights, 0)
+    carrying = np.where(carrying.any(axis=1, keepdims=True), carrying, weights)
+    total = carrying.sum(axis=1, keepdims=True)
+    weights = np.divide(carrying, total, out=np.zeros_like(carrying), where=total > 0)
     return BaselineBinding(weights, {"weights": seconds})
 
 
@@ -71,33 +71,33 @@ def columns(rig: Rig, names: list[str]) -> list[int]:
 
 def chosen(names: str | None, limit: float) -> dict:
     """Look methods up; all of them when none is named. Ends the script at an unknown one."""
-    known = {**METHODS, "blender": partial(blender, folder=SHARED / "bone_heat")}
-    wanted = list(known) if names is None else [name.strip() for name in names.split(",")]
-    if unknown := [name for name in wanted if name not in known]:
-        sys.exit(f"unknown: {', '.join(unknown)}; known: {', '.join(known)}")
+    available = {**METHODS, "blender": partial(blender, folder=SHARED / "bone_heat")}
+    requested = list(available) if names is None else [name.strip() for name in names.split(",")]
+    if unknown := [name for name in requested if name not in available]:
+        sys.exit(f"unknown: {', '.join(unknown)}; known: {', '.join(available)}")
     return {
-        name: partial(known[name], limit=limit)
-        if "limit" in signature(known[name]).parameters
-        else known[name]
-        for name in wanted
+        name: partial(available[name], limit=limit)
+        if "limit" in signature(available[name]).parameters
+        else available[name]
+        for name in requested
     }
 
 
 def measured(
-    paths: Sequence[Path], methods: dict, resolution: int, known: Comparison, keep: Path | None
+    paths: Sequence[Path], methods: dict, resolution: int, earlier: Comparison, keep: Path | None
 ) -> Comparison:
     """Compare rig by rig, and keep what there is after each."""
     for path in paths:
         print(path.stem, file=sys.stderr, flush=True)
         try:
-            found = compare([cutcell.load(path)], methods, resolution=resolution)
+            comparison = compare([cutcell.load(path)], methods, resolution=resolution)
         except cutcell.CutcellError as error:
             print(f"{path.name} is left out: {error}", file=sys.stderr, flush=True)
             continue
-        known = known.merged(found)
+        earlier = earlier.merged(comparison)
         if keep:
-            write_all({keep: (json.dumps(known.to_dict(), indent=1) + "\n").encode()})
-    return known
+            write_all({keep: (json.dumps(earlier.to_dict(), indent=1) + "\n").encode()})
+    return earlier
 
 
 def warm(methods: dict) -> None:
@@ -122,7 +122,7 @@ def write_docs(comparison: Comparison, docs: Path, resolution: int) -> None:
     plot_comparison(comparison, docs / "pictures" / "quality.png")
 
 
-def arguments(given: Sequence[str] | None) -> argparse.Namespace:
+def arguments(argv: Sequence[str] | None) -> argparse.Namespace:
     """Read the command line."""
     parser = argparse.ArgumentParser(
         prog="python -m benchmarks.quality",
@@ -137,36 +137,36 @@ def arguments(given: Sequence[str] | None) -> argparse.Namespace:
     parser.add_argument("--plot", type=Path, help="draw the figure into this file")
     parser.add_argument("--docs", type=Path, default=ROOT / "docs", help="the folder to write")
     parser.add_argument("--resume", action="store_true", help="skip rigs that are there already")
-    return parser.parse_args(given)
+    return parser.parse_args(argv)
 
 
-def main(given: Sequence[str] | None = None) -> None:
+def main(argv: Sequence[str] | None = None) -> None:
     """Read the command line, measure, print or write."""
-    options = arguments(given)
+    options = arguments(argv)
     methods = chosen(options.methods, options.limit)
     if options.rigs:
         warm(methods)
         none = Comparison((), ())
-        found = measured(options.rigs, methods, options.resolution, none, options.json)
-        print(comparison_markdown(found))
+        comparison = measured(options.rigs, methods, options.resolution, none, options.json)
+        print(comparison_markdown(comparison))
         if options.plot:
-            plot_comparison(found, options.plot)
+            plot_comparison(comparison, options.plot)
         return
     rigs = sorted((SHARED / "rigs").glob("*.glb"))
     if not rigs:
         sys.exit(f"there are no rigs in {SHARED / 'rigs'}; name some")
     keep = options.docs / "quality.json"
-    known = read(keep) if options.methods or options.resume else Comparison((), ())
+    earlier = read(keep) if options.methods or options.resume else Comparison((), ())
     if options.resume:
-        there = {
+        done = {
             rig.name
-            for rig in known.rigs
+            for rig in earlier.rigs
             if not set(methods) - {s.method for s in rig.scores if s.failed != "not measured"}
         }
-        rigs = [path for path in rigs if path.stem not in there]
+        rigs = [path for path in rigs if path.stem not in done]
     warm(methods)
-    found = measured(rigs, methods, options.resolution, known, keep)
-    write_docs(found, options.docs, options.resolution)
+    comparison = measured(rigs, methods, options.resolution, earlier, keep)
+    write_docs(comparison, options.docs, options.resolution)
 
 
 if __name__ == "__main__":

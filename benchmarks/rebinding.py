@@ -49,8 +49,8 @@ def rebinding_table(rigs: Sequence[cutcell.Rig], moves: int, resolution: int) ->
             again = cutcell.bind(moved, resolution, graph=binding.graph)
             spent.append(1000 * (time.perf_counter() - start))
             if move >= moves - 3:
-                wanted = cutcell.bind(moved, resolution).weights
-                off = max(off, float(np.abs(again.weights - wanted).max()))
+                changes = cutcell.bind(moved, resolution).weights
+                off = max(off, float(np.abs(again.weights - changes).max()))
         middle, slow = np.percentile(spent, [50, 95])
         counts = f"{len(rig.mesh.vertices):,}", len(joints)
         times = (f"{value:.0f}" for value in (1000 * fresh, middle, slow))
@@ -58,14 +58,14 @@ def rebinding_table(rigs: Sequence[cutcell.Rig], moves: int, resolution: int) ->
     return table
 
 
-def main(given: Sequence[str] | None = None) -> None:
+def main(argv: Sequence[str] | None = None) -> None:
     """Read the command line, measure, print."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("rigs", nargs="*", type=Path)
     parser.add_argument("--moves", type=int, default=40)
     parser.add_argument("--resolution", type=int, default=64)
     parser.add_argument("--out", type=Path, help="a document with marks for it")
-    options = parser.parse_args(given)
+    options = parser.parse_args(argv)
     rigs = [cutcell.load(path) for path in rig_paths(options.rigs)]
     text = rebinding_table(rigs, options.moves, options.resolution).markdown()
     print(text)

@@ -30,7 +30,7 @@ BONES_AT_ONCE = 8
 
 @dataclass
 class RecipeGraph:
-    """What the recipe builds: nodes (N, 3) in the unit cube, edges (E, 2), lengths (E,)."""
+    """The graph of the recipe: nodes (N, 3) in the unit cube, edges (E, 2), lengths (E,)."""
 
     nodes: np.ndarray
     edges: np.ndarray
@@ -108,9 +108,9 @@ def hits_open3d(vertices: np.ndarray, faces: np.ndarray, resolution: int, axis: 
     rays = np.zeros((resolution**2, 6), np.float32)
     rays[:, :3] = ray_origins(resolution, axis)
     rays[:, 3 + axis] = 1
-    found = scene.list_intersections(o3d.core.Tensor(rays))
+    hits = scene.list_intersections(o3d.core.Tensor(rays))
     names = ("ray_ids", "primitive_ids", "t_hit")
-    ray, triangle, travel = (found[name].numpy() for name in names)
+    ray, triangle, travel = (hits[name].numpy() for name in names)
     return ray.astype(np.int64), triangle.astype(np.int64), travel.astype(np.float64) - 0.25
 
 
@@ -164,8 +164,8 @@ def build_graph(
         triangles.append(triangle)
 
     number = igl.fast_winding_number(vertices, faces.astype(np.int64), np.concatenate(middles))
-    kept = np.concatenate(ends)[number >= threshold]
-    keys, inside = np.unique(kept, return_inverse=True)
+    inside_segments = np.concatenate(ends)[number >= threshold]
+    keys, inside = np.unique(inside_segments, return_inverse=True)
     inner, outer = keys[keys < cube], keys[keys >= cube] - cube
     points = np.stack(np.unravel_index(inner, (resolution,) * 3), axis=1)
     nodes = np.concatenate([vertices, (points + 0.5) / resolution, np.concatenate(spots)[outer]])

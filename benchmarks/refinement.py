@@ -85,9 +85,9 @@ def pairs_of(name: str, rig: Rig, resolution: int = ANIMATION.resolution) -> Pai
     distances = bone_distances(
         graph, rig.skeleton, nearest_joints=ANIMATION.joints_needed, allowed=rig.allowed
     )
-    surface, known = SurfaceOperators.of(graph), {}
-    rig_weights(distances, surface, record=lambda step, array: known.update({step: array.copy()}))
-    weights = known["rigid"]
+    surface, steps = SurfaceOperators.of(graph), {}
+    rig_weights(distances, surface, record=lambda step, array: steps.update({step: array.copy()}))
+    weights = steps["rigid"]
     order = np.argsort(-weights, axis=1, kind="stable")[:, :JOINTS]
     joint = np.pad(order, ((0, 0), (0, JOINTS - order.shape[1])), mode="edge")
     is_candidate = np.take_along_axis(weights, joint, axis=1) > LEAST
@@ -103,9 +103,9 @@ def pairs_of(name: str, rig: Rig, resolution: int = ANIMATION.resolution) -> Pai
         distances,
         joint,
         is_candidate,
-        _features(rig, distances, weights, known["radius"], joint),
+        _features(rig, distances, weights, steps["radius"], joint),
         np.where(is_candidate, target, 0).astype(np.float32),
-        np.abs(weights - known["spread"]).max(axis=1) > 1e-6,
+        np.abs(weights - steps["spread"]).max(axis=1) > 1e-6,
     )
 
 
@@ -205,10 +205,10 @@ class Corrector(torch.nn.Module):
         self, features: torch.Tensor, is_candidate: torch.Tensor, part: float = 1.0
     ) -> torch.Tensor:
         """Return weights, shape (k, JOINTS); `part` of the change is applied."""
-        seen = ((features - self.mean) / self.deviation).clamp(-4, 4)
+        scaled = ((features - self.mean) / self.deviation).clamp(-4, 4)
         if self.training:
-            seen = seen + 0.1 * torch.randn_like(seen)
-        each = torch.relu(self.pair(seen))
+            scaled = scaled + 0.1 * torch.randn_like(scaled)
+        each = torch.relu(self.pair(scaled))
         others = (each * is_candidate[..., None]).amax(1, keepdim=True).expand_as(each)
         hidden = torch.relu(self.vertex(self.drop(torch.cat([each, others], 2))))
         change = MOST * torch.tanh(self.change(self.drop(hidden))[..., 0] / MOST)
@@ -258,21 +258,21 @@ def _balance(names: Sequence[str]) -> NDArray[np.float32]:
     count = Counter(pack)
     balance = np.array([count[one] ** -0.5 for one in pack])
     his = np.array([maker(name) == ONE_MAKER for name in names])
-    for mine in (his, ~his):
-        if mine.any():
-            balance[mine] /= balance[mine].mean() * (2 * mine.mean() if his.any() else 1)
+    for group in (his, ~his):
+        if group.any():
+            balance[group] /= balance[group].mean() * (2 * group.mean() if his.any() else 1)
     return balance.astype(np.float32)
 
 
 def corrected(network: Corrector, pairs: Pairs, part: float) -> NDArray[np.float64]:
     """Return a character's weights, shape (n, j), as corrected and then cut off as in `bind`."""
     with torch.no_grad():
-        here = [torch.tensor(x) for x in (pairs.features, pairs.is_candidate)]
-        found, same = (network(*here, p).numpy().astype(float) for p in (part, 0.0))
-    found[pairs.is_rigid] = same[pairs.is_rigid]
-    found = np.maximum(found - TAIL * found.max(axis=1, keepdims=True), 0)
-    weights = np.zeros((len(found), len(pairs.rig.skeleton.joints)))
-    np.add.at(weights, (np.arange(len(found))[:, None], pairs.joint), found)
+        inputs = [torch.tensor(x) for x in (pairs.features, pairs.is_candidate)]
+        rows, same = (network(*inputs, p).numpy().astype(float) for p in (part, 0.0))
+    rows[pairs.is_rigid] = same[pairs.is_rigid]
+    rows = np.maximum(rows - TAIL * rows.max(axis=1, keepdims=True), 0)
+    weights = np.zeros((len(rows), len(pairs.rig.skeleton.joints)))
+    np.add.at(weights, (np.arange(len(rows))[:, None], pairs.joint), rows)
     weights /= weights.sum(axis=1, keepdims=True)
     weights = weights[pairs.distances.graph.vertex_node]
     if pairs.rig.allowed is not None:
@@ -281,7 +281,7 @@ def corrected(network: Corrector, pairs: Pairs, part: float) -> NDArray[np.float
 
 
 def maker(name: str) -> str:
-    """Tell by its file's name who made a character; those of train are all by one."""
+    """Return a character's maker by the name of its file; those of train are all by one."""
     if "__" in name or name.startswith(SAME_MAKER):
         return ONE_MAKER
     return name.split("_")[0]
@@ -290,11 +290,11 @@ def maker(name: str) -> str:
 def tables_of(
     before: dict[str, Score],
     after: dict[float, dict[str, Score]],
-    seen: dict[str, Score],
+    all_seen: dict[str, Score],
     characters: int,
     epochs: int,
 ) -> tuple[Table, Table]:
-    """List each character, and sum all up; `seen`: by a network that learned from all of them."""
+    """List each character, and sum up; `all_seen`: by a network trained on all of them."""
     heads = [f"{what}, {part:.0%}" for part in after for what in ("L1", "cm²")]
     note = (
         f"{characters} characters; {epochs} epochs for each maker left out. By the part of the "
@@ -303,15 +303,15 @@ def tables_of(
     each = Table("A network that corrects bind, each maker left out in turn", [
         "character", "L1, 0%", "cm², 0%", *heads], note)  # fmt: skip
     for name, alone in before.items():
-        found = [alone, *(scores[name] for scores in after.values())]
-        cells = [(f"{score.l1:.3f}", f"{score.deformation:.2f}") for score in found]
+        cells_of = [alone, *(scores[name] for scores in after.values())]
+        cells = [(f"{score.l1:.3f}", f"{score.deformation:.2f}") for score in cells_of]
         each.add(name, *(cell for pair in cells for cell in pair))
     columns = ["part", "L1 median", "L1 mean", "L1 worst", "cm² median", "cm² mean", "cm² worst"]
     overall = Table("All of them", [*columns, "L1 better", "L1 worse"],
         "Better, worse: by 0.005. Seen: by a network that learned from all of them.")  # fmt: skip
     first = np.array([score.l1 for score in before.values()])
     shares = {f"{part:.0%}": scores for part, scores in {0.0: before, **after}.items()}
-    for part, scores in {**shares, "100%, seen": seen}.items():
+    for part, scores in {**shares, "100%, seen": all_seen}.items():
         values = np.array([(score.l1, score.deformation) for score in scores.values()])
         l1, moved = values.T
         overall.add(
@@ -350,12 +350,12 @@ def main(arguments: Sequence[str] | None = None) -> None:
         print(f"{left_out} is left out", flush=True)
     after = {part: {name: scores[name] for name in before} for part, scores in after.items()}
     network = fit(every, options.epochs)
-    seen = {
+    all_seen = {
         pairs.name: score_of(pairs.rig, corrected(network, pairs, 1.0))
         for pairs in every
         if pairs.name in before
     }
-    tables = tables_of(before, after, seen, len(every), options.epochs)
+    tables = tables_of(before, after, all_seen, len(every), options.epochs)
     text = "\n\n".join(one.markdown() for one in tables)
     print(text)
     if options.out:

@@ -63,7 +63,7 @@ def _version(package: str) -> str:
         return "(not installed)"
 
 
-def arguments(given: Sequence[str] | None = None) -> argparse.Namespace:
+def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
     """Read the command line."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.report", description=__doc__)
     parser.add_argument("--out", type=Path, default=ROOT / "docs" / "performance.md")
@@ -72,47 +72,47 @@ def arguments(given: Sequence[str] | None = None) -> argparse.Namespace:
     parser.add_argument("--repeats", type=int, default=5)
     parser.add_argument("--parts", nargs="+", choices=PARTS, default=list(PARTS))
     parser.add_argument("--mesher-python", help="an interpreter that has pytetwild and tetgen")
-    return parser.parse_args(given)
+    return parser.parse_args(argv)
 
 
 def _speed(options: argparse.Namespace) -> list:
-    given = [str(path) for path in options.rigs]
+    argv = [str(path) for path in options.rigs]
     if options.quick:
-        given = given or [str(ROOT / "assets" / f"{name}.glb") for name in ("biped", "robot")]
-        given += ["--resolutions", "32", "--repeats", "1", "--mesher-limit", "20"]
+        argv = argv or [str(ROOT / "assets" / f"{name}.glb") for name in ("biped", "robot")]
+        argv += ["--resolutions", "32", "--repeats", "1", "--mesher-limit", "20"]
     else:
-        given += ["--repeats", str(options.repeats), "--cold"]
+        argv += ["--repeats", str(options.repeats), "--cold"]
     if options.mesher_python:
-        given += ["--mesher-python", options.mesher_python]
-    return speed.tables(speed.arguments(given))
+        argv += ["--mesher-python", options.mesher_python]
+    return speed.tables(speed.arguments(argv))
 
 
 def _accuracy(options: argparse.Namespace) -> list:
-    given = ["--resolutions", "16", "32"] if options.quick else ["--repeats", "3"]
-    return accuracy.tables(accuracy.arguments(given))
+    argv = ["--resolutions", "16", "32"] if options.quick else ["--repeats", "3"]
+    return accuracy.tables(accuracy.arguments(argv))
 
 
 def _growth(options: argparse.Namespace) -> list:
     few = {"--resolutions": ["16", "32", "64"], "--faces": ["1280", "5120"], "--bones": ["1", "4"]}
-    quick = [word for option, sizes in few.items() for word in (option, *sizes)]
-    return growth.tables(growth.arguments(quick if options.quick else []))
+    quick_arguments = [word for option, sizes in few.items() for word in (option, *sizes)]
+    return growth.tables(growth.arguments(quick_arguments if options.quick else []))
 
 
 def _memory(options: argparse.Namespace) -> list:
-    given = [str(path) for path in options.rigs]
+    argv = [str(path) for path in options.rigs]
     if options.quick:
-        given = given or [str(ROOT / "assets" / f"{name}.glb") for name in ("biped", "robot")]
-        given += ["--resolution", "64"]
-    return memory.tables(memory.arguments(given))
+        argv = argv or [str(ROOT / "assets" / f"{name}.glb") for name in ("biped", "robot")]
+        argv += ["--resolution", "64"]
+    return memory.tables(memory.arguments(argv))
 
 
 PARTS = {"speed": _speed, "accuracy": _accuracy, "growth": _growth, "memory": _memory}
 HEADINGS = {name: name.capitalize() for name in PARTS} | {"speed": "Speed beside peers"}
 
 
-def main(given: Sequence[str] | None = None) -> None:
+def main(argv: Sequence[str] | None = None) -> None:
     """Measure everything and write the report."""
-    options = arguments(given)
+    options = arguments(argv)
     date = datetime.date.today().isoformat()
     parts = [INTRODUCTION.format(date=date, machine=machine())]
     if options.quick:

@@ -31,7 +31,7 @@ class Character:
 def load_characters(paths: Sequence[str | Path] = ()) -> list[Character]:
     """Load rigs by path; all at hand when none is named.
 
-    These are the demo characters in assets/ and whatever lies in shared/data/rigs beside
+    These are the demo characters in assets/ and all rigs in shared/data/rigs beside
     the checkout.
     """
     return [

@@ -3,8 +3,7 @@
 python -m benchmarks.round_trip [FILE...] [--resolution 32] [--markdown OUT]
 
 Mesh, skeleton, clips and attachments must be equal, weights to the precision of the format, and
-Khronos' glTF validator must not find what it did not find in the file as it came. Ends with exit
-code 1 if anything differs.
+the glTF validator by Khronos must find nothing new. Ends with exit code 1 if anything differs.
 """
 
 from __future__ import annotations
@@ -91,7 +90,7 @@ def _differences_of_gltf(
     if len(rig.attachments) != len(again.attachments) or any(
         one.name != other.name
         or one.joint != other.joint
-        or not _same(one.mesh.vertices, _own(one, other, colored), **exact)
+        or not _same(one.mesh.vertices, _vertices(one, other, colored), **exact)
         for one, other in zip(rig.attachments, again.attachments, strict=True)
     ):
         yield "attachments"
@@ -99,15 +98,15 @@ def _differences_of_gltf(
         yield from _differences_of_documents(rig.source.document, again.source.document)
 
 
-def _own(one: cutcell.Attachment, other: cutcell.Attachment, colored: bool) -> np.ndarray:
+def _vertices(one: cutcell.Attachment, other: cutcell.Attachment, colored: bool) -> np.ndarray:
     """Return vertices; without copies at seams, which stand last where there are colours."""
     return other.mesh.vertices[: len(one.mesh.vertices) if colored else None]
 
 
 def _differences_of_documents(before: Document, after: Document) -> Iterator[str]:
     """Compare all accessors but those of the weights, and all images."""
-    found = [p["attributes"] for m in before.items("meshes") for p in m["primitives"]]
-    old = {v for a in found for k, v in a.items() if k.startswith(("JOINTS_", "WEIGHTS_"))}
+    table_ = [p["attributes"] for m in before.items("meshes") for p in m["primitives"]]
+    old = {v for a in table_ for k, v in a.items() if k.startswith(("JOINTS_", "WEIGHTS_"))}
     for i, accessor in enumerate(before.items("accessors")):
         if i in old:
             continue
@@ -152,7 +151,7 @@ def round_trip(path: Path, resolution: int, folder: Path) -> dict[str, str]:
     """
     rig = cutcell.load(path)
     rig = rig.with_weights(cutcell.bind(rig, resolution).weights)
-    told: dict[str, str] = {}
+    outcome: dict[str, str] = {}
     saved: list[Path] = []
     for kind in SAVED:
         if kind == ".vrm" and not is_avatar(rig):
@@ -162,28 +161,28 @@ def round_trip(path: Path, resolution: int, folder: Path) -> dict[str, str]:
         try:
             cutcell.save(out, rig)
             again = cutcell.load(out)
-            told[kind] = ", ".join(differences(rig, again, kind)) or "equal"
+            outcome[kind] = ", ".join(differences(rig, again, kind)) or "equal"
             twice = out.with_stem("twice")
             cutcell.save(twice, again)
         except cutcell.CutcellError as error:
-            told[kind] = str(error)
+            outcome[kind] = str(error)
             continue
         binary = rig.source is not None and kind in (".glb", ".vrm")
         if binary and twice.read_bytes() != out.read_bytes():
-            told[kind] += "; other bytes when it is saved again"
+            outcome[kind] += "; other bytes when it is saved again"
         if kind in GLTF:
             saved.append(out)
     comparable = path.suffix.lower() in GLTF
     before = findings(path)[0] if comparable else Counter()
     faults = ("error", "warning") if comparable else ("error",)
-    for out, found in zip(saved, findings(*saved), strict=True):
-        worse = found - before
+    for out, table_ in zip(saved, findings(*saved), strict=True):
+        worse = table_ - before
         severe = [f"{n} {what}" for what, n in worse.items() if what.startswith(faults)]
         if severe:
-            told[out.suffix] += "; new: " + ", ".join(severe)
+            outcome[out.suffix] += "; new: " + ", ".join(severe)
         elif worse:
-            told[out.suffix] += f" ({', '.join(f'{n} {what}' for what, n in worse.items())})"
-    return told
+            outcome[out.suffix] += f" ({', '.join(f'{n} {what}' for what, n in worse.items())})"
+    return outcome
 
 
 def files(paths: Sequence[Path] = ()) -> list[Path]:
@@ -198,7 +197,7 @@ def table(options: argparse.Namespace) -> tuple[Table, bool]:
     """Try all files; return the table, and whether all of it is equal."""
     paths = files(options.files)
     stems = Counter(path.stem for path in paths)
-    found = Table(
+    table_ = Table(
         "Round trips",
         ["file", *(kind[1:] for kind in SAVED)],
         f"Bound at R={options.resolution}, saved, and loaded again. In brackets: what "
@@ -209,31 +208,31 @@ def table(options: argparse.Namespace) -> tuple[Table, bool]:
         name = path.stem if stems[path.stem] == 1 else f"{path.parent.name}/{path.stem}"
         with tempfile.TemporaryDirectory(prefix="cutcell-round-trip-") as folder:
             try:
-                told = round_trip(path, options.resolution, Path(folder))
+                outcome = round_trip(path, options.resolution, Path(folder))
             except cutcell.CutcellError as error:
-                found.add(name, f"not loaded: {error}", *["-"] * (len(SAVED) - 1))
-                print(found.rows[-1], file=sys.stderr)
+                table_.add(name, f"not loaded: {error}", *["-"] * (len(SAVED) - 1))
+                print(table_.rows[-1], file=sys.stderr)
                 continue
-        good &= all(text == "equal" or text.startswith("equal (") for text in told.values())
-        found.add(name, *(told.get(kind, "-") for kind in SAVED))
-        print(found.rows[-1], file=sys.stderr)
-    return found, good
+        good &= all(text == "equal" or text.startswith("equal (") for text in outcome.values())
+        table_.add(name, *(outcome.get(kind, "-") for kind in SAVED))
+        print(table_.rows[-1], file=sys.stderr)
+    return table_, good
 
 
-def arguments(given: Sequence[str] | None = None) -> argparse.Namespace:
+def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
     """Read the command line."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.round_trip", description=__doc__)
     parser.add_argument("files", nargs="*", metavar="FILE", help="all at hand when left out")
     parser.add_argument("--resolution", type=int, default=32, metavar="R")
     parser.add_argument("--markdown", type=Path, metavar="OUT")
-    return parser.parse_args(given)
+    return parser.parse_args(argv)
 
 
-def main(given: Sequence[str] | None = None) -> int:
+def main(argv: Sequence[str] | None = None) -> int:
     """Print the table, and write it too if a file is named."""
-    options = arguments(given)
-    found, good = table(options)
-    publish([found], options.markdown)
+    options = arguments(argv)
+    table_, good = table(options)
+    publish([table_], options.markdown)
     return 0 if good else 1
 
 

@@ -29,7 +29,7 @@ def measured(
 ) -> dict[tuple[str, int], dict[str, float]]:
     """Run methods in turn; of each stage the least time, its mean over the rigs."""
     warm({name: METHODS[name] for name in SIDES})
-    found: dict[tuple[str, int], list[list[float]]] = {}
+    seconds_of: dict[tuple[str, int], list[list[float]]] = {}
     for character in characters:
         for resolution in resolutions:
             runs: dict[str, list[list[float]]] = {name: [] for name in SIDES}
@@ -40,32 +40,32 @@ def measured(
                     runs[name].append([spent[stage] for stage in STAGES])
             for name, rows in runs.items():
                 least = np.min(rows, axis=0).tolist()
-                found.setdefault((name, resolution), []).append(least)
+                seconds_of.setdefault((name, resolution), []).append(least)
     return {
         key: dict(zip(STAGES, np.mean(rows, axis=0).tolist(), strict=True))
-        for key, rows in found.items()
+        for key, rows in seconds_of.items()
     }
 
 
-def stage_table(found: dict[tuple[str, int], dict[str, float]], rigs: int) -> Table:
+def stage_table(seconds_of: dict[tuple[str, int], dict[str, float]], rigs: int) -> Table:
     """Write a row for each method and resolution."""
     note = f"The least of several runs in turn, averaged over {rigs} rigs."
     table = Table("Time by stage, over R", ["method", "R", *STAGES, "all"], note)
     for (name, resolution), spent in sorted(
-        found.items(), key=lambda item: (item[0][1], SIDES.index(item[0][0]))
+        seconds_of.items(), key=lambda item: (item[0][1], SIDES.index(item[0][0]))
     ):
         table.add(name, resolution, *map(seconds, spent.values()), seconds(sum(spent.values())))
     return table
 
 
-def plot(found: dict[tuple[str, int], dict[str, float]], path: Path) -> None:
+def plot(seconds_of: dict[tuple[str, int], dict[str, float]], path: Path) -> None:
     """Draw bars of stages on top of each other."""
-    resolutions = sorted({resolution for _, resolution in found})
+    resolutions = sorted({resolution for _, resolution in seconds_of})
     figure, axes = styled(1, len(resolutions), (2.6 * len(resolutions), 3.2))
     for panel, resolution in zip(axes, resolutions, strict=True):
         base = np.zeros(len(SIDES))
         for stage in STAGES:
-            height = np.array([found[name, resolution][stage] for name in SIDES]) * 1e3
+            height = np.array([seconds_of[name, resolution][stage] for name in SIDES]) * 1e3
             color = STAGE_COLORS[stage]
             panel.bar(range(len(SIDES)), height, 0.66, bottom=base, color=color, label=stage)
             base += height
@@ -76,7 +76,7 @@ def plot(found: dict[tuple[str, int], dict[str, float]], path: Path) -> None:
     save(figure, path, bottom=0.09)
 
 
-def main(given: Sequence[str] | None = None) -> None:
+def main(argv: Sequence[str] | None = None) -> None:
     """Read the command line, measure, print."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.runtime", description=__doc__)
     parser.add_argument("rigs", nargs="*", help="all at hand when left out")
@@ -84,13 +84,13 @@ def main(given: Sequence[str] | None = None) -> None:
     parser.add_argument("--repeats", type=int, default=3)
     parser.add_argument("--plot", type=Path)
     parser.add_argument("--out", type=Path, help="a document with marks for it")
-    options = parser.parse_args(given)
+    options = parser.parse_args(argv)
     characters = load_characters(options.rigs)
-    found = measured(characters, options.resolutions, options.repeats)
-    text = stage_table(found, len(characters)).markdown()
+    seconds_of = measured(characters, options.resolutions, options.repeats)
+    text = stage_table(seconds_of, len(characters)).markdown()
     print(text)
     if options.plot:
-        plot(found, options.plot)
+        plot(seconds_of, options.plot)
     if options.out:
         fill(options.out, {"runtime": text})
 

@@ -63,25 +63,25 @@ def sessions_table(options: argparse.Namespace) -> Table:
             table.add(f"each with {does}: one came and left", f"{before:.0f}", "-")
             for turn in range(options.rounds):
                 visitors = visit(server, count, query)
-                held = server.megabytes()
-                each = (held - before) / count
-                table.add(f"{count} sessions, round {turn + 1}", f"{held:.0f}", f"{each:.1f}")
+                bytes_held = server.megabytes()
+                each = (bytes_held - before) / count
+                table.add(f"{count} sessions, round {turn + 1}", f"{bytes_held:.0f}", f"{each:.1f}")
                 table.add("they left", f"{leave(server, visitors):.0f}", "-")
     return table
 
 
-def arguments(given: Sequence[str] | None = None) -> argparse.Namespace:
+def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
     """Read the command line."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.sessions", description=__doc__)
     parser.add_argument("--sessions", type=int, default=20)
     parser.add_argument("--rounds", type=int, default=2)
     parser.add_argument("--write", action="store_true", help="into docs/page-speed.md")
-    return parser.parse_args(given)
+    return parser.parse_args(argv)
 
 
-def main(given: Sequence[str] | None = None) -> None:
+def main(argv: Sequence[str] | None = None) -> None:
     """Print the table."""
-    options = arguments(given)
+    options = arguments(argv)
     text = f"{circumstances()}\n\n{sessions_table(options).markdown()}\n"
     print(text, end="")
     if options.write:

@@ -38,25 +38,25 @@ class Sheet:
         against = [f"{first} vs {peer}" for peer in ratios]
         self.table = Table(title, ["rig", "R", first, *peers, *against], note)
         self.first, self.ratios, self.peers = first, ratios, peers
-        self.seen: dict[int, list[tuple[list[float], list[float]]]] = {}
+        self.rows: dict[int, list[tuple[list[float], list[float]]]] = {}
 
     def add(self, rig: str, resolution: int, times: dict[str, Times | None]) -> None:
         """Append the times of one rig; a peer that is not there is shown as a dash."""
-        mine = times[self.first]
-        assert mine is not None
-        taken = [times.get(name) for name in (self.first, *self.peers)]
+        first_times = times[self.first]
+        assert first_times is not None
+        row_times = [times.get(name) for name in (self.first, *self.peers)]
         against = [times.get(name) for name in self.ratios]
-        medians = [t.median if t else np.nan for t in taken]
-        faster = [t.median / mine.median if t else np.nan for t in against]
-        self.seen.setdefault(resolution, []).append((medians, faster))
+        medians = [t.median if t else np.nan for t in row_times]
+        faster = [t.median / first_times.median if t else np.nan for t in against]
+        self.rows.setdefault(resolution, []).append((medians, faster))
         self.table.add(
-            rig, resolution, *(str(t) if t else "-" for t in taken), *map(_ratio_cell, faster)
+            rig, resolution, *(str(t) if t else "-" for t in row_times), *map(_ratio_cell, faster)
         )
         print(f"{self.table.title}: {rig}, R={resolution}", file=sys.stderr, flush=True)
 
     def finish(self) -> Table:
         """Add the medians over all rigs, and the least ratio in brackets."""
-        for resolution, rows in self.seen.items():
+        for resolution, rows in self.rows.items():
             medians, faster = (np.array([row[k] for row in rows]) for k in range(2))
             cells = [seconds(x) if np.isfinite(x) else "-" for x in _medians(medians)]
             least = np.where(np.isfinite(faster), faster, np.inf).min(axis=0)
@@ -69,8 +69,8 @@ class Sheet:
 
 
 def _medians(values: np.ndarray) -> np.ndarray:
-    known = [column[np.isfinite(column)] for column in values.T]
-    return np.array([np.median(column) if len(column) else np.nan for column in known])
+    finite = [column[np.isfinite(column)] for column in values.T]
+    return np.array([np.median(column) if len(column) else np.nan for column in finite])
 
 
 def _ratio_cell(value: float) -> str:
@@ -193,12 +193,12 @@ def distances_table(
     return table
 
 
-def _difference(found: np.ndarray, exact: np.ndarray) -> float:
-    known = np.isfinite(exact)
-    if (np.isfinite(found) != known).any():
+def _difference(distances: np.ndarray, exact: np.ndarray) -> float:
+    finite = np.isfinite(exact)
+    if (np.isfinite(distances) != finite).any():
         return np.inf
-    scale = np.maximum(exact[known], 1e-9)
-    return float((np.abs(found[known] - exact[known]) / scale).max(initial=0))
+    scale = np.maximum(exact[finite], 1e-9)
+    return float((np.abs(distances[finite] - exact[finite]) / scale).max(initial=0))
 
 
 def bind_table(characters: list[Character], options: argparse.Namespace) -> Table:
@@ -242,7 +242,7 @@ TABLES = {
 
 
 def has_open3d() -> bool:
-    """Tell whether Open3D can be loaded."""
+    """Return whether Open3D can be loaded."""
     try:
         import open3d  # noqa: F401
     except (ImportError, OSError):
@@ -310,7 +310,7 @@ def _timed(ways, options) -> dict[str, Times]:
     return in_turn(ways, options.repeats, options.patience)
 
 
-def arguments(given: Sequence[str] | None = None) -> argparse.Namespace:
+def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
     """Read the command line."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.speed", description=__doc__)
     parser.add_argument("rigs", nargs="*", metavar="RIG", help="all at hand when left out")
@@ -322,7 +322,7 @@ def arguments(given: Sequence[str] | None = None) -> argparse.Namespace:
     parser.add_argument("--mesher-limit", type=float, default=120, help="seconds for one mesh")
     parser.add_argument("--cold", action="store_true", help="also time the very first compile")
     parser.add_argument("--markdown", type=Path, metavar="OUT")
-    return parser.parse_args(given)
+    return parser.parse_args(argv)
 
 
 def tables(options: argparse.Namespace) -> list[Table]:
@@ -332,9 +332,9 @@ def tables(options: argparse.Namespace) -> list[Table]:
     return [TABLES[name](characters, options) for name in options.tables]
 
 
-def main(given: Sequence[str] | None = None) -> None:
+def main(argv: Sequence[str] | None = None) -> None:
     """Print the tables, and write them too if a file is named."""
-    options = arguments(given)
+    options = arguments(argv)
     publish(tables(options), options.markdown)
 
 

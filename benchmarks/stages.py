@@ -49,9 +49,9 @@ def decide(
 def midpoints(prepared: Prepared, crossings: list[RayHits]) -> np.ndarray:
     """List the midpoints between the first and last crossing of each ray, shape (q, 3)."""
     points = []
-    for axis, found in enumerate(crossings):
-        pieces = list_segments(found, prepared.resolution, closed=True)
-        begins, ends = found.start[pieces.ray], found.start[pieces.ray + 1]
+    for axis, midpoints_of in enumerate(crossings):
+        pieces = list_segments(midpoints_of, prepared.resolution, closed=True)
+        begins, ends = midpoints_of.start[pieces.ray], midpoints_of.start[pieces.ray + 1]
         between = (pieces.gap > begins) & (pieces.gap < ends)
         points.append(pieces.points(prepared.resolution, axis)[between])
     return np.concatenate(points)

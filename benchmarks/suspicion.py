@@ -1,4 +1,4 @@
-"""What `cutcell.diagnose` finds suspicious in weights of artists, and in those of other methods.
+"""Suspicious weights, by `cutcell.diagnose`, of artists, and in those of other methods.
 
     python -m benchmarks.suspicion [RIG ...] [--resolution 64] [--out docs/diagnose.md]
 
@@ -64,10 +64,10 @@ def suspicion_tables(paths: Sequence[Path], resolution: int) -> list[Table]:
             weights = weights_of(rig, method, resolution)
             if weights is None:
                 continue
-            found = cutcell.diagnose(rig.with_weights(weights), resolution)
-            grave = [code in found and found[code].severity == "warning" for code in CODES]
+            results = cutcell.diagnose(rig.with_weights(weights), resolution)
+            grave = [code in results and results[code].severity == "warning" for code in CODES]
             often[method] += [1, any(grave), *grave]
-            row = name, method, *(_cell(found, code) for code in CODES)
+            row = name, method, *(_cell(results, code) for code in CODES)
             each.add(*row)
             print(*row, flush=True)
     summary = Table(
@@ -80,20 +80,20 @@ def suspicion_tables(paths: Sequence[Path], resolution: int) -> list[Table]:
     return [summary, each]
 
 
-def _cell(found: cutcell.Diagnosis, code: str) -> str:
-    if code not in found:
+def _cell(results: cutcell.Diagnosis, code: str) -> str:
+    if code not in results:
         return "-"
-    finding = found[code]
+    finding = results[code]
     return f"{len(finding.vertices):,}" + "!" * (finding.severity == "warning")
 
 
-def main(given: Sequence[str] | None = None) -> None:
+def main(argv: Sequence[str] | None = None) -> None:
     """Read the command line, examine, print."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("rigs", nargs="*", type=Path)
     parser.add_argument("--resolution", type=int, default=64)
     parser.add_argument("--out", type=Path, help="a document with marks for it")
-    options = parser.parse_args(given)
+    options = parser.parse_args(argv)
     paths = options.rigs or [*rig_paths(), *wild_paths()]
     text = "\n\n".join(table.markdown() for table in suspicion_tables(paths, options.resolution))
     print(text)

@@ -1,4 +1,4 @@
-"""Tables as Markdown, for people and for docs/."""
+"""Tables as Markdown."""
 
 from __future__ import annotations
 

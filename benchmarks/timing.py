@@ -47,18 +47,18 @@ def in_turn(
     patience : float
         Seconds after which one of them is not run again; its first run then counts.
     """
-    taken: dict[str, list[float]] = {name: [] for name in ways}
+    times_of: dict[str, list[float]] = {name: [] for name in ways}
     first: dict[str, float] = {}
     for turn in range(repeats + 1):
         for name, call in ways.items():
-            if turn and first[name] + sum(taken[name]) > patience:
+            if turn and first[name] + sum(times_of[name]) > patience:
                 continue
             gc.collect()
             begin = perf_counter()
             call()
             spent = perf_counter() - begin
             if turn:
-                taken[name].append(spent)
+                times_of[name].append(spent)
             else:
                 first[name] = spent
-    return {name: Times(tuple(taken[name] or [first[name]])) for name in ways}
+    return {name: Times(tuple(times_of[name] or [first[name]])) for name in ways}

@@ -122,7 +122,7 @@ class Tube:
         return centre + x[..., None] * normal + z[..., None] * np.array([0.0, 0.0, 1.0])
 
     def mesh(self, begin: float, end: float, along: int, around: int, closed: bool):
-        """Mesh the tube; returns vertices, faces, and each vertex' parameter and (x, z)."""
+        """Mesh the tube; returns vertices, faces, and the parameter of each vertex and (x, z)."""
         t = np.linspace(begin, end, along, endpoint=not closed)
         angle = np.arange(around) * 2 * np.pi / around
         x, z = self.radius * np.cos(angle), self.radius * np.sin(angle)
@@ -195,11 +195,11 @@ def _pieces(centre, normal, place, direction):
     for k in range(len(direction)):
         squared = 0.0
         for d in range(3):
-            there = centre[k + 1, d] + place[k + 1, 0] * normal[k + 1, d]
-            here = centre[k, d] + place[k, 0] * normal[k, d]
+            end = centre[k + 1, d] + place[k + 1, 0] * normal[k + 1, d]
+            start = centre[k, d] + place[k, 0] * normal[k, d]
             if d == 2:
-                there, here = there + place[k + 1, 1], here + place[k, 1]
-            direction[k, d] = there - here
+                end, start = end + place[k + 1, 1], start + place[k, 1]
+            direction[k, d] = end - start
             squared += direction[k, d] ** 2
         size = max(np.sqrt(squared), 1e-12)
         for d in range(3):
@@ -213,7 +213,7 @@ def torus(along: int = 192, around: int = 48) -> Shape:
     tube = Tube(_circle, 0.14)
     vertices, faces, t, place = tube.mesh(0, 2 * np.pi, along, around, closed=True)
     sources = np.array([[0.02, 0.01, 0.02], [1.0, -0.05, 0.06]])
-    targets = _some(len(vertices))
+    targets = _sample(len(vertices))
     ends = np.column_stack([t, place])[targets]
     distance = []
     for source in sources:
@@ -239,7 +239,7 @@ def spiral(along: int = 480, around: int = 24) -> Shape:
     tube = Tube(_spiral, 0.035)
     vertices, faces, t, place = tube.mesh(SPIRAL[0], SPIRAL[1], along, around, closed=False)
     source = np.array([SPIRAL[0] + 0.05, 0.005, 0.003])
-    targets = _some(len(vertices))
+    targets = _sample(len(vertices))
     targets = targets[t[targets] > source[0] + 0.02]
     ends = np.column_stack([t, place])[targets]
     # Pieces of a long path that turn as little as those of the torus.
@@ -265,7 +265,7 @@ def _spiral(t):
     return centre, normal
 
 
-def _some(count: int) -> np.ndarray:
+def _sample(count: int) -> np.ndarray:
     chosen = np.random.default_rng(0).choice(count, min(TARGETS, count), replace=False)
     return np.sort(chosen)
 

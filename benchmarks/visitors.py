@@ -28,7 +28,7 @@ BOUND = r"interior, .* surface"
 
 
 class Server:
-    """A server of the page, as a process of its own."""
+    """A server of the page, as a subprocess."""
 
     def __init__(self, address: str, process: psutil.Process) -> None:
         self.address = address
@@ -49,10 +49,10 @@ def served(*arguments: str, **environment: str) -> Iterator[Server]:
     assert process.stdout is not None
     try:
         line = process.stdout.readline()
-        found = re.search(r"http://\S+", line)
-        if not found:
+        match = re.search(r"http://\S+", line)
+        if not match:
             raise RuntimeError(f"the server did not start: {line}")
-        yield Server(found.group(), psutil.Process(process.pid))
+        yield Server(match.group(), psutil.Process(process.pid))
     finally:
         process.terminate()
         process.wait(20)
@@ -73,16 +73,16 @@ class Visitor:
     def __init__(self, address: str, query: str = "") -> None:
         self.heard: list[str] = []
         self._count = 0
-        self._news = threading.Event()
+        self._arrived = threading.Event()
         self._socket = _wait(self._connect(address, query))
         self._listening = asyncio.run_coroutine_threadsafe(self._listen(), _loop())
         self.wait_for('"ACK"')
         self._send("PULL-DOC-REQ", {})
         whole = self.wait_for('"doc":')
-        found = re.search(r'"id":"(p\d+)","attributes":\{"name":"SceneView"', whole)
-        if not found:
+        match = re.search(r'"id":"(p\d+)","attributes":\{"name":"SceneView"', whole)
+        if not match:
             raise RuntimeError("there is no view on the page")
-        self.view = found.group(1)
+        self.view = match.group(1)
         self._event("document_ready", [])
         self.tell(type="ready", width=1200)
 
@@ -93,14 +93,14 @@ class Visitor:
 
     def wait_for(self, pattern: str, seconds: float = PATIENCE) -> str:
         """Wait until the server sends something that matches; return that message."""
-        end, seen = time.monotonic() + seconds, 0
+        end, checked = time.monotonic() + seconds, 0
         while time.monotonic() < end:
-            self._news.clear()
-            for text in self.heard[seen:]:
+            self._arrived.clear()
+            for text in self.heard[checked:]:
                 if re.search(pattern, text):
                     return text
-            seen = len(self.heard)
-            self._news.wait(0.5)
+            checked = len(self.heard)
+            self._arrived.wait(0.5)
         raise TimeoutError(f"the server did not say {pattern}")
 
     def close(self) -> None:
@@ -133,7 +133,7 @@ class Visitor:
         while (part := await self._socket.read_message()) is not None:
             if isinstance(part, str):
                 self.heard.append(part)
-                self._news.set()
+                self._arrived.set()
 
     def _send(self, kind: str, content: dict[str, Any]) -> None:
         self._count += 1

@@ -1,4 +1,4 @@
-"""Measure our weights on every character at hand, by its makers' joints and as a fresh character.
+"""Measure our weights on all characters, with the joints of their makers and as fresh ones.
 
     python -m benchmarks.wild [SET...] [--resolution 64] [--out docs/quality.md]
 
@@ -80,7 +80,7 @@ def score_of(rig: Rig, weights: np.ndarray) -> Score:
 
 
 def characters(group: str) -> Iterator[tuple[str, Rig]]:
-    """Load those of a set that have weights; of the others it is told why they are left out."""
+    """Load those of a set that have weights; reports why others are left out."""
     for path in files_of(group):
         # A glTF in parts is named by its folder: its document is often called scene.
         name = path.parent.name if path.suffix == ".gltf" else path.stem
@@ -98,22 +98,22 @@ def characters(group: str) -> Iterator[tuple[str, Rig]]:
 def results(group: str, resolution: int) -> Iterator[Result]:
     """Measure a set, telling of each character."""
     for name, rig in characters(group):
-        found = measure(rig, name, resolution)
-        known, fresh = (found.scores[mode] for mode in MODES)
+        result = measure(rig, name, resolution)
+        by_makers, fresh = (result.scores[mode] for mode in MODES)
         print(
-            f"{group} {name}: known {known.l1:.3f} {known.deformation:.2f}, "
+            f"{group} {name}: known {by_makers.l1:.3f} {by_makers.deformation:.2f}, "
             f"fresh {fresh.l1:.3f} {fresh.deformation:.2f}",
             flush=True,
         )
-        yield found
+        yield result
 
 
-def each_table(group: str, found: Sequence[Result]) -> Table:
+def each_table(group: str, result: Sequence[Result]) -> Table:
     """List the characters of a set."""
     columns = ["character", "vertices", "joints", "guessed otherwise"]
     columns += [f"{mode} {what}" for mode in MODES for what in ("L1", "cm²", "joints")]
     table = Table(group, columns)
-    for one in found:
+    for one in result:
         table.add(
             one.name,
             f"{one.vertices:,}",
@@ -137,14 +137,14 @@ def summary(groups: dict[str, list[Result]]) -> Table:
     columns = ["set", "characters", "joints", "L1 median", "L1 mean"]
     columns += ["cm² median", "cm² mean", "cm² worst", "joints of a vertex"]
     table = Table("All sets", columns)
-    for group, found in groups.items():
+    for group, result in groups.items():
         for mode in MODES:
             l1, deformation, influences = np.array(
-                [(s.l1, s.deformation, s.influences) for s in (one.scores[mode] for one in found)]
+                [(s.l1, s.deformation, s.influences) for s in (one.scores[mode] for one in result)]
             ).T
             table.add(
                 group,
-                len(found),
+                len(result),
                 mode,
                 f"{np.median(l1):.3f}",
                 f"{l1.mean():.3f}",
@@ -166,10 +166,10 @@ def main(arguments: Sequence[str] | None = None) -> None:
     if unknown := [name for name in options.sets if name not in SETS]:
         parser.error(f"no set {unknown[0]}; there are {', '.join(SETS)}")
     groups = {group: list(results(group, options.resolution)) for group in options.sets or SETS}
-    groups = {group: found for group, found in groups.items() if found}
+    groups = {group: result for group, result in groups.items() if result}
     if not groups:
         parser.error(f"no characters in {SHARED}")
-    tables = {group: each_table(group, found).markdown() for group, found in groups.items()}
+    tables = {group: each_table(group, result).markdown() for group, result in groups.items()}
     overall = summary(groups).markdown()
     print("\n\n".join([overall, *tables.values()]))
     if options.out:  # of the train set, which is long and by one maker, only the summary

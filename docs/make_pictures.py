@@ -76,9 +76,9 @@ def figures() -> None:
     document = (ROOT / "docs" / "pictures.md").read_text(encoding="utf-8")
     for command in re.findall(r"^cutcell render (.* figure-.*)$", document, re.MULTILINE):
         rig, out, *options = command.split()
-        given = [str(demo_path(rig.removesuffix(".glb"))), str(PICTURES / out), *options]
+        argv = [str(demo_path(rig.removesuffix(".glb"))), str(PICTURES / out), *options]
         size = "x".join(map(str, SIZE))
-        done = [sys.executable, "-m", "cutcell", "render", *given, "--quiet", "--size", size]
+        done = [sys.executable, "-m", "cutcell", "render", *argv, "--quiet", "--size", size]
         subprocess.run(done, check=True, cwd=ROOT)
 
 

@@ -16,7 +16,7 @@ TEXT = (ROOT / "docs" / "paper.md").read_text(encoding="utf-8")
 TEX = ROOT.parent / "shared" / "paper" / "cut-cell-prior.tex"
 PACKAGES = {"viewers": "cutcell_viewers", "app": "cutcell_app"}
 VERDICTS = {"yes", "partly", "no", "not tried"}
-HEADS = ["paper", "what", "where", "by", "what came out", "agrees"]
+HEADS = ["paper", "what", "where", "by", "result", "agrees"]
 LABELS = [
     "alg:cutcell_graph",
     "alg:cutcell_bonedist",

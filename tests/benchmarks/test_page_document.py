@@ -11,4 +11,4 @@ def test_all_tables_have_their_place(tmp_path):
     fill(copy, {"page": "| one |", "joints": "| three |", "sessions": "| two |"})
     text = copy.read_text()
     assert text.index("<!-- page -->\n| one |") < text.index("<!-- sessions -->\n| two |")
-    assert text.startswith("# How soon")
+    assert text.startswith("# Page latency")

@@ -5,7 +5,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from benchmarks.page_subjects import material, ours, theirs
+from benchmarks.page_subjects import cutcell_subject, material, vtk_subject
 
 
 @pytest.fixture(scope="module")
@@ -13,7 +13,7 @@ def small():
     return material(8, 900)
 
 
-@pytest.mark.parametrize("side", [ours, theirs])
+@pytest.mark.parametrize("side", [cutcell_subject, vtk_subject])
 def test_a_subject_changes(side, small):
     subject = side(small)
     assert subject.page() is not None
