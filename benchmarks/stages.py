@@ -2,56 +2,38 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from cutcell import TriangleMesh
-from cutcell.geometry.weld import weld
-from cutcell.graph import Lattice
-from cutcell.graph.fast_winding import list_segments
 from cutcell.graph.rays import RayHits, cast_all_rays
-from cutcell.graph.winding.boundary import find_boundary
-from cutcell.graph.winding.intervals import InsideIntervals, inside_intervals
+from cutcell.graph.segments import InsideIntervals, divide_rays
+from cutcell.graph.surface import Surface, prepare_surface
+from cutcell.graph.winding.treecode.intervals import treecode_intervals
 
 
-@dataclass(frozen=True)
-class Prepared:
-    """A mesh in the unit cube, welded."""
-
-    vertices: np.ndarray
-    faces: np.ndarray
-    resolution: int
+def prepare(mesh: TriangleMesh, resolution: int) -> Surface:
+    """Scale and weld a mesh as `build_graph` does; its faces stay as they are."""
+    return prepare_surface(mesh, resolution, orient=False)
 
 
-def prepare(mesh: TriangleMesh, resolution: int) -> Prepared:
-    """Scale and weld a mesh as `build_graph` does."""
-    lattice = Lattice.around(mesh, resolution)
-    vertices, index = weld(lattice.to_unit(mesh.vertices))
-    return Prepared(vertices, index[mesh.faces], lattice.resolution)
-
-
-def cast(prepared: Prepared) -> list[RayHits]:
+def cast(prepared: Surface) -> list[RayHits]:
     """Cast the rays of all three axes."""
     return cast_all_rays(prepared.vertices, prepared.faces, prepared.resolution)
 
 
-def decide(
-    prepared: Prepared, crossings: list[RayHits], threshold: float = 0.5
-) -> list[InsideIntervals]:
+def decide(prepared: Surface, hits: list[RayHits], threshold: float = 0.5) -> list[InsideIntervals]:
     """Decide which segments are inside, along all three axes."""
-    boundary = find_boundary(prepared.faces)
-    return inside_intervals(
-        prepared.vertices, prepared.faces, crossings, boundary, prepared.resolution, threshold
-    )
+    return treecode_intervals(prepared, hits, threshold)
 
 
-def midpoints(prepared: Prepared, crossings: list[RayHits]) -> np.ndarray:
-    """List the midpoints between the first and last crossing of each ray, shape (q, 3)."""
+def midpoints(prepared: Surface, hits: list[RayHits]) -> np.ndarray:
+    """List the midpoints between the first and last hit of each ray, shape (q, 3)."""
     points = []
-    for axis, midpoints_of in enumerate(crossings):
-        pieces = list_segments(midpoints_of, prepared.resolution, closed=True)
-        begins, ends = midpoints_of.start[pieces.ray], midpoints_of.start[pieces.ray + 1]
-        between = (pieces.gap > begins) & (pieces.gap < ends)
-        points.append(pieces.points(prepared.resolution, axis)[between])
+    for axis, along in enumerate(hits):
+        rays = np.flatnonzero(np.diff(along.start))
+        segments = divide_rays(along, rays, prepared.resolution)
+        begins, ends = along.start[segments.ray], along.start[segments.ray + 1]
+        between = (segments.gap > begins) & (segments.gap < ends)
+        middle = (segments.low + segments.high) / 2
+        points.append(segments.points(middle, prepared.resolution, axis)[between])
     return np.concatenate(points)

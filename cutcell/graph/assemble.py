@@ -12,56 +12,46 @@ from ..runtime.threads import in_threads
 from .cutcell_graph import INTERIOR, MESH, SURFACE, CutCellGraph
 from .inside_edges import diagonal_edges, edge_starts, fill_edges, lattice_steps
 from .interior import interior_points
-from .lattice import Lattice
-from .memory import check_memory
+from .memory import check_nodes
 from .rays import AXES, RayHits
-from .winding.intervals import InsideIntervals
-from .winding.segments import NONE
+from .segments import NONE, InsideIntervals
+from .surface import Surface
 
 
 def assemble(
-    vertices: NDArray[np.float64],
-    vertex_node: NDArray[np.int32],
-    faces: NDArray[np.int32],
-    mesh_edges: NDArray[np.int32],
-    is_closed: bool,
+    surface: Surface,
     hits: Sequence[RayHits],
     inside: Sequence[InsideIntervals],
-    lattice: Lattice,
     connectivity: int | str,
-    inverted: NDArray[np.bool_],
     winding_threshold: float,
 ) -> CutCellGraph:
-    """Build the graph from the hits of the rays and their intervals inside.
-
-    Shapes: vertices (n, 3), inverted (m,).
-    """
-    resolution = lattice.resolution
+    """Build the graph of a surface from the hits of the rays and their intervals inside."""
+    resolution, vertices, mesh_edges = surface.resolution, surface.vertices, surface.edges
     points = interior_points(inside, resolution)
     first_surface = len(vertices) + len(points)
     numbers, starts = [], []
     node, edge = first_surface, len(mesh_edges)
-    for intervals, found in zip(inside, hits, strict=True):
-        numbers.append(_number_ends(intervals, len(found.position), node))
+    for intervals, hits_along in zip(inside, hits, strict=True):
+        ends = intervals.low, intervals.high
+        numbers.append(_number_ends(*ends, len(hits_along.position), node))
         starts.append(edge_starts(intervals, edge))
         node, edge = max(node, int(numbers[-1].max(initial=0)) + 1), int(starts[-1][-1])
     node_kinds = [len(vertices), len(points), node - first_surface]
     edge_kinds = [len(mesh_edges), edge - len(mesh_edges), 3 * node_kinds[SURFACE]]
-    check_memory(len(vertices), len(points), node_kinds[SURFACE], resolution, connectivity)
+    check_nodes(len(vertices), len(points), node_kinds[SURFACE], resolution, connectivity)
 
     nodes, triangle = np.empty((node, 3)), np.full(node, -1, np.int32)
     edges, lengths = np.empty((sum(edge_kinds), 2), np.int32), np.empty(sum(edge_kinds))
 
     def fill_inside(axis: int) -> None:
         ends = hits[axis].position, numbers[axis]
-        own = inside[axis], starts[axis]
-        fill_edges(*own, axis, points, len(vertices), ends, edges, lengths)
+        fill_edges(inside[axis], starts[axis], axis, points, len(vertices), ends, edges, lengths)
 
     def fill_surface(axis: int) -> None:
-        found = hits[axis].start, hits[axis].position, hits[axis].triangle, numbers[axis]
-        mesh = vertices, faces
+        along = hits[axis].start, hits[axis].position, hits[axis].triangle, numbers[axis]
+        mesh = vertices, surface.faces
         first = first_surface, edge
-        _fill_surface(resolution, AXES[axis], found, mesh, first, nodes, triangle, edges, lengths)
+        _fill_surface(resolution, AXES[axis], along, mesh, first, nodes, triangle, edges, lengths)
 
     def fill_rest(_: int) -> None:
         _fill_mesh(vertices, mesh_edges, nodes, edges, lengths)
@@ -70,13 +60,12 @@ def assemble(
     jobs = [(job, axis) for job in (fill_inside, fill_surface) for axis in range(3)]
     in_threads(lambda job: job[0](job[1]), [*jobs, (fill_rest, 0)])
     if connectivity == 26:
-        kept = edges[len(mesh_edges) : edge]
-        steps = lattice_steps(nodes, kept, len(vertices), first_surface)
+        steps = lattice_steps(nodes, edges[len(mesh_edges) : edge], len(vertices), first_surface)
         diagonals = diagonal_edges(steps, len(vertices))
         edges = np.concatenate([edges[:edge], diagonals, edges[edge:]])
         ends = nodes[diagonals]
-        apart = np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1)
-        lengths = np.concatenate([lengths[:edge], apart, lengths[edge:]])
+        distance = np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1)
+        lengths = np.concatenate([lengths[:edge], distance, lengths[edge:]])
         edge_kinds[INTERIOR] += len(diagonals)
     return CutCellGraph(
         nodes=nodes,
@@ -85,13 +74,13 @@ def assemble(
         lengths=lengths,
         edge_kind=_kinds(edge_kinds),
         triangle=triangle,
-        vertex_node=vertex_node,
-        faces=faces,
-        lattice=lattice,
-        is_closed=is_closed,
+        vertex_node=surface.vertex_node,
+        faces=surface.faces,
+        lattice=surface.lattice,
+        is_closed=surface.is_closed,
         connectivity=connectivity,
         interior=points,
-        inverted=inverted,
+        inverted=surface.inverted,
         winding_threshold=winding_threshold,
     )
 
@@ -100,13 +89,9 @@ def _kinds(counts: list[int]) -> NDArray[np.uint8]:
     return np.repeat(np.array([MESH, INTERIOR, SURFACE], np.uint8), counts)
 
 
-def _number_ends(intervals: InsideIntervals, hits: int, first: int) -> NDArray[np.int32]:
-    """Give numbers to the hits at the ends of intervals from `first` on; the others get NONE."""
-    return _number_used(intervals.low, intervals.high, hits, first)
-
-
 @compiled
-def _number_used(low, high, hits, first):
+def _number_ends(low, high, hits, first):
+    """Give numbers to the hits at the ends of intervals from `first` on; the others get NONE."""
     node = np.full(hits, NONE, np.int32)
     for r in range(len(low)):
         if low[r] != NONE:

@@ -7,8 +7,7 @@ from numpy.typing import NDArray
 
 from ..runtime.compiled import compiled
 from .interior import OUTSIDE, InteriorPoints, point_number, point_on_ray
-from .winding.intervals import InsideIntervals
-from .winding.segments import NONE
+from .segments import NONE, InsideIntervals
 
 
 def edge_starts(inside: InsideIntervals, first: int) -> NDArray[np.int64]:

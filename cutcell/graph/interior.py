@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from ..runtime.compiled import compiled
 from ..runtime.threads import in_threads
 from .rays import in_space
-from .winding import InsideIntervals
+from .segments import InsideIntervals
 
 OUTSIDE = -1
 

@@ -64,6 +64,9 @@ def cast_rays_embree(
     return _ray_hits(vertices, faces, resolution, axis, ray, triangle)
 
 
+CASTERS = {"open3d": cast_rays_open3d, "embree": cast_rays_embree}
+
+
 def optional_library(module: str, option: str, package: str) -> ModuleType:
     """Import the library that an option needs."""
     try:

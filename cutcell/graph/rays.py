@@ -115,6 +115,18 @@ def strip_bounds(resolution: int, work: float) -> list[tuple[int, int]]:
     return list(pairwise(np.arange(count + 1) * resolution // count))
 
 
+def points_on_rays(
+    ray: NDArray[np.integer], position: NDArray[np.float64], resolution: int, axis: int
+) -> NDArray[np.float64]:
+    """Return the points at positions (q,) along rays (q,) of one axis, shape (q, 3)."""
+    u, v, along = AXES[axis]
+    points = np.empty((len(ray), 3))
+    points[:, u] = (ray // resolution + 0.5) / resolution
+    points[:, v] = (ray % resolution + 0.5) / resolution
+    points[:, along] = position
+    return points
+
+
 @compiled(inline="always")
 def in_space(axis, u, v, along):
     """Permute coordinates (u, v, along) of the rays along an axis to (x, y, z)."""

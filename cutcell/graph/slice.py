@@ -12,13 +12,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import ParameterError
-from ..geometry.weld import weld
+from ..method import check_resolution
 from ..rig.checks import check_choice, check_integer, check_number
 from ..rig.rig import TriangleMesh
 from .lattice import Lattice
-from .orientation.orient import oriented
-from .rays import AXES, RayHits, cast_rays
-from .winding import winding_number
+from .rays import AXES, cast_rays, points_on_rays
+from .segments import divide_rays
+from .surface import prepare_surface
+from .winding.exact import WindingNumbers
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,8 +96,7 @@ def slice_rays(
     ----------
     Paper section 3.1, figure "ray segments".
     """
-    lattice = Lattice.around(mesh, resolution)
-    resolution = lattice.resolution
+    resolution = check_resolution(resolution)
     check_choice("axis", axis, (0, 1, 2))
     check_choice("normal", normal, (0, 1, 2))
     if axis == normal:
@@ -104,50 +104,27 @@ def slice_rays(
     index = check_integer("index", index, 0, resolution - 1)
     threshold = check_number("winding_threshold", winding_threshold, 0, 1)
 
-    if orient:
-        mesh = oriented(mesh)
-    vertices, vertex_node = weld(lattice.to_unit(mesh.vertices))
-    hits = cast_rays(vertices, vertex_node[mesh.faces], resolution, axis)
-    u, v, along = AXES[axis]
-    across = v if normal == u else u
-    every = np.arange(resolution)
-    rays = index * resolution + every if normal == u else every * resolution + index
-
-    ends, number = _segments(hits, rays, resolution)
-    low, high = (np.empty((len(number), 3)) for _ in range(2))
-    for points, position in zip((low, high), ends.T, strict=True):
-        points[:, normal] = (index + 0.5) / resolution
-        points[:, across] = (number + 0.5) / resolution
-        points[:, along] = position
-    winding = winding_number(mesh, lattice.to_file((low + high) / 2))
-
-    count = np.diff(hits.start)[rays]
-    hit = np.concatenate([np.arange(*hits.start[[ray, ray + 1]]) for ray in rays])
-    crossing = np.empty((len(hit), 3))
-    crossing[:, normal] = (index + 0.5) / resolution
-    crossing[:, across] = (np.repeat(every, count) + 0.5) / resolution
-    crossing[:, along] = hits.position[hit]
+    surface = prepare_surface(mesh, resolution, orient)
+    hits = cast_rays(surface.vertices, surface.faces, resolution, axis)
+    rays = np.arange(resolution)
+    rays = index * resolution + rays if normal == AXES[axis][0] else rays * resolution + index
+    segments = divide_rays(hits, rays, resolution)
+    is_shown = segments.has_ends & (segments.low < segments.high)
+    low, high = (
+        segments.points(position, resolution, axis)[is_shown]
+        for position in (segments.low, segments.high)
+    )
+    winding = WindingNumbers(surface.vertices, surface.faces).at((low + high) / 2)
+    ray = np.repeat(np.arange(resolution**2), np.diff(hits.start))
+    in_slice = np.isin(ray, rays)
+    crossing = points_on_rays(ray[in_slice], hits.position[in_slice], resolution, axis)
     return RaySlice(
         low,
         high,
         winding,
         winding >= threshold,
         crossing,
-        hits.sign[hit],
-        hits.triangle[hit],
-        lattice,
+        hits.sign[in_slice],
+        hits.triangle[in_slice],
+        surface.lattice,
     )
-
-
-def _segments(
-    hits: RayHits, rays: NDArray[np.intp], resolution: int
-) -> tuple[NDArray[np.float64], NDArray[np.intp]]:
-    """Return both ends of each segment, shape (s, 2), and the index of its ray in the slice."""
-    lattice = (np.arange(resolution) + 0.5) / resolution
-    found, number = [], []
-    for k, ray in enumerate(rays):
-        position = hits.position[hits.start[ray] : hits.start[ray + 1]]
-        ends = np.unique(np.concatenate([position, lattice]))
-        found.append(np.stack([ends[:-1], ends[1:]], axis=1))
-        number.append(np.full(len(ends) - 1, k))
-    return np.concatenate(found), np.concatenate(number)

@@ -112,7 +112,7 @@ def test_binding_is_cancelled_while_a_step_is_silent(monkeypatch):
         if begun.is_set() and not free.is_set():
             raise Cancelled("asked while the step went on")
 
-    monkeypatch.setattr("cutcell.graph.build.find_edges", endless)
+    monkeypatch.setattr("cutcell.graph.surface.find_edges", endless)
     try:
         with pytest.raises(Cancelled, match="asked"):
             bind(figure(), 8, progress=cancel)

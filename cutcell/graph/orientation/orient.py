@@ -58,14 +58,6 @@ def inverted_faces(mesh: TriangleMesh) -> NDArray[np.bool_]:
     return find_inverted(vertices, faces, find_edges(faces).partner)
 
 
-def oriented(mesh: TriangleMesh) -> TriangleMesh:
-    """Return a mesh with its inverted faces flipped; the mesh itself if there are none."""
-    inverted = inverted_faces(mesh)
-    if not inverted.any():
-        return mesh
-    return TriangleMesh(mesh.vertices, flipped(mesh.faces, inverted))
-
-
 def find_inverted(
     vertices: NDArray[np.float64],
     faces: NDArray[np.int32],

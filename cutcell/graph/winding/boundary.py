@@ -76,7 +76,7 @@ def find_boundary(faces: NDArray[np.int32]) -> Boundary:
 
 
 def boundary_of(edges: NDArray[np.int32], incidence: NDArray[np.int32]) -> Boundary:
-    """Assemble the boundary from edges and their signed incidence, see `surface.edges`."""
+    """Assemble the boundary from edges and their signed incidence, see `geometry.edges`."""
     is_open = incidence != 0
     if not is_open.any():
         return Boundary(np.empty(0, np.int64), np.zeros(1, np.int64), np.empty(0, np.int64))

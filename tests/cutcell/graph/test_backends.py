@@ -5,11 +5,14 @@ import sys
 import numpy as np
 import pytest
 
-from cutcell import MissingLibraryError, TriangleMesh, winding_number
+from cutcell import MissingLibraryError, TriangleMesh
 from cutcell.geometry.weld import weld
 from cutcell.graph import ray_tracers
-from cutcell.graph.fast_winding import fast_intervals, list_segments
-from cutcell.graph.rays import AXES, cast_rays
+from cutcell.graph.rays import AXES, cast_all_rays, cast_rays
+from cutcell.graph.segments import inside_intervals
+from cutcell.graph.surface import prepare_surface
+from cutcell.graph.winding.exact import WindingNumbers
+from cutcell.graph.winding.libigl import fast_intervals
 from tests import meshes
 
 RUN = ("ray", "first", "last", "low", "high")
@@ -104,38 +107,44 @@ def test_doubled_triangles_are_all_found(caster):
     np.testing.assert_array_equal(np.diff(found.start), np.diff(expected.start))
 
 
-def both_runs(vertices, faces, resolution, axis, tau):
-    crossings = cast_rays(vertices, faces, resolution, axis)
-    segments = list_segments(crossings, resolution, closed=False)
-    number = winding_number(TriangleMesh(vertices, faces), segments.points(resolution, axis))
-    exact = segments.intervals(segments.has_ends & (number >= tau))
-    fast = fast_intervals(vertices, faces, crossings, resolution, axis, tau)
-    return tuple(
-        set(zip(*(getattr(r, n).tolist() for n in RUN), strict=True)) for r in (exact, fast)
-    )
+def prepared(vertices, faces, resolution):
+    """Return the surface of a mesh and its hits; faces stay as they are."""
+    surface = prepare_surface(TriangleMesh(vertices, faces), resolution, orient=False)
+    return surface, cast_all_rays(surface.vertices, surface.faces, resolution)
 
 
-@pytest.mark.parametrize("axis", [0, 1, 2])
+def both_runs(mesh, tau):
+    """Return the intervals along each axis as sets: by exact winding numbers, and by libigl's."""
+    surface, hits = prepared(*mesh, 24)
+    exact = WindingNumbers(surface.vertices, surface.faces)
+    plain = inside_intervals(surface, hits, tau, exact.at)
+    pairs = zip(plain, fast_intervals(surface, hits, tau), strict=True)
+    return [
+        [set(zip(*(getattr(r, n).tolist() for n in RUN), strict=True)) for r in pair]
+        for pair in pairs
+    ]
+
+
 @pytest.mark.parametrize("name", ["box", "ball", "torus", "flipped"])
-def test_runs_equal_the_exact_ones(name, axis):
-    exact, fast = both_runs(*turned(*meshes.ALL[name]()), 24, axis, 0.5)
-    assert len(exact) > 20
-    assert exact == fast
+def test_runs_equal_the_exact_ones(name):
+    for exact, fast in both_runs(turned(*meshes.ALL[name]()), 0.5):
+        assert len(exact) > 20
+        assert exact == fast
 
 
-@pytest.mark.parametrize("axis", [0, 1, 2])
 @pytest.mark.parametrize("name", ["holes", "tube", "open box"])
-def test_few_runs_of_open_meshes_differ(name, axis):
-    exact, fast = both_runs(*turned(*meshes.ALL[name]()), 24, axis, 0.4)
-    assert len(exact) > 20
-    assert len(exact ^ fast) <= 0.05 * len(exact)
+def test_few_runs_of_open_meshes_differ(name):
+    for exact, fast in both_runs(turned(*meshes.ALL[name]()), 0.4):
+        assert len(exact) > 20
+        assert len(exact ^ fast) <= 0.05 * len(exact)
 
 
-def test_a_ray_that_meets_nothing_has_no_runs():
-    vertices, faces = meshes.box(0.4, 0.6)
-    crossings = cast_rays(vertices, faces, 2, 0)
-    assert len(crossings.position) == 0
-    assert len(fast_intervals(vertices, faces, crossings, 2, 0, 0.5).ray) == 0
+def test_rays_that_meet_nothing_have_no_runs():
+    vertices, faces = meshes.box(0.4, 0.41)
+    vertices[:, 2] *= 100  # thin: between the rays along z
+    surface, hits = prepared(vertices, faces, 2)
+    assert len(hits[2].position) == 0
+    assert len(fast_intervals(surface, hits, 0.5)[2].ray) == 0
 
 
 @pytest.mark.parametrize(
@@ -152,11 +161,10 @@ def test_a_missing_package_is_named(monkeypatch, call, module, package):
 
 
 def test_missing_libigl_is_named(monkeypatch):
-    vertices, faces = meshes.box()
-    crossings = cast_rays(vertices, faces, 4, 0)
+    surface, hits = prepared(*meshes.box(), 4)
     monkeypatch.setitem(sys.modules, "igl", None)
     with pytest.raises(MissingLibraryError, match="pip install libigl"):
-        fast_intervals(vertices, faces, crossings, 4, 0, 0.5)
+        fast_intervals(surface, hits, 0.5)
 
 
 @pytest.mark.parametrize(

@@ -1,22 +1,32 @@
-"""Inside intervals equal those that exact winding numbers give, segment by segment."""
+"""The treecode keeps the segments that the plain algorithm 1 keeps by exact winding numbers."""
 
 import tracemalloc
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-from cutcell import TriangleMesh, winding_number
-from cutcell.geometry.weld import weld
-from cutcell.graph.fast_winding import list_segments
+import cutcell
+from cutcell import TooLargeError, TriangleMesh
 from cutcell.graph.rays import cast_all_rays
-from cutcell.graph.winding import intervals
+from cutcell.graph.segments import inside_intervals
+from cutcell.graph.surface import prepare_surface
 from cutcell.graph.winding.boundary import find_boundary
-from cutcell.graph.winding.intervals import inside_intervals
+from cutcell.graph.winding.exact import WindingNumbers
+from cutcell.graph.winding.treecode import intervals
 from cutcell.graph.winding.treecode.caps import smallest_caps
 from cutcell.graph.winding.treecode.cells import MAX_NEAR, classify_cells
 from cutcell.graph.winding.treecode.clusters import build_tree
+from cutcell.graph.winding.treecode.intervals import treecode_intervals
 from cutcell.graph.winding.treecode.queries import query_points
 from tests import meshes
+
+ROOT = Path(__file__).resolve().parents[3]
+RIGS = [
+    *sorted((ROOT / "assets").glob("*.glb")),
+    *sorted((ROOT.parent / "shared" / "data" / "rigs").glob("*.glb")),
+]
+"""The demo rigs, and others where there are some."""
 
 
 def apart(share):
@@ -68,35 +78,46 @@ SOUPS = {
 SHAPES = SOUPS | meshes.OPEN
 
 
+def prepared(vertices, faces, resolution):
+    """Return the surface of a mesh and its hits; faces stay as they are."""
+    surface = prepare_surface(TriangleMesh(vertices, faces), resolution, orient=False)
+    return surface, cast_all_rays(surface.vertices, surface.faces, resolution)
+
+
+def check_against_plain(surface, hits, tau):
+    """Compare the intervals with those of the plain version."""
+    exact = WindingNumbers(surface.vertices, surface.faces)
+    expected = inside_intervals(surface, hits, tau, exact.at)
+    for one, other in zip(treecode_intervals(surface, hits, tau), expected, strict=True):
+        # Without length, the midpoint is on the surface, where either number is right.
+        rows, plain = (
+            np.stack([r.ray, r.first, r.last, r.low, r.high], axis=1)[r.first <= r.last]
+            for r in (one, other)
+        )
+        assert len(plain)
+        np.testing.assert_array_equal(rows, plain)
+
+
 @pytest.mark.parametrize("tau", [0.2, 0.3, 0.5])
 @pytest.mark.parametrize("name", [n for n in SHAPES if "soup" not in n])
-def test_intervals_equal_those_of_exact_numbers(name, tau):
-    vertices, index = weld(SHAPES[name]()[0])
-    faces = index[SHAPES[name]()[1]]
-    tau -= 1e-9  # symmetric meshes have the number 1/2 at many places, up to rounding
-    boundary = find_boundary(faces)
-    hits = cast_all_rays(vertices, faces, RESOLUTION)
-    inside = inside_intervals(vertices, faces, hits, boundary, RESOLUTION, tau)
-    for axis in range(3):
-        segments = list_segments(hits[axis], RESOLUTION, closed=False)
-        number = winding_number(TriangleMesh(vertices, faces), segments.points(RESOLUTION, axis))
-        expected = segments.intervals(segments.has_ends & (number >= tau))
-        long = expected.first <= expected.last  # without length, the number is anyone's
-        rows, others = (
-            np.stack([r.ray, r.first, r.last, r.low, r.high], axis=1)[r.first <= r.last]
-            for r in (inside[axis], expected)
-        )
-        assert long.any()
-        np.testing.assert_array_equal(rows, others)
+def test_intervals_equal_the_plain_ones(name, tau):
+    # Symmetric meshes have the number 1/2 at many places, up to rounding.
+    check_against_plain(*prepared(*SHAPES[name](), RESOLUTION), tau - 1e-9)
+
+
+@pytest.mark.parametrize("path", RIGS, ids=lambda path: path.stem)
+def test_intervals_of_rigs_equal_the_plain_ones(path):
+    surface = prepare_surface(cutcell.load(path).mesh, 32)
+    hits = cast_all_rays(surface.vertices, surface.faces, surface.resolution)
+    check_against_plain(surface, hits, 0.5 - 1e-9)
 
 
 def test_loose_triangles_take_memory_in_proportion_to_their_queries():
-    vertices, faces = large_and_loose(60)
     resolution = 33
-    boundary, hits = find_boundary(faces), cast_all_rays(vertices, faces, resolution)
+    surface, hits = prepared(*large_and_loose(60), resolution)
     tracemalloc.start()
     try:
-        inside_intervals(vertices, faces, hits, boundary, resolution, 0.5)
+        treecode_intervals(surface, hits, 0.5)
         peak = tracemalloc.get_traced_memory()[1]
     finally:
         tracemalloc.stop()
@@ -104,12 +125,19 @@ def test_loose_triangles_take_memory_in_proportion_to_their_queries():
     assert peak < 300 * segments
 
 
+def test_cells_that_do_not_fit_in_memory_are_refused(monkeypatch):
+    surface, hits = prepared(*large_and_loose(60), RESOLUTION)
+    monkeypatch.setattr("cutcell.runtime.memory.available_memory", lambda _: 10**4)
+    treecode_intervals(surface, hits, 0.5)  # too few to look
+    monkeypatch.setattr("cutcell.graph.winding.treecode.cells.UNCHECKED", 0)
+    with pytest.raises(TooLargeError):
+        treecode_intervals(surface, hits, 0.5)
+
+
 def test_queries_are_answered_some_at_a_time_with_the_same_result(monkeypatch):
-    vertices, faces = apart(0.7)
-    boundary, hits = find_boundary(faces), cast_all_rays(vertices, faces, RESOLUTION)
-    given = vertices, faces, hits, boundary, RESOLUTION, 0.5
+    surface, hits = prepared(*apart(0.7), RESOLUTION)
     monkeypatch.setattr("cutcell.graph.rays.STRIP_WORK", 1000)
-    expected = inside_intervals(*given)
+    expected = treecode_intervals(surface, hits, 0.5)
     sizes, reports = [], []
 
     def counted(expansions, clusters, row, queries, tell):
@@ -118,7 +146,8 @@ def test_queries_are_answered_some_at_a_time_with_the_same_result(monkeypatch):
 
     monkeypatch.setattr(intervals, "query_points", counted)
     monkeypatch.setattr(intervals, "MAX_QUERIES", 1000)
-    for one, other in zip(inside_intervals(*given, reports.append), expected, strict=True):
+    again = treecode_intervals(surface, hits, 0.5, reports.append)
+    for one, other in zip(again, expected, strict=True):
         for name, values in vars(one).items():
             np.testing.assert_array_equal(values, getattr(other, name))
     assert len(sizes) > 3

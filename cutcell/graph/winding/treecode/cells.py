@@ -29,6 +29,7 @@ from numpy.typing import NDArray
 
 from ....geometry.vectors import between
 from ....runtime.compiled import compiled, copy_to
+from ....runtime.memory import check_room
 from ....runtime.progress import Tell
 from ....runtime.threads import in_threads
 from ...rays import grown, in_space
@@ -65,6 +66,9 @@ MAX_NEAR = 64
 """Near clusters that a block lists. Where there are more, nearly all are near, and its queries
 traverse all clusters. A list of its own for each block would take gigabytes."""
 
+UNCHECKED = 1 << 26
+"""Bytes of classes for which free memory is not looked up."""
+
 
 class CellClasses(NamedTuple):
     """The class of each lattice cell.
@@ -99,17 +103,23 @@ def classify_cells(
             top *= 2
         along = np.arange(0, resolution, top)
         corners = np.stack(np.meshgrid(along, along, along, indexing="ij"), -1).reshape(-1, 3)
-    found = in_threads(
-        lambda corner: _classify(clusters, resolution, winding_threshold, corner, top, coarse),
-        [*corners, np.full(3, resolution)],  # the last one lies outside: never an empty list
-        tell,
-    )
+    sizes = []
+
+    def classify(corner: NDArray[np.int64]) -> tuple[NDArray, NDArray, NDArray, NDArray]:
+        parts = _classify(clusters, resolution, winding_threshold, corner, top, coarse)
+        sizes.append(sum(array.nbytes for array in parts))
+        if sum(sizes) > UNCHECKED:  # they are copied twice below
+            check_room(2.0 * sum(sizes), "the cells near holes", "choose a lower resolution")
+        return parts
+
+    # The last corner lies outside: never an empty list.
+    classified = in_threads(classify, [*corners, np.full(3, resolution)], tell)
     rows = count = 0
-    for blocks, fine, expanded, _ in found:
+    for blocks, fine, expanded, _ in classified:
         coarse[tuple(blocks.T)] += rows
         fine[fine >= 0] += count
         rows, count = rows + len(fine), count + len(expanded)
-    _, fine, expanded, near = (np.concatenate(parts) for parts in zip(*found, strict=True))
+    _, fine, expanded, near = (np.concatenate(parts) for parts in zip(*classified, strict=True))
     start = np.concatenate([[0], np.cumsum(expanded[:, COUNT], dtype=np.int64)])
     columns = (0, SIZE), (SIZE, CROSSED)
     local, centre = (np.ascontiguousarray(expanded[:, a:b]) for a, b in columns)

@@ -1,19 +1,19 @@
-"""Which segments of a strip of rays are kept: algorithm 1 of the paper."""
+"""Which segments of a strip of rays are kept: `graph/segments.py`, fused with the treecode."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...runtime.compiled import compiled, no_refcount
-from ..rays import first_at_least, in_space
-from .exact import boundary_angle
-from .treecode.cells import AMBIGUOUS, BLOCK, CONSTANT, class_at, required_crossings
-from .treecode.expansion import value_at
-from .treecode.queries import FIRST, INSIDE, SLACK, UNDECIDED
-from .treecode.solid_angles import CLEAR, VALUE, WORKSPACE, Y, Z, caps_winding_numbers
+from ....runtime.compiled import compiled, no_refcount
+from ...rays import first_at_least, in_space
+from ...segments import NONE
+from ..exact import boundary_angle
+from .cells import AMBIGUOUS, BLOCK, CONSTANT, class_at, required_crossings
+from .expansion import value_at
+from .queries import FIRST, INSIDE, SLACK, UNDECIDED
+from .solid_angles import CLEAR, VALUE, WORKSPACE, Y, Z, caps_winding_numbers
 
-NONE = -1
 NO_RESULTS = np.zeros(0, np.uint8)
 
 
@@ -29,9 +29,9 @@ def keep_strip(shared, strip, results=None):
     row, queries = np.empty(256, np.int32), np.empty((256, SLACK + 1))
     points, filled = np.empty(WORKSPACE), (0, 0, 0)
     listing = results is None
-    given = shared, rays, last_ray, NO_RESULTS if listing else results, listing
+    arguments = shared, rays, last_ray, NO_RESULTS if listing else results, listing
     while ray < last_ray:
-        ray, filled = _keep_segments(*given, ray, filled, rows, row, queries, points)
+        ray, filled = _keep_segments(*arguments, ray, filled, rows, row, queries, points)
         if ray == last_ray:
             break
         segments = int(start[ray + 1] - start[ray]) + resolution + 1

@@ -1,8 +1,6 @@
-"""Inside intervals of the rays (paper section 3.1, algorithm 1 and figure "ray segments").
+"""Inside intervals of the rays, without a list of their segments.
 
-Ray hits and lattice points divide each ray into segments. A segment is kept if the winding number
-at its midpoint is at least tau. Consecutive kept segments form an interval, so memory grows with
-the surface, not with the volume.
+The result is that of `graph/segments.py`, the plain version, with exact winding numbers.
 
 On a closed mesh the winding number is the signed count of crossings ahead. Holes are closed by
 caps, whose own winding number is subtracted: see `cells.py` for where that takes no query, and
@@ -13,71 +11,33 @@ results; strips of rays through constant cells only once.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...runtime.progress import Tell, share_of
-from ...runtime.threads import in_threads
-from ..rays import AXES, RayHits, cast_all_rays, strip_bounds
-from .boundary import Boundary
-from .segments import keep_strip
-from .treecode.caps import smallest_caps
-from .treecode.cells import AMBIGUOUS, CONSTANT, classify_cells
-from .treecode.clusters import ROOT, build_tree
-from .treecode.queries import query_points
+from ....runtime.progress import Tell, share_of
+from ....runtime.threads import in_threads
+from ...rays import AXES, RayHits, cast_all_rays, strip_bounds
+from ...segments import InsideIntervals
+from ...surface import Surface
+from .caps import smallest_caps
+from .cells import AMBIGUOUS, CONSTANT, classify_cells
+from .clusters import ROOT, build_tree
+from .queries import query_points
+from .strips import keep_strip
 
 MAX_QUERIES = 2**21
 """Queries that are answered together once there are as many. Each takes 140 bytes at the peak."""
 
 
-@dataclass(frozen=True, eq=False)
-class InsideIntervals:
-    """Maximal intervals of kept segments on the rays of one axis, in the order of the rays.
-
-    An interval runs from a hit (or NONE) over the lattice points `first` to `last` to the next hit
-    (or NONE). It holds no lattice point if `last` is below `first`.
-
-    Parameters
-    ----------
-    ray, first, last, low, high : arrays, shape (r,), int32
-        `low` and `high` are indices into the axis' `RayHits`, or -1.
-    """
-
-    ray: NDArray[np.int32]
-    first: NDArray[np.int32]
-    last: NDArray[np.int32]
-    low: NDArray[np.int32]
-    high: NDArray[np.int32]
-
-
-def inside_intervals(
-    vertices: NDArray[np.float64],
-    faces: NDArray[np.int32],
+def treecode_intervals(
+    surface: Surface,
     hits: Sequence[RayHits],
-    boundary: Boundary,
-    resolution: int,
     winding_threshold: float,
     tell: Tell = lambda done: None,
 ) -> list[InsideIntervals]:
-    """Find the kept segments of the rays along x, y and z.
-
-    Parameters
-    ----------
-    vertices : array, shape (n, 3), float64
-        Unit-cube coordinates.
-    faces : array, shape (m, 3), int32
-    hits : sequence of RayHits
-        Of the rays along x, y and z.
-    boundary : Boundary
-        Of the mesh.
-    resolution : int
-    winding_threshold : float
-        tau: segments with at least this winding number are kept.
-    tell : callable
-        See `progress.Tell`.
-    """
+    """Find the intervals that `segments.inside_intervals` finds by exact winding numbers."""
+    vertices, boundary, resolution = surface.vertices, surface.boundary, surface.resolution
     caps = smallest_caps(vertices, boundary)
     tell(0.05)
     cap_hits = cast_all_rays(caps.vertices, caps.faces, resolution, share_of(tell, 0.05, 0.15))
@@ -87,13 +47,13 @@ def inside_intervals(
     families = []
     for axis, (u, v, along) in enumerate(AXES):
         projected = np.ascontiguousarray(vertices[:, [u, v, along]])
-        found = tuple((h.start, h.position, h.sign) for h in (hits[axis], cap_hits[axis]))
-        families.append((axis, projected, _constant_columns(classes.coarse, along), *found))
-    surface = sum(len(h.position) for h in hits)
-    strips = strip_bounds(resolution, 3 * resolution**3 + surface)
+        both = tuple((h.start, h.position, h.sign) for h in (hits[axis], cap_hits[axis]))
+        families.append((axis, projected, _constant_columns(classes.coarse, along), *both))
+    hit_count = sum(len(h.position) for h in hits)
+    strips = strip_bounds(resolution, 3 * resolution**3 + hit_count)
     work = [(rays, i * resolution, j * resolution) for rays in families for i, j in strips]
     ambiguous = np.count_nonzero(classes.fine >= 0)
-    expected = 3 * ambiguous + surface if ambiguous else 0
+    expected = 3 * ambiguous + hit_count if ambiguous else 0
     rows = _rows_of_strips(shared, work, expected, share_of(tell, 0.3, 1))
     count = len(strips)
     of_axes = [np.concatenate(rows[count * k : count * (k + 1)]) for k in range(3)]

@@ -1,0 +1,39 @@
+"""Inside intervals by libigl's fast winding number, for comparison.
+
+The fast winding number is a truncated series: segments whose number is within about 1e-2 of tau
+may be decided otherwise.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..ray_tracers import optional_library
+from ..rays import RayHits
+from ..segments import InsideIntervals, inside_intervals
+from ..surface import Surface
+
+
+def fast_intervals(
+    surface: Surface, hits: Sequence[RayHits], winding_threshold: float
+) -> list[InsideIntervals]:
+    """Keep segments as `inside_intervals` does, by libigl's fast winding number.
+
+    References
+    ----------
+    Barill, Dickson, Schmidt, Levin & Jacobson, "Fast winding numbers for soups and
+    clouds", 2018.
+    """
+    igl = optional_library("igl", 'winding="fast"', "libigl")
+    faces = surface.faces.astype(np.int64)
+
+    def winding_number(points: NDArray[np.float64]) -> NDArray[np.float64]:
+        if len(points) == 0:
+            return np.empty(0)
+        numbers: NDArray[np.float64] = igl.fast_winding_number(surface.vertices, faces, points)
+        return numbers
+
+    return inside_intervals(surface, hits, winding_threshold, winding_number)
