@@ -8,8 +8,7 @@ at most that of any neighbour plus the edge: the fixed point is that of Dijkstra
 The body is divided into slices, and these again. A sweep leaves a slice only when no node of it is
 waiting, so the distances that it passes on rarely fall again later.
 
-SIMD_WIDTH bones share each visit and each edge read from memory, and one vector instruction relaxes
-the edge for all of them.
+BATCH bones share each visit and each edge read from memory.
 """
 
 from __future__ import annotations
@@ -23,8 +22,9 @@ from ..runtime.compiled import compiled, no_refcount
 from ..runtime.progress import Progress, Shares, Tell, silent
 from ..runtime.threads import in_threads, parts, threads
 from .bones import Sources
-from .simd import SIMD_WIDTH, lower
 
+BATCH = 8
+"""Bones whose distances to a node are next to each other: they fill a cache line."""
 SLICES = 8
 """Slices that the body is divided into, and slices of each of these."""
 
@@ -41,20 +41,20 @@ def shortest_paths(
     Shapes: targets (t,); returns (b, t).
     """
     rank, adjacency = _sort_along_body(graph)
-    groups = -(-bones // SIMD_WIDTH)
-    result = np.empty((groups * SIMD_WIDTH, len(targets)))
+    groups = -(-bones // BATCH)
+    result = np.empty((groups * BATCH, len(targets)))
     begin, end = rank[sources.node], rank[targets]
 
     shares = Shares(progress, "distances", groups)
 
     def one_group(group: int) -> None:
-        lane = sources.bone - group * SIMD_WIDTH
-        mine = (lane >= 0) & (lane < SIMD_WIDTH)
-        distance, waiting = np.full((len(rank), SIMD_WIDTH), np.inf), np.zeros(len(rank), np.bool_)
-        np.minimum.at(distance, (begin[mine], lane[mine]), sources.distance[mine])
+        column = sources.bone - group * BATCH
+        mine = (column >= 0) & (column < BATCH)
+        distance, waiting = np.full((len(rank), BATCH), np.inf), np.zeros(len(rank), np.bool_)
+        np.minimum.at(distance, (begin[mine], column[mine]), sources.distance[mine])
         waiting[begin[mine]] = True
         _sweep_body(adjacency, waiting, distance, lambda done: shares.tell(group, done))
-        result[group * SIMD_WIDTH : (group + 1) * SIMD_WIDTH] = distance[end].T
+        result[group * BATCH : (group + 1) * BATCH] = distance[end].T
         shares.tell(group, 1.0)
 
     in_threads(one_group, range(groups))
@@ -133,8 +133,10 @@ def _sweep_nodes(adjacency, waiting, distance, first, last, forth):
                 waited, waiting[v] = True, False
                 for e in range(indptr[v], indptr[v + 1]):
                     u = indices[e]
-                    # Without a branch, which would be mispredicted.
-                    waiting[u] |= lower(distance, u, v, lengths[e])  # type: ignore[call-arg]
+                    for bone in range(BATCH):
+                        through = distance[v, bone] + lengths[e]
+                        if through < distance[u, bone]:
+                            distance[u, bone], waiting[u] = through, True
         any_waited |= waited
         forth = not forth
     return any_waited

@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from functools import partial
+
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
+from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import cKDTree
 
 from ...geometry.edges import find_edges
@@ -12,7 +17,6 @@ from ...rig.rig import Rig
 from ...weights.paper_kernel import paper_kernel
 from ..body import Body
 from ..frame import BaselineBinding, Run, bind_by
-from ..paths import path_lengths
 from ..unreached import NEAREST, follow_nearest, unreached
 from .voxels import Voxels, voxelize
 
@@ -98,8 +102,7 @@ def voxel_distances(body: Body, run: Run | None = None) -> NDArray[np.float64]:
         voxels_of_bone(voxels, start, end)
         for start, end in zip(body.bones.start, body.bones.end, strict=True)
     ]
-    starts = [np.zeros(len(nodes)) for nodes in sources]
-    by_voxel = path_lengths(len(voxels.centres), links, lengths, sources, starts)
+    by_voxel = path_lengths(len(voxels.centres), links, lengths, sources)
     voxel_of = voxels.at(body.points)
     inside = np.linalg.norm(body.points - voxels.centres[voxel_of], axis=1)
     return by_voxel[:, voxel_of] + inside
@@ -158,9 +161,8 @@ def voxel_unirig(
         deform = np.flatnonzero(rig.skeleton.deform)
         at = body.lattice.to_unit(rig.skeleton.joints[deform])
         nearest = cKDTree(nodes).query(at)[1]
-        sources, starts = [np.array([n]) for n in nearest], [np.zeros(1)] * len(nearest)
-        lengths = path_lengths(len(nodes), links, lengths, sources, starts)
-        distance = lengths[:, : len(body.points)]
+        by_node = path_lengths(len(nodes), links, lengths, nearest[:, None])
+        distance = by_node[:, : len(body.points)]
         run.warnings += _follow_nearest_joints(body, at, distance)
         distance[~np.isfinite(distance)] = distance[np.isfinite(distance)].max()
         run.end("distances")
@@ -169,6 +171,18 @@ def voxel_unirig(
         return paper_kernel(full, 1.0, alpha)
 
     return bind_by(solve, rig, method)
+
+
+def path_lengths(
+    count: int,
+    links: NDArray[np.int32],
+    lengths: NDArray[np.float64],
+    sources: Iterable[NDArray[np.intp]],
+) -> NDArray[np.float64]:
+    """Return how far all nodes are from each set of sources: links (e, 2); (sets, count)."""
+    matrix = csr_array((lengths, links.T), shape=(count, count))
+    search = partial(dijkstra, matrix, directed=False, min_only=True)
+    return np.array([search(indices=nodes) for nodes in sources])
 
 
 def voxels_of_bone(voxels: Voxels, start: NDArray, end: NDArray) -> NDArray[np.intp]:

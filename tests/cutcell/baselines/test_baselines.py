@@ -15,8 +15,8 @@ from cutcell import ParameterError, Rig, Skeleton, TriangleMesh
 from cutcell.baselines import METHODS
 from cutcell.baselines.body import Body
 from cutcell.baselines.methods import known_options
-from cutcell.baselines.paths import path_lengths
 from cutcell.baselines.visibility import Blockers
+from cutcell.baselines.volumes.voxel_binding import path_lengths
 from cutcell.baselines.volumes.voxels import PAD, mark_triangles, voxelize
 from cutcell.geometry.laplacian import cotangent_laplacian, vertex_areas, vertex_normals
 from cutcell.metrics import vertex_shares, weight_l1
@@ -168,19 +168,12 @@ def test_a_box_is_filled_and_a_hollow_stays_outside():
     assert voxelize(Body.of(ring, resolution=32)).at(np.array([[0.5, 0.5, 0.5]]))[0] == -1
 
 
-def test_paths_equal_scipys():
-    rng = np.random.default_rng(1)
-    links = np.unique(np.sort(rng.integers(0, 60, (200, 2)), axis=1), axis=0)
-    links = links[links[:, 0] != links[:, 1]]
-    lengths = rng.random(len(links)) + 0.01
-    matrix = csr_array((lengths, links.T), shape=(70, 70))
-    found = path_lengths(
-        70, links, lengths, [np.array([3]), np.array([8, 9])], [np.zeros(1), np.zeros(2)]
-    )
-    np.testing.assert_allclose(found[0], dijkstra(matrix, directed=False, indices=3))
-    expected = dijkstra(matrix, directed=False, indices=[8, 9]).min(axis=0)
-    np.testing.assert_allclose(found[1], expected)
-    assert np.isinf(found[:, 60:]).all()
+def test_paths_lead_from_the_nearest_source_of_a_set_both_ways_along_links():
+    links = np.array([[1, 0], [1, 2], [2, 3], [0, 3], [4, 3]])
+    lengths = np.array([0.0, 1.0, 2.0, 5.0, 1.0])  # a vertex in the middle of its voxel
+    lengths_from = path_lengths(6, links, lengths, [np.array([0]), np.array([2, 4])])
+    np.testing.assert_allclose(lengths_from[0], [0, 0, 1, 3, 4, np.inf])
+    np.testing.assert_allclose(lengths_from[1], [1, 1, 0, 1, 0, np.inf])
 
 
 def test_voxel_paths_on_a_bar_are_as_long_as_the_bar():

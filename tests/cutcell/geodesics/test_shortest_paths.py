@@ -4,14 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from numba import njit
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 
 from cutcell import TriangleMesh
 from cutcell.geodesics.bones import Sources
-from cutcell.geodesics.shortest_paths import shortest_paths
-from cutcell.geodesics.simd import SIMD_WIDTH, lower
+from cutcell.geodesics.shortest_paths import BATCH, shortest_paths
 from tests import meshes, naive
 from tests.paper import build_graph
 
@@ -42,7 +40,7 @@ def slow(graph, sources, bones):
     return np.array(rows)
 
 
-@pytest.mark.parametrize("bones", [1, 2, SIMD_WIDTH, SIMD_WIDTH + 1, 20])
+@pytest.mark.parametrize("bones", [1, 2, BATCH, BATCH + 1, 20])
 @pytest.mark.parametrize("degree", [0, 0.7, 3, 12])  # below 1, most parts are not reached
 @pytest.mark.parametrize("seed", range(3))
 def test_random_graphs(seed, degree, bones):
@@ -111,30 +109,3 @@ def test_no_bones_have_no_distances():
     graph = any_graph(np.eye(3), [[0, 1]], [1.0])
     nothing = Sources(np.empty(0, np.int32), np.empty(0, np.int32), np.empty(0))
     assert shortest_paths(graph, nothing, 0, np.arange(3, dtype=np.int32)).shape == (0, 3)
-
-
-@njit
-def _lower(distance, u, v, step):
-    return lower(distance, u, v, step)
-
-
-def test_a_row_is_lowered_lane_by_lane():
-    rng = np.random.default_rng(1)
-    distance = rng.random((5, SIMD_WIDTH))
-    distance[1, :2] = np.inf
-    distance[3, 1:3] = np.inf
-    expected = distance.copy()
-    expected[3] = np.minimum(distance[3], distance[1] + 0.25)
-    assert _lower(distance, 3, 1, 0.25)
-    np.testing.assert_array_equal(distance, expected)
-    assert not _lower(distance, 3, 1, 0.25)  # as near already
-    assert not _lower(distance, 2, 2, 0.0)
-    np.testing.assert_array_equal(distance, expected)
-
-
-@pytest.mark.parametrize("lane", range(SIMD_WIDTH))
-def test_a_fall_in_any_lane_is_told(lane):
-    distance = np.ones((2, SIMD_WIDTH))
-    distance[0, lane] = 0.5
-    assert _lower(distance, 1, 0, 0.25)
-    assert distance[1].tolist() == [0.75 if k == lane else 1.0 for k in range(SIMD_WIDTH)]
