@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 import cutcell
+from cutcell.dataset.read import unpickle
 from cutcell.dataset.read.archive import read_archive, split
 from cutcell.errors import FileError
 
@@ -129,7 +130,8 @@ def test_the_oldest_protocol_is_read(tmp_path):
     assert [one.name for one in assets] == ["0", "1", "2"]
 
 
-def test_an_asset_of_billions_of_items_is_refused(tmp_path):
+def test_an_asset_of_billions_of_items_is_refused(tmp_path, monkeypatch):
+    monkeypatch.setattr(unpickle, "MAX_ITEMS", 100_000)
     nested = [0]
     for _ in range(12):
         nested = [nested] * 40
