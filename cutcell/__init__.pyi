@@ -53,16 +53,16 @@ from .method import PAPER as PAPER
 from .method import Method as Method
 from .pose import forward_kinematics as forward_kinematics
 from .pose import linear_blend_skinning as linear_blend_skinning
-from .rig.clip import Clip as Clip
+from .rig import Attachment as Attachment
+from .rig import Clip as Clip
+from .rig import LeftOut as LeftOut
+from .rig import Part as Part
+from .rig import Rig as Rig
+from .rig import Skeleton as Skeleton
+from .rig import TriangleMesh as TriangleMesh
 from .rig.deform_joints import DeformJoints as DeformJoints
 from .rig.deform_joints import choose_deform as choose_deform
 from .rig.deform_joints import deform_joints as deform_joints
-from .rig.rig import Attachment as Attachment
-from .rig.rig import LeftOut as LeftOut
-from .rig.rig import Part as Part
-from .rig.rig import Rig as Rig
-from .rig.rig import Skeleton as Skeleton
-from .rig.rig import TriangleMesh as TriangleMesh
 from .templates import fit_skeleton as fit_skeleton
 from .weights import skinning_weights as skinning_weights
 

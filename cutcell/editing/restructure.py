@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import ParameterError, SkeletonError
+from ..rig import Clip, Rig, Skeleton, with_origin
 from ..rig.clip import Motion
-from ..rig.rig import Clip, Rig, Skeleton, with_origin
 from ..rig.transforms import composed, relative
 from ..runtime.display import shown_name
 from .corrections import Corrections

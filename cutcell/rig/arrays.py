@@ -57,3 +57,20 @@ def _is_frozen(array: NDArray, dtype: Any) -> bool:
     """Tell whether an array can be used as it is: read-only, and as it would be copied."""
     flags = array.flags
     return array.dtype == dtype and not flags.writeable and flags.c_contiguous and flags.aligned
+
+
+def frozen(array: NDArray) -> NDArray:
+    """Return an array after making it read-only."""
+    array.flags.writeable = False
+    return array
+
+
+def check_finite(points: NDArray, what: str, error: type, names: Any = None) -> None:
+    """Refuse points (n, 3) with a coordinate that is not a finite number."""
+    bad = np.flatnonzero(~np.isfinite(points).all(axis=1))
+    if len(bad):
+        which = f'"{names[bad[0]]}"' if names else str(bad[0])
+        raise error(
+            f"{what} {which} has a coordinate that is not a finite number "
+            f"({points[bad[0]].tolist()}); {len(bad)} of {len(points)} are so"
+        )

@@ -9,7 +9,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..errors import CutcellError, MeshError, SkeletonError
 from .checks import shown
-from .rig import Rig, Skeleton, TriangleMesh
+from .mesh import TriangleMesh
+from .rig import Rig
+from .skeleton import Skeleton
 
 
 @runtime_checkable

@@ -1,21 +1,20 @@
-"""Reading a pickle as data: numbers, texts, lists, dictionaries and arrays, and nothing else.
+"""Unpickling of numbers, texts, lists, dictionaries and arrays, and nothing else.
 
-A pickle is a program for a small machine, and two of its instructions call functions by name.
-This machine calls none. It knows what a handful of numpy's functions stand for, and builds the
-arrays itself; any other name becomes a `Refused`, which what holds it can be told by. The published
-archives are one pickled list of all assets, tens of gigabytes: each is given away as soon as it is
-complete, and forgotten.
+A pickle can call any function by its name. The names of numpy's constructors are looked up in a
+table of stand-ins, and all other names become a `Refused`. numpy's own constructors are never
+called, because damaged arguments crash them. The published archives are one pickled list of all
+assets, tens of gigabytes: each entry is yielded as soon as it is complete, and forgotten.
 """
 
 from __future__ import annotations
 
 import io
 import math
-import pickletools
+import pickle
 import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import IO, Any
+from typing import IO, Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,45 +22,228 @@ from numpy.typing import NDArray
 from ...errors import FileError
 
 MAX_BYTES = 2**30
-"""Of one asset in the pickle."""
-DEPTH = 20
+"""Of one entry in the pickle."""
+MAX_ITEMS = 10_000_000
+"""Of one entry: a few bytes can nest a list in itself so often that it has billions."""
+MAX_DEPTH = 20
 """Containers inside each other."""
+MAX_REMEMBERED = 200
+"""Length of a text or tuple that later entries may share, such as the shape of an array."""
 BUFFER = 2**20
 DTYPE = re.compile(r"[biufc]\d{1,2}|[SU]\d{1,6}|O8?")
 
-ARRAY_MODULES = ("numpy", "numpy.core.multiarray", "numpy._core.multiarray",
-                 "numpy.core.numeric", "numpy._core.numeric", "_codecs")  # fmt: skip
-KNOWN = {
-    (module, name)
-    for module in ARRAY_MODULES
-    for name in ("ndarray", "dtype", "_reconstruct", "scalar", "_frombuffer")
-} - {("_codecs", name) for name in ("ndarray", "dtype", "_reconstruct", "scalar", "_frombuffer")}
-KNOWN |= {("_codecs", "encode")}
+
+# typeshed lists neither: the standard library's unpickler as it is written in Python.
+_Unpickler: Any = vars(pickle)["_Unpickler"]
+_Unframer: Any = vars(pickle)["_Unframer"]
 
 
 @dataclass(frozen=True)
 class Refused:
-    """Stands where the pickle asked for something that is not data.
+    """Stands for an object that is not data; calls and changes of it do nothing.
 
     Parameters
     ----------
     why : str
-        In words.
+        The reason.
     """
 
     why: str
 
+    def __call__(self, *_: Any) -> Refused:
+        return self
 
-@dataclass(frozen=True)
-class _Name:
-    """One of numpy's functions, by name; never called."""
+    append = extend = add = __setitem__ = build = __call__
 
-    name: str
+
+DATA = (str, int, float, bytes, bytearray, set, frozenset, type(None), np.ndarray, Refused)
+
+
+def plain_objects(stream: IO[bytes], what: str, max_bytes: int = MAX_BYTES) -> Iterator[Any]:
+    """Yield the entries of a pickled list, or of a pickled array of objects, one at a time."""
+    try:
+        yield from _DataUnpickler(stream, what, max_bytes).entries()
+    except FileError:
+        raise
+    except Exception as error:  # a damaged stream can raise anything in the unpickler
+        text = " ".join(str(error).split())[:200]
+        raise FileError(
+            f"{what} is damaged or no pickle ({text or type(error).__name__})"
+        ) from None
+
+
+class _DataUnpickler(_Unpickler):
+    """The standard library's unpickler, which builds stand-ins and forgets complete entries."""
+
+    dispatch: ClassVar[dict[int, Callable]] = dict(_Unpickler.dispatch)
+
+    def __init__(self, stream: IO[bytes], what: str, max_bytes: int) -> None:
+        self._limited = _LimitedStream(stream, what, max_bytes)
+        super().__init__(self._limited, encoding="latin-1")
+        self.memo = _Memo()
+        self._what = what
+        self._list: list[Any] | None = None  # of the entries
+        self._complete: list[Any] = []
+        self._items = 0
+
+    def entries(self) -> Iterator[Any]:
+        """Yield the entries: `load` of the standard library as a generator."""
+        self._unframer = _Unframer(self._file_read, self._file_readline)
+        self.read, self.readinto = self._unframer.read, self._unframer.readinto
+        self.readline = self._unframer.readline
+        self.metastack: list[list[Any]] = []
+        self.stack: list[Any] = []
+        self.append = self.stack.append
+        while (code := self.read(1)) != pickle.STOP:
+            if not code:
+                raise EOFError("it ends too early")
+            self.dispatch[code[0]](self)
+            complete, self._complete = self._complete, []
+            yield from (self._plain(entry, 0) for entry in complete)
+        top = self.stack.pop()
+        entries = top.value if isinstance(top, _Array) else top
+        if not isinstance(entries, list):
+            why = entries.why if isinstance(entries, Refused) else "it holds something else"
+            raise FileError(f"{self._what} is no pickled list: {why}")
+        yield from (self._plain(entry, 0) for entry in entries)
+
+    def _plain(self, value: Any, depth: int) -> Any:
+        """Return a value with arrays in place of what stands for them."""
+        self._items += 1
+        if self._items > MAX_ITEMS or depth > MAX_DEPTH:
+            raise FileError(f"{self._what} holds an entry of too many nested lists; it is damaged")
+        if isinstance(value, _Array):
+            return self._plain(value.value, depth + 1)
+        if isinstance(value, list | tuple):
+            return type(value)(self._plain(item, depth + 1) for item in value)
+        if isinstance(value, dict):
+            if not all(isinstance(key, str | int) for key in value):
+                return Refused("it has a key that is no text")
+            return {key: self._plain(item, depth + 1) for key, item in value.items()}
+        return value if isinstance(value, DATA) else Refused("it holds a function or a type")
+
+    def find_class(self, module: str, name: str) -> Any:
+        if module.partition(".")[0] in ("numpy", "_codecs") and name in STAND_INS:
+            return STAND_INS[name]
+        label = f"{module}.{name}"[:80]
+        return Refused(f"it asks for {label}, which is no data and was not opened")
+
+    def persistent_load(self, pid: Any) -> Refused:
+        return Refused(f"it refers to something outside of itself, {pid!r:.40}")
+
+    def get_extension(self, code: int) -> None:
+        self.append(self.persistent_load(code))
+
+    def load_mark(self) -> None:
+        if len(self.metastack) > MAX_DEPTH:
+            raise FileError(f"{self._what} nests deeper than {MAX_DEPTH} containers; it is damaged")
+        super().load_mark()
+
+    def load_empty_list(self) -> None:
+        super().load_empty_list()
+        if self._list is None:  # only the array that holds the list of entries comes before it
+            self._list = self.stack[-1]
+
+    def load_empty_dictionary(self) -> None:
+        if self._list is None:
+            raise FileError(f"{self._what} is no pickled list: it begins with a dictionary")
+        if self.stack and isinstance(self.stack[-1], dict):
+            self._release()
+        super().load_empty_dictionary()
+
+    def load_appends(self) -> None:
+        self._release()
+        super().load_appends()
+
+    def _release(self) -> None:
+        """Hand over the complete entries, and forget the objects that were made for them."""
+        if self.metastack and self.metastack[-1] and self.metastack[-1][-1] is self._list:
+            self._complete = self.stack[:]
+            self.stack.clear()
+            self.memo.forget()
+            self._limited.bytes_read = self._items = 0
+
+    def load_build(self) -> None:
+        state = self.stack.pop()
+        if isinstance(self.stack[-1], _Array | _DType | Refused):
+            self.stack[-1].build(state)
+        else:
+            self.stack[-1] = Refused("it sets the state of an object")
+
+    def load_newobj(self, arguments: int = 1) -> None:
+        del self.stack[-arguments:]
+        if not isinstance(self.stack[-1], Refused):
+            self.stack[-1] = Refused("it makes an object")
+
+    for _code, _load in (
+        (pickle.MARK, load_mark),
+        (pickle.EMPTY_LIST, load_empty_list),
+        (pickle.EMPTY_DICT, load_empty_dictionary),
+        (pickle.APPENDS, load_appends),
+        (pickle.BUILD, load_build),
+        (pickle.NEWOBJ, load_newobj),
+        (pickle.NEWOBJ_EX, lambda self: self.load_newobj(2)),
+    ):
+        dispatch[_code[0]] = _load
+
+
+class _LimitedStream:
+    """A stream that refuses to read more than an entry may take."""
+
+    def __init__(self, stream: IO[bytes], what: str, max_bytes: int) -> None:
+        self._stream = io.BufferedReader(stream, BUFFER)  # type: ignore[type-var]
+        self._what, self._max = what, max_bytes
+        self.bytes_read = 0
+
+    def read(self, size: int) -> bytes:
+        self._count(size)
+        return self._stream.read(size)
+
+    def readline(self) -> bytes:
+        line = self._stream.readline(self._max - self.bytes_read + 1)
+        self._count(len(line))
+        return line
+
+    def _count(self, size: int) -> None:
+        self.bytes_read += size
+        if self.bytes_read > self._max:
+            raise FileError(
+                f"{self._what} holds an entry of more than {self._max / 1e9:.2g} GB; it is damaged"
+            )
+
+
+class _Memo(list):
+    """The objects that later instructions may refer to by number."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._first = 0  # of the current entry
+        self._shared: dict[str, Any] = {}
+
+    def __setitem__(self, index: Any, value: Any) -> None:
+        if index > len(self) + 1:  # some picklers count from 1
+            raise ValueError("it numbers its objects in no order")
+        self.extend([_GONE] * (index + 1 - len(self)))
+        super().__setitem__(index, value)
+
+    def forget(self) -> None:
+        """Forget the objects of an entry, but for texts, shapes, types and names."""
+        for index in range(self._first, len(self)):
+            self[index] = self._remembered(self[index])
+        self._first = len(self)
+
+    def _remembered(self, value: Any) -> Any:
+        if isinstance(value, _DType) or callable(value):
+            return value
+        is_short = isinstance(value, str | tuple) and len(value) <= MAX_REMEMBERED
+        if is_short and all(isinstance(part, str | int | None) for part in value):
+            return self._shared.setdefault(repr(value), value)
+        return _GONE
 
 
 @dataclass
 class _DType:
-    """A numpy type while it is put together."""
+    """A numpy type while it is built."""
 
     code: str
     order: str = "="
@@ -69,418 +251,55 @@ class _DType:
     def real(self) -> np.dtype:
         return np.dtype(self.code).newbyteorder(self.order)  # type: ignore[arg-type]
 
+    def build(self, state: Any) -> None:
+        if isinstance(state, tuple) and state[1] in ("<", ">", "|", "="):
+            self.order = state[1]
+            if state[2:5] == (None, None, None):
+                return
+        self.code, self.order = "O", "="  # a type with fields, which is refused
+
 
 @dataclass
 class _Array:
-    """An array while it is put together."""
+    """An array while it is built: of numbers or texts, or the list of an array of objects."""
 
     value: Any = None
 
+    def build(self, state: Any) -> None:
+        _, shape, kind, by_columns, data = state
+        if isinstance(kind, _DType) and kind.code.startswith("O") and isinstance(data, list):
+            self.value = data
+        else:
+            self.value = _array(data, kind, shape, bool(by_columns))
 
-class _Mark:
-    """Where a list of arguments begins; also what stands for things that were forgotten."""
+
+def _array(data: Any, kind: Any, shape: Any, by_columns: bool) -> NDArray | Refused:
+    if isinstance(kind, Refused):
+        return kind
+    is_shape = isinstance(shape, tuple) and all(isinstance(n, int) and n >= 0 for n in shape)
+    is_complete = isinstance(kind, _DType) and isinstance(data, bytes | bytearray)
+    if not is_shape or not is_complete or kind.real().hasobject:
+        return Refused("it has a damaged array")
+    if math.prod(shape) * kind.real().itemsize != len(data):
+        return Refused(f"its array of the shape {shape!r:.99} holds {len(data):,} bytes")
+    return np.frombuffer(data, kind.real()).reshape(shape, order="F" if by_columns else "C")
+
+
+def _dtype(code: str, *_: Any) -> _DType | Refused:
+    return _DType(code) if DTYPE.fullmatch(code) else Refused(f"it has the type {code[:40]}")
+
+
+def _scalar(kind: Any, data: Any) -> Any:
+    value = _array(data, kind, (), False)
+    return value.item() if isinstance(value, np.ndarray) else value
 
 
 _GONE = Refused("it shares an object with an earlier asset, which is forgotten by then")
-_PLAIN = (str, int, float, bool, type(None), _Name, _DType, Refused)
-SHORT = 8
-"""Entries of a tuple that is remembered, such as the shape of an array."""
-
-
-def plain_objects(stream: IO[bytes], what: str, most_bytes: int = MAX_BYTES) -> Iterator[Any]:
-    """Yield the entries of a pickled list, or of a pickled array of objects, one at a time."""
-    machine = _Machine(what, most_bytes)
-    limited = _Limited(stream, machine)
-    try:
-        for operation, argument, _ in pickletools.genops(limited):  # type: ignore[arg-type]
-            for entry in machine.step(operation.name, argument):
-                yield machine.finished(entry)
-            if operation.name == "STOP":
-                yield from map(machine.finished, machine.rest())
-                return
-    except FileError:
-        raise
-    except Exception as error:  # whatever a damaged stream runs the parser and the machine into
-        text = " ".join(str(error).split())[:200]
-        raise FileError(
-            f"{what} is damaged or no pickle ({text or type(error).__name__})"
-        ) from None
-
-
-class _Limited:
-    """A stream that gives no more than an entry may take, checked before it is read."""
-
-    def __init__(self, stream: IO[bytes], machine: _Machine) -> None:
-        self._stream = io.BufferedReader(stream, BUFFER)  # type: ignore[type-var]
-        self._machine = machine
-
-    def read(self, size: int = -1) -> bytes:
-        self._machine.take(size)
-        return self._stream.read(size)
-
-    def readline(self) -> bytes:
-        line = self._stream.readline(self._machine.left())
-        self._machine.take(len(line))
-        return line
-
-
-class _Machine:
-    """The stack of the pickle's instructions."""
-
-    def __init__(self, what: str, most_bytes: int) -> None:
-        self._what, self._most = what, most_bytes
-        self._taken = 0
-        self._stack: list[Any] = []
-        self._below: list[list[Any]] = []
-        self._memo: list[Any] = []
-        self._from = 0
-        self._entries: list[Any] | None = None
-        self._level = -1
-        self._texts: dict[str, str] = {}
-        self._tuples: dict[tuple, tuple] = {}
-
-    def left(self) -> int:
-        return self._most - self._taken + 1
-
-    def take(self, size: int) -> None:
-        """Count the bytes of an entry."""
-        self._taken += max(size, 0)
-        if size < 0 or self._taken > self._most:
-            raise FileError(
-                f"{self._what} holds an entry of more than {self._most / 1e9:.2g} GB; it is damaged"
-            )
-
-    def finished(self, entry: Any) -> Any:
-        """Return an entry without what only this machine knows."""
-        return _unwrapped(entry, 0)
-
-    def rest(self) -> list[Any]:
-        """Return the entries that are left at the end: a batch of one has no mark."""
-        if self._entries is not None:
-            return self._entries
-        whole = self._stack[-1]
-        whole = whole.value if isinstance(whole, _Array) else whole
-        if not isinstance(whole, list):
-            why = whole.why if isinstance(whole, Refused) else "it holds something else"
-            raise FileError(f"{self._what} is no pickled list: {why}")
-        return whole
-
-    def step(self, name: str, argument: Any) -> list[Any]:
-        """Do one instruction; return the entries that are complete by it."""
-        complete: list[Any] = []
-        at_entries = self._entries is not None and len(self._below) == self._level
-        if (
-            at_entries
-            and name == "EMPTY_DICT"
-            and self._stack
-            and isinstance(self._stack[-1], dict)
-        ):
-            complete = self._give_away()
-        if at_entries and name in ("APPENDS", "APPEND"):
-            complete = self._give_away()
-            if name == "APPENDS":
-                self._pop_mark()
-            return complete
-        if name in PUSHED:
-            self._stack.append(argument)
-        elif name in CONSTANTS:
-            self._stack.append(CONSTANTS[name])
-        elif name in TEXTS:
-            self._stack.append(self._texts.setdefault(argument, argument))
-        elif name in IGNORED:
-            pass
-        else:
-            try:
-                action = ACTIONS[name]
-            except KeyError:
-                raise FileError(
-                    f"{self._what} uses the pickle instruction {name}, which data does not need"
-                ) from None
-            action(self, argument)
-        return complete
-
-    def _give_away(self) -> list[Any]:
-        """Return all complete entries, and forget what was made for them."""
-        complete, self._stack[:] = list(self._stack), []
-        for k in range(self._from, len(self._memo)):
-            self._memo[k] = self._kept(self._memo[k])
-        self._from = len(self._memo)
-        self._taken = 0
-        return complete
-
-    def _kept(self, thing: Any) -> Any:
-        """Return what is remembered of a thing: later assets may refer to texts and shapes."""
-        if isinstance(thing, tuple) and len(thing) <= SHORT:
-            if all(isinstance(item, int | str | None) for item in thing):
-                return self._tuples.setdefault(thing, thing)
-        elif isinstance(thing, _PLAIN):
-            return thing
-        return _GONE
-
-    def _pop_mark(self) -> list[Any]:
-        items, self._stack = self._stack, self._below.pop()
-        return items
-
-    def mark(self, _: Any) -> None:
-        if len(self._below) > DEPTH:
-            raise FileError(f"{self._what} nests deeper than {DEPTH} containers; it is damaged")
-        entries = self._stack[-1] if self._stack else None
-        self._below.append(self._stack)
-        self._stack = []
-        # The list of assets is the first list: nothing but the array that holds it comes before.
-        if self._entries is None and isinstance(entries, list) and self._is_outermost():
-            self._entries, self._level = entries, len(self._below)
-
-    def _is_outermost(self) -> bool:
-        """Tell whether no other list or dictionary is under way."""
-        return not any(
-            isinstance(item, dict | list) for items in self._below for item in items[:-1]
-        ) and not any(isinstance(items[-1], dict | list) for items in self._below[:-1] if items)
-
-    def memoize(self, _: Any) -> None:
-        self._put(len(self._memo))
-
-    def put(self, argument: Any) -> None:
-        self._put(int(argument))
-
-    def _put(self, index: int) -> None:
-        if index > len(self._memo) + 1_000_000:
-            raise FileError(f"{self._what} numbers its objects in no order; it is damaged")
-        while len(self._memo) <= index:
-            self._memo.append(_GONE)
-        self._memo[index] = self._stack[-1]
-
-    def get(self, argument: Any) -> None:
-        self._stack.append(self._memo[int(argument)])
-
-    def pop(self, _: Any) -> None:
-        self._stack.pop()
-
-    def pop_mark(self, _: Any) -> None:
-        self._pop_mark()
-
-    def new_list(self, _: Any) -> None:
-        self._stack.append([])
-
-    def new_dict(self, _: Any) -> None:
-        self._stack.append({})
-
-    def marked_tuple(self, _: Any) -> None:
-        items = self._pop_mark()
-        self._stack.append(tuple(items))
-
-    def marked_list(self, _: Any) -> None:
-        items = self._pop_mark()
-        self._stack.append(items)
-
-    def marked_dict(self, _: Any) -> None:
-        items = self._pop_mark()
-        self._stack.append({})
-        self._set_all(items)
-
-    def short_tuple(self, count: int) -> None:
-        items = self._stack[len(self._stack) - count :]
-        del self._stack[len(self._stack) - count :]
-        self._stack.append(tuple(items))
-
-    def append(self, _: Any) -> None:
-        item = self._stack.pop()
-        self._extend([item])
-
-    def appends(self, _: Any) -> None:
-        items = self._pop_mark()
-        self._extend(items)
-
-    def _extend(self, items: list[Any]) -> None:
-        if isinstance(self._stack[-1], list):
-            self._stack[-1].extend(items)
-
-    def set_item(self, _: Any) -> None:
-        value, key = self._stack.pop(), self._stack.pop()
-        self._set_all([key, value])
-
-    def set_items(self, _: Any) -> None:
-        items = self._pop_mark()
-        self._set_all(items)
-
-    def _set_all(self, items: list[Any]) -> None:
-        goal = self._stack[-1]
-        if isinstance(goal, dict):
-            for key, value in zip(items[::2], items[1::2], strict=True):
-                if not isinstance(key, str | int):
-                    value, key = Refused("a key that is no text"), "?"
-                goal[key] = value
-
-    def name_argument(self, argument: str) -> None:
-        module, _, name = argument.partition(" ")
-        self._push_name(module, name)
-
-    def name_on_stack(self, _: Any) -> None:
-        name, module = self._stack.pop(), self._stack.pop()
-        self._push_name(module, name)
-
-    def _push_name(self, module: Any, name: Any) -> None:
-        if (module, name) in KNOWN:
-            self._stack.append(_Name(name))
-        else:
-            shown = f"{module}.{name}"[:80]
-            self._stack.append(Refused(f"it asks for {shown}, which is no data and was not opened"))
-
-    def reduce(self, _: Any) -> None:
-        arguments, function = self._stack.pop(), self._stack.pop()
-        self._stack.append(_called(function, arguments))
-
-    def refuse_object(self, _: Any) -> None:
-        """NEWOBJ and the like: a class and its arguments."""
-        arguments, kind = self._stack.pop(), self._stack.pop()
-        del arguments
-        self._stack.append(kind if isinstance(kind, Refused) else Refused("it makes an object"))
-
-    def refuse_marked(self, _: Any) -> None:
-        self._pop_mark()
-        self._stack.append(Refused("it makes an object of a class by name"))
-
-    def refuse_call(self, _: Any) -> None:
-        """NEWOBJ_EX: a class, its arguments, and some by name."""
-        del self._stack[-2:]
-        self._stack[-1] = Refused("it makes an object")
-
-    def refuse_outside(self, argument: Any) -> None:
-        """PERSID, EXT and the like: something that is not in the pickle."""
-        self._stack.append(Refused(f"it refers to something outside of itself, {argument!r:.40}"))
-
-    def refuse_outside_on_stack(self, _: Any) -> None:
-        self.refuse_outside(self._stack.pop())
-
-    def new_set(self, _: Any) -> None:
-        self._stack.append(Refused("it holds a set"))
-
-    def duplicate(self, _: Any) -> None:
-        self._stack.append(self._stack[-1])
-
-    def build(self, _: Any) -> None:
-        state, target = self._stack.pop(), self._stack[-1]
-        if isinstance(target, _DType):
-            _set_order(target, state)
-        elif isinstance(target, _Array):
-            target.value = _built(state)
-        elif not isinstance(target, Refused):
-            self._stack[-1] = Refused("it sets the state of an object")
-
-
-def _called(function: Any, arguments: Any) -> Any:
-    """Return what one of numpy's functions stands for."""
-    if isinstance(function, Refused):
-        return function
-    if not isinstance(function, _Name) or not isinstance(arguments, tuple):
-        return Refused("it calls what is no function")
-    name = function.name
-    if name == "_reconstruct":
-        return _Array()
-    if name == "dtype" and arguments and isinstance(arguments[0], str):
-        code = arguments[0]
-        return _DType(code) if DTYPE.fullmatch(code) else Refused(f"it has the type {code[:40]}")
-    if name == "scalar" and len(arguments) == 2 and isinstance(arguments[0], _DType):
-        kind, data = arguments[0].real(), arguments[1]
-        if isinstance(data, bytes) and not kind.hasobject and len(data) == kind.itemsize:
-            return np.frombuffer(data, kind)[0].item()
-    if name == "encode" and arguments and isinstance(arguments[0], str):
-        return arguments[0].encode("latin-1")  # how protocol 2 writes bytes
-    if name == "_frombuffer" and len(arguments) == 4 and isinstance(arguments[1], _DType):
-        data, kind, shape, order = arguments
-        return _Array(_array(data, kind.real(), shape, order == "F"))
-    return Refused(f"it calls numpy's {name} in a way that is not known")
-
-
-def _set_order(kind: _DType, state: Any) -> None:
-    if isinstance(state, tuple) and len(state) >= 5 and state[1] in ("<", ">", "|", "="):
-        kind.order = state[1]
-        if state[2:5] == (None, None, None):
-            return
-    kind.code, kind.order = "O", "="
-
-
-def _built(state: Any) -> Any:
-    if not isinstance(state, tuple) or len(state) != 5:
-        return Refused("it sets the state of an array in a way that is not known")
-    _, shape, kind, by_columns, data = state
-    if not isinstance(kind, _DType):
-        return kind if isinstance(kind, Refused) else Refused("it has an array of no type")
-    if kind.code.startswith("O"):
-        return data if isinstance(data, list) else Refused("it has a damaged array of objects")
-    return _array(data, kind.real(), shape, bool(by_columns))
-
-
-def _array(data: Any, kind: np.dtype, shape: Any, by_columns: bool) -> NDArray | Refused:
-    whole = isinstance(shape, tuple) and all(isinstance(n, int) and n >= 0 for n in shape)
-    if not whole or not isinstance(data, bytes | bytearray) or kind.hasobject:
-        return Refused("it has a damaged array")
-    if math.prod(shape) * kind.itemsize != len(data):
-        return Refused(f"its array of the shape {shape} holds {len(data):,} bytes")
-    return np.frombuffer(data, kind).reshape(shape, order="F" if by_columns else "C")
-
-
-def _unwrapped(value: Any, depth: int) -> Any:
-    if depth > DEPTH:
-        return Refused(f"it nests deeper than {DEPTH} containers")
-    if isinstance(value, _Array):
-        return _unwrapped(value.value, depth + 1)
-    if isinstance(value, _Name | _DType):
-        return Refused("it holds a function or a type")
-    if isinstance(value, list):
-        return [_unwrapped(item, depth + 1) for item in value]
-    if isinstance(value, tuple):
-        return tuple(_unwrapped(item, depth + 1) for item in value)
-    if isinstance(value, dict):
-        return {key: _unwrapped(item, depth + 1) for key, item in value.items()}
-    return value
-
-
-PUSHED = {
-    "BININT", "BININT1", "BININT2", "INT", "LONG", "LONG1", "LONG4", "FLOAT", "BINFLOAT",
-    "BINBYTES", "SHORT_BINBYTES", "BINBYTES8", "BYTEARRAY8", "BINSTRING", "SHORT_BINSTRING",
-}  # fmt: skip
-TEXTS = {"SHORT_BINUNICODE", "BINUNICODE", "BINUNICODE8", "UNICODE", "STRING"}
-CONSTANTS: dict[str, Any] = {"NONE": None, "NEWTRUE": True, "NEWFALSE": False, "EMPTY_TUPLE": ()}
-IGNORED = {"PROTO", "FRAME", "STOP"}
-ACTIONS: dict[str, Callable[[_Machine, Any], None]] = {
-    "MARK": _Machine.mark,
-    "MEMOIZE": _Machine.memoize,
-    "PUT": _Machine.put,
-    "BINPUT": _Machine.put,
-    "LONG_BINPUT": _Machine.put,
-    "GET": _Machine.get,
-    "BINGET": _Machine.get,
-    "LONG_BINGET": _Machine.get,
-    "POP": _Machine.pop,
-    "POP_MARK": _Machine.pop_mark,
-    "EMPTY_LIST": _Machine.new_list,
-    "EMPTY_DICT": _Machine.new_dict,
-    "TUPLE": _Machine.marked_tuple,
-    "LIST": _Machine.marked_list,
-    "DICT": _Machine.marked_dict,
-    "TUPLE1": lambda machine, _: machine.short_tuple(1),
-    "TUPLE2": lambda machine, _: machine.short_tuple(2),
-    "TUPLE3": lambda machine, _: machine.short_tuple(3),
-    "APPEND": _Machine.append,
-    "APPENDS": _Machine.appends,
-    "SETITEM": _Machine.set_item,
-    "SETITEMS": _Machine.set_items,
-    "GLOBAL": _Machine.name_argument,
-    "STACK_GLOBAL": _Machine.name_on_stack,
-    "REDUCE": _Machine.reduce,
-    "NEWOBJ": _Machine.refuse_object,
-    "OBJ": _Machine.refuse_marked,
-    "INST": _Machine.refuse_marked,
-    "BUILD": _Machine.build,
-    "NEWOBJ_EX": _Machine.refuse_call,
-    "PERSID": _Machine.refuse_outside,
-    "BINPERSID": _Machine.refuse_outside_on_stack,
-    "EXT1": _Machine.refuse_outside,
-    "EXT2": _Machine.refuse_outside,
-    "EXT4": _Machine.refuse_outside,
-    "EMPTY_SET": _Machine.new_set,
-    "ADDITEMS": _Machine.pop_mark,
-    "FROZENSET": _Machine.refuse_marked,
-    "DUP": _Machine.duplicate,
+STAND_INS = {
+    "ndarray": Refused("it holds a function or a type"),
+    "dtype": _dtype,
+    "scalar": _scalar,
+    "_frombuffer": lambda data, kind, shape, order: _Array(_array(data, kind, shape, order == "F")),
+    "_reconstruct": lambda *_: _Array(),
+    "encode": lambda text, *_: text.encode("latin-1"),  # bytes in protocol 2
 }

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from ...geometry.triangles import normals
-from ..rig import TriangleMesh
+from ..mesh import TriangleMesh
 
 SPACING = 0.02
 """Of the longest side: samples of the surface are about as far apart."""

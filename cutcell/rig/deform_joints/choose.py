@@ -8,7 +8,8 @@ from difflib import get_close_matches
 from fnmatch import fnmatchcase
 
 from ...errors import ParameterError
-from ..rig import Rig, Skeleton
+from ..rig import Rig
+from ..skeleton import Skeleton
 from .guess import deform_joints
 
 

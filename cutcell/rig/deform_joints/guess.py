@@ -8,7 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from ..rig import FAR_OUTSIDE, Skeleton, TriangleMesh
+from ..mesh import TriangleMesh
+from ..rig import FAR_OUTSIDE
+from ..skeleton import Skeleton
 from .body import SPACING, Body
 from .names import is_control, is_end_marker, is_fingertip, is_root, is_socket, may_be_control
 

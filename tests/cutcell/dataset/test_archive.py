@@ -6,11 +6,14 @@ import pickle
 import subprocess
 import sys
 import zipfile
+from collections import OrderedDict, deque
+from fractions import Fraction
 
 import numpy as np
 import pytest
 
 import cutcell
+from cutcell.dataset.read import unpickle
 from cutcell.dataset.read.archive import read_archive, split
 from cutcell.errors import FileError
 
@@ -108,6 +111,33 @@ def test_what_comes_from_outside_of_the_pickle_is_refused(tmp_path):
     first, second = read_archive(tmp_path / "a.npz")
     assert "outside" in first.error
     assert not second.error
+
+
+def test_objects_refuse_their_own_asset_only(tmp_path):
+    entries = [asset(k) for k in range(5)]
+    entries[1]["more"] = OrderedDict(a=1)
+    entries[2]["more"] = deque([1, 2])
+    entries[3]["more"] = Fraction(1, 2)
+    entries[4]["vertices"] = entries[4]["again"] = np.ones((2, 3))
+    assets = list(read_archive(write(tmp_path / "a.npz", entries)))
+    assert [k for k, one in enumerate(assets) if one.error] == [1, 2, 3]
+    np.testing.assert_array_equal(assets[4].arrays["vertices"], assets[4].arrays["again"])
+
+
+def test_the_oldest_protocol_is_read(tmp_path):
+    entries = [{"uuid": f"{k}", "bones": [[0, 1]]} for k in range(3)]
+    assets = list(read_archive(write(tmp_path / "a.npz", entries, 0)))
+    assert [one.name for one in assets] == ["0", "1", "2"]
+
+
+def test_an_asset_of_billions_of_items_is_refused(tmp_path, monkeypatch):
+    monkeypatch.setattr(unpickle, "MAX_ITEMS", 100_000)
+    nested = [0]
+    for _ in range(12):
+        nested = [nested] * 40
+    path = write(tmp_path / "a.npz", [{"uuid": "a", "vertices": nested}])
+    with pytest.raises(FileError):
+        list(read_archive(path))
 
 
 def test_memory_is_that_of_one_asset(tmp_path):

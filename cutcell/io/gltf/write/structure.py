@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....errors import SkeletonError
-from ....rig.rig import Rig, with_origin
+from ....rig import Rig, with_origin
 from ..nodes import Nodes
 from ..read.accessors import read_accessor
 from ..read.read import GltfSource, StoredPart
