@@ -22,7 +22,7 @@ from typing import Any
 import numpy as np
 
 import cutcell
-from cutcell.io.gltf.read import draco as gltf_draco
+from cutcell.io.gltf.read import compressed as gltf_draco
 from cutcell.io.scenes import fbx, usd
 from cutcell.isolated.__main__ import TASKS, limit_memory
 from cutcell.isolated.run import WorkFailedError

@@ -7,21 +7,21 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
+import pygltflib
 from numpy.typing import NDArray
 
 from ...rig.rig import Rig
+from ..gltf.buffer import BufferWriter
 from ..gltf.container import Document
 from ..gltf.embedded import image_notes
 from ..gltf.read.accessors import find_accessor
-from ..gltf.write.seams import MAX_VERTICES, SPLIT_FROM, split_at_seams
-from ..gltf.write.storage import Storage
 from .face_colors import Collected, FaceColors, face_colors
 from .gltf_palette import Group, Palette, Uses, attributes_of
 from .surfaces import SurfacePaint, Surfaces
 from .transfer import has_materials, read_materials
 
 
-def with_rig_colors(document: dict[str, Any], data: bytes, rig: Rig) -> Storage | None:
+def with_rig_colors(document: dict[str, Any], data: bytes, rig: Rig) -> BufferWriter | None:
     """Give a new document the base colours of a rig's file."""
     found = read_materials(rig) if has_materials(rig) else None
     if found is None:
@@ -30,11 +30,11 @@ def with_rig_colors(document: dict[str, Any], data: bytes, rig: Rig) -> Storage 
     return _colored(document, data, meshes, Uses(found.layers, found.images, found.names))
 
 
-def with_surface_colors(storage: Storage, surfaces: Surfaces | None) -> Storage:
+def with_surface_colors(buffer: BufferWriter, surfaces: Surfaces | None) -> BufferWriter:
     """Give a document that was made of another format the base colours of that file."""
     if surfaces is None or not surfaces.coloured:
-        return storage
-    document, data = storage.document, storage.finish()
+        return buffer
+    document, data = buffer.document, buffer.finish()
     found = Collected(surfaces.notes)
     paint = SurfacePaint(surfaces, found)
     view = Document(surfaces.path, document, [data])
@@ -81,26 +81,26 @@ class _Mesh(NamedTuple):
 
 def _colored(
     document: dict[str, Any], data: bytes, meshes: Mapping[int, FaceColors], uses: Uses
-) -> Storage:
-    """Return the storage of a document each of whose meshes has one primitive.
+) -> BufferWriter:
+    """Return the writer of a document each of whose meshes has one primitive.
 
     Weights are stored behind all else, as they are when the document is read and saved again.
     """
     view, palette = Document(Path(), document, [data]), Palette(uses)
     count = len(document["meshes"])
     taken = [_take(view, number, meshes.get(number), palette) for number in range(count)]
-    storage = Storage(document, [data], [i for mesh in taken for i in mesh.old.values()])
-    plain = palette.store(storage)
+    buffer = BufferWriter(document, [data], [i for mesh in taken for i in mesh.old.values()])
+    plain = palette.store(buffer)
     for mesh, found in zip(document["meshes"], taken, strict=True):
-        _store(storage, mesh["primitives"], found, plain)
+        _store(buffer, mesh["primitives"], found, plain)
     for mesh, found in zip(document["meshes"], taken, strict=True):
         weights = {name: values for name, values in found.arrays.items() if _is_weight(name)}
-        stored = {name: storage.store(weights[name], found.old[name]) for name in weights}
+        stored = {name: buffer.store(weights[name], found.old[name]) for name in weights}
         for primitive in mesh["primitives"]:
             primitive["attributes"].update(stored)
     if all(mesh.groups for mesh in taken):
         document["materials"].pop()
-    return storage
+    return buffer
 
 
 def _take(view: Document, number: int, colors: FaceColors | None, palette: Palette) -> _Mesh:
@@ -120,8 +120,6 @@ def _take(view: Document, number: int, colors: FaceColors | None, palette: Palet
         arrays |= attributes_of(groups, of_vertex)
         old["indices"] = primitive.pop("indices")
     is_split = len(origin) > count
-    if is_split and "JOINTS_0" in named and count <= MAX_VERTICES:
-        arrays[SPLIT_FROM] = origin[:, None].astype("<f4")
     for name in sorted(named, key=_is_weight):
         if is_split or _is_weight(name):
             old[name] = named.pop(name)
@@ -129,7 +127,33 @@ def _take(view: Document, number: int, colors: FaceColors | None, palette: Palet
     return _Mesh(old, arrays, faces, groups)
 
 
-def _store(storage: Storage, primitives: list[dict[str, Any]], mesh: _Mesh, plain: int) -> None:
+def split_at_seams(
+    faces: NDArray[np.integer], count: int, values: NDArray[np.float32]
+) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Split vertices whose corners have different values.
+
+    Shapes: faces (m, 3), values (m, 3, k); returns faces (m, 3), origin (count + s,).
+    """
+    corner = faces.reshape(-1).astype(np.intp)
+    keys = values.reshape(len(corner), -1)
+    order = np.lexsort((*keys.T, corner))
+    ordered, at = keys[order], corner[order]
+    new = np.ones(len(order), bool)
+    new[1:] = (at[1:] != at[:-1]) | (ordered[1:] != ordered[:-1]).any(axis=1)
+    group = np.empty(len(order), np.intp)
+    group[order] = np.cumsum(new) - 1
+    first = order[new]  # the sort is stable: the first corner of each group
+    vertex = corner[first]
+    ranked = np.lexsort((first, vertex))
+    leads = np.ones(len(ranked), bool)
+    leads[1:] = vertex[ranked][1:] != vertex[ranked][:-1]
+    copies = ranked[~leads]
+    number = vertex.copy()
+    number[copies] = count + np.arange(len(copies))
+    return number[group].reshape(-1, 3), np.concatenate([np.arange(count), vertex[copies]])
+
+
+def _store(buffer: BufferWriter, primitives: list[dict[str, Any]], mesh: _Mesh, plain: int) -> None:
     """Store all of a mesh but its weights; its primitives have their vertices in common."""
     (primitive,) = primitives
     if not mesh.groups:
@@ -139,13 +163,13 @@ def _store(storage: Storage, primitives: list[dict[str, Any]], mesh: _Mesh, plai
     for name, values in mesh.arrays.items():
         if _is_weight(name):
             continue
-        number = named[name] = storage.store(values, mesh.old.get(name))
+        number = named[name] = buffer.store(values, mesh.old.get(name))
         if name == "POSITION":
             low, high = values.min(axis=0).tolist(), values.max(axis=0).tolist()
-            storage.accessors[number].update(min=low, max=high)
+            buffer.accessors[number].update(min=low, max=high)
         elif name == "COLOR_0":
-            storage.accessors[number]["normalized"] = True
-    count = storage.accessors[named["POSITION"]]["count"]
+            buffer.accessors[number]["normalized"] = True
+    count = buffer.accessors[named["POSITION"]]["count"]
     kind = "<u2" if count < np.iinfo(np.uint16).max else "<u4"
     primitives.clear()
     for k, group in enumerate(mesh.groups):
@@ -154,7 +178,9 @@ def _store(storage: Storage, primitives: list[dict[str, Any]], mesh: _Mesh, plai
         primitives.append({
             **primitive,
             "attributes": {name: at for name, at in named.items() if uses.get(name, True)},
-            "indices": storage.store(corners, None if k else mesh.old["indices"]),
+            "indices": buffer.store(
+                corners, None if k else mesh.old["indices"], pygltflib.ELEMENT_ARRAY_BUFFER
+            ),
             "material": group.material,
         })  # fmt: skip
 

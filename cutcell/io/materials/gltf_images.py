@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from ...errors import FileError
+from ..gltf.buffer import BufferWriter
 from ..gltf.container import Document, beside
-from ..gltf.write.storage import Storage
 
 SIGNATURES = {
     b"\x89PNG": "image/png",
@@ -19,7 +19,7 @@ SIGNATURES = {
 }
 
 
-def carry_images(storage: Storage, document: Document, target: Path) -> dict[Path, bytes]:
+def carry_images(buffer: BufferWriter, document: Document, target: Path) -> dict[Path, bytes]:
     """Keep images that lie in files of their own reachable from the new document.
 
     A ``.gltf`` that becomes a ``.glb``, or a ``.glb`` that moves, takes them in; a ``.gltf``
@@ -31,7 +31,7 @@ def carry_images(storage: Storage, document: Document, target: Path) -> dict[Pat
     if not moved and (to_text or document.binary):
         return {}
     files: dict[Path, bytes] = {}
-    for image in storage.document.get("images", []):
+    for image in buffer.document.get("images", []):
         uri = image.get("uri")
         if not isinstance(uri, str) or uri.startswith("data:"):
             continue
@@ -40,7 +40,7 @@ def carry_images(storage: Storage, document: Document, target: Path) -> dict[Pat
         if found is None or goal is None or content is None:
             continue
         if not to_text:
-            _embed(storage, image, found.name, content)
+            _embed(buffer, image, found.name, content)
         elif not os.path.lexists(goal):
             files[goal] = content
         elif _content(goal) != content:
@@ -59,7 +59,7 @@ def _content(file: Path) -> bytes | None:
         return None
 
 
-def _embed(storage: Storage, image: dict[str, Any], name: str, content: bytes) -> None:
+def _embed(buffer: BufferWriter, image: dict[str, Any], name: str, content: bytes) -> None:
     signed = next((m for s, m in SIGNATURES.items() if content.startswith(s)), None)
     kind = image.get("mimeType") or signed or mimetypes.guess_type(name)[0]
     if kind is None:
@@ -67,4 +67,4 @@ def _embed(storage: Storage, image: dict[str, Any], name: str, content: bytes) -
     del image["uri"]
     image.setdefault("name", Path(name).stem)
     image["mimeType"] = kind
-    image["bufferView"] = storage.add_view(content)
+    image["bufferView"] = buffer.add_view(content)

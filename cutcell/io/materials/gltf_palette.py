@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...runtime.colors import linear
+from ..gltf.buffer import BufferWriter
 from ..gltf.embedded import Embedded, embedded
-from ..gltf.write.storage import Storage
 from ..names import whole_characters
 from .face_colors import BLENDED, OPAQUE, FaceColors, Layer, StoredImage
 from .gltf_textures import NEAREST, WRAPS
@@ -121,16 +121,16 @@ class Palette:
                     rgba[rows, :, :3] = use.color
         return layers, rgba
 
-    def store(self, storage: Storage) -> int:
+    def store(self, buffer: BufferWriter) -> int:
         """Put the materials before the one of a document, and return the number of that."""
-        document = storage.document
+        document = buffer.document
         document["materials"] = [*map(self._material, self._looks), *document["materials"]]
         if any(look.layer >= 0 for look in self._looks):
-            self._store_images(storage)
+            self._store_images(buffer)
         return len(self._looks)
 
-    def _store_images(self, storage: Storage) -> None:
-        document = storage.document
+    def _store_images(self, buffer: BufferWriter) -> None:
+        document = buffer.document
         samplers: dict[tuple[int, bool], int] = {}
         images: dict[int, int] = {}
         textures: dict[tuple[int, int | None], int] = {}
@@ -145,7 +145,7 @@ class Palette:
             texture = textures.setdefault((image, sampler), len(textures))
             material["pbrMetallicRoughness"]["baseColorTexture"] = {"index": texture}
         document["images"] = [
-            _image(self._uses.images[k].name, self._embedded[k], storage) for k in images
+            _image(self._uses.images[k].name, self._embedded[k], buffer) for k in images
         ]
         document["textures"] = [
             {"source": image} if sampler is None else {"source": image, "sampler": sampler}
@@ -170,9 +170,9 @@ class Palette:
         return made
 
 
-def _image(label: str, image: Embedded, storage: Storage) -> dict[str, Any]:
+def _image(label: str, image: Embedded, buffer: BufferWriter) -> dict[str, Any]:
     name = whole_characters(label).partition('"')[2].rpartition('"')[0]
-    made = {"bufferView": storage.add_view(image.content), "mimeType": image.kind}
+    made = {"bufferView": buffer.add_view(image.content), "mimeType": image.kind}
     return {"name": name, **made} if name else made
 
 

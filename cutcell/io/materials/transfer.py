@@ -5,14 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from numpy.typing import NDArray
-
 from ...rig.rig import Rig
 from ..gltf.bare import BareSource
 from ..gltf.container import Document
 from ..gltf.read.primitives import primitives, read_triangles
 from ..gltf.read.read import GltfSource
-from ..gltf.write.seams import own_corners
 from .face_colors import Collected, FaceColors, Materials, face_colors
 from .gltf_materials import PrimitivePaint, is_coloured
 from .obj_materials import ColouredObj
@@ -60,10 +57,7 @@ def read_materials(rig: Rig) -> Materials | None:
     found, paint = _paint(document)
     taken = len(rig.mesh.faces) + sum(len(one.mesh.faces) for one in rig.attachments)
     document.allowance.take(taken * BYTES_PER_FACE, "its materials")
-    faces = _own_faces(rig, source, document)
-    if faces is None:
-        return None
-    body = face_colors(faces, _of_body(document, source), paint)
+    body = face_colors(rig.mesh.faces, _of_body(document, source), paint)
     hung = [
         face_colors(one.mesh.faces, _of_node(document, node), paint)
         for one, node in zip(rig.attachments, attached, strict=True)
@@ -96,23 +90,6 @@ def _paint(document: Document) -> tuple[Collected, Any]:
 
 def _attached(source: GltfSource | BareSource) -> tuple[int, ...]:
     return source.attached if isinstance(source, GltfSource) else ()
-
-
-def _own_faces(rig: Rig, source: GltfSource | BareSource, document: Document) -> NDArray | None:
-    """Return the body's faces by the numbers that their vertices have in the document.
-
-    None where these are not the document's faces.
-    """
-    faces = rig.mesh.faces
-    for one in source.faces:
-        if one.origin is None or one.rows.stop > len(faces):
-            continue
-        own = own_corners(document, one, rig.mesh.faces[one.rows] - one.first_vertex)
-        if own is None:
-            return None
-        faces = faces.copy() if faces is rig.mesh.faces else faces
-        faces[one.rows] = own + one.first_vertex
-    return faces
 
 
 def _of_body(

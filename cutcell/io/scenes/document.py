@@ -18,17 +18,15 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pygltflib
 from numpy.typing import NDArray
 
 from ...errors import FileError, MeshError
+from ..gltf.builder import GltfBuilder
 from ..gltf.container import Document
+from ..gltf.influences import sorted_influences, store_influences
 from ..materials.scene_surfaces import scene_surfaces
 from .joints import SceneSkin, scene_skins
 
-CODES = {"f4": pygltflib.FLOAT, "u1": pygltflib.UNSIGNED_BYTE, "u2": pygltflib.UNSIGNED_SHORT,
-         "u4": pygltflib.UNSIGNED_INT}  # fmt: skip
-KINDS = {1: "SCALAR", 3: "VEC3", 4: "VEC4", 16: "MAT4"}
 PATHS = (("translation", 3), ("rotation", 4), ("scale", 3))
 MAX_INFLUENCES = 64
 """Of one vertex, the strongest; sixteen sets of glTF hold them."""
@@ -42,40 +40,25 @@ def scene_document(scene: Mapping[str, NDArray], path: Path, generator: str) -> 
     if len(bad):
         name = scene["node_names"][bad[0]]
         raise FileError(f'node "{name}" has a place, turn or scale that is not a finite number')
-    made = _Making(generator)
+    made = _SceneBuilder(generator)
     made.add_nodes(scene)
     with np.errstate(over="ignore", invalid="ignore"):  # what is not finite then is told later
         skins = scene_skins(scene)
     for k in range(len(scene["mesh_names"])):
-        made.add_mesh(scene, k, skins.get(k))
+        made.add_scene_mesh(scene, k, skins.get(k))
     made.add_clips(scene)
-    document = made.finished(path)
+    data = made.buffer.finish()
+    document = Document(path, made.json, [data])
     document.surfaces = scene_surfaces(scene, path, made.meshes)
     return document
 
 
-class _Making:
-    """A document under construction, with one buffer."""
+class _SceneBuilder(GltfBuilder):
+    """A document under construction; `meshes` are its meshes by their numbers in the scene."""
 
     def __init__(self, generator: str) -> None:
-        self.json: dict[str, Any] = {
-            "asset": {"version": "2.0", "generator": generator},
-            "scene": 0,
-            "scenes": [{"nodes": [0]}],
-            "materials": [{
-                "name": "plain",
-                "doubleSided": True,
-                "pbrMetallicRoughness": {
-                    "baseColorFactor": [0.8, 0.8, 0.8, 1.0], "metallicFactor": 0.0,
-                    "roughnessFactor": 0.8,
-                },
-            }],
-            "nodes": [], "meshes": [], "accessors": [], "bufferViews": [],
-        }  # fmt: skip
-        self.data: list[bytes] = []
-        self.size = 0
+        super().__init__(generator)
         self.meshes: dict[int, int] = {}
-        """In the document, by the scene's numbers."""
 
     def add_nodes(self, scene: Mapping[str, NDArray]) -> None:
         for name, values in zip(scene["node_names"], scene["node_transforms"], strict=True):
@@ -84,12 +67,12 @@ class _Making:
             for key, rest in (("translation", 0), ("rotation", [0, 0, 0, 1]), ("scale", 1)):
                 if not np.array_equal(parts[key], np.broadcast_to(rest, parts[key].shape)):
                     node[key] = parts[key].tolist()
-            self.json["nodes"].append(node)
+            self.add_node(node)
         for i, parent in enumerate(scene["node_parents"].tolist()):
             if parent >= 0:
                 self.json["nodes"][parent].setdefault("children", []).append(i)
 
-    def add_mesh(self, scene: Mapping[str, NDArray], k: int, skin: SceneSkin | None) -> None:
+    def add_scene_mesh(self, scene: Mapping[str, NDArray], k: int, skin: SceneSkin | None) -> None:
         """Hang a mesh on a node of its own below its node: that one may have geometry already."""
         name = str(scene["mesh_names"][k])
         vertices, faces = scene[f"mesh_{k}_vertices"], scene[f"mesh_{k}_faces"]
@@ -97,17 +80,14 @@ class _Making:
             return
         if faces.min() < 0 or faces.max() >= len(vertices):
             raise MeshError(f'mesh "{name}": a face uses a vertex out of its {len(vertices)}')
-        attributes = {"POSITION": self._floats(vertices, bounds=True)}
-        node: dict[str, Any] = {"name": name, "mesh": len(self.json["meshes"])}
+        attributes = {"POSITION": self.floats(vertices, bounds=True)}
+        node: dict[str, Any] = {"name": name}
         if skin is not None:
             attributes |= self._weights(scene, k, skin, name, len(vertices))
-            node["skin"] = self._skin(skin)
+            node["skin"] = self.add_skin(skin.joints, skin.inverse)
         elif not np.array_equal(scene[f"mesh_{k}_place"], np.eye(4)):
             node["matrix"] = scene[f"mesh_{k}_place"].T.ravel().tolist()
-        indices = self._array(faces.reshape(-1, 1).astype("<u4"))
-        primitive = {"attributes": attributes, "indices": indices, "material": 0}
-        self.meshes[k] = len(self.json["meshes"])
-        self.json["meshes"].append({"name": name, "primitives": [primitive]})
+        node["mesh"] = self.meshes[k] = self.add_mesh(name, attributes, faces)
         self._hang(node, scene, int(scene["mesh_nodes"][k]))
 
     def _hang(self, node: dict[str, Any], scene: Mapping[str, NDArray], below: int) -> None:
@@ -118,14 +98,7 @@ class _Making:
         if hidden:
             node["extensions"] = {"KHR_node_visibility": {"visible": False}}
             self.json["extensionsUsed"] = ["KHR_node_visibility"]
-        self.json["nodes"].append(node)
-        self.json["nodes"][below].setdefault("children", []).append(len(self.json["nodes"]) - 1)
-
-    def _skin(self, skin: SceneSkin) -> int:
-        binds = self._floats(skin.inverse.transpose(0, 2, 1).reshape(-1, 16))
-        made = {"joints": skin.joints, "inverseBindMatrices": binds}
-        self.json.setdefault("skins", []).append(made)
-        return len(self.json["skins"]) - 1
+        self.add_node(node, below)
 
     def _weights(
         self, scene: Mapping[str, NDArray], k: int, skin: SceneSkin, name: str, count: int
@@ -135,14 +108,10 @@ class _Making:
             return {}
         if rows.min() < 0 or rows.max() >= count:
             raise MeshError(f'mesh "{name}": a weight is of a vertex out of its {count}')
-        where, share = _packed(rows, scene[f"mesh_{k}_columns"], values, count)
-        small = "<u1" if len(skin.joints) <= 256 else "<u2"
-        found = {}
-        for n in range(where.shape[1] // 4):
-            four = slice(4 * n, 4 * n + 4)
-            found[f"JOINTS_{n}"] = self._array(where[:, four].astype(small))
-            found[f"WEIGHTS_{n}"] = self._floats(share[:, four])
-        return found
+        columns = scene[f"mesh_{k}_columns"]
+        influences = sorted_influences(rows, columns, values, count, MAX_INFLUENCES)
+        with np.errstate(over="ignore"):  # readers refuse what becomes infinite
+            return store_influences(self.buffer, influences, len(skin.joints))
 
     def add_clips(self, scene: Mapping[str, NDArray]) -> None:
         clips: list[dict[str, Any]] = [
@@ -152,55 +121,7 @@ class _Making:
         for clip, node, path, count in scene["tracks"].tolist():
             keys = scene["keys"][end : (end := end + count)]
             name, width = PATHS[path]
-            times = self._floats(keys[:, :1], bounds=True)
-            sampler = {"input": times, "output": self._floats(keys[:, 1 : 1 + width])}
-            target = {"node": node, "path": name}
-            clips[clip]["channels"].append(
-                {"sampler": len(clips[clip]["samplers"]), "target": target}
-            )
-            clips[clip]["samplers"].append(sampler)
+            times = self.floats(keys[:, :1], target=None, bounds=True)
+            self.add_track(clips[clip], node, name, times, keys[:, 1 : 1 + width])
         if clips:
             self.json["animations"] = clips
-
-    def _floats(self, values: NDArray, bounds: bool = False) -> int:
-        with np.errstate(over="ignore"):  # what is too large becomes infinite: the reader says so
-            return self._array(values.astype("<f4"), bounds)
-
-    def _array(self, values: NDArray, bounds: bool = False) -> int:
-        content = np.ascontiguousarray(values).tobytes()
-        padding = bytes(-self.size % 4)
-        view = {"buffer": 0, "byteOffset": self.size + len(padding), "byteLength": len(content)}
-        self.data += [padding, content]
-        self.size += len(padding) + len(content)
-        self.json["bufferViews"].append(view)
-        accessor = {
-            "bufferView": len(self.json["bufferViews"]) - 1,
-            "componentType": CODES[values.dtype.str[1:]],
-            "count": len(values),
-            "type": KINDS[values.shape[1]],
-        }
-        if bounds:
-            low, high = values.min(axis=0).tolist(), values.max(axis=0).tolist()
-            accessor |= {"min": low, "max": high}
-        self.json["accessors"].append(accessor)
-        return len(self.json["accessors"]) - 1
-
-    def finished(self, path: Path) -> Document:
-        self.json["buffers"] = [{"byteLength": self.size}]
-        return Document(path, self.json, [b"".join(self.data)])
-
-
-def _packed(
-    rows: NDArray, columns: NDArray, values: NDArray, count: int
-) -> tuple[NDArray, NDArray]:
-    """Sort influences into slots of each vertex, the strongest first; a multiple of four slots."""
-    order = np.lexsort((-values, rows))
-    rows, columns, values = rows[order], columns[order], values[order]
-    slot = np.arange(len(rows)) - np.searchsorted(rows, rows)
-    most = min(int(slot.max()) + 1, MAX_INFLUENCES)
-    shape = (count, -(-most // 4) * 4)
-    where, share = np.zeros(shape, int), np.zeros(shape)
-    fits = slot < most
-    where[rows[fits], slot[fits]] = columns[fits]
-    share[rows[fits], slot[fits]] = values[fits]
-    return where, share

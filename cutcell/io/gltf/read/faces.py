@@ -12,8 +12,7 @@ from numpy.typing import NDArray
 from ....geometry import triangles
 from ....rig.rig import Rig, TriangleMesh
 from ..bare import BareSource
-from ..write.seams import own_corners
-from ..write.storage import Storage
+from ..buffer import BufferWriter
 from .accessors import read_accessor
 from .primitives import StoredFaces
 from .read import GltfSource
@@ -85,8 +84,6 @@ def take_faces(document: dict[str, Any], rig: Rig) -> list[NewFaces]:
             continue
         primitive = document["meshes"][stored.mesh]["primitives"][stored.primitive]
         corners = rig.mesh.faces[stored.rows] - stored.first_vertex
-        own = own_corners(source.document, stored, corners)
-        corners = corners if own is None else own
         if stored.is_mirrored:
             corners = corners[:, ::-1]
         small = corners.max() < np.iinfo(np.uint16).max
@@ -99,12 +96,14 @@ def take_faces(document: dict[str, Any], rig: Rig) -> list[NewFaces]:
     return found
 
 
-def store_faces(storage: Storage, found: list[NewFaces]) -> None:
+def store_faces(buffer: BufferWriter, found: list[NewFaces]) -> None:
     """Store what `take_faces` found."""
     for new in found:
         for name, values in new.arrays.items():
-            owner = new.primitive if name == "indices" else new.primitive["attributes"]
-            owner[name] = storage.store(values, new.old.get(name))
+            is_index = name == "indices"
+            owner = new.primitive if is_index else new.primitive["attributes"]
+            target = pygltflib.ELEMENT_ARRAY_BUFFER if is_index else pygltflib.ARRAY_BUFFER
+            owner[name] = buffer.store(values, new.old.get(name), target)
         new.primitive["mode"] = pygltflib.TRIANGLES
 
 

@@ -45,8 +45,6 @@ class StoredFaces:
         Whether they run the other way in the file.
     turned : array, shape (m,), bool, optional
         Where they are no longer the file's: which of those that are left were turned round.
-    origin : array, shape (n,), optional
-        Of the primitive's vertices, those that they were split from; see `gltf_seams`.
     """
 
     mesh: int
@@ -55,7 +53,6 @@ class StoredFaces:
     rows: slice
     is_mirrored: bool
     turned: NDArray[np.bool_] | None = None
-    origin: NDArray[np.intp] | None = None
 
 
 def primitives(document: Document, mesh: Any, user: str) -> list[dict[str, Any]]:

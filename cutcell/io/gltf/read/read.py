@@ -18,10 +18,8 @@ from ..bare import read_bare
 from ..container import Document, read_document
 from ..deform import read_deform
 from ..nodes import Nodes
-from ..write.seams import SPLIT_FROM, merged, read_origin, vertex_count
 from .clips import read_clips
-from .draco import decompress_draco
-from .meshopt import decompress_meshopt
+from .compressed import decompress_draco, decompress_meshopt
 from .parts import hidden_nodes, left_out_meshes, mesh_name, vanishes
 from .primitives import (
     StoredFaces,
@@ -48,8 +46,6 @@ class StoredPart:
     """Its vertices in the rig."""
     joints: Sequence[int]
     """Joint of the rig for each joint of the skin."""
-    origin: NDArray[np.intp] | None = None
-    """Of the stored vertices, those that they were split from; see `gltf_seams`."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -173,16 +169,10 @@ def _read_parts(document: Document, nodes: Nodes, skinned: list[int], bind: Bind
                 document.allowance.take(positions.nbytes, label)
                 joints = len(bind.skins[skin])
                 read = read_weights(document, primitive, len(positions), joints, label)
-                origin, read = merged(read_origin(document, primitive, positions, label), read)
-                if origin is not None:
-                    positions = positions[: vertex_count(origin)]
                 rows = slice(total, total := total + len(positions))
-                parts[key] = StoredPart(label, [], skin, rows, bind.skins[skin], origin)
+                parts[key] = StoredPart(label, [], skin, rows, bind.skins[skin])
                 vertices.append(_moved(positions, bind.to_rig[skin]))
                 weights.append(read)
-            origin = parts[key].origin
-            if origin is not None:
-                corners = origin[corners]
             parts[key].primitives.append((mesh, k))
             is_mirrored = bool(np.linalg.det(bind.to_rig[skin][:3, :3]) < 0)
             if is_mirrored:
@@ -192,7 +182,7 @@ def _read_parts(document: Document, nodes: Nodes, skinned: list[int], bind: Bind
                 slice(triangles, triangles := triangles + len(corners)),
             )
             faces.append(corners + start)
-            drawn.append(StoredFaces(mesh, k, start, rows, is_mirrored, origin=origin))
+            drawn.append(StoredFaces(mesh, k, start, rows, is_mirrored))
         if total > first:
             rows = slice(first, total)
             named.append(Part(mesh_name(document, nodes, i), rows, i in hidden))
@@ -201,7 +191,7 @@ def _read_parts(document: Document, nodes: Nodes, skinned: list[int], bind: Bind
 
 def _vertex_key(primitive: dict[str, Any], label: str) -> tuple:
     found = attributes(primitive, label)
-    names = ("POSITION", "JOINTS_", "WEIGHTS_", SPLIT_FROM)
+    names = ("POSITION", "JOINTS_", "WEIGHTS_")
     return tuple(sorted((k, v) for k, v in found.items() if k.startswith(names)))
 
 

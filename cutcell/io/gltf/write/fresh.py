@@ -2,31 +2,28 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pygltflib as gl
 from numpy.typing import NDArray
 
 from .... import __version__
-from ....errors import CutcellError, FileError, MeshError, SkeletonError, WeightsError
+from ....errors import CutcellError, MeshError, SkeletonError, WeightsError
 from ....geometry.triangles import normals
 from ....rig.rig import Clip, Rig, Skeleton, TriangleMesh
 from ....rig.transforms import relative
 from ...deforming import KEY
 from ...materials.gltf_colored import with_rig_colors
+from ..builder import GltfBuilder
 from ..container import Document, json_bytes, pack_glb, with_whole_names
+from ..influences import pack_influences, store_influences
 from ..nodes import decompose
-from ..read.influences import pack_influences
 from .buffer_file import buffer_file, relative_uri
 
-CODES = {"f": gl.FLOAT, "u1": gl.UNSIGNED_BYTE, "u2": gl.UNSIGNED_SHORT, "u4": gl.UNSIGNED_INT}
 MAX_JOINTS = 2**16
 MAX_SHIFT = 1e-3
 """How far rounding to 32 bits may move a point, in sizes of the mesh."""
-KINDS = {1: gl.SCALAR, 3: gl.VEC3, 4: gl.VEC4, 16: gl.MAT4}
 
 
 def new_files(rig: Rig, path: Path) -> dict[Path, bytes]:
@@ -38,9 +35,7 @@ def new_files(rig: Rig, path: Path) -> dict[Path, bytes]:
     """
     if rig.weights is None:
         raise WeightsError("the rig has no weights to save; bind it first")
-    file = _File()
-    file.add_rig(rig)
-    document, data = file.packed()
+    document, data = _document(rig)
     colored = with_rig_colors(document, data, rig)
     if colored is not None:
         data = colored.finish()
@@ -83,126 +78,45 @@ def _check_places(
         )
 
 
-class _File:
-    """A document under construction, and its one buffer."""
+def _document(rig: Rig) -> tuple[dict[str, Any], bytes]:
+    """Return the document of a rig, in one plain material, and its buffer."""
+    builder, count = GltfBuilder(f"cutcell {__version__}"), len(rig.skeleton.joints)
+    for node in joint_nodes(rig.skeleton, 0):
+        builder.add_node(node)
+    if not np.array_equal(rig.world, np.eye(4)):
+        builder.json["nodes"][count]["matrix"] = rig.world.T.ravel().tolist()
+    influences = pack_influences(rig.weights)  # type: ignore[arg-type]
+    attributes = _attributes(builder, rig.mesh)
+    attributes |= store_influences(builder.buffer, influences, count)
+    mesh = builder.add_mesh(rig.name, attributes, rig.mesh.faces)
+    binds, deform = inverses(rig.skeleton), {KEY: rig.skeleton.deform.tolist()}
+    skin = builder.add_skin(list(range(count)), binds, extras=deform)
+    node = builder.add_node({"name": rig.name, "mesh": mesh, "skin": skin})
+    builder.json["scenes"] = [{"nodes": [count, node]}]
+    for one in rig.attachments:
+        mesh = builder.add_mesh(one.name, _attributes(builder, one.mesh), one.mesh.faces)
+        at_rest = _transform(binds[one.joint])
+        builder.add_node({"name": one.name, "mesh": mesh, **at_rest}, one.joint)
+    for clip in rig.clips:
+        _add_clip(builder, rig, clip)
+    data = builder.buffer.finish()
+    return with_whole_names(builder.json), data
 
-    def __init__(self) -> None:
-        self.gltf = gl.GLTF2(asset=gl.Asset(version="2.0", generator=f"cutcell {__version__}"))
-        self.gltf.scene = 0
-        self.data = bytearray()
 
-    def add_rig(self, rig: Rig) -> None:
-        joints = len(rig.skeleton.joints)
-        self._add_joints(rig)
-        # glTF's own default material is metal, which looks black without surroundings.
-        plain = gl.PbrMetallicRoughness(
-            baseColorFactor=[0.8, 0.8, 0.8, 1.0], metallicFactor=0.0, roughnessFactor=0.8
-        )
-        self.gltf.materials = [
-            gl.Material(
-                name="plain",
-                pbrMetallicRoughness=plain,
-                doubleSided=True,
-                emissiveFactor=None,
-                alphaMode=None,
-                alphaCutoff=None,
-            )
-        ]
-        primitive = self._primitive(rig.mesh)
-        small = np.uint8 if joints <= 256 else np.uint16
-        for n, (where, share) in enumerate(zip(*pack_influences(rig.weights), strict=True)):  # type: ignore[arg-type]
-            target = gl.ARRAY_BUFFER
-            setattr(primitive.attributes, f"JOINTS_{n}", self._array(where.astype(small), target))
-            setattr(primitive.attributes, f"WEIGHTS_{n}", self._array(share, target))
-        self.gltf.meshes.append(gl.Mesh(name=rig.name, primitives=[primitive]))
-        binds = inverses(rig.skeleton)
-        stored = self._array(binds.transpose(0, 2, 1).reshape(-1, 16).astype(np.float32))
-        deform = {KEY: rig.skeleton.deform.tolist()}
-        skin = gl.Skin(inverseBindMatrices=stored, joints=list(range(joints)), extras=deform)
-        self.gltf.skins = [skin]
-        mesh_node = self._node(name=rig.name, mesh=0, skin=0)
-        self._add_attachments(rig)
-        self.gltf.scenes = [gl.Scene(nodes=[joints, mesh_node])]
-        for clip in rig.clips:
-            self._add_clip(rig, clip)
+def _attributes(builder: GltfBuilder, mesh: TriangleMesh) -> dict[str, int]:
+    return {
+        "POSITION": builder.floats(mesh.vertices, bounds=True),
+        "NORMAL": builder.floats(vertex_normals(mesh)),
+    }
 
-    def _node(self, **fields: Any) -> int:
-        self.gltf.nodes.append(gl.Node(**fields))
-        return len(self.gltf.nodes) - 1
 
-    def _add_joints(self, rig: Rig) -> None:
-        """Add a node a joint, in order, and one above the roots that carries the world."""
-        for node in joint_nodes(rig.skeleton, 0):
-            self._node(**{"children": [], **node})
-        top = len(self.gltf.nodes) - 1
-        if not np.array_equal(rig.world, np.eye(4)):
-            self.gltf.nodes[top].matrix = rig.world.T.ravel().tolist()
-
-    def _add_attachments(self, rig: Rig) -> None:
-        for attachment in rig.attachments:
-            primitive = self._primitive(attachment.mesh)
-            self.gltf.meshes.append(gl.Mesh(name=attachment.name, primitives=[primitive]))
-            node = self._node(
-                name=attachment.name,
-                mesh=len(self.gltf.meshes) - 1,
-                **_transform(inverses(rig.skeleton)[attachment.joint]),
-            )
-            self.gltf.nodes[attachment.joint].children.append(node)
-
-    def _primitive(self, mesh: TriangleMesh) -> gl.Primitive:
-        positions = mesh.vertices.astype(np.float32)
-        found = gl.Attributes(
-            POSITION=self._array(positions, gl.ARRAY_BUFFER, bounds=True),
-            NORMAL=self._array(vertex_normals(mesh), gl.ARRAY_BUFFER),
-        )
-        corners = mesh.faces.reshape(-1, 1).astype(np.uint32)
-        if len(positions) < 65535:
-            corners = corners.astype(np.uint16)
-        indices = self._array(corners, gl.ELEMENT_ARRAY_BUFFER)
-        return gl.Primitive(attributes=found, indices=indices, material=0)
-
-    def _add_clip(self, rig: Rig, clip: Clip) -> None:
-        animation = gl.Animation(name=clip.name)
-        times = self._array(clip.times[:, None].astype(np.float32), bounds=True)
-        for path, values in _local_poses(rig, clip).items():
-            for j in range(values.shape[1]):
-                output = self._array(values[:, j].astype(np.float32))
-                animation.samplers.append(gl.AnimationSampler(input=times, output=output))
-                target = gl.AnimationChannelTarget(node=j, path=path)
-                sampler = len(animation.samplers) - 1
-                animation.channels.append(gl.AnimationChannel(sampler=sampler, target=target))
-        self.gltf.animations.append(animation)
-
-    def _array(self, values: NDArray, target: int | None = None, bounds: bool = False) -> int:
-        """Append an array to the buffer and return its accessor."""
-        self.data += b"\0" * (-len(self.data) % 4)
-        view = gl.BufferView(
-            buffer=0, byteOffset=len(self.data), byteLength=values.nbytes, target=target
-        )
-        self.data += np.ascontiguousarray(values).tobytes()
-        self.gltf.bufferViews.append(view)
-        accessor = gl.Accessor(
-            bufferView=len(self.gltf.bufferViews) - 1,
-            componentType=CODES[values.dtype.str[1:] if values.dtype.kind == "u" else "f"],
-            count=len(values),
-            type=KINDS[values.shape[1]],
-            normalized=None,
-        )
-        if bounds:
-            accessor.min = values.min(axis=0).tolist()
-            accessor.max = values.max(axis=0).tolist()
-        self.gltf.accessors.append(accessor)
-        return len(self.gltf.accessors) - 1
-
-    def packed(self) -> tuple[dict[str, Any], bytes]:
-        """Return the document and its buffer."""
-        self.data += b"\0" * (-len(self.data) % 4)
-        self.gltf.buffers = [gl.Buffer(byteLength=len(self.data))]
-        try:
-            document = json.loads(self.gltf.gltf_to_json())
-        except ValueError as e:  # such as a scale of the scene that is no number
-            raise FileError(f"it cannot be written as JSON: {e}") from None
-        return with_whole_names(document), bytes(self.data)
+def _add_clip(builder: GltfBuilder, rig: Rig, clip: Clip) -> None:
+    animation: dict[str, Any] = {"name": clip.name, "channels": [], "samplers": []}
+    times = builder.floats(clip.times[:, None], target=None, bounds=True)
+    for path, values in _local_poses(rig, clip).items():
+        for j in range(values.shape[1]):
+            builder.add_track(animation, j, path, times, values[:, j])
+    builder.add("animations", animation)
 
 
 def vertex_normals(mesh: TriangleMesh) -> NDArray[np.float32]:

@@ -18,10 +18,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from ....errors import SkeletonError
 from ....rig.rig import Rig
+from ..buffer import BufferWriter
 from ..container import Document
 from ..nodes import Nodes
 from ..read.accessors import read_accessor
-from .storage import Storage
 
 BINDS = "inverseBindMatrices"
 """What a skin calls them."""
@@ -85,13 +85,13 @@ def own_moves(rig: Rig) -> NDArray[np.float64]:
     return moved
 
 
-def store_moves(storage: Storage, found: list[NewValues]) -> None:
+def store_moves(buffer: BufferWriter, found: list[NewValues]) -> None:
     """Store what `take_moves` found."""
     stored: dict[tuple[int, bytes], int] = {}
     for new in found:
         same = new.old, new.values.tobytes()
         if same not in stored:
-            stored[same] = storage.store(new.values, new.old, of_mesh=False)
+            stored[same] = buffer.store(new.values, new.old, target=None)
         new.owner[new.key] = stored[same]
 
 

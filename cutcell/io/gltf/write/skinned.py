@@ -18,11 +18,11 @@ from ....errors import WeightsError
 from ....rig.rig import Rig
 from ...materials.gltf_images import carry_images
 from ..bare import BareSource, StoredMesh
+from ..buffer import BufferWriter
 from ..deform import store_deform
-from ..read.influences import pack_influences
+from ..influences import pack_influences, store_influences
 from ..read.primitives import draws_triangles
 from .fresh import inverses, joint_nodes
-from .storage import Storage
 from .write import packed
 
 INSTANCES = "EXT_mesh_gpu_instancing"
@@ -51,11 +51,11 @@ def skinned(rig: Rig, path: Path) -> dict[Path, bytes]:
         raise WeightsError("the rig has no weights to save; bind it first")
     source: BareSource = rig.source
     document = json.loads(json.dumps(source.document.json))
-    edit = _Edit(document, Storage(document, source.document.buffers, ()), rig)
+    edit = _Edit(document, BufferWriter(document, source.document.buffers), rig)
     for one in source.stored:
         edit.skin(one)
-    carried = carry_images(edit.storage, source.document, path)
-    return {**carried, **packed(edit.storage, source.document, path, carried)}
+    carried = carry_images(edit.buffer, source.document, path)
+    return {**carried, **packed(edit.buffer, source.document, path, carried)}
 
 
 def _is_plain(source: BareSource, one: StoredMesh) -> bool:
@@ -70,8 +70,8 @@ def _is_plain(source: BareSource, one: StoredMesh) -> bool:
 class _Edit:
     """A document on its way to a skeleton."""
 
-    def __init__(self, document: dict[str, Any], storage: Storage, rig: Rig) -> None:
-        self.document, self.storage, self.rig = document, storage, rig
+    def __init__(self, document: dict[str, Any], buffer: BufferWriter, rig: Rig) -> None:
+        self.document, self.buffer, self.rig = document, buffer, rig
         first = len(document["nodes"])
         self._joints = list(range(first, first + len(rig.skeleton.joints)))
         document["nodes"] += joint_nodes(rig.skeleton, first)
@@ -109,12 +109,8 @@ class _Edit:
         """Store the weights of some vertices, once."""
         if first not in self._influences:
             assert self.rig.weights is not None
-            found = pack_influences(self.rig.weights[first : first + count])
-            small = "<u1" if len(self._joints) <= 256 else "<u2"
-            held = self._influences[first] = {}
-            for n, (where, share) in enumerate(zip(*found, strict=True)):
-                held[f"JOINTS_{n}"] = self.storage.store(where.astype(small), None)
-                held[f"WEIGHTS_{n}"] = self.storage.store(share.astype("<f4"), None)
+            packed = pack_influences(self.rig.weights[first : first + count])
+            self._influences[first] = store_influences(self.buffer, packed, len(self._joints))
         return self._influences[first]
 
     def _skin(self, world: NDArray[np.float64]) -> int:
@@ -122,7 +118,7 @@ class _Edit:
         key = world.tobytes()
         if key not in self._skins:
             binds = (inverses(self.rig.skeleton) @ world).transpose(0, 2, 1).reshape(-1, 16)
-            stored = self.storage.store(binds.astype("<f4"), None, of_mesh=False)
+            stored = self.buffer.store(binds.astype("<f4"), target=None)
             skins = self.document.setdefault("skins", [])
             skins.append({"joints": self._joints, "inverseBindMatrices": stored})
             number = self._skins[key] = len(skins) - 1

@@ -19,14 +19,14 @@ from ....errors import MeshError, SkeletonError, WeightsError
 from ....rig.rig import Rig
 from ...materials.gltf_colored import with_surface_colors
 from ...materials.gltf_images import carry_images
+from ..buffer import BufferWriter
 from ..container import Document, json_bytes, pack_glb
 from ..deform import store_deform
+from ..influences import pack_influences, store_influences
 from ..read.faces import store_faces, take_faces
-from ..read.influences import pack_influences
 from ..read.read import GltfSource, StoredPart
 from .buffer_file import buffer_file, relative_uri
 from .moves import store_moves, take_moves
-from .storage import Storage
 from .structure import take_structure
 
 
@@ -43,14 +43,14 @@ def rewritten(rig: Rig, path: Path) -> dict[Path, bytes]:
     parts, moves = take_structure(document, rig, take_moves(document, rig))
     dropped += [new.old for new in moves]
     store_deform(document, ((part.skin, part.joints) for part in parts), rig.skeleton.deform)
-    storage = Storage(document, source.document.buffers, dropped)
-    store_moves(storage, moves)
+    buffer = BufferWriter(document, source.document.buffers, dropped)
+    store_moves(buffer, moves)
     for part, old in zip(parts, before, strict=True):
-        _store(storage, document, rig, part, old)
-    store_faces(storage, faces)
-    storage = with_surface_colors(storage, source.document.surfaces)
-    carried = carry_images(storage, source.document, path)
-    return {**carried, **packed(storage, source.document, path, carried)}
+        _store(buffer, document, rig, part, old)
+    store_faces(buffer, faces)
+    buffer = with_surface_colors(buffer, source.document.surfaces)
+    carried = carry_images(buffer, source.document, path)
+    return {**carried, **packed(buffer, source.document, path, carried)}
 
 
 def _check_same(rig: Rig, source: GltfSource) -> None:
@@ -98,22 +98,14 @@ def _primitives(document: dict[str, Any], part: StoredPart) -> list[dict[str, An
 
 
 def _store(
-    storage: Storage, document: dict[str, Any], rig: Rig, part: StoredPart, old: dict[str, int]
+    buffer: BufferWriter, document: dict[str, Any], rig: Rig, part: StoredPart, old: dict[str, int]
 ) -> None:
     weights = rig.weights[part.rows]  # type: ignore[index]
     _check_reachable(weights, rig, part)
-    if part.origin is not None:
-        weights = weights[part.origin]
-    for n, (where, share) in enumerate(zip(*pack_influences(weights[:, part.joints]), strict=True)):
-        joints, shares = f"JOINTS_{n}", f"WEIGHTS_{n}"
-        small = len(part.joints) <= 256 and storage.stored_type(old.get(joints)) != np.uint16
-        numbers = where.astype("<u1" if small else "<u2")
-        new = {
-            joints: storage.store(numbers, old.get(joints)),
-            shares: storage.store(share.astype("<f4"), old.get(shares)),
-        }
-        for primitive in _primitives(document, part):
-            primitive["attributes"].update(new)
+    influences = pack_influences(weights[:, part.joints])
+    new = store_influences(buffer, influences, len(part.joints), old)
+    for primitive in _primitives(document, part):
+        primitive["attributes"].update(new)
 
 
 def _check_reachable(weights: NDArray, rig: Rig, part: StoredPart) -> None:
@@ -129,19 +121,19 @@ def _check_reachable(weights: NDArray, rig: Rig, part: StoredPart) -> None:
 
 
 def packed(
-    storage: Storage, document: Document, path: Path, carried: dict[Path, bytes]
+    buffer: BufferWriter, document: Document, path: Path, carried: dict[Path, bytes]
 ) -> dict[Path, bytes]:
     """Return the files of a document that was edited, without the images that go along."""
-    uris = [buffer.get("uri") for buffer in document.items("buffers")]
-    data = storage.finish()
-    own = storage.document["buffers"][0] if data else {}
+    uris = [one.get("uri") for one in document.items("buffers")]
+    data = buffer.finish()
+    own = buffer.document["buffers"][0] if data else {}
     own.pop("uri", None)
     if path.suffix.lower() != ".gltf":
-        return {path: pack_glb(json_bytes(storage.document), data, document.chunks)}
+        return {path: pack_glb(json_bytes(buffer.document), data, document.chunks)}
     if uris and all(isinstance(u, str) and u.startswith("data:") for u in uris):
         head = "data:application/octet-stream;base64,"
         own["uri"] = head + base64.b64encode(data).decode()
-        return {path: json_bytes(storage.document)}
+        return {path: json_bytes(buffer.document)}
     file = buffer_file(path, document, carried)
     own["uri"] = relative_uri(file)
-    return {file: data, path: json_bytes(storage.document)}
+    return {file: data, path: json_bytes(buffer.document)}

@@ -103,9 +103,12 @@ def again(tmp_path):
 
 def check_same(rig, found, order=slice(None)):
     """Check vertices, weights and, in the order of their materials, faces with their colours."""
-    assert_array_equal(found.mesh.vertices, rig.mesh.vertices.astype(np.float32))
-    assert_array_equal(found.mesh.faces, rig.mesh.faces[order])
-    assert_allclose(found.weights, rig.weights, atol=1e-7)
+    count = len(rig.mesh.vertices)
+    vertices, faces = rig.mesh.vertices.astype(np.float32), rig.mesh.faces[order]
+    assert_array_equal(found.mesh.vertices[:count], vertices)  # copies at seams follow
+    assert_array_equal(found.mesh.vertices[found.mesh.faces], vertices[faces])
+    corners = found.mesh.faces.ravel()
+    assert_allclose(found.weights[corners], rig.weights[faces.ravel()], atol=1e-7)
     before, after = read_materials(rig), read_materials(found)
     assert_array_equal(after.body.tints, before.body.tints[order])
     assert_array_equal(after.body.opacity, before.body.opacity[order])

@@ -1,0 +1,264 @@
+"""The buffer of a glTF document that is made or edited.
+
+Nothing is overwritten in place. New arrays get new buffer views, and `BufferWriter.finish`
+assembles one new buffer: the bytes of every buffer view that is still needed are copied once,
+and the new arrays follow. Views that only dropped accessors use are left out.
+
+The numbers of accessors and buffer views never change, so that everything else that refers
+to them stays right, extensions too.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import chain
+from math import inf
+from typing import Any
+
+import numpy as np
+import pygltflib
+from numpy.typing import NDArray
+
+from ...errors import FileError
+from .read.accessors import COMPONENTS
+
+ALIGNMENT = 8
+KINDS = {
+    1: pygltflib.SCALAR,
+    2: pygltflib.VEC2,
+    3: pygltflib.VEC3,
+    4: pygltflib.VEC4,
+    16: pygltflib.MAT4,
+}
+ACCESSOR_KEYS = ("indices", "inverseBindMatrices", "input", "output")
+CODES = {dtype: code for code, dtype in COMPONENTS.items()}
+
+
+class BufferWriter:
+    """The accessors, buffer views and bytes of a document that is made or edited.
+
+    Parameters
+    ----------
+    document : dict
+        The JSON, to be edited.
+    buffers : sequence of bytes
+    dropped, dropped_views : iterable of int
+        Accessors and buffer views that are given up. Those that the document still refers to are
+        left alone.
+    """
+
+    def __init__(
+        self,
+        document: dict[str, Any],
+        buffers: Sequence[bytes] = (),
+        dropped: Iterable[int] = (),
+        dropped_views: Iterable[int] = (),
+    ) -> None:
+        self.document = document
+        self.accessors: list[dict[str, Any]] = document.setdefault("accessors", [])
+        self.views: list[dict[str, Any]] = document.setdefault("bufferViews", [])
+        self._buffers = buffers
+        rest = {k: v for k, v in document.items() if k not in ("accessors", "bufferViews")}
+        valid = {i for i in dropped if type(i) is int and 0 <= i < len(self.accessors)}
+        self._free_accessors = valid - set(accessors_in(rest))
+        live = [a for i, a in enumerate(self.accessors) if i not in self._free_accessors]
+        freed = [self.accessors[i] for i in self._free_accessors]
+        self._dead = {*views_in(freed), *dropped_views} - set(views_in([rest, live]))
+        self._free_views = set(self._dead)
+        live += [view for i, view in enumerate(self.views) if i not in self._dead]
+        self._ranges = list(ranges_in([rest, live]))
+        self._arrays: dict[Any, tuple[int, bytearray]] = {}
+        self._added: list[tuple[int, bytes]] = []
+
+    def stored_type(self, accessor: int | None) -> Any:
+        """Return the component type of an accessor, if there is one."""
+        return None if accessor is None else COMPONENTS[self.accessors[accessor]["componentType"]]
+
+    def store(
+        self,
+        values: NDArray,
+        preferred: int | None = None,
+        target: int | None = pygltflib.ARRAY_BUFFER,
+        bounds: bool = False,
+    ) -> int:
+        """Store an array and return its accessor: `preferred` if it was dropped.
+
+        Shapes: values (n, k).
+        """
+        index = preferred
+        if index is None or index not in self._free_accessors:
+            index = _new(self.accessors)
+        self._free_accessors.discard(index)
+        accessor = self.accessors[index]
+        for key in ("normalized", "min", "max"):
+            accessor.pop(key, None)
+        self.append(accessor, values, target)
+        if bounds:
+            accessor.update(min=values.min(axis=0).tolist(), max=values.max(axis=0).tolist())
+        return index
+
+    def append(self, accessor: dict[str, Any], values: NDArray, target: int | None) -> None:
+        """Append an array to the buffer and let an accessor refer to it.
+
+        Arrays of one type share a buffer view if those that they replace shared one.
+
+        Shapes: values (n, k).
+        """
+        rows = np.ascontiguousarray(values).view(np.uint8).reshape(len(values), -1)
+        if target == pygltflib.ARRAY_BUFFER:  # whose elements start on multiples of 4 bytes
+            rows = np.pad(rows, ((0, 0), (0, -rows.shape[1] % 4)))
+        view, content = self._array_view(accessor.get("bufferView"), values, rows.shape[1], target)
+        accessor.pop("sparse", None)
+        accessor.update(
+            bufferView=view,
+            byteOffset=len(content),
+            componentType=CODES[values.dtype],
+            count=len(values),
+            type=KINDS[values.shape[1]],
+        )
+        content += rows.tobytes()
+
+    def _array_view(
+        self, old: int | None, values: NDArray, stride: int, target: int | None
+    ) -> tuple[int, bytearray]:
+        """Return the buffer view for an array, and its content so far."""
+        key = old if old in self._dead else None, values.dtype, values.shape[1], target
+        if key not in self._arrays:
+            free = self._free_views & {old} or self._free_views
+            view = min(free) if free else _new(self.views)
+            self._free_views.discard(view)
+            # An extension of the old view described the old bytes, such as their compression.
+            used = {k: v for k, v in self.views[view].items() if k in ("name", "extras")}
+            if target == pygltflib.ARRAY_BUFFER:
+                used["byteStride"] = stride
+            self.views[view] = used if target is None else {**used, "target": target}
+            self._arrays[key] = view, bytearray()
+        return self._arrays[key]
+
+    def add_view(self, content: bytes) -> int:
+        """Store bytes and return their buffer view."""
+        self._added.append((_new(self.views), content))
+        return self._added[-1][0]
+
+    def fill_view(self, view: int, content: bytes) -> None:
+        """Store bytes as the content of a buffer view that names no buffer yet."""
+        self._added.append((view, content))
+
+    def finish(self) -> bytes:
+        """Return the one buffer; the document then refers to it, and to no other.
+
+        Dropped accessors and their views stay as empty shells, except at the end of their lists.
+        """
+        data = self._repack()
+        # Arrays come last, as they do when this document is loaded and written again.
+        for view, content in chain(self._added, self._arrays.values()):
+            data += bytes(-len(data) % ALIGNMENT)
+            self.views[view].update(buffer=0, byteOffset=len(data), byteLength=len(content))
+            data += content
+        data += bytes(-len(data) % 4)
+        for i in self._free_accessors:
+            for key in ("bufferView", "byteOffset", "sparse", "min", "max"):
+                self.accessors[i].pop(key, None)
+        for i in self._free_views:
+            self.views[i] = {"buffer": 0, "byteLength": 1}
+        _drop_last(self.accessors, self._free_accessors)
+        _drop_last(self.views, self._free_views)
+        self.document["buffers"] = self.document.get("buffers", [])[:1] or [{}]
+        self.document["buffers"][0]["byteLength"] = len(data)
+        return bytes(data)
+
+    def _repack(self) -> bytearray:
+        """Copy all bytes that are still needed, and let the document refer to the copies."""
+        data = bytearray()
+        copied = []
+        for buffer, start, end in _merged(map(self._span, self._ranges)):
+            data += bytes((start - len(data)) % ALIGNMENT)  # what was aligned stays so
+            copied.append((buffer, start, len(data)))
+            data += self._buffers[buffer][start:end]
+        for owner in self._ranges:
+            buffer, old = owner["buffer"], owner.get("byteOffset", 0)
+            _, start, now = copied[bisect_right(copied, (buffer, old, inf)) - 1]
+            owner["buffer"] = 0
+            if now - start:
+                owner["byteOffset"] = old + now - start
+        return data
+
+    def _span(self, owner: dict[str, Any]) -> tuple[int, int, int]:
+        """Return a buffer, and the first and last byte that an object uses of it."""
+        buffer, start = owner["buffer"], owner.get("byteOffset", 0)
+        end = start + owner["byteLength"]
+        length = len(self._buffers[buffer]) if 0 <= buffer < len(self._buffers) else 0
+        if not 0 <= start <= end <= length:
+            raise FileError(
+                f"its document refers to the bytes {start} to {end} of buffers[{buffer}], which "
+                f"has {length}; the file is damaged"
+            )
+        return buffer, start, end
+
+
+def _merged(spans: Iterable[tuple[int, int, int]]) -> list[tuple[int, int, int]]:
+    """Return spans in ascending order, those that touch or overlap as one."""
+    merged: list[tuple[int, int, int]] = []
+    for buffer, start, end in sorted(spans):
+        if merged and merged[-1][0] == buffer and start <= merged[-1][2]:
+            merged[-1] = (buffer, merged[-1][1], max(merged[-1][2], end))
+        else:
+            merged.append((buffer, start, end))
+    return merged
+
+
+def _new(objects: list[dict[str, Any]]) -> int:
+    objects.append({})
+    return len(objects) - 1
+
+
+def _drop_last(objects: list[dict[str, Any]], free: set[int]) -> None:
+    while objects and len(objects) - 1 in free:
+        objects.pop()
+        free.discard(len(objects))
+
+
+# References. Unknown extensions are searched too: names as in the specification are references.
+
+
+def accessors_in(value: Any) -> Iterator[int]:
+    """Yield the numbers of the accessors that a part of a document refers to."""
+    for owner in _objects_in(value):
+        named = [owner.get(key) for key in ACCESSOR_KEYS]
+        targets = owner.get("targets")
+        for attributes in [
+            owner.get("attributes"),
+            *(targets if isinstance(targets, list) else ()),
+        ]:
+            named += attributes.values() if isinstance(attributes, dict) else ()
+        yield from (number for number in named if type(number) is int)
+
+
+def views_in(value: Any) -> Iterator[int]:
+    """Yield the numbers of the buffer views that a part of a document refers to."""
+    for owner in _objects_in(value):
+        if type(owner.get("bufferView")) is int:
+            yield owner["bufferView"]
+
+
+def ranges_in(value: Any) -> Iterator[dict[str, Any]]:
+    """Yield the objects that name bytes of a buffer themselves, as buffer views do.
+
+    Extras are an application's own: numbers in there are not taken for references.
+    """
+    for owner in _objects_in(value, but="extras"):
+        if type(owner.get("buffer")) is int and type(owner.get("byteLength")) is int:
+            yield owner
+
+
+def _objects_in(value: Any, but: str | None = None) -> Iterator[dict[str, Any]]:
+    """Yield every object inside a JSON value, except what stands under one key."""
+    stack = [value]
+    while stack:
+        value = stack.pop()
+        if isinstance(value, dict):
+            yield value
+            stack.extend(child for key, child in value.items() if key != but)
+        elif isinstance(value, list):
+            stack.extend(value)

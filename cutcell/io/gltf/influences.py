@@ -1,0 +1,67 @@
+"""Weights as the attributes JOINTS_n and WEIGHTS_n of glTF."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..weights import normalised
+from .buffer import BufferWriter
+
+
+def pack_influences(weights: NDArray) -> tuple[NDArray, NDArray]:
+    """Sort each row's influences into slots of four.
+
+    Shapes: weights (n, j); returns joints (s, n, 4), shares (s, n, 4).
+    """
+    rounded = normalised(weights).astype(np.float32)
+    # The heaviest takes the rounding error, where it matters least, before the influences are
+    # sorted: so they are sorted the same way when they are loaded and saved again.
+    rows, heaviest = np.arange(len(weights)), rounded.argmax(axis=1)
+    largest = rounded[rows, heaviest].astype(np.float64)
+    rest = 1 - rounded.sum(axis=1, dtype=np.float64)
+    rounded[rows, heaviest] = np.where(largest > 0, largest + rest, 0)
+    rows, columns = np.nonzero(rounded)
+    return sorted_influences(rows, columns, rounded[rows, columns], len(weights))
+
+
+def sorted_influences(
+    rows: NDArray, columns: NDArray, values: NDArray, count: int, limit: int | None = None
+) -> tuple[NDArray, NDArray]:
+    """Sort a list of influences into slots of four, the strongest first, `limit` at most.
+
+    Shapes: rows, columns, values (k,); returns joints (s, count, 4), shares (s, count, 4).
+    """
+    order = np.lexsort((-values, rows))
+    rows, columns, values = rows[order], columns[order], values[order]
+    slot = np.arange(len(rows)) - np.searchsorted(rows, rows)
+    slots = min(int(slot.max(initial=0)) + 1, limit or len(rows) + 1)
+    sets = -(-slots // 4)
+    joints, shares = np.zeros((count, 4 * sets), int), np.zeros((count, 4 * sets), values.dtype)
+    fits = slot < slots
+    joints[rows[fits], slot[fits]] = columns[fits]
+    shares[rows[fits], slot[fits]] = values[fits]
+    return (
+        joints.reshape(-1, sets, 4).transpose(1, 0, 2),
+        shares.reshape(-1, sets, 4).transpose(1, 0, 2),
+    )
+
+
+def store_influences(
+    buffer: BufferWriter,
+    influences: tuple[NDArray, NDArray],
+    joint_count: int,
+    old: Mapping[str, int] | None = None,
+) -> dict[str, int]:
+    """Store slots of four and return their accessors by attribute; `old` are those to replace."""
+    old = old or {}
+    stored = {}
+    for n, (joints, shares) in enumerate(zip(*influences, strict=True)):
+        name = f"JOINTS_{n}"
+        small = joint_count <= 256 and buffer.stored_type(old.get(name)) != np.uint16
+        stored[name] = buffer.store(joints.astype("<u1" if small else "<u2"), old.get(name))
+        name = f"WEIGHTS_{n}"
+        stored[name] = buffer.store(shares.astype("<f4"), old.get(name))
+    return stored
