@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...errors import MissingLibraryError
-from ...rig.rig import Rig, Skeleton, TriangleMesh
+from cutcell.errors import MissingLibraryError
+from cutcell.rig.rig import Rig, Skeleton, TriangleMesh
 
 INFLUENCES = 4
 MARGIN = 3
