@@ -11,30 +11,20 @@ import typer
 from ..errors import ParameterError
 from .console import for_people, print_json, print_table, print_warnings, progress_bars
 from .options import (
-    Alpha,
-    Connectivity,
     CorrectionsFile,
     Deform,
-    Falloff,
     Fresh,
-    How,
     Json,
-    Leaf,
     Lock,
-    MaxInfluences,
     NoDeform,
-    Orient,
     Quiet,
-    Resolution,
     RigFile,
-    Samples,
     SkeletonFile,
     Smoothing,
     Symmetric,
     TemplateName,
-    Threshold,
-    WindingThreshold,
     chosen_method,
+    with_method,
 )
 from .report import report_rows
 
@@ -75,6 +65,7 @@ GLTF_INFLUENCES = 4
 
 
 @for_people
+@with_method()
 def bind(
     rig: RigFile,
     out: Annotated[
@@ -84,17 +75,7 @@ def bind(
             help="Where to save it with the new weights; all else in the file stays as it was.",
         ),
     ],
-    method: How = "animation",
-    resolution: Resolution = 64,
-    connectivity: Connectivity = None,
-    winding_threshold: WindingThreshold = 0.5,
-    orient: Orient = True,
-    samples: Samples = 5,
-    leaf: Leaf = None,
-    falloff: Falloff = None,
-    alpha: Alpha = None,
-    max_influences: MaxInfluences = None,
-    threshold: Threshold = 0.0,
+    options: dict[str, Any],
     smoothing: Smoothing = 0,
     symmetric: Symmetric = False,
     lock: Lock = None,
@@ -122,19 +103,7 @@ def bind(
     from ..templates.names import check_template
     from . import summary
 
-    how = chosen_method(
-        method,
-        resolution=resolution,
-        connectivity=connectivity,
-        winding_threshold=winding_threshold,
-        orient=orient,
-        samples=samples,
-        leaf=leaf,
-        falloff=falloff,
-        alpha=alpha,
-        max_influences=max_influences,
-        threshold=threshold,
-    )
+    how = chosen_method(options)
     touches: dict[str, Any] = {
         "smoothing": smoothing,
         "symmetric": symmetric,
@@ -160,7 +129,11 @@ def bind(
             loaded, method=how, **touches, corrections=corrected, graph=graph, progress=progress
         )
     dropped: list[str] = []
-    if max_influences is None and how.max_influences is None and out.suffix.lower() in GLTF:
+    if (
+        options["max_influences"] is None
+        and how.max_influences is None
+        and out.suffix.lower() in GLTF
+    ):
         how = how.with_options(max_influences=GLTF_INFLUENCES)
         binding, dropped = _limited(loaded, binding, how, touches, corrected)
     warnings = [*loaded.warnings, *binding.warnings, *dropped]
@@ -170,7 +143,7 @@ def bind(
         "input": str(rig),
         "output": str(out),
         "files": [str(file) for file in files],
-        "method": method,
+        "method": options["method"],
         "parameters": {**asdict(how), **touches},
         "corrections": None if corrections is None else str(corrections),
         "template": template,

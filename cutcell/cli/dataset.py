@@ -20,7 +20,7 @@ from rich.progress import (
 
 from ..runtime.display import printable
 from .console import for_people, print_json, print_table, print_warnings
-from .options import FILES, METHOD, How, Json, Quiet, Resolution, chosen_method
+from .options import FILES, METHOD, Json, MethodChoice, Quiet, Resolution, chosen_method
 
 WORK = "Where the work is done"
 FEW = 5
@@ -104,7 +104,7 @@ def bind(
     paths: Annotated[
         list[Path], typer.Argument(metavar="IN... OUT", help="Rigs, and last the store.")
     ],
-    method: How = "paper",
+    method: MethodChoice = "paper",
     resolution: Resolution = 64,
     precision: Annotated[
         str, typer.Option("--precision", help="float32 or float16.", rich_help_panel=FILES)
@@ -143,7 +143,8 @@ def bind(
     from ..dataset.read.store import Parameters
 
     *inputs, out = two_or_more(paths, "rigs, and last the store, such as: bind rigs store")
-    parameters = Parameters(chosen_method(method, resolution=resolution), precision, bones)  # type: ignore[arg-type]
+    how = chosen_method({"method": method, "resolution": resolution})
+    parameters = Parameters(how, precision, bones)  # type: ignore[arg-type]
     with counting("Binding", quiet or json) as step:
         report = bind_all(
             inputs,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from itertools import groupby
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from rich.console import Console
@@ -12,24 +12,7 @@ from rich.text import Text
 
 from ..runtime.display import shown_name
 from .console import for_people, print_json, print_warnings, progress_bars
-from .options import (
-    Alpha,
-    Connectivity,
-    CorrectionsFile,
-    Falloff,
-    How,
-    Json,
-    Leaf,
-    MaxInfluences,
-    Orient,
-    Resolution,
-    RigFile,
-    Samples,
-    SkeletonFile,
-    Threshold,
-    WindingThreshold,
-    chosen_method,
-)
+from .options import CorrectionsFile, Json, RigFile, SkeletonFile, chosen_method, with_method
 
 if TYPE_CHECKING:
     from ..editing import Explanation, JointShare
@@ -47,22 +30,13 @@ MAX_JOINTS = 6
 
 
 @for_people
+@with_method()
 def explain(
     rig: RigFile,
     vertex: Annotated[
         int, typer.Argument(metavar="VERTEX", help="The vertex' number in the file, from 0.")
     ],
-    method: How = "animation",
-    resolution: Resolution = 64,
-    connectivity: Connectivity = None,
-    winding_threshold: WindingThreshold = 0.5,
-    orient: Orient = True,
-    samples: Samples = 5,
-    leaf: Leaf = None,
-    falloff: Falloff = None,
-    alpha: Alpha = None,
-    max_influences: MaxInfluences = None,
-    threshold: Threshold = 0.0,
+    options: dict[str, Any],
     corrections: CorrectionsFile = None,
     skeleton: SkeletonFile = None,
     json: Json = False,
@@ -76,19 +50,7 @@ def explain(
     from ..editing.corrections import Corrections
     from ..io import load
 
-    how = chosen_method(
-        method,
-        resolution=resolution,
-        connectivity=connectivity,
-        winding_threshold=winding_threshold,
-        orient=orient,
-        samples=samples,
-        leaf=leaf,
-        falloff=falloff,
-        alpha=alpha,
-        max_influences=max_influences,
-        threshold=threshold,
-    )
+    how = chosen_method(options)
     corrected = None if corrections is None else Corrections.load(corrections)
     loaded = load(rig, skeleton=skeleton)
     with progress_bars(quiet=json) as progress:
