@@ -61,7 +61,7 @@ EPILOG = """Examples:
 
 GLTF = (".glb", ".gltf", ".vrm")
 GLTF_INFLUENCES = 4
-"""Influences a vertex that are saved in glTF where nobody says how many: what engines read."""
+"""Default number of influences saved in glTF, which is the number that engines read."""
 
 
 @for_people
@@ -72,7 +72,7 @@ def bind(
         Path,
         typer.Argument(
             metavar="OUT",
-            help="Where to save it with the new weights; all else in the file stays as it was.",
+            help="Output file: a copy of RIG with the new weights.",
         ),
     ],
     options: dict[str, Any],
@@ -91,7 +91,7 @@ def bind(
     """Compute skinning weights for RIG and save it with them as OUT.
 
     Weights follow the shortest path through the inside of the mesh from each bone to each
-    vertex, so that a hand beside a hip does not follow the hip. The paths are found in a
+    vertex, so that a hand next to a hip does not follow the hip. The paths are found in a
     graph: rays along x, y and z cut the mesh, and the intervals inside become edges.
     """
     from ..binding import bind as compute
@@ -167,7 +167,7 @@ def bind(
 def _with_template(
     rig: Rig, template: Template, method: Method, progress: Progress
 ) -> tuple[Rig, CutCellGraph]:
-    """Return a rig with a skeleton that is fitted into its mesh, and the mesh's graph."""
+    """Return the rig with a skeleton fitted into its mesh, and the graph of the mesh."""
     from ..graph import build_graph
     from ..templates import fit_skeleton
 
@@ -188,7 +188,7 @@ def _limited(
     touches: dict[str, Any],
     corrections: Corrections | None,
 ) -> tuple[Binding, list[str]]:
-    """Keep as few influences as a method says, and tell in a sentence what that drops."""
+    """Limit the influences to those of the method; return a warning about the dropped weight."""
     from ..binding import bind as compute
     from ..editing import refine_weights
     from ..editing.binding_warnings import binding_warnings
@@ -207,8 +207,8 @@ def _limited(
     dropped = every.sum(axis=1, where=weights == 0)
     sentence = (
         f"of up to {most} influences a vertex the {method.max_influences} largest are saved, as "
-        f"glTF files are read; that drops {dropped.mean():.1%} of the weight on average and "
-        f"{dropped.max():.1%} at most. --max-influences says how many, or all"
+        f"glTF files are read; this drops {dropped.mean():.1%} of the weight on average and "
+        f"{dropped.max():.1%} at most. --max-influences sets another number, or all"
     )
     warnings = binding_warnings(
         rig, binding.distances, weights, corrections or Corrections(), touches["locked"]

@@ -22,7 +22,7 @@ from ..runtime.display import printable
 from .console import for_people, print_json, print_table, print_warnings
 from .options import FILES, METHOD, Json, MethodChoice, Quiet, Resolution, chosen_method
 
-WORK = "Where the work is done"
+WORK = "Workers"
 FEW = 5
 """Failures that are printed; the report has all."""
 
@@ -30,7 +30,7 @@ dataset = typer.Typer(
     no_args_is_help=True,
     rich_markup_mode="markdown",
     help="Prepare rigs for training: split, bind, audit, export and generate them.",
-    epilog="`docs/dataset.md` goes the whole way, from a download to training data.",
+    epilog="`docs/dataset.md` describes all steps from a download to training data.",
 )
 
 Inputs = Annotated[
@@ -46,14 +46,16 @@ Scheduler = Annotated[
     typer.Option(
         "--scheduler",
         metavar="ADDRESS",
-        help="A Dask scheduler, tcp://HOST:PORT; on this machine alone if left out.",
+        help="Address of a Dask scheduler, tcp://HOST:PORT. Default: this machine only.",
         rich_help_panel=WORK,
     ),
 ]
 Workers = Annotated[
     int | None,
     typer.Option(
-        "--workers", help="Assets at a time here; one a core if left out.", rich_help_panel=WORK
+        "--workers",
+        help="Assets at a time on this machine. Default: one per core.",
+        rich_help_panel=WORK,
     ),
 ]
 
@@ -68,14 +70,16 @@ def split(
     archive: Annotated[
         Path, typer.Argument(metavar="ARCHIVE", help="Articulation-XL 2.0 as it is published.")
     ],
-    folder: Annotated[Path, typer.Argument(metavar="FOLDER", help="Gets a file for each asset.")],
+    folder: Annotated[
+        Path, typer.Argument(metavar="FOLDER", help="Output folder, with one file per asset.")
+    ],
     json: Json = False,
     quiet: Quiet = False,
 ) -> None:
-    """Split ARCHIVE into one npz file an asset, without running what is pickled in it.
+    """Split ARCHIVE into one npz file per asset, without running pickled code.
 
-    Only arrays, texts and numbers are read. An asset that holds anything else is left out, and
-    said. A split that was stopped goes on when it is started again.
+    Only arrays, texts and numbers are read. Other assets are left out and reported. A split
+    that was stopped can be resumed by the same command.
     """
     from ..dataset.read.archive import split as divide
 
@@ -101,9 +105,7 @@ def split(
 )
 @for_people
 def bind(
-    paths: Annotated[
-        list[Path], typer.Argument(metavar="IN... OUT", help="Rigs, and last the store.")
-    ],
+    paths: Annotated[list[Path], typer.Argument(metavar="IN... OUT", help="Rigs, then the store.")],
     method: MethodChoice = "paper",
     resolution: Resolution = 64,
     precision: Annotated[
@@ -113,7 +115,7 @@ def bind(
         bool,
         typer.Option(
             "--bones/--no-bones",
-            help="Distances of every single bone, too, as RigNet needs them.",
+            help="Include distances of single bones, which RigNet needs.",
             rich_help_panel=METHOD,
         ),
     ] = True,
@@ -122,27 +124,29 @@ def bind(
     processes: Annotated[
         bool,
         typer.Option(
-            "--processes", help="Dask's workers here are processes.", rich_help_panel=WORK
+            "--processes",
+            help="Use processes as Dask workers on this machine.",
+            rich_help_panel=WORK,
         ),
     ] = False,
     time_limit: Annotated[
         float,
-        typer.Option("--time-limit", help="Seconds for one asset.", rich_help_panel=WORK),
+        typer.Option("--time-limit", help="Maximum seconds per asset.", rich_help_panel=WORK),
     ] = 600.0,
     json: Json = False,
     quiet: Quiet = False,
 ) -> None:
-    """Compute distances, weights and metrics of every rig in IN, and keep them in the store OUT.
+    """Compute distances, weights and metrics of every rig in IN, and save them in the store OUT.
 
-    What OUT has already is not computed again, so that a run that was stopped goes on. An asset
-    that crashes, hangs or needs too much memory costs itself alone. The report is OUT/report.html,
-    the list of all assets OUT/manifest.parquet.
+    Assets that are already in OUT are skipped, so a run that was stopped can be resumed. An asset
+    that crashes, hangs or needs too much memory does not affect the others. The report is
+    OUT/report.html, the list of all assets OUT/manifest.parquet.
     """
     from ..dataset.audit.page import bind_counts, write_bind_report
     from ..dataset.bind.binding import bind_all
     from ..dataset.read.store import Parameters
 
-    *inputs, out = two_or_more(paths, "rigs, and last the store, such as: bind rigs store")
+    *inputs, out = two_or_more(paths, "rigs and the store, such as: bind rigs store")
     how = chosen_method({"method": method, "resolution": resolution})
     parameters = Parameters(how, precision, bones)  # type: ignore[arg-type]
     with counting("Binding", quiet or json) as step:
@@ -184,7 +188,7 @@ def bind(
 def export(
     store: Annotated[Path, typer.Argument(metavar="STORE", help="Made by `dataset bind`.")],
     out: Annotated[
-        Path, typer.Argument(metavar="OUT", help="A folder; for Puppeteer an HDF5 file.")
+        Path, typer.Argument(metavar="OUT", help="Output folder, or HDF5 file for Puppeteer.")
     ],
     kind: Annotated[
         str, typer.Option("--format", metavar="F", help="rignet, unirig or puppeteer.")
@@ -192,10 +196,10 @@ def export(
     json: Json = False,
     quiet: Quiet = False,
 ) -> None:
-    """Write STORE as the training code of RigNet, UniRig or Puppeteer reads it.
+    """Write STORE in the format of the training code of RigNet, UniRig or Puppeteer.
 
-    RigNet's volumetric geodesics, UniRig's voxel_skin, Puppeteer's HDF5 with our weights as
-    `prior`.
+    The result replaces RigNet's volumetric geodesics or UniRig's voxel_skin, or adds `prior` to
+    Puppeteer's HDF5.
     """
     from ..dataset.export import export as write
 
@@ -215,7 +219,7 @@ def export(
 
 
 def two_or_more(paths: list[Path], what: str) -> list[Path]:
-    """Return the paths of a command that takes inputs and an output."""
+    """Return the paths of a command that needs at least an input and an output."""
     from ..errors import ParameterError
 
     if len(paths) < 2:
@@ -235,7 +239,7 @@ Step = Callable[[int, int | None, str], Any]
 
 @contextmanager
 def counting(what: str, quiet: bool) -> Iterator[Step]:
-    """Give a function that shows how many are done, out of how many, and the time left."""
+    """Yield a function that shows the number done, the total and the remaining time."""
     console = Console(stderr=True)
     if quiet or not console.is_terminal:
         yield lambda done, count, name: None

@@ -1,4 +1,4 @@
-"""The command `cutcell graph`: what the cut-cell graph of a character holds."""
+"""The command `cutcell graph`: contents of the cut-cell graph of a character."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def graph(
     skeleton: SkeletonFile = None,
     json: Json = False,
 ) -> None:
-    """Build the cut-cell graph of RIG and say what it holds; nothing is written.
+    """Build the cut-cell graph of RIG and list its contents; nothing is written.
 
     Counts nodes and edges (of the mesh, inside, on the surface), connected components,
     and the share of vertices that no bone reaches through the graph.
