@@ -12,16 +12,11 @@ from cutcell.cli.console import for_people, print_line, print_warnings, progress
 from cutcell.cli.networks import offer_networks
 from cutcell.cli.options import (
     FILES,
-    Connectivity,
-    How,
-    Leaf,
     Networks,
-    Orient,
-    Resolution,
     RigFile,
     SkeletonFile,
-    WindingThreshold,
     chosen_method,
+    with_method,
 )
 from cutcell.errors import MissingLibraryError, ParameterError
 
@@ -61,6 +56,7 @@ EPILOG = """Examples:
 
 
 @for_people
+@with_method("resolution", "method", "connectivity", "winding_threshold", "orient", "leaf")
 def render(
     rig: RigFile,
     out: Annotated[
@@ -190,12 +186,8 @@ def render(
         bool,
         typer.Option("--legend/--no-legend", help="Write the legend on it.", rich_help_panel=HOW),
     ] = True,
-    resolution: Resolution = 64,
-    how: How = "animation",
-    connectivity: Connectivity = None,
-    winding_threshold: WindingThreshold = 0.5,
-    orient: Orient = True,
-    leaf: Leaf = None,
+    *,
+    options: dict[str, Any],
     skeleton_file: SkeletonFile = None,
     quiet: Annotated[
         bool,
@@ -213,13 +205,7 @@ def render(
     from cutcell.io import load
     from cutcell.io.files import naming
 
-    method = chosen_method(
-        how,
-        connectivity=connectivity,
-        winding_threshold=winding_threshold,
-        orient=orient,
-        leaf=leaf,
-    )
+    method = chosen_method(options)
     loaded = load(rig, skeleton=skeleton_file)
     offer_networks(networks, quiet)
     choices = scenes.Choices(
@@ -257,13 +243,13 @@ def render(
     bare = not len(loaded.skeleton.joints)
     textures = scenes.textures_for(loaded, choices)
     with progress_bars(quiet) as progress:
-        binding = None if bare else bind(loaded, resolution, method=method, progress=progress)
+        binding = None if bare else bind(loaded, method=method, progress=progress)
         description = scenes.describe(
             loaded,
             choices,
             binding=binding,
             textures=textures,
-            resolution=resolution,
+            resolution=method.resolution,
             progress=progress,
         )
         order = scenes.order(

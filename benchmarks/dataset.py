@@ -35,9 +35,9 @@ from cutcell.dataset.audit.chamfer import Block
 from cutcell.dataset.audit.likeness import traits_of
 from cutcell.dataset.audit.points import Normalised, normalised
 from cutcell.dataset.bind.cluster import connected
-from cutcell.dataset.generate.generate import KINDS, generate
 from cutcell.dataset.read.sources import read_source
 from cutcell.dataset.read.store import MANIFEST, read_table
+from cutcell_assets.generate import KINDS, generate
 from tests.cutcell.dataset.test_audit import planted
 
 from .document import fill

@@ -27,11 +27,10 @@ import torch
 from numpy.typing import NDArray
 
 import cutcell
-from cutcell.dataset.generate import generate
-from cutcell.dataset.generate.generate import KINDS, Kind
 from cutcell.networks import Recipe, Sample, Samples, predict, train
 from cutcell.networks.priors import cache_folder
 from cutcell.runtime.writing import write_all
+from cutcell_assets.generate import KINDS, Kind, generate
 
 from .document import fill
 from .network_scores import Scores, groups, means, scores

@@ -9,9 +9,9 @@ import cutcell
 from benchmarks import network_data
 from benchmarks.network_scores import dropped, groups, means, scores
 from benchmarks.networks import Run, main
-from cutcell.dataset.generate import generate
 from cutcell.metrics import deformation_error, precision_recall, vertex_shares, weight_l1
 from cutcell.networks import sample_rig
+from cutcell_assets.generate import generate
 
 ASSETS = Path(__file__).resolve().parent.parent / "assets"
 

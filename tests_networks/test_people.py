@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import torch
 
-from cutcell.dataset.generate import generate, people
+from cutcell_assets.generate import generate, people
 
 
 class Model(SimpleNamespace):

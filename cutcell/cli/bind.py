@@ -11,30 +11,20 @@ import typer
 from ..errors import ParameterError
 from .console import for_people, print_json, print_table, print_warnings, progress_bars
 from .options import (
-    Alpha,
-    Connectivity,
     CorrectionsFile,
     Deform,
-    Falloff,
     Fresh,
-    How,
     Json,
-    Leaf,
     Lock,
-    MaxInfluences,
     NoDeform,
-    Orient,
     Quiet,
-    Resolution,
     RigFile,
-    Samples,
     SkeletonFile,
     Smoothing,
     Symmetric,
     TemplateName,
-    Threshold,
-    WindingThreshold,
     chosen_method,
+    with_method,
 )
 from .report import report_rows
 
@@ -71,30 +61,21 @@ EPILOG = """Examples:
 
 GLTF = (".glb", ".gltf", ".vrm")
 GLTF_INFLUENCES = 4
-"""Influences a vertex that are saved in glTF where nobody says how many: what engines read."""
+"""Default number of influences saved in glTF, which is the number that engines read."""
 
 
 @for_people
+@with_method()
 def bind(
     rig: RigFile,
     out: Annotated[
         Path,
         typer.Argument(
             metavar="OUT",
-            help="Where to save it with the new weights; all else in the file stays as it was.",
+            help="Output file: a copy of RIG with the new weights.",
         ),
     ],
-    method: How = "animation",
-    resolution: Resolution = 64,
-    connectivity: Connectivity = None,
-    winding_threshold: WindingThreshold = 0.5,
-    orient: Orient = True,
-    samples: Samples = 5,
-    leaf: Leaf = None,
-    falloff: Falloff = None,
-    alpha: Alpha = None,
-    max_influences: MaxInfluences = None,
-    threshold: Threshold = 0.0,
+    options: dict[str, Any],
     smoothing: Smoothing = 0,
     symmetric: Symmetric = False,
     lock: Lock = None,
@@ -110,7 +91,7 @@ def bind(
     """Compute skinning weights for RIG and save it with them as OUT.
 
     Weights follow the shortest path through the inside of the mesh from each bone to each
-    vertex, so that a hand beside a hip does not follow the hip. The paths are found in a
+    vertex, so that a hand next to a hip does not follow the hip. The paths are found in a
     graph: rays along x, y and z cut the mesh, and the intervals inside become edges.
     """
     from ..binding import bind as compute
@@ -122,19 +103,7 @@ def bind(
     from ..templates.names import check_template
     from . import summary
 
-    how = chosen_method(
-        method,
-        resolution=resolution,
-        connectivity=connectivity,
-        winding_threshold=winding_threshold,
-        orient=orient,
-        samples=samples,
-        leaf=leaf,
-        falloff=falloff,
-        alpha=alpha,
-        max_influences=max_influences,
-        threshold=threshold,
-    )
+    how = chosen_method(options)
     touches: dict[str, Any] = {
         "smoothing": smoothing,
         "symmetric": symmetric,
@@ -160,7 +129,11 @@ def bind(
             loaded, method=how, **touches, corrections=corrected, graph=graph, progress=progress
         )
     dropped: list[str] = []
-    if max_influences is None and how.max_influences is None and out.suffix.lower() in GLTF:
+    if (
+        options["max_influences"] is None
+        and how.max_influences is None
+        and out.suffix.lower() in GLTF
+    ):
         how = how.with_options(max_influences=GLTF_INFLUENCES)
         binding, dropped = _limited(loaded, binding, how, touches, corrected)
     warnings = [*loaded.warnings, *binding.warnings, *dropped]
@@ -170,7 +143,7 @@ def bind(
         "input": str(rig),
         "output": str(out),
         "files": [str(file) for file in files],
-        "method": method,
+        "method": options["method"],
         "parameters": {**asdict(how), **touches},
         "corrections": None if corrections is None else str(corrections),
         "template": template,
@@ -194,7 +167,7 @@ def bind(
 def _with_template(
     rig: Rig, template: Template, method: Method, progress: Progress
 ) -> tuple[Rig, CutCellGraph]:
-    """Return a rig with a skeleton that is fitted into its mesh, and the mesh's graph."""
+    """Return the rig with a skeleton fitted into its mesh, and the graph of the mesh."""
     from ..graph import build_graph
     from ..templates import fit_skeleton
 
@@ -215,7 +188,7 @@ def _limited(
     touches: dict[str, Any],
     corrections: Corrections | None,
 ) -> tuple[Binding, list[str]]:
-    """Keep as few influences as a method says, and tell in a sentence what that drops."""
+    """Limit the influences to those of the method; return a warning about the dropped weight."""
     from ..binding import bind as compute
     from ..editing import refine_weights
     from ..editing.binding_warnings import binding_warnings
@@ -234,8 +207,8 @@ def _limited(
     dropped = every.sum(axis=1, where=weights == 0)
     sentence = (
         f"of up to {most} influences a vertex the {method.max_influences} largest are saved, as "
-        f"glTF files are read; that drops {dropped.mean():.1%} of the weight on average and "
-        f"{dropped.max():.1%} at most. --max-influences says how many, or all"
+        f"glTF files are read; this drops {dropped.mean():.1%} of the weight on average and "
+        f"{dropped.max():.1%} at most. --max-influences sets another number, or all"
     )
     warnings = binding_warnings(
         rig, binding.distances, weights, corrections or Corrections(), touches["locked"]

@@ -1,4 +1,4 @@
-"""The command `cutcell clean`: take away weights that cannot be true, and save the others."""
+"""The command `cutcell clean`: remove implausible weights."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def clean(
         Path,
         typer.Argument(
             metavar="OUT",
-            help="Where to save it with the cleaned weights; all else in the file stays as it was.",
+            help="Output file: a copy of RIG with the cleaned weights.",
         ),
     ],
     resolution: Resolution = 64,
@@ -41,13 +41,13 @@ def clean(
     json: Json = False,
     quiet: Quiet = False,
 ) -> None:
-    """Take away what cannot be true of the weights of RIG, and save it as OUT.
+    """Remove implausible weights from RIG and save it as OUT.
 
-    Weight is taken away where its joint is far through the body, other joints are nearer, and no
-    skin that follows the joint leads there: a hand's weight on the hip, islands, noise. Other
-    weights keep their proportions. Weights that were painted on purpose stay.
+    Weight is removed where its joint is far through the body, other joints are nearer, and no
+    skin that follows the joint leads there: a hand's weight on the hip, islands, noise. The other
+    weights keep their proportions. Painted weights that are connected with their joint stay.
     """
-    from ..diagnosis import clean as take_away
+    from ..diagnosis import clean as remove
     from ..io import check_output, load, save, saving_notes
     from ..io.files import naming
 
@@ -55,7 +55,7 @@ def clean(
     loaded = load(rig, skeleton=skeleton)
     check_output(out, loaded)
     with naming(rig), progress_bars(quiet) as progress:
-        cleaned = take_away(loaded, resolution, progress=progress)
+        cleaned = remove(loaded, resolution, progress=progress)
     files = save(out, loaded.with_weights(cleaned.weights))
     warnings = [*loaded.warnings, *saving_notes(out, loaded)]
     document = {
@@ -88,11 +88,11 @@ def clean(
 
 
 def _rows(document: dict[str, Any], cleaned: Cleaned) -> Iterator[tuple[str, str]]:
-    """Say in words what was taken away, as pairs of a name and a text."""
+    """Return the removed weight as pairs of a name and a text."""
     if not cleaned.losses:
-        yield "taken away", "nothing"
+        yield "removed", "nothing"
         return
-    yield "taken away", f"{cleaned.share:.2%} of all weight"
+    yield "removed", f"{cleaned.share:.2%} of all weight"
     yield "changed", f"{document['changed']:,} of {document['vertices']:,} vertices"
     if document["bound"]:
         yield "bound again", f"{document['bound']:,} that lost more than half of their weight"

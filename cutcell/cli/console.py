@@ -1,4 +1,4 @@
-"""What the commands print: results on standard output, all else on standard error."""
+"""Output of the commands: results on standard output, all else on standard error."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from ..runtime.standard_output import OutputError, checked_output
 WRONG_INPUT = 2
 INTERRUPTED = 130
 READER_GONE = 141
-"""What a shell gives for a program that a closed pipe ends."""
+"""Exit code that a shell reports for a program ended by a closed pipe."""
 
 STAGES = {
     "compile": "Compiling, once on this machine",
@@ -39,7 +39,7 @@ Command = TypeVar("Command", bound=Callable[..., Any])
 
 
 def for_people(command: Command) -> Command:
-    """Turn what a person can mend, a lack of memory too, into one sentence and exit code 2."""
+    """Turn errors of the user, and a lack of memory, into one message and exit code 2."""
 
     @wraps(command)
     def run(*args: Any, **kwargs: Any) -> Any:
@@ -83,9 +83,9 @@ def _compilation_shown(quiet: bool) -> Iterator[None]:
 
 
 def exit_by_output(run: Callable[[], Any]) -> None:
-    """Run a program; turn a full or closed standard output into one sentence and an exit code.
+    """Run a program; turn a full or closed standard output into an exit code.
 
-    Whoever reads a pipe may stop when it has read enough: that needs no sentence.
+    A closed pipe needs no message: its reader has read enough.
     """
     try:
         with checked_output():
@@ -99,7 +99,7 @@ def exit_by_output(run: Callable[[], Any]) -> None:
 
 @contextmanager
 def progress_bars(quiet: bool = False) -> Iterator[Progress]:
-    """Give a progress callback that draws a bar for each stage while the block runs.
+    """Yield a progress callback that draws a bar for each stage while the block runs.
 
     Nothing is drawn where standard error is not a terminal.
     """
@@ -132,7 +132,7 @@ def print_line(text: str) -> None:
 
 
 def print_table(title: str, rows: Iterable[tuple[str, str]]) -> None:
-    """Print named results below each other on standard output."""
+    """Print pairs of a name and a text as a table on standard output."""
     heading = Text(printable(title), "bold")
     table = Table(title=heading, title_justify="left", box=None)
     table.show_header = False
@@ -144,7 +144,7 @@ def print_table(title: str, rows: Iterable[tuple[str, str]]) -> None:
 
 
 def print_warnings(warnings: Iterable[str]) -> None:
-    """Print each warning on a line of its own on standard error."""
+    """Print each warning on a separate line of standard error."""
     for warning in warnings:
         _to_stderr("warning", warning, "bold yellow")
 

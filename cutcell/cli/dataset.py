@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -21,9 +20,9 @@ from rich.progress import (
 
 from ..runtime.display import printable
 from .console import for_people, print_json, print_table, print_warnings
-from .options import FILES, METHOD, How, Json, Quiet, Resolution, chosen_method
+from .options import FILES, METHOD, Json, MethodChoice, Quiet, Resolution, chosen_method
 
-WORK = "Where the work is done"
+WORK = "Workers"
 FEW = 5
 """Failures that are printed; the report has all."""
 
@@ -31,7 +30,7 @@ dataset = typer.Typer(
     no_args_is_help=True,
     rich_markup_mode="markdown",
     help="Prepare rigs for training: split, bind, audit, export and generate them.",
-    epilog="`docs/dataset.md` goes the whole way, from a download to training data.",
+    epilog="`docs/dataset.md` describes all steps from a download to training data.",
 )
 
 Inputs = Annotated[
@@ -47,14 +46,16 @@ Scheduler = Annotated[
     typer.Option(
         "--scheduler",
         metavar="ADDRESS",
-        help="A Dask scheduler, tcp://HOST:PORT; on this machine alone if left out.",
+        help="Address of a Dask scheduler, tcp://HOST:PORT. Default: this machine only.",
         rich_help_panel=WORK,
     ),
 ]
 Workers = Annotated[
     int | None,
     typer.Option(
-        "--workers", help="Assets at a time here; one a core if left out.", rich_help_panel=WORK
+        "--workers",
+        help="Assets at a time on this machine. Default: one per core.",
+        rich_help_panel=WORK,
     ),
 ]
 
@@ -69,14 +70,16 @@ def split(
     archive: Annotated[
         Path, typer.Argument(metavar="ARCHIVE", help="Articulation-XL 2.0 as it is published.")
     ],
-    folder: Annotated[Path, typer.Argument(metavar="FOLDER", help="Gets a file for each asset.")],
+    folder: Annotated[
+        Path, typer.Argument(metavar="FOLDER", help="Output folder, with one file per asset.")
+    ],
     json: Json = False,
     quiet: Quiet = False,
 ) -> None:
-    """Split ARCHIVE into one npz file an asset, without running what is pickled in it.
+    """Split ARCHIVE into one npz file per asset, without running pickled code.
 
-    Only arrays, texts and numbers are read. An asset that holds anything else is left out, and
-    said. A split that was stopped goes on when it is started again.
+    Only arrays, texts and numbers are read. Other assets are left out and reported. A split
+    that was stopped can be resumed by the same command.
     """
     from ..dataset.read.archive import split as divide
 
@@ -102,10 +105,8 @@ def split(
 )
 @for_people
 def bind(
-    paths: Annotated[
-        list[Path], typer.Argument(metavar="IN... OUT", help="Rigs, and last the store.")
-    ],
-    method: How = "paper",
+    paths: Annotated[list[Path], typer.Argument(metavar="IN... OUT", help="Rigs, then the store.")],
+    method: MethodChoice = "paper",
     resolution: Resolution = 64,
     precision: Annotated[
         str, typer.Option("--precision", help="float32 or float16.", rich_help_panel=FILES)
@@ -114,7 +115,7 @@ def bind(
         bool,
         typer.Option(
             "--bones/--no-bones",
-            help="Distances of every single bone, too, as RigNet needs them.",
+            help="Include distances of single bones, which RigNet needs.",
             rich_help_panel=METHOD,
         ),
     ] = True,
@@ -123,28 +124,31 @@ def bind(
     processes: Annotated[
         bool,
         typer.Option(
-            "--processes", help="Dask's workers here are processes.", rich_help_panel=WORK
+            "--processes",
+            help="Use processes as Dask workers on this machine.",
+            rich_help_panel=WORK,
         ),
     ] = False,
     time_limit: Annotated[
         float,
-        typer.Option("--time-limit", help="Seconds for one asset.", rich_help_panel=WORK),
+        typer.Option("--time-limit", help="Maximum seconds per asset.", rich_help_panel=WORK),
     ] = 600.0,
     json: Json = False,
     quiet: Quiet = False,
 ) -> None:
-    """Compute distances, weights and metrics of every rig in IN, and keep them in the store OUT.
+    """Compute distances, weights and metrics of every rig in IN, and save them in the store OUT.
 
-    What OUT has already is not computed again, so that a run that was stopped goes on. An asset
-    that crashes, hangs or needs too much memory costs itself alone. The report is OUT/report.html,
-    the list of all assets OUT/manifest.parquet.
+    Assets that are already in OUT are skipped, so a run that was stopped can be resumed. An asset
+    that crashes, hangs or needs too much memory does not affect the others. The report is
+    OUT/report.html, the list of all assets OUT/manifest.parquet.
     """
     from ..dataset.audit.page import bind_counts, write_bind_report
     from ..dataset.bind.binding import bind_all
     from ..dataset.read.store import Parameters
 
-    *inputs, out = two_or_more(paths, "rigs, and last the store, such as: bind rigs store")
-    parameters = Parameters(chosen_method(method, resolution=resolution), precision, bones)  # type: ignore[arg-type]
+    *inputs, out = two_or_more(paths, "rigs and the store, such as: bind rigs store")
+    how = chosen_method({"method": method, "resolution": resolution})
+    parameters = Parameters(how, precision, bones)  # type: ignore[arg-type]
     with counting("Binding", quiet or json) as step:
         report = bind_all(
             inputs,
@@ -184,7 +188,7 @@ def bind(
 def export(
     store: Annotated[Path, typer.Argument(metavar="STORE", help="Made by `dataset bind`.")],
     out: Annotated[
-        Path, typer.Argument(metavar="OUT", help="A folder; for Puppeteer an HDF5 file.")
+        Path, typer.Argument(metavar="OUT", help="Output folder, or HDF5 file for Puppeteer.")
     ],
     kind: Annotated[
         str, typer.Option("--format", metavar="F", help="rignet, unirig or puppeteer.")
@@ -192,10 +196,10 @@ def export(
     json: Json = False,
     quiet: Quiet = False,
 ) -> None:
-    """Write STORE as the training code of RigNet, UniRig or Puppeteer reads it.
+    """Write STORE in the format of the training code of RigNet, UniRig or Puppeteer.
 
-    RigNet's volumetric geodesics, UniRig's voxel_skin, Puppeteer's HDF5 with our weights as
-    `prior`.
+    The result replaces RigNet's volumetric geodesics or UniRig's voxel_skin, or adds `prior` to
+    Puppeteer's HDF5.
     """
     from ..dataset.export import export as write
 
@@ -214,54 +218,8 @@ def export(
         print_table(str(out), [("format", kind), ("assets", f"{count:,}")])
 
 
-@dataset.command(
-    epilog="""Examples:
-
-- `cutcell dataset generate beast 100 rigs`
-
-- `cutcell dataset generate any 2000 rigs --seed 5 --detail 96`"""
-)
-@for_people
-def generate(
-    kind: Annotated[
-        str,
-        typer.Argument(
-            metavar="KIND", help="body, hand, beast, octopus, robot, person (needs anny), or any."
-        ),
-    ],
-    count: Annotated[int, typer.Argument(metavar="COUNT", help="How many.", min=1)],
-    folder: Annotated[Path, typer.Argument(metavar="FOLDER", help="Gets an npz file for each.")],
-    seed: Annotated[int, typer.Option("--seed", help="Of the first; the next has the next.")] = 0,
-    detail: Annotated[
-        int, typer.Option("--detail", help="Samples along the longest side, 12 to 512.")
-    ] = 48,
-    clean: Annotated[bool, typer.Option("--clean", help="No holes, loose parts or soups.")] = False,
-    json: Json = False,
-    quiet: Quiet = False,
-) -> None:
-    """Make COUNT characters with weights, each as an Articulation-XL npz.
-
-    Proportions and pose are drawn from the seed.
-    """
-    from ..dataset.generate.generate import KINDS
-    from ..dataset.generate.generate import generate as make
-    from ..io import save
-
-    folder.mkdir(parents=True, exist_ok=True)
-    kinds = [name for name in KINDS if name != "person"] if kind == "any" else [kind]
-    with counting("Generating", quiet or json) as step:
-        for k in range(count):
-            rig = make(kinds[k % len(kinds)], seed + k, detail=detail, clean=clean)  # type: ignore[arg-type]
-            save(folder / f"{rig.name}.npz", replace(rig, parts=()))
-            step(k + 1, count, rig.name)
-    if json:
-        print_json({"output": str(folder), "assets": count})
-    elif not quiet:
-        print_table(str(folder), [("assets", f"{count:,}")])
-
-
 def two_or_more(paths: list[Path], what: str) -> list[Path]:
-    """Return the paths of a command that takes inputs and an output."""
+    """Return the paths of a command that needs at least an input and an output."""
     from ..errors import ParameterError
 
     if len(paths) < 2:
@@ -281,7 +239,7 @@ Step = Callable[[int, int | None, str], Any]
 
 @contextmanager
 def counting(what: str, quiet: bool) -> Iterator[Step]:
-    """Give a function that shows how many are done, out of how many, and the time left."""
+    """Yield a function that shows the number done, the total and the remaining time."""
     console = Console(stderr=True)
     if quiet or not console.is_terminal:
         yield lambda done, count, name: None

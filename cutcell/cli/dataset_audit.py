@@ -9,44 +9,43 @@ from typing import Annotated
 import typer
 
 from .console import for_people, print_json, print_table
-from .dataset import Scheduler, Workers, counting, dataset, print_failures
+from .dataset import Scheduler, Workers, counting, print_failures
 from .options import Json, Quiet
 
-MEASURE = "What counts as a duplicate"
-
-
-@dataset.command(
-    epilog="""Examples:
+EPILOG = """Examples:
 
 - `cutcell dataset audit rigs`
 
 - `cutcell dataset audit test train --out leaks`  (which of test are in train)
 
 - `cutcell dataset audit store --json | jq .keep`"""
-)
+
+MEASURE = "Definition of a duplicate"
+
+
 @for_people
 def audit(
     first: Annotated[Path, typer.Argument(metavar="A", help="Rigs, or a store.")],
     second: Annotated[
-        Path | None, typer.Argument(metavar="[B]", help="Others, to compare A with.")
+        Path | None, typer.Argument(metavar="[B]", help="Rigs to compare A with.")
     ] = None,
     out: Annotated[
-        Path, typer.Option("--out", metavar="FOLDER", help="Gets the tables and the report.")
+        Path, typer.Option("--out", metavar="FOLDER", help="Folder of the tables and the report.")
     ] = Path("audit"),
     joint_threshold: Annotated[
-        float, typer.Option("--joints", help="T_J of stage 1.", rich_help_panel=MEASURE)
+        float, typer.Option("--joints", help="T_J of stage 1, on joints.", rich_help_panel=MEASURE)
     ] = 0.01,
     surface_threshold: Annotated[
         float, typer.Option("--surface", help="T_V of stage 2.", rich_help_panel=MEASURE)
     ] = 0.01,
     points: Annotated[
-        int, typer.Option("--points", help="On each surface.", rich_help_panel=MEASURE)
+        int, typer.Option("--points", help="Points on each surface.", rich_help_panel=MEASURE)
     ] = 2048,
     least: Annotated[
         int,
         typer.Option(
             "--min-points",
-            help="DBSCAN's MinPts; the paper does not say.",
+            help="DBSCAN's MinPts; the paper gives no value.",
             rich_help_panel=MEASURE,
         ),
     ] = 2,
@@ -54,7 +53,7 @@ def audit(
         bool,
         typer.Option(
             "--poses/--no-poses",
-            help="Look for the same skeleton in other poses, too.",
+            help="Find the same skeleton in other poses, too.",
             rich_help_panel=MEASURE,
         ),
     ] = True,
@@ -65,10 +64,9 @@ def audit(
 ) -> None:
     """Find near-duplicates in A, or characters of A that are in B, as the paper does.
 
-    Every pair is compared; bounds that are never too high leave out those that cannot be
-    duplicates. FOLDER gets pairs.parquet, clusters.parquet, audit.json and report.html. Step
-    through the pairs, side by side, and overrule them: cutcell app --pairs FOLDER. What was said
-    of them there still holds when the same FOLDER is audited again.
+    All pairs are covered; lower bounds exclude pairs that cannot be duplicates. The results are
+    pairs.parquet, clusters.parquet, audit.json and report.html in FOLDER. cutcell app --pairs
+    FOLDER shows the pairs side by side for review; verdicts are kept when FOLDER is audited again.
     """
     from ..dataset.audit.audit_files import read_verdicts, save_audit
     from ..dataset.audit.audit_page import write_audit_report
@@ -77,7 +75,7 @@ def audit(
     verdicts = read_verdicts(out)
     inputs = [first], [] if second is None else [second]
     with counting("Comparing", quiet or json) as step:
-        found = compare(
+        result = compare(
             *inputs,
             joint_threshold=joint_threshold,
             surface_threshold=surface_threshold,
@@ -88,18 +86,18 @@ def audit(
             workers=workers,
             tell=step,
         )
-    found = replace(found, verdicts=verdicts)
-    save_audit(found, out, *inputs)
-    write_audit_report(found, out / "report.html")
-    document = found.to_dict()
+    result = replace(result, verdicts=verdicts)
+    save_audit(result, out, *inputs)
+    write_audit_report(result, out / "report.html")
+    document = result.to_dict()
     if json:
         print_json(document)
     elif not quiet:
-        print_failures(found.failed)
+        print_failures(result.failed)
         rows = [
             ("assets", f"{document['assets']:,}"),
-            ("candidates", f"{found.candidates:,} pairs with joints alike"),
-            ("near-duplicates", f"{len(found.pairs):,} pairs"),
+            ("candidates", f"{result.candidates:,} pairs with similar joints"),
+            ("near-duplicates", f"{len(result.pairs):,} pairs"),
             *((f"  {tier}", f"{count:,}") for tier, count in document["tiers"].items()),
             ("clusters", f"{len(document['clusters']):,}"),
             *([("overruled", f"{len(verdicts):,} pairs")] if verdicts else []),

@@ -1,4 +1,4 @@
-"""The command `cutcell diagnose`: what is wrong with a rig, and a repaired copy of it."""
+"""The command `cutcell diagnose`: faults of a rig, and a repaired copy."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def diagnose(
         typer.Option(
             "--fix",
             metavar="OUT",
-            help="Save a copy with all that can be repaired safely; nothing else in it changes.",
+            help="Save a copy with all safe repairs; nothing else in it changes.",
             rich_help_panel=FILES,
         ),
     ] = None,
@@ -46,7 +46,7 @@ def diagnose(
     skeleton: SkeletonFile = None,
     json: Json = False,
 ) -> None:
-    """Say what is wrong with RIG: its mesh, its skeleton, its weights.
+    """Check RIG for faults of its mesh, skeleton and weights.
 
     Each finding is an error (a binding or another program goes wrong because of it), a warning
     (most likely a fault) or a note (good to know), with advice. With --json each names the
@@ -96,7 +96,7 @@ def diagnose(
 def _repair(
     fix: Path | None, repaired: Repaired | None, after: Diagnosis | None
 ) -> dict[str, Any] | None:
-    """Return what was repaired, as plain data; None if nothing was."""
+    """Return the repair as plain data; None without one."""
     if repaired is None or after is None:
         return None
     codes = [finding.code for finding in repaired.repaired]
@@ -113,7 +113,7 @@ def _print_unreadable(path: Path, finding: Finding, json: bool) -> None:
 
 def _print(name: str, diagnosis: Diagnosis) -> None:
     if diagnosis.findings:
-        _print_findings(f"{name}: {_told(diagnosis.counts)}", diagnosis.findings)
+        _print_findings(f"{name}: {_counts(diagnosis.counts)}", diagnosis.findings)
     else:
         _line(Text(f"{printable(name)}: nothing found", "bold"))
 
@@ -146,13 +146,13 @@ def _print_repair(
     _line(Text(f"saved {name}, repaired:", "bold"))
     for text in repaired.done:
         _line(Text(f"        {printable(text)}"))
-    _line(Text(f"before: {_told(before.counts)}; after: {_told(after.counts)}"))
+    _line(Text(f"before: {_counts(before.counts)}; after: {_counts(after.counts)}"))
 
 
-def _told(counts: dict[str, int]) -> str:
-    """Say how many findings there are: "1 error, 2 notes"."""
-    told = [f"{n} {severity}{'s' * (n != 1)}" for severity, n in counts.items() if n]
-    return ", ".join(told) or "nothing found"
+def _counts(counts: dict[str, int]) -> str:
+    """Return the number of findings: "1 error, 2 notes"."""
+    counted = [f"{n} {severity}{'s' * (n != 1)}" for severity, n in counts.items() if n]
+    return ", ".join(counted) or "nothing found"
 
 
 def _line(text: Text) -> None:

@@ -1,9 +1,9 @@
-"""The command `cutcell explain`: why a vertex has the weights that it has."""
+"""The command `cutcell explain`: the origin of the weights of a vertex."""
 
 from __future__ import annotations
 
 from itertools import groupby
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from rich.console import Console
@@ -12,24 +12,7 @@ from rich.text import Text
 
 from ..runtime.display import shown_name
 from .console import for_people, print_json, print_warnings, progress_bars
-from .options import (
-    Alpha,
-    Connectivity,
-    CorrectionsFile,
-    Falloff,
-    How,
-    Json,
-    Leaf,
-    MaxInfluences,
-    Orient,
-    Resolution,
-    RigFile,
-    Samples,
-    SkeletonFile,
-    Threshold,
-    WindingThreshold,
-    chosen_method,
-)
+from .options import CorrectionsFile, Json, RigFile, SkeletonFile, chosen_method, with_method
 
 if TYPE_CHECKING:
     from ..editing import Explanation, JointShare
@@ -43,82 +26,63 @@ EPILOG = """Examples:
 - `cutcell explain character.glb 120 --json | jq '.joints[].steps'`  (for a script)"""
 
 MAX_JOINTS = 6
-"""Joints that are printed; `--json` has them all."""
+"""Maximum number of printed joints; `--json` lists all."""
 
 
 @for_people
+@with_method()
 def explain(
     rig: RigFile,
     vertex: Annotated[
-        int, typer.Argument(metavar="VERTEX", help="The vertex' number in the file, from 0.")
+        int, typer.Argument(metavar="VERTEX", help="Number of the vertex in the file, from 0.")
     ],
-    method: How = "animation",
-    resolution: Resolution = 64,
-    connectivity: Connectivity = None,
-    winding_threshold: WindingThreshold = 0.5,
-    orient: Orient = True,
-    samples: Samples = 5,
-    leaf: Leaf = None,
-    falloff: Falloff = None,
-    alpha: Alpha = None,
-    max_influences: MaxInfluences = None,
-    threshold: Threshold = 0.0,
+    options: dict[str, Any],
     corrections: CorrectionsFile = None,
     skeleton: SkeletonFile = None,
     json: Json = False,
 ) -> None:
-    """Say why a VERTEX of RIG gets the weights that `cutcell bind` gives it.
+    """Explain the weights that `cutcell bind` computes for a VERTEX of RIG.
 
-    For each joint: the distance and the path that it is the length of, what the falloff
-    multiplies it by, the weight after each step, and the file's own weight.
+    The table lists for each joint the distance and its path, the factors of the falloff, the
+    weight after each step, and the weight in the file.
     """
     from ..editing import explain as compute
     from ..editing.corrections import Corrections
     from ..io import load
 
-    how = chosen_method(
-        method,
-        resolution=resolution,
-        connectivity=connectivity,
-        winding_threshold=winding_threshold,
-        orient=orient,
-        samples=samples,
-        leaf=leaf,
-        falloff=falloff,
-        alpha=alpha,
-        max_influences=max_influences,
-        threshold=threshold,
-    )
+    how = chosen_method(options)
     corrected = None if corrections is None else Corrections.load(corrections)
     loaded = load(rig, skeleton=skeleton)
     with progress_bars(quiet=json) as progress:
-        found = compute(loaded, vertex, method=how, corrections=corrected, progress=progress)
+        explanation = compute(loaded, vertex, method=how, corrections=corrected, progress=progress)
     if json:
-        print_json({"input": str(rig), **found.to_dict(), "warnings": list(loaded.warnings)})
+        print_json({"input": str(rig), **explanation.to_dict(), "warnings": list(loaded.warnings)})
         return
     print_warnings(loaded.warnings)
-    _print(f"{rig.name}, vertex {vertex}", found)
+    _print(f"{rig.name}, vertex {vertex}", explanation)
 
 
-def _print(heading: str, found: Explanation) -> None:
+def _print(heading: str, explanation: Explanation) -> None:
     from ..editing.explain import STEPS
 
     console = Console(highlight=False)
-    place = ", ".join(f"{x:.4g}" for x in found.position)
+    place = ", ".join(f"{x:.4g}" for x in explanation.position)
     table = Table(title=Text(f"{heading} at ({place})", "bold"), title_justify="left", box=None)
     table.add_column(style="dim", no_wrap=True)
-    shares = found.joints[:MAX_JOINTS]
+    shares = explanation.joints[:MAX_JOINTS]
     for share in shares:
         table.add_column(Text(shown_name(share.name), overflow="fold"), justify="right")
     for name, cells in _rows(shares, STEPS):
         table.add_row(name, *cells)
     console.print(table)
-    if found.fallback:
-        console.print(f"It follows its nearest bones in a straight line: {found.fallback}.")
+    if explanation.fallback:
+        console.print(f"It follows its nearest bones in a straight line: {explanation.fallback}.")
     for share in shares:
-        console.print(Text(f"path to {shown_name(share.name)}: {_told(share)}", "dim"))
-    if len(found.joints) > len(shares):
-        console.print(f"and {len(found.joints) - len(shares)} more joints with less weight: --json")
+        console.print(Text(f"path to {shown_name(share.name)}: {_path(share)}", "dim"))
+    if len(explanation.joints) > len(shares):
+        console.print(
+            f"and {len(explanation.joints) - len(shares)} more joints with less weight: --json"
+        )
 
 
 def _rows(shares: tuple[JointShare, ...], steps: dict[str, str]) -> list[tuple[str, list[str]]]:
@@ -144,8 +108,8 @@ def _number(length: float) -> str:
     return "farther" if length == float("inf") else f"{length:.4g}"
 
 
-def _told(share: JointShare) -> str:
-    """Say what a path is made of, in the order in which it is walked."""
+def _path(share: JointShare) -> str:
+    """Return the kinds and lengths of the segments of a path, in order."""
     if not share.path:
         return "none leads through the body"
     parts = []

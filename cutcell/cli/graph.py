@@ -1,26 +1,21 @@
-"""The command `cutcell graph`: what the cut-cell graph of a character holds."""
+"""The command `cutcell graph`: contents of the cut-cell graph of a character."""
 
 from __future__ import annotations
 
 import time
 from dataclasses import asdict
+from typing import Any
 
 from .console import for_people, print_json, print_table, print_warnings, progress_bars
 from .options import (
-    Connectivity,
     Deform,
     Fresh,
-    How,
     Json,
-    Leaf,
     NoDeform,
-    Orient,
-    Resolution,
     RigFile,
-    Samples,
     SkeletonFile,
-    WindingThreshold,
     chosen_method,
+    with_method,
 )
 from .report import report_rows
 
@@ -32,27 +27,22 @@ EPILOG = """Examples:
 
 - `cutcell graph character.glb --json | jq .graph.edges.total`"""
 
-SHOWN = ("resolution", "connectivity", "winding_threshold", "orient", "samples", "leaf")
-"""What of the method counts here."""
+GRAPH_OPTIONS = ("resolution", "connectivity", "winding_threshold", "orient", "samples", "leaf")
+"""Options of the method that graph and distances depend on."""
 
 
 @for_people
+@with_method("method", *GRAPH_OPTIONS)
 def graph(
     rig: RigFile,
-    method: How = "animation",
-    resolution: Resolution = 64,
-    connectivity: Connectivity = None,
-    winding_threshold: WindingThreshold = 0.5,
-    orient: Orient = True,
-    samples: Samples = 5,
-    leaf: Leaf = None,
+    options: dict[str, Any],
     deform: Deform = None,
     no_deform: NoDeform = None,
     fresh: Fresh = False,
     skeleton: SkeletonFile = None,
     json: Json = False,
 ) -> None:
-    """Build the cut-cell graph of RIG and say what it holds; nothing is written.
+    """Build the cut-cell graph of RIG and list its contents; nothing is written.
 
     Counts nodes and edges (of the mesh, inside, on the surface), connected components,
     and the share of vertices that no bone reaches through the graph.
@@ -64,15 +54,7 @@ def graph(
     from ..rig.deform_joints import choose_deform
     from . import summary
 
-    how = chosen_method(
-        method,
-        resolution=resolution,
-        connectivity=connectivity,
-        winding_threshold=winding_threshold,
-        orient=orient,
-        samples=samples,
-        leaf=leaf,
-    )
+    how = chosen_method(options)
     loaded = load(rig, skeleton=skeleton)
     with naming(rig):
         loaded = choose_deform(loaded, deform or (), no_deform or (), fresh=fresh)
@@ -90,8 +72,8 @@ def graph(
             seconds["distances"] = round(time.perf_counter() - start, 4)
     document = {
         "input": str(rig),
-        "method": method,
-        "parameters": {name: value for name, value in asdict(how).items() if name in SHOWN},
+        "method": options["method"],
+        "parameters": {name: value for name, value in asdict(how).items() if name in GRAPH_OPTIONS},
         "mesh": summary.summarize_mesh(loaded.mesh, built),
         "meshes": summary.summarize_parts(loaded),
         "skeleton": distances and summary.summarize_skeleton(loaded.skeleton),

@@ -1,4 +1,4 @@
-"""The command `cutcell joints`: which joints of a character carry weight, and why."""
+"""The command `cutcell joints`: deforming joints of a character."""
 
 from __future__ import annotations
 
@@ -27,8 +27,8 @@ def joints(
 ) -> None:
     """List the joints of RIG: which may carry weight, and why.
 
-    Weights in the file say so. Where there are none, names and places do: end markers,
-    controls, and roots beside the body get none. `cutcell bind` takes the same options.
+    The weights in the file decide. Without weights, names and positions do: end markers,
+    controls, and roots outside the body are excluded. `cutcell bind` has the same options.
     """
     from ..io import load
     from ..io.files import naming

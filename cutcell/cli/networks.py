@@ -16,12 +16,12 @@ networks = typer.Typer(
     no_args_is_help=True,
     rich_markup_mode="markdown",
     help="Train networks that predict weights (needs cutcell[networks]).",
-    epilog="`docs/networks.md` tells the heads, the priors, and what they learned.",
+    epilog="`docs/networks.md` describes the heads, the priors and the results.",
 )
 
 
 def offer_networks(folders: Sequence[Path] | None, quiet: bool = False) -> None:
-    """Put trained networks among the methods that this command knows; see `trained_networks`."""
+    """Add trained networks to the methods of this command; see `trained_networks`."""
     if not folders:
         return
     from ..baselines import METHODS
@@ -35,7 +35,7 @@ def offer_networks(folders: Sequence[Path] | None, quiet: bool = False) -> None:
 
 @networks.callback()
 def _networks() -> None:
-    """Keep `train` a command of its own, though it is the only one."""
+    """Keep `train` a subcommand although it is the only one."""
 
 
 @networks.command(
@@ -49,16 +49,14 @@ def _networks() -> None:
 )
 @for_people
 def train(
-    out: Annotated[
-        Path, typer.Argument(metavar="OUT", help="A folder; gets network.pt and log.csv.")
-    ],
+    out: Annotated[Path, typer.Argument(metavar="OUT", help="Folder for network.pt and log.csv.")],
     head: Annotated[str, typer.Option("--head", metavar="H", help="rignet, unirig or puppeteer.")],
     data: Annotated[
         list[Path],
         typer.Option(
             "--data",
             metavar="IN",
-            help="Rigs with weights to learn from: files, folders, or what `dataset bind` made."
+            help="Rigs with weights to learn from: files, folders, or stores of `dataset bind`."
             " May be given several times.",
         ),
     ],
@@ -67,27 +65,27 @@ def train(
         typer.Option(
             "--prior",
             metavar="P",
-            help="What the network gets to see: none, visibility (RigNet's own), voxel_unirig,"
+            help="Input of the network: none, visibility (RigNet's own), voxel_unirig,"
             " voxel, cutcell (the paper's), cutcell_any (paths at any angle) or bind.",
         ),
     ] = "cutcell",
     size: Annotated[
         str,
-        typer.Option("--size", metavar="S", help="tiny, small or full, which is as published."),
+        typer.Option("--size", metavar="S", help="tiny, small or full (as published)."),
     ] = "tiny",
-    seed: Annotated[int, typer.Option("--seed", help="Of all that is left to chance.")] = 0,
+    seed: Annotated[int, typer.Option("--seed", help="Seed of all random choices.")] = 0,
     epochs: Annotated[
-        int, typer.Option("--epochs", help="How often each rig is looked at, in all.")
+        int, typer.Option("--epochs", help="Number of passes over the rigs, in total.")
     ] = 40,
     points: Annotated[
-        int, typer.Option("--points", help="Points of a rig in each epoch; 16 or more.")
+        int, typer.Option("--points", help="Points per rig and epoch, at least 16.")
     ] = 256,
     resolution: Resolution = 64,
     augment: Annotated[
         bool,
         typer.Option(
             "--augment/--no-augment",
-            help="Leave out joints and parts, pose rigs, spread points otherwise, by chance.",
+            help="Omit joints and parts, pose rigs and vary the sampling at random.",
         ),
     ] = False,
     cache: Annotated[
@@ -95,7 +93,7 @@ def train(
         typer.Option(
             "--cache",
             metavar="FOLDER",
-            help="Where prepared priors are kept; in the user's cache if left out.",
+            help="Cache of prepared priors. Default: the user's cache.",
             rich_help_panel=FILES,
         ),
     ] = None,
@@ -104,8 +102,8 @@ def train(
 ) -> None:
     """Train a network on rigs and the weights of their artists.
 
-    It is kept after each epoch: a training that was stopped goes on when it is started again. On a
-    CPU the same command gives the same network; a GPU is used if there is one.
+    The network is saved after each epoch, so training that was stopped can be resumed by the same
+    command. A GPU is used if there is one. On a CPU results are reproducible.
     """
     from ..networks import Recipe, Samples
     from ..networks.torch_required import check_torch
@@ -123,11 +121,11 @@ def train(
     losses: list[float] = []
     with counting("Training", quiet or json) as step:
 
-        def told(epoch: int, loss: float) -> None:
+        def record(epoch: int, loss: float) -> None:
             losses.append(loss)
             step(epoch, epochs, f"loss {loss:.4f}")
 
-        learn(recipe, samples, epochs, out, told)
+        learn(recipe, samples, epochs, out, record)
     last = losses[-1] if losses else None
     if json:
         print_json({"output": str(out), "rigs": len(samples), "epochs": epochs, "loss": last})

@@ -1,7 +1,10 @@
-"""The options that commands share, each explained where `--help` shows it."""
+"""Options that several commands share, with the texts of `--help`."""
 
 from __future__ import annotations
 
+import inspect
+from collections.abc import Callable, Mapping
+from functools import wraps
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -11,8 +14,8 @@ if TYPE_CHECKING:
     from ..method import Method
 
 METHOD = "The method"
-JOINTS = "Which joints carry weight"
-TOUCH = "Touching up"
+JOINTS = "Deforming joints"
+TOUCH = "Refinement"
 FILES = "Files and output"
 
 RigFile = Annotated[
@@ -21,7 +24,7 @@ RigFile = Annotated[
         metavar="RIG",
         help="A character: .glb, .gltf or .vrm; .fbx; .usd, .usda, .usdc or .usdz (needs"
         " cutcell[usd]); RigNet's .obj with .txt; Articulation-XL's .npz; or a"
-        " mesh (.obj, .ply, .stl, .off) with a skeleton in a .json beside it.",
+        " mesh (.obj, .ply, .stl, .off) with a skeleton in a .json next to it.",
     ),
 ]
 SkeletonFile = Annotated[
@@ -29,7 +32,7 @@ SkeletonFile = Annotated[
     typer.Option(
         "--skeleton",
         metavar="FILE",
-        help="The skeleton (.json) of a mesh, where it does not stand beside it under its name.",
+        help="Skeleton (.json) of a mesh; by default the file of the same name next to it.",
         rich_help_panel=FILES,
     ),
 ]
@@ -38,8 +41,8 @@ Networks = Annotated[
     typer.Option(
         "--networks",
         metavar="FOLDER",
-        help="Trained networks to compare with: a folder of `cutcell networks train`, or one that"
-        " holds several (needs cutcell[networks]). May be given several times.",
+        help="Trained networks to compare with: a folder of `cutcell networks train`, or a folder"
+        " of such folders (needs cutcell[networks]). May be given several times.",
     ),
 ]
 TemplateName = Annotated[
@@ -58,127 +61,110 @@ Quiet = Annotated[
     bool,
     typer.Option("--quiet", "-q", help="No bars, no table, no warnings.", rich_help_panel=FILES),
 ]
-How = Annotated[
-    str,
-    typer.Option(
-        "--method",
-        metavar="M",
-        help="What the options below are when left out. animation: made to animate with."
-        " paper: just as in the paper.",
-        rich_help_panel=METHOD,
+
+METHOD_OPTIONS: dict[str, tuple[Any, Any, str, str, str]] = {
+    "method": (
+        str, "animation", "--method", "M",
+        "Defaults of the options below. animation: weights for animation. paper: as in the paper.",
     ),
-]
-Resolution = Annotated[
-    int,
-    typer.Option(
-        "--resolution",
-        "-r",
-        metavar="R",
-        help="Rays along the longest side of the mesh. More: close parts are kept apart, more"
-        " time and memory.",
-        rich_help_panel=METHOD,
+    "resolution": (
+        int, 64, "--resolution -r", "R",
+        "Rays along the longest side of the mesh. More rays separate close parts better, but take"
+        " more time and memory.",
     ),
-]
-Connectivity = Annotated[
-    str | None,
-    typer.Option(
-        "--connectivity",
-        metavar="C",
-        help="How paths run inside. 6: along the axes, as in the paper. 26: along diagonals too."
-        " any: at any angle, so that distances are geodesic. Left out: any; 6 by the method"
-        " paper.",
-        show_default=False,
-        rich_help_panel=METHOD,
+    "connectivity": (
+        str | None, None, "--connectivity", "C",
+        "Directions of paths inside. 6: along the axes, as in the paper. 26: also along diagonals."
+        " any: at any angle, so that distances are geodesic. Default: any; 6 with --method paper.",
     ),
-]
-WindingThreshold = Annotated[
-    float,
-    typer.Option(
-        "--winding-threshold",
-        metavar="T",
-        help="Winding number from which a point is inside, 0 to 1. Lower fills more of an"
-        " open mesh.",
-        rich_help_panel=METHOD,
+    "winding_threshold": (
+        float, 0.5, "--winding-threshold", "T",
+        "Winding number from which a point is inside, 0 to 1. Lower values fill more of an open"
+        " mesh.",
     ),
-]
-Orient = Annotated[
-    bool,
-    typer.Option(
-        "--orient/--no-orient",
-        help="Take faces that are inside out as turned round, or all faces as the file has them.",
-        rich_help_panel=METHOD,
+    "orient": (
+        bool, True, "--orient/--no-orient", "",
+        "Treat inverted faces as flipped, or use all faces as they are in the file.",
     ),
-]
-Samples = Annotated[
-    int,
-    typer.Option(
-        "--samples",
-        metavar="N",
-        help="Points along each bone that distances start from.",
-        rich_help_panel=METHOD,
+    "samples": (int, 5, "--samples", "N", "Number of sources along each bone."),
+    "leaf": (
+        str | None, None, "--leaf", "L",
+        "End of each bone. point, extend: at the child joints; a joint without children is a point,"
+        " or continues along its parent's direction. fit: from the shape of the body. Default: fit;"
+        " point with --falloff paper.",
     ),
-]
-Leaf = Annotated[
-    str | None,
-    typer.Option(
-        "--leaf",
-        metavar="L",
-        help="Where bones end. point, extend: at the child joints; a joint without children is a"
-        " point, or goes on along its parent's direction. fit: where the body says. Left out:"
-        " fit; point with the falloff paper.",
-        show_default=False,
-        rich_help_panel=METHOD,
+    "falloff": (
+        str | None, None, "--falloff", "F",
+        "Decrease of weight with distance. rig: for animation. paper: the paper's kernel (its"
+        " equation 1), a soft feature of the distance. Default: rig; paper with --method paper.",
     ),
-]
-Falloff = Annotated[
-    str | None,
-    typer.Option(
-        "--falloff",
-        metavar="F",
-        help="How weight falls with distance. rig: made to animate with. paper: the paper's kernel"
-        " (its equation 1), a soft feature of the distance. Left out: rig; paper by the method"
-        " paper.",
-        show_default=False,
-        rich_help_panel=METHOD,
+    "alpha": (
+        float | None, None, "--alpha", "A",
+        "Shape of the paper's falloff, 0 to 1: 0 is linear in the distance, 1 quadratic."
+        " Default: 0.5.",
     ),
-]
-Alpha = Annotated[
-    float | None,
-    typer.Option(
-        "--alpha",
-        metavar="A",
-        help="Of the falloff paper alone, 0 to 1: 0 linear in the distance, 1 quadratic. Left"
-        " out: 0.5.",
-        show_default=False,
-        rich_help_panel=METHOD,
+    "max_influences": (
+        str | None, None, "--max-influences", "K",
+        "Maximum number of joints per vertex: a number, or all. Game engines read 4. Default: 4;"
+        " all with --method paper, but 4 in glTF files.",
     ),
-]
-MaxInfluences = Annotated[
-    str | None,
-    typer.Option(
-        "--max-influences",
-        metavar="K",
-        help="Most joints a vertex may follow: a number, or all. 4 is what game engines read."
-        " Left out: 4; all by the method paper, but 4 in glTF files.",
-        show_default=False,
-        rich_help_panel=METHOD,
+    "threshold": (
+        float, 0.0, "--threshold", "W",
+        "Weights below this are dropped, and the rest is scaled to sum to 1.",
     ),
-]
-Threshold = Annotated[
-    float,
-    typer.Option(
-        "--threshold",
-        metavar="W",
-        help="Weights below this are dropped and the rest made to sum to 1 again.",
+}  # fmt: skip
+"""Type, default, flags, placeholder and help of each option of `Method`, by its field."""
+
+
+def _method_option(name: str) -> Any:
+    kind, default, flags, metavar, text = METHOD_OPTIONS[name]
+    option = typer.Option(
+        *flags.split(),
+        metavar=metavar or None,
+        help=text,
+        show_default=default is not None,
         rich_help_panel=METHOD,
-    ),
-]
+    )
+    return Annotated[kind, option]
+
+
+if TYPE_CHECKING:
+    Resolution = int
+    MethodChoice = str
+else:
+    Resolution, MethodChoice = _method_option("resolution"), _method_option("method")
+
+
+def with_method(*names: str) -> Callable[[Callable[..., None]], Callable[..., None]]:
+    """Replace a command's parameter `options` by options of the method; all when none is named."""
+    chosen = names or tuple(METHOD_OPTIONS)
+
+    def decorate(command: Callable[..., None]) -> Callable[..., None]:
+        @wraps(command)
+        def run(**values: Any) -> None:
+            command(options={name: values.pop(name) for name in chosen}, **values)
+
+        parameters: list[inspect.Parameter] = []
+        for parameter in inspect.signature(command, eval_str=True).parameters.values():
+            if parameter.name != "options":
+                parameters.append(parameter)
+                continue
+            for name in chosen:
+                kind, default = _method_option(name), METHOD_OPTIONS[name][1]
+                parameters.append(parameter.replace(name=name, default=default, annotation=kind))
+        run.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
+        run.__annotations__ = {}
+        return run
+
+    return decorate
+
+
 Deform = Annotated[
     list[str] | None,
     typer.Option(
         "--deform",
         metavar="JOINT",
-        help="A joint that may carry weight though the file, or the guess, says no. * stands for"
+        help="Joint that may carry weight although the file or the detection excludes it; * matches"
         " any letters. May be given several times.",
         rich_help_panel=JOINTS,
     ),
@@ -188,7 +174,7 @@ NoDeform = Annotated[
     typer.Option(
         "--no-deform",
         metavar="JOINT",
-        help="A joint that shall carry none, such as '*_IK'. May be given several times.",
+        help="Joint that carries no weight, such as '*_IK'. May be given several times.",
         rich_help_panel=JOINTS,
     ),
 ]
@@ -196,8 +182,8 @@ Fresh = Annotated[
     bool,
     typer.Option(
         "--fresh",
-        help="Forget the file's weights: guess from names and places which joints carry some."
-        " `cutcell joints` shows the guess.",
+        help="Ignore the file's weights and detect deforming joints from names and positions."
+        " `cutcell joints` lists the result.",
         rich_help_panel=JOINTS,
     ),
 ]
@@ -206,8 +192,8 @@ CorrectionsFile = Annotated[
     typer.Option(
         "--corrections",
         metavar="FILE",
-        help="What is corrected (.json): joints moved, without weight, locked or of another reach; "
-        "parts glued to joints; weights of single vertices.",
+        help="Corrections (.json): joints moved, excluded, locked or with another influence "
+        "radius; parts bound to joints; weights of single vertices.",
         rich_help_panel=TOUCH,
     ),
 ]
@@ -224,7 +210,7 @@ Symmetric = Annotated[
     bool,
     typer.Option(
         "--symmetric",
-        help="Give left and right the same weights, where the mesh is mirrored.",
+        help="Make left and right weights equal where the mesh is symmetric.",
         rich_help_panel=TOUCH,
     ),
 ]
@@ -233,22 +219,22 @@ Lock = Annotated[
     typer.Option(
         "--lock",
         metavar="JOINT",
-        help="A joint that keeps the file's own weights; the rest is filled in. May be given"
+        help="Joint that keeps its weights of the file; the others share the rest. May be given"
         " several times.",
         rich_help_panel=TOUCH,
     ),
 ]
 
 
-def chosen_method(name: str, **options: Any) -> Method:
-    """Return the method of that name with the given options, which may be texts."""
+def chosen_method(options: Mapping[str, Any]) -> Method:
+    """Return the method of that name with options from the command line, which may be texts."""
     from ..method import METHODS, method_of
     from ..rig.checks import check_choice
 
-    given = {key: value for key, value in options.items() if value is not None}
+    values = {key: value for key, value in options.items() if value is not None}
     for key in ("connectivity", "max_influences"):
-        if isinstance(text := given.get(key), str) and text.isdecimal():
-            given[key] = int(text)
-    if given.get("max_influences") == "all":
-        given["max_influences"] = None
-    return method_of(check_choice("method", name, METHODS), **given)
+        if isinstance(text := values.get(key), str) and text.isdecimal():
+            values[key] = int(text)
+    if values.get("max_influences") == "all":
+        values["max_influences"] = None
+    return method_of(check_choice("method", values.pop("method"), METHODS), **values)

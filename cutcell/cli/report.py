@@ -1,4 +1,4 @@
-"""The tables that the commands print, made of the same numbers as their JSON."""
+"""Tables of the commands, with the same numbers as their JSON."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ from pathlib import Path
 from typing import Any
 
 MAX_NAMES = 12
-"""Names listed in one row of a table; `--json` has them all."""
+"""Maximum number of names in one row; `--json` lists all."""
 
 
 def report_rows(document: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
-    """Say in words what a command has found, as pairs of a name and a text."""
+    """Return the rows of a table as pairs of a name and a text."""
     mesh, graph, skeleton = document["mesh"], document["graph"], document["skeleton"]
     yield (
         "mesh",
@@ -67,12 +67,12 @@ def _hidden(part: Mapping[str, Any]) -> str:
 
 
 def _named(items: Sequence[Mapping[str, Any]], notes: Sequence[str]) -> str:
-    shown = [
+    entries = [
         item["name"] + (f" ({note})" if note else "")
         for item, note in zip(items[:MAX_NAMES], notes, strict=False)
     ]
     more = [f"and {len(items) - MAX_NAMES} more"] if len(items) > MAX_NAMES else []
-    return f"{len(items):,}: " + ", ".join(shown + more)
+    return f"{len(items):,}: " + ", ".join(entries + more)
 
 
 def _fallback(fallback: Mapping[str, Any]) -> str:

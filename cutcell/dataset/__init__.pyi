@@ -7,8 +7,6 @@ from .audit.duplicates import Pair as Pair
 from .bind.binding import BindReport as BindReport
 from .bind.binding import bind_all as bind_all
 from .export import export as export
-from .generate.generate import KINDS as KINDS
-from .generate.generate import generate as generate
 from .read.archive import ArchivedAsset as ArchivedAsset
 from .read.archive import Split as Split
 from .read.archive import read_archive as read_archive

@@ -20,7 +20,7 @@ def damaged(path):
 def test_it_saves_cleaned_weights_and_says_what_was_taken_away(run, tmp_path):
     given, out = damaged(tmp_path / "worm.npz"), tmp_path / "clean.npz"
     words = run("clean", given, out, "-r", 24).stdout
-    for text in ("worm.npz", "taken away", "bound again", "tail"):
+    for text in ("worm.npz", "removed", "bound again", "tail"):
         assert text in words
     cleaned = cutcell.clean(cutcell.load(given), 24)
     np.testing.assert_allclose(cutcell.load(out).weights, cleaned.weights, atol=1e-6)

@@ -13,10 +13,10 @@ from cutcell.dataset.audit.chamfer import CELLS, CODE, block_of, close_joints, c
 from cutcell.dataset.audit.duplicates import Pair, clusters
 from cutcell.dataset.audit.likeness import Likeness, likeness, same_skeletons, traits_of
 from cutcell.dataset.audit.points import Normalised, normalised, sample_surface
-from cutcell.dataset.generate.generate import KINDS, generate
 from cutcell.dataset.read.store import read_table
 from cutcell.errors import MeshError, ParameterError
 from cutcell.rig.rig import Rig, Skeleton, TriangleMesh
+from cutcell_assets.generate import KINDS, generate
 
 ALIKE = Likeness("copy", True, 0.0, 0.0, 0.0, 1.0, 0.0)
 

@@ -18,11 +18,11 @@ from cutcell.dataset.bind.binding import bind_all, bind_apart
 from cutcell.dataset.bind.cluster import connected
 from cutcell.dataset.bind.runner import AssetLostError, Runner, stop_runners
 from cutcell.dataset.bind.work import bind_content, rignet_bones
-from cutcell.dataset.generate.generate import KINDS, generate
 from cutcell.dataset.read.formats import faces_of_edges
 from cutcell.dataset.read.sources import Content, find_sources
 from cutcell.dataset.read.store import Parameters, Store, read_entry
 from cutcell.errors import CutcellError, FileError, ParameterError
+from cutcell_assets.generate import KINDS, generate
 
 QUICK = Parameters(cutcell.PAPER.with_options(resolution=12))
 

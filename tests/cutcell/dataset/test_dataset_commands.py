@@ -8,8 +8,8 @@ from typer.testing import CliRunner
 
 import cutcell
 from cutcell.cli.app import app
-from cutcell.dataset.generate.generate import generate
 from cutcell.dataset.read.archive import ArchivedAsset, asset_bytes
+from cutcell_assets.generate import generate
 
 pytestmark = [
     pytest.mark.filterwarnings("ignore::ResourceWarning"),

@@ -10,10 +10,10 @@ import pytest
 import cutcell
 from cutcell.dataset.bind.binding import bind_all
 from cutcell.dataset.export import export
-from cutcell.dataset.generate.generate import KINDS, generate
 from cutcell.dataset.read.store import Parameters, Store
 from cutcell.dataset.torch_data import RigDataset, RigSamples, collate_samples
 from cutcell.errors import FileError, MissingLibraryError, ParameterError
+from cutcell_assets.generate import KINDS, generate
 
 pytestmark = [
     pytest.mark.filterwarnings("ignore::ResourceWarning"),

@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...errors import MissingLibraryError
-from ...geometry.segments import closest_on_segment
-from ...rig.rig import Rig, Skeleton, TriangleMesh
+from cutcell.errors import MissingLibraryError
+from cutcell.geometry.segments import closest_on_segment
+from cutcell.rig.rig import Rig, Skeleton, TriangleMesh
 
 INFLUENCES = 4
 MARGIN = 3

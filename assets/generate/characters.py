@@ -9,9 +9,10 @@ from typing import Literal, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from ...errors import MissingLibraryError
-from ...rig.checks import check_choice, check_flag, check_integer
-from ...rig.rig import Rig, TriangleMesh
+from cutcell.errors import MissingLibraryError
+from cutcell.rig.checks import check_choice, check_flag, check_integer
+from cutcell.rig.rig import Rig, TriangleMesh
+
 from .shapes import Limbs, boxed, melted
 
 Kind = Literal["body", "hand", "beast", "octopus", "robot", "person"]
@@ -54,7 +55,7 @@ def generate(kind: Kind, seed: int, *, detail: int = 48, clean: bool = False) ->
 
     Examples
     --------
-    >>> rig = cutcell.dataset.generate("beast", 7)  # doctest: +SKIP
+    >>> rig = generate("beast", 7)  # doctest: +SKIP
     """
     kind = check_choice("kind", kind, KINDS)
     seed = check_integer("seed", seed, 0, 2**63 - 1)

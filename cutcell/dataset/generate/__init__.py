@@ -1,1 +1,0 @@
-"""Generate random rigged characters."""
