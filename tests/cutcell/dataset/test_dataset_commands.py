@@ -12,6 +12,7 @@ from cutcell.dataset.generate.generate import generate
 from cutcell.dataset.read.archive import ArchivedAsset, asset_bytes
 
 pytestmark = [
+    pytest.mark.slow,
     pytest.mark.filterwarnings("ignore::ResourceWarning"),
     pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning"),
     pytest.mark.filterwarnings("ignore::DeprecationWarning"),

@@ -16,6 +16,7 @@ from cutcell.dataset.torch_data import RigDataset, RigSamples, collate_samples
 from cutcell.errors import FileError, MissingLibraryError, ParameterError
 
 pytestmark = [
+    pytest.mark.slow,
     pytest.mark.filterwarnings("ignore::ResourceWarning"),
     pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning"),
     pytest.mark.filterwarnings("ignore::DeprecationWarning"),
