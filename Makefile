@@ -13,8 +13,22 @@ WORKERS := --numprocesses logical --maxprocesses 4
 # As `cutcell` has it: idle threads of numpy's would take the cores from what is tested.
 export OPENBLAS_NUM_THREADS := 1
 
+LINT := $(PYTHON) -m ruff check . && $(PYTHON) -m ruff format --check . && $(PYTHON) -m mypy \
+	&& $(VENV)/bin/oxlint --quiet $(SCRIPTS)
+
+# Runs pytest with some options while style and types are checked, and prints what the checks say
+# when the tests are done. Fails if either fails.
+define check_and_test
+@log=$$(mktemp); trap 'rm -f "$$log"' EXIT; \
+( $(LINT) ) > "$$log" 2>&1 & checks=$$!; \
+$(PYTHON) -m pytest $(WORKERS) $(1) $(ARGS); tests=$$?; \
+wait $$checks; lint=$$?; cat "$$log"; \
+if [ $$lint -ne 0 ]; then echo "style or types are wrong: see above, and make lint"; fi; \
+exit $$((tests ? tests : lint))
+endef
+
 .DEFAULT_GOAL := help
-.PHONY: help app test test-networks lint format assets lock clean
+.PHONY: help app test quick test-networks lint format assets lock clean
 
 help: ## Show this list
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## /  make \1|/' \
@@ -24,11 +38,10 @@ app: $(VENV)/.app ## Open the page; pass options on by ARGS='--no-show --port 50
 	@$(PYTHON) -m cutcell app $(ARGS)
 
 test: $(VENV)/.tools ## Check style and types, run all tests; ARGS='tests/cutcell -x' for some
-	@$(PYTHON) -m ruff check .
-	@$(PYTHON) -m ruff format --check .
-	@$(PYTHON) -m mypy
-	@$(VENV)/bin/oxlint --quiet $(SCRIPTS)
-	@$(PYTHON) -m pytest $(WORKERS) $(ARGS)
+	$(check_and_test)
+
+quick: $(VENV)/.tools ## Check style and types, run all tests that are not marked slow
+	$(call check_and_test,-m "not slow" --durations 10 --durations-min 2)
 
 # A tiny head learns first, as people would let it; then all that needs torch is tested.
 test-networks: $(VENV)/.networks $(VENV)/.tools ## Install torch, train a tiny network, test networks
@@ -38,10 +51,7 @@ test-networks: $(VENV)/.networks $(VENV)/.tools ## Install torch, train a tiny n
 	@$(PYTHON) -m pytest $(ARGS) tests_networks
 
 lint: $(VENV)/.test ## Check style and types only
-	@$(PYTHON) -m ruff check .
-	@$(PYTHON) -m ruff format --check .
-	@$(PYTHON) -m mypy
-	@$(VENV)/bin/oxlint --quiet $(SCRIPTS)
+	@$(LINT)
 
 format: $(VENV)/.test ## Format the code and mend what ruff can mend
 	@$(PYTHON) -m ruff format .

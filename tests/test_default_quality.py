@@ -6,6 +6,8 @@ import cutcell
 from cutcell.metrics import deformation_error, weight_l1
 from cutcell_assets import DEMOS
 
+pytestmark = pytest.mark.slow
+
 # L1 and mean deformation in cm2 against each demo's own weights, rounded up by about a twentieth.
 # Who improves on them lowers them; who raises one says why.
 AT_MOST = {

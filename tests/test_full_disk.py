@@ -8,11 +8,14 @@ from pathlib import Path
 
 import pytest
 
+pytestmark = pytest.mark.slow
+
 ROOT = Path(__file__).resolve().parents[1]
 OUTPUTS = [
     "rig.glb", "rig.gltf", "rig.txt", "rig.npz", "numbers.csv", "numbers.npz",
-    "plot.png", "plot.svg", "plot.pdf", "scene.png", "scene.jpg", "turn.mp4", "turn.gif",
+    "plot.svg", "scene.png", "turn.mp4", "turn.gif",
 ]  # fmt: skip
+"""One of each writer."""
 
 WRITES = """
 import json, resource, sys

@@ -42,18 +42,26 @@ def public(name: str):
     pytest.fail(f"{name} is not public")
 
 
-@pytest.mark.parametrize("row", rows(), ids=lambda row: f"{row[0]} {row[2]}")
-def test_each_function_is_found_and_near_a_public_name(row):
-    _, file, function, callers = row
-    found = imported(file, function)
-    assert found.__doc__
-    assert len(callers) <= MAX_CALLS
-    path = [*callers, function]
-    here = public(path[0])
+def test_each_function_is_there_and_near_a_public_name():
+    faults = {}
+    for what, file, function, callers in rows():
+        if not imported(file, function).__doc__:
+            faults[what, function] = "no docstring"
+        elif len(callers) > MAX_CALLS:
+            faults[what, function] = callers
+        elif broken := first_broken_call([*callers, function], imported(file, function)):
+            faults[what, function] = broken
+    assert faults == {}
+
+
+def first_broken_call(path: list[str], function) -> str:
+    """Return what is wrong on the way from a public name to a function, empty if nothing is."""
+    caller = public(path[0])
     for name in path[1:]:
-        assert re.search(rf"\b{name}\b", inspect.getsource(here)), f"{here} does not call {name}"
-        here = here.__globals__[name]
-    assert here is found
+        if not re.search(rf"\b{name}\b", inspect.getsource(caller)):
+            return f"{caller} does not call {name}"
+        caller = caller.__globals__[name]
+    return "" if caller is function else f"{caller} is another function"
 
 
 def test_the_table_names_what_the_paper_has():

@@ -14,6 +14,8 @@ import pytest
 
 from tests.signals import reset_signals
 
+pytestmark = pytest.mark.slow
+
 ROOT = Path(__file__).resolve().parent.parent
 SOURCES = ("app", "assets", "cutcell", "viewers")
 FILES = ("LICENSE", "NOTICE", "README.md", "pyproject.toml", "setup.py")

@@ -5,6 +5,8 @@ from axe_playwright_python.sync_playwright import Axe
 
 from cutcell_app.panels import PANELS
 
+pytestmark = pytest.mark.slow
+
 SERIOUS = ("serious", "critical")
 
 

@@ -2,10 +2,13 @@
 
 import re
 
+import pytest
 from playwright.sync_api import expect
 
 from cutcell_app.state.tour import TOUR
 from tests.app.browser import LOAD_MS, Visit
+
+pytestmark = pytest.mark.slow
 
 
 def card(visit):

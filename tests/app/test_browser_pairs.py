@@ -2,12 +2,15 @@
 
 import re
 
+import pytest
 from playwright.sync_api import expect
 
 from cutcell.dataset import load_audit
 from tests.app.audits import saved_audit
 from tests.app.browser import Visit, changed, served
 from tests.app.test_browser_accessibility import lasting
+
+pytestmark = pytest.mark.slow
 
 
 def test_pairs_are_stepped_through_and_overruled(browser, tmp_path):

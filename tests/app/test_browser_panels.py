@@ -3,14 +3,17 @@
 import re
 
 import numpy as np
+import pytest
 from playwright.sync_api import expect
 
 import cutcell
-from tests.app.browser import changed
+from tests.app.browser import RESOLUTION, changed
+
+pytestmark = pytest.mark.slow
 
 
 def test_a_vertex_is_looked_at_closely(visit, robot):
-    binding = cutcell.bind(robot)
+    binding = cutcell.bind(robot, RESOLUTION)
     vertex = visit.click_vertex()
     expect(visit.card).to_contain_text(f"Vertex {vertex:,}")
     strongest = int(binding.weights[vertex].argmax())
@@ -36,7 +39,7 @@ def test_a_vertex_is_looked_at_closely(visit, robot):
 
 
 def test_a_vertex_that_no_bone_reaches_says_why(visit, robot):
-    lost = np.flatnonzero(cutcell.bind(robot).distances.fallback)
+    lost = np.flatnonzero(cutcell.bind(robot, RESOLUTION).distances.fallback)
     visit.click_vertex(f"{lost.tolist()}.includes(vertex)")
     expect(visit.card).to_contain_text("no path through the body leads from a bone")
     expect(visit.card).to_contain_text(re.compile(r"Part \d+ of \d+"))
@@ -46,7 +49,7 @@ def test_a_vertex_that_no_bone_reaches_says_why(visit, robot):
 
 def test_the_graphs_layers_are_counted_and_coloured(visit, robot):
     visit.panel("Graph")
-    graph = cutcell.bind(robot).graph
+    graph = cutcell.bind(robot, RESOLUTION).graph
     for kind in range(3):
         visit.expect_text(f"{(graph.edge_kind == kind).sum():,}")
     kinds = visit.look()
@@ -162,21 +165,21 @@ def test_the_wave_runs_and_halts(visit):
 
 def test_weights_in_many_ways(visit):
     visit.panel("Weights")
-    mixed = visit.look()
+    mixed = after = visit.look()
     for option, legend in (
         ("The strongest bone", None),
         ("The chosen bone", "Weight of"),
         ("Influences per vertex", "Joints that a vertex follows"),
     ):
-        before = visit.look()
+        before = after
         visit.choose("Colours show", option)
         if legend:
             visit.expect_text(legend)
-        assert changed(before, visit.look()) > 0.001, option
-    one = visit.look()
+        after = visit.look()
+        assert changed(before, after) > 0.001, option
     visit.slide("Influences per vertex, at most", "Home")
     visit.expect_text("1.0 influences per vertex")
-    assert changed(one, visit.look()) > 0.0005
+    assert changed(after, visit.look()) > 0.0005
     for _ in range(3):
         visit.slide("Influences per vertex, at most", "ArrowRight")
         visit.settle()

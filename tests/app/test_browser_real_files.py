@@ -16,6 +16,8 @@ from cutcell_viewers.pose_scene import joint_turns, turn
 from tests.app.browser import changed
 from tests.conftest import SHARED_RIGS
 
+pytestmark = pytest.mark.slow
+
 RESOLUTION = 24
 FILES = {
     "a clothed human": ("makehuman_clothed_mixamo", "biped_cape"),

@@ -5,6 +5,8 @@ from playwright.sync_api import expect
 
 from tests.app.browser import LOAD_MS
 
+pytestmark = pytest.mark.slow
+
 WIDE = {"width": 1440, "height": 900}
 
 # How many points of the body at rest are seen behind an element of the page.

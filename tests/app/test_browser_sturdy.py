@@ -2,11 +2,14 @@
 
 import re
 
+import pytest
 from playwright.sync_api import expect
 
 from cutcell_app.files.receive import MAX_UPLOAD
 from cutcell_assets import demo_path
 from tests.app.browser import Visit, changed
+
+pytestmark = pytest.mark.slow
 
 SAME = 0.01
 """Part of the pixels: the address rounds where the camera is, and edges may fall on other ones."""
@@ -39,10 +42,10 @@ def test_a_link_shows_a_colleague_the_same_and_a_refresh_brings_it_back(browser,
     visit.wait_until_bound()
     visit.dismiss()
     assert changed(seen, visit.look()) < SAME
-    visit.page.mouse.click(700, 690)
+    visit.leave_field()
     visit.button("Cut X").click()
     address(visit, "cut_axis=x")
-    visit.page.mouse.click(700, 690)
+    visit.leave_field()
     visit.page.keyboard.press("Control+z")
     address(visit, "cut_axis=z")
     visit.button("Redo").click()
@@ -56,7 +59,7 @@ def test_a_link_shows_a_colleague_the_same_and_a_refresh_brings_it_back(browser,
 def test_keys_change_the_bone_play_and_list_themselves(visit):
     bone = visit.bone
     before = bone.inner_text()
-    visit.page.mouse.click(700, 690)
+    visit.leave_field()
     visit.page.keyboard.press("ArrowRight")
     address(visit, "bone=")
     expect(bone).not_to_have_text(before)

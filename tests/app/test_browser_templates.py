@@ -12,6 +12,8 @@ from tests.app.browser import changed
 from tests.cutcell.cli.files import write_obj
 from tests.viewers.textures import COLORS, png, squares
 
+pytestmark = pytest.mark.slow
+
 
 def test_from_a_statue_to_a_character(visit, tmp_path):
     own = cutcell.load(demo_path("biped"))

@@ -16,6 +16,8 @@ from cutcell_app.server import handlers
 from cutcell_app.widgets.modules import ADDRESS, FOLDER
 from tests.app.serving import serving
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module")
 def here():

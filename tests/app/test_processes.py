@@ -21,6 +21,8 @@ from cutcell_app.work.processes import in_process
 from cutcell_assets import demo_path
 from tests.conftest import ROOT
 
+pytestmark = pytest.mark.slow
+
 
 class OddError(Exception):
     """Cannot be copied: it is made of two things, and tells one."""

@@ -6,6 +6,8 @@ import pytest
 
 from cutcell_app.serve import allowed_hosts, free_port
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture
 def taken():

@@ -21,6 +21,8 @@ from benchmarks.rigs import ROOT
 from tests.bars import bar
 from tests.benchmarks.markdown import read_tables
 
+pytestmark = pytest.mark.slow
+
 DEMO = str(ROOT / "assets" / "rabbit.glb")
 
 

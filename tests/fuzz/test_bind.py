@@ -1,9 +1,13 @@
 """A short run of the fuzzer of `bind`; `python -m tests.fuzz.bind --count 2000` is the long one."""
 
+import pytest
+
 from tests.fuzz.bind import SEEDS
 from tests.fuzz.harness import try_cases
 
-COUNT = 20
+pytestmark = pytest.mark.slow
+
+COUNT = 8
 
 
 def test_a_few_cases_pass():

@@ -10,6 +10,8 @@ import pytest
 
 from tests.fuzz import harness
 
+pytestmark = pytest.mark.slow
+
 SELF = "tests.fuzz.test_harness"
 
 

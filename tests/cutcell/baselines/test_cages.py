@@ -20,6 +20,8 @@ from cutcell.isolated.run import WorkFailedError
 from tests import meshes
 from tests.bars import bar, grid_box
 
+pytestmark = pytest.mark.slow
+
 INSIDE = np.random.default_rng(0).uniform(0.15, 0.85, (60, 3))
 
 

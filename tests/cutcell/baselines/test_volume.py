@@ -18,6 +18,8 @@ from cutcell.isolated import run as apart
 from tests import meshes
 from tests.bars import bar, check_weights, grid_box
 
+pytestmark = pytest.mark.slow
+
 HANDLES = np.array([[0.1, 0.1, 0.1], [0.3, 0.1, 0.1], [0.7, 0.1, 0.1], [0.9, 0.1, 0.1]])
 COLUMN = np.array([0, 0, 1, 1])
 

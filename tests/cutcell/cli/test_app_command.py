@@ -6,6 +6,8 @@ import pytest
 
 from tests.cutcell.cli.files import refused
 
+pytestmark = pytest.mark.slow
+
 PAGE = "cutcell_app.command_line._page"
 
 

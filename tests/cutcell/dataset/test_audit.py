@@ -168,6 +168,7 @@ def found(tmp_path_factory):
     return audit([folder], points=2048, workers=1), folder
 
 
+@pytest.mark.slow
 def test_planted_duplicates_are_found_each_at_its_tier(found):
     result, _ = found
     of_original = {}
@@ -185,6 +186,7 @@ def test_planted_duplicates_are_found_each_at_its_tier(found):
     assert list(result.failed) == ["broken"]
 
 
+@pytest.mark.slow
 def test_one_of_each_cluster_is_kept(found, tmp_path):
     result, _ = found
     assert len(result.keep) < len(result.names)
@@ -197,6 +199,7 @@ def test_one_of_each_cluster_is_kept(found, tmp_path):
     assert kept == result.keep
 
 
+@pytest.mark.slow
 def test_two_sets_give_the_pairs_across_them(found):
     result, folder = found
     crossed = audit([folder / "original.npz"], [folder], points=2048, workers=1)

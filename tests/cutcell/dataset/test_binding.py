@@ -28,6 +28,7 @@ QUICK = Parameters(cutcell.PAPER.with_options(resolution=12))
 
 # What Dask leaves to the garbage collector is not ours.
 pytestmark = [
+    pytest.mark.slow,
     pytest.mark.filterwarnings("ignore::ResourceWarning"),
     pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning"),
     pytest.mark.filterwarnings("ignore::DeprecationWarning"),

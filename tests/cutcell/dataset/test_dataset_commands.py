@@ -12,6 +12,7 @@ from cutcell.dataset.read.archive import ArchivedAsset, asset_bytes
 from cutcell_assets.generate import generate
 
 pytestmark = [
+    pytest.mark.slow,
     pytest.mark.filterwarnings("ignore::ResourceWarning"),
     pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning"),
     pytest.mark.filterwarnings("ignore::DeprecationWarning"),

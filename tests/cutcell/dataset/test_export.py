@@ -16,6 +16,7 @@ from cutcell.errors import FileError, MissingLibraryError, ParameterError
 from cutcell_assets.generate import KINDS, generate
 
 pytestmark = [
+    pytest.mark.slow,
     pytest.mark.filterwarnings("ignore::ResourceWarning"),
     pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning"),
     pytest.mark.filterwarnings("ignore::DeprecationWarning"),

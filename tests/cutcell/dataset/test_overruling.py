@@ -18,6 +18,8 @@ from cutcell.dataset.audit.duplicates import DIFFERENT, DUPLICATE
 from cutcell.errors import FileError, ParameterError
 from tests.cutcell.dataset.test_audit import planted
 
+pytestmark = pytest.mark.slow
+
 NAMES = ("original", "units", "order", "pose")
 
 

@@ -59,6 +59,7 @@ SCRIPT = textwrap.dedent(
 )
 
 
+@pytest.mark.slow
 def test_nothing_is_compiled_after_the_first_time():
     command = [sys.executable, "-c", SCRIPT]
     done = subprocess.run(command, capture_output=True, text=True, cwd=ROOT, timeout=1200)
@@ -67,13 +68,18 @@ def test_nothing_is_compiled_after_the_first_time():
 
 @pytest.fixture
 def another_machine(tmp_path, monkeypatch):
-    """Begin with nothing compiled on disk, and as if nothing were compiled in this process."""
+    """Begin with nothing compiled on disk, and as if nothing were compiled in this process.
+
+    It has all functions in memory, whichever tests it ran before: to compile them takes minutes.
+    """
+    warm_up()
     monkeypatch.setattr(compile_cache, "folders", lambda: (tmp_path / "kernels-new",))
     monkeypatch.setattr(compilation, "_is_warm", False)
     monkeypatch.setattr(compilation, "_beside", lambda function: nullcontext())
     return tmp_path
 
 
+@pytest.mark.slow
 def test_all_is_compiled_once_it_was_warmed_up(another_machine, monkeypatch):
     assert not is_compiled()
     warm_up()
@@ -82,6 +88,7 @@ def test_all_is_compiled_once_it_was_warmed_up(another_machine, monkeypatch):
     assert is_compiled()
 
 
+@pytest.mark.slow
 def test_a_compile_is_announced_once(another_machine):
     told = []
     for _ in range(2):
@@ -91,6 +98,7 @@ def test_a_compile_is_announced_once(another_machine):
     assert stages == "compile graph distances weights | graph distances weights | "
 
 
+@pytest.mark.slow
 def test_where_nothing_can_be_kept_one_sentence_says_so(another_machine, monkeypatch, caplog):
     (another_machine / "kernels-new").write_text("not a folder")
     monkeypatch.setattr(compile_cache, "refusals", [])
