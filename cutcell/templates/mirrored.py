@@ -15,7 +15,7 @@ Joints = dict[str, NDArray[np.float64]]
 def mirrored(joints: Joints, size: float) -> Joints:
     """Return joints in a frame whose x is 0 in the middle, those of left and right alike.
 
-    Where the two sides stand in different poses, they are left as they are.
+    Joints are returned unchanged if the two sides have different poses.
     """
     flip = np.array([-1.0, 1.0, 1.0])
     pairs = [(name, f"{name[:-2]}.R") for name in joints if name.endswith(".L")]
