@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import reduce
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -134,17 +135,13 @@ def _stretched(subject: Subject, faults: list[_PoseFaults]) -> Iterator[Finding]
     places = np.zeros(len(subject.points), bool)
     places[np.concatenate([fault.stretched for fault in torn])] = True
     vertices = subject.vertices_at(places)
-    worst = torn[0]
     yield Finding(
         "stretched-edges",
-        "warning" if worst.longest > WARNING_FACTOR * MIN_STRETCH else "note",
-        f"Edges at {count(len(vertices), 'vertex')} become {STRETCH:g} times as long or more when "
-        f"a joint turns by {DEGREES:g}°.",
-        "Blend the weights there, or bind again.",
+        message=f"Edges at {count(len(vertices), 'vertex')} become {STRETCH:g} times as long or "
+        f"more when a joint turns by {DEGREES:g}°.",
+        advice="Blend the weights there, or bind again.",
         vertices=vertices,
-        joints=_joints(torn),
-        details=_lines(subject, torn, lambda s: f"by {share(s.longest, 1)} of the longest side"),
-        pose=worst.pose,
+        **_evidence(subject, torn, "longest", MIN_STRETCH, "by {} of the longest side"),
     )
 
 
@@ -153,19 +150,15 @@ def _flipped(subject: Subject, faults: list[_PoseFaults]) -> Iterator[Finding]:
     over.sort(key=lambda fault: -fault.flipped_area)
     if not over:
         return
-    worst = over[0]
     faces = subject.whole[np.unique(np.concatenate([fault.flipped for fault in over]))]
     yield Finding(
         "flipped-faces",
-        "warning" if worst.flipped_area > WARNING_FACTOR * FLIPPED else "note",
-        f"Up to {share(worst.flipped_area, 1)} of the surface is turned over when a joint turns by "
-        f"{DEGREES:g}°.",
-        "Blend the weights there, or bind again.",
+        message=f"Up to {share(over[0].flipped_area, 1)} of the surface is turned over when a "
+        f"joint turns by {DEGREES:g}°.",
+        advice="Blend the weights there, or bind again.",
         vertices=np.unique(subject.rig.mesh.faces[faces]).astype(np.intp),
         faces=faces,
-        joints=_joints(over),
-        details=_lines(subject, over, lambda s: f"{share(s.flipped_area, 1)} of the surface"),
-        pose=worst.pose,
+        **_evidence(subject, over, "flipped_area", FLIPPED, "{} of the surface"),
     )
 
 
@@ -174,32 +167,30 @@ def _lost(subject: Subject, faults: list[_PoseFaults]) -> Iterator[Finding]:
     lost.sort(key=lambda fault: -fault.lost)
     if not lost:
         return
-    worst = lost[0]
-    joints = _joints(lost)
+    evidence = _evidence(subject, lost, "lost", LOST, "{} of the volume")
     assert subject.rig.weights is not None
     yield Finding(
         "lost-volume",
-        "warning" if worst.lost > WARNING_FACTOR * LOST else "note",
-        f"The body loses up to {share(worst.lost, 1)} of its volume when a joint turns by "
-        f"{DEGREES:g}°.",
-        "Blend the weights over a longer stretch, or bind again.",
-        vertices=np.flatnonzero((subject.rig.weights[:, joints] > MOVES).any(axis=1)),
-        joints=joints,
-        details=_lines(subject, lost, lambda s: f"{share(s.lost, 1)} of the volume"),
-        pose=worst.pose,
+        message=f"The body loses up to {share(lost[0].lost, 1)} of its volume when a joint turns "
+        f"by {DEGREES:g}°.",
+        advice="Blend the weights over a longer stretch, or bind again.",
+        vertices=np.flatnonzero((subject.rig.weights[:, evidence["joints"]] > MOVES).any(axis=1)),
+        **evidence,
     )
 
 
-def _joints(faults: list[_PoseFaults]) -> NDArray[np.intp]:
-    return np.unique([fault.pose.joint for fault in faults])
-
-
-def _lines(
-    subject: Subject, faults: list[_PoseFaults], describe: Callable[[_PoseFaults], str]
-) -> tuple[str, ...]:
-    """Return a line for each joint, of the first pose: the worst."""
+def _evidence(
+    subject: Subject, faults: list[_PoseFaults], size: str, bound: float, text: str
+) -> dict[str, Any]:
+    """Return severity, joints, worst pose, and a line for each joint of its worst pose."""
     best: dict[int, str] = {}
     for fault in faults:
         name = shown_name(subject.rig.skeleton.names[fault.pose.joint])
-        best.setdefault(fault.pose.joint, f"{name}: {describe(fault)}, about {fault.pose.axis}")
-    return tuple(best.values())[:MAX_LINES]
+        line = f"{name}: {text.format(share(getattr(fault, size), 1))}, about {fault.pose.axis}"
+        best.setdefault(fault.pose.joint, line)
+    return {
+        "severity": "warning" if getattr(faults[0], size) > WARNING_FACTOR * bound else "note",
+        "joints": np.unique([fault.pose.joint for fault in faults]),
+        "details": tuple(best.values())[:MAX_LINES],
+        "pose": faults[0].pose,
+    }

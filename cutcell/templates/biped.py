@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from .frame import Joints, mirrored
 from .interior import Interior, along, cut
-from .mirrored import Joints, mirrored
 
 PARENTS = {
     "hips": "", "spine": "hips", "chest": "spine", "neck": "chest", "head": "neck",

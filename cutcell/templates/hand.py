@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import SkeletonError
+from .frame import Joints
 from .interior import Interior, along, cut
-from .mirrored import Joints
 
 NAMES = {
     2: ("index", "pinky"),
