@@ -18,7 +18,7 @@ from .weight_error import checked_pair
 AXES = ("x", "y", "z")
 Turned = Literal["deform", "all"]
 TURNED: tuple[Turned, ...] = get_args(Turned)
-"""Which joints are turned, by a word."""
+"""Named choices of the joints to turn."""
 CM2 = 1e4
 """Square centimetres in a square metre: the longest side of a mesh counts as 1 m."""
 BLOCK_NUMBERS = 1 << 20

@@ -1,4 +1,4 @@
-"""Which joints an error comes from."""
+"""Errors by joint."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which way a body stands: left, up and front, from its shape."""
+"""The frame of a body: its left, up and front, and joints mirrored across it."""
 
 from __future__ import annotations
 
@@ -7,10 +7,9 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 ALIKE = 0.06
-"""Of the body's longest side: left and right joints that differ by less are made alike."""
-
+"""Of the body's longest side: left and right joints that differ by less are made symmetric."""
 Joints = dict[str, NDArray[np.float64]]
-"""Where each joint is, by its name, in the body's frame."""
+"""Position of each joint by its name, in the body's frame."""
 SAMPLES = 4000
 """Vertices that are compared with their mirror images."""
 CLEARLY = 0.8

@@ -23,20 +23,9 @@ SHORTEST = 1e-9
 
 
 class Interior:
-    """The nodes of a cut-cell graph in a frame of the body's own: x left, y up, z to the front.
+    """The connected nodes of a graph in the body's frame: x left, y up, z to the front.
 
-    Parameters
-    ----------
-    graph : CutCellGraph
-    axes : array, shape (3, 3)
-        Rows are the frame's axes in the unit cube.
-    origin : array, shape (3,)
-        The frame's origin in the unit cube.
-
-    Attributes
-    ----------
-    points : array, shape (k, 3)
-        The nodes that have edges, in the frame.
+    The frame's axes, rows of (3, 3), and its origin are in the unit cube.
     """
 
     def __init__(
