@@ -162,7 +162,7 @@ def _remaining(
     at_welded = np.zeros((count, weights.shape[1]))
     np.maximum.at(at_welded, welded, weights)
     least = np.maximum(through.min(axis=1, keepdims=True), MIN_CELLS / subject.resolution)
-    # Without a path, or a path that begins in the body, distances are no evidence.
+    # Without a path, or with sources outside the body, distances are no evidence.
     is_near = (through <= NEAR * least) | ~np.isfinite(through)
     is_near[:, ~measurable(subject, distances)] = True
     is_near[distances.fallback != 0] = True

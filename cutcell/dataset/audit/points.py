@@ -45,7 +45,7 @@ def mesh_normals(
     vertices: ArrayLike, faces: ArrayLike
 ) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
     """Return unit normals of the faces (m, 3) and of the vertices (n, 3); zero where undefined."""
-    points, corners = np.asarray(vertices, np.float64), np.asarray(faces)
+    points, corners = np.ascontiguousarray(vertices, np.float64), np.array(faces, np.int32)
     by_vertex = vertex_normals(points, corners)
     return unit_normals(points[corners]).astype(np.float32), by_vertex.astype(np.float32)
 
