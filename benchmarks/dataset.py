@@ -32,7 +32,7 @@ import cutcell
 from cutcell.dataset.audit.auditing import THRESHOLD, compare, readings
 from cutcell.dataset.audit.auditing import audit as audit_of
 from cutcell.dataset.audit.chamfer import Block
-from cutcell.dataset.audit.likeness import traits_of
+from cutcell.dataset.audit.likeness import features_of
 from cutcell.dataset.audit.points import Normalised, normalised
 from cutcell.dataset.bind.cluster import connected
 from cutcell.dataset.read.sources import read_source
@@ -397,7 +397,7 @@ def growth(count: int, folder: Path) -> list[Table]:
             first = k // 2 if again else k
             rig = stretched(generate(KINDS_HERE[first % 4], first // 4, detail=12), first)
             begin = time.process_time()
-            characters.append((normalised(rig, 2048, seed=k % 7), traits_of(rig)))
+            characters.append((normalised(rig, 2048, seed=k % 7), features_of(rig)))
             spent += time.process_time() - begin
         begin = time.process_time()
         ready = readings([], characters)

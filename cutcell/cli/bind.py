@@ -100,7 +100,7 @@ def bind(
     from ..io import check_output, load, save, saving_notes
     from ..io.files import naming
     from ..rig.deform_joints import choose_deform
-    from ..templates.names import check_template
+    from ..templates.fit import check_template
     from . import summary
 
     how = chosen_method(options)

@@ -142,7 +142,7 @@ def bind(
     that crashes, hangs or needs too much memory does not affect the others. The report is
     OUT/report.html, the list of all assets OUT/manifest.parquet.
     """
-    from ..dataset.audit.page import bind_counts, write_bind_report
+    from ..dataset.audit.report import bind_counts, write_bind_report
     from ..dataset.bind.binding import bind_all
     from ..dataset.read.store import Parameters
 
@@ -158,7 +158,7 @@ def bind(
             workers=workers,
             processes=processes,
             time_limit=time_limit,
-            tell=step,
+            report=step,
         )
     write_bind_report(report, out / "report.html")
     if json:

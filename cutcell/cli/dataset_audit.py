@@ -69,8 +69,8 @@ def audit(
     FOLDER shows the pairs side by side for review; verdicts are kept when FOLDER is audited again.
     """
     from ..dataset.audit.audit_files import read_verdicts, save_audit
-    from ..dataset.audit.audit_page import write_audit_report
     from ..dataset.audit.auditing import audit as compare
+    from ..dataset.audit.report import write_audit_report
 
     verdicts = read_verdicts(out)
     inputs = [first], [] if second is None else [second]
@@ -84,7 +84,7 @@ def audit(
             poses=poses,
             scheduler=scheduler,
             workers=workers,
-            tell=step,
+            report=step,
         )
     result = replace(result, verdicts=verdicts)
     save_audit(result, out, *inputs)

@@ -1,6 +1,6 @@
-"""Data sets for training on rigs: reading, binding, auditing, exporting and generating them.
+"""Data sets for training on rigs: reading, binding, auditing and exporting.
 
-Its libraries come with ``pip install 'cutcell[dataset]'``. ``docs/dataset.md`` tells the whole way.
+Its libraries come with ``pip install 'cutcell[dataset]'``. ``docs/dataset.md`` describes all steps.
 """
 
 import lazy_loader

@@ -1,8 +1,9 @@
-"""A store as the training code of RigNet, UniRig and Puppeteer reads it."""
+"""Export of a store in the formats of the training code of RigNet, UniRig and Puppeteer."""
 
 from __future__ import annotations
 
 import io
+from collections import Counter
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -26,15 +27,15 @@ from .torch_data import at_points
 
 FORMATS = ("rignet", "unirig", "puppeteer")
 UNREACHED = 8.0
-"""RigNet's own for vertices that no path reaches: so much more than the straight distance."""
+"""RigNet's offset to the straight distance for vertices that no path reaches."""
 POINTS = 8192
 """Puppeteer's points a surface."""
 APART = 999.0
-"""Graph distance of joints of two trees: Puppeteer's own, with which it pads."""
+"""Puppeteer's graph distance between joints of two trees, which is also its padding."""
 
 
 def export(
-    store: Path, out: Path, kind: str, tell: Callable[[str], None] = lambda name: None
+    store: Path, out: Path, kind: str, report: Callable[[str], None] = lambda name: None
 ) -> int:
     """Write a store in the format of a project's training code.
 
@@ -46,25 +47,25 @@ def export(
         A folder; for Puppeteer an HDF5 file.
     kind : {"rignet", "unirig", "puppeteer"}
         See `docs/dataset.md` for the files and arrays of each.
-    tell : callable
-        Called with the name of each asset.
+    report : callable
+        Receives the name of each asset.
 
     Returns
     -------
     int
-        How many assets were written.
+        Number of written assets.
 
     Raises
     ------
     ParameterError
         There is no such format.
     FileError
-        It is no store, or lacks what the format needs; or a file cannot be written.
+        The folder is no store or lacks data for the format, or a file cannot be written.
     MissingLibraryError
         h5py is not installed, for Puppeteer.
     """
     check_choice("kind", kind, FORMATS)
-    entries = _told(Store(store), tell)
+    entries = _named(Store(store), report)
     if kind == "puppeteer":
         return _puppeteer(entries, out)
     count = 0
@@ -74,19 +75,20 @@ def export(
     return count
 
 
-def _told(store: Store, tell: Callable[[str], None]) -> Iterator[tuple[str, Entry]]:
-    taken: dict[str, int] = {}
+def _named(store: Store, report: Callable[[str], None]) -> Iterator[tuple[str, Entry]]:
+    """Yield entries under unique names without slashes."""
+    counts: Counter[str] = Counter()
     for name, entry in store.entries():
         flat = name.replace("/", "_")
-        taken[flat] = taken.get(flat, 0) + 1
-        tell(name)
-        yield flat if taken[flat] == 1 else f"{flat}~{taken[flat]}", entry
+        counts[flat] += 1
+        report(name)
+        yield flat if counts[flat] == 1 else f"{flat}~{counts[flat]}", entry
 
 
 def rignet_distances(entry: Entry) -> NDArray[np.float32]:
-    """Return the distances of all bones to all vertices as RigNet has them, shape (n, b).
+    """Return the distances of all bones to all vertices in RigNet's form, shape (n, b).
 
-    In the units of the mesh, bones in RigNet's order, a finite number everywhere.
+    They are finite, in the units of the mesh, with bones in RigNet's order.
     """
     if not len(entry.bone_joints):
         raise FileError("the store has no distances of single bones; bind again with --bones")
@@ -105,18 +107,24 @@ def _rignet(out: Path, name: str, entry: Entry) -> dict[Path, bytes]:
     """Return RigNet's three files of an asset."""
     packed = io.BytesIO()
     np.save(packed, rignet_distances(entry))
-    words = word_names(entry.names)
+    identifiers = word_names(entry.names)
     lines = [
         f"joints {word} {x:.8g} {y:.8g} {z:.8g}"
-        for word, (x, y, z) in zip(words, entry.joints.tolist(), strict=True)
+        for word, (x, y, z) in zip(identifiers, entry.joints.tolist(), strict=True)
     ]
-    lines += [f"root {words[j]}" for j in np.flatnonzero(entry.parents < 0)[:1]]
-    lines += [f"hier {words[p]} {words[j]}" for j, p in enumerate(entry.parents.tolist()) if p >= 0]
+    lines += [f"root {identifiers[j]}" for j in np.flatnonzero(entry.parents < 0)[:1]]
+    lines += [
+        f"hier {identifiers[p]} {identifiers[j]}"
+        for j, p in enumerate(entry.parents.tolist())
+        if p >= 0
+    ]
     weights = entry.weights if entry.artist is None else entry.artist
     for vertex, row in enumerate(weights):
         carrying = np.flatnonzero(row)
         if len(carrying):
-            lines.append(f"skin {vertex} " + " ".join(f"{words[j]} {row[j]:.6g}" for j in carrying))
+            lines.append(
+                f"skin {vertex} " + " ".join(f"{identifiers[j]} {row[j]:.6g}" for j in carrying)
+            )
     mesh = TriangleMesh(entry.vertices, entry.faces)
     return {
         out / "obj" / f"{name}.obj": write_obj(mesh).encode(),
@@ -126,7 +134,7 @@ def _rignet(out: Path, name: str, entry: Entry) -> dict[Path, bytes]:
 
 
 def _unirig(out: Path, name: str, entry: Entry) -> dict[Path, bytes]:
-    """Return UniRig's `raw_data.npz` and, beside it, the prior in the order of its joints."""
+    """Return UniRig's `raw_data.npz`, and the prior in the order of its joints."""
     order, parents = _parents_first(entry.parents)
     joints = entry.joints[order]
     tails = joints.copy()
@@ -160,7 +168,7 @@ def _unirig(out: Path, name: str, entry: Entry) -> dict[Path, bytes]:
 
 
 def _parents_first(parents: NDArray) -> tuple[NDArray[np.intp], list[int | None]]:
-    """Order joints so that parents come first; further roots hang on the first."""
+    """Order joints so that parents come first; further roots become children of the first."""
     order: list[int] = []
     level = np.flatnonzero(parents < 0).tolist()
     while level:
@@ -192,14 +200,14 @@ def _puppeteer(entries: Iterator[tuple[str, Entry]], out: Path) -> int:
 def _puppeteer_sample(name: str, entry: Entry, seed: int) -> dict[str, Any]:
     points = sample_surface(entry.vertices, entry.faces, POINTS, seed)
     face_normals, _ = mesh_normals(entry.vertices, entry.faces)
-    held = np.flatnonzero(entry.parents >= 0)
-    bones = np.stack([entry.parents[held], held], axis=1)
+    children = np.flatnonzero(entry.parents >= 0)
+    bones = np.stack([entry.parents[children], children], axis=1)
     count = len(entry.joints)
-    links = coo_array((np.ones(len(held)), (bones[:, 0], bones[:, 1])), shape=(count, count))
+    links = coo_array((np.ones(len(children)), (bones[:, 0], bones[:, 1])), shape=(count, count))
     hops = shortest_path(links.tocsr(), directed=False, unweighted=True)
-    there = np.concatenate([points.places, face_normals[points.face]], axis=1)
+    cloud = np.concatenate([points.places, face_normals[points.face]], axis=1)
     return {
-        "pc_w_norm": there.astype(np.float32),
+        "pc_w_norm": cloud.astype(np.float32),
         "joints": entry.joints,
         "bones": bones.astype(np.int32),
         "root_index": np.int64(np.flatnonzero(entry.parents < 0)[0]),

@@ -1,4 +1,4 @@
-"""A store as training samples: arrays, and a data set for torch where that is installed."""
+"""Training samples of a store: arrays, and a data set for torch where it is installed."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ PRIORS: tuple[Prior, ...] = ("weights", "distances", "bone_distances")
 def at_points(table: NDArray, faces: NDArray, points: SurfacePoints) -> NDArray:
     """Interpolate values of the vertices, shape (n, k), at points on the faces, shape (p, k).
 
-    Infinite where a corner that counts is infinite.
+    Infinite where a corner of nonzero weight is infinite.
     """
     corners = faces[points.face]
     total = np.zeros((len(corners), table.shape[1]))
@@ -42,11 +42,11 @@ class RigSamples:
     points : int
         Points on the surface, by area; 0 for the vertices themselves.
     prior : {"weights", "distances", "bone_distances"}
-        What a network gets to see of ours.
+        Input of the network.
     seed : int
-        Of the points; other points in each `epoch`.
+        Seed of the points, which differ in each `epoch`.
     names : sequence of str, optional
-        Only these assets, for example those that an audit keeps.
+        Only these assets, such as those that an audit keeps.
 
     Raises
     ------
@@ -71,9 +71,9 @@ class RigSamples:
         folder = Path(store)
         rows = [row for row in Store(folder).manifest() if not row["error"]]
         if names is not None:
-            wanted = set(names)
-            rows = [row for row in rows if row["name"] in wanted]
-            missing = wanted - {row["name"] for row in rows}
+            requested = set(names)
+            rows = [row for row in rows if row["name"] in requested]
+            missing = requested - {row["name"] for row in rows}
             if missing:
                 raise FileError(f"{folder}: holds no asset {sorted(missing)[0]!r}")
         self.names = [row["name"] for row in rows]
@@ -120,13 +120,13 @@ def collate_samples(samples: Sequence[Mapping[str, Any]], prior: str) -> dict[st
     samples : sequence of dict
         See `RigSamples.sample`.
     prior : str
-        What its prior is: distances are filled up with infinity, weights with 0.
+        Kind of the prior: distances are padded with infinity, weights with 0.
 
     Returns
     -------
     dict
         The arrays with a first axis for the samples, as large as the largest; `point_mask` (s, p)
-        and `joint_mask` (s, j) are true where there is something; `name` is a list.
+        and `joint_mask` (s, j) are false for padding; `name` is a list.
     """
     batch: dict[str, Any] = {"name": [sample["name"] for sample in samples]}
     fill = {"parents": -1, "prior": 0.0 if prior == "weights" else np.inf}
@@ -146,7 +146,7 @@ def collate_samples(samples: Sequence[Mapping[str, Any]], prior: str) -> dict[st
 class RigDataset(RigSamples):
     """A store as a data set for `torch.utils.data.DataLoader`; needs torch.
 
-    Takes what `RigSamples` takes. Give `collate` to the loader: rigs differ in size.
+    It has the parameters of `RigSamples`. Pass `collate` to the loader: rigs differ in size.
 
     Raises
     ------
@@ -164,8 +164,8 @@ class RigDataset(RigSamples):
             import torch
         except ImportError:
             raise MissingLibraryError(
-                "RigDataset gives tensors of torch, which is not installed; try: pip install "
-                "torch, or use RigSamples, which gives numpy arrays"
+                "RigDataset returns tensors of torch, which is not installed; try: pip install "
+                "torch, or use RigSamples, which returns numpy arrays"
             ) from None
         super().__init__(*arguments, **options)
         self._tensor = torch.from_numpy

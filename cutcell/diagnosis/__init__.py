@@ -1,4 +1,4 @@
-"""What is wrong with a rig: checks that name the elements at fault, and repairs."""
+"""Faults of rigs: checks that name the elements at fault, and repairs."""
 
 from .cleaning import Cleaned, JointLoss, clean
 from .finding import SEVERITIES, TITLES, Finding, Pose

@@ -1,4 +1,4 @@
-"""Take away weights that cannot be true through the body, and keep the others."""
+"""Removal of weights that are implausible through the body."""
 
 from __future__ import annotations
 
@@ -23,31 +23,31 @@ from .weights import INFLUENCES, measurable
 from .widest import connected_weights
 
 NEAR = 3.0
-"""A joint is near a vertex from which it is at most so many times as far as the nearest one. From
-2.5 to 6 the artists' weights that it was chosen on change by less than 0.01 (docs/clean.md); the
-lower, the more is found."""
+"""A joint is near a vertex if its distance is at most this multiple of the nearest joint's. From
+2.5 to 6 the artists' weights that it was chosen on change by less than 0.01 (docs/clean.md); lower
+values remove more."""
 ATTACHED = 0.5
-"""Of the weight of a connected component: what holds more of it was attached to it on purpose."""
-KEPT = 0.5
-"""A vertex that keeps less of its weight than this tells too little about the rest."""
+"""A joint with more than this share of a component's weight was attached on purpose."""
+MIN_REMAINING = 0.5
+"""With a smaller remaining share, a vertex is partly bound again."""
 CHANGED = 1e-9
 """Shares of weight below this are rounding."""
 
 
 @dataclass(frozen=True, eq=False)
 class JointLoss:
-    """What one joint lost.
+    """Weight removed from one joint.
 
     Parameters
     ----------
     joint : int
     name : str
     share : float
-        Of all weight that the joint had, 0 to 1; every welded vertex counts once.
+        Share of all weight of the joint, 0 to 1; every welded vertex counts once.
     largest : float
-        The greatest weight that one vertex lost.
+        The largest weight removed from one vertex.
     vertices : array of int
-        Those that lost weight of the joint.
+        Vertices that lost weight of the joint.
     """
 
     joint: int
@@ -59,20 +59,20 @@ class JointLoss:
 
 @dataclass(frozen=True, eq=False)
 class Cleaned:
-    """Weights without what cannot be true, and what was taken away.
+    """Cleaned weights, and the removed weight.
 
     Parameters
     ----------
     weights : array, shape (n, j), float64
         Rows sum to what they summed to before.
     share : float
-        Of all weight, what was taken away, 0 to 1; every welded vertex counts once.
+        Removed share of all weight, 0 to 1; every welded vertex counts once.
     losses : tuple of JointLoss
-        Of the joints that lost weight, the greatest share first.
+        Joints that lost weight, the largest share first.
     vertices : array of int
-        Those whose weights changed.
+        Vertices whose weights changed.
     bound : array of int
-        Of these, those that lost more than half of their weight: `bind` has weighted that part.
+        Those of them that lost more than half of their weight: that part comes from `bind`.
     """
 
     weights: NDArray[np.float64]
@@ -83,7 +83,7 @@ class Cleaned:
 
 
 def clean(rig: RigLike, resolution: int = 64, *, progress: Progress = silent) -> Cleaned:
-    """Take away weights that cannot be true through the body, and keep the others.
+    """Remove weights that are implausible through the body, and keep the others.
 
     For weights of a network, of another program, or of a file: a hand's weight on the hip, an
     island of a joint's influence, noise. A weight is judged by two things. The distance through
@@ -91,7 +91,7 @@ def clean(rig: RigLike, resolution: int = 64, *, progress: Progress = silent) ->
     skin: weight of a joint that is not near is kept as far as it is connected along mesh edges,
     at no lower level, with weight where the joint is near; or where the joint holds most of a
     connected component, as an accessory's does. What is left of a joint that is not near, and less
-    than 5 % of the vertex' largest weight, ends there, as it does in `bind`.
+    than 5 % of the vertex's largest weight, ends there, as it does in `bind`.
 
     The other weights of the vertex grow in proportion. Where it lost more than half, the lost part
     is weighted as `bind` does.
@@ -134,33 +134,35 @@ def clean(rig: RigLike, resolution: int = 64, *, progress: Progress = silent) ->
     subject = Subject(rig, resolution, progress=progress)
     assert subject.distances is not None
     progress("weights", 0.0)
-    kept = _kept(subject, subject.distances, weights)
-    before, after = weights.sum(axis=1), kept.sum(axis=1)
-    few = np.flatnonzero(after < KEPT * before)
+    remaining = _remaining(subject, subject.distances, weights)
+    before, after = weights.sum(axis=1), remaining.sum(axis=1)
+    few = np.flatnonzero(after < MIN_REMAINING * before)
     scale = np.divide(before, after, out=np.zeros_like(before), where=after > 0)
-    found = np.where((after < before * (1 - CHANGED))[:, None], kept * scale[:, None], weights)
+    cleaned = np.where(
+        (after < before * (1 - CHANGED))[:, None], remaining * scale[:, None], weights
+    )
     if len(few):
         binding = bind(rig, method=ANIMATION.with_options(resolution=resolution),
                        graph=subject.graph)  # fmt: skip
-        mixed = kept[few] + (before - after)[few, None] * binding.weights[few]
+        mixed = remaining[few] + (before - after)[few, None] * binding.weights[few]
         most = max(INFLUENCES, int((weights > 0).sum(axis=1).max()))
         total = mixed.sum(axis=1, keepdims=True)
-        found[few] = total * prune(mixed / total, most, 0.0, np.arange(mixed.shape[1]))
+        cleaned[few] = total * prune(mixed / total, most, 0.0, np.arange(mixed.shape[1]))
     progress("weights", 1.0)
-    changed = np.flatnonzero((found != weights).any(axis=1))
-    return Cleaned(found, *_account(rig, weights - kept), changed, few)
+    changed = np.flatnonzero((cleaned != weights).any(axis=1))
+    return Cleaned(cleaned, *_account(rig, weights - remaining), changed, few)
 
 
-def _kept(
+def _remaining(
     subject: Subject, distances: BoneDistances, weights: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """Return what is kept of each weight, shape (n, j)."""
+    """Return the remaining part of each weight, shape (n, j)."""
     welded, count = subject.welded, len(subject.points)
     through = distances.all_joints(subject.progress).T
     at_welded = np.zeros((count, weights.shape[1]))
     np.maximum.at(at_welded, welded, weights)
     least = np.maximum(through.min(axis=1, keepdims=True), MIN_CELLS / subject.resolution)
-    # Where no path leads, or none begins in the body, distances tell nothing.
+    # Without a path, or with sources outside the body, distances are no evidence.
     is_near = (through <= NEAR * least) | ~np.isfinite(through)
     is_near[:, ~measurable(subject, distances)] = True
     is_near[distances.fallback != 0] = True
@@ -168,24 +170,24 @@ def _kept(
     anchored = np.zeros(at_welded.shape, bool)
     np.logical_or.at(anchored, welded, is_near)
     connected = connected_weights(at_welded, anchored, subject.edges.edges)
-    kept = np.where(is_near, weights, np.minimum(weights, connected[welded]))
-    ends = ~is_near & (kept < TAIL * weights.max(axis=1, keepdims=True))
-    kept[ends] = 0.0
-    return kept
+    remaining = np.where(is_near, weights, np.minimum(weights, connected[welded]))
+    ends = ~is_near & (remaining < TAIL * weights.max(axis=1, keepdims=True))
+    remaining[ends] = 0.0
+    return remaining
 
 
 def _attached(subject: Subject, weights: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Tell which joints hold most of the component of each welded vertex, shape (k, j)."""
+    """Return which joints have most weight of each welded vertex's component, shape (k, j)."""
     component = subject.component
-    held = np.zeros((int(component.max()) + 1, weights.shape[1]))
-    np.add.at(held, component, weights)
-    total = held.sum(axis=1, keepdims=True)
-    most: NDArray[np.bool_] = (held > ATTACHED * total)[component]
+    sums = np.zeros((int(component.max()) + 1, weights.shape[1]))
+    np.add.at(sums, component, weights)
+    total = sums.sum(axis=1, keepdims=True)
+    most: NDArray[np.bool_] = (sums > ATTACHED * total)[component]
     return most
 
 
 def _account(rig: Rig, lost: NDArray[np.float64]) -> tuple[float, tuple[JointLoss, ...]]:
-    """Say which share of all weight is lost, and which joints lost it."""
+    """Return the removed share of all weight, and the joints that lost it."""
     assert rig.weights is not None
     shares = vertex_shares(rig.mesh)
     had, gone = shares @ rig.weights, shares @ lost

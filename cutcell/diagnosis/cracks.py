@@ -46,15 +46,15 @@ def find_cracks(subject: Subject) -> Iterator[Finding]:
     if is_closed.sum() < FEWEST:
         return
     size = subject.graph.lattice.size
-    found = np.zeros(len(points), bool)
-    found[loop[is_closed]] = found[following[is_closed]] = True
+    at_crack = np.zeros(len(points), bool)
+    at_crack[loop[is_closed]] = at_crack[following[is_closed]] = True
     yield Finding(
         "cracks",
         "warning" if is_closed.sum() >= MANY * len(loop) else "note",
         f"{count(int(is_closed.sum()), 'edge', 'lie')} along open rims less than {wide * size:.2g} "
         "from others that fit: seams that were not welded.",
         f"Merge vertices by a distance of {wide * size:.2g}.",
-        vertices=subject.vertices_at(found),
+        vertices=subject.vertices_at(at_crack),
     )
 
 
@@ -65,6 +65,6 @@ def _normals(
     faces, points = subject.graph.faces[subject.whole], subject.points
     sides = faces.astype(np.int64) * len(points) + np.roll(faces, -1, axis=1)
     order = np.argsort(sides, axis=None)
-    wanted = start * len(points) + end
-    found = order[np.searchsorted(sides.ravel(), wanted, sorter=order)] // 3
-    return unit_normals(points[faces[found]])
+    keys = start * len(points) + end
+    side_faces = order[np.searchsorted(sides.ravel(), keys, sorter=order)] // 3
+    return unit_normals(points[faces[side_faces]])

@@ -1,4 +1,4 @@
-"""What a diagnosis finds: findings with a code, a severity, and the elements at fault."""
+"""Findings of a diagnosis: a code, a severity, and the elements at fault."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 SEVERITIES = ("error", "warning", "note")
-"""The gravest first. Error: a binding, or another program, goes wrong because of it. Warning: most
-likely a fault. Note: good to know."""
+"""The most severe first. Error: it breaks a binding or another program. Warning: most likely a
+fault. Note: information."""
 
 TITLES = {
     "unreadable": "Unreadable file",
@@ -50,7 +50,7 @@ TITLES = {
     "torn-seams": "Seams that tear",
     "many-influences": "More than four influences",
 }
-"""The codes of all findings, and what they are called."""
+"""Title of each code, in the order of reports."""
 
 
 def _none() -> NDArray[np.intp]:
@@ -59,7 +59,7 @@ def _none() -> NDArray[np.intp]:
 
 @dataclass(frozen=True)
 class Pose:
-    """A pose in which a finding is seen: one joint turned, all below it along with it.
+    """A pose that shows a finding: one joint is turned, with all below it.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ class Pose:
 
 @dataclass(frozen=True, eq=False)
 class Finding:
-    """One thing that was found.
+    """One fault of a rig.
 
     Parameters
     ----------
@@ -85,17 +85,17 @@ class Finding:
         A key of `TITLES`; it stays the same from version to version.
     severity : {"error", "warning", "note"}
     message : str
-        What was found, in a sentence with numbers.
+        The fault, with numbers.
     advice : str
-        What to do about it, in a line.
+        Recommended action.
     vertices, faces, joints : arrays of int
         The elements at fault, as indices into the rig's vertices, faces and joints; ascending.
     details : tuple of str
-        A line for each part or joint, where one sentence does not tell enough.
+        A line for each part or joint, where needed.
     repair : str
-        What `Diagnosis.repaired` does about it; empty where nothing is safe.
+        The action of `Diagnosis.repaired`; empty without a safe repair.
     pose : Pose, optional
-        One in which it is seen, where it is not seen at rest.
+        A pose that shows it, where the rest pose does not.
     """
 
     code: str
@@ -111,7 +111,7 @@ class Finding:
 
     @property
     def title(self) -> str:
-        """What it is called."""
+        """Title of the code."""
         return TITLES[self.code]
 
     def to_dict(self) -> dict[str, Any]:
@@ -131,7 +131,7 @@ class Finding:
         }
 
 
-def by_gravity(findings: Iterable[Finding]) -> tuple[Finding, ...]:
+def by_severity(findings: Iterable[Finding]) -> tuple[Finding, ...]:
     """Sort findings: by severity, then in the order of `TITLES`."""
     order = list(TITLES)
     return tuple(

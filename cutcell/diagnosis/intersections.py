@@ -1,7 +1,7 @@
 """Self-intersections: a grid of cells finds faces that are near, and pairs of these are tested.
 
-Faces that share a vertex are not compared. The work is bounded: where there are too many pairs, it
-is told that there may be more.
+Faces that share a vertex are not compared. The number of tested pairs is bounded; beyond it the
+result is a lower bound.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ MAX_TESTS = 5_000_000
 MAX_CELLS = 64
 """Along the longest side."""
 MAX_ENTRIES = 40
-"""Cells that a face lies in, on average: with more, the cells are made larger."""
+"""Average number of cells per face: with more, the cells are enlarged."""
 
 
 def find_intersections(subject: Subject) -> Iterator[Finding]:
@@ -29,24 +29,24 @@ def find_intersections(subject: Subject) -> Iterator[Finding]:
     if not len(faces):
         return
     is_crossed, is_whole = intersecting_faces(subject.points, faces)
-    found = subject.whole[is_crossed]
-    if not len(found):
+    crossed_faces = subject.whole[is_crossed]
+    if not len(crossed_faces):
         return
     least = "" if is_whole else "At least "
-    part = share(subject.areas[found].sum(), subject.areas.sum())
+    part = share(subject.areas[crossed_faces].sum(), subject.areas.sum())
     yield Finding(
         "self-intersections",
         "note",
-        f"{least}{count(len(found), 'face', 'intersect')} others, {part} of the surface.",
+        f"{least}{count(len(crossed_faces), 'face', 'intersect')} others, {part} of the surface.",
         "Leave it if parts are meant to overlap. Where they overlap they are one body.",
-        faces=found,
+        faces=crossed_faces,
     )
 
 
 def intersecting_faces(
     points: NDArray[np.float64], faces: NDArray[np.int32]
 ) -> tuple[NDArray[np.bool_], bool]:
-    """Tell which faces pass through another that they share no vertex with.
+    """Return which faces pass through another that they share no vertex with.
 
     Shapes: points (k, 3), faces (w, 3); returns (w,).
     """
@@ -59,8 +59,8 @@ def intersecting_faces(
             break
         cells //= 2
     first, last = (np.clip((x * cells).astype(np.int64), 0, cells - 1) for x in (low, high))
-    found, is_whole = _cross(points, faces, low, high, first, last, cells, MAX_TESTS)
-    return found, bool(is_whole)
+    is_crossed, is_whole = _cross(points, faces, low, high, first, last, cells, MAX_TESTS)
+    return is_crossed, bool(is_whole)
 
 
 @compiled
@@ -81,22 +81,22 @@ def _cross(points, faces, low, high, first, last, cells, most):
                     listed[cursor[cell]] = f
                     cursor[cell] += 1
 
-    found, tests = np.zeros(len(faces), np.bool_), 0
+    is_crossed, tests = np.zeros(len(faces), np.bool_), 0
     for cell in range(cells**3):
         for i in range(start[cell], start[cell + 1]):
             f = listed[i]
             for j in range(i + 1, start[cell + 1]):
                 g = listed[j]
-                if found[f] and found[g]:
+                if is_crossed[f] and is_crossed[g]:
                     continue
                 if not _boxes_meet(low, high, f, g) or _share_a_vertex(faces, f, g):
                     continue
                 tests += 1
                 if tests > most:
-                    return found, False
+                    return is_crossed, False
                 if _pierces(points, faces, f, g) or _pierces(points, faces, g, f):
-                    found[f] = found[g] = True
-    return found, True
+                    is_crossed[f] = is_crossed[g] = True
+    return is_crossed, True
 
 
 @compiled(inline="always")
@@ -118,7 +118,7 @@ def _share_a_vertex(faces, f, g):
 
 @compiled
 def _pierces(points, faces, f, g):
-    """Tell whether a side of face f passes through the inside of face g."""
+    """Return whether a side of face f passes through the inside of face g."""
     a, b, c = points[faces[g, 0]], points[faces[g, 1]], points[faces[g, 2]]
     normal = triangle_normal(a, b, c)
     heights = (
@@ -128,7 +128,7 @@ def _pierces(points, faces, f, g):
     )
     for k in range(3):
         if heights[k] * heights[(k + 1) % 3] >= 0:
-            continue  # what only touches does not pass through
+            continue  # touching is no intersection
         p, q = points[faces[f, k]], points[faces[f, (k + 1) % 3]]
         way = between(p, q)
         pa, pb, pc = between(p, a), between(p, b), between(p, c)

@@ -13,7 +13,7 @@ from .finding import Finding, count
 from .subject import Subject
 
 OUTSIDE, FAR_OUTSIDE = 0.05, 0.15
-"""Of the longest side: a joint this far from the body is told, and most likely wrong."""
+"""Of the longest side: distances from the body of a note and of a warning."""
 SAME = 1e-5
 """Of the longest side: joints this near to each other lie in one place."""
 MAX_LINES = 40
@@ -30,7 +30,7 @@ def check_joints(subject: Subject) -> Iterator[Finding]:
         yield Finding(
             "flat-hierarchy",
             "note",
-            f"None of the {len(skeleton.joints)} joints hangs on another: they span no bones, and "
+            f"None of the {len(skeleton.joints)} joints has a parent: they span no bones, and "
             "turning one moves no other.",
             "Give the joints their parents, if the program that moves them has any.",
             joints=np.arange(len(skeleton.joints)),
@@ -41,20 +41,20 @@ def check_joints(subject: Subject) -> Iterator[Finding]:
 def _outside(subject: Subject) -> Iterator[Finding]:
     moving = np.flatnonzero(subject.rig.skeleton.deform)
     away = subject.joint_distance[moving]
-    found = away > OUTSIDE
-    if not found.any():
+    is_outside = away > OUTSIDE
+    if not is_outside.any():
         return
     far = away > FAR_OUTSIDE
     unit = subject.graph.lattice.size
     yield Finding(
         "joints-outside",
         "warning" if far.any() else "note",
-        f"{count(int(found.sum()), 'joint', 'lie')} outside of the body, up to {away.max():.0%} of "
-        "its longest side away, and may carry weight.",
+        f"{count(int(is_outside.sum()), 'joint', 'lie')} outside of the body, up to "
+        f"{away.max():.0%} of its longest side away, and may carry weight.",
         "Move them into the body, or let them carry no weight.",
-        joints=moving[found],
+        joints=moving[is_outside],
         details=_named(
-            subject, moving[found], [f"{a * unit:.3g} away" for a in away[found]]
+            subject, moving[is_outside], [f"{a * unit:.3g} away" for a in away[is_outside]]
         ),
     )  # fmt: skip
 
@@ -62,10 +62,10 @@ def _outside(subject: Subject) -> Iterator[Finding]:
 def _in_one_place(subject: Subject) -> Iterator[Finding]:
     skeleton = subject.rig.skeleton
     joints = subject.body.to_unit(skeleton.joints)
-    held = np.flatnonzero(skeleton.parents >= 0)
-    above = skeleton.parents[held]
-    is_short = np.linalg.norm(joints[held] - joints[above], axis=1) <= SAME
-    short = held[is_short & skeleton.deform[held] & skeleton.deform[above]]
+    children = np.flatnonzero(skeleton.parents >= 0)
+    above = skeleton.parents[children]
+    is_short = np.linalg.norm(joints[children] - joints[above], axis=1) <= SAME
+    short = children[is_short & skeleton.deform[children] & skeleton.deform[above]]
     if len(short):
         yield Finding(
             "zero-length-bones",
@@ -80,26 +80,26 @@ def _in_one_place(subject: Subject) -> Iterator[Finding]:
     moving = np.flatnonzero(skeleton.deform)
     pairs = moving[cKDTree(joints[moving]).query_pairs(SAME, output_type="ndarray")]
     pairs = pairs[~_is_link(skeleton.parents, pairs)]
-    found = np.unique(pairs)
-    if len(found):
+    coincident = np.unique(pairs)
+    if len(coincident):
         yield Finding(
             "coincident-joints",
             "note",
-            f"{len(found)} joints that may carry weight are in the same position as others.",
-            "Let one of each group carry weight: nothing tells which skin is whose.",
-            joints=found,
-            details=_named(subject, found, [""] * len(found)),
+            f"{len(coincident)} joints that may carry weight are in the same position as others.",
+            "Let one of each group carry weight: the skin is divided arbitrarily between them.",
+            joints=coincident,
+            details=_named(subject, coincident, [""] * len(coincident)),
         )
 
 
 def _is_link(parents: NDArray[np.int32], pairs: NDArray[np.intp]) -> NDArray[np.bool_]:
     one, other = pairs.T
-    found: NDArray[np.bool_] = (parents[one] == other) | (parents[other] == one)
-    return found
+    is_link: NDArray[np.bool_] = (parents[one] == other) | (parents[other] == one)
+    return is_link
 
 
 def _idle(subject: Subject) -> Iterator[Finding]:
-    """Tell of joints that carry no weight: controls and markers, and bones that could."""
+    """Find joints without weight: controls and markers, and bones that could have some."""
     rig, guess = subject.rig, subject.guess
     controls = np.flatnonzero(~guess.deform & ~rig.skeleton.deform)
     if len(controls):
@@ -132,7 +132,7 @@ def _name(subject: Subject, joint: int) -> str:
 
 
 def _named(subject: Subject, joints: NDArray[np.intp], notes: list[str]) -> tuple[str, ...]:
-    """Return a line for each joint: its name, and what there is to say of it."""
+    """Return a line for each joint: its name and a note."""
     lines = [
         f"{_name(subject, j)}{': ' if note else ''}{note}"
         for j, note in zip(joints.tolist(), notes, strict=True)

@@ -1,4 +1,4 @@
-"""Weights that look wrong without anything to compare them with."""
+"""Suspicious weights, without a reference."""
 
 from __future__ import annotations
 
@@ -48,28 +48,28 @@ def _stray(
     subject: Subject, distances: BoneDistances, weights: NDArray[np.float64]
 ) -> Iterator[Finding]:
     area = subject.vertex_areas
-    held = area @ weights / area.sum()
+    shares = area @ weights / area.sum()
     nearest = distances.nearest_joint
     reached = distances.fallback == REACHED
-    owned = np.bincount(nearest[reached], area[reached], len(held)) / area.sum()
-    found = np.flatnonzero((held > 0) & (held < STRAY) & (owned > OWNED))
-    if not len(found):
+    owned = np.bincount(nearest[reached], area[reached], len(shares)) / area.sum()
+    stray = np.flatnonzero((shares > 0) & (shares < STRAY) & (owned > OWNED))
+    if not len(stray):
         return
     names = subject.rig.skeleton.names
-    vertices = np.flatnonzero((weights[:, found] > 0).any(axis=1))
-    worst = int(found[owned[found].argmax()])
+    vertices = np.flatnonzero((weights[:, stray] > 0).any(axis=1))
+    worst = int(stray[owned[stray].argmax()])
     yield Finding(
         "stray-weights",
         "warning",
-        f"{count(len(found), 'joint', 'hold')} hardly any weight, yet would get much of the skin "
+        f"{count(len(stray), 'joint', 'hold')} hardly any weight, yet would get much of the skin "
         "when the rig is bound again, for no other is nearer.",
         "If it is a control, let it carry no weight: --no-deform, or the joint's box on the page.",
         vertices=vertices,
-        joints=found,
+        joints=stray,
         details=tuple(
-            f"{shown_name(names[j])}: {100 * held[j]:.2g}% of the weight, nearest to "
+            f"{shown_name(names[j])}: {100 * shares[j]:.2g}% of the weight, nearest to "
             f"{share(owned[j], 1)} of the surface"
-            for j in found[np.argsort(-owned[found])][:MAX_LINES]
+            for j in stray[np.argsort(-owned[stray])][:MAX_LINES]
         ),
         pose=pose_of(subject, worst, np.flatnonzero(nearest == worst)),
     )
@@ -84,46 +84,46 @@ def _islands(
     joints, places, lines, worst = [], [], [], (0.0, -1)
     measurable = np.isin(np.arange(weights.shape[1]), distances.bones.joint)
     for j in np.flatnonzero(measurable & (at_welded.max(axis=0) > NOTICED)).tolist():
-        held = at_welded[:, j] > NOTICED
-        between = edges[held[edges].all(axis=1)]
+        follows = at_welded[:, j] > NOTICED
+        between = edges[follows[edges].all(axis=1)]
         ones = np.ones(len(between), np.int8)
-        graph = coo_array((ones, tuple(between.T)), shape=(len(held),) * 2)
+        graph = coo_array((ones, tuple(between.T)), shape=(len(follows),) * 2)
         label = connected_components(graph, directed=False)[1]
-        total = np.bincount(label[held], (at_welded[:, j] * area)[held], label.max() + 1)
+        total = np.bincount(label[follows], (at_welded[:, j] * area)[follows], label.max() + 1)
         # An island is away from a larger region of the same joint on the same component.
         of = subject.component
         largest = np.zeros(of.max() + 1)
-        np.maximum.at(largest, of[held], total[label[held]])
-        apart = np.flatnonzero(held & (total[label] < largest[of]))
-        if not len(apart):
+        np.maximum.at(largest, of[follows], total[label[follows]])
+        islands = np.flatnonzero(follows & (total[label] < largest[of]))
+        if not len(islands):
             continue
-        through = through_body(subject, distances, first[apart], np.full(len(apart), j))
-        beyond = through - distances.at_welded.min(axis=0)[apart]
+        through = through_body(subject, distances, first[islands], np.full(len(islands), j))
+        beyond = through - distances.at_welded.min(axis=0)[islands]
         nearest = np.full(label.max() + 1, np.inf)
-        np.minimum.at(nearest, label[apart], np.where(np.isfinite(beyond), beyond, -np.inf))
-        apart = apart[nearest[label[apart]] > AWAY]
-        if not len(apart):
+        np.minimum.at(nearest, label[islands], np.where(np.isfinite(beyond), beyond, -np.inf))
+        islands = islands[nearest[label[islands]] > AWAY]
+        if not len(islands):
             continue
-        most = float(at_welded[apart, j].max())
-        number = len(np.unique(label[apart]))
+        most = float(at_welded[islands, j].max())
+        number = len(np.unique(label[islands]))
         joints.append(j)
-        places.append(apart)
+        places.append(islands)
         worst = max(worst, (most, j))
         lines.append(
             f"{shown_name(subject.rig.skeleton.names[j])}: up to {most:.0%} on "
-            f"{count(number, 'island')} of {count(len(apart), 'vertex')}"
+            f"{count(number, 'island')} of {count(len(islands), 'vertex')}"
         )
     if not joints:
         return
-    found = np.zeros(len(at_welded), bool)
-    found[np.concatenate(places)] = True
-    vertices = subject.vertices_at(found)
+    at_islands = np.zeros(len(at_welded), bool)
+    at_islands[np.concatenate(places)] = True
+    vertices = subject.vertices_at(at_islands)
     yield Finding(
         "weight-islands",
         "warning",
         f"{count(len(vertices), 'vertex', 'follow')} a joint whose influence is elsewhere: islands "
         "of it lie away from its bones, with other joints between.",
-        "Take this weight away, here or of the whole rig (cutcell clean), or bind again.",
+        "Remove this weight, from these vertices or the whole rig (cutcell clean), or bind again.",
         repair=CLEANED,
         vertices=vertices,
         joints=np.array(joints),
@@ -138,27 +138,27 @@ def _asymmetric(subject: Subject, weights: NDArray[np.float64]) -> Iterator[Find
     except MeshError:
         return
     partner, swap = mirror.vertex, mirror.joint
-    # On the plane itself a vertex is its own partner; joints without a partner tell nothing.
+    # On the plane itself a vertex is its own partner; joints without a partner are no evidence.
     alone = (weights[:, swap < 0] > 0).any(axis=1)
     paired = np.flatnonzero((partner >= 0) & ~alone & subject.is_used)
     if not len(paired):
         return
     other = weights[partner[paired]][:, np.where(swap < 0, np.arange(len(swap)), swap)]
     differ = np.abs(weights[paired] - other).sum(axis=1) / 2
-    found = paired[differ > UNLIKE]
-    if len(found) <= ASYMMETRIC * len(paired):
+    asymmetric = paired[differ > UNLIKE]
+    if len(asymmetric) <= ASYMMETRIC * len(paired):
         return
     gap = np.abs(weights[paired] - other)[differ > UNLIKE]
     joints = np.flatnonzero((gap > UNLIKE).any(axis=0))
     yield Finding(
         "asymmetric-weights",
         "note",
-        f"{count(len(found), 'vertex', 'follow')} other joints than the mirror image does, though "
-        "mesh and skeleton are mirrored.",
+        f"{count(len(asymmetric), 'vertex', 'follow')} other joints than the mirror image does, "
+        "though mesh and skeleton are mirrored.",
         "Mirror one side, or bind with --symmetric.",
-        vertices=found,
+        vertices=asymmetric,
         joints=joints,
-        pose=pose_of(subject, int(gap.sum(axis=0).argmax()), found),
+        pose=pose_of(subject, int(gap.sum(axis=0).argmax()), asymmetric),
     )
 
 

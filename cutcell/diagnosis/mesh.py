@@ -14,15 +14,15 @@ from .intersections import find_intersections
 from .subject import Subject
 
 UNWELDED = 0.9
-"""Of the corners of all faces, for how many there are vertices of their own in a soup."""
+"""Minimum ratio of vertices to corners of faces in a soup."""
 HOLES = 8
-"""Missing triangles that are no accident of the modeller's any more."""
+"""Minimum number of missing triangles of a finding."""
 FLAT = 1e-10
-"""A face with less area than this, for its longest side squared, has none."""
+"""Maximum area of a degenerate face, over its longest side squared."""
 STRAY = 2.0
-"""Sizes of the rest of the mesh that a stray vertex is away from it, at least."""
+"""Minimum distance of a stray vertex, in sizes of the rest of the mesh."""
 FEW = 0.01
-"""Of the vertices, at most so many can be strays."""
+"""Maximum share of stray vertices."""
 
 
 def check_mesh(subject: Subject) -> Iterator[Finding]:
@@ -45,32 +45,32 @@ def _stray(subject: Subject) -> Iterator[Finding]:
     low, high = np.quantile(points, [FEW, 1 - FEW], axis=0)
     size = (high - low).max()
     away = np.maximum(low - points, points - high).max(axis=1)
-    found = used[away > STRAY * size]
-    if not len(found) or len(found) > FEW * len(used):
+    stray = used[away > STRAY * size]
+    if not len(stray) or len(stray) > FEW * len(used):
         return
     farthest = away.max() / size if size else np.inf
     yield Finding(
         "stray-vertices",
         "error",
-        f"{count(len(found), 'vertex', 'lie')} away from the rest, up to {farthest:.0f} times its "
+        f"{count(len(stray), 'vertex', 'lie')} away from the rest, up to {farthest:.0f} times its "
         "size. The lattice spans all of it, so its cells are too large for the body.",
         "Delete them, or move them back to their neighbours.",
-        vertices=found,
+        vertices=stray,
     )
 
 
 def _inverted(subject: Subject) -> Iterator[Finding]:
-    found = np.flatnonzero(subject.graph.inverted)
-    if not len(found):
+    inverted = np.flatnonzero(subject.graph.inverted)
+    if not len(inverted):
         return
-    part = share(subject.areas[found].sum(), subject.areas.sum())
+    part = share(subject.areas[inverted].sum(), subject.areas.sum())
     yield Finding(
         "inverted-faces",
         "warning",
-        f"{count(len(found), 'face', 'are')} turned inside out, {part} of the surface: renderers "
-        "that cull back faces show holes there.",
+        f"{count(len(inverted), 'face', 'are')} turned inside out, {part} of the surface: "
+        "renderers that cull back faces show holes there.",
         "Flip them. Binding already treats them as flipped.",
-        faces=found,
+        faces=inverted,
         repair="flip them, and the normals that point inward",
     )
 
@@ -109,7 +109,7 @@ def _open(subject: Subject) -> Iterator[Finding]:
 
 
 def _are_faces(corners: NDArray[np.int64], faces: NDArray[np.int32]) -> NDArray[np.bool_]:
-    """Tell which triples of vertices, ascending, are corners of a face."""
+    """Return which triples of vertices, ascending, are corners of a face."""
     every = np.concatenate([np.sort(faces, axis=1), corners])
     _, which = np.unique(every, axis=0, return_inverse=True)
     which = which.ravel()
@@ -132,13 +132,13 @@ def _non_manifold(subject: Subject) -> Iterator[Finding]:
     edges = int((uses > 2).sum())
     if not edges:
         return
-    found = (uses[which.ravel()] > 2).reshape(-1, 3).any(axis=1)
+    is_at_edge = (uses[which.ravel()] > 2).reshape(-1, 3).any(axis=1)
     yield Finding(
         "non-manifold-edges",
         "note",
         f"{count(edges, 'edge', 'are')} shared by more than two faces.",
         "Harmless for binding. Editing tools may stop there: split these edges.",
-        faces=subject.whole[found],
+        faces=subject.whole[is_at_edge],
     )
 
 
@@ -148,18 +148,17 @@ def _doubled(subject: Subject) -> Iterator[Finding]:
     is_first = np.zeros(len(faces), bool)
     is_first[first] = True
     # The two sides of a sheet are no duplicates.
-    here = subject.graph.faces[subject.whole]
-    turn = _rolled(here)
+    turn = _rolled(subject.graph.faces[subject.whole])
     same = (turn == turn[first][which.ravel()]).all(axis=1)
-    found = subject.whole[~is_first & same]
-    if not len(found):
+    duplicates = subject.whole[~is_first & same]
+    if not len(duplicates):
         return
     yield Finding(
         "duplicate-faces",
         "note",
-        f"{count(len(found), 'face', 'lie')} on another with the same corners.",
+        f"{count(len(duplicates), 'face', 'lie')} on another with the same corners.",
         "Delete them: they flicker when drawn.",
-        faces=found,
+        faces=duplicates,
         repair="drop them, and keep one of each",
     )
 
@@ -173,15 +172,15 @@ def _rolled(faces: NDArray[np.int32]) -> NDArray[np.int32]:
 def _degenerate(subject: Subject) -> Iterator[Finding]:
     corners = subject.points[subject.welded[subject.rig.mesh.faces]]
     longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
-    found = np.flatnonzero(subject.is_collapsed | (subject.areas <= FLAT * longest**2))
-    if not len(found) or len(found) == len(subject.areas):
+    degenerate = np.flatnonzero(subject.is_collapsed | (subject.areas <= FLAT * longest**2))
+    if not len(degenerate) or len(degenerate) == len(subject.areas):
         return
     yield Finding(
         "degenerate-faces",
         "note",
-        f"{count(len(found), 'face', 'have')} no area.",
+        f"{count(len(degenerate), 'face', 'have')} no area.",
         "Delete them.",
-        faces=found,
+        faces=degenerate,
         repair="drop them",
     )
 

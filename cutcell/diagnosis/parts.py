@@ -31,7 +31,7 @@ SAMPLES = 600
 ENOUGH = 1.2
 """Cells that a part must be thick to hold lattice points nearly everywhere."""
 MAX_LINES = 40
-"""Parts or joints that are told one by one."""
+"""Maximum number of listed parts or joints."""
 
 
 def check_parts(subject: Subject) -> Iterator[Finding]:
@@ -67,8 +67,8 @@ def _thin(subject: Subject) -> Iterator[Finding]:
     thin = np.zeros(len(points), bool)
     thin[np.flatnonzero(far)[depth > 0]] = True
     start, end = subject.edges.edges.T
-    beside = np.union1d(start[thin[end]], end[thin[start]])  # at sharp rims nothing is below
-    thin[beside] |= far[beside]
+    neighbours = np.union1d(start[thin[end]], end[thin[start]])  # at sharp rims nothing is below
+    thin[neighbours] |= far[neighbours]
     part, total = areas[thin].sum(), areas.sum()
     if part < THIN * total and thin.sum() < FEW * used.sum():
         return
@@ -76,7 +76,7 @@ def _thin(subject: Subject) -> Iterator[Finding]:
     needed = ENOUGH * resolution / typical
     enough = int(np.ceil(needed / 16) * 16)
     advice = f"A resolution of {enough} would fill most of them." if enough > resolution else (
-        "Paths run over their skin, which is nearly as good."
+        "Paths run over their skin, which is nearly equivalent."
     )  # fmt: skip
     yield Finding(
         "thin-parts",
@@ -103,7 +103,7 @@ def _depths(
 ) -> NDArray[np.float64]:
     """Measure how thick the body is below vertices, in cells; 0 where nothing is inside.
 
-    Of many vertices only some are looked at; each other one has what the nearest of these has.
+    Large sets are sampled; other vertices take the value of the nearest sample.
     """
     step = -(-len(places) // SAMPLES)
     chosen = places[::step]
@@ -183,7 +183,7 @@ def _longest_sides(subject: Subject) -> NDArray[np.float64]:
 
 
 def _lines(subject: Subject, pieces: NDArray[np.integer]) -> tuple[str, ...]:
-    """Tell of components, the largest first: how many vertices, and what they hang on."""
+    """Describe components, the largest first: vertex count, and the joint that they follow."""
     piece = np.where(subject.is_used, subject.component[subject.welded], -1)
     sizes = np.bincount(piece[piece >= 0], minlength=int(subject.component.max()) + 1)
     order = pieces[np.argsort(-sizes[pieces], kind="stable")]

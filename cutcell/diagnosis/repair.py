@@ -1,4 +1,4 @@
-"""Repairs that are safe: they change no more than what was found, and lose nothing of the file."""
+"""Safe repairs: they change only the elements at fault, and lose nothing of the file."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from .finding import Finding
 from .weights import INFLUENCES
 
 TURNED = ("inverted-faces",)
-NOTHING = "left as it is, for it can be true through the body"
+NOTHING = "unchanged, because it is plausible through the body"
 ROUNDING = 1e-9
 DROPPED = ("duplicate-faces", "degenerate-faces")
 
@@ -32,9 +32,9 @@ class Repaired:
     ----------
     rig : Rig
     done : tuple of str
-        What was done, in sentences.
+        Descriptions of the repairs.
     repaired : tuple of Finding
-        Those it was done about.
+        The repaired findings.
     """
 
     rig: Rig
@@ -43,23 +43,23 @@ class Repaired:
 
 
 def repair(rig: Rig, findings: Sequence[Finding]) -> Repaired:
-    """Repair what was found of a rig."""
-    before, found = rig, {finding.code: finding for finding in findings}
-    kept = []
+    """Repair findings of a rig."""
+    before, by_code = rig, {finding.code: finding for finding in findings}
+    unchanged = []
     for code, mend in WEIGHTS.items():  # of vertices, whose numbers stay
-        if code in found and rig.weights is not None:
-            weights = _allowed(rig, mend(rig, found[code]))
+        if code in by_code and rig.weights is not None:
+            weights = _allowed(rig, mend(rig, by_code[code]))
             if mend is _cleaned and np.abs(weights - rig.weights).max() < ROUNDING:
-                kept.append(code)
+                unchanged.append(code)
             rig = rig.with_weights(weights)
     turned, dropped = (
-        _mask(len(before.mesh.faces), [found[code].faces for code in codes if code in found])
+        _mask(len(before.mesh.faces), [by_code[code].faces for code in codes if code in by_code])
         for codes in (TURNED, DROPPED)
     )
     if turned.any() or dropped.any():
         rig = with_faces(rig, ~dropped, turned)
     done = tuple(
-        f"{finding.title}: {NOTHING if finding.code in kept else finding.repair}."
+        f"{finding.title}: {NOTHING if finding.code in unchanged else finding.repair}."
         for finding in findings
     )
     return Repaired(rig, done, tuple(findings))
@@ -75,14 +75,14 @@ def _mask(count: int, which: list[NDArray[np.intp]]) -> NDArray[np.bool_]:
 def _allowed(rig: Rig, weights: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return weights on joints that the file can store, scaled to sum to one."""
     if rig.allowed is not None:
-        kept = np.where(rig.allowed, weights, 0)
-        weights = np.where(kept.any(axis=1, keepdims=True), kept, _weights(rig))
+        permitted = np.where(rig.allowed, weights, 0)
+        weights = np.where(permitted.any(axis=1, keepdims=True), permitted, _weights(rig))
     sums = weights.sum(axis=1, keepdims=True)
     return np.divide(weights, sums, out=np.zeros_like(weights), where=sums > 0)
 
 
 def _as_they_are(rig: Rig, finding: Finding) -> NDArray[np.float64]:
-    """Return the weights: loading left out what is no number, and sums are scaled after."""
+    """Return the weights: loading drops invalid ones, and sums are scaled afterwards."""
     return _weights(rig)
 
 
@@ -116,7 +116,7 @@ def _pruned(rig: Rig, finding: Finding) -> NDArray[np.float64]:
 
 
 def _cleaned(rig: Rig, finding: Finding) -> NDArray[np.float64]:
-    """Take away what cannot be true through the body, where that was found alone."""
+    """Remove implausible weights from the vertices of a finding."""
     weights = _weights(rig).copy()
     weights[finding.vertices] = clean(rig).weights[finding.vertices]
     return weights

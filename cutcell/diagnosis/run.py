@@ -11,7 +11,7 @@ from ..geodesics import BoneDistances
 from ..method import check_resolution
 from ..rig.rig import Rig
 from ..runtime.progress import Progress, silent
-from .finding import SEVERITIES, Finding, by_gravity
+from .finding import SEVERITIES, Finding, by_severity
 from .joints import check_joints
 from .leaks import check_leaks
 from .mesh import check_mesh
@@ -26,12 +26,12 @@ CHECKS = (check_mesh, check_joints, check_parts, check_weights, check_leaks, che
 
 @dataclass(frozen=True, eq=False)
 class Diagnosis:
-    """All that was found of a rig, the gravest first.
+    """All findings of a rig, the most severe first.
 
     Parameters
     ----------
     rig : Rig
-        What was looked at.
+        The examined rig.
     findings : tuple of Finding
     """
 
@@ -74,14 +74,14 @@ class Diagnosis:
         chosen = [finding for finding in self.findings if finding.repair]
         if codes is not None:
             able = {finding.code: finding for finding in chosen}
-            wanted = list(codes)
-            for code in wanted:
+            requested = list(codes)
+            for code in requested:
                 if code not in able:
-                    known = ", ".join(able) or "none"
+                    available = ", ".join(able) or "none"
                     raise ParameterError(
-                        f'there is nothing to repair of the code "{code}"; repairable: {known}'
+                        f'there is nothing to repair of the code "{code}"; repairable: {available}'
                     )
-            chosen = [able[code] for code in dict.fromkeys(wanted)]
+            chosen = [able[code] for code in dict.fromkeys(requested)]
         return repair(self.rig, chosen)
 
     def to_dict(self) -> dict[str, Any]:
@@ -96,14 +96,14 @@ def diagnose(
     distances: BoneDistances | None = None,
     progress: Progress = silent,
 ) -> Diagnosis:
-    """Say what is wrong with a rig.
+    """Find faults of a rig.
 
     Parameters
     ----------
     rig : Rig
         Its mesh, its skeleton, and its weights if it has any.
     resolution : int
-        R, as of `build_graph`: for this lattice it is told what is too thin.
+        R, as of `build_graph`: thin parts are those of this lattice.
     distances : BoneDistances, optional
         Of this rig, such as those of a `Binding`; measured when left out.
     progress : callable
@@ -128,23 +128,23 @@ def diagnose(
     """
     resolution = check_resolution(resolution)
     subject = Subject(rig, resolution, distances, progress=progress)
-    found: list[Finding] = []
+    findings: list[Finding] = []
     _ = subject.graph
     _ = subject.distances
     for done, check in enumerate(CHECKS):
         progress("checks", done / len(CHECKS))
-        found += check(subject)
+        findings += check(subject)
     progress("checks", 1.0)
-    return Diagnosis(rig, by_gravity(found))
+    return Diagnosis(rig, by_severity(findings))
 
 
 def unreadable(error: CutcellError) -> Finding:
-    """Return the finding that stands for a file that cannot be loaded."""
+    """Return the finding of a file that cannot be loaded."""
     text = str(error)
     cyclic = "the skeleton has a cycle" in text
     return Finding(
         "cyclic-joints" if cyclic else "unreadable",
         "error",
         text,
-        "Let each joint hang on one above it." if cyclic else "Mend the file as the sentence says.",
+        "Remove the cycle from the parents." if cyclic else "Correct the file as described.",
     )

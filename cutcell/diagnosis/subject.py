@@ -1,4 +1,4 @@
-"""What the checks look at: properties of a rig that are computed once, when first asked for."""
+"""A rig under diagnosis, with properties that are computed on first use."""
 
 from __future__ import annotations
 
@@ -20,16 +20,7 @@ from ..weights.rig_falloff.components import label_components
 
 
 class Subject:
-    """A rig under diagnosis.
-
-    Parameters
-    ----------
-    rig : Rig
-    resolution : int
-    distances : BoneDistances, optional
-        Of the rig, where they are known already.
-    progress : callable
-    """
+    """A rig and the properties that its checks share."""
 
     def __init__(
         self,
@@ -85,8 +76,7 @@ class Subject:
     def is_collapsed(self) -> NDArray[np.bool_]:
         """Which faces have a repeated corner once vertices are welded, shape (m,)."""
         a, b, c = self.welded[self.rig.mesh.faces].T
-        found: NDArray[np.bool_] = (a == b) | (b == c) | (c == a)
-        return found
+        return np.asarray((a == b) | (b == c) | (c == a))
 
     @cached_property
     def whole(self) -> NDArray[np.intp]:
@@ -95,7 +85,7 @@ class Subject:
 
     @cached_property
     def faces(self) -> NDArray[np.int32]:
-        """`whole` between welded vertices, as the file has them, shape (w, 3)."""
+        """`whole` with welded vertices and the orientation of the file, shape (w, 3)."""
         return self.welded[self.rig.mesh.faces[self.whole]]
 
     @cached_property
@@ -135,7 +125,7 @@ class Subject:
 
     @cached_property
     def body(self) -> Body:
-        """What tells inside from outside near the surface."""
+        """Classifier of points near the surface: inside or outside."""
         faces = np.where(
             self.graph.inverted[:, None], self.rig.mesh.faces[:, ::-1], self.rig.mesh.faces
         )

@@ -1,10 +1,11 @@
-"""Faults that are seen when joints turn: a sweep of poses, one joint at a time."""
+"""Faults of posed rigs: a sweep of poses, one joint at a time."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import reduce
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,13 +21,13 @@ DEGREES = 45.0
 STRETCH = 4.0
 """An edge that becomes this much longer, by a chord of 45 degrees at most, joins vertices of which
 one follows and the other stays far from the joint: no smooth bend does that."""
-SEEN = 0.03
+MIN_STRETCH = 0.03
 """Of the longest side: an edge that becomes longer by less does not show."""
 FLIPPED = 0.01
 """Of the surface: where as much is turned over in one pose, it is more than a crease."""
 LOST = 0.1
 """Of the volume of closed components, in one pose."""
-GRAVE = 3.0
+WARNING_FACTOR = 3.0
 """Times these bounds: then it is a warning. Artists' weights crease, too, where a joint bends in a
 way that no animation asks of it."""
 MOVES = 1e-3
@@ -41,15 +42,15 @@ def check_sweep(subject: Subject) -> Iterator[Finding]:
     weights = subject.rig.weights
     if weights is None or not weights.any():
         return
-    found = sorted(_poses(subject, weights), key=lambda seen: -seen.longest)
-    yield from _stretched(subject, found)
-    yield from _flipped(subject, found)
-    yield from _lost(subject, found)
+    faults = sorted(_poses(subject, weights), key=lambda fault: -fault.longest)
+    yield from _stretched(subject, faults)
+    yield from _flipped(subject, faults)
+    yield from _lost(subject, faults)
 
 
 @dataclass(frozen=True, eq=False)
-class _Seen:
-    """What is seen in one pose."""
+class _PoseFaults:
+    """Faults in one pose."""
 
     pose: Pose
     stretched: NDArray[np.intp]  # welded vertices
@@ -59,11 +60,11 @@ class _Seen:
     lost: float
 
 
-def _poses(subject: Subject, weights: NDArray[np.float64]) -> Iterator[_Seen]:
+def _poses(subject: Subject, weights: NDArray[np.float64]) -> Iterator[_PoseFaults]:
     skeleton, points, faces = subject.rig.skeleton, subject.points, subject.faces
     first = np.unique(subject.welded, return_index=True)[1]
     total = weights.sum(axis=1, keepdims=True)
-    held = (weights / np.where(total > 0, total, 1))[first]
+    shares = (weights / np.where(total > 0, total, 1))[first]
     joints = subject.graph.lattice.to_unit(skeleton.joints)
     edges = subject.edges.edges
     length = _lengths(points[edges])
@@ -73,29 +74,29 @@ def _poses(subject: Subject, weights: NDArray[np.float64]) -> Iterator[_Seen]:
     volume = _volume(points[closed])
     turns = [(axis, way, axis_rotation(axis, way)) for axis in "xyz" for way in (DEGREES, -DEGREES)]
     for j, joint in enumerate(joints):
-        moved = held[:, skeleton.subtree[j]].sum(axis=1)
+        moved = shares[:, skeleton.subtree[j]].sum(axis=1)
         if not ((moved > MOVES) & (moved < 1 - MOVES)).any():
             continue  # all moves as one, or nothing does
         low, high = _extremes(moved, edges)
         bent = np.flatnonzero(high - low > MOVES)
         low, high = _extremes(moved, faces)
         unlike = np.flatnonzero(high - low > MOVES)
-        # What follows wholly turns about the joint, which changes no volume seen from there.
+        # Vertices that follow wholly turn about the joint, which changes no volume around it.
         low, high = _extremes(moved, closed)
         changing = closed[(high > 0) & (low < ALL)]
-        before, around, apart = at_first[unlike], faces[unlike], edges[bent]
+        before, around, ends = at_first[unlike], faces[unlike], edges[bent]
         follow = moved[around].mean(axis=1)[:, None]
         arms = points - joint
         enclosed = _volume(arms[changing])
         for axis, degrees, turn in turns:
             posed = arms + moved[:, None] * (arms @ (turn - np.eye(3)).T)
-            longer = _lengths(posed[apart]) - length[bent]
-            torn = (longer > SEEN) & (longer > (STRETCH - 1) * length[bent])
+            longer = _lengths(posed[ends]) - length[bent]
+            torn = (longer > MIN_STRETCH) & (longer > (STRETCH - 1) * length[bent])
             expected = before + follow * (before @ turn.T - before)
             over = np.einsum("ij,ij->i", normals(posed[around]), expected) < 0
-            yield _Seen(
+            yield _PoseFaults(
                 Pose(j, axis, degrees),
-                np.unique(apart[torn]),
+                np.unique(ends[torn]),
                 float(longer[torn].max(initial=0)),
                 unlike[over],
                 float(np.linalg.norm(before[over], axis=1).sum() / area),
@@ -127,77 +128,69 @@ def _volume(corners: NDArray[np.float64]) -> float:
     return float(np.einsum("ij,ij->", corners[:, 0], normals(corners)))
 
 
-def _stretched(subject: Subject, found: list[_Seen]) -> Iterator[Finding]:
-    torn = [seen for seen in found if len(seen.stretched)]
+def _stretched(subject: Subject, faults: list[_PoseFaults]) -> Iterator[Finding]:
+    torn = [fault for fault in faults if len(fault.stretched)]
     if not torn:
         return
     places = np.zeros(len(subject.points), bool)
-    places[np.concatenate([seen.stretched for seen in torn])] = True
+    places[np.concatenate([fault.stretched for fault in torn])] = True
     vertices = subject.vertices_at(places)
-    worst = torn[0]
     yield Finding(
         "stretched-edges",
-        "warning" if worst.longest > GRAVE * SEEN else "note",
-        f"Edges at {count(len(vertices), 'vertex')} become {STRETCH:g} times as long or more when "
-        f"a joint turns by {DEGREES:g}°.",
-        "Blend the weights there, or bind again.",
+        message=f"Edges at {count(len(vertices), 'vertex')} become {STRETCH:g} times as long or "
+        f"more when a joint turns by {DEGREES:g}°.",
+        advice="Blend the weights there, or bind again.",
         vertices=vertices,
-        joints=_joints(torn),
-        details=_lines(subject, torn, lambda s: f"by {share(s.longest, 1)} of the longest side"),
-        pose=worst.pose,
+        **_evidence(subject, torn, "longest", MIN_STRETCH, "by {} of the longest side"),
     )
 
 
-def _flipped(subject: Subject, found: list[_Seen]) -> Iterator[Finding]:
-    over = [seen for seen in found if seen.flipped_area > FLIPPED]
-    over.sort(key=lambda seen: -seen.flipped_area)
+def _flipped(subject: Subject, faults: list[_PoseFaults]) -> Iterator[Finding]:
+    over = [fault for fault in faults if fault.flipped_area > FLIPPED]
+    over.sort(key=lambda fault: -fault.flipped_area)
     if not over:
         return
-    worst = over[0]
-    faces = subject.whole[np.unique(np.concatenate([seen.flipped for seen in over]))]
+    faces = subject.whole[np.unique(np.concatenate([fault.flipped for fault in over]))]
     yield Finding(
         "flipped-faces",
-        "warning" if worst.flipped_area > GRAVE * FLIPPED else "note",
-        f"Up to {share(worst.flipped_area, 1)} of the surface is turned over when a joint turns by "
-        f"{DEGREES:g}°.",
-        "Blend the weights there, or bind again.",
+        message=f"Up to {share(over[0].flipped_area, 1)} of the surface is turned over when a "
+        f"joint turns by {DEGREES:g}°.",
+        advice="Blend the weights there, or bind again.",
         vertices=np.unique(subject.rig.mesh.faces[faces]).astype(np.intp),
         faces=faces,
-        joints=_joints(over),
-        details=_lines(subject, over, lambda s: f"{share(s.flipped_area, 1)} of the surface"),
-        pose=worst.pose,
+        **_evidence(subject, over, "flipped_area", FLIPPED, "{} of the surface"),
     )
 
 
-def _lost(subject: Subject, found: list[_Seen]) -> Iterator[Finding]:
-    lost = [seen for seen in found if seen.lost > LOST]
-    lost.sort(key=lambda seen: -seen.lost)
+def _lost(subject: Subject, faults: list[_PoseFaults]) -> Iterator[Finding]:
+    lost = [fault for fault in faults if fault.lost > LOST]
+    lost.sort(key=lambda fault: -fault.lost)
     if not lost:
         return
-    worst = lost[0]
-    joints = _joints(lost)
+    evidence = _evidence(subject, lost, "lost", LOST, "{} of the volume")
     assert subject.rig.weights is not None
     yield Finding(
         "lost-volume",
-        "warning" if worst.lost > GRAVE * LOST else "note",
-        f"The body loses up to {share(worst.lost, 1)} of its volume when a joint turns by "
-        f"{DEGREES:g}°.",
-        "Blend the weights over a longer stretch, or bind again.",
-        vertices=np.flatnonzero((subject.rig.weights[:, joints] > MOVES).any(axis=1)),
-        joints=joints,
-        details=_lines(subject, lost, lambda s: f"{share(s.lost, 1)} of the volume"),
-        pose=worst.pose,
+        message=f"The body loses up to {share(lost[0].lost, 1)} of its volume when a joint turns "
+        f"by {DEGREES:g}°.",
+        advice="Blend the weights over a longer stretch, or bind again.",
+        vertices=np.flatnonzero((subject.rig.weights[:, evidence["joints"]] > MOVES).any(axis=1)),
+        **evidence,
     )
 
 
-def _joints(found: list[_Seen]) -> NDArray[np.intp]:
-    return np.unique([seen.pose.joint for seen in found])
-
-
-def _lines(subject: Subject, found: list[_Seen], told: Callable[[_Seen], str]) -> tuple[str, ...]:
-    """Return a line for each joint, of the first pose: the worst."""
+def _evidence(
+    subject: Subject, faults: list[_PoseFaults], size: str, bound: float, text: str
+) -> dict[str, Any]:
+    """Return severity, joints, worst pose, and a line for each joint of its worst pose."""
     best: dict[int, str] = {}
-    for seen in found:
-        name = shown_name(subject.rig.skeleton.names[seen.pose.joint])
-        best.setdefault(seen.pose.joint, f"{name}: {told(seen)}, about {seen.pose.axis}")
-    return tuple(best.values())[:MAX_LINES]
+    for fault in faults:
+        name = shown_name(subject.rig.skeleton.names[fault.pose.joint])
+        line = f"{name}: {text.format(share(getattr(fault, size), 1))}, about {fault.pose.axis}"
+        best.setdefault(fault.pose.joint, line)
+    return {
+        "severity": "warning" if getattr(faults[0], size) > WARNING_FACTOR * bound else "note",
+        "joints": np.unique([fault.pose.joint for fault in faults]),
+        "details": tuple(best.values())[:MAX_LINES],
+        "pose": faults[0].pose,
+    }

@@ -1,4 +1,4 @@
-"""Faults of the weights that a file brings along."""
+"""Faults of the weights of a file."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ through the air, and than from the nearest joint, has leaked across a gap."""
 FAR = 0.4
 """As far beyond the nearest joint it is out of place, whatever lies between."""
 OUTSIDE = 0.05
-"""Of the longest side: joints that are farther from the body tell nothing about ways through it."""
+"""Of the longest side: joints farther from the body have no distances through it."""
 DIFFERENT = 0.02
 """Weights of vertices in one place may differ by this much in total."""
 SEAMS = 0.05
 """Of all places on the surface: where more of them tear, it is no accident of a few layers."""
-CLEANED = "take away what cannot be true through the body, there alone"
+CLEANED = "remove weight that is implausible through the body from these vertices"
 """How weight that is too far from its joint is repaired."""
 MAX_LINES = 40
 
@@ -102,9 +102,9 @@ def _torn(subject: Subject, weights: NDArray[np.float64]) -> Iterator[Finding]:
     place = subject.welded
     order = np.argsort(place, kind="stable")
     first = order[np.searchsorted(place[order], np.arange(len(subject.points)))]
-    apart = np.abs(weights - weights[first[place]]).sum(axis=1) > DIFFERENT
+    differs = np.abs(weights - weights[first[place]]).sum(axis=1) > DIFFERENT
     torn = np.zeros(len(subject.points), bool)
-    torn[place[apart & subject.is_used]] = True
+    torn[place[differs & subject.is_used]] = True
     if not torn.any():
         return
     places = len(np.unique(place[subject.is_used]))
@@ -124,8 +124,8 @@ def _leaked(
     subject: Subject, distances: BoneDistances, weights: NDArray[np.float64]
 ) -> Iterator[Finding]:
     vertex, joint = np.nonzero((weights > NOTICED) & measurable(subject, distances))
-    asked = distances.fallback[vertex] == REACHED
-    vertex, joint = vertex[asked], joint[asked]
+    is_reached = distances.fallback[vertex] == REACHED
+    vertex, joint = vertex[is_reached], joint[is_reached]
     nearest = distances.least
     through = through_body(subject, distances, vertex, joint)
     straight = _straight(subject, distances, vertex, joint)
@@ -136,49 +136,49 @@ def _leaked(
     if not leaked.any():
         return
     vertex, joint = vertex[leaked], joint[leaked]
-    found, joints = np.unique(vertex), np.unique(joint)
+    vertices, joints = np.unique(vertex), np.unique(joint)
     names = subject.rig.skeleton.names
     lines = []
     for j in joints[:MAX_LINES]:
-        mine = vertex[joint == j]
+        of_joint = vertex[joint == j]
         lines.append(
-            f"{shown_name(names[j])}: up to {weights[mine, j].max():.0%} of "
-            f"{count(len(mine), 'vertex')} far from it"
+            f"{shown_name(names[j])}: up to {weights[of_joint, j].max():.0%} of "
+            f"{count(len(of_joint), 'vertex')} far from it"
         )
     yield Finding(
         "leaked-weights",
         "warning",
-        f"{count(len(found), 'vertex', 'follow')} joints that are far away through the body, past "
-        "nearer ones.",
-        "Take this weight away, here or of the whole rig (cutcell clean), or bind again.",
+        f"{count(len(vertices), 'vertex', 'follow')} joints that are far away through the body, "
+        "past nearer ones.",
+        "Remove this weight, from these vertices or the whole rig (cutcell clean), or bind again.",
         repair=CLEANED,
-        vertices=found,
+        vertices=vertices,
         joints=joints,
         details=tuple(lines),
     )
 
 
 def measurable(subject: Subject, distances: BoneDistances) -> NDArray[np.bool_]:
-    """Tell from which joints ways through the body are known, shape (j,)."""
-    told = np.zeros(len(subject.joint_distance), bool)
-    told[distances.bones.joint] = True
-    return told & (subject.joint_distance <= OUTSIDE)
+    """Return which joints have distances through the body, shape (j,)."""
+    has_distances = np.zeros(len(subject.joint_distance), bool)
+    has_distances[distances.bones.joint] = True
+    return has_distances & (subject.joint_distance <= OUTSIDE)
 
 
 def through_body(
     subject: Subject, distances: BoneDistances, vertex: NDArray[np.intp], joint: NDArray[np.intp]
 ) -> NDArray[np.float64]:
-    """Return the distances through the body of vertices from joints, measured if not known."""
+    """Return the distances through the body of vertices from joints, measured if necessary."""
     through = distances.at(joint, vertex)
     unknown = np.isinf(through)
     if unknown.any():
         which = np.isin(distances.bones.joint, joint[unknown])
-        some = replace(
+        subset = replace(
             distances,
             bones=distances.bones.some(which),
             sources=distances.sources.some(which),
         )
-        through = some.all_joints(subject.progress)[joint, vertex]
+        through = subset.all_joints(subject.progress)[joint, vertex]
     return through
 
 
@@ -189,8 +189,8 @@ def _straight(
     bones, points = distances.bones, subject.points[subject.welded]
     least = np.full(len(vertex), np.inf)
     for j in np.unique(joint):
-        mine = np.flatnonzero(joint == j)
+        of_joint = np.flatnonzero(joint == j)
         for b in np.flatnonzero(bones.joint == j):
-            away = distance_to_segment(points[vertex[mine]], bones.start[b], bones.end[b])
-            least[mine] = np.minimum(least[mine], away)
+            away = distance_to_segment(points[vertex[of_joint]], bones.start[b], bones.end[b])
+            least[of_joint] = np.minimum(least[of_joint], away)
     return least

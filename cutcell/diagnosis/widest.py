@@ -1,4 +1,4 @@
-"""How much of a weight is connected along the skin with where its joint is near."""
+"""The part of a weight that is connected along the skin with the vicinity of its joint."""
 
 from __future__ import annotations
 

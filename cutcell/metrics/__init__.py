@@ -1,4 +1,4 @@
-"""How good weights are, compared with an artist's (paper section 4.3)."""
+"""Errors of weights, compared with an artist's (paper section 4.3)."""
 
 from .clips import ClipError, clip_error
 from .counting import COUNTS, vertex_shares

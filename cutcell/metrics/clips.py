@@ -73,8 +73,8 @@ def clip_error(
         `frames` out of range, or an unknown `count`.
     """
     rig.skeleton.require_joints()
-    ours, theirs = checked_pair(predicted, reference)
-    check_fit(ours, rig.mesh, rig.skeleton)
+    weights, targets = checked_pair(predicted, reference)
+    check_fit(weights, rig.mesh, rig.skeleton)
     frames = check_integer("frames", frames, 1, 100_000)
     share = vertex_shares(rig.mesh, count)
     unit = CM2 / longest_side(rig.mesh) ** 2
@@ -83,12 +83,12 @@ def clip_error(
         times = clip.times
         chosen = np.unique(np.linspace(0, len(times) - 1, frames).round().astype(int))
         chosen = chosen[chosen >= 0]
-        largest, total = np.zeros(len(ours)), 0.0
+        largest, total = np.zeros(len(weights)), 0.0
         for frame in chosen:
             transforms = clip.sample(times[frame])
-            apart = linear_blend_skinning(rig.mesh.vertices, ours, transforms)
-            apart -= linear_blend_skinning(rig.mesh.vertices, theirs, transforms)
-            squared = unit * (apart * apart).sum(axis=1)
+            difference = linear_blend_skinning(rig.mesh.vertices, weights, transforms)
+            difference -= linear_blend_skinning(rig.mesh.vertices, targets, transforms)
+            squared = unit * (difference * difference).sum(axis=1)
             largest = np.maximum(largest, squared)
             total += float(share @ squared)
         mean = total / max(len(chosen), 1)

@@ -1,4 +1,4 @@
-"""How much each vertex counts in a mean over the mesh."""
+"""Weight of each vertex in a mean over the mesh."""
 
 from __future__ import annotations
 

@@ -79,7 +79,7 @@ def find_gaps(
     neighbours = neighbours[np.lexsort(neighbours.T[::-1])]
     matrix = graph.csr()
     component = connected_components(matrix, directed=False)[1]
-    found = [np.empty((0, 2), np.intp)]
+    gaps = [np.empty((0, 2), np.intp)]
     for first in range(0, len(starts), BLOCK):
         part = starts[first : first + BLOCK]
         reach = dijkstra(matrix, indices=nodes[part], limit=far)
@@ -87,8 +87,8 @@ def find_gaps(
         a, b = neighbours[begin:end].T
         beyond = ~np.isfinite(reach[np.searchsorted(part, a), nodes[b]])
         together = component[nodes[a]] == component[nodes[b]]
-        found.append(neighbours[begin:end][beyond & together])
-    return vertex[np.concatenate(found)].astype(np.int32)
+        gaps.append(neighbours[begin:end][beyond & together])
+    return vertex[np.concatenate(gaps)].astype(np.int32)
 
 
 def crosstalk(weights: ArrayLike, pairs: ArrayLike) -> Crosstalk:

@@ -18,7 +18,7 @@ from .weight_error import checked_pair
 AXES = ("x", "y", "z")
 Turned = Literal["deform", "all"]
 TURNED: tuple[Turned, ...] = get_args(Turned)
-"""Which joints are turned, by a word."""
+"""Named choices of the joints to turn."""
 CM2 = 1e4
 """Square centimetres in a square metre: the longest side of a mesh counts as 1 m."""
 BLOCK_NUMBERS = 1 << 20
@@ -27,7 +27,7 @@ BLOCK_NUMBERS = 1 << 20
 
 @dataclass(frozen=True)
 class Turn:
-    """What turning one joint about one axis shows.
+    """Errors of turning one joint about one axis.
 
     Parameters
     ----------
@@ -142,24 +142,24 @@ def deformation_error(
     """
     mesh, skeleton = parts_of(rig)
     skeleton.require_joints()
-    ours, theirs = checked_pair(predicted, reference)
-    check_fit(ours, mesh, skeleton)
+    weights, targets = checked_pair(predicted, reference)
+    check_fit(weights, mesh, skeleton)
     degrees = check_number("degrees", degrees, 0, 180)
     turned = _checked_joints(joints, skeleton)
     share = vertex_shares(mesh, count)
 
     unit = CM2 / longest_side(mesh) ** 2
     chord = 2 * (1 - np.cos(np.radians(degrees))) * unit
-    vertex = np.zeros(len(ours))
-    joint = np.full(len(ours), turned[0], np.int32)
+    vertex = np.zeros(len(weights))
+    joint = np.full(len(weights), turned[0], np.int32)
     turn_mean = np.zeros((len(skeleton.joints), 3))
     turn_largest = np.zeros((len(skeleton.joints), 3))
     below = skeleton.subtree[turned].T.astype(np.float64)
     step = max(1, BLOCK_NUMBERS // len(skeleton.joints))
-    for first in range(0, len(ours), step):
-        progress("deformation", first / len(ours))
+    for first in range(0, len(weights), step):
+        progress("deformation", first / len(weights))
         part = slice(first, first + step)
-        moved = (ours[part] - theirs[part]) @ below  # (block, turned): S - S'
+        moved = (weights[part] - targets[part]) @ below  # (block, turned): S - S'
         for k, j in enumerate(turned):
             arm = (mesh.vertices[part] - skeleton.joints[j]) ** 2
             off_axis = arm.sum(axis=1, keepdims=True) - arm  # (block, 3 axes)

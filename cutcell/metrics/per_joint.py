@@ -1,4 +1,4 @@
-"""Which joints an error comes from."""
+"""Errors by joint."""
 
 from __future__ import annotations
 
@@ -71,17 +71,17 @@ def joint_table(
     """
     mesh, skeleton = parts_of(rig)
     error = deformation_error(rig, predicted, reference, degrees, count=count)
-    ours, theirs = checked_pair(predicted, reference)
+    weights, targets = checked_pair(predicted, reference)
     share = vertex_shares(mesh, count)
-    more, less = share @ np.maximum(ours - theirs, 0), share @ np.maximum(theirs - ours, 0)
-    given, wanted = share @ ours, share @ theirs
+    more, less = share @ np.maximum(weights - targets, 0), share @ np.maximum(targets - weights, 0)
+    predicted_share, reference_share = share @ weights, share @ targets
     axis = error.turn_mean.argmax(axis=1)
     rows = [
         JointRow(
             int(j),
             skeleton.names[j],
-            float(given[j]),
-            float(wanted[j]),
+            float(predicted_share[j]),
+            float(reference_share[j]),
             float(less[j]),
             float(more[j]),
             float(error.turn_mean[j, axis[j]]),

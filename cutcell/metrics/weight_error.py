@@ -39,9 +39,9 @@ def weight_l1(predicted: ArrayLike, reference: ArrayLike, shares: ArrayLike | No
     ----------
     Paper section 4.3; Xu et al. 2020 (RigNet).
     """
-    ours, theirs = checked_pair(predicted, reference)
-    share = checked_shares(shares, len(ours))
-    return float(share @ np.abs(ours - theirs).sum(axis=1))
+    weights, targets = checked_pair(predicted, reference)
+    share = checked_shares(shares, len(weights))
+    return float(share @ np.abs(weights - targets).sum(axis=1))
 
 
 def precision_recall(
@@ -78,15 +78,15 @@ def precision_recall(
     Paper section 4.3, with its threshold.
     """
     threshold = check_number("threshold", threshold, 0, 1)
-    ours, theirs = checked_pair(predicted, reference)
-    share = checked_shares(shares, len(ours))
-    found, wanted = ours > threshold, theirs > threshold
-    both = share @ (found & wanted).sum(axis=1)
-    of_found, of_wanted = share @ found.sum(axis=1), share @ wanted.sum(axis=1)
+    weights, targets = checked_pair(predicted, reference)
+    share = checked_shares(shares, len(weights))
+    influences, expected = weights > threshold, targets > threshold
+    both = share @ (influences & expected).sum(axis=1)
+    of_predicted, of_reference = share @ influences.sum(axis=1), share @ expected.sum(axis=1)
     nan = float("nan")
     return (
-        float(both / of_found) if of_found > 0 else nan,
-        float(both / of_wanted) if of_wanted > 0 else nan,
+        float(both / of_predicted) if of_predicted > 0 else nan,
+        float(both / of_reference) if of_reference > 0 else nan,
     )
 
 
@@ -112,14 +112,14 @@ def checked_pair(
     predicted: ArrayLike, reference: ArrayLike
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return both as arrays (n, j) of weights that can be compared."""
-    ours = checked_weights(predicted, "predicted")
-    theirs = checked_weights(reference, "reference")
-    if ours.shape != theirs.shape:
+    weights = checked_weights(predicted, "predicted")
+    targets = checked_weights(reference, "reference")
+    if weights.shape != targets.shape:
         raise WeightsError(
-            f"the predicted weights have the shape {ours.shape}, the reference {theirs.shape}; "
+            f"the predicted weights have the shape {weights.shape}, the reference {targets.shape}; "
             "both must be for the same vertices and joints"
         )
-    return ours, theirs
+    return weights, targets
 
 
 def checked_weights(weights: ArrayLike, name: str) -> NDArray[np.float64]:

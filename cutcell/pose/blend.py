@@ -11,7 +11,7 @@ from ..errors import ParameterError
 def linear_blend_skinning(
     vertices: ArrayLike, weights: ArrayLike, transforms: ArrayLike
 ) -> NDArray[np.float64]:
-    """Move each vertex by the weighted mean of its joints' transforms.
+    """Move each vertex by the weighted mean of the transforms of its joints.
 
     Parameters
     ----------
@@ -45,5 +45,5 @@ def linear_blend_skinning(
         raise ParameterError(f"{len(points)} vertices but {len(shares)} rows of weights")
     blended = (shares @ matrices[:, :3].reshape(-1, 12)).reshape(-1, 3, 4)
     posed = np.einsum("nab,nb->na", blended[:, :, :3], points) + blended[:, :, 3]
-    held = np.abs(shares).sum(axis=1, keepdims=True) > 0
-    return np.where(held, posed, points)
+    is_weighted = np.abs(shares).sum(axis=1, keepdims=True) > 0
+    return np.where(is_weighted, posed, points)

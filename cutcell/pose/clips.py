@@ -29,7 +29,7 @@ def pose_at(clip: Clip, seconds: float) -> NDArray[np.float64]:
     ParameterError
         A time that is not finite, or a clip without frames.
     """
-    # The end is a frame of its own, not yet the start again.
+    # The end is a separate frame, not yet the start again.
     duration = clip.duration
     if np.isfinite(seconds) and duration > 0 and not 0 <= seconds <= duration:
         seconds %= duration
@@ -44,7 +44,7 @@ def swing(
     seconds: float = 2.0,
     fps: float = 30,
 ) -> Clip:
-    """Make a clip in which one joint swings to both sides and comes back.
+    """Make a clip in which one joint swings to both sides and returns.
 
     Parameters
     ----------

@@ -37,10 +37,10 @@ def forward_kinematics(
     """
     count = len(skeleton.joints)
     turns = _numbers(rotations, (count, 3, 3), "rotations")
-    own = np.tile(np.eye(4), (count, 1, 1))
-    own[:, :3, :3] = turns
-    own[:, :3, 3] = skeleton.joints - np.einsum("jab,jb->ja", turns, skeleton.joints)
-    transforms = composed(own, skeleton.parents)
+    local = np.tile(np.eye(4), (count, 1, 1))
+    local[:, :3, :3] = turns
+    local[:, :3, 3] = skeleton.joints - np.einsum("jab,jb->ja", turns, skeleton.joints)
+    transforms = composed(local, skeleton.parents)
     if translation is not None:
         transforms[:, :3, 3] += _numbers(translation, (3,), "translation")
     return transforms
@@ -59,7 +59,7 @@ def rotate_joint(
     axis : {"x", "y", "z"} or array_like, shape (3,)
         In the rig's space; need not have unit length.
     degrees : float
-        Counter-clockwise seen from the axis' tip.
+        Counter-clockwise seen from the tip of the axis.
 
     Returns
     -------
@@ -77,7 +77,7 @@ def rotate_joint(
 
 
 def axis_rotation(axis: str | ArrayLike, degrees: float) -> NDArray[np.float64]:
-    """Return the rotation matrix, shape (3, 3), about an axis (Rodrigues' formula)."""
+    """Return the rotation matrix, shape (3, 3), about an axis (formula of Rodrigues)."""
     if isinstance(axis, str):
         if axis not in AXES:
             raise ParameterError(f'axis "{axis}" is none of x, y, z')

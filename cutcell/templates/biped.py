@@ -1,12 +1,12 @@
-"""A skeleton for who walks on two legs and has two arms."""
+"""Template of a biped with two arms."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
 
+from .frame import Joints, mirrored
 from .interior import Interior, along, cut
-from .mirrored import Joints, mirrored
 
 PARENTS = {
     "hips": "", "spine": "hips", "chest": "spine", "neck": "chest", "head": "neck",
@@ -92,10 +92,10 @@ def place(body: Interior) -> Joints:
 def _sole(body: Interior, sign: int) -> int:
     """Return the node in the middle of what one foot stands on."""
     points, y = body.points, body.points[:, 1] - body.floor
-    found = (y < SOLE * body.height) & (sign * points[:, 0] > 0)
-    if not found.any():
-        found = y < SOLE * body.height
-    return _nearest_of(body, found, points[found].mean(axis=0))
+    is_foot = (y < SOLE * body.height) & (sign * points[:, 0] > 0)
+    if not is_foot.any():
+        is_foot = y < SOLE * body.height
+    return _nearest_of(body, is_foot, points[is_foot].mean(axis=0))
 
 
 def _hand(body: Interior, head: int, belly: int, sign: int) -> int:
@@ -104,9 +104,9 @@ def _hand(body: Interior, head: int, belly: int, sign: int) -> int:
     side = (y > 0.2 * body.height) & (y < 0.95 * body.height)
     thick = body.depth > THIN * body.cell  # no corner of a cape
     side = side & thick if (side & thick).any() else side
-    found = np.flatnonzero(side & (x > ARM_OUT * x[side].max()))
-    away = body.distances(head)[found] + body.distances(belly)[found]
-    thick_end = int(found[away.argmax()])
+    candidates = np.flatnonzero(side & (x > ARM_OUT * x[side].max()))
+    away = body.distances(head)[candidates] + body.distances(belly)[candidates]
+    thick_end = int(candidates[away.argmax()])
     # Fingers are thin.
     near = np.flatnonzero(body.distances(thick_end) < HAND * body.height)
     return int(near[body.distances(belly)[near].argmax()])
@@ -162,10 +162,10 @@ def _middle_at(body: Interior, height: float) -> NDArray[np.float64]:
     middle = near & (np.abs(points[:, 0]) < 0.1 * np.abs(points[:, 0]).max() + body.cell)
     if not middle.any():
         middle = near if near.any() else np.ones(len(points), np.bool_)
-    found = points[body.deepest(middle)].copy()
-    found[1] = height + body.floor
-    found[0] = 0.0
-    return found
+    point = points[body.deepest(middle)].copy()
+    point[1] = height + body.floor
+    point[0] = 0.0
+    return point
 
 
 def _nearest_of(body: Interior, among: NDArray[np.bool_], point: NDArray[np.float64]) -> int:

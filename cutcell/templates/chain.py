@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from .frame import Joints
 from .interior import Interior, along
-from .mirrored import Joints
 
 ENDS = 0.12
 """Of the length: an end is as thick as its deepest point so far in."""

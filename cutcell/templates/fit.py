@@ -2,25 +2,33 @@
 
 from __future__ import annotations
 
+from typing import Literal, cast, get_args
+
 import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import MeshError
 from ..graph import CutCellGraph, build_graph
+from ..rig.checks import check_choice
 from ..rig.inputs import MeshLike, as_mesh
 from ..rig.rig import Skeleton
 from ..runtime.progress import Progress, silent
 from . import biped, chain, hand, quadruped
-from .frame import lying, standing
+from .frame import Joints, lying, standing
 from .interior import Interior
-from .mirrored import Joints
-from .names import Template, check_template
 
+Template = Literal["biped", "quadruped", "hand", "snake", "chain"]
+TEMPLATES: tuple[Template, ...] = get_args(Template)
 RESOLUTION = 64
 """With half of it arms are narrower than a lattice cell, and no path runs through them."""
 FEWEST_NODES = 8
 SNAKE = tuple(f"spine.{n}" for n in range(1, 13))
 CHAIN = tuple(f"bone.{n}" for n in range(1, 6))
+
+
+def check_template(name: str) -> Template:
+    """Return the template of a name."""
+    return cast(Template, check_choice("template", name, TEMPLATES))
 
 
 def fit_skeleton(

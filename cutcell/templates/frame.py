@@ -1,4 +1,4 @@
-"""Which way a body stands: left, up and front, from its shape."""
+"""The frame of a body: its left, up and front, and joints mirrored across it."""
 
 from __future__ import annotations
 
@@ -6,6 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+ALIKE = 0.06
+"""Of the body's longest side: left and right joints that differ by less are made symmetric."""
+Joints = dict[str, NDArray[np.float64]]
+"""Position of each joint by its name, in the body's frame."""
 SAMPLES = 4000
 """Vertices that are compared with their mirror images."""
 CLEARLY = 0.8
@@ -83,3 +87,20 @@ def _looks_back(points: NDArray[np.float64], tall: bool) -> bool:
     legs = points[height < 0.2 * height.max()]
     middle = (legs[:, 2].min() + legs[:, 2].max()) / 2
     return bool(np.median(high[:, 2]) < middle)
+
+
+def mirrored(joints: Joints, size: float) -> Joints:
+    """Return joints in a frame whose x is 0 in the middle, those of left and right alike.
+
+    Joints are returned unchanged if the two sides have different poses.
+    """
+    flip = np.array([-1.0, 1.0, 1.0])
+    pairs = [(name, f"{name[:-2]}.R") for name in joints if name.endswith(".L")]
+    gaps = [float(np.linalg.norm(joints[a] - flip * joints[b])) for a, b in pairs]
+    if max(gaps, default=np.inf) > ALIKE * size:
+        return joints
+    result = {name: place * [0.0, 1.0, 1.0] for name, place in joints.items()}
+    for a, b in pairs:
+        result[a] = (joints[a] + flip * joints[b]) / 2
+        result[b] = flip * result[a]
+    return result

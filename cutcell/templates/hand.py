@@ -1,4 +1,4 @@
-"""A skeleton for a hand: its fingers are found, and told apart by where the thumb is."""
+"""Template of a hand: fingers are named by the position of the thumb."""
 
 from __future__ import annotations
 
@@ -6,15 +6,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import SkeletonError
+from .frame import Joints
 from .interior import Interior, along, cut
-from .mirrored import Joints
 
 NAMES = {
     2: ("index", "pinky"),
     3: ("index", "middle", "pinky"),
     4: ("index", "middle", "ring", "pinky"),
 }
-"""Of the fingers beside the thumb, by how many there are."""
+"""Names of the fingers other than the thumb, by their number."""
 MIN_LENGTH = 0.3
 """Of the longest one: what is shorter is no finger."""
 MAX_ENDS = 16
@@ -62,12 +62,12 @@ def names() -> list[tuple[str, ...]]:
 
 def parents_of(joints: Joints) -> dict[str, str]:
     """Return the parent of each joint, "" for none."""
-    found = {"hand": ""}
+    parents = {"hand": ""}
     for name in joints:
         finger, _, number = name.partition(".")
         if number:
-            found[name] = "hand" if number == "1" else f"{finger}.{int(number) - 1}"
-    return found
+            parents[name] = "hand" if number == "1" else f"{finger}.{int(number) - 1}"
+    return parents
 
 
 def _ends(body: Interior) -> tuple[int, list[int]]:
@@ -126,7 +126,7 @@ def _in_order(body: Interior, wrist: int, tips: list[int]) -> list[int]:
 
     # The thumb is the outer one that parts from its neighbour nearer to the wrist.
     first, last = (
-        far[tip] - body.branch(tip, beside, wrist)
-        for tip, beside in ((order[0], order[1]), (order[-1], order[-2]))
+        far[tip] - body.branch(tip, neighbour, wrist)
+        for tip, neighbour in ((order[0], order[1]), (order[-1], order[-2]))
     )
     return order if first <= last else order[::-1]

@@ -13,11 +13,9 @@ from scipy.spatial import cKDTree
 from ..graph.cutcell_graph import INTERIOR, MESH, SURFACE, CutCellGraph
 
 MIN_DEPTH = 0.5
-"""Of a lattice cell: what lies on the surface counts as this deep, so that paths have a cost."""
-
-
+"""Of a lattice cell: depth of surface nodes, so that paths have a cost."""
 AT_SKIN = 0.1
-"""Of a lattice cell: what is nearer to the skin is as good as outside."""
+"""Of a lattice cell: points nearer to the skin are treated as outside."""
 LARGE_COMPONENTS = 32
 """Components that others may be joined to; further ones are small."""
 SHORTEST = 1e-9
@@ -25,20 +23,9 @@ SHORTEST = 1e-9
 
 
 class Interior:
-    """The nodes of a cut-cell graph in a frame of the body's own: x left, y up, z to the front.
+    """The connected nodes of a graph in the body's frame: x left, y up, z to the front.
 
-    Parameters
-    ----------
-    graph : CutCellGraph
-    axes : array, shape (3, 3)
-        Rows are the frame's axes in the unit cube.
-    origin : array, shape (3,)
-        The frame's origin in the unit cube.
-
-    Attributes
-    ----------
-    points : array, shape (k, 3)
-        The nodes that have edges, in the frame.
+    The frame's axes, rows of (3, 3), and its origin are in the unit cube.
     """
 
     def __init__(
@@ -46,16 +33,16 @@ class Interior:
     ) -> None:
         self.graph, self.axes, self.origin = graph, axes, origin
         self.cell = 1 / graph.lattice.resolution
-        kept = np.flatnonzero(np.diff(graph.csr().indptr) > 0)
-        self.points = self.to_frame(graph.nodes[kept])
-        self._lengths = _bridged(csr_array(graph.csr()[kept][:, kept]), self.points)
-        kind = graph.node_kind[kept]
+        connected = np.flatnonzero(np.diff(graph.csr().indptr) > 0)
+        self.points = self.to_frame(graph.nodes[connected])
+        self._lengths = _bridged(csr_array(graph.csr()[connected][:, connected]), self.points)
+        kind = graph.node_kind[connected]
         # In the unit cube, where it lies along the lattice: a tree of that is quicker to search.
-        in_cube = graph.nodes[kept]
+        in_cube = graph.nodes[connected]
         self._skin = cKDTree(in_cube[kind == (SURFACE if (kind == SURFACE).any() else MESH)])
-        # Mesh vertices count as skin wherever they are: a cape has nothing but them.
+        # Mesh vertices are skin wherever they are: a cape has no other nodes.
         self.depth = np.where(kind == INTERIOR, self._skin.query(in_cube)[0], 0.0)
-        self._found: dict[int, NDArray[np.float64]] = {}
+        self._distances: dict[int, NDArray[np.float64]] = {}
 
     def to_frame(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
         """Bring points (..., 3) from the unit cube into the frame."""
@@ -90,9 +77,9 @@ class Interior:
 
     def distances(self, node: int) -> NDArray[np.float64]:
         """Return the lengths of the shortest paths through the body from a node to all."""
-        if node not in self._found:
-            self._found[node] = np.asarray(dijkstra(self._lengths, indices=node))
-        return self._found[node]
+        if node not in self._distances:
+            self._distances[node] = np.asarray(dijkstra(self._lengths, indices=node))
+        return self._distances[node]
 
     def branch(self, tip: int, a: int, b: int) -> float:
         """Return how far from a tip the paths to two others part, as in a tree (Gromov product)."""
@@ -168,16 +155,16 @@ def _bridged(lengths: csr_array, points: NDArray[np.float64]) -> csr_array:
     tree = cKDTree(points[joined])
     rows, columns, added = [], [], []
     for rank, one in enumerate(order[1:]):
-        mine = np.flatnonzero(label == one)
-        far, near = tree.query(points[mine])
+        members = np.flatnonzero(label == one)
+        far, near = tree.query(points[members])
         best = int(far.argmin())
-        rows.append(mine[best])
+        rows.append(members[best])
         columns.append(joined[near[best]])
         added.append(float(far[best]))
         if rank < LARGE_COMPONENTS:
-            joined = np.concatenate([joined, mine])
+            joined = np.concatenate([joined, members])
             tree = cKDTree(points[joined])
-    found = coo_array((added, (rows, columns)), shape=lengths.shape)
-    every = csr_array(lengths + found + found.T)
+    bridges = coo_array((added, (rows, columns)), shape=lengths.shape)
+    every = csr_array(lengths + bridges + bridges.T)
     every.data = np.maximum(every.data, SHORTEST)
     return every

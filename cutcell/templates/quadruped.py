@@ -1,12 +1,12 @@
-"""A skeleton for who walks on four legs."""
+"""Template of a quadruped."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
 
+from .frame import Joints, mirrored
 from .interior import Interior, along, cut
-from .mirrored import Joints, mirrored
 
 PARENTS = {
     "hips": "", "spine": "hips", "chest": "spine", "neck": "chest", "head": "neck",
@@ -46,9 +46,9 @@ def place(body: Interior) -> Joints:
     joints: Joints = {}
     tops = {}
     for end, other in (("front_", ""), ("", "front_")):
-        for side, beside in ("LR", "RL"):
+        for side, opposite in ("LR", "RL"):
             foot = feet[end, side]
-            far = body.branch(foot, feet[end, beside], feet[other, side])
+            far = body.branch(foot, feet[end, opposite], feet[other, side])
             far = max(far, 0.25 * away[foot])
             path = cut(body, foot, belly, min(LEG[-1] * far, 0.9 * away[foot]))
             ankle, knee, top = along(path, LEG / LEG[-1])
@@ -67,7 +67,7 @@ def place(body: Interior) -> Joints:
     behind &= (y > 0.25 * body.height) & (body.distances(hips) < body.distances(head))
     hind = [body.distances(feet["", side]) for side in "LR"]
     off_legs = body.distances(hips) + np.min([far - far[hips] for far in hind], axis=0)
-    tail = _end(off_legs, behind)  # what is on the way to a foot is no tail
+    tail = _end(off_legs, behind)  # nodes on the path to a foot are no tail
     path = body.middle_path(hips, tail)
     joints["tail.1"], joints["tail.2"], joints["tail.3"] = along(path, np.array([0.35, 0.57, 0.78]))
     for name in ("hips", "spine", "chest", "neck", "head", "tail.1", "tail.2", "tail.3"):
@@ -75,11 +75,11 @@ def place(body: Interior) -> Joints:
     return mirrored(joints, float(np.ptp(points, axis=0).max()))
 
 
-def _sole(body: Interior, found: NDArray[np.bool_]) -> int:
+def _sole(body: Interior, is_foot: NDArray[np.bool_]) -> int:
     """Return the node in the middle of what one foot stands on."""
-    if not found.any():
-        found = body.points[:, 1] - body.floor < SOLE * body.height
-    chosen = np.flatnonzero(found)
+    if not is_foot.any():
+        is_foot = body.points[:, 1] - body.floor < SOLE * body.height
+    chosen = np.flatnonzero(is_foot)
     middle = body.points[chosen].mean(axis=0)
     return int(chosen[np.linalg.norm(body.points[chosen] - middle, axis=1).argmin()])
 

@@ -1,4 +1,4 @@
-"""An audit as files: pairs, clusters, what to keep, and what a person said of pairs."""
+"""Files of an audit: pairs, clusters, assets to keep, and verdicts on pairs."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from ...runtime.writing import write_all
 from ..read.sources import find_sources
 from ..read.store import read_table, table_bytes
 from .duplicates import DIFFERENT, DUPLICATE, Audit, Pair
-from .likeness import Likeness
+from .likeness import Similarity
 
 AUDIT, PAIRS, CLUSTERS, VERDICTS = (
     "audit.json",
@@ -26,19 +26,19 @@ AGAIN = "audit it again: cutcell dataset audit"
 
 
 def save_audit(
-    found: Audit, folder: Path, first: Sequence[Path] = (), second: Sequence[Path] = ()
+    audit: Audit, folder: Path, first: Sequence[Path] = (), second: Sequence[Path] = ()
 ) -> None:
     """Write an audit to a folder.
 
-    `audit.json` and `clusters.parquet` tell what to keep, `pairs.parquet` lists all pairs, and
-    `verdicts.json` what a person said of some of them.
+    `audit.json` and `clusters.parquet` list the assets to keep, `pairs.parquet` all pairs, and
+    `verdicts.json` the verdicts of a reviewer.
 
     Parameters
     ----------
     found : Audit
     folder : Path
     first, second : sequence of Path
-        What was compared, for `load_audit`.
+        Inputs of the audit, for `load_audit`.
 
     Raises
     ------
@@ -48,12 +48,12 @@ def save_audit(
         pyarrow or scikit-learn is not installed.
     """
     inputs = [[str(path.resolve()) for path in paths] for paths in (first, second)]
-    more = {"inputs": inputs, "threshold": found.threshold, "least": found.least}
-    write_all({folder / PAIRS: table_bytes(found.rows()), **_contents(found, folder, more)})
+    more = {"inputs": inputs, "threshold": audit.threshold, "least": audit.least}
+    write_all({folder / PAIRS: table_bytes(audit.rows()), **_contents(audit, folder, more)})
 
 
-def save_verdicts(found: Audit, folder: Path) -> None:
-    """Write what a person said of pairs, and what is kept then, beside an audit that is there.
+def save_verdicts(audit: Audit, folder: Path) -> None:
+    """Write the verdicts on pairs and the resulting assets to keep to the folder of an audit.
 
     Raises
     ------
@@ -64,21 +64,21 @@ def save_verdicts(found: Audit, folder: Path) -> None:
     """
     before = _document(folder / AUDIT)
     more = {name: before[name] for name in ("inputs", "threshold", "least")}
-    write_all(_contents(found, folder, more))
+    write_all(_contents(audit, folder, more))
 
 
-def _contents(found: Audit, folder: Path, more: dict[str, Any]) -> dict[Path, bytes]:
-    kept = set(found.keep)
-    labels = [None] * len(found.names) if found.labels is None else found.labels.tolist()
+def _contents(audit: Audit, folder: Path, more: dict[str, Any]) -> dict[Path, bytes]:
+    keep = set(audit.keep)
+    labels = [None] * len(audit.names) if audit.labels is None else audit.labels.tolist()
     assets = [
-        {"name": name, "cluster": label, "keep": name in kept}
-        for name, label in zip(found.names, labels, strict=True)
+        {"name": name, "cluster": label, "keep": name in keep}
+        for name, label in zip(audit.names, labels, strict=True)
     ]
-    said = [{"a": a, "b": b, "verdict": verdict} for (a, b), verdict in found.verdicts.items()]
+    verdicts = [{"a": a, "b": b, "verdict": verdict} for (a, b), verdict in audit.verdicts.items()]
     return {
         folder / CLUSTERS: table_bytes(assets),
-        folder / AUDIT: _json({**found.to_dict(), **more}),
-        folder / VERDICTS: _json(said),
+        folder / AUDIT: _json({**audit.to_dict(), **more}),
+        folder / VERDICTS: _json(verdicts),
     }
 
 
@@ -87,29 +87,29 @@ def _json(value: Any) -> bytes:
 
 
 def read_verdicts(folder: Path) -> dict[tuple[str, str], str]:
-    """Return what a person said of the pairs of an audit; nothing where there is none."""
+    """Return the verdicts on the pairs of an audit; empty without a file."""
     path = folder / VERDICTS
     if not path.exists():
         return {}
     try:
-        said = {(row["a"], row["b"]): row["verdict"] for row in _document(path)}
+        verdicts = {(row["a"], row["b"]): row["verdict"] for row in _document(path)}
     except (TypeError, KeyError):
-        said = {("", ""): ""}
-    if not set(said.values()) <= {DUPLICATE, DIFFERENT}:
+        verdicts = {("", ""): ""}
+    if not set(verdicts.values()) <= {DUPLICATE, DIFFERENT}:
         raise FileError(
             f'{path}: must be a list of {{"a": name, "b": name, "verdict": "{DUPLICATE}" or '
             f'"{DIFFERENT}"}}; put it right, or remove it'
         )
-    return said
+    return verdicts
 
 
 def load_audit(folder: Path) -> Audit:
-    """Return an audit that was saved, with the characters that it was made of.
+    """Return a saved audit with its characters.
 
     Raises
     ------
     FileError
-        There is no audit, or its characters are no longer where they were.
+        There is no audit, or its characters have moved.
     MissingLibraryError
         pyarrow is not installed.
     """
@@ -119,18 +119,18 @@ def load_audit(folder: Path) -> Audit:
         counts = document["candidates"], document["failed"]
         figures = document["seconds"], document["threshold"], document["least"]
     except (TypeError, KeyError, ValueError):
-        raise FileError(f"{folder / AUDIT}: does not say what it was made of; {AGAIN}") from None
+        raise FileError(f"{folder / AUDIT}: does not name its inputs; {AGAIN}") from None
     left_out = set(counts[1])
-    ours = [source for source in find_sources(first) if source.name not in left_out]
-    theirs = ours
+    sources = [source for source in find_sources(first) if source.name not in left_out]
+    others = sources
     if second:
-        theirs = [source for source in find_sources(second) if source.name not in left_out]
-    names = [source.name for source in ours], [source.name for source in theirs]
+        others = [source for source in find_sources(second) if source.name not in left_out]
+    names = [source.name for source in sources], [source.name for source in others]
     pairs = list(_pairs(read_table(folder / PAIRS), *names, folder))
     near = [pair for tier, pair in pairs if tier != "posed"]
     posed = [pair for tier, pair in pairs if tier == "posed"]
-    said = read_verdicts(folder)
-    return Audit(*names, near, posed, *counts, ours, theirs, *figures, said)
+    verdicts = read_verdicts(folder)
+    return Audit(*names, near, posed, *counts, sources, others, *figures, verdicts)
 
 
 def _pairs(
@@ -138,11 +138,11 @@ def _pairs(
 ) -> Iterable[tuple[str, Pair]]:
     place = {name: k for k, name in enumerate(names)}
     other = {name: k for k, name in enumerate(others)}
-    figures = [field.name for field in fields(Likeness)]
+    figures = [field.name for field in fields(Similarity)]
     for row in rows:
         try:
             ends = place[row["a"]], other[row["b"]]
-            alike = Likeness(**{name: row[name] for name in figures})
+            alike = Similarity(**{name: row[name] for name in figures})
             yield row["tier"], Pair(*ends, row["joints"], row["surface"], alike)
         except KeyError as missing:
             raise FileError(

@@ -1,4 +1,4 @@
-"""Which characters of a data set are near-duplicates of others (paper, algorithms 3 and 4)."""
+"""Near-duplicates in a data set, or between two (paper, algorithms 3 and 4)."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ from ..bind.cluster import Cluster, connected
 from ..read.sources import Content, Source, find_sources, read_content
 from .chamfer import Block, block_of, close_joints, close_surfaces, reach_of
 from .duplicates import Audit, Pair
-from .likeness import Traits, likeness, same_skeletons, traits_of
+from .likeness import Features, features_of, likeness, same_skeletons
 from .points import Normalised, normalised
 
 POINTS = 2048
-"""On each surface."""
+"""Points sampled on each surface."""
 BLOCK = 1000
-"""Characters that are compared with as many others as one job."""
+"""Characters of each of the two sets in one comparison job."""
 BATCH = 16
-"""Characters that are read as one job."""
+"""Characters in one reading job."""
 THRESHOLD = 0.01
 
 
@@ -43,7 +43,7 @@ def audit(
     poses: bool = True,
     scheduler: str | None = None,
     workers: int | None = None,
-    tell: Callable[[int, int, str], None] = lambda done, count, name: None,
+    report: Callable[[int, int, str], None] = lambda done, count, name: None,
 ) -> Audit:
     """Find near-duplicates in a data set, or between two.
 
@@ -61,11 +61,11 @@ def audit(
         On each surface, 16 to 100,000.
     least : int
         DBSCAN's MinPts, the point itself included. With 2 each pair is a cluster; the paper
-        does not say.
+        gives no value.
     poses : bool
-        Whether pairs of one skeleton in other poses are looked for, too.
-    scheduler, workers, tell
-        See `bind_all`; work is done in processes.
+        Whether to find pairs of one skeleton in other poses as well.
+    scheduler, workers, report
+        See `bind_all`; the workers are processes.
 
     Returns
     -------
@@ -97,23 +97,23 @@ def audit(
     begin = perf_counter()
     with connected(scheduler, workers, True) as cluster:
         failed: dict[str, str] = {}
-        ours = _read(one, points, cluster, failed, tell)
-        theirs = ours if two is None else _read(two, points, cluster, failed, tell)
+        first_set = _read(one, points, cluster, failed, report)
+        second_set = first_set if two is None else _read(two, points, cluster, failed, report)
         seconds["reading"] = perf_counter() - begin
         begin = perf_counter()
-        found = compare(ours, None if two is None else theirs, limits, cluster, tell)
-    pairs = _pairs(ours, theirs, found)
-    posed = _posed(ours, None if two is None else theirs, pairs) if poses else []
+        matches = compare(first_set, None if two is None else second_set, limits, cluster, report)
+    pairs = _pairs(first_set, second_set, matches)
+    posed = _posed(first_set, None if two is None else second_set, pairs) if poses else []
     seconds["pairs"] = perf_counter() - begin
     return Audit(
-        [source.name for source in ours.sources],
-        [source.name for source in theirs.sources],
+        [source.name for source in first_set.sources],
+        [source.name for source in second_set.sources],
         pairs,
         posed,
-        found.candidates,
+        matches.candidates,
         failed,
-        ours.sources,
-        theirs.sources,
+        first_set.sources,
+        second_set.sources,
         seconds,
         limits[1],
         least,
@@ -122,17 +122,17 @@ def audit(
 
 @dataclass(frozen=True, eq=False)
 class Readings:
-    """What is known of a set of characters: those that could be read, in order."""
+    """Readable characters of a set, in order."""
 
     sources: list[Source]
-    traits: list[Traits]
+    traits: list[Features]
     blocks: list[Block]
     size: int = BLOCK
 
 
 @dataclass(frozen=True, eq=False)
-class Found:
-    """Pairs by their places in both sets, with their figures, and how many stage 1 kept."""
+class Matches:
+    """Pairs by their indices in both sets, with distances; `candidates` passed stage 1."""
 
     pairs: NDArray[np.int64]
     joints: NDArray[np.float64]
@@ -142,7 +142,7 @@ class Found:
 
 
 def readings(
-    sources: list[Source], characters: list[tuple[Normalised, Traits]], size: int = BLOCK
+    sources: list[Source], characters: list[tuple[Normalised, Features]], size: int = BLOCK
 ) -> Readings:
     """Put characters into blocks."""
     blocks = [
@@ -157,7 +157,7 @@ def _read(
     points: int,
     cluster: Cluster,
     failed: dict[str, str],
-    tell: Callable[[int, int, str], None],
+    report: Callable[[int, int, str], None],
 ) -> Readings:
     """Read all characters, many at a time; those that cannot be read are in `failed`."""
     results: dict[int, list[Any]] = {}
@@ -172,12 +172,12 @@ def _read(
             result = [f"it was not read: {result}"] * len(batch)
         results[number] = result
         done += len(batch)
-        tell(done, len(sources), batch[-1].name)
+        report(done, len(sources), batch[-1].name)
 
     count = 0
-    for number, batch in enumerate(_batches(sources)):
+    for number in range(0, -(-len(sources) // BATCH)):
         contents: list[Content | str] = []
-        for source in batch:
+        for source in sources[number * BATCH : (number + 1) * BATCH]:
             try:
                 contents.append(source.content())
             except CutcellError as error:
@@ -199,43 +199,36 @@ def _read(
     return readings(good, characters)
 
 
-def _batches(sources: list[Source]) -> list[list[Source]]:
-    return [sources[k : k + BATCH] for k in range(0, len(sources), BATCH)]
-
-
 def _characters(
     contents: list[Content | str], points: int
-) -> list[tuple[Normalised, Traits] | str]:
-    """Read some characters: what a Dask worker does. A text says why one cannot be read."""
-    found: list[tuple[Normalised, Traits] | str] = []
-    for content in contents:
-        if isinstance(content, str):
-            found.append(content)
-            continue
-        try:
-            with tempfile.TemporaryDirectory() as folder, naming(Path(next(iter(content.files)))):
-                rig = read_content(content, Path(folder))
-                if not len(rig.skeleton.joints):
-                    found.append("it has no joints")
-                    continue
-                found.append((normalised(rig, points), traits_of(rig)))
-        except (CutcellError, MemoryError) as error:
-            found.append(str(error) or "there is not enough memory")
-    return found
+) -> list[tuple[Normalised, Features] | str]:
+    """Read characters in a Dask worker; a text is the reason why one cannot be read."""
+    return [one if isinstance(one, str) else _character(one, points) for one in contents]
+
+
+def _character(content: Content, points: int) -> tuple[Normalised, Features] | str:
+    try:
+        with tempfile.TemporaryDirectory() as folder, naming(Path(next(iter(content.files)))):
+            rig = read_content(content, Path(folder))
+            if not len(rig.skeleton.joints):
+                return "it has no joints"
+            return normalised(rig, points), features_of(rig)
+    except (CutcellError, MemoryError) as error:
+        return str(error) or "there is not enough memory"
 
 
 def compare(
-    ours: Readings,
-    theirs: Readings | None,
+    first: Readings,
+    second: Readings | None,
     limits: tuple[float, float],
     cluster: Cluster,
-    tell: Callable[[int, int, str], None] = lambda done, count, name: None,
-) -> Found:
-    """Run both stages on all pairs, a block against a block as one job."""
-    left = cluster.scatter(ours.blocks)
-    right = left if theirs is None else cluster.scatter(theirs.blocks)
+    report: Callable[[int, int, str], None] = lambda done, count, name: None,
+) -> Matches:
+    """Run both stages on all pairs; each job compares two blocks."""
+    left = cluster.scatter(first.blocks)
+    right = left if second is None else cluster.scatter(second.blocks)
     numbers = range(len(left)), range(len(right))
-    jobs = list(combinations_with_replacement(numbers[0], 2) if theirs is None
+    jobs = list(combinations_with_replacement(numbers[0], 2) if second is None
                 else product(*numbers))  # fmt: skip
     parts: dict[str, tuple[NDArray, NDArray, int]] = {}
 
@@ -244,34 +237,34 @@ def compare(
         if isinstance(result, BaseException):
             raise CutcellError(f"a part of the comparison was lost: {result}; run it again")
         parts[key] = result
-        tell(len(parts), len(jobs), "pairs")
+        report(len(parts), len(jobs), "pairs")
 
     for i, j in jobs:
         while cluster.is_full():
             take()
-        same = theirs is None and i == j
-        cluster.submit(f"pairs-{id(ours)}-{i}-{j}", _compared, left[i], right[j], limits, same)
+        same = second is None and i == j
+        cluster.submit(f"pairs-{id(first)}-{i}-{j}", _compared, left[i], right[j], limits, same)
     while len(parts) < len(jobs):
         take()
     rows = []
     for i, j in jobs:
-        pairs, figures, count = parts[f"pairs-{id(ours)}-{i}-{j}"]
-        size = ours.size, (theirs or ours).size
+        pairs, figures, count = parts[f"pairs-{id(first)}-{i}-{j}"]
+        size = first.size, (second or first).size
         rows.append((pairs + np.array([i * size[0], j * size[1]]), figures, count))
     if not rows:
         nothing = np.zeros(0)
-        return Found(np.zeros((0, 2), np.int64), nothing, nothing, nothing, 0)
+        return Matches(np.zeros((0, 2), np.int64), nothing, nothing, nothing, 0)
     pairs = np.concatenate([row[0] for row in rows])
     joints, surface, reach = np.concatenate([row[1] for row in rows], axis=1)
     order = np.lexsort((pairs[:, 1], pairs[:, 0], surface))
     candidates = sum(row[2] for row in rows)
-    return Found(pairs[order], joints[order], surface[order], reach[order], candidates)
+    return Matches(pairs[order], joints[order], surface[order], reach[order], candidates)
 
 
 def _compared(
     a: Block, b: Block, limits: tuple[float, float], same: bool
 ) -> tuple[NDArray[np.int64], NDArray[np.float64], int]:
-    """Compare two blocks: what a Dask worker does. The figures are distances and reach."""
+    """Compare two blocks in a Dask worker; returns pairs, distances and overhang, candidates."""
     pairs, joints = close_joints(a, b, limits[0], same)
     surface = close_surfaces(a, b, pairs, limits[1])
     near = np.isfinite(surface)
@@ -279,22 +272,22 @@ def _compared(
     return pairs[near].astype(np.int64), figures, len(pairs)
 
 
-def _pairs(ours: Readings, theirs: Readings, found: Found) -> list[Pair]:
+def _pairs(first: Readings, second: Readings, matches: Matches) -> list[Pair]:
     pairs = []
-    figures = found.joints.tolist(), found.surface.tolist(), found.reach.tolist()
-    for (a, b), joints, surface, reach in zip(found.pairs.tolist(), *figures, strict=True):
-        alike = likeness(ours.traits[a], theirs.traits[b], surface, reach)
+    figures = matches.joints.tolist(), matches.surface.tolist(), matches.reach.tolist()
+    for (a, b), joints, surface, reach in zip(matches.pairs.tolist(), *figures, strict=True):
+        alike = likeness(first.traits[a], second.traits[b], surface, reach)
         pairs.append(Pair(a, b, joints, surface, alike))
     return pairs
 
 
-def _posed(ours: Readings, theirs: Readings | None, pairs: list[Pair]) -> list[Pair]:
-    known = {(pair.a, pair.b) for pair in pairs}
-    other = ours if theirs is None else theirs
-    found = same_skeletons(ours.traits, None if theirs is None else theirs.traits)
+def _posed(first: Readings, second: Readings | None, pairs: list[Pair]) -> list[Pair]:
+    matched = {(pair.a, pair.b) for pair in pairs}
+    other = first if second is None else second
+    candidates = same_skeletons(first.traits, None if second is None else second.traits)
     posed = []
-    for a, b in found.tolist():
-        if (a, b) not in known:
-            alike = likeness(ours.traits[a], other.traits[b], np.inf, np.nan)
+    for a, b in candidates.tolist():
+        if (a, b) not in matched:
+            alike = likeness(first.traits[a], other.traits[b], np.inf, np.nan)
             posed.append(Pair(a, b, np.inf, np.inf, alike))
     return posed

@@ -1,7 +1,7 @@
 """Squared Chamfer distances of many pairs, exact where they are small (paper, algorithms 3 and 4).
 
-D(A, B) = mean over a of min |a - b|² + mean over b of min |b - a|². Whatever is at least a limit is
-left out, most of it by bounds that are never above D; `docs/dataset.md` proves them.
+D(A, B) = mean over a of min |a - b|² + mean over b of min |b - a|². Pairs at or above a limit are
+excluded, most of them by lower bounds of D; `docs/dataset.md` proves them.
 """
 
 from __future__ import annotations
@@ -27,39 +27,26 @@ SLACK = 1 + 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Block:
-    """Some characters, as the kernels take them.
-
-    Parameters
-    ----------
-    joints : array, shape (k, 3), float32
-        Of all characters, one after the other; of each the outermost first.
-    start : array, shape (n + 1,), int64
-        Where the joints of each begin.
-    boxes : array, shape (n, 2, 3), float64
-        Around the joints.
-    centres : array, shape (n, 3), float64
-        Mean of the joints.
-    points : array, shape (n, p, 3), float32
-        On the surface, in the unit cube, cell by cell.
-    cells : array, shape (n, p), uint16
-        The cell that each point is in.
-    first : array, shape (n, CELLS³ + 1), uint16 or uint32
-        Where the points of each cell begin.
-    near : array, shape (n, CELLS³), uint8
-        How far each cell is from the nearest point, see `CODE`.
-    spacing : array, shape (n,), float64
-        How far points are from the nearest other, but for the farthest hundredth.
-    """
+    """Characters in the form of the kernels; all have as many points."""
 
     joints: NDArray[np.float32]
+    """Of all characters, concatenated; of each the outermost first; (k, 3)."""
     start: NDArray[np.int64]
+    """First joint of each character, (n + 1,)."""
     boxes: NDArray[np.float64]
+    """Bounds of the joints, (n, 2, 3)."""
     centres: NDArray[np.float64]
+    """Mean of the joints, (n, 3)."""
     points: NDArray[np.float32]
+    """On the surface, in the unit cube, sorted by cell, (n, p, 3)."""
     cells: NDArray
+    """Cell of each point, (n, p), uint16."""
     first: NDArray
+    """First point of each cell, (n, CELLS³ + 1), uint16 or uint32."""
     near: NDArray[np.uint8]
+    """Distance of each cell from the nearest point in multiples of `CODE`, (n, CELLS³)."""
     spacing: NDArray[np.float64]
+    """The 99th percentile of the distance from a point to the nearest other, (n,)."""
 
     def __len__(self) -> int:
         return len(self.start) - 1
@@ -91,8 +78,8 @@ def block_of(characters: Sequence[Normalised]) -> Block:
 
 
 def _spacing(points: NDArray[np.float32]) -> float:
-    apart = cKDTree(points).query(points, k=2)[0][:, 1]
-    return float(np.quantile(apart, QUANTILE))
+    distances = cKDTree(points).query(points, k=2)[0][:, 1]
+    return float(np.quantile(distances, QUANTILE))
 
 
 def close_joints(
@@ -127,7 +114,7 @@ def close_surfaces(
 
 
 def reach_of(a: Block, b: Block, pairs: NDArray[np.int32]) -> NDArray[np.float64]:
-    """Measure how far one surface of each pair reaches beyond the other, shape (c,).
+    """Measure the overhang of one surface of each pair beyond the other, shape (c,).
 
     The farthest hundredth of the points is left out, and the spacing of the other's points is
     taken off: 0 for two samples of one surface.
@@ -137,8 +124,8 @@ def reach_of(a: Block, b: Block, pairs: NDArray[np.int32]) -> NDArray[np.float64
     for k, (i, j) in enumerate(pairs.tolist()):
         _nearest_squares(a.points[i], b.points[j], b.first[j], squares[0])
         _nearest_squares(b.points[j], a.points[i], a.first[i], squares[1])
-        there, back = (np.sqrt(np.quantile(square, QUANTILE)) for square in squares)
-        reach[k] = max(there - b.spacing[j], back - a.spacing[i], 0)
+        forward, backward = (np.sqrt(np.quantile(square, QUANTILE)) for square in squares)
+        reach[k] = max(forward - b.spacing[j], backward - a.spacing[i], 0)
     return reach
 
 
@@ -184,15 +171,15 @@ def _close_joints(
                 bound += e * e + f * f
             if bound >= limit * SLACK:
                 continue
-            there = _one_way(joints_a, start_a[i], start_a[i + 1],
+            forward = _one_way(joints_a, start_a[i], start_a[i + 1],
                              joints_b, start_b[j], start_b[j + 1], limit)  # fmt: skip
-            if there >= limit:
+            if forward >= limit:
                 continue
-            back = _one_way(joints_b, start_b[j], start_b[j + 1],
-                            joints_a, start_a[i], start_a[i + 1], limit - there)  # fmt: skip
-            if there + back < limit:
+            backward = _one_way(joints_b, start_b[j], start_b[j + 1],
+                            joints_a, start_a[i], start_a[i + 1], limit - forward)  # fmt: skip
+            if forward + backward < limit:
                 pairs[count, 0], pairs[count, 1] = i, j
-                distances[count] = there + back
+                distances[count] = forward + backward
                 count += 1
     return count
 
@@ -226,12 +213,12 @@ def _close_surfaces(
         bound = _cell_bound(cells_a[i], near_b[j]) + _cell_bound(cells_b[j], near_a[i])
         if bound >= limit * SLACK:
             continue
-        there = _mean_square(points_a[i], points_b[j], first_b[j], limit)
-        if there >= limit:
+        forward = _mean_square(points_a[i], points_b[j], first_b[j], limit)
+        if forward >= limit:
             continue
-        back = _mean_square(points_b[j], points_a[i], first_a[i], limit - there)
-        if there + back < limit:
-            distances[c] = there + back
+        backward = _mean_square(points_b[j], points_a[i], first_a[i], limit - forward)
+        if forward + backward < limit:
+            distances[c] = forward + backward
 
 
 @compiled

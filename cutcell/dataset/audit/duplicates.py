@@ -1,4 +1,4 @@
-"""What an audit finds: pairs, clusters, what to keep, and what a person says otherwise."""
+"""Result of an audit: pairs, clusters, assets to keep, and verdicts of a reviewer."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from numpy.typing import NDArray
 
 from ...rig.checks import check_choice
 from ..read.sources import Source
-from .likeness import TWIN, VARIANT, Likeness
+from .likeness import TWIN, VARIANT, Similarity
 
 EPSILON = 0.5
 TIERS = (("twin", TWIN), ("variant", VARIANT))
 DUPLICATE, DIFFERENT = "duplicate", "different"
-"""A person's verdict on a pair."""
+"""Verdicts of a reviewer on a pair."""
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ class Pair:
         Places in the lists of names.
     joints, surface : float
         Squared Chamfer distances, of the joints and of the surface.
-    likeness : Likeness
+    likeness : Similarity
         The second measure.
     """
 
@@ -39,7 +39,7 @@ class Pair:
     b: int
     joints: float
     surface: float
-    likeness: Likeness
+    likeness: Similarity
 
     @property
     def tier(self) -> str:
@@ -49,7 +49,7 @@ class Pair:
 
 @dataclass(frozen=True, eq=False)
 class Audit:
-    """What an audit found.
+    """Near-duplicates of a data set, or between two.
 
     Parameters
     ----------
@@ -58,12 +58,12 @@ class Audit:
     pairs : list of Pair
         Near-duplicates, nearest first.
     posed : list of Pair
-        Characters of one skeleton that are too far apart for that; `joints` and `surface` are
+        Characters of one skeleton whose surfaces differ more; `joints` and `surface` are
         infinite.
     candidates : int
-        Pairs that stage 1 kept.
+        Number of pairs that passed stage 1.
     failed : dict of str to str
-        Why an asset was left out, by name.
+        Reasons why assets were left out, by name.
     sources, other_sources : list of Source
         Of the names.
     seconds : dict of str to float
@@ -73,7 +73,7 @@ class Audit:
     least : int
         DBSCAN's MinPts.
     verdicts : mapping of (str, str) to str
-        What a person said of pairs, by their names: `DUPLICATE` or `DIFFERENT`.
+        Verdicts on pairs, by their names: `DUPLICATE` or `DIFFERENT`.
     """
 
     names: list[str]
@@ -95,11 +95,11 @@ class Audit:
         return self.sources is not self.other_sources
 
     def verdict(self, pair: Pair) -> str:
-        """Return what a person said of a pair; empty for nothing."""
+        """Return the verdict on a pair; empty without one."""
         return self.verdicts.get((self.names[pair.a], self.others[pair.b]), "")
 
     def overrule(self, pair: Pair, verdict: str) -> Audit:
-        """Return the audit with a person's verdict on a pair; an empty one takes it back.
+        """Return the audit with a verdict on a pair; an empty one removes the verdict.
 
         Raises
         ------
@@ -109,22 +109,23 @@ class Audit:
         check_choice("verdict", verdict, (DUPLICATE, DIFFERENT, ""))
         names = self.names[pair.a], self.others[pair.b]
         verdicts = {**self.verdicts, names: verdict}
-        return replace(self, verdicts={names: said for names, said in verdicts.items() if said})
+        return replace(
+            self, verdicts={names: answer for names, answer in verdicts.items() if answer}
+        )
 
     @property
     def duplicates(self) -> list[Pair]:
-        """The pairs that count: those near enough and not overruled, and those that a person added.
+        """Pairs that are near enough and not rejected, and pairs that the reviewer added.
 
-        What somebody calls a duplicate has a distance of 0, so that it is in one cluster whatever
-        the figures say.
+        A pair with the verdict `DUPLICATE` has distance 0, so that it is always in one cluster.
         """
         if not self.verdicts:
             return self.pairs
         verdicts = [(pair, self.verdict(pair)) for pair in chain(self.pairs, self.posed)]
         return [
-            replace(pair, surface=0.0) if said else pair
-            for pair, said in verdicts
-            if said == DUPLICATE or (not said and pair.surface < np.inf)
+            replace(pair, surface=0.0) if answer else pair
+            for pair, answer in verdicts
+            if answer == DUPLICATE or (not answer and pair.surface < np.inf)
         ]
 
     @cached_property
@@ -152,21 +153,19 @@ class Audit:
 
     def rows(self) -> list[dict[str, Any]]:
         """Return all pairs as rows of a table; posed ones have the tier "posed"."""
-        rows = []
-        for tier, pairs in (("", self.pairs), ("posed", self.posed)):
-            for pair in pairs:
-                rows.append(
-                    {
-                        "a": self.names[pair.a],
-                        "b": self.others[pair.b],
-                        "tier": tier or pair.tier,
-                        "joints": pair.joints,
-                        "surface": pair.surface,
-                        "verdict": self.verdict(pair),
-                        **vars(pair.likeness),
-                    }
-                )
-        return rows
+        return [
+            {
+                "a": self.names[pair.a],
+                "b": self.others[pair.b],
+                "tier": tier or pair.tier,
+                "joints": pair.joints,
+                "surface": pair.surface,
+                "verdict": self.verdict(pair),
+                **vars(pair.likeness),
+            }
+            for tier, pairs in (("", self.pairs), ("posed", self.posed))
+            for pair in pairs
+        ]
 
     def to_dict(self) -> dict[str, Any]:
         """Return the whole as plain data."""
@@ -208,10 +207,10 @@ def clusters(count: int, pairs: Sequence[Pair], threshold: float, least: int) ->
     if not count or not pairs:
         return np.full(count, -1, np.int64)
     ends = np.array([(pair.a, pair.b) for pair in pairs])
-    apart = -np.expm1(-np.array([pair.surface for pair in pairs]) / threshold)
-    # A stored zero might be taken for a pair that is not there: duplicates must not vanish.
-    apart = np.maximum(apart, np.finfo(float).tiny)
+    distances = -np.expm1(-np.array([pair.surface for pair in pairs]) / threshold)
+    # A stored zero might be treated as a missing pair: duplicates must not vanish.
+    distances = np.maximum(distances, np.finfo(float).tiny)
     rows, columns = np.concatenate([ends, ends[:, ::-1]]).T
-    matrix = csr_matrix((np.tile(apart, 2), (rows, columns)), shape=(count, count))
-    found = DBSCAN(eps=EPSILON, min_samples=least, metric="precomputed").fit(matrix)
-    return found.labels_.astype(np.int64)
+    matrix = csr_matrix((np.tile(distances, 2), (rows, columns)), shape=(count, count))
+    result = DBSCAN(eps=EPSILON, min_samples=least, metric="precomputed").fit(matrix)
+    return result.labels_.astype(np.int64)

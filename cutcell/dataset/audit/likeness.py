@@ -1,4 +1,4 @@
-"""A second measure of pairs, which sees topology, clothes and pose where Chamfer does not."""
+"""Second measure of pairs, sensitive to topology, clothes and pose, unlike Chamfer distance."""
 
 from __future__ import annotations
 
@@ -15,36 +15,29 @@ from ...rig.rig import Rig
 SAME_BONES = 0.02
 """Bone lengths that differ by less than this share of their sum are those of one skeleton."""
 REACH = 0.04
-"""In longest sides: a surface that reaches this far beyond the other has something more on."""
+"""In longest sides: a surface with this overhang has additional clothes."""
 TURNED = 5.0
 """Degrees that bones differ by on average, for another pose."""
 FACES = 0.9
 """Two meshes are the same triangles if the smaller has this share of the larger's faces."""
 TWIN, VARIANT = 5e-4, 2e-3
 FEW_BONES = 3
-"""With fewer, equal lengths say nothing."""
+"""With fewer bones, equal lengths are no evidence."""
 
 
 @dataclass(frozen=True, eq=False)
-class Traits:
-    """What the second measure looks at.
-
-    Parameters
-    ----------
-    vertices, faces : int
-    tree : str
-        A hash of the joints' parents.
-    bones : array, shape (j, 3), float32
-        From each joint's parent, over the sum of all lengths; zero for roots.
-    """
+class Features:
+    """Features of a character for the second measure."""
 
     vertices: int
     faces: int
     tree: str
+    """Hash of the parent of each joint."""
     bones: NDArray[np.float32]
+    """Vectors from each joint's parent, over the sum of all lengths; zero for roots; (j, 3)."""
 
 
-def traits_of(rig: Rig) -> Traits:
+def features_of(rig: Rig) -> Features:
     """Return the traits of a rig."""
     skeleton = rig.skeleton
     above = np.where(skeleton.parents < 0, np.arange(len(skeleton.parents)), skeleton.parents)
@@ -52,42 +45,29 @@ def traits_of(rig: Rig) -> Traits:
     total = max(float(np.linalg.norm(bones, axis=1).sum()), 1e-30)
     tree = hashlib.blake2b(skeleton.parents.tobytes(), digest_size=8).hexdigest()
     counts = len(rig.mesh.vertices), len(rig.mesh.faces)
-    return Traits(*counts, tree, (bones / total).astype(np.float32))
+    return Features(*counts, tree, (bones / total).astype(np.float32))
 
 
 @dataclass(frozen=True)
-class Likeness:
-    """How two characters are alike, beyond their Chamfer distance.
-
-    Parameters
-    ----------
-    kind : {"copy", "remeshed", "mirrored", "clothes", "pose", "similar"}
-        What the figures come to.
-    same_tree : bool
-        Whether their joints hang together alike.
-    bones : float or None
-        By how much bone lengths differ, as a share of their sum; None for different trees.
-    degrees : float or None
-        By how much bones point elsewhere, on average by length.
-    mirrored : float or None
-        The same, after one of them is mirrored along the axis that suits best.
-    faces : float
-        Faces of the smaller mesh over those of the larger.
-    reach : float
-        How far one surface goes beyond the other, but for the farthest hundredth and the spacing
-        of the points; in longest sides. NaN where surfaces were not compared.
-    """
+class Similarity:
+    """Similarity of two characters beyond their Chamfer distance; its fields are columns."""
 
     kind: str
+    """"copy", "remeshed", "mirrored", "clothes", "pose" or "similar"; follows from the rest."""
     same_tree: bool
     bones: float | None
+    """Difference of bone lengths as a share of their sum; None for different trees."""
     degrees: float | None
+    """Mean angle between bones, weighted by length."""
     mirrored: float | None
+    """The same after one character is mirrored along the best axis."""
     faces: float
+    """Faces of the smaller mesh over those of the larger."""
     reach: float
+    """Overhang of one surface beyond the other; see `chamfer.reach_of`; NaN if not compared."""
 
 
-def likeness(a: Traits, b: Traits, surface: float, reach: float) -> Likeness:
+def likeness(a: Features, b: Features, surface: float, reach: float) -> Similarity:
     """Measure a pair."""
     faces = min(a.faces, b.faces) / max(a.faces, b.faces)
     same = a.tree == b.tree
@@ -95,8 +75,8 @@ def likeness(a: Traits, b: Traits, surface: float, reach: float) -> Likeness:
     if same:
         bones, degrees = _of_bones(a.bones, b.bones)
         mirrored = min(_of_bones(a.bones * mirror, b.bones)[1] for mirror in MIRRORS)
-    found = (same, bones, degrees, mirrored, faces, reach)
-    return Likeness(_kind(surface, *found), *found)
+    figures = (same, bones, degrees, mirrored, faces, reach)
+    return Similarity(_kind(surface, *figures), *figures)
 
 
 MIRRORS = (1 - 2 * np.eye(3)).astype(np.float32)
@@ -131,29 +111,31 @@ def _kind(
     return "similar"
 
 
-def same_skeletons(traits: Sequence[Traits], other: Sequence[Traits] | None) -> NDArray[np.int64]:
-    """Find the pairs of equal trees whose bone lengths agree, whatever their pose; shape (c, 2)."""
+def same_skeletons(
+    features: Sequence[Features], other: Sequence[Features] | None
+) -> NDArray[np.int64]:
+    """Find the pairs of equal trees and bone lengths in any pose; shape (c, 2)."""
     from sklearn.neighbors import NearestNeighbors
 
-    groups = _by_tree(traits)
+    groups = _by_tree(features)
     others = groups if other is None else _by_tree(other)
-    found = []
+    pairs = []
     for tree, rows in groups.items():
         columns = others.get(tree)
-        if columns is None or len(traits[rows[0]].bones) <= FEW_BONES:
+        if columns is None or len(features[rows[0]].bones) <= FEW_BONES:
             continue
-        lengths = np.stack([np.linalg.norm(traits[k].bones, axis=1) for k in rows])
-        source = traits if other is None else other
-        theirs = np.stack([np.linalg.norm(source[k].bones, axis=1) for k in columns])
-        search = NearestNeighbors(radius=SAME_BONES, metric="manhattan").fit(theirs)
+        lengths = np.stack([np.linalg.norm(features[k].bones, axis=1) for k in rows])
+        source = features if other is None else other
+        other_lengths = np.stack([np.linalg.norm(source[k].bones, axis=1) for k in columns])
+        search = NearestNeighbors(radius=SAME_BONES, metric="manhattan").fit(other_lengths)
         near = search.radius_neighbors(lengths, return_distance=False)
         for row, hits in zip(rows, near, strict=True):
-            found += [(row, columns[k]) for k in hits if other is not None or columns[k] > row]
-    return np.array(sorted(found), np.int64).reshape(-1, 2)
+            pairs += [(row, columns[k]) for k in hits if other is not None or columns[k] > row]
+    return np.array(sorted(pairs), np.int64).reshape(-1, 2)
 
 
-def _by_tree(traits: Sequence[Traits]) -> dict[str, list[int]]:
+def _by_tree(features: Sequence[Features]) -> dict[str, list[int]]:
     groups: dict[str, list[int]] = defaultdict(list)
-    for index, one in enumerate(traits):
+    for index, one in enumerate(features):
         groups[one.tree].append(index)
     return groups

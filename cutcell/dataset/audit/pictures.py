@@ -34,11 +34,11 @@ def picture(vertices: NDArray, faces: NDArray, weights: NDArray | None = None) -
         ) from None
     if len(faces) > MAX_FACES:
         faces = faces[:: -(-len(faces) // MAX_FACES)]
-    seen = _turned(np.asarray(vertices, float))
-    used = seen[np.unique(faces)]
+    turned = _turned(np.asarray(vertices, float))
+    used = turned[np.unique(faces)]
     low, high = used.min(axis=0), used.max(axis=0)
     scale = (SIZE * LARGER - 12) / max(float((high - low)[:2].max()), 1e-30)
-    flat = (seen - (low + high) / 2) * scale
+    flat = (turned - (low + high) / 2) * scale
     across = np.cross(flat[faces[:, 1]] - flat[faces[:, 0]], flat[faces[:, 2]] - flat[faces[:, 0]])
     length = np.maximum(np.linalg.norm(across, axis=1), 1e-30)
     shade = 0.35 + 0.65 * np.abs(across @ np.array([0.3, 0.5, 0.81])) / length

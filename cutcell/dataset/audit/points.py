@@ -8,38 +8,29 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...errors import MeshError
-from ...geometry.triangles import normals
+from ...geometry.laplacian import vertex_normals
+from ...geometry.triangles import areas, unit_normals
 from ...rig.rig import Rig
 
 
 @dataclass(frozen=True, eq=False)
 class SurfacePoints:
-    """Points on the faces of a mesh.
+    """Points on the faces of a mesh, with barycentric coordinates `shares`."""
 
-    Parameters
-    ----------
-    places : array, shape (p, 3), float64
-    face : array, shape (p,), int64
-    shares : array, shape (p, 3), float64
-        Barycentric coordinates.
-    """
-
-    places: NDArray[np.float64]
-    face: NDArray[np.int64]
-    shares: NDArray[np.float64]
+    places: NDArray[np.float64]  # (p, 3)
+    face: NDArray[np.int64]  # (p,)
+    shares: NDArray[np.float64]  # (p, 3)
 
 
 def sample_surface(vertices: ArrayLike, faces: ArrayLike, count: int, seed: int) -> SurfacePoints:
-    """Draw points on a mesh, as many a face as its area asks for.
+    """Sample points on a mesh, with a density that is uniform by area.
 
     Shapes: vertices (n, 3), faces (m, 3).
     """
     places, corners = np.asarray(vertices, np.float64), np.asarray(faces)
-    a, b, c = (places[corners[:, k]] for k in range(3))
-    area = np.linalg.norm(np.cross(b - a, c - a), axis=1)
-    total = area.cumsum()
+    total = areas(places[corners]).cumsum()
     if not 0 < total[-1] < np.inf:
-        raise MeshError("its faces have no area that points could be drawn on")
+        raise MeshError("its faces have no area, so no points can be sampled on them")
     random = np.random.default_rng(seed)
     # One point in each of equal shares of the area: no clumps, and little noise.
     where = (np.arange(count) + random.random(count)) / count * total[-1]
@@ -53,37 +44,22 @@ def sample_surface(vertices: ArrayLike, faces: ArrayLike, count: int, seed: int)
 def mesh_normals(
     vertices: ArrayLike, faces: ArrayLike
 ) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-    """Return unit normals of the faces (m, 3) and of the vertices (n, 3); zero where none is."""
-    places, corners = np.asarray(vertices, np.float64), np.asarray(faces)
-    across = normals(places[corners])
-    by_vertex = np.zeros((len(places), 3))
-    for k in range(3):
-        np.add.at(by_vertex, corners[:, k], across)
-    return _unit(across), _unit(by_vertex)
-
-
-def _unit(vectors: NDArray) -> NDArray[np.float32]:
-    length = np.linalg.norm(vectors, axis=1, keepdims=True)
-    return np.divide(vectors, length, out=np.zeros_like(vectors), where=length > 0).astype("f4")
+    """Return unit normals of the faces (m, 3) and of the vertices (n, 3); zero where undefined."""
+    points, corners = np.ascontiguousarray(vertices, np.float64), np.array(faces, np.int32)
+    by_vertex = vertex_normals(points, corners)
+    return unit_normals(points[corners]).astype(np.float32), by_vertex.astype(np.float32)
 
 
 @dataclass(frozen=True, eq=False)
 class Normalised:
-    """A character in the unit cube, as the audit compares it.
+    """Joints and surface points of a character in the unit cube."""
 
-    Parameters
-    ----------
-    joints : array, shape (j, 3), float32
-    points : array, shape (p, 3), float32
-        On the surface.
-    """
-
-    joints: NDArray[np.float32]
-    points: NDArray[np.float32]
+    joints: NDArray[np.float32]  # (j, 3)
+    points: NDArray[np.float32]  # (p, 3)
 
 
 def normalised(rig: Rig, count: int, seed: int = 0) -> Normalised:
-    """Scale a character into the unit cube, and draw points on it."""
+    """Scale a character into the unit cube and sample points on it."""
     low, high = rig.mesh.bounds
     size, middle = float((high - low).max()), (low + high) / 2
     vertices = (rig.mesh.vertices - middle) / size + 0.5

@@ -1,7 +1,7 @@
 """Binding of all assets into a store, on Dask: here, or on the machines of a cluster.
 
-The bytes of an asset go to a worker, and those of its file come back; only this process reads the
-inputs and writes the store. So the machines of a cluster need no folder in common.
+Workers receive the bytes of an asset and return the bytes of its file. Only this process reads
+inputs and writes the store, so the machines of a cluster need no shared folder.
 """
 
 from __future__ import annotations
@@ -24,14 +24,14 @@ from .cluster import Cluster, connected
 from .runner import AssetLostError, lend_runner
 
 TIME_LIMIT = 600.0
-"""Seconds that one asset may take, unless told otherwise."""
+"""Default maximum of seconds per asset."""
 MANIFEST_EVERY = 60.0
 """Seconds between two manifests while work goes on."""
 
 
 @dataclass(frozen=True)
 class BindReport:
-    """What `bind_all` did.
+    """Result of `bind_all`.
 
     Parameters
     ----------
@@ -39,12 +39,11 @@ class BindReport:
     rows : list of dict
         Of the manifest, one for each source.
     bound, known, failed : int
-        Sources that were bound now, that the store had already, and that have no file.
+        Number of sources that were bound, were in the store before, and have no file.
     seconds : float
-        From begin to end.
     lost : dict of str to str
-        Failures that are not in the store, since another try may do better, by name: a worker that
-        died, too little memory on this machine.
+        Failures by name that are not in the store because another attempt may succeed: a worker
+        that died, too little memory on this machine.
     """
 
     store: Path
@@ -79,12 +78,12 @@ def bind_all(
     workers: int | None = None,
     processes: bool = False,
     time_limit: float = TIME_LIMIT,
-    tell: Callable[[int, int, str], None] = lambda done, count, name: None,
+    report: Callable[[int, int, str], None] = lambda done, count, name: None,
 ) -> BindReport:
     """Bind all assets of some files and folders into a store.
 
-    What the store has already is not computed again: files are named by a hash of the asset's
-    bytes and of the parameters.
+    Assets that are in the store are skipped: files are named by a hash of the asset's bytes and
+    of the parameters.
 
     Parameters
     ----------
@@ -95,16 +94,16 @@ def bind_all(
     parameters : Parameters, optional
         The paper's method when left out.
     scheduler : str, optional
-        Address of a Dask scheduler. Left out, the work is done here.
+        Address of a Dask scheduler; this machine when left out.
     workers : int, optional
-        How many assets at a time here; as many as there are cores when left out.
+        Number of assets at a time on this machine; the number of cores when left out.
     processes : bool
-        Whether Dask's workers here are processes instead of threads. Assets are bound in processes
-        of their own either way.
+        Whether Dask's workers here are processes instead of threads. Assets are bound in
+        subprocesses either way.
     time_limit : float
-        Seconds that one asset may take, 1 or more.
-    tell : callable
-        Called with the assets done, with their number, and with the name of the last.
+        Maximum of seconds per asset, 1 or more.
+    report : callable
+        Receives the number of assets done, the total, and the name of the last asset.
 
     Returns
     -------
@@ -117,7 +116,7 @@ def bind_all(
     MissingLibraryError
         Dask or pyarrow is not installed.
     CutcellError
-        The scheduler cannot be reached, or was lost. What was done is in the store.
+        The scheduler cannot be reached, or was lost. The store keeps all finished assets.
     """
     begin = perf_counter()
     parameters = parameters or Parameters()
@@ -127,7 +126,7 @@ def bind_all(
     sources = find_sources(inputs)
     store = Store(folder)
     store.begin(parameters)
-    run = _Run(store, parameters, len(sources), time_limit, tell)
+    run = _Run(store, parameters, len(sources), time_limit, report)
     if scheduler is None:
         announce()  # the processes that bind compile, and print nothing
     with connected(scheduler, workers, processes) as cluster:
@@ -137,7 +136,9 @@ def bind_all(
             run.write_manifest()
     rows = run.sorted_rows()
     failed = sum(bool(row["error"]) for row in rows)
-    return BindReport(folder, rows, run.bound, run.known, failed, perf_counter() - begin, run.lost)
+    return BindReport(
+        folder, rows, run.bound, run.unchanged, failed, perf_counter() - begin, run.lost
+    )
 
 
 class _Run:
@@ -149,25 +150,25 @@ class _Run:
         parameters: Parameters,
         count: int,
         limit: float,
-        tell: Callable[[int, int, str], None],
+        report: Callable[[int, int, str], None],
     ) -> None:
         self._store, self._parameters = store, parameters
-        self._count, self._limit, self._tell = count, limit, tell
+        self._count, self._limit, self._report = count, limit, report
         self._suffix = parameters.digest()
         self._rows: dict[str, dict[str, Any]] = {}
         self._written = perf_counter()
         self._jobs: dict[str, _Job] = {}
-        self.bound = self.known = 0
+        self.bound = self.unchanged = 0
         self.lost: dict[str, str] = {}
 
     def all(self, sources: list[Source], cluster: Cluster) -> None:
         """Bind all sources, no more at a time than the workers can take."""
         for source in sources:
             while cluster.is_full():
-                self._take(cluster)
+                self._store_next(cluster)
             self._begin(source, cluster)
         while self._jobs:
-            self._take(cluster)
+            self._store_next(cluster)
 
     def _begin(self, source: Source, cluster: Cluster) -> None:
         try:
@@ -180,16 +181,18 @@ class _Run:
         if key in self._jobs:
             self._jobs[key].sources.append(source)
             return
-        outcome = self._store.known(key)
+        outcome = self._store.outcome(key)
         if outcome is not None:
-            self.known += 1
+            self.unchanged += 1
             self._note(source, digest, outcome)
             return
         self._jobs[key] = _Job(key, digest, [source])
-        cluster.submit(key, bind_apart, content, key, self._parameters, self._limit, cluster.slots)
+        cluster.submit(
+            key, bind_isolated, content, key, self._parameters, self._limit, cluster.slots
+        )
 
-    def _take(self, cluster: Cluster) -> None:
-        """Wait for an asset, and put it into the store."""
+    def _store_next(self, cluster: Cluster) -> None:
+        """Wait for an asset and write it to the store."""
         key, result = cluster.next_result()
         job = self._jobs.pop(key)
         if isinstance(result, Outcome):
@@ -210,7 +213,7 @@ class _Run:
     def _note(self, source: Source, digest: str, outcome: Outcome) -> None:
         where = f"{source.path}{':' if source.sample else ''}{source.sample}"
         self._rows[source.name] = manifest_row(source.name, where, digest, outcome)
-        self._tell(len(self._rows), self._count, source.name)
+        self._report(len(self._rows), self._count, source.name)
 
     def sorted_rows(self) -> list[dict[str, Any]]:
         return [self._rows[name] for name in sorted(self._rows)]
@@ -220,58 +223,57 @@ class _Run:
         self._written = perf_counter()
 
 
-class _Room:
-    """The memory of one process' assets: each waits until there is room for it."""
+class _MemoryBudget:
+    """Memory charged by the assets of this process; an asset waits until its charge fits."""
 
     def __init__(self) -> None:
-        self._taken = 0
-        self._freed = threading.Condition()
+        self.charged = 0
+        self._changed = threading.Condition()
 
-    def take(self, size: int, total: int) -> None:
-        """Wait for room."""
+    def charge(self, size: int, total: int) -> None:
         if size > total:
             raise TooLargeError(
                 f"it would need about {gigabytes(size)} of memory, and {gigabytes(total)} are "
-                "there for it; choose a lower resolution, or a machine with more memory"
+                "available; choose a lower resolution, or a machine with more memory"
             )
-        with self._freed:
-            self._freed.wait_for(lambda: self._taken + size <= total)
-            self._taken += size
+        with self._changed:
+            self._changed.wait_for(lambda: self.charged + size <= total)
+            self.charged += size
 
-    def free(self, size: int) -> None:
-        """Give memory back."""
-        with self._freed:
-            self._taken -= size
-            self._freed.notify_all()
-
-
-_room = _Room()
+    def release(self, size: int) -> None:
+        with self._changed:
+            self.charged -= size
+            self._changed.notify_all()
 
 
-def bind_apart(
+_budget = _MemoryBudget()
+
+
+def bind_isolated(
     content: Content, key: str, parameters: Parameters, limit: float, slots: int
 ) -> Outcome:
-    """Bind one asset in a process of its own: what a Dask worker does."""
-    with lend_runner() as runner:
-        total = int(available_memory() * SHARE / slots) + _room._taken
-        taken: list[int] = []
+    """Bind one asset in a subprocess; called by a Dask worker."""
+    total = int(available_memory() * SHARE / slots) + _budget.charged
+    charges: list[int] = []
 
-        def room(size: int) -> None:
-            _room.take(size, total)
-            taken.append(size)
+    def reserve(size: int) -> None:
+        if not charges:  # a second attempt needs the same memory
+            _budget.charge(size, total)
+            charges.append(size)
 
+    def attempt(last: bool) -> Outcome:
         try:
-            try:
-                return runner.bind(content, key, parameters, limit, room)
-            except AssetLostError as error:
-                if not error.passing:
-                    raise
-                return runner.bind(content, key, parameters, limit, room)
-        except AssetLostError as error:
-            record = {"error": str(error), "version": __version__, "passing": error.passing}
+            return runner.bind(content, key, parameters, limit, reserve)
+        except (AssetLostError, TooLargeError) as error:
+            passing = getattr(error, "passing", True)
+            if isinstance(error, AssetLostError) and passing and not last:
+                return attempt(last=True)
+            record = {"error": str(error), "version": __version__, "passing": passing}
             return Outcome(key, record)
-        except TooLargeError as error:
-            return Outcome(key, {"error": str(error), "version": __version__, "passing": True})
+
+    with lend_runner() as runner:
+        try:
+            return attempt(last=False)
         finally:
-            for size in taken:
-                _room.free(size)
+            for size in charges:
+                _budget.release(size)

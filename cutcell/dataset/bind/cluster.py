@@ -13,51 +13,40 @@ from ...rig.checks import one_line
 from .runner import cores, stop_runners
 
 AHEAD = 2
-"""Jobs under way for each core of the workers: one runs while the next is sent."""
+"""Submitted jobs per core of the workers: one runs while the next is sent."""
 CONNECT = "10s"
 LOOPBACK = "127.0.0.1:0"
 """Any free port, for this machine alone."""
 
 
 class Cluster:
-    """A connection to a Dask scheduler.
-
-    Parameters
-    ----------
-    client : dask.distributed.Client
-    slots : int
-        How many of its worker processes share the memory of one machine.
-    """
+    """Connection to a Dask scheduler; `slots` worker processes share a machine's memory."""
 
     def __init__(self, client: Any, slots: int) -> None:
         from distributed import as_completed
 
         self._client, self.slots = client, slots
         self._done = as_completed(loop=client.loop)
-        self._under_way = 0
+        self._pending = 0
 
     def is_full(self) -> bool:
-        """Tell whether the workers have enough to do."""
-        return self._under_way >= AHEAD * max(1, self.cores())
-
-    def cores(self) -> int:
-        """Return how many jobs run at a time."""
-        return sum(self._client.nthreads().values())
+        """Return whether the workers have enough jobs."""
+        return self._pending >= AHEAD * max(1, sum(self._client.nthreads().values()))
 
     def submit(self, key: str, work: Callable[..., Any], *arguments: Any) -> None:
-        """Begin a job; the scheduler keeps its arguments, which no dead worker takes along."""
+        """Begin a job; its arguments stay with the scheduler and survive a dead worker."""
         future = self._client.submit(work, *arguments, key=f"cutcell-{key}", retries=0)
         self._done.add(future)
-        self._under_way += 1
+        self._pending += 1
 
-    def scatter(self, things: list[Any]) -> list[Any]:
-        """Give things to the workers, who pass them on as jobs need them."""
-        return list(self._client.scatter(things, hash=False)) if things else []
+    def scatter(self, blocks: list[Any]) -> list[Any]:
+        """Send arguments of several jobs to the workers once."""
+        return list(self._client.scatter(blocks, hash=False)) if blocks else []
 
     def next_result(self) -> tuple[str, Any]:
         """Wait for a job; return its key, and its result or the exception that it ended with."""
         future = next(self._done)
-        self._under_way -= 1
+        self._pending -= 1
         key = future.key.removeprefix("cutcell-")
         if future.status in ("cancelled", "lost") or self._client.status not in ("running",):
             raise CutcellError(
@@ -66,7 +55,7 @@ class Cluster:
             )
         try:
             return key, future.result()
-        except Exception as error:  # of the job, whatever it is
+        except Exception as error:  # any error of the job
             return key, error
         finally:
             future.release()
@@ -74,7 +63,7 @@ class Cluster:
 
 @contextmanager
 def connected(scheduler: str | None, workers: int | None, processes: bool) -> Iterator[Cluster]:
-    """Give a cluster: that of an address, or one in this process."""
+    """Yield the cluster at an address, or one in this process."""
     try:
         import dask
         from distributed import Client, LocalCluster

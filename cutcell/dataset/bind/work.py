@@ -1,4 +1,4 @@
-"""What is done for one asset: from its bytes to the bytes of its file in the store."""
+"""Binding of one asset: from its bytes to the bytes of its file in the store."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from ..read.sources import Content, read_content
 from ..read.store import Entry, Outcome, Parameters, entry_bytes
 
 COPIES = 8
-"""Tables of vertices and joints, or vertices and bones, that there are at a time, at most."""
+"""Maximum number of tables of vertices by joints, or vertices by bones, at a time."""
 BYTES_PER_FACE = 2600
 """Of the stages after the graph; docs/performance.md, growth with the faces."""
 
@@ -34,11 +34,12 @@ def bind_content(
     content: Content,
     key: str,
     parameters: Parameters,
-    reckoned: Callable[[int], None] = lambda size: None,
+    reserve: Callable[[int], None] = lambda size: None,
 ) -> Outcome:
     """Bind one asset."""
     seconds: dict[str, float] = {}
     record: dict[str, Any] = {"version": __version__, "error": "", "warnings": []}
+    data = None
     try:
         begin = perf_counter()
         with tempfile.TemporaryDirectory() as folder:
@@ -47,22 +48,22 @@ def bind_content(
         seconds["load"] = perf_counter() - begin
         needed = memory_needed(rig, parameters)
         record |= {"memory": needed, "warnings": list(rig.warnings)}
-        reckoned(needed)
-        entry, found = _computed(rig, parameters, seconds)
-        record |= found
-        record["warnings"] = [*rig.warnings, *found["warnings"]]
+        reserve(needed)
+        entry, results = _computed(rig, parameters, seconds)
+        record |= results
+        record["warnings"] = [*rig.warnings, *results["warnings"]]
         data = entry_bytes(entry, parameters.precision)
         record["bytes"] = len(data)
     except CutcellError as error:
-        return Outcome(key, {**record, "error": str(error), "seconds": _rounded(seconds)})
+        record["error"] = str(error)
     except MemoryError as error:
-        why = f"there is not enough memory ({one_line(error)[:200]})"
-        return Outcome(key, {**record, "error": why, "seconds": _rounded(seconds)})
-    return Outcome(key, {**record, "seconds": _rounded(seconds)}, data)
+        record["error"] = f"there is not enough memory ({one_line(error)[:200]})"
+    record["seconds"] = {name: round(value, 4) for name, value in seconds.items()}
+    return Outcome(key, record, data)
 
 
 def memory_needed(rig: Rig, parameters: Parameters) -> int:
-    """Reckon the bytes that binding a rig takes at most, beside the process itself."""
+    """Estimate an upper bound of the bytes that binding a rig takes."""
     resolution = parameters.method.resolution
     low, high = rig.mesh.bounds
     longest = float((high - low).max())
@@ -113,24 +114,29 @@ def _computed(
     }
     names = {"mesh": MESH, "interior": INTERIOR, "surface": SURFACE}
     kinds = {name: int((graph.node_kind == code).sum()) for name, code in names.items()}
-    found = {"sizes": sizes, "graph": kinds, "closed": bool(graph.is_closed)}
-    return entry, {**found, "metrics": metrics, "warnings": list(binding.warnings)}
+    return entry, {
+        "sizes": sizes,
+        "graph": kinds,
+        "closed": bool(graph.is_closed),
+        "metrics": metrics,
+        "warnings": list(binding.warnings),
+    }
 
 
 def _metrics(rig: Rig, binding: Binding) -> dict[str, float | None]:
     """Measure weights: against the artist's where there are any."""
-    found: dict[str, float | None] = {
+    metrics: dict[str, float | None] = {
         "fallback": float((binding.distances.fallback > 0).mean()),
         "influences": float((binding.weights > 0).sum(axis=1).mean()),
     }
     if rig.weights is None or not rig.weights.any():
-        return found
+        return metrics
     precision, recall = precision_recall(binding.weights, rig.weights)
-    found |= {"l1": weight_l1(binding.weights, rig.weights), "precision": precision}
+    metrics |= {"l1": weight_l1(binding.weights, rig.weights), "precision": precision}
     worst = deformation_error(rig, binding.weights, rig.weights)
-    found |= {"recall": recall, "deformation": worst.mean}
+    metrics |= {"recall": recall, "deformation": worst.mean}
     return {
-        name: None if value is None or np.isnan(value) else value for name, value in found.items()
+        name: None if value is None or np.isnan(value) else value for name, value in metrics.items()
     }
 
 
@@ -142,20 +148,16 @@ def rignet_bones(skeleton: Skeleton) -> NDArray[np.int32]:
     """
     children = skeleton.children
     bones: list[tuple[int, int]] = []
-    roots = np.flatnonzero(skeleton.parents < 0)
-    for root in roots.tolist():
-        level = [root]
+    for root in np.flatnonzero(skeleton.parents < 0).tolist():
         if len(children[root]) == 0:
             bones.append((root, root))
-        while level:
-            below: list[int] = []
-            for joint in level:
-                for child in children[joint].tolist():
-                    below.append(child)
-                    bones.append((joint, child))
-                    if len(children[child]) == 0:
-                        bones.append((child, child))
-            level = below
+        queue = [root]
+        for joint in queue:  # grows: a breadth-first search
+            for child in children[joint].tolist():
+                queue.append(child)
+                bones.append((joint, child))
+                if len(children[child]) == 0:
+                    bones.append((child, child))
     return np.array(bones, np.int32).reshape(-1, 2)
 
 
@@ -164,8 +166,8 @@ def _by_bone(
 ) -> NDArray[np.float64]:
     """Compute the distance of every single bone to every vertex, shape (n, b).
 
-    Each bone becomes a joint of its own, so that `bone_distances` does not take the least of those
-    that share a joint.
+    Each bone becomes a separate joint, so that `bone_distances` does not take the minimum over
+    the bones of a joint.
     """
     if not len(bones):
         return np.zeros((len(rig.mesh.vertices), 0))
@@ -185,7 +187,3 @@ def _by_bone(
         within=np.inf,
     )
     return distances.joint[:count].T
-
-
-def _rounded(seconds: dict[str, float]) -> dict[str, float]:
-    return {name: round(value, 4) for name, value in seconds.items()}

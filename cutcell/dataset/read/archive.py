@@ -1,4 +1,4 @@
-"""Articulation-XL 2.0 as it is published: an npz whose `arr_0` is a pickled list of dictionaries.
+"""Articulation-XL 2.0 as published: an npz whose `arr_0` is a pickled list of dictionaries.
 
 Each dictionary is one asset, its arrays named as in `cutcell.io.articulation`, some of them in two
 ways (`skinning_weights_row` and `_rows`, `_col` and `_cols`).
@@ -42,7 +42,7 @@ class ArchivedAsset:
     arrays : dict of str to array
         As they are stored; empty where it cannot be read.
     error : str
-        Why it cannot be read, in a sentence; empty where it can.
+        Reason why it cannot be read; empty if it can.
     """
 
     index: int
@@ -136,7 +136,7 @@ def _fault(value: Any) -> str:
 
 
 def asset_bytes(asset: ArchivedAsset) -> bytes:
-    """Return an asset as an npz file of its own, which `cutcell.load` reads."""
+    """Return an asset as a separate npz file for `cutcell.load`."""
     packed = io.BytesIO()
     np.savez_compressed(packed, **asset.arrays)  # type: ignore[arg-type]
     return packed.getvalue()
@@ -144,14 +144,14 @@ def asset_bytes(asset: ArchivedAsset) -> bytes:
 
 @dataclass(frozen=True)
 class Split:
-    """What `split` did.
+    """Result of `split`.
 
     Parameters
     ----------
     written, kept : int
-        Assets that were written, and that were there already.
+        Number of assets that were written, and that existed before.
     refused : dict of str to str
-        Why an asset was not written, by its name.
+        Reasons why assets were not written, by name.
     """
 
     written: int
@@ -159,12 +159,11 @@ class Split:
     refused: Mapping[str, str]
 
 
-def split(archive: Path, folder: Path, tell: Any = lambda asset: None) -> Split:
-    """Write each asset of an archive to a file of its own.
+def split(archive: Path, folder: Path, report: Any = lambda asset: None) -> Split:
+    """Write each asset of an archive to a separate file.
 
-    Nothing in the archive is run. An asset that holds anything but arrays, texts and numbers is
-    left out. Files that hold the same already are left as they are, so that a split that was
-    stopped goes on.
+    No code of the archive is run. An asset with anything but arrays, texts and numbers is left
+    out. Files with equal contents are not written again, so a split can be resumed.
 
     Parameters
     ----------
@@ -172,8 +171,8 @@ def split(archive: Path, folder: Path, tell: Any = lambda asset: None) -> Split:
         As `read_archive` takes it.
     folder : Path
         Gets `NAME.npz` for each asset; made if it is not there.
-    tell : callable
-        Called with each `ArchivedAsset`.
+    report : callable
+        Receives each `ArchivedAsset`.
 
     Returns
     -------
@@ -192,7 +191,7 @@ def split(archive: Path, folder: Path, tell: Any = lambda asset: None) -> Split:
         if name.lower() in names:
             name = f"{name}_{asset.index:06d}"
         names.add(name.lower())
-        tell(asset)
+        report(asset)
         if asset.error:
             refused[name] = asset.error
             continue

@@ -1,4 +1,4 @@
-"""The rigs of UniRig (`raw_data.npz`) and of Puppeteer (HDF5), as their projects describe them."""
+"""Rigs of UniRig (`raw_data.npz`) and of Puppeteer (HDF5)."""
 
 from __future__ import annotations
 
@@ -33,32 +33,34 @@ def read_unirig(data: bytes, name: str) -> Rig:
     `vertices` (N, 3), `faces` (F, 3), `joints` (J, 3), `parents` (J,) with None for the root,
     `names` (J,), `skin` (N, J). `parents` is pickled, and read as data alone.
     """
-    found = _members(data, name)
-    missing = [k for k in ("vertices", "faces", "joints", "parents") if found.get(k) is None]
+    arrays = _members(data, name)
+    missing = [k for k in ("vertices", "faces", "joints", "parents") if arrays.get(k) is None]
     if missing:
         raise FileError(f"{name}: is no rig of UniRig: it lacks {', '.join(missing)}")
-    mesh = TriangleMesh(_numbers(found["vertices"], "vertices"), _numbers(found["faces"], "faces"))
-    joints = _numbers(found["joints"], "joints")
-    parents = [-1 if p is None else p for p in np.asarray(found["parents"], object).reshape(-1)]
+    mesh = TriangleMesh(
+        _numbers(arrays["vertices"], "vertices"), _numbers(arrays["faces"], "faces")
+    )
+    joints = _numbers(arrays["joints"], "joints")
+    parents = [-1 if p is None else p for p in np.asarray(arrays["parents"], object).reshape(-1)]
     if not all(isinstance(p, int | np.integer) for p in parents):
         raise SkeletonError("parents must be joint numbers, or None for the root")
-    names = found.get("names")
+    names = arrays.get("names")
     skeleton = Skeleton(joints, parents, () if names is None else [str(n) for n in names])
     weights = None
-    if found.get("skin") is not None:
-        skin = _numbers(found["skin"], "skin").astype(np.float64)
+    if arrays.get("skin") is not None:
+        skin = _numbers(arrays["skin"], "skin").astype(np.float64)
         if skin.shape != (len(mesh.vertices), len(joints)):
             raise WeightsError(
                 f"skin has the shape {skin.shape}, but there are {len(mesh.vertices)} vertices "
                 f"and {len(joints)} joints"
             )
         weights = normalised(np.where(np.isfinite(skin) & (skin > 0), skin, 0.0))
-    skeleton, told = with_deform(mesh, skeleton, weights)
-    return Rig(mesh, skeleton, weights, name=name, warnings=tuple(told))
+    skeleton, warnings = with_deform(mesh, skeleton, weights)
+    return Rig(mesh, skeleton, weights, name=name, warnings=tuple(warnings))
 
 
 def _members(data: bytes, name: str) -> dict[str, Any]:
-    found: dict[str, Any] = {}
+    arrays: dict[str, Any] = {}
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
             for member in archive.infolist():
@@ -67,14 +69,16 @@ def _members(data: bytes, name: str) -> dict[str, Any]:
                     shape, _, dtype = HEADERS[version](stream)
                     key = member.filename.removesuffix(".npy")
                     if not dtype.hasobject:
-                        found[key] = npy.read_array(io.BytesIO(archive.read(member)))
+                        arrays[key] = npy.read_array(io.BytesIO(archive.read(member)))
                     elif shape != ():  # a single object is None, or a path
-                        found[key] = list(plain_objects(stream, f"{name}: {key}", len(data) + 4096))
+                        arrays[key] = list(
+                            plain_objects(stream, f"{name}: {key}", len(data) + 4096)
+                        )
     except CutcellError:
         raise
     except Exception as error:  # zipfile and numpy raise whatever their parsing runs into
         raise FileError(f"{name}: is no readable npz archive ({one_line(error)[:200]})") from None
-    return found
+    return arrays
 
 
 def _numbers(value: Any, what: str) -> NDArray:
@@ -145,7 +149,7 @@ def _sample(group: Any, name: str) -> Rig:
 
 
 def faces_of_edges(vertices: NDArray, edges: NDArray) -> NDArray[np.int64]:
-    """Find the triangles of a mesh of which only the edges are known.
+    """Find the triangles of a mesh from its edges.
 
     Shapes: vertices (n, 3), edges (e, 2); returns (m, 3).
     """
@@ -165,13 +169,13 @@ def faces_of_edges(vertices: NDArray, edges: NDArray) -> NDArray[np.int64]:
     ]  # fmt: skip
     if not faces:
         raise FileError("its edges make no triangles; save its faces as well")
-    found = np.array(faces)
-    used = np.unique(face_edges(found), axis=0)
+    triangles = np.array(faces)
+    used = np.unique(face_edges(triangles), axis=0)
     if len(used) < RECOVERED * len(pairs):
         raise FileError(
             f"only {len(used):,} of its {len(pairs):,} edges lie in a triangle; its faces had more "
             "corners than three, save them as triangles"
         )
-    mesh = trimesh.Trimesh(vertices, found, process=False)
+    mesh = trimesh.Trimesh(vertices, triangles, process=False)
     trimesh.repair.fix_normals(mesh, multibody=True)
     return np.asarray(mesh.faces, np.int64)

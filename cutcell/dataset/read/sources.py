@@ -1,12 +1,13 @@
-"""Which rigs are in the folders and files that somebody names, and what bytes each is made of."""
+"""Rigs in files and folders, and their bytes."""
 
 from __future__ import annotations
 
 import hashlib
 import json
 import zipfile
+from collections import Counter
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -24,23 +25,16 @@ RAW = "raw_data.npz"
 HDF5 = (".h5", ".hdf5")
 FILES = (".glb", ".gltf", ".vrm", ".fbx", ".usd", ".usda", ".usdc", ".usdz", ".npz")
 RIGNET = (("obj", "rig_info"), ("obj_remesh", "rig_info_remesh"))
-"""Folders of RigNet's that belong together: meshes, and the rigs of the same names."""
+"""Matching folders of RigNet: meshes, and rigs of the same names."""
 
 
 @dataclass(frozen=True, eq=False)
 class Content:
-    """The bytes of one rig, which can go to another machine.
+    """The bytes of one rig, which can be sent to another machine."""
 
-    Parameters
-    ----------
-    kind : {"file", "unirig", "stored"}
-        How they are read.
-    files : dict of str to bytes
-        By name; the first is the one to load.
-    """
-
-    kind: str
+    kind: str  # "file", "unirig" or "stored"
     files: dict[str, bytes]
+    """By name; the first is the one to load."""
 
     def digest(self) -> str:
         """Return a hash of the bytes, whatever the files are called: 32 hexadecimal digits."""
@@ -59,10 +53,10 @@ class Source:
     Parameters
     ----------
     name : str
-        Unlike all others: its path below the folder that was named, without ending.
+        Unique: the path in the input folder, without suffix.
     path : Path
     kind : {"file", "unirig", "rignet", "puppeteer", "stored"}
-    beside : Path or None
+    rig_info : Path or None
         RigNet's other file.
     sample : str
         Puppeteer's group.
@@ -71,11 +65,11 @@ class Source:
     name: str
     path: Path
     kind: str = "file"
-    beside: Path | None = None
+    rig_info: Path | None = None
     sample: str = ""
 
     def content(self) -> Content:
-        """Read all bytes that the rig is made of.
+        """Read all bytes of the rig.
 
         Raises
         ------
@@ -89,10 +83,10 @@ class Source:
         if self.kind == "puppeteer":
             _, data = next(read_samples(self.path, [self.sample]))
             return Content("file", {"sample.npz": data})
-        if self.kind == "rignet" and self.beside is not None:
-            files = {"rig.obj": self.path, "rig.txt": self.beside}
+        if self.kind == "rignet" and self.rig_info is not None:
+            files = {"rig.obj": self.path, "rig.txt": self.rig_info}
             return Content("file", {name: read_bytes(path) for name, path in files.items()})
-        files = {self.path.name: self.path, **_beside(self.path)}
+        files = {self.path.name: self.path, **_referenced(self.path)}
         return Content("file", {name: read_bytes(path) for name, path in files.items()})
 
 
@@ -112,14 +106,14 @@ def read_content(content: Content, folder: Path) -> Rig:
 
 
 def find_sources(paths: Iterable[Path]) -> list[Source]:
-    """List the rigs in files and folders, in order, each under a name of its own.
+    """List the rigs in files and folders, in order, under unique names.
 
     Raises
     ------
     FileError
-        There is no such file or folder; it holds no rig; or it is an archive, to be split first.
+        A path does not exist, contains no rig, or is an archive that must be split first.
     """
-    found: list[Source] = []
+    sources: list[Source] = []
     for path in paths:
         if path.is_dir():
             inside = list(_in_folder(path))
@@ -128,12 +122,12 @@ def find_sources(paths: Iterable[Path]) -> list[Source]:
                     f"{path}: holds no rigs; what is read is GLB, glTF, VRM, FBX, USD, npz of "
                     f"Articulation-XL, folders of RigNet's (obj, rig_info), {RAW} and HDF5"
                 )
-            found += inside
+            sources += inside
         elif path.is_file():
-            found += _in_file(path, path.stem)
+            sources += _in_file(path, path.stem)
         else:
             raise FileError(f"{path}: there is no such file or folder")
-    return _named(found)
+    return _named(sources)
 
 
 def _stored(data: bytes, folder: Path) -> Rig:
@@ -167,12 +161,12 @@ def _in_folder(root: Path) -> Iterator[Source]:
 
 
 def _rignet_rig(path: Path) -> Path | None:
-    """Return the rig of one of RigNet's meshes: beside it, or in the folder that goes with it."""
+    """Return the rig of one of RigNet's meshes, in the same folder or in the matching one."""
     for meshes, rigs in RIGNET:
         if path.parent.name == meshes:
-            there = path.parent.parent / rigs / f"{path.stem}.txt"
-            if there.is_file():
-                return there
+            candidate = path.parent.parent / rigs / f"{path.stem}.txt"
+            if candidate.is_file():
+                return candidate
     return rig_file(path)
 
 
@@ -199,11 +193,11 @@ def _is_archive(path: Path) -> bool:
         with zipfile.ZipFile(path) as archive:
             return MEMBER in archive.namelist()
     except (OSError, zipfile.BadZipFile):
-        return False  # its own reader says what is wrong with it
+        return False  # the reader of npz files reports the fault
 
 
-def _beside(path: Path) -> dict[str, Path]:
-    """List the files that a glTF document refers to, where they are there."""
+def _referenced(path: Path) -> dict[str, Path]:
+    """List the existing files that a glTF document refers to."""
     if path.suffix.lower() != ".gltf":
         return {}
     try:
@@ -211,7 +205,7 @@ def _beside(path: Path) -> dict[str, Path]:
         entries = [*document.get("buffers", []), *document.get("images", [])]
         names = [e["uri"] for e in entries if not e.get("uri", "data:").startswith("data:")]
     except (OSError, ValueError, AttributeError, TypeError):
-        return {}  # its own reader says what is wrong with it
+        return {}  # the reader of glTF files reports the fault
     from urllib.parse import unquote
 
     inside = {unquote(name) for name in names if ".." not in Path(unquote(name)).parts}
@@ -220,12 +214,12 @@ def _beside(path: Path) -> dict[str, Path]:
 
 def _named(sources: list[Source]) -> list[Source]:
     """Make names differ where folders have rigs of the same name, or files differ in ending."""
-    counts: dict[str, int] = {}
+    counts: Counter[str] = Counter()
     named = []
     for source in sources:
-        count = counts[source.name] = counts.get(source.name, 0) + 1
-        name = source.name if count == 1 else f"{source.name}~{count}"
-        named.append(Source(name, source.path, source.kind, source.beside, source.sample))
+        counts[source.name] += 1
+        count = counts[source.name]
+        named.append(source if count == 1 else replace(source, name=f"{source.name}~{count}"))
     return named
 
 

@@ -1,12 +1,12 @@
 """The store: one file for each asset and its parameters, and a manifest of all.
 
-    STORE/store.json                 what kind of folder this is, and its parameters
+    STORE/store.json                 marks the folder, with its parameters
     STORE/ab/abcdef....npz           distances, weights, mesh and skeleton; the same bytes each time
     STORE/ab/abcdef....json          sizes, metrics, warnings or the error, seconds
     STORE/manifest.parquet           a row for each source
 
-Files are named by a hash of the asset's bytes and of the parameters. Each is written whole or not
-at all, so that a store is right whenever its maker is stopped.
+Files are named by a hash of the asset's bytes and of the parameters. Writing is atomic, so a store
+is valid whenever its writer is stopped.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ STAGES = ("load", "graph", "distances", "weights", "bones", "metrics")
 
 @dataclass(frozen=True)
 class Parameters:
-    """What is computed of each asset; with the asset's bytes it names the file.
+    """Parameters of a store; their hash and that of the asset's bytes name the file.
 
     Parameters
     ----------
@@ -76,21 +76,14 @@ class Parameters:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of one asset.
-
-    Parameters
-    ----------
-    key : str
-        Names its files.
-    record : mapping
-        `sizes`, `metrics`, `warnings`, `error` (empty if there is none), `seconds`, `version`.
-    data : bytes or None
-        The npz file; None where there is an error, or where it is in the store already.
-    """
+    """Result of binding one asset."""
 
     key: str
+    """Name of its files."""
     record: Mapping[str, Any]
+    """`sizes`, `metrics`, `warnings`, `error` (empty if there is none), `seconds`, `version`."""
     data: bytes | None = None
+    """The npz file; None after an error, or if the store has it."""
 
     @property
     def error(self) -> str:
@@ -110,12 +103,12 @@ class Store:
         self.folder = folder
 
     def begin(self, parameters: Parameters) -> None:
-        """Make the folder ready to be written to, and remove what killed writers left.
+        """Prepare the folder for writing, and remove files of killed writers.
 
         Raises
         ------
         FileError
-            It holds something else, or cannot be written to.
+            The folder contains other files, or cannot be written to.
         """
         if self.folder.is_dir() and not self.exists() and any(self.folder.iterdir()):
             raise FileError(f"{self.folder}: holds other files; name a new folder, or a store")
@@ -125,15 +118,15 @@ class Store:
         write_all({self.folder / STORE: text.encode() + b"\n"})
 
     def exists(self) -> bool:
-        """Tell whether the folder is a store."""
+        """Return whether the folder is a store."""
         return (self.folder / STORE).is_file()
 
     def path(self, key: str, ending: str = ".npz") -> Path:
         """Return where a file of an asset is."""
         return self.folder / key[:2] / f"{key}{ending}"
 
-    def known(self, key: str) -> Outcome | None:
-        """Return what became of an asset, None if it is not known yet."""
+    def outcome(self, key: str) -> Outcome | None:
+        """Return the outcome of an asset, None if it was not bound yet."""
         try:
             record = json.loads(self.path(key, ".json").read_bytes())
         except (OSError, ValueError):
@@ -205,7 +198,7 @@ def table_bytes(rows: Sequence[Mapping[str, Any]]) -> bytes:
     """Return rows as a Parquet file."""
     arrow, parquet = _arrow()
     columns = {name: [row[name] for row in rows] for name in (rows[0] if rows else ())}
-    whole = {"vertices", "faces", "joints", "bones", "nodes", "edges", "bytes", "memory"}
+    whole = {*SIZES, "bytes", "memory"}
     arrays = {}
     for name, values in columns.items():
         kind = None
@@ -254,15 +247,14 @@ class Entry:
     scale : float
         Longest side of the mesh; times it, distances are in the units of the vertices.
     weights : array, shape (n, j), float32
-        Ours.
+        Computed weights.
     artist : array, shape (n, j), float32, or None
-        The file's own.
+        Weights of the file.
     distances : array, shape (n, j), float32
-        From each joint's bones, in longest sides; infinite where they were not needed or no path
-        leads.
+        From each joint's bones, in longest sides; infinite where not needed or not connected.
     bone_joints : array, shape (b, 2), int32
-        The joints at both ends of each bone, in RigNet's order; twice the same for the point that
-        stands for a joint without children. (0, 2) where bones were not asked for.
+        The joints at both ends of each bone, in RigNet's order; twice the same for the point of a
+        joint without children. (0, 2) without distances of bones.
     bone_distances : array, shape (n, b), float32
         From each of these bones.
     """
@@ -312,20 +304,20 @@ def read_entry(path: Path) -> Entry:
     """
     try:
         with np.load(path, allow_pickle=False) as file:
-            found = {name: file[name] for name in file.files}
-        shape = len(found["vertices"]), len(found["joints"])
+            arrays = {name: file[name] for name in file.files}
+        shape = len(arrays["vertices"]), len(arrays["joints"])
         return Entry(
-            found["vertices"],
-            found["faces"],
-            found["joints"],
-            found["parents"],
-            tuple(found["names"].tolist()),
-            float(found["scale"]),
-            _unpacked("weights", found, 0.0),
-            _unpacked("artist", found, 0.0) if "artist_shape" in found else None,
-            _unpacked("distances", found, np.inf).reshape(shape),
-            found["bone_joints"],
-            _unpacked("bone_distances", found, np.inf),
+            arrays["vertices"],
+            arrays["faces"],
+            arrays["joints"],
+            arrays["parents"],
+            tuple(arrays["names"].tolist()),
+            float(arrays["scale"]),
+            _unpacked("weights", arrays, 0.0),
+            _unpacked("artist", arrays, 0.0) if "artist_shape" in arrays else None,
+            _unpacked("distances", arrays, np.inf).reshape(shape),
+            arrays["bone_joints"],
+            _unpacked("bone_distances", arrays, np.inf),
         )
     except (OSError, ValueError, KeyError, EOFError) as error:
         raise FileError(f"{path.name}: is no file of a store ({reason(error)})") from None
@@ -334,10 +326,10 @@ def read_entry(path: Path) -> Entry:
 def _packed(name: str, table: NDArray, empty: float, precision: str) -> dict[str, NDArray]:
     """Store a table whole, or as its entries if few differ from `empty`."""
     shape = {f"{name}_shape": np.array(table.shape, np.int64)}
-    there = table != empty
-    if not table.size or there.mean() >= SPARSE:
+    is_entry = table != empty
+    if not table.size or is_entry.mean() >= SPARSE:
         return {**shape, name: table.astype(precision)}
-    rows, columns = np.nonzero(there)
+    rows, columns = np.nonzero(is_entry)
     return {
         **shape,
         f"{name}_row": rows.astype(np.int32),
@@ -346,9 +338,9 @@ def _packed(name: str, table: NDArray, empty: float, precision: str) -> dict[str
     }
 
 
-def _unpacked(name: str, found: Mapping[str, NDArray], empty: float) -> NDArray[np.float32]:
-    if name in found:
-        return found[name].astype(np.float32)
-    table = np.full(tuple(found[f"{name}_shape"]), empty, np.float32)
-    table[found[f"{name}_row"], found[f"{name}_col"]] = found[f"{name}_value"]
+def _unpacked(name: str, arrays: Mapping[str, NDArray], empty: float) -> NDArray[np.float32]:
+    if name in arrays:
+        return arrays[name].astype(np.float32)
+    table = np.full(tuple(arrays[f"{name}_shape"]), empty, np.float32)
+    table[arrays[f"{name}_row"], arrays[f"{name}_col"]] = arrays[f"{name}_value"]
     return table

@@ -11,14 +11,14 @@ from cutcell.dataset.audit.audit_files import save_audit
 from cutcell.dataset.audit.auditing import audit
 from cutcell.dataset.audit.chamfer import CELLS, CODE, block_of, close_joints, close_surfaces
 from cutcell.dataset.audit.duplicates import Pair, clusters
-from cutcell.dataset.audit.likeness import Likeness, likeness, same_skeletons, traits_of
+from cutcell.dataset.audit.likeness import Similarity, features_of, likeness, same_skeletons
 from cutcell.dataset.audit.points import Normalised, normalised, sample_surface
 from cutcell.dataset.read.store import read_table
 from cutcell.errors import MeshError, ParameterError
 from cutcell.rig.rig import Rig, Skeleton, TriangleMesh
 from cutcell_assets.generate import KINDS, generate
 
-ALIKE = Likeness("copy", True, 0.0, 0.0, 0.0, 1.0, 0.0)
+ALIKE = Similarity("copy", True, 0.0, 0.0, 0.0, 1.0, 0.0)
 
 pytestmark = [
     pytest.mark.filterwarnings("ignore::ResourceWarning"),
@@ -212,7 +212,7 @@ def test_two_sets_give_the_pairs_across_them(found):
 
 def test_one_skeleton_is_found_in_other_poses_alone():
     rigs = planted()
-    traits = [traits_of(rigs[name]) for name in ("original", "pose", "other")]
+    traits = [features_of(rigs[name]) for name in ("original", "pose", "other")]
     assert same_skeletons(traits, None).tolist() == [[0, 1]]
     assert same_skeletons(traits[:1], traits[1:]).tolist() == [[0, 0]]
     assert likeness(traits[0], traits[2], 1.0, 0.0).kind == "similar"

@@ -6,7 +6,9 @@ import shutil
 import signal
 import subprocess
 import sys
+import threading
 import time
+from contextlib import nullcontext
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +16,8 @@ import psutil
 import pytest
 
 import cutcell
-from cutcell.dataset.bind.binding import bind_all, bind_apart
+from cutcell.dataset.bind import binding
+from cutcell.dataset.bind.binding import bind_all, bind_isolated
 from cutcell.dataset.bind.cluster import connected
 from cutcell.dataset.bind.runner import AssetLostError, Runner, stop_runners
 from cutcell.dataset.bind.work import bind_content, rignet_bones
@@ -22,6 +25,7 @@ from cutcell.dataset.read.formats import faces_of_edges
 from cutcell.dataset.read.sources import Content, find_sources
 from cutcell.dataset.read.store import Parameters, Store, read_entry
 from cutcell.errors import CutcellError, FileError, ParameterError
+from cutcell.runtime.memory import SHARE
 from cutcell_assets.generate import KINDS, generate
 
 QUICK = Parameters(cutcell.PAPER.with_options(resolution=12))
@@ -145,22 +149,41 @@ def test_too_little_memory_is_told_before_it_is_taken(made, monkeypatch):
     content = find_sources([folder / "rig1.npz"])[0].content()
     monkeypatch.setattr("cutcell.dataset.bind.binding.available_memory", lambda: 1000)
     try:
-        outcome = bind_apart(content, "k", QUICK, 60, 1)
+        outcome = bind_isolated(content, "k", QUICK, 60, 1)
     finally:
         stop_runners()
     assert "memory" in outcome.error
     assert outcome.record["passing"]
 
 
+def test_a_second_attempt_charges_memory_once(monkeypatch):
+    """A second charge would wait for the memory of the first for ever."""
+
+    class Killed:
+        def bind(self, content, key, parameters, limit, reserve):
+            reserve(600)
+            raise AssetLostError("it was killed", passing=True)
+
+    monkeypatch.setattr(binding, "available_memory", lambda: int(1000 / SHARE))
+    monkeypatch.setattr(binding, "lend_runner", lambda: nullcontext(Killed()))
+    arguments = (Content("file", {}), "k", QUICK, 60, 1)
+    thread = threading.Thread(target=binding.bind_isolated, args=arguments, daemon=True)
+    thread.start()
+    thread.join(10)
+    assert not thread.is_alive()
+    assert binding._budget.charged == 0
+
+
 FAKE = """
 import sys, os, time
-from cutcell.dataset.bind.runner import read, write
+from pickle import load
+from cutcell.dataset.bind.runner import write
 out = os.fdopen(os.dup(1), "wb")
 write(out, "ready")
 while True:
-    content, key, parameters = read(sys.stdin.buffer)
+    content, key, parameters = load(sys.stdin.buffer)
     write(out, 5)
-    read(sys.stdin.buffer)
+    load(sys.stdin.buffer)
     if key == "hang": time.sleep(1000)
     if key == "crash": os.abort()
     if key == "exit": sys.exit("no more")

@@ -1,7 +1,9 @@
-"""Reports as one HTML file, which opens anywhere and needs nothing beside it."""
+"""Reports of bindings and audits as self-contained HTML files."""
 
 from __future__ import annotations
 
+import tempfile
+from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from html import escape
 from pathlib import Path
@@ -11,7 +13,9 @@ from ...errors import CutcellError
 from ...runtime.display import printable
 from ...runtime.writing import write_all
 from ..bind.binding import BindReport
+from ..read.sources import Source, read_source
 from ..read.store import METRICS, STAGES, read_entry
+from .duplicates import Audit, Pair
 from .pictures import picture
 
 WORST = 5
@@ -84,15 +88,15 @@ def _worst(store: Path, rows: Sequence[Mapping[str, Any]], metric: str) -> list[
         except CutcellError as error:
             figures.append(f"<p>{escape(str(error))}</p>")
             continue
-        shown = picture(entry.vertices, entry.faces, entry.weights)
-        figures.append(figure(shown, [row["name"], f"{metric} {row[metric]:.4g}"]))
+        image = picture(entry.vertices, entry.faces, entry.weights)
+        figures.append(figure(image, [row["name"], f"{metric} {row[metric]:.4g}"]))
     return [f"<h2>Worst by {metric}</h2>", *figures]
 
 
 def figure(image: str, lines: Sequence[str]) -> str:
     """Return a picture with lines below it."""
-    words = "<br>".join(escape(printable(line)) for line in lines)
-    return f'<figure><img src="{image}" alt=""><figcaption>{words}</figcaption></figure>'
+    text = "<br>".join(escape(printable(line)) for line in lines)
+    return f'<figure><img src="{image}" alt=""><figcaption>{text}</figcaption></figure>'
 
 
 def table(rows: Any) -> str:
@@ -110,3 +114,79 @@ def write_page(path: Path, title: str, parts: Sequence[str]) -> None:
     body = f"<h1>{escape(title)}</h1>{''.join(parts)}"
     text = f'<!doctype html><html lang="en"><meta charset="utf-8">{head}<body>{body}</body></html>'
     write_all({path: text.encode("utf-8", "replace")})
+
+
+MAX_ROWS = 60
+MAX_MATCHES = 5
+
+
+def write_audit_report(audit: Audit, path: Path) -> None:
+    """Write an audit as a page.
+
+    Each row has a character and its nearest matches, with their vertices, faces and distance;
+    those with the nearest match come first.
+    """
+    document = audit.to_dict()
+    counts = {
+        "assets": f"{document['assets']:,}",
+        "pairs that stage 1 kept": f"{audit.candidates:,}",
+        "near-duplicates": f"{len(audit.pairs):,}",
+        **{f"of them {k}": f"{v:,}" for k, v in document["tiers"].items() if k != "posed"},
+        "one skeleton in other poses": f"{len(audit.posed):,}",
+        **{f"kind: {k}": f"{v:,}" for k, v in document["kinds"].items()},
+        "clusters": f"{len(document['clusters']):,}",
+        "to keep": f"{len(document['keep']):,}",
+        "overruled by a person": f"{len(audit.verdicts):,}",
+        "could not be read": f"{len(audit.failed):,}",
+    }
+    parts = [table(counts.items())]
+    matches: dict[int, list[Pair]] = defaultdict(list)
+    for pair in [*audit.pairs, *audit.posed]:
+        matches[pair.a].append(pair)
+    pictures = _Pictures()
+    rows = list(matches.items())
+    for k, pairs in rows[:MAX_ROWS]:
+        figures = [figure(*pictures.of(audit.sources[k], []))]
+        for pair in pairs[:MAX_MATCHES]:
+            far = "" if pair in audit.posed else f"D {pair.surface:.2g}, {pair.tier}"
+            answer = audit.verdict(pair)
+            verdict = f"a person said: {answer}" if answer else ""
+            lines = [line for line in (far, _measures(pair), verdict) if line]
+            figures.append(figure(*pictures.of(audit.other_sources[pair.b], lines)))
+        parts.append(f"<section>{''.join(figures)}</section>")
+    if len(rows) > MAX_ROWS:
+        parts.append(f"<p>and {len(rows) - MAX_ROWS:,} more; pairs.parquet lists all.</p>")
+    if audit.failed:
+        parts.append(f"<h2>Could not be read</h2>{table(list(audit.failed.items())[:500])}")
+    write_page(path, f"Audit of {document['assets']:,} assets", parts)
+
+
+def _measures(pair: Pair) -> str:
+    alike = pair.likeness
+    measures = [alike.kind]
+    if alike.reach == alike.reach:
+        measures.append(f"reach {alike.reach:.3f}")
+    if alike.degrees is not None:
+        measures.append(f"bones {alike.degrees:.0f}° apart")
+    return ", ".join(measures)
+
+
+class _Pictures:
+    """Pictures of characters, each drawn once."""
+
+    def __init__(self) -> None:
+        self._drawn: dict[str, tuple[str, str]] = {}
+
+    def of(self, source: Source, lines: list[str]) -> tuple[str, list[str]]:
+        """Return a picture and the lines below it."""
+        key = f"{source.path}:{source.sample}"
+        if key not in self._drawn:
+            try:
+                with tempfile.TemporaryDirectory() as folder:
+                    rig = read_source(source, Path(folder))
+            except CutcellError as error:
+                return "data:,", [source.name, str(error)]
+            counts = f"V {len(rig.mesh.vertices):,}, F {len(rig.mesh.faces):,}"
+            self._drawn[key] = picture(rig.mesh.vertices, rig.mesh.faces, rig.weights), counts
+        image, counts = self._drawn[key]
+        return image, [source.name, counts, *lines]
