@@ -21,28 +21,13 @@ NEAREST = 3
 
 @dataclass(frozen=True, eq=False)
 class Body:
-    """A welded mesh and its bones, in the unit cube.
+    """A welded mesh and its bones, in the unit cube."""
 
-    Parameters
-    ----------
-    points : array, shape (k, 3), float64
-        Welded vertices, sorted by coordinates.
-    faces : array, shape (m, 3), int32
-        Triangles with three different corners.
-    index : array, shape (n,), int32
-        The welded vertex of each vertex of the file.
-    bones : Bones
-    joints : int
-        j, the joints of the skeleton, with or without bones.
-    lattice : Lattice
-        From the file's units into the unit cube and back.
-    """
-
-    points: NDArray[np.float64]
-    faces: NDArray[np.int32]
-    index: NDArray[np.int32]
+    points: NDArray[np.float64]  # (k, 3), welded vertices
+    faces: NDArray[np.int32]  # (m, 3), with three different corners each
+    index: NDArray[np.int32]  # (n,), the welded vertex of each vertex of the file
     bones: Bones
-    joints: int
+    joints: int  # of the skeleton, with or without bones
     lattice: Lattice
 
     @classmethod

@@ -31,21 +31,11 @@ FACES = 400
 
 @dataclass(frozen=True, eq=False)
 class Cage:
-    """A closed surface around a body.
+    """A closed surface around a body, in the unit cube or a little outside."""
 
-    Parameters
-    ----------
-    vertices : array, shape (c, 3)
-        In the unit cube, or a little outside.
-    faces : array, shape (m, 3)
-        Counter-clockwise seen from outside.
-    joint : array, shape (c,), int32
-        The joint of the bone that is nearest to each vertex in a straight line.
-    """
-
-    vertices: NDArray[np.float64]
-    faces: NDArray[np.int64]
-    joint: NDArray[np.int32]
+    vertices: NDArray[np.float64]  # (c, 3)
+    faces: NDArray[np.int64]  # (m, 3), oriented outwards
+    joint: NDArray[np.int32]  # (c,), of the bone nearest to each vertex in a straight line
 
     def weights(self, joints: int) -> NDArray[np.float64]:
         """Return the weights of the vertices, shape (c, joints): each follows its joint."""

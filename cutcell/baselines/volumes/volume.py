@@ -35,25 +35,16 @@ EDGE = 0.05
 class Tetrahedra:
     """Tetrahedra that fill a body.
 
-    Parameters
-    ----------
-    nodes, tets : arrays, shapes (n, 3), (t, 4)
-    corners, shares : arrays, shape (k, 4)
-        Each welded vertex that faces use is the mean of the nodes `corners`, weighted by `shares`.
-    used : array, shape (k,)
-        These vertices in the body.
-    handles, joint : arrays, shapes (h, 3), (h,)
-        Points on the bones, and their joints.
-    warnings : tuple of str
+    The vertices `used` of the body are means of the nodes `corners`, weighted by `shares`.
     """
 
-    nodes: NDArray[np.float64]
-    tets: NDArray[np.int64]
-    corners: NDArray[np.int64]
-    shares: NDArray[np.float64]
-    used: NDArray[np.int32]
-    handles: NDArray[np.float64]
-    joint: NDArray[np.int32]
+    nodes: NDArray[np.float64]  # (n, 3)
+    tets: NDArray[np.int64]  # (t, 4)
+    corners: NDArray[np.int64]  # (k, 4)
+    shares: NDArray[np.float64]  # (k, 4)
+    used: NDArray[np.int32]  # (k,), welded vertices with faces
+    handles: NDArray[np.float64]  # (h, 3), points on the bones
+    joint: NDArray[np.int32]  # (h,), of each handle
     warnings: tuple[str, ...]
 
 

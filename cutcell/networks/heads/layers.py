@@ -66,13 +66,6 @@ class PointEncoder(nn.Module):
 
     A small encoder, trained with the head. The published networks have large ones,
     pretrained elsewhere: PTv3 and Michelangelo in UniRig, PartField's in Puppeteer.
-
-    Parameters
-    ----------
-    width : int
-        Of the features.
-    layers : int
-        Rounds in which a point looks at its neighbours.
     """
 
     def __init__(self, width: int, layers: int) -> None:
@@ -98,12 +91,7 @@ def pooled(batch: Batch, features: Tensor) -> Tensor:
 
 
 class CrossAttention(nn.Module):
-    """Attention, then two linear layers, each added to its input and normalised.
-
-    Parameters
-    ----------
-    width, heads : int
-    """
+    """Attention, then two linear layers, each added to its input and normalised."""
 
     def __init__(self, width: int, heads: int) -> None:
         super().__init__()
