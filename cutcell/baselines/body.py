@@ -8,37 +8,26 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..geodesics import Bones, bone_segments
+from ..geodesics.fallback import straight_to_nearest
 from ..geometry.segments import closest_on_segment, distance_to_segment
 from ..geometry.weld import weld
 from ..graph import Lattice
 from ..method import Leaf
 from ..rig.rig import Rig
 
+NEAREST = 3
+"""Bones that a vertex follows which none reaches."""
+
 
 @dataclass(frozen=True, eq=False)
 class Body:
-    """A welded mesh and its bones, in the unit cube.
+    """A welded mesh and its bones, in the unit cube."""
 
-    Parameters
-    ----------
-    points : array, shape (k, 3), float64
-        Welded vertices, sorted by coordinates.
-    faces : array, shape (m, 3), int32
-        Triangles with three different corners.
-    index : array, shape (n,), int32
-        The welded vertex of each vertex of the file.
-    bones : Bones
-    joints : int
-        j, the joints of the skeleton, with or without bones.
-    lattice : Lattice
-        From the file's units into the unit cube and back.
-    """
-
-    points: NDArray[np.float64]
-    faces: NDArray[np.int32]
-    index: NDArray[np.int32]
+    points: NDArray[np.float64]  # (k, 3), welded vertices
+    faces: NDArray[np.int32]  # (m, 3), with three different corners each
+    index: NDArray[np.int32]  # (n,), the welded vertex of each vertex of the file
     bones: Bones
-    joints: int
+    joints: int  # of the skeleton, with or without bones
     lattice: Lattice
 
     @classmethod
@@ -83,3 +72,23 @@ class Same:
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Same) and self._key == other._key
+
+
+def follow_nearest(body: Body, distance: NDArray[np.float64], why: str) -> tuple[str, ...]:
+    """Give vertices that no bone reaches straight distances to their nearest bones, in place.
+
+    Shapes: distance (b, k).
+    """
+    lost = np.flatnonzero(~np.isfinite(distance).any(axis=0))
+    if len(lost) == 0:
+        return ()
+    distance[:, lost] = straight_to_nearest(body.points[lost], body.bones, NEAREST)
+    return (unreached(lost, body, why),)
+
+
+def unreached(lost: NDArray[np.intp], body: Body, why: str) -> str:
+    """Say how many vertices follow their nearest bones, and why."""
+    return (
+        f"{len(lost)} of {len(body.points)} welded vertices follow their nearest bones in a "
+        f"straight line: {why}"
+    )

@@ -13,9 +13,8 @@ from ..rig.checks import check_number
 from ..rig.rig import Rig
 from ..runtime.progress import Progress, silent
 from ..weights.paper_kernel import paper_kernel
-from .body import Body
+from .body import Body, follow_nearest
 from .frame import BaselineBinding, Run, bind_by
-from .unreached import follow_nearest
 from .visibility import Blockers
 
 NEAR_SHARE = 15.0

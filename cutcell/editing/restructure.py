@@ -161,26 +161,13 @@ def _heirs(old: Skeleton, removed: NDArray[np.bool_]) -> NDArray[np.int_]:
 
 @dataclass(frozen=True, eq=False)
 class Restructured:
-    """A motion of another skeleton's joints; see `restructured`.
-
-    Parameters
-    ----------
-    motion : Motion
-    places : array, shape (i, 3)
-        Positions of the joints that it moves.
-    before : array, shape (i,), int
-        Their parents.
-    parents : array, shape (j,), int
-        Parents now.
-    origin : array, shape (j,), int
-        Which of its joints each one is; -1 for none.
-    """
+    """A motion of another skeleton's joints; see `restructured`."""
 
     motion: Motion
-    places: NDArray[np.float64]
-    before: NDArray[np.int32]
-    parents: NDArray[np.int32]
-    origin: NDArray[np.int_]
+    places: NDArray[np.float64]  # (i, 3), positions of the joints that `motion` moves
+    before: NDArray[np.int32]  # (i,), their parents
+    parents: NDArray[np.int32]  # (j,), parents now
+    origin: NDArray[np.int_]  # (j,), which of its joints each one is; -1 for none
 
     @property
     def joints(self) -> int:

@@ -72,12 +72,7 @@ class Brush:
 
 
 class PaintSurface:
-    """Data that all strokes over one mesh share.
-
-    Parameters
-    ----------
-    mesh : TriangleMesh
-    """
+    """Data that all strokes over one mesh share."""
 
     def __init__(self, mesh: TriangleMesh) -> None:
         self.reach = SurfaceReach.of(mesh)
@@ -112,25 +107,9 @@ class PaintSurface:
 
 
 class Stroke:
-    """One stroke of a brush: whatever it passed, in whichever steps, is painted once.
+    """One stroke of a brush: vertices are painted once, however often it passes.
 
-    Parameters
-    ----------
-    surface : PaintSurface
-    rig : Rig
-    weights : array, shape (n, j)
-        As they are before it.
-    joint : int or str
-    brush : Brush
-    mirror : Mirror, optional
-        Of the joints; what the other side's brush goes by.
-    locked, max_influences, within
-        See `paint_weights`.
-
-    Raises
-    ------
-    ParameterError
-        There is no such joint, or it is locked or may carry no weight.
+    See `paint_weights` for the parameters; `weights`, (n, j), are those before the stroke.
     """
 
     def __init__(

@@ -26,24 +26,12 @@ MIN_SHARE = 0.5
 
 @dataclass(frozen=True, eq=False)
 class Mirror:
-    """A plane of symmetry, and the mirror image of each vertex and joint.
+    """A plane of symmetry, and the mirror image of each vertex and joint; -1 for none."""
 
-    Parameters
-    ----------
-    axis : int
-        0, 1, 2: the plane is orthogonal to x, y or z.
-    position : float
-        Where it cuts that axis, in the file's units.
-    vertex : array, shape (n,), int
-        The partner of each vertex, itself on the plane; -1 where there is none.
-    joint : array, shape (j,), int
-        The partner of each joint; -1 where there is none.
-    """
-
-    axis: int
-    position: float
-    vertex: NDArray[np.intp]
-    joint: NDArray[np.intp]
+    axis: int  # 0, 1, 2: the plane is orthogonal to x, y or z
+    position: float  # where the plane cuts the axis, in the file's units
+    vertex: NDArray[np.intp]  # (n,), itself on the plane
+    joint: NDArray[np.intp]  # (j,)
 
 
 def find_mirror(rig: Rig) -> Mirror:

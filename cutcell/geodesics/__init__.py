@@ -1,5 +1,6 @@
 """Bones, their distances through the body, and what to do where there are none."""
 
+from ..geometry.segments import distance_to_segment
 from ..method import LEAVES
 from .bones import Bones, Sources, bone_samples, bone_segments
 from .distances import BoneDistances, bone_distances
@@ -17,6 +18,7 @@ __all__ = [
     "bone_distances",
     "bone_samples",
     "bone_segments",
+    "distance_to_segment",
     "path_length",
     "shortest_path",
     "trace_path",

@@ -17,10 +17,10 @@ if TYPE_CHECKING:
     from .heads.heads import create_network as create_network
     from .heads.heads import parameter_count as parameter_count
     from .heads.heads import predict as predict
-    from .names import HEADS as HEADS
-    from .names import SIZES as SIZES
     from .priors import PRIORS as PRIORS
     from .priors import Samples as Samples
+    from .recipe import HEADS as HEADS
+    from .recipe import SIZES as SIZES
     from .recipe import Recipe as Recipe
     from .samples import Sample as Sample
     from .samples import sample_rig as sample_rig
@@ -30,8 +30,8 @@ if TYPE_CHECKING:
     from .training import train as train
 
 WITHOUT_TORCH = {
-    "HEADS": "names",
-    "SIZES": "names",
+    "HEADS": "recipe",
+    "SIZES": "recipe",
     "PRIORS": "priors",
     "Recipe": "recipe",
     "Samples": "priors",

@@ -23,7 +23,7 @@ from ..rig.checks import check_choice
 from ..rig.rig import Rig
 from ..runtime.progress import Progress, silent
 from ..runtime.writing import write_all
-from .names import PRIOR_NAMES
+from .recipe import PRIOR_NAMES
 from .samples import Sample, sample_rig
 
 

@@ -161,22 +161,12 @@ def deal_rig(rig: Rig, count: int) -> Iterator[Sample]:
 
 @dataclass(frozen=True, eq=False)
 class _Welded:
-    """The welded vertices that faces use, k.
+    """The welded vertices that faces use."""
 
-    Parameters
-    ----------
-    places : array, shape (k, 3)
-        In longest sides.
-    faces : array, shape (m, 3), int32
-    normals : array, shape (k, 3), float32
-    vertices : array, shape (k,)
-        The first vertex of the rig at each place.
-    """
-
-    places: NDArray[np.float64]
-    faces: NDArray[np.int32]
-    normals: NDArray
-    vertices: NDArray[np.int64]
+    places: NDArray[np.float64]  # (k, 3), in longest sides
+    faces: NDArray[np.int32]  # (m, 3)
+    normals: NDArray  # (k, 3), float32
+    vertices: NDArray[np.int64]  # (k,), the first vertex of the rig at each place
 
     @classmethod
     def of(cls, rig: Rig) -> _Welded:

@@ -39,29 +39,10 @@ def weights(
     deform: NDArray[np.bool_],
     prior: NDArray[np.float64] | None = None,
 ) -> dict[str, NDArray]:
-    """Predict the weights of a rig.
+    """Predict the weights of a rig by the network in a folder.
 
-    Parameters
-    ----------
-    folder : array of one str
-        Where the network is.
-    vertices : array, shape (n, 3)
-    faces : array, shape (m, 3)
-    joints : array, shape (j, 3)
-    parents, deform : arrays, shape (j,)
-    prior : array, shape (n, j), optional
-        Where the network learned with one.
-
-    Returns
-    -------
-    dict
-        "vertices": array, shape (p,), the first vertex at each place that a face uses; "weights":
-        array, shape (p, j), of these.
-
-    Raises
-    ------
-    FileError
-        There is no such network.
+    Shapes: vertices (n, 3), faces (m, 3), joints (j, 3), parents and deform (j,), prior (n, j);
+    returns "vertices" (p,), the first one of each welded vertex with faces, and "weights" (p, j).
     """
     from .heads.heads import predict
     from .training import load_network

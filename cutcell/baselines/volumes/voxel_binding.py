@@ -15,9 +15,8 @@ from ...geometry.edges import find_edges
 from ...method import PAPER, Leaf
 from ...rig.rig import Rig
 from ...weights.paper_kernel import paper_kernel
-from ..body import Body
+from ..body import NEAREST, Body, follow_nearest, unreached
 from ..frame import BaselineBinding, Run, bind_by
-from ..unreached import NEAREST, follow_nearest, unreached
 from .voxels import Voxels, voxelize
 
 NO_PATH = "no path along solid voxels leads from a bone to them"

@@ -26,24 +26,12 @@ NEIGHBOURS = np.array(
 
 @dataclass(frozen=True, eq=False)
 class Voxels:
-    """Voxels that a body touches or encloses.
+    """Voxels that a body touches or encloses; two more layers surround the unit cube."""
 
-    Parameters
-    ----------
-    solid : array, shape (R + 4, R + 4, R + 4), bool
-        With two layers around the unit cube, the outer one empty.
-    number : array, same shape, int32
-        Counts the solid voxels; -1 elsewhere.
-    centres : array, shape (s, 3), float64
-        Unit-cube positions of the solid voxels.
-    resolution : int
-        R.
-    """
-
-    solid: NDArray[np.bool_]
-    number: NDArray[np.int32]
-    centres: NDArray[np.float64]
-    resolution: int
+    solid: NDArray[np.bool_]  # (R + 4, R + 4, R + 4)
+    number: NDArray[np.int32]  # the same shape, counts the solid voxels; -1 elsewhere
+    centres: NDArray[np.float64]  # (s, 3), of the solid voxels, in the unit cube
+    resolution: int  # R
 
     def at(self, points: NDArray[np.float64]) -> NDArray[np.int32]:
         """Return the number of the solid voxel that contains each point (..., 3), or -1."""

@@ -11,7 +11,7 @@ from torch import nn
 
 from ...rig.checks import check_choice
 from ..batches import collate
-from ..names import HEADS, SIZES
+from ..recipe import HEADS, SIZES
 from ..samples import Sample
 from .puppeteer import Puppeteer
 from .rignet import RigNet

@@ -6,9 +6,8 @@ import torch
 from torch import Tensor, nn
 
 from ..batches import Batch
-from ..losses import weight_loss
 from ..samples import MAX_HOPS
-from .layers import CrossAttention, PointEncoder, masked_softmax, normed
+from .layers import CrossAttention, PointEncoder, masked_softmax, normed, weight_loss
 
 SHARP = 10.0
 """The scale of the cosine that learning begins with."""

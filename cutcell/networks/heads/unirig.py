@@ -6,8 +6,7 @@ import torch
 from torch import Tensor, nn
 
 from ..batches import Batch
-from ..losses import weight_loss
-from .layers import LEAST, CrossAttention, PointEncoder, masked_softmax, normed
+from .layers import LEAST, CrossAttention, PointEncoder, masked_softmax, normed, weight_loss
 
 
 class UniRig(nn.Module):

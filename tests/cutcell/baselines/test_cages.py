@@ -11,7 +11,7 @@ from cutcell import Rig, Skeleton, TriangleMesh
 from cutcell.baselines import METHODS
 from cutcell.baselines.body import Body
 from cutcell.baselines.cages import cage_methods
-from cutcell.baselines.cages.cage import _make, make_cage
+from cutcell.baselines.cages.cage_methods import _make, make_cage
 from cutcell.baselines.cages.harmonic import harmonic_values
 from cutcell.baselines.cages.mean_value import mean_values
 from cutcell.isolated import cage as worker

@@ -11,7 +11,7 @@ from scipy.spatial import cKDTree
 
 from cutcell import Rig, Skeleton, TriangleMesh
 from cutcell.baselines import METHODS
-from cutcell.baselines.volumes.tetrahedra import _fill as fill
+from cutcell.baselines.volumes.volume import _fill as fill
 from cutcell.isolated import __main__ as workers
 from cutcell.isolated import quasi_harmonic, smooth, tetrahedra
 from cutcell.isolated import run as apart

@@ -16,7 +16,7 @@ from cutcell import (
 )
 from cutcell.editing import refine_weights
 from cutcell.editing.locks import joint_index, lock_joints
-from cutcell.editing.smoothing import smooth_weights
+from cutcell.editing.refine import smooth_weights
 from cutcell.editing.symmetry import find_joint_mirror, find_mirror
 from tests import meshes
 

@@ -10,7 +10,7 @@ import cutcell
 import cutcell.networks
 from cutcell.cli.app import app
 from cutcell.errors import MissingLibraryError
-from cutcell.networks.names import PRIOR_NAMES
+from cutcell.networks.recipe import PRIOR_NAMES
 from tests.bars import bar
 from tests.test_layers import ROOT
 
