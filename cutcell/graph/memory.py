@@ -51,7 +51,7 @@ def check_estimate(
     sides = np.ptp(np.clip(vertices, 0, 1), axis=0)  # vertices without faces may lie anywhere
     points = resolution**3 * float(sides.prod())
     most = needed_memory(len(vertices), points, hits, connectivity)
-    if resolution < FAR_FINER * COARSE or most <= available_memory(most / SHARE) * SHARE:
+    if resolution < FAR_FINER * COARSE or most <= available_memory() * SHARE:
         return
     coarse = cast_all_rays(vertices, faces, COARSE)
     inside = inside_intervals(vertices, faces, coarse, boundary, COARSE, winding_threshold, tell)
@@ -83,7 +83,7 @@ def check_memory(
 
 def _refuse_over(needed: Callable[[float], float], resolution: int, certain: float) -> None:
     """Refuse what needs more memory than is free; `needed` takes a factor of the resolution."""
-    free = available_memory(needed(1) / SHARE) * SHARE
+    free = available_memory() * SHARE
     if needed(1) <= certain * free:
         return
     fits = next((r for r in range(resolution, 1, -1) if needed(r / resolution) <= free), None)

@@ -170,7 +170,7 @@ def test_resolutions_out_of_range_are_refused(resolution):
 
 
 def test_a_graph_that_does_not_fit_is_refused(monkeypatch):
-    monkeypatch.setattr("cutcell.graph.memory.available_memory", lambda _: 10**8)
+    monkeypatch.setattr("cutcell.graph.memory.available_memory", lambda: 10**8)
     sentence = r"resolution 64 needs about [\d.]+ GB, .* a resolution of (\d+) would fit"
     with pytest.raises(ParameterError, match=sentence) as refusal:
         build_graph(TriangleMesh(*meshes.ball()), 64)
@@ -192,7 +192,7 @@ def test_a_graph_that_does_not_fit_by_far_is_refused_before_rays_are_cast(monkey
     # A ball of diameter 1024 cells.
     found = re.search(sentence, str(refusal.value))
     assert float(found[1]) == pytest.approx(np.pi / 6 * 1024**3 * 950 / 1e9, rel=0.05)
-    monkeypatch.setattr("cutcell.graph.memory.available_memory", lambda _: 10**9)
+    monkeypatch.setattr("cutcell.graph.memory.available_memory", lambda: 10**9)
     with pytest.raises(ParameterError, match=sentence.replace("1024", "200")) as refusal:
         build_graph(mesh, 200, connectivity=26)
     assert not cast
@@ -201,7 +201,7 @@ def test_a_graph_that_does_not_fit_by_far_is_refused_before_rays_are_cast(monkey
 
 
 def test_a_stray_vertex_of_no_face_takes_no_memory(monkeypatch):
-    monkeypatch.setattr("cutcell.graph.memory.available_memory", lambda _: 10**9)
+    monkeypatch.setattr("cutcell.graph.memory.available_memory", lambda: 10**9)
     vertices, faces = meshes.box()
     mesh = TriangleMesh(np.vstack([vertices * 1e-59, [[1e60, -1e60, 1e60]]]), faces)
     assert (
@@ -211,7 +211,7 @@ def test_a_stray_vertex_of_no_face_takes_no_memory(monkeypatch):
 
 
 def test_an_estimate_can_be_cancelled(monkeypatch):
-    monkeypatch.setattr("cutcell.graph.memory.available_memory", lambda _: 10**9)
+    monkeypatch.setattr("cutcell.graph.memory.available_memory", lambda: 10**9)
 
     def cancel(stage, done):
         if done > 0.03:
@@ -223,7 +223,7 @@ def test_an_estimate_can_be_cancelled(monkeypatch):
 
 def test_rays_that_meet_too_many_triangles_are_refused_before_they_are_cast(monkeypatch):
     monkeypatch.delattr("cutcell.graph.build.cast_all_rays")
-    monkeypatch.setattr("cutcell.graph.memory.available_memory", lambda _: 10**7)
+    monkeypatch.setattr("cutcell.graph.memory.available_memory", lambda: 10**7)
     corners = np.random.default_rng(0).random((500, 3, 3))
     with pytest.raises(ParameterError, match=r"resolution 64 needs about .* would fit"):
         build_graph(TriangleMesh(corners.reshape(-1, 3), np.arange(1500).reshape(-1, 3)), 64)
