@@ -162,7 +162,7 @@ def test_a_prior_that_cannot_be_computed_is_told(methods, rig, monkeypatch):
 
 def test_what_does_not_fit_in_memory_is_refused(methods, rig, monkeypatch):
     method = methods["unirig-bind-tiny-0"]
-    monkeypatch.setattr(memory, "available_memory", lambda enough: 10**6)
+    monkeypatch.setattr(memory, "available_memory", lambda: 10**6)
     with pytest.raises(TooLargeError, match="a network that looks at"):
         method(rig)
 

@@ -42,7 +42,7 @@ def check_nodes(
 
 def _require(needed: Callable[[float], float], resolution: int) -> None:
     """Refuse what needs more memory than is free; `needed` takes a factor of the resolution."""
-    free = available_memory(needed(1) / SHARE) * SHARE
+    free = available_memory() * SHARE
     if needed(1) <= free:
         return
     fits = next((r for r in range(resolution, 1, -1) if needed(r / resolution) <= free), None)

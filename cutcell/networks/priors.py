@@ -11,7 +11,7 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
-from numba.misc.appdirs import AppDirs
+import platformdirs
 from numpy.typing import NDArray
 
 from ..baselines import METHODS, Baseline, BaselineBinding
@@ -76,7 +76,7 @@ def code_digest() -> bytes:
 
 def cache_folder() -> Path:
     """Return where prepared samples are kept if no other folder is named."""
-    return Path(AppDirs(appname="cutcell", appauthor=False).user_cache_dir, "networks")
+    return platformdirs.user_cache_path("cutcell", appauthor=False) / "networks"
 
 
 class Samples:

@@ -26,13 +26,13 @@ from typing import Any
 from uuid import uuid4
 
 import numba
+import platformdirs
 from llvmlite import binding
 from numba import config
 from numba.core.caching import NullCache
 from numba.core.codegen import get_host_cpu_features
 from numba.core.compiler import CompileResult
 from numba.core.serialize import dumps
-from numba.misc.appdirs import AppDirs
 
 PACKAGE = Path(__file__).resolve().parents[1]
 SOURCES = (
@@ -154,7 +154,7 @@ def folders() -> tuple[Path, ...]:
     chosen: str = vars(config)["CACHE_DIR"]  # what NUMBA_CACHE_DIR says
     bases = [os.path.abspath(chosen)] if chosen else []
     bases.append(str(PACKAGE / "__pycache__"))
-    users = AppDirs(appname="cutcell", appauthor=False).user_cache_dir
+    users = platformdirs.user_cache_dir("cutcell", appauthor=False)
     if os.path.isabs(users):  # it is not without a home folder
         bases.append(users)
     return tuple(Path(base, _set_name()) for base in bases)

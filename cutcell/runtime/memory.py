@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import math
-import os
 import re
+from contextlib import suppress
 from functools import cache
 from pathlib import Path
+
+import psutil
 
 from ..errors import TooLargeError
 
@@ -15,13 +16,7 @@ SHARE = 0.8
 BYTES_PER_WEIGHT = 8
 
 CGROUPS = Path("/sys/fs/cgroup")
-OWN_CGROUPS = Path("/proc/self/cgroup")
-LIMIT = {1: "memory.limit_in_bytes", 2: "memory.max"}
-USAGE = {1: "memory.usage_in_bytes", 2: "memory.current"}
-RECLAIMABLE = {1: "total_inactive_file", 2: "inactive_file"}
-"""Names in cgroups of version 1 and 2. What is reclaimable counts as used, but makes way."""
-NO_LIMIT = 2**60
-"""Version 1 says that there is no limit by a number larger than any memory."""
+OWN_CGROUP = Path("/proc/self/cgroup")
 
 
 def check_matrix(vertices: int, joints: int, copies: int = 1) -> None:
@@ -36,7 +31,7 @@ def check_matrix(vertices: int, joints: int, copies: int = 1) -> None:
 
 def check_room(needed: float, what: str, advice: str) -> None:
     """Refuse what takes more bytes than are free."""
-    free = available_memory(needed / SHARE) * SHARE
+    free = available_memory() * SHARE
     if needed > free:
         raise TooLargeError(
             f"{what} need about {gigabytes(needed)}, but only {gigabytes(free)} of memory are free "
@@ -49,63 +44,30 @@ def gigabytes(size: float) -> str:
     return f"{float(f'{size / 1e9:.2g}'):,.15g} GB"
 
 
-def available_memory(enough: float = math.inf) -> int:
-    """Return how many bytes new data may take without swapping, or no less than is enough.
+def available_memory() -> int:
+    """Return how many bytes new data may take without swapping.
 
-    The limits of control groups (containers) count, too.
+    The limits of control groups (containers), of version 2, count as well.
     """
-    return min([_free_on_machine(enough), *(_free_in(*group) for group in _limited_groups())])
+    return min([psutil.virtual_memory().available, *map(_free_in, _limited_groups())])
 
 
-def _free_on_machine(enough: float) -> int:
-    free = _pages("SC_AVPHYS_PAGES")
-    if free >= enough:
-        return free  # how much the system could clear takes far longer to find out
-    try:
-        found = re.search(r"MemAvailable:\s+(\d+) kB", Path("/proc/meminfo").read_text())
-    except OSError:
-        found = None
-    if found:
-        return int(found[1]) * 1024
-    return _pages("SC_PHYS_PAGES") // 2
-
-
-def _pages(name: str) -> int:
-    """Return the size of some pages of memory, 0 where the system does not tell."""
-    if name not in os.sysconf_names:
-        return 0
-    return os.sysconf("SC_PAGE_SIZE") * os.sysconf(name)
-
-
-def _free_in(group: Path, version: int) -> int:
-    """Return how much a control group lets its processes take in addition to what they have."""
-    try:
-        limit, usage = (int((group / name[version]).read_text()) for name in (LIMIT, USAGE))
-        statistics = (group / "memory.stat").read_text()
-    except (OSError, ValueError):  # the limit may be the word "max"
-        return NO_LIMIT
-    found = re.search(rf"^{RECLAIMABLE[version]} (\d+)", statistics, re.MULTILINE)
-    return max(limit - usage + (int(found[1]) if found else 0), 0)
+def _free_in(group: Path) -> int:
+    """Return what the processes of a control group may take in addition; files make way."""
+    limit, usage = (int((group / name).read_text()) for name in ("memory.max", "memory.current"))
+    reclaimable = re.search(r"^inactive_file (\d+)", (group / "memory.stat").read_text(), re.M)
+    return max(limit - usage + (int(reclaimable[1]) if reclaimable else 0), 0)
 
 
 @cache
-def _limited_groups() -> tuple[tuple[Path, int], ...]:
+def _limited_groups() -> tuple[Path, ...]:
     """List the control groups of this process, and those above them, that have a limit."""
-    try:
-        lines = OWN_CGROUPS.read_text().splitlines()
-    except OSError:
-        return ()
-    found = []
-    for line in lines:
-        number, controllers, path = [*line.split(":", 2), "", ""][:3]
-        if number == "0":
-            root, version = CGROUPS, 2
-        elif "memory" in controllers.split(","):
-            root, version = CGROUPS / "memory", 1
-        else:
-            continue
-        # In a container the path may be the one outside of it: then the root is its own group.
-        own = root / path.lstrip("/")
-        groups = [group for group in (own, *own.parents) if group.is_relative_to(root)]
-        found += [(group, version) for group in groups if _free_in(group, version) < NO_LIMIT]
-    return tuple(found)
+    groups = []
+    with suppress(OSError, StopIteration):
+        lines = OWN_CGROUP.read_text().splitlines()
+        own = CGROUPS / next(line[4:] for line in lines if line.startswith("0::/"))
+        for group in (own, *own.parents):
+            with suppress(OSError, ValueError):  # no such file; or the limit is the word "max"
+                _free_in(group)
+                groups.append(group)
+    return tuple(groups)

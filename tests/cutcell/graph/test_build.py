@@ -176,7 +176,7 @@ def test_resolutions_out_of_range_are_refused(resolution):
 
 
 def test_a_graph_that_does_not_fit_is_refused(monkeypatch):
-    monkeypatch.setattr("cutcell.graph.memory.available_memory", lambda _: 10**8)
+    monkeypatch.setattr("cutcell.graph.memory.available_memory", lambda: 10**8)
     sentence = r"resolution 64 needs about [\d.]+ GB, .* a resolution of (\d+) would fit"
     with pytest.raises(TooLargeError, match=sentence) as refusal:
         build_graph(TriangleMesh(*meshes.ball()), 64)
@@ -187,7 +187,7 @@ def test_a_graph_that_does_not_fit_is_refused(monkeypatch):
 def test_a_graph_that_does_not_fit_is_refused_before_its_nodes_are_made(monkeypatch):
     monkeypatch.delattr("cutcell.graph.assemble.CutCellGraph")
     monkeypatch.delattr("cutcell.graph.assemble.fill_edges")
-    monkeypatch.setattr("cutcell.graph.memory.available_memory", lambda _: 10**9)
+    monkeypatch.setattr("cutcell.graph.memory.available_memory", lambda: 10**9)
     with pytest.raises(TooLargeError) as refusal:
         build_graph(TriangleMesh(*meshes.ball()), 200, connectivity=26)
     # A ball of diameter 200 cells.
@@ -196,7 +196,7 @@ def test_a_graph_that_does_not_fit_is_refused_before_its_nodes_are_made(monkeypa
 
 
 def test_a_stray_vertex_of_no_face_takes_no_memory(monkeypatch):
-    monkeypatch.setattr("cutcell.graph.memory.available_memory", lambda _: 10**9)
+    monkeypatch.setattr("cutcell.graph.memory.available_memory", lambda: 10**9)
     vertices, faces = meshes.box()
     mesh = TriangleMesh(np.vstack([vertices * 1e-59, [[1e60, -1e60, 1e60]]]), faces)
     assert (
@@ -207,7 +207,7 @@ def test_a_stray_vertex_of_no_face_takes_no_memory(monkeypatch):
 
 def test_rays_that_meet_too_many_triangles_are_refused_before_they_are_cast(monkeypatch):
     monkeypatch.delattr("cutcell.graph.build.cast_all_rays")
-    monkeypatch.setattr("cutcell.graph.memory.available_memory", lambda _: 10**7)
+    monkeypatch.setattr("cutcell.graph.memory.available_memory", lambda: 10**7)
     corners = np.random.default_rng(0).random((500, 3, 3))
     with pytest.raises(TooLargeError):
         build_graph(TriangleMesh(corners.reshape(-1, 3), np.arange(1500).reshape(-1, 3)), 64)

@@ -193,7 +193,7 @@ def test_old_sets_are_removed_but_for_a_few(tmp_path, monkeypatch):
 
 
 def test_without_a_home_there_is_no_folder_for_the_user(monkeypatch):
-    monkeypatch.setattr(compile_cache.AppDirs, "user_cache_dir", "~/.cache/cutcell")
+    monkeypatch.setattr("platformdirs.user_cache_dir", lambda *_, **__: "~/.cache/cutcell")
     (folder,) = compile_cache.folders.__wrapped__()
     assert folder.parent == compile_cache.PACKAGE / "__pycache__"
     monkeypatch.setitem(vars(compile_cache.config), "CACHE_DIR", "chosen")
