@@ -23,7 +23,6 @@ TASKS = {
     "draco": "draco:decode",
     "fbx": "fbx:read",
     "usd": "usd:read",
-    "images": "images:as_png",
     "network_recipes": ".networks.worker:recipes",
     "network_weights": ".networks.worker:weights",
 }
@@ -34,7 +33,6 @@ EXTRAS = {
     "draco": "cutcell",
     "fbx": "cutcell",
     "usd": "cutcell[usd]",
-    "images": "pillow",
     "network_recipes": "cutcell[networks]",
     "network_weights": "cutcell[networks]",
 }

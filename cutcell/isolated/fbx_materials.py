@@ -1,6 +1,6 @@
 """What colours the meshes of an FBX: base colours, their images, and where corners lie in these.
 
-`cutcell.io.materials.scene_surfaces` says what the arrays are.
+`cutcell.io.materials.surfaces` says what the arrays are.
 """
 
 from __future__ import annotations
@@ -11,7 +11,6 @@ import ufbx
 from .fbx_kept import keep, kept
 from .palette import Palette
 
-CLAMPED = ufbx.WrapMode.CLAMP
 LONGEST = 1000
 """Characters of an image's name that are handed on."""
 UNSEEN = 0.02
@@ -35,14 +34,12 @@ class FbxPalette(Palette):
             return known
         keep(material)
         texture = base_texture(material)
-        image, wrap = -1, 0
+        image = -1
         if texture is not None:
             names = (texture.relative_filename, texture.filename, texture.absolute_filename)
             image = self.add_image(tuple(name[:LONGEST] for name in names), texture.content)
-            across, down = (way == CLAMPED for way in (texture.wrap_u, texture.wrap_v))
-            wrap = 3 * int(across) + int(down)
         color, cut = base_color(material), is_cut(material)
-        number = self.add_material(material.name, color, opacity(material), image, wrap, cut)
+        number = self.add_material(material.name, color, opacity(material), image, cut)
         self._numbers[material.element_id] = number
         self.textures.append(texture)
         return number

@@ -18,11 +18,11 @@ class Palette:
         self._images: dict[tuple, int] = {}
         self._contents: list[bytes] = []
 
-    def add_material(self, name, color, opacity, image, wrap, cut):
+    def add_material(self, name, color, opacity, image, cut):
         """List a material; return its number."""
         self._names.append(name[:NAME])
         self._values.append((*color, opacity))
-        self._uses.append((image, wrap, int(cut)))
+        self._uses.append((image, int(cut)))
         return len(self._names) - 1
 
     def add_image(self, names, content):
@@ -38,7 +38,7 @@ class Palette:
         found = {
             "material_names": np.array(self._names, np.str_),
             "material_values": np.array(self._values, float).reshape(-1, 4),
-            "material_uses": np.array(self._uses, int).reshape(-1, 3),
+            "material_uses": np.array(self._uses, int).reshape(-1, 2),
             "image_files": np.array([names for names, _ in self._images], np.str_).reshape(-1, 3),
         }
         for k, content in enumerate(self._contents):

@@ -1,6 +1,6 @@
 """What colours the meshes of a USD: UsdPreviewSurface's diffuse colour and its image, displayColor.
 
-`cutcell.io.materials.scene_surfaces` says what the arrays are.
+`cutcell.io.materials.surfaces` says what the arrays are.
 """
 
 from __future__ import annotations
@@ -14,8 +14,6 @@ from pxr import Usd, UsdGeom, UsdShade
 from ..runtime.colors import srgb
 from .palette import Palette
 
-WRAPS = {"clamp": 1, "black": 1, "mirror": 2}
-"""By name, the numbers of `cutcell.io.materials.face_colors`; anything else repeats."""
 LARGEST = 2**28
 """Bytes of an image in a package."""
 
@@ -40,15 +38,12 @@ class UsdPalette(Palette):
             return -1
         color, texture = source(shader, "diffuseColor", (0.18, 0.18, 0.18))
         opacity, cut = source(shader, "opacity", 1.0)
-        image, wrap, reader = -1, 0, ""
+        image, reader = -1, ""
         if texture:
             image = self._image(texture.GetInput("file"))
-            wrap = 3 * wrapping(texture, "wrapS") + wrapping(texture, "wrapT")
             reader = reader_of(texture)
         name, color = material.GetPrim().GetName(), srgb(tuple(color)) / 255
-        self._numbers[path] = self.add_material(
-            name, color, float(opacity), image, wrap, cut is not None
-        )
+        self._numbers[path] = self.add_material(name, color, float(opacity), image, cut is not None)
         self.readers.append(reader)
         return self._numbers[path]
 
@@ -86,12 +81,6 @@ def source(shader, name, default):
         return default if name == "opacity" else (1.0, 1.0, 1.0), producer
     value = attributes[0].Get(Usd.TimeCode.EarliestTime())
     return default if value is None else value, None
-
-
-def wrapping(texture, name):
-    """Return how an image goes on in one direction."""
-    given = texture.GetInput(name)
-    return WRAPS.get(str(given.Get()), 0) if given else 0
 
 
 def reader_of(texture):

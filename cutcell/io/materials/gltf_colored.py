@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 from ...rig.rig import Rig
 from ..gltf.buffer import BufferWriter
 from ..gltf.container import Document
-from ..gltf.embedded import image_notes
 from ..gltf.read.accessors import find_accessor
 from .face_colors import Collected, FaceColors, face_colors
+from .gltf_images import image_notes
 from .gltf_palette import Group, Palette, Uses, attributes_of
 from .surfaces import SurfacePaint, Surfaces
 from .transfer import has_materials, read_materials

@@ -1,15 +1,19 @@
-"""Taking a document's image files along when it moves."""
+"""Images of a glTF document that is written: embedded, converted to PNG, or copied with it."""
 
 from __future__ import annotations
 
 import mimetypes
 import os
+import warnings
+from collections.abc import Sequence
+from io import BytesIO
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from ...errors import FileError
 from ..gltf.buffer import BufferWriter
 from ..gltf.container import Document, beside
+from .face_colors import StoredImage
 
 SIGNATURES = {
     b"\x89PNG": "image/png",
@@ -17,6 +21,54 @@ SIGNATURES = {
     b"RIFF": "image/webp",
     b"\xabKTX": "image/ktx2",
 }
+
+EMBEDDABLE = ("image/png", "image/jpeg")
+"""Formats that every reader of glTF supports."""
+CONVERTIBLE = ("WEBP", "BMP", "TGA")
+MAX_PIXELS = 2**26
+"""Of an image to convert: 8192 by 8192."""
+
+
+class Embedded(NamedTuple):
+    """An image of a GLB: its media type and bytes, or why it cannot be embedded."""
+
+    kind: str = ""
+    content: bytes = b""
+    problem: str = ""
+
+
+def embedded(image: StoredImage) -> Embedded:
+    """Return an image as a GLB contains it: PNG and JPEG unchanged, others as PNG."""
+    kind = next((k for start, k in SIGNATURES.items() if image.content.startswith(start)), "")
+    if kind in EMBEDDABLE:
+        return Embedded(kind, image.content)
+    try:
+        from PIL import Image
+    except ImportError:
+        return Embedded(problem="Pillow is not installed; try: pip install pillow")
+    packed = BytesIO()
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", Image.DecompressionBombWarning)
+            with Image.open(BytesIO(image.content), formats=CONVERTIBLE) as picture:
+                if picture.width * picture.height > MAX_PIXELS:
+                    raise Image.DecompressionBombError
+                mode = "RGBA" if picture.has_transparency_data else "RGB"
+                picture.convert(mode).save(packed, "PNG")
+    except (Image.DecompressionBombWarning, Image.DecompressionBombError, MemoryError):
+        return Embedded(problem="it has more than 67 million pixels")
+    except Exception:  # the readers of Pillow raise errors of any class
+        return Embedded(problem="it is no PNG, JPEG, WebP, BMP or TGA, or damaged")
+    return Embedded("image/png", packed.getvalue())
+
+
+def image_notes(images: Sequence[StoredImage]) -> tuple[str, ...]:
+    """Return a note for each image that a GLB cannot contain."""
+    return tuple(
+        f"{image.name} is not saved, and its material has its colour alone: {problem}"
+        for image in images
+        if (problem := embedded(image).problem)
+    )
 
 
 def carry_images(buffer: BufferWriter, document: Document, target: Path) -> dict[Path, bytes]:

@@ -11,13 +11,10 @@ from numpy.typing import NDArray
 
 from ...runtime.colors import linear
 from ..gltf.buffer import BufferWriter
-from ..gltf.embedded import Embedded, embedded
 from ..names import whole_characters
 from .face_colors import BLENDED, OPAQUE, FaceColors, Layer, StoredImage
-from .gltf_textures import NEAREST, WRAPS
+from .gltf_images import Embedded, embedded
 
-REPEATED = 10497
-SIDES = {way: number for number, way in WRAPS.items()}
 FULL = 2**16 - 1
 PLAIN = "plain"
 
@@ -51,11 +48,11 @@ class Group(NamedTuple):
 
 @dataclass(frozen=True)
 class _Look:
-    """What makes a material: number of the name, layer, wrapping, and factor as bytes."""
+    """A material: number of the name, layer, whether it is blended, and factor as bytes."""
 
     name: int
     layer: int
-    wrap: int
+    blended: bool
     factor: tuple[int, ...]
 
 
@@ -69,7 +66,7 @@ class Palette:
 
     def __init__(self, uses: Uses) -> None:
         self._uses = uses
-        self._embedded = embedded(uses.images)
+        self._embedded = [embedded(image) for image in uses.images]
         self._looks: dict[_Look, int] = {}
 
     def groups(self, colors: FaceColors) -> tuple[list[Group], NDArray[np.float32]]:
@@ -78,9 +75,10 @@ class Palette:
         Returns shapes values (m, 3, 6).
         """
         layers, rgba = self._shown(colors)
-        # How an image goes on matters where there is one; blending also where a colour is.
+        # Blending matters where there is an image, or a colour that is not opaque.
         counts = (layers >= 0) | (rgba[..., 3] < OPAQUE).any(axis=1)
-        kinds = np.column_stack([colors.materials, layers, colors.corners[:, 0, 3] * counts])
+        blended = (colors.corners[:, 0, 3] >= BLENDED) & counts
+        kinds = np.column_stack([colors.materials, layers, blended])
         found, first, of_face = np.unique(
             kinds.astype(int), axis=0, return_index=True, return_inverse=True
         )
@@ -91,7 +89,7 @@ class Palette:
         values[..., 2:] = FULL
         groups = []
         for k in np.argsort(first).tolist():
-            name, layer, wrap = found[k].tolist()
+            name, layer, is_blended = found[k].tolist()
             rows = faces[k]
             corners = rgba[rows]
             varied = bool((corners != corners[0, 0]).any())
@@ -101,7 +99,7 @@ class Palette:
                 values[rows, :, 5] = corners[..., 3] * (FULL / OPAQUE)
             if layer >= 0:
                 values[rows, :, :2] = colors.corners[rows, :, :2] + 0.0  # -0 is 0
-            look = _Look(name, layer, wrap, factor)
+            look = _Look(name, layer, bool(is_blended), factor)
             number = self._looks.setdefault(look, len(self._looks))
             groups.append(Group(number, rows, layer >= 0, varied))
         return groups, values
@@ -131,28 +129,15 @@ class Palette:
 
     def _store_images(self, buffer: BufferWriter) -> None:
         document = buffer.document
-        samplers: dict[tuple[int, bool], int] = {}
         images: dict[int, int] = {}
-        textures: dict[tuple[int, int | None], int] = {}
         for look, material in zip(self._looks, document["materials"], strict=False):
-            if look.layer < 0:
-                continue
-            use = self._uses.layers[look.layer]
-            image = images.setdefault(use.image, len(images))
-            plainly = look.wrap % BLENDED == 0 and not use.nearest
-            key = (look.wrap % BLENDED, use.nearest)
-            sampler = None if plainly else samplers.setdefault(key, len(samplers))
-            texture = textures.setdefault((image, sampler), len(textures))
-            material["pbrMetallicRoughness"]["baseColorTexture"] = {"index": texture}
+            if look.layer >= 0:
+                number = images.setdefault(self._uses.layers[look.layer].image, len(images))
+                material["pbrMetallicRoughness"]["baseColorTexture"] = {"index": number}
         document["images"] = [
             _image(self._uses.images[k].name, self._embedded[k], buffer) for k in images
         ]
-        document["textures"] = [
-            {"source": image} if sampler is None else {"source": image, "sampler": sampler}
-            for image, sampler in textures
-        ]
-        if samplers:
-            document["samplers"] = [_sampler(wrap, nearest) for wrap, nearest in samplers]
+        document["textures"] = [{"source": number} for number in range(len(images))]
 
     def _material(self, look: _Look) -> dict[str, Any]:
         base: dict[str, Any] = {"metallicFactor": 0.0, "roughnessFactor": 0.8}
@@ -163,7 +148,7 @@ class Palette:
         made: dict[str, Any] = {"name": name} if name else {}
         made |= {"pbrMetallicRoughness": base, "doubleSided": True}
         use = self._uses.layers[look.layer] if look.layer >= 0 else None
-        if look.wrap >= BLENDED or (use is not None and use.blended):
+        if look.blended or (use is not None and use.blended):
             made["alphaMode"] = "BLEND"
         elif use is not None and use.cutoff is not None:
             made |= {"alphaMode": "MASK", "alphaCutoff": use.cutoff}
@@ -174,11 +159,6 @@ def _image(label: str, image: Embedded, buffer: BufferWriter) -> dict[str, Any]:
     name = whole_characters(label).partition('"')[2].rpartition('"')[0]
     made = {"bufferView": buffer.add_view(image.content), "mimeType": image.kind}
     return {"name": name, **made} if name else made
-
-
-def _sampler(wrap: int, nearest: bool) -> dict[str, Any]:
-    across, down = (SIDES.get(way, REPEATED) for way in divmod(wrap, 3))
-    return {"wrapS": across, "wrapT": down, **({"magFilter": NEAREST} if nearest else {})}
 
 
 def attributes_of(

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import CutcellError, FileError
-from ..files_beside import read_beside
-from .face_colors import BLENDED, OPAQUE, REPEAT, Collected, FaceColors, Layer, StoredImage
+from ..files import read_beside
+from .face_colors import BLENDED, OPAQUE, Collected, FaceColors, Layer, StoredImage
 
 WHITE = (1.0, 1.0, 1.0)
 
@@ -50,8 +50,6 @@ class Material:
         Red, green and blue from 0 to 1, sRGB.
     image : int
         -1 for none.
-    wrap : int
-        How the image goes on, 3 across + down (see `face_colors.REPEAT`).
     opacity : float
         From 0 to 1.
     blended : bool
@@ -63,7 +61,6 @@ class Material:
     name: str
     color: tuple[float, ...] = WHITE
     image: int = -1
-    wrap: int = 4 * REPEAT
     opacity: float = 1.0
     blended: bool = False
     replaced: bool = False
@@ -158,7 +155,7 @@ class SurfacePaint:
             if layer >= 0 and places is not None:
                 if one.replaced:
                     colors.tints[rows] = OPAQUE
-                colors.corners[rows, :, 2:] = layer, one.wrap + BLENDED * through
+                colors.corners[rows, :, 2] = layer
                 colors.corners[rows, :, :2] = np.where(np.isfinite(places[rows]), places[rows], 0)
         if surface.colors is not None:
             colors.tints[:] = np.round(colors.tints * (surface.colors.reshape(-1, 3)[where] / 255))
@@ -178,6 +175,49 @@ class SurfacePaint:
         label = image_label(image)
         content = image.content or read_beside(self.surfaces.path, image.names, label)
         return StoredImage(label, content)
+
+
+def scene_surfaces(
+    scene: Mapping[str, NDArray], path: Path, numbers: Mapping[int, int]
+) -> Surfaces | None:
+    """Return the materials of a scene of another format, None if it has none.
+
+    Of materials: `material_names`, `material_values` (k, 4: red, green, blue, sRGB, and opacity)
+    and `material_uses` (k, 2: image or -1, and whether its alpha is used); the image replaces the
+    colour. Of images: `image_files` (i, names that a file beside may have), and the content of
+    those that are embedded, `image_I_content`. Of each mesh K with materials: `mesh_K_materials`
+    (m,), and perhaps `mesh_K_places` and `mesh_K_colors`; see `Surface`.
+    """
+    meshes = {number: _surface(scene, k) for k, number in numbers.items() if _is_coloured(scene, k)}
+    if not meshes:
+        return None
+    materials = [
+        Material(str(name), tuple(values[:3]), int(image), values[3], bool(cut), True)
+        for name, values, (image, cut) in zip(
+            scene["material_names"],
+            scene["material_values"].tolist(),
+            scene["material_uses"].tolist(),
+            strict=True,
+        )
+    ]
+    images = [
+        ImageFile(tuple(map(str, names)), scene[f"image_{i}_content"].tobytes())
+        for i, names in enumerate(scene["image_files"])
+    ]
+    return Surfaces(path, meshes, tuple(materials), tuple(images))
+
+
+def _is_coloured(scene: Mapping[str, NDArray], k: int) -> bool:
+    return f"mesh_{k}_colors" in scene or bool((scene.get(f"mesh_{k}_materials", _NONE) >= 0).any())
+
+
+_NONE = np.zeros(0, int)
+
+
+def _surface(scene: Mapping[str, NDArray], k: int) -> Surface:
+    faces = scene[f"mesh_{k}_faces"].astype(np.int32)
+    material = scene[f"mesh_{k}_materials"].astype(np.int32)
+    return Surface(faces, material, scene.get(f"mesh_{k}_places"), scene.get(f"mesh_{k}_colors"))
 
 
 def image_label(image: ImageFile) -> str:

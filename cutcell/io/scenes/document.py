@@ -24,7 +24,7 @@ from ...errors import FileError, MeshError
 from ..gltf.builder import GltfBuilder
 from ..gltf.container import Document
 from ..gltf.influences import sorted_influences, store_influences
-from ..materials.scene_surfaces import scene_surfaces
+from ..materials.surfaces import scene_surfaces
 from .joints import SceneSkin, scene_skins
 
 PATHS = (("translation", 3), ("rotation", 4), ("scale", 3))
