@@ -7,20 +7,20 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
+from scipy.sparse.linalg import SuperLU
 
 from ...geometry.counting_sort import spatial_order
-from ...runtime.compiled import compiled
 from ...runtime.progress import Shares, Tell
-from ...runtime.threads import in_threads, parts, watched
-from .lanes import RIGHT_SIDES
-from .ldl import Factors, factorise, substitute
-from .multigrid import Multigrid
+from ...runtime.threads import in_threads, parts
+from .multigrid import MANY, RIGHT_SIDES, Multigrid, factorise
 from .surface_operators import SurfaceOperators
 
 SHARPNESS = 3.0
 """c: weights spread over about 1 / sqrt(c) of the distance from surface to bone."""
 MIN_CELLS = 0.25
 """Lattice cells: a vertex on a bone itself would keep its weights whatever is around it."""
+MIN_SCREENING = 1e-12
+"""Of the matrix's diagonal: less would be lost to rounding, and leave the matrix singular."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,12 +36,11 @@ class Diffusion:
     ----------
     screening : array, shape (k,)
         The diagonal of M H.
-    solver : Factors or Multigrid
-        Of the matrix. Up to `surface_operators.MANY` welded vertices factors, which are exact;
-        beyond, multigrid, within 1e-3.
-    order : array, shape (k,), int32 or int64
-        In which its rows and columns are: the fill-reducing ordering of factors, for multigrid
-        ordered by place.
+    solver : SuperLU or Multigrid
+        Of the matrix. Up to `MANY` welded vertices factors, which are exact; beyond, multigrid,
+        within 1e-3.
+    order : array, shape (k,), or None
+        In which the rows and columns of multigrid are: by place.
 
     References
     ----------
@@ -49,34 +48,26 @@ class Diffusion:
     """
 
     screening: NDArray[np.float64]
-    solver: Factors | Multigrid
-    order: NDArray[np.integer]
+    solver: SuperLU | Multigrid
+    order: NDArray[np.intp] | None = None
 
     @classmethod
     def over(
-        cls,
-        surface: SurfaceOperators,
-        depth: NDArray[np.float64],
-        resolution: int,
-        tell: Tell = lambda done: None,
+        cls, surface: SurfaceOperators, depth: NDArray[np.float64], resolution: int
     ) -> Diffusion:
-        """Factorise the equation's matrix.
-
-        Shapes: depth (k,).
-        """
+        """Factorise the equation's matrix: depth (k,)."""
         depth = np.maximum(depth, MIN_CELLS / resolution)
         # A vertex without area conducts nothing; any positive number makes it keep its own weights.
         screening = np.maximum(surface.areas, 1e-12) * SHARPNESS / depth**2
         start, column, value = surface.stiffness
-        if surface.order is None:
-            value = value.copy()
-            value[start[:-1]] += screening
-            matrix = csr_array((value, column, start), (len(screening),) * 2)
-            order = spatial_order(surface.points)
-            return cls(screening, Multigrid.of(matrix[order][:, order]), order)
-        known = *surface.stiffness, value[start[:-1]] + screening, surface.order
-        factors = watched(lambda pace: factorise(*known, pace), len(screening), tell)
-        return cls(screening, factors, surface.order)
+        value, diagonal = value.copy(), start[:-1]
+        screening = np.maximum(screening, MIN_SCREENING * value[diagonal])
+        value[diagonal] += screening
+        matrix = csr_array((value, column, start), (len(screening),) * 2)
+        if len(screening) <= MANY:
+            return cls(screening, factorise(matrix))
+        order = spatial_order(surface.points)
+        return cls(screening, Multigrid.of(matrix[order][:, order]), order)
 
     def spread(
         self, weights: NDArray[np.float64], tell: Tell = lambda done: None
@@ -135,32 +126,11 @@ class Diffusion:
         tell: Tell,
     ) -> None:
         """Solve for the weights of at most `RIGHT_SIDES` joints, into `spread`."""
-        if isinstance(self.solver, Multigrid):
-            right = _right_sides(self.order, self.screening, weights, joints)
-            rows, solution = self.solver.solve(right, tell)
-            found = np.maximum(solution[:, : len(joints)], 0.0)
-            spread[self.order[rows][:, None], joints] = found
-        else:
-            known = *self.solver, self.order, self.screening, weights, joints, spread
-            watched(lambda pace: _solve(*known, pace), 2 * len(weights), tell)
-
-
-@compiled
-def _solve(begin, rows, values, pivots, order, screening, weights, joints, spread, pace):
-    """Solve for the weights of some joints, into `spread`; see `substitute` for `pace`."""
-    right = _right_sides(order, screening, weights, joints)
-    substitute(begin, rows, values, pivots, right, pace)
-    for k in range(len(order)):
-        for i in range(len(joints)):
-            spread[order[k], joints[i]] = max(right[k, i], 0.0)
-
-
-@compiled
-def _right_sides(order, screening, weights, joints):
-    """Return the right sides, shape (k, RIGHT_SIDES), of the equations of some joints' weights."""
-    right = np.zeros((len(order), RIGHT_SIDES))
-    for k in range(len(order)):
-        v = order[k]
-        for i in range(len(joints)):
-            right[k, i] = screening[v] * weights[v, joints[i]]
-    return right
+        right = self.screening[:, None] * weights[:, joints]
+        if self.order is None or isinstance(self.solver, SuperLU):
+            spread[:, joints] = np.maximum(self.solver.solve(right), 0.0)
+            return
+        padded = np.zeros((len(weights), RIGHT_SIDES))
+        padded[:, : len(joints)] = right[self.order]
+        rows, solution = self.solver.solve(padded, tell)
+        spread[self.order[rows][:, None], joints] = np.maximum(solution[:, : len(joints)], 0.0)

@@ -18,12 +18,17 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
+from scipy.sparse.linalg import SuperLU, splu
 
-from ...runtime.compiled import compiled, no_refcount
+from ...runtime.compiled import compiled
 from ...runtime.progress import Tell
-from .lanes import NOTHING, RIGHT_SIDES, minus, row_of, set_row
-from .ldl import Factors, factorise, fill_reducing_ordering, substitute
 
+RIGHT_SIDES = 8
+"""Right sides that are solved for at once."""
+MANY = 50_000
+"""Unknowns up to which an equation is solved by factors of its matrix, which for few takes the
+least time and is exact. The time for factors grows faster than the mesh: from about here on
+multigrid takes less."""
 COARSEST = 20_000
 """Unknowns of a level that is factorised, as that takes less time than one more level."""
 MIN_COARSENING = 0.7
@@ -104,29 +109,12 @@ class Level:
         return Level(*known, interpolation.T.tocsr()), coarser
 
 
-@dataclass(frozen=True, eq=False)
-class Coarsest:
-    """A matrix, shape (c, c), and its factors, see `ldl`."""
-
-    matrix: csr_array
-    order: NDArray[np.int32]
-    factors: Factors
-
-    @classmethod
-    def of(cls, matrix: csr_array) -> Coarsest:
-        """Factorise a matrix."""
-        rows = matrix.indptr, matrix.indices
-        order, pace = fill_reducing_ordering(*rows), np.zeros(2, np.int64)
-        factors = factorise(*rows, matrix.data, matrix.diagonal(), order, pace)
-        return cls(matrix, order, factors)
-
-    def solve(self, right: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Solve for right sides, shape (c, RIGHT_SIDES)."""
-        x = right[self.order]
-        substitute(*self.factors, x, np.zeros(2, np.int64))
-        solution = np.empty_like(x)
-        solution[self.order] = x
-        return solution
+def factorise(matrix: csr_array) -> SuperLU:
+    """Factorise a symmetric positive definite matrix, shape (k, k)."""
+    # Of many unknowns the minimum degree takes SuperLU minutes to find.
+    order = "MMD_AT_PLUS_A" if matrix.shape[0] <= MANY else "COLAMD"
+    options = {"SymmetricMode": True}
+    return splu(matrix.tocsc(), order, diag_pivot_thresh=0.0, options=options)
 
 
 @dataclass(frozen=True, eq=False)
@@ -137,11 +125,15 @@ class Multigrid:
     ----------
     levels : list of Level
         From the finest one on.
-    coarsest : Coarsest
+    coarsest : csr_array, shape (c, c)
+        The coarsest matrix.
+    factors : SuperLU
+        Of the coarsest matrix.
     """
 
     levels: list[Level]
-    coarsest: Coarsest
+    coarsest: csr_array
+    factors: SuperLU
 
     @classmethod
     def of(cls, matrix: csr_array) -> Multigrid:
@@ -153,7 +145,7 @@ class Multigrid:
                 break
             levels.append(level)
             matrix = level.coarser()
-        return cls(levels, Coarsest.of(matrix))
+        return cls(levels, matrix, factorise(matrix))
 
     def solve(
         self, right: NDArray[np.float64], tell: Tell = lambda done: None
@@ -171,23 +163,23 @@ class Multigrid:
         self, right: NDArray[np.float64], tolerance: float, tell: Tell
     ) -> tuple[NDArray[np.intp], NDArray[np.float64]]:
         if not self.levels:
-            return np.arange(len(right)), self.coarsest.solve(right)
+            return np.arange(len(right)), self.factors.solve(right)
         level, *coarser = self.levels
-        below = Multigrid(coarser, self.coarsest)
-        restricted = _product(level.restriction, right)
+        below = Multigrid(coarser, self.coarsest, self.factors)
+        restricted = level.restriction @ right
         coarse = np.zeros_like(restricted)
         known, coarse_there = below._solve(restricted, COARSE_TOLERANCE, lambda done: tell(0.0))
         coarse[known] = coarse_there
-        guess = _product(level.interpolation, coarse)
+        guess = level.interpolation @ coarse
         rows = np.flatnonzero(_is_significant(guess, right, level.inverse))
         x, there = guess[rows], self._some(rows)
-        residual = right[rows] - _product(there.matrix, x)
+        residual = right[rows] - there.matrix @ x
         return rows, x + there._improve(residual, tolerance, tell)
 
     @property
     def matrix(self) -> csr_array:
         """The matrix itself."""
-        return self.levels[0].matrix if self.levels else self.coarsest.matrix
+        return self.levels[0].matrix if self.levels else self.coarsest
 
     def _some(self, rows: NDArray[np.intp]) -> Multigrid:
         """Return the equation for some unknowns, the others being known."""
@@ -195,7 +187,8 @@ class Multigrid:
         for level in self.levels:
             some, rows = level.some(rows)
             levels.append(some)
-        return Multigrid(levels, Coarsest.of(_block(self.coarsest.matrix, rows)))
+        coarsest = _block(self.coarsest, rows)
+        return Multigrid(levels, coarsest, factorise(coarsest))
 
     def _improve(
         self, residual: NDArray[np.float64], tolerance: float, tell: Tell
@@ -219,30 +212,29 @@ class Multigrid:
             now = _dot(residual, step)
             direction *= now / before
             direction += step
-            product = _product(matrix, direction)
+            product = matrix @ direction
             length = now / np.maximum(_dot(direction, product), LEAST)
             product *= length
             residual -= product
             x += np.multiply(direction, length, out=product)
             before = np.maximum(now, LEAST)
-        x += Coarsest.of(matrix).solve(residual)
+        x += factorise(matrix).solve(residual)
         return x
 
     def _cycle(self, right: NDArray[np.float64]) -> NDArray[np.float64]:
         """Solve roughly: smooth, correct by the coarser level, smooth the other way round."""
         if not self.levels:
-            return self.coarsest.solve(right)
+            return self.factors.solve(right)
         level, *coarser = self.levels
-        below = Multigrid(coarser, self.coarsest)
+        below = Multigrid(coarser, self.coarsest, self.factors)
         x = np.zeros_like(right)
         _smooth(level, right, x, 1)
-        residual = _product(level.matrix, x)
-        residual = _product(level.restriction, np.subtract(right, residual, out=residual))
+        residual = level.restriction @ (right - level.matrix @ x)
         correction = below._cycle(residual)
         if coarser:  # a second cycle there, or the convergence here would be slower
-            residual -= _product(coarser[0].matrix, correction)
+            residual -= coarser[0].matrix @ correction
             correction += below._cycle(residual)
-        x += _product(level.interpolation, correction)
+        x += level.interpolation @ correction
         _smooth(level, right, x, -1)
         return x
 
@@ -301,31 +293,19 @@ def _smooth(
     _sweep(matrix.indptr, matrix.indices, matrix.data, level.inverse, right, x, direction)
 
 
-@no_refcount
+@compiled
 def _sweep(start, column, value, inverse, right, x, direction):
     """Improve x by a Gauss-Seidel sweep from the first row to the last (1) or back (-1)."""
+    residual = np.empty(RIGHT_SIDES)
     for k in range(len(inverse)):
         v = k if direction > 0 else len(inverse) - 1 - k
-        here = row_of(right, v)
+        for i in range(RIGHT_SIDES):
+            residual[i] = right[v, i]
         for e in range(start[v], start[v + 1]):
-            here = minus(here, value[e], row_of(x, column[e]))
-        set_row(x, v, minus(row_of(x, v), -inverse[v], here))
-
-
-def _product(matrix: csr_array, x: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Multiply a matrix with columns, shape (k, RIGHT_SIDES)."""
-    product = np.empty((matrix.shape[0], RIGHT_SIDES))
-    _multiply(matrix.indptr, matrix.indices, matrix.data, x, product)
-    return product
-
-
-@no_refcount
-def _multiply(start, column, value, x, product):
-    for v in range(len(product)):
-        here = NOTHING
-        for e in range(start[v], start[v + 1]):
-            here = minus(here, -value[e], row_of(x, column[e]))
-        set_row(product, v, here)
+            for i in range(RIGHT_SIDES):
+                residual[i] -= value[e] * x[column[e], i]
+        for i in range(RIGHT_SIDES):
+            x[v, i] += inverse[v] * residual[i]
 
 
 @compiled

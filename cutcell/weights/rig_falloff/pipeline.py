@@ -39,7 +39,7 @@ def rig_weights(
     """
     division, diffusion = run_parallel(
         lambda: Division.by(distances, surface, adjustments),
-        lambda: diffusion_of(distances, surface, share_of(tell, 0, 0.5)),
+        lambda: diffusion_of(distances, surface),
     )
     for step in ("penalty", "radius", "beyond"):
         record(step, getattr(division, step))
@@ -52,12 +52,10 @@ def rig_weights(
     return weights
 
 
-def diffusion_of(
-    distances: BoneDistances, surface: SurfaceOperators, tell: Tell = lambda done: None
-) -> Diffusion:
+def diffusion_of(distances: BoneDistances, surface: SurfaceOperators) -> Diffusion:
     """Return the diffusion over a surface whose depth is the distance to the nearest bone."""
     depth = distances.at_welded.min(axis=0)
-    return Diffusion.over(surface, depth, distances.graph.lattice.resolution, tell)
+    return Diffusion.over(surface, depth, distances.graph.lattice.resolution)
 
 
 def with_rigid_parts(

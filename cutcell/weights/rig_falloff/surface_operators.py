@@ -14,12 +14,6 @@ from ...graph import CutCellGraph
 from ...runtime.compiled import compiled
 from ...runtime.threads import submit
 from .components import label_components
-from .ldl import fill_reducing_ordering
-
-MANY = 50_000
-"""Welded vertices up to which equations are solved by factors of their matrix, which for few takes
-the least time and is exact. The time for factors grows faster than the mesh: from about here on
-multigrid takes less."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,8 +32,6 @@ class SurfaceOperators:
         The connected component of each welded vertex, see `label_components`.
     stiffness : tuple of arrays
         Rows of the Laplacian, see `laplacian.stiffness`.
-    order : array, shape (k,), int32, or None
-        See `fill_reducing_ordering`; None for more than `MANY` welded vertices.
     """
 
     points: NDArray[np.float64]
@@ -48,7 +40,6 @@ class SurfaceOperators:
     areas: NDArray[np.float64]
     component: NDArray[np.int32]
     stiffness: tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.float64]]
-    order: NDArray[np.int32] | None
 
     @classmethod
     def of(cls, graph: CutCellGraph) -> SurfaceOperators:
@@ -70,10 +61,7 @@ class SurfaceOperators:
         """Compute those of a mesh: points (k, 3) in the unit cube, faces (m, 3)."""
         a, b, c = faces.T
         faces = faces[(a != b) & (b != c) & (c != a)]  # the others were welded to nothing
-        has_order = len(points) <= MANY
-        normals, areas, component, rows, order = _operators(points, faces, has_order)
-        known = points, faces, normals, areas, component, rows
-        return cls(*known, order if has_order else None)
+        return cls(points, faces, *_operators(points, faces))
 
 
 _of_graph: WeakKeyDictionary[CutCellGraph, Callable[[], SurfaceOperators]] = WeakKeyDictionary()
@@ -81,8 +69,6 @@ _of_graph: WeakKeyDictionary[CutCellGraph, Callable[[], SurfaceOperators]] = Wea
 
 # One compiled function: each call from another thread has to wait for Python's lock.
 @compiled
-def _operators(points, faces, has_order):
+def _operators(points, faces):
     normals, areas = vertex_normals(points, faces), vertex_areas(points, faces)
-    rows = stiffness(points, faces)
-    order = fill_reducing_ordering(rows[0], rows[1]) if has_order else np.empty(0, np.int32)
-    return normals, areas, label_components(faces, len(points)), rows, order
+    return normals, areas, label_components(faces, len(points)), stiffness(points, faces)

@@ -73,6 +73,13 @@ def test_diffusion_is_the_solution_of_its_equation():
     np.testing.assert_allclose(found, expected, atol=1e-12)
 
 
+def test_a_tiny_face_far_from_all_bones_does_not_make_the_equation_singular():
+    points, faces = np.array([[0, 0, 0], [1e-9, 0, 0], [0, 1e-9, 0]]), np.array([[0, 1, 2]])
+    surface = SurfaceOperators.over(points, faces.astype(np.int32))
+    spread = Diffusion.over(surface, np.full(3, 1e3), 64).spread(np.eye(2)[[0, 0, 1]])
+    np.testing.assert_allclose(spread, [[0.75, 0.25]] * 3)
+
+
 @pytest.mark.parametrize("name", meshes.ALL)
 @pytest.mark.parametrize("leaf", ["point", "extend", "fit"])
 def test_every_row_is_whole_on_any_mesh(name, leaf):
