@@ -81,6 +81,7 @@ def test_importing_the_core_or_its_command_brings_nothing_heavy(module):
     assert not loaded_by([module]) & HEAVY
 
 
+@pytest.mark.slow
 def test_torch_is_imported_by_what_needs_it_alone():
     assert "torch" not in loaded_by(modules_of("cutcell"))
     wrong = [name for name in TORCH if not name.startswith("cutcell/networks/")]
@@ -96,11 +97,13 @@ def test_importing_the_core_is_quick():
     assert min(seconds) < IMPORT_SECONDS
 
 
+@pytest.mark.slow
 def test_the_core_knows_no_screen_and_no_server():
     above = loaded_by(modules_of("cutcell")) & (PAGE | PICTURES)
     assert above == {"cutcell_app"}, "its commands alone, which add themselves to the command line"
 
 
+@pytest.mark.slow
 def test_the_viewers_know_no_server():
     assert not loaded_by(modules_of("cutcell_viewers")) & PAGE
 

@@ -20,6 +20,7 @@ def in_a_folder_of_its_own(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
 
 
+@pytest.mark.slow
 def test_the_examples_run(tmp_path, monkeypatch, capsys):
     in_a_folder_of_its_own(tmp_path, monkeypatch)
     example, stages = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
@@ -33,6 +34,7 @@ def test_the_examples_run(tmp_path, monkeypatch, capsys):
     np.testing.assert_allclose(names["weights"], expected, atol=1e-12)
 
 
+@pytest.mark.slow
 def test_the_commands_run(tmp_path, monkeypatch):
     in_a_folder_of_its_own(tmp_path, monkeypatch)
     commands = re.findall(r"^cutcell (.*)$", README, re.MULTILINE)

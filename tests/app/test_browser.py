@@ -50,7 +50,7 @@ def test_the_cutting_plane_moves_through_the_body(visit):
     visit.button("Cut X").click()
     half = visit.look()
     assert changed(whole, half) > 0.01
-    visit.slide("Where the cut lies", "ArrowLeft", 30)
+    visit.slide("Where the cut lies", "ArrowLeft", 10)
     less = visit.look()
     assert changed(half, less) > 0.001
     visit.button("Half").click()

@@ -12,6 +12,8 @@ from cutcell_app.commands.session import Session
 from cutcell_assets import demo_path
 from tests.app.serving import serving
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module")
 def address():

@@ -49,6 +49,7 @@ def run(*arguments):
     return CliRunner().invoke(app, ["render", *words, "--resolution", "16"])
 
 
+@pytest.mark.slow
 def test_a_picture_comes_out(tmp_path):
     out = tmp_path / "hand.png"
     result = run(demo_path("robot"), out, "--size", "320x240", "--dark", "--view", "front")
@@ -246,6 +247,7 @@ def test_the_body_follows_a_clip_on_panels_where_it_rests_otherwise(rig, binding
     assert all(actor.skin is not None for actor in scene.actors.values())
 
 
+@pytest.mark.slow
 def test_a_notebook_gets_a_picture_or_a_plotter(rig, binding):
     scene = describe(rig, Choices("weights", bone="elbow"), binding=binding)
     picture = cutcell_viewers.show(scene, size=(160, 120))
@@ -256,6 +258,7 @@ def test_a_notebook_gets_a_picture_or_a_plotter(rig, binding):
     plotter.close()
 
 
+@pytest.mark.slow
 def test_the_documents_commands_are_understood(drawn, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "character.glb").symlink_to(demo_path("biped"))
@@ -268,6 +271,7 @@ def test_the_documents_commands_are_understood(drawn, tmp_path, monkeypatch):
         assert result.exit_code == 0, (command, result.stderr)
 
 
+@pytest.mark.slow
 def test_the_documents_examples_run(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "assets").symlink_to(demo_path("biped").parent)

@@ -34,6 +34,7 @@ def mesh(body, spacing=0.02):
     return mesh_of(body, np.full(3, -0.7), np.full(3, 0.7), spacing)
 
 
+@pytest.mark.slow
 def test_the_robot_is_made_with_the_committed_bytes():
     assert glb.to_bytes(command.make("robot")) == demo_path("robot").read_bytes()
 
@@ -132,6 +133,7 @@ def test_an_unknown_name_is_told(capsys):
     assert "'unicorn'" in capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_the_command_writes_files(tmp_path, monkeypatch):
     monkeypatch.setattr(command, "demo_path", lambda id: tmp_path / f"{id}.glb")
     assert command.main(["robot"]) == 0

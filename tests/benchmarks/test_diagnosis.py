@@ -1,12 +1,15 @@
 """The script that damages rigs prints what was found of each damage, and what was missed."""
 
 import numpy as np
+import pytest
 
 import cutcell
 from benchmarks import diagnosis
 from benchmarks.damages import DAMAGES, Damaged
 from tests.benchmarks.markdown import read_tables
 from tests.cutcell.diagnosis.worm import worm
+
+pytestmark = pytest.mark.slow
 
 
 def test_found_and_missed_are_told(capsys, tmp_path, monkeypatch):

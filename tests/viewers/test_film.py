@@ -21,6 +21,8 @@ from cutcell_viewers.weights_scene import weights_scene
 from cutcell_viewers.worker import draw_apart
 from tests.viewers.arm import arm_rig
 
+pytestmark = pytest.mark.slow
+
 SIZE = (160, 120)
 FFMPEG = """#!/bin/sh
 for out; do :; done

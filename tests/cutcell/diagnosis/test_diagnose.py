@@ -25,6 +25,7 @@ PLANTED = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("demo", PLANTED)
 def test_the_planted_faults_of_the_broken_demos_are_named(demo):
     found = cutcell.diagnose(cutcell.load(demo_path(demo)), 32)
@@ -33,6 +34,7 @@ def test_the_planted_faults_of_the_broken_demos_are_named(demo):
     assert {f.code for f in found.of("warning")} <= PLANTED[demo]
 
 
+@pytest.mark.slow
 def test_the_flipped_arm_is_found_face_by_face():
     whole, twin = (cutcell.load(demo_path(name)) for name in ("biped", "biped_flipped_arm"))
     flipped = np.flatnonzero((whole.mesh.faces != twin.mesh.faces).any(axis=1))
@@ -40,6 +42,7 @@ def test_the_flipped_arm_is_found_face_by_face():
     assert np.array_equal(finding.faces, flipped)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("demo", ["biped", "rabbit", "octopus"])
 def test_nothing_is_found_in_the_sound_demos_but_that_32_cells_are_few(demo):
     found = cutcell.diagnose(cutcell.load(demo_path(demo)), 32).findings

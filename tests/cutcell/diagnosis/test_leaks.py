@@ -32,6 +32,7 @@ def soldier() -> cutcell.Rig:
     return replace(BIPED, skeleton=skeleton, weights=weights, clips=(), source=None)
 
 
+@pytest.mark.slow
 def test_a_control_with_a_stray_part_of_the_weight_is_found():
     rig = soldier()
     control = len(rig.skeleton.joints) - 1
@@ -47,6 +48,7 @@ def test_a_control_with_a_stray_part_of_the_weight_is_found():
     assert json.loads(json.dumps(finding.to_dict()))["pose"]["joint"] == control
 
 
+@pytest.mark.slow
 def test_without_it_nothing_is_suspicious():
     assert {f.code for f in cutcell.diagnose(BIPED, 32).findings} <= {"thin-parts"}
 

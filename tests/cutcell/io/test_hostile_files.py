@@ -79,6 +79,7 @@ def test_a_skeleton_with_huge_numbers(tmp_path):
         cutcell.load(tmp_path / "cube.obj")
 
 
+@pytest.mark.slow
 def test_a_skeleton_of_thousands_of_joints_takes_seconds(tmp_path):
     (tmp_path / "cube.obj").write_text(CUBE + SIDES)
     names = [f"joint {k}" for k in range(8000)]
