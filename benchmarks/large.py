@@ -21,7 +21,6 @@ import trimesh
 import cutcell
 from cutcell.geometry.weld import weld
 from cutcell.weights.rig_falloff.ldl import fill_reducing_ordering
-from cutcell.weights.rig_falloff.pipeline import rig_weights
 from cutcell.weights.rig_falloff.surface_operators import SurfaceOperators
 
 from .report import circumstances
@@ -44,7 +43,12 @@ def exact_weights(binding: cutcell.Binding) -> np.ndarray:
     """Compute the weights, before they are pruned, by factors of the whole matrix."""
     surface = SurfaceOperators.of(binding.graph)
     order = fill_reducing_ordering(*surface.stiffness[:2])
-    return rig_weights(binding.distances, replace(surface, order=order))
+    return unpruned(binding, replace(surface, order=order))
+
+
+def unpruned(binding: cutcell.Binding, surface: SurfaceOperators) -> np.ndarray:
+    """Compute the weights of all joints that distances were measured from."""
+    return cutcell.skinning_weights(binding.distances, surface=surface, threshold=0)
 
 
 def row(rig: cutcell.Rig, is_compared: bool) -> list[str]:
@@ -59,7 +63,7 @@ def row(rig: cutcell.Rig, is_compared: bool) -> list[str]:
     begin = perf_counter()
     exact = exact_weights(binding)
     took = perf_counter() - begin
-    found = rig_weights(binding.distances, SurfaceOperators.of(binding.graph))
+    found = unpruned(binding, SurfaceOperators.of(binding.graph))
     return [*cells, seconds(took), f"{np.abs(found - exact).max():.1e}"]
 
 
