@@ -21,7 +21,6 @@ import trimesh
 import cutcell
 from cutcell.geometry.weld import weld
 from cutcell.weights.rig_falloff import diffusion
-from cutcell.weights.rig_falloff.pipeline import rig_weights
 from cutcell.weights.rig_falloff.surface_operators import SurfaceOperators
 
 from .report import circumstances
@@ -43,7 +42,12 @@ def quartered(rig: cutcell.Rig, times: int) -> cutcell.Rig:
 def exact_weights(binding: cutcell.Binding) -> np.ndarray:
     """Compute the weights, before they are pruned, by factors of the whole matrix."""
     with patch.object(diffusion, "MANY", np.inf):
-        return rig_weights(binding.distances, SurfaceOperators.of(binding.graph))
+        return unpruned(binding, SurfaceOperators.of(binding.graph))
+
+
+def unpruned(binding: cutcell.Binding, surface: SurfaceOperators) -> np.ndarray:
+    """Compute the weights of all joints that distances were measured from."""
+    return cutcell.skinning_weights(binding.distances, surface=surface, threshold=0)
 
 
 def row(rig: cutcell.Rig, is_compared: bool) -> list[str]:
@@ -58,7 +62,7 @@ def row(rig: cutcell.Rig, is_compared: bool) -> list[str]:
     begin = perf_counter()
     exact = exact_weights(binding)
     took = perf_counter() - begin
-    outcome = rig_weights(binding.distances, SurfaceOperators.of(binding.graph))
+    outcome = unpruned(binding, SurfaceOperators.of(binding.graph))
     return [*cells, seconds(took), f"{np.abs(outcome - exact).max():.1e}"]
 
 

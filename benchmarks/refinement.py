@@ -26,8 +26,9 @@ from cutcell.graph import build_graph
 from cutcell.method import ANIMATION
 from cutcell.rig.rig import Rig
 from cutcell.weights import keep_strongest
-from cutcell.weights.rig_falloff.pipeline import TAIL, permitted, rig_weights
+from cutcell.weights.rig_falloff.pipeline import TAIL
 from cutcell.weights.rig_falloff.surface_operators import SurfaceOperators
+from cutcell.weights.skinning_weights import permit, weight_context, weight_steps
 
 from .document import fill
 from .network_scores import SAME_MAKER
@@ -85,9 +86,13 @@ def pairs_of(name: str, rig: Rig, resolution: int = ANIMATION.resolution) -> Pai
     distances = bone_distances(
         graph, rig.skeleton, nearest_joints=ANIMATION.joints_needed, allowed=rig.allowed
     )
-    surface, steps = SurfaceOperators.of(graph), {}
-    rig_weights(distances, surface, record=lambda step, array: steps.update({step: array.copy()}))
-    weights = steps["rigid"]
+    context = weight_context(distances, ANIMATION)
+    weights, by_step = np.empty((0, 0)), {}
+    for step in weight_steps(context):
+        weights = step.run(weights, context)
+        by_step[step.name] = weights.copy()
+    assert context.division is not None
+    weights = by_step["rigid"]
     order = np.argsort(-weights, axis=1, kind="stable")[:, :JOINTS]
     joint = np.pad(order, ((0, 0), (0, JOINTS - order.shape[1])), mode="edge")
     is_candidate = np.take_along_axis(weights, joint, axis=1) > LEAST
@@ -103,9 +108,9 @@ def pairs_of(name: str, rig: Rig, resolution: int = ANIMATION.resolution) -> Pai
         distances,
         joint,
         is_candidate,
-        _features(rig, distances, weights, steps["radius"], joint),
+        _features(rig, distances, weights, context.division.radius, joint),
         np.where(is_candidate, target, 0).astype(np.float32),
-        np.abs(weights - steps["spread"]).max(axis=1) > 1e-6,
+        np.abs(weights - by_step["spread"]).max(axis=1) > 1e-6,
     )
 
 
@@ -276,7 +281,8 @@ def corrected(network: Corrector, pairs: Pairs, part: float) -> NDArray[np.float
     weights /= weights.sum(axis=1, keepdims=True)
     weights = weights[pairs.distances.graph.vertex_node]
     if pairs.rig.allowed is not None:
-        weights = permitted(weights, pairs.distances.joint, pairs.rig.allowed)
+        context = weight_context(pairs.distances, ANIMATION, pairs.rig.allowed)
+        weights = permit(weights, context)
     return keep_strongest(pairs.distances, weights)
 
 

@@ -32,7 +32,7 @@ from .rig.inputs import RigLike, as_rig
 from .rig.rig import Rig
 from .runtime.memory import check_matrix
 from .runtime.progress import Progress, silent
-from .runtime.threads import cancellable
+from .runtime.threads import cancellable, submit
 from .weights.rig_falloff.surface_operators import SurfaceOperators
 from .weights.skinning_weights import skinning_weights
 from .weights.warm_up import is_compiled, warm_up
@@ -163,7 +163,9 @@ def _bind(
         if graph is None:
             graph = build_graph(rig.mesh, method=method, progress=progress)
     with _timed("distances", seconds):
-        _begin_what_follows(graph, method)
+        # Another thread computes what the weights need of the surface.
+        is_rig = method.falloff == "rig"
+        surface = submit(lambda: SurfaceOperators.of(graph)) if is_rig else None
         nearest, within = joints_measured(corrections, method)
         distances = bone_distances(
             graph,
@@ -181,6 +183,7 @@ def _bind(
             method=method,
             allowed=rig.allowed,
             adjustments=adjustments_of(rig, graph, corrections),
+            surface=surface() if surface else None,
             progress=progress,
         )
         weights = corrected_parts(rig, graph, weights, corrections)
@@ -189,12 +192,6 @@ def _bind(
         progress("weights", 1.0)
     warnings = binding_warnings(rig, distances, weights, corrections, refinement["locked"])
     return Binding(weights, graph, distances, seconds, warnings)
-
-
-def _begin_what_follows(graph: CutCellGraph, method: Method) -> None:
-    """Let other cores begin what later stages will ask of the graph."""
-    if method.falloff == "rig":
-        SurfaceOperators.begin(graph)
 
 
 def _check(rig: Rig, method: Method, refinement: RefineOptions) -> None:

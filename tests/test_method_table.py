@@ -11,7 +11,13 @@ import cutcell
 
 ROOT = Path(__file__).resolve().parent.parent
 MAX_CALLS = 2
-PUBLIC = ("cutcell", "cutcell.metrics", "cutcell.pose", "cutcell.baselines.methods")
+PUBLIC = (
+    "cutcell",
+    "cutcell.geodesics",
+    "cutcell.metrics",
+    "cutcell.pose",
+    "cutcell.baselines.methods",
+)
 PAPER = ("algorithm 1", "algorithm 2", "equation 1", "section 4.3", "section 4.3.1")
 
 
@@ -60,7 +66,7 @@ def first_broken_call(path: list[str], function) -> str:
     for name in path[1:]:
         if not re.search(rf"\b{name}\b", inspect.getsource(caller)):
             return f"{caller} does not call {name}"
-        caller = caller.__globals__[name]
+        caller = vars(inspect.getmodule(caller))[name]
     return "" if caller is function else f"{caller} is another function"
 
 

@@ -7,16 +7,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from cutcell.geodesics.any_angle.theta_star import ON_BONE, least_distances
-from cutcell.geodesics.bone_extents.fit import fit_bones
-from cutcell.geodesics.bones import Bones, bone_segments, find_sources
-from cutcell.geodesics.distances import (
-    BoneDistances,
-    bone_distances,
-    joint_paths,
-    nodes_on_mesh,
-    sorted_nodes,
-)
+from cutcell.geodesics.any_angle.theta_star import ON_BONE
+from cutcell.geodesics.bones import Bones
+from cutcell.geodesics.distances import BoneDistances, bone_distances
 from cutcell.geodesics.fallback import REACHED
 from cutcell.method import Method
 from cutcell.rig.rig import Skeleton
@@ -43,10 +36,7 @@ class MovedDistances:
 
     def __init__(self, known: BoneDistances, method: Method, within: float) -> None:
         self._known, self._method, self._within = known, method, within
-        self._least: NDArray[np.float64] | None = None
-        if known.contraction is not None:
-            before = known.contraction, known.sources, known.bones
-            self._least = least_distances(known.graph, *before)
+        self._nearest_distance = known.solver.nearest_distance(known.bones, known.sources)
         self._farthest = np.where(np.isinf(known.at_welded), 0, known.at_welded).max(axis=0)
         self._reached = np.zeros(known.graph.first_point, np.bool_)
         self._reached[known.graph.vertex_node] = known.fallback == REACHED
@@ -56,31 +46,31 @@ class MovedDistances:
 
         Joints that may carry weight are the same ones as before.
         """
-        known, method, within = self._known, self._method, self._within
-        graph = known.graph
+        known, method = self._known, self._method
         bones = _carried(known, skeleton, method)
         if bones is None:  # some continue others now that did not
-            nearest = known.nearest_joints
             return bone_distances(
-                graph, skeleton, method=method, nearest_joints=nearest, within=within
+                known.solver,
+                skeleton,
+                method=method,
+                nearest_joints=known.nearest_joints,
+                within=self._within,
             )
         old = known.bones
         changed = ((bones.start != old.start) | (bones.end != old.end)).any(axis=1)
         joints = np.unique(bones.joint[changed])
         if not len(joints):
             return known
-        some = np.isin(bones.joint, joints)
-        found = find_sources(
-            graph, bones.some(some), method.samples, sorted_nodes(graph), known.contraction
-        )
-        given = graph, known.contraction, found, bones.some(some), nodes_on_mesh(graph)
+        is_moved = np.isin(bones.joint, joints)
+        moved = bones.some(is_moved)
+        sources = known.solver.sources(moved, method.samples)
         nearest = known.nearest_joints and min(known.nearest_joints, len(joints))
-        fresh = joint_paths(*given, nearest, within, self._least)
+        fresh = known.solver.paths(moved, sources, nearest, self._within, self._nearest_distance)
         return replace(
             known,
             at_welded=self._merged(joints, fresh),
             bones=bones,
-            sources=known.sources.replaced(some, found),
+            sources=known.sources.replaced(is_moved, sources),
         )
 
     def _merged(self, joints: NDArray[np.intp], fresh: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -103,13 +93,8 @@ class MovedDistances:
 
 def _carried(known: BoneDistances, skeleton: Skeleton, method: Method) -> Bones | None:
     """Return the bones with leaf bones as long as they were; None if there are others than were."""
-    graph, old = known.graph, known.bones
-    if method.leaf == "fit":
-        bones, aimed = fit_bones(graph, skeleton, sorted_nodes(graph))
-    else:
-        bones = bone_segments(skeleton, method.leaf)
-        ends = graph.lattice.to_unit(bones.start), graph.lattice.to_unit(bones.end)
-        bones, aimed = Bones(*ends, bones.joint), np.zeros(len(bones.joint), np.bool_)
+    old = known.bones
+    bones, aimed = known.solver.bones(skeleton, method.leaf)
     if not np.array_equal(bones.joint, old.joint):
         return None
     carried = old.end + bones.start - old.start

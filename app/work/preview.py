@@ -13,11 +13,15 @@ from cutcell.editing.corrections import Corrections
 from cutcell.geodesics import BoneDistances
 from cutcell.method import Method
 from cutcell.rig.rig import Rig
-from cutcell.weights.adjustments import Adjustments
+from cutcell.weights.context import WeightContext
 from cutcell.weights.rig_falloff.division import Division
-from cutcell.weights.rig_falloff.pipeline import diffusion_of, subtract_tail, with_rigid_parts
-from cutcell.weights.rig_falloff.surface_operators import SurfaceOperators
-from cutcell.weights.skinning_weights import keep_strongest, of_vertices, skinning_weights
+from cutcell.weights.rig_falloff.pipeline import with_rigid_parts, without_tail
+from cutcell.weights.skinning_weights import (
+    keep_strongest,
+    of_vertices,
+    skinning_weights,
+    weight_context,
+)
 
 from .moved_distances import MovedDistances
 
@@ -51,7 +55,8 @@ class Preview:
         self._distances = MovedDistances(binding.distances, method, within)
         self._falloff: _IncrementalFalloff | None = None
         if method.falloff == "rig":
-            self._falloff = _IncrementalFalloff(binding.distances, self._adjustments)
+            context = weight_context(binding.distances, method, adjustments=self._adjustments)
+            self._falloff = _IncrementalFalloff(context)
 
     def bind(self, rig: Rig) -> Binding:
         """Return about what `bind` would for the rig with its joints elsewhere."""
@@ -75,27 +80,30 @@ class _IncrementalFalloff:
 
     Parameters
     ----------
-    distances : BoneDistances
-        As they were.
-    adjustments : Adjustments or None
+    context : WeightContext
+        Of the distances as they were.
     """
 
-    def __init__(self, distances: BoneDistances, adjustments: Adjustments | None) -> None:
-        self._surface = surface = SurfaceOperators.of(distances.graph)
-        self._adjustments = adjustments
-        self._division = Division.by(distances, surface, adjustments)
-        self._diffusion = diffusion_of(distances, surface)
+    def __init__(self, context: WeightContext) -> None:
+        assert context.division is not None
+        assert context.diffusion is not None
+        self._context, self._division, self._diffusion = (
+            context,
+            context.division,
+            context.diffusion,
+        )
         self._spread = self._diffusion.equilibrium(self._division.weights)
 
     def weights(self, distances: BoneDistances) -> NDArray[np.float64]:
         """Return the weights (k, j) of welded vertices by the distances of now."""
-        before, spread = self._division, self._spread.copy()
-        division = Division.by(distances, self._surface, self._adjustments, before)
+        before, weights = self._division, self._spread.copy()
+        division = Division.by(distances, before.surface, self._context.adjustments, before)
         change = np.abs(division.weights - before.weights).max(axis=0)
         changed = np.flatnonzero(change > UNSEEN)
-        spread[:, changed] = 0
-        self._diffusion.solve(division.weights, changed, spread)
-        self._diffusion.normalise(spread, division.weights)
-        weights = with_rigid_parts(division, spread, self._adjustments)
-        subtract_tail(weights)
+        weights[:, changed] = 0
+        self._diffusion.solve(division.weights, changed, weights)
+        self._diffusion.normalise(weights, division.weights)
+        context = replace(self._context, distances=distances, division=division)
+        for step in (with_rigid_parts, without_tail):
+            weights = step(weights, context)
         return weights

@@ -101,10 +101,7 @@ def adjustments_of(rig: Rig, graph: CutCellGraph, corrections: Corrections) -> A
     itself = [v for v, part in corrections.parts.items() if part.how == "itself"]
     if not len(itself) and (gain == 1).all() and np.isnan(radius).all():
         return None
-    component = SurfaceOperators.of(graph).component
-    is_independent = np.zeros(component.max() + 1, np.bool_)
-    is_independent[component[graph.vertex_node[itself]]] = True
-    return Adjustments(gain, radius, is_independent)
+    return Adjustments(gain, radius, graph.vertex_node[np.array(itself, np.intp)])
 
 
 def corrected_parts(

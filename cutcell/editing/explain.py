@@ -23,12 +23,9 @@ from ..rig.checks import check_integer
 from ..rig.inputs import RigLike, as_rig
 from ..rig.rig import Rig
 from ..runtime.progress import Progress, silent
-from ..weights.adjustments import Adjustments
-from ..weights.paper_kernel import paper_kernel
+from ..weights.context import WeightContext
 from ..weights.rig_falloff.division import facing
-from ..weights.rig_falloff.pipeline import permitted, rig_weights
-from ..weights.rig_falloff.surface_operators import SurfaceOperators
-from ..weights.skinning_weights import keep_strongest, skinning_weights
+from ..weights.skinning_weights import weight_context, weight_steps
 from .correct import (
     adjustments_of,
     apply_vertex_overrides,
@@ -50,7 +47,7 @@ STEPS = {
     "normalise": "normalised",
     "correct": "corrected",
 }
-"""The steps from distances to weights, in their order. A method has some of them."""
+"""Labels of the steps from distances to weights. A method has some of them."""
 SOME = 1e-4
 """Joints that no step gives as much are left out, unless the file has weight of them."""
 
@@ -206,11 +203,10 @@ def explain(
             progress=progress,
         )
     progress("weights", 0.0)
-    adjustments = adjustments_of(rig, distances.graph, corrections)
-    falloff = (_Paper if method.falloff == "paper" else _ForRigs)(distances, method, adjustments)
-    steps = _limited(rig, distances, method, vertex, falloff.steps(vertex))
-    if corrections:
-        steps["correct"] = _corrected(rig, distances, method, vertex, corrections, adjustments)
+    context = weight_context(
+        distances, method, rig.allowed, adjustments_of(rig, distances.graph, corrections)
+    )
+    steps = _rows(rig, context, vertex, corrections)
     most = np.max(list(steps.values()), axis=0)
     own = None if rig.weights is None else rig.weights[vertex]
     listed = np.flatnonzero((most > SOME) | (0 if own is None else own > SOME))
@@ -218,109 +214,52 @@ def explain(
     shares = []
     for done, joint in enumerate(listed[np.argsort(-last[listed], kind="stable")].tolist()):
         progress("weights", done / len(listed))
-        shares.append(_share(rig, distances, vertex, joint, falloff, steps))
+        shares.append(_share(rig, distances, vertex, joint, context, steps))
     progress("weights", 1.0)
     reason = int(distances.fallback[vertex])
     why = "" if reason == REACHED else FALLBACK_REASONS[reason]
     return Explanation(vertex, _place(rig.mesh.vertices[vertex]), why, tuple(shares))
 
 
-class _Paper:
-    """The paper's falloff: a formula of the distance alone."""
-
-    def __init__(
-        self, distances: BoneDistances, method: Method, adjustments: Adjustments | None
-    ) -> None:
-        assert method.alpha is not None
-        self._distances, self._alpha, self._adjustments = distances, method.alpha, adjustments
-
-    def steps(self, vertex: int) -> dict[str, NDArray[np.float64]]:
-        distance = self._distances.joint[:, [vertex]]
-        if self._adjustments is not None:
-            distance = distance / self._adjustments.gain[:, None]
-        diagonal = self._distances.graph.lattice.diagonal
-        return {"falloff": paper_kernel(distance, diagonal, self._alpha)[0]}
-
-    def factors(self, vertex: int, joint: int) -> dict[str, float]:
-        return _gain(self._adjustments, joint)
-
-
-class _ForRigs:
-    """The falloff for rigs, with what it records on its way."""
-
-    def __init__(
-        self, distances: BoneDistances, method: Method, adjustments: Adjustments | None
-    ) -> None:
-        self._distances, self._adjustments = distances, adjustments
-        self._surface = SurfaceOperators.of(distances.graph)
-        self._found: dict[str, NDArray] = {}
-
-        def record(step: str, array: NDArray) -> None:
-            self._found[step] = array.copy()
-
-        self._found["tail"] = rig_weights(
-            distances, self._surface, record=record, adjustments=adjustments
-        )
-
-    def steps(self, vertex: int) -> dict[str, NDArray[np.float64]]:
-        place = self._distances.graph.vertex_node[vertex]
-        names = ("falloff", "spread", "rigid", "tail")
-        return {name: self._found[name][place] for name in names}
-
-    def factors(self, vertex: int, joint: int) -> dict[str, float]:
-        place, surface = self._distances.graph.vertex_node[vertex], self._surface
-        penalty = float(self._found["penalty"][surface.component[place], joint])
-        gain = _gain(self._adjustments, joint)
-        radius = 1.0
-        if self._found["beyond"][place]:  # elsewhere nothing is beyond any radius
-            known = self._distances.at_welded[joint, place] / self._found["radius"][joint]
-            radius = max(1.0, float(known))
-        where = surface.points[place], surface.normals[place]
-        away = facing(*where, self._distances.bones, joint)
-        component = penalty / gain.get("gain", 1.0)
-        return {"component": component, "radius": radius, "facing": 1 / away, **gain}
-
-
-def _gain(adjustments: Adjustments | None, joint: int) -> dict[str, float]:
-    """Return the factor of a joint's distance that corrections ask for, if any."""
-    gain = 1.0 if adjustments is None else float(adjustments.gain[joint])
-    return {} if gain == 1 else {"gain": 1 / gain}
-
-
-def _corrected(
-    rig: Rig,
-    distances: BoneDistances,
-    method: Method,
-    vertex: int,
-    corrections: Corrections,
-    adjustments: Adjustments | None,
-) -> NDArray[np.float64]:
-    """Return the weights of a vertex after all corrections, as `bind` does."""
-    weights = skinning_weights(
-        distances, method=method, allowed=rig.allowed, adjustments=adjustments
-    )
-    weights = corrected_parts(rig, distances.graph, weights, corrections)
-    weights = lock_joints(rig, weights, locked_by(corrections), method.max_influences)
-    found: NDArray[np.float64] = apply_vertex_overrides(rig, weights, corrections)[vertex]
-    return found
-
-
-def _limited(
-    rig: Rig,
-    distances: BoneDistances,
-    method: Method,
-    vertex: int,
-    steps: dict[str, NDArray[np.float64]],
+def _rows(
+    rig: Rig, context: WeightContext, vertex: int, corrections: Corrections
 ) -> dict[str, NDArray[np.float64]]:
-    """Add the steps that every method ends with, for one vertex."""
-    row = list(steps.values())[-1][None]
-    if rig.allowed is not None:
-        row = permitted(row, distances.joint[:, [vertex]], rig.allowed[[vertex]])
-        steps["storable"] = row[0]
-    kept = keep_strongest(distances, row, method.max_influences, method.threshold)[0]
-    steps["limit"] = np.where(kept > 0, row[0], 0.0)
-    steps["normalise"] = kept
-    return steps
+    """Run the steps of `bind`, and keep a vertex' row of each."""
+    node = context.distances.graph.vertex_node[vertex]
+    weights, rows = np.empty((0, 0)), {}
+    for step in weight_steps(context):
+        weights = step.run(weights, context)
+        row = weights[vertex if step.is_per_vertex else node].copy()
+        if step.name == "normalise":
+            before = next(reversed(rows.values()))
+            rows["limit"] = np.where(row > 0, before, 0.0)
+        if step.name in STEPS:
+            rows[step.name] = row
+    if corrections:
+        weights = corrected_parts(rig, context.distances.graph, weights, corrections)
+        weights = lock_joints(rig, weights, locked_by(corrections), context.method.max_influences)
+        rows["correct"] = apply_vertex_overrides(rig, weights, corrections)[vertex]
+    return rows
+
+
+def _factors(context: WeightContext, vertex: int, joint: int) -> dict[str, float]:
+    """Return what the falloff multiplies a joint's distance by."""
+    gain = 1.0 if context.adjustments is None else float(context.adjustments.gain[joint])
+    of_gain = {} if gain == 1 else {"gain": 1 / gain}
+    division = context.division
+    if division is None:
+        return of_gain
+    surface, node = division.surface, context.distances.graph.vertex_node[vertex]
+    radius = 1.0
+    if division.beyond[node]:  # elsewhere nothing is beyond any radius
+        radius = float(context.distances.at_welded[joint, node] / division.radius[joint])
+    away = facing(surface.points[node], surface.normals[node], context.distances.bones, joint)
+    return {
+        "component": float(division.penalty[surface.component[node], joint]) * gain,
+        "radius": max(1.0, radius),
+        "facing": 1 / away,
+        **of_gain,
+    }
 
 
 def _share(
@@ -328,7 +267,7 @@ def _share(
     distances: BoneDistances,
     vertex: int,
     joint: int,
-    falloff: _Paper | _ForRigs,
+    context: WeightContext,
     steps: dict[str, NDArray[np.float64]],
 ) -> JointShare:
     unit, bones = distances.graph.lattice.size, distances.bones
@@ -336,7 +275,7 @@ def _share(
     own = np.flatnonzero(bones.joint == joint)
     point = distances.graph.nodes[distances.graph.vertex_node[vertex]]
     straight = distance_to_segment(point, bones.start[own], bones.end[own]).min(initial=np.inf)
-    factors = falloff.factors(vertex, joint) if np.isfinite(distance) and len(own) else {}
+    factors = _factors(context, vertex, joint) if np.isfinite(distance) and len(own) else {}
     weight = {name: float(row[joint]) for name, row in steps.items()}
     return JointShare(
         joint=joint,

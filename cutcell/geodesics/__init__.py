@@ -5,12 +5,14 @@ from ..method import LEAVES
 from .bones import Bones, Sources, bone_samples, bone_segments
 from .distances import BoneDistances, bone_distances
 from .fallback import FALLBACK_REASONS
+from .solver import BoneDistanceSolver
 from .tracing.paths import PIECES, TracedPath, path_length, shortest_path, trace_path
 
 __all__ = [
     "FALLBACK_REASONS",
     "LEAVES",
     "PIECES",
+    "BoneDistanceSolver",
     "BoneDistances",
     "Bones",
     "Sources",

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Unpack
-from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,14 +15,9 @@ from ..method import ANIMATION, DistanceOptions, Method, MethodName, method_of
 from ..rig.checks import check_integer, check_number, check_positions
 from ..rig.rig import Skeleton
 from ..runtime.progress import Progress, silent
-from ..runtime.threads import submit
-from .any_angle.contraction import Contraction, contract
-from .any_angle.theta_star import any_angle_paths, least_distances
-from .bone_extents.fit import REGION_LEAVES, REGION_WITHIN, aim_leaf_bones, fit_bones
-from .bones import Bones, Sources, bone_segments, find_sources, node_grid
+from .bones import Bones, Sources
 from .fallback import NOT_ALLOWED, REACHED, UNREACHED, UNUSED, straight_to_nearest
-from .nearest import NodeGrid
-from .shortest_paths import shortest_paths
+from .solver import BoneDistanceSolver
 from .tracing.inside import Inside
 
 
@@ -48,9 +41,8 @@ class BoneDistances:
     fallback : array, shape (n,), uint8
         0 for vertices reached through the body, else the reason why not, an index into
         `geodesics.FALLBACK_REASONS`. These have straight distances to a few bones.
-    graph : CutCellGraph
-    contraction : Contraction or None
-        Of the graph, with connectivity "any".
+    solver : BoneDistanceSolver
+        What computed them, for more distances along the same graph.
     """
 
     at_welded: NDArray[np.float64]
@@ -59,8 +51,12 @@ class BoneDistances:
     bones: Bones
     sources: Sources
     fallback: NDArray[np.uint8]
-    graph: CutCellGraph
-    contraction: Contraction | None
+    solver: BoneDistanceSolver
+
+    @property
+    def graph(self) -> CutCellGraph:
+        """The graph that paths run along."""
+        return self.solver.graph
 
     @cached_property
     def joint(self) -> NDArray[np.float64]:
@@ -100,7 +96,7 @@ class BoneDistances:
     @cached_property
     def inside(self) -> Inside:
         """Tells which straight segments stay inside the body."""
-        return Inside(self.graph, self.contraction)
+        return Inside(self.graph, self.solver.contraction)
 
     @property
     def source_node(self) -> NDArray[np.int32]:
@@ -127,10 +123,10 @@ class BoneDistances:
         """
         if joint not in self.bones.joint:
             raise ParameterError(f"joint {joint} has no bone: it may not carry weight")
-        mine = self.bones.joint == joint
-        bones, sources = self.bones.some(mine), self.sources.some(mine)
+        of_joint = self.bones.joint == joint
+        bones, sources = self.bones.some(of_joint), self.sources.some(of_joint)
         everywhere = np.arange(len(self.graph.nodes), dtype=np.int32)
-        return joint_paths(self.graph, self.contraction, sources, bones, everywhere)[0]
+        return self.solver.paths(bones, sources, targets=everywhere)[0]
 
     def on_mesh(self, joint: int) -> NDArray[np.float64]:
         """Compute a joint's distance at every vertex, nearest joint or not, shape (n,).
@@ -149,9 +145,7 @@ class BoneDistances:
         """Compute all joints' distances at every vertex, nearest or not, shape (j, n)."""
         if self.nearest_joints is None:
             return self.joint
-        on_mesh = nodes_on_mesh(self.graph)
-        known = self.graph, self.contraction, self.sources, self.bones
-        by_node = joint_paths(*known, on_mesh, progress=progress)
+        by_node = self.solver.paths(self.bones, self.sources, progress=progress)
         joint = self.joint.copy()
         reached = np.flatnonzero(self.fallback == REACHED)
         joint[np.ix_(np.unique(self.bones.joint), reached)] = by_node[
@@ -161,7 +155,7 @@ class BoneDistances:
 
 
 def bone_distances(
-    graph: CutCellGraph,
+    graph: CutCellGraph | BoneDistanceSolver,
     skeleton: Skeleton,
     *,
     method: Method | MethodName = ANIMATION,
@@ -176,7 +170,8 @@ def bone_distances(
 
     Parameters
     ----------
-    graph : CutCellGraph
+    graph : CutCellGraph or BoneDistanceSolver
+        A solver is a graph that was prepared before, such as the `solver` of other distances.
     skeleton : Skeleton
         In the units of the graph's mesh.
     method : Method, "animation" or "paper"
@@ -220,7 +215,6 @@ def bone_distances(
     Paper section 3.2, algorithm 2.
     """
     method = method_of(method, **options)
-    samples, leaf = method.samples, method.leaf
     nearest = check_integer("nearest", nearest, 1, 1_000_000)
     if nearest_joints is None:
         nearest_joints = method.joints_needed
@@ -229,134 +223,58 @@ def bone_distances(
     within = check_number("within", method.reach_needed if within is None else within, 1, np.inf)
     skeleton.require_joints()
     check_positions(skeleton.joints, "joint", SkeletonError)
+    solver = graph if isinstance(graph, BoneDistanceSolver) else BoneDistanceSolver(graph)
+    graph = solver.graph
     if graph.connectivity != "any" or allowed is not None:
         nearest_joints = None
     progress("distances", 0.0)
     if allowed is not None:
         _check_allowed(graph, skeleton, allowed)
-    targets = nodes_on_mesh(graph)
-    contracted = _contracted(graph) if graph.connectivity == "any" else None
-    grid = sorted_nodes(graph)
-    if leaf == "fit":
-        bones, aimed = fit_bones(graph, skeleton, grid)
-    else:
-        bones = bone_segments(skeleton, leaf)
-        ends = graph.lattice.to_unit(bones.start), graph.lattice.to_unit(bones.end)
-        bones, aimed = Bones(*ends, bones.joint), np.zeros(len(bones.joint), np.bool_)
-    contraction = None
-    if contracted:
-        contraction = _contractions[graph] = contracted()
-    sources = find_sources(graph, bones, samples, grid, contraction)
-    if aimed.any():
-        reach = _reach_of_leaves(graph, contraction, sources, bones, aimed, progress)
-        bones = aim_leaf_bones(graph, bones, aimed, *reach)
-        of_aimed = find_sources(graph, bones.some(aimed), samples, grid, contraction)
-        sources = sources.replaced(aimed, of_aimed)
-    given = graph, contraction, sources, bones
-    by_node = joint_paths(*given, targets, nearest_joints, within, progress=progress)
-    measured, at_welded = np.unique(bones.joint), by_node
-    if len(measured) < len(skeleton.joints):
-        at_welded = np.full((len(skeleton.joints), len(targets)), np.inf)
-        at_welded[measured] = by_node
-    reached = np.isfinite(by_node.min(axis=0))
-    fallback = np.where(reached, REACHED, UNREACHED).astype(np.uint8)
-    fallback[~graph.connected[targets]] = UNUSED
+    bones, aimed = solver.bones(skeleton, method.leaf)
+    sources = solver.sources(bones, method.samples)
+    bones, sources = solver.aim(bones, sources, aimed, method.samples, progress)
+    by_node = solver.paths(bones, sources, nearest_joints, within, progress=progress)
+    joint, fallback = _per_joint(solver, bones, len(skeleton.joints), by_node)
 
-    joint, node = at_welded, targets
+    node = solver.targets
     if allowed is not None:  # per vertex, as those at one place may differ
         node = graph.vertex_node
-        joint, fallback = at_welded.take(node, axis=1), fallback[node]
+        joint, fallback = joint.take(node, axis=1), fallback[node]
         joint[~allowed.T] = np.inf
         fallback[(fallback == REACHED) & ~np.isfinite(joint).any(axis=0)] = NOT_ALLOWED
     lost = np.flatnonzero(fallback != REACHED)
     if len(lost):
         may_follow = None if allowed is None else allowed[np.ix_(lost, bones.joint)]
         straight = straight_to_nearest(graph.nodes[node[lost]], bones, nearest, may_follow)
-        joint[np.ix_(measured, lost)] = _least(straight, bones)
-    known = nearest_joints, bones, sources
+        joint[np.ix_(np.unique(bones.joint), lost)] = _least(straight, bones)
     if allowed is None:
-        return BoneDistances(joint, None, *known, fallback[graph.vertex_node], graph, contraction)
-    first = np.unique(node, return_index=True)[1]
-    return BoneDistances(joint[:, first], joint, *known, fallback, graph, contraction)
+        at_welded, of_vertices, fallback = joint, None, fallback[graph.vertex_node]
+    else:
+        at_welded, of_vertices = joint[:, np.unique(node, return_index=True)[1]], joint
+    return BoneDistances(at_welded, of_vertices, nearest_joints, bones, sources, fallback, solver)
 
 
 def distances_from(graph: CutCellGraph, bones: Bones, samples: int, joints: int) -> BoneDistances:
-    """Compute the distances of given bones to each vertex along a graph."""
-    contraction = _contracted(graph)() if graph.connectivity == "any" else None
-    sources = find_sources(graph, bones, samples, sorted_nodes(graph), contraction)
-    targets = nodes_on_mesh(graph)
-    at_welded = np.full((joints, len(targets)), np.inf)
-    at_welded[np.unique(bones.joint)] = joint_paths(graph, contraction, sources, bones, targets)
-    is_reached = np.isfinite(at_welded.min(axis=0))[graph.vertex_node]
-    fallback = np.where(is_reached, REACHED, UNREACHED).astype(np.uint8)
-    return BoneDistances(at_welded, None, None, bones, sources, fallback, graph, contraction)
+    """Compute the distances of given bones to each vertex along a graph, without a fallback."""
+    solver = BoneDistanceSolver(graph)
+    sources = solver.sources(bones, samples)
+    at_welded, fallback = _per_joint(solver, bones, joints, solver.paths(bones, sources))
+    fallback = fallback[graph.vertex_node]
+    return BoneDistances(at_welded, None, None, bones, sources, fallback, solver)
 
 
-_contractions: WeakKeyDictionary[CutCellGraph, Contraction] = WeakKeyDictionary()
-_grids: WeakKeyDictionary[CutCellGraph, NodeGrid] = WeakKeyDictionary()
-
-
-def _contracted(graph: CutCellGraph) -> Callable[[], Contraction]:
-    """Let another core contract a graph, unless it has been; return what waits for it."""
-    found = _contractions.get(graph)
-    return submit(lambda: contract(graph)) if found is None else lambda: found
-
-
-def sorted_nodes(graph: CutCellGraph) -> NodeGrid:
-    """Return the grid of a graph's nodes, which is made once for each graph."""
-    if graph not in _grids:
-        _grids[graph] = node_grid(graph)
-    return _grids[graph]
-
-
-def nodes_on_mesh(graph: CutCellGraph) -> NDArray[np.int32]:
-    """List the welded vertices: the first nodes of the graph."""
-    return np.arange(graph.first_point, dtype=np.int32)
-
-
-def joint_paths(
-    graph: CutCellGraph,
-    contraction: Contraction | None,
-    sources: Sources,
-    bones: Bones,
-    targets: NDArray[np.int32],
-    nearest_joints: int | None = None,
-    within: float = np.inf,
-    least: NDArray[np.float64] | None = None,
-    progress: Progress = silent,
-) -> NDArray[np.float64]:
-    """Compute distances of the joints that have bones, in ascending order, to target nodes."""
-    if contraction is not None:
-        known = graph, contraction, sources, bones, targets, nearest_joints, within, least
-        return any_angle_paths(*known, progress)
-    joints, rank = np.unique(bones.joint, return_inverse=True)
-    owner = rank[sources.bone].astype(np.int32)
-    # Sources of a joint are those of all its bones; if bones share a node, of the nearest one.
-    order = np.lexsort((sources.distance, sources.node, owner))
-    pairs = np.stack([owner, sources.node])[:, order]
-    first = order[np.diff(pairs, prepend=-1).any(axis=0)]
-    begin = Sources(sources.node[first], owner[first], sources.distance[first])
-    return shortest_paths(graph, begin, len(joints), targets, progress)
-
-
-def _reach_of_leaves(
-    graph: CutCellGraph,
-    contraction: Contraction | None,
-    sources: Sources,
-    bones: Bones,
-    aimed: NDArray[np.bool_],
-    progress: Progress,
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Compute the distances that `aim_leaf_bones` takes."""
-    targets = nodes_on_mesh(graph)
-    if contraction is None:
-        every = joint_paths(graph, None, sources, bones, targets, progress=progress)
-        return every[np.isin(np.unique(bones.joint), bones.joint[aimed])], every.min(axis=0)
-    # Most of the body is in no leaf bone's region: there only the nearest joint matters.
-    least = least_distances(graph, contraction, sources, bones, progress)
-    leaves = sources.some(aimed), bones.some(aimed), targets, REGION_LEAVES, REGION_WITHIN
-    reach = any_angle_paths(graph, contraction, *leaves, least, progress)
-    return reach, least[contraction.number[targets]]
+def _per_joint(
+    solver: BoneDistanceSolver, bones: Bones, joints: int, by_node: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.uint8]]:
+    """Return distances (j, k) of all joints, and why vertices (k,) need a fallback."""
+    reached = np.isfinite(by_node.min(axis=0))
+    fallback = np.where(reached, REACHED, UNREACHED).astype(np.uint8)
+    fallback[~solver.graph.connected[solver.targets]] = UNUSED
+    with_bones, at_welded = np.unique(bones.joint), by_node
+    if len(with_bones) < joints:
+        at_welded = np.full((joints, by_node.shape[1]), np.inf)
+        at_welded[with_bones] = by_node
+    return at_welded, fallback
 
 
 def _least(distance: NDArray[np.float64], bones: Bones) -> NDArray[np.float64]:

@@ -18,10 +18,10 @@ class Adjustments:
         Distances of each joint are divided by this; 1 for most.
     radius : array, shape (j,)
         Of the surface about each joint's bones, in the unit cube; NaN where it is measured.
-    by_itself : array, shape (components,), bool
-        Connected components that are never rigid.
+    by_itself : array, shape (c,), integers
+        Welded vertices whose connected components are never rigid.
     """
 
     gain: NDArray[np.float64]
     radius: NDArray[np.float64]
-    by_itself: NDArray[np.bool_]
+    by_itself: NDArray[np.integer]

@@ -7,7 +7,6 @@ from numpy.typing import NDArray
 
 from ..runtime.compiled import compiled
 from ..runtime.threads import in_threads, parts
-from .prune import keep_largest
 
 
 def paper_kernel(
@@ -27,31 +26,6 @@ def paper_kernel(
     return weights
 
 
-def pruned_paper_kernel(
-    distance: NDArray[np.float64],
-    diagonal: float,
-    alpha: float,
-    max_influences: int | None,
-    threshold: float,
-    priority: NDArray[np.intp],
-) -> NDArray[np.float64]:
-    """Apply the paper's falloff and prune in one pass, without a matrix in between.
-
-    The result is that of `paper_kernel` and `prune`. The page calls it while a slider moves.
-
-    Returns shapes (n, j).
-    """
-    most = len(distance) if max_influences is None else max_influences
-    weights = np.zeros(distance.shape[::-1])
-    in_threads(
-        lambda part: _pruned_paper_kernel(
-            distance, diagonal, alpha, most, threshold, priority, weights, part.start, part.stop
-        ),
-        parts(len(weights)),
-    )
-    return weights
-
-
 BLOCK_ROWS = 64
 """Vertices at a time: distances are stored by joint, and a block of rows fits into the cache."""
 
@@ -62,19 +36,6 @@ def _paper_kernel(distance, diagonal, alpha, weights, begin, stop):
         _kernel_rows(
             distance, diagonal, alpha, first, weights[first : min(first + BLOCK_ROWS, stop)]
         )
-
-
-@compiled
-def _pruned_paper_kernel(
-    distance, diagonal, alpha, most, threshold, priority, weights, begin, stop
-):
-    rows = np.empty((BLOCK_ROWS, len(distance)))
-    kept = np.empty(len(priority), np.intp)
-    for first in range(begin, stop, BLOCK_ROWS):
-        count = min(BLOCK_ROWS, stop - first)
-        _kernel_rows(distance, diagonal, alpha, first, rows[:count])
-        for v in range(count):
-            keep_largest(rows[v], most, threshold, priority, kept, weights[first + v])
 
 
 @compiled

@@ -42,11 +42,11 @@ def prune(
 def _prune(weights, most, threshold, priority, pruned):
     kept = np.empty(len(priority), np.intp)
     for v in range(len(weights)):
-        keep_largest(weights[v], most, threshold, priority, kept, pruned[v])
+        _keep_largest(weights[v], most, threshold, priority, kept, pruned[v])
 
 
 @compiled
-def keep_largest(row, most, threshold, priority, kept, pruned):
+def _keep_largest(row, most, threshold, priority, kept, pruned):
     """Prune one vertex: see `prune`. `pruned` is all zeros, and `kept` has room for all joints."""
     count = 0
     for joint in priority:

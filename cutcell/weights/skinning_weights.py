@@ -15,9 +15,10 @@ from ..method import ANIMATION, Method, MethodName, WeightOptions, method_of
 from ..runtime.progress import Progress, Tell, share_of, silent
 from ..runtime.threads import in_threads, parts, threads
 from .adjustments import Adjustments
-from .paper_kernel import paper_kernel, pruned_paper_kernel
+from .context import Step, WeightContext
+from .paper_kernel import paper_kernel
 from .prune import A_PART, prune
-from .rig_falloff.pipeline import permitted, rig_weights
+from .rig_falloff.pipeline import RIG_STEPS, divide_and_prepare
 from .rig_falloff.surface_operators import SurfaceOperators
 
 
@@ -27,6 +28,7 @@ def skinning_weights(
     method: Method | MethodName = ANIMATION,
     allowed: NDArray[np.bool_] | None = None,
     adjustments: Adjustments | None = None,
+    surface: SurfaceOperators | None = None,
     progress: Progress = silent,
     **options: Unpack[WeightOptions],
 ) -> NDArray[np.float64]:
@@ -42,6 +44,8 @@ def skinning_weights(
         Which joints each vertex may follow; see `Rig.allowed`.
     adjustments : Adjustments, optional
         What `bind` makes of `Corrections`.
+    surface : SurfaceOperators, optional
+        Of the graph's mesh; computed when left out.
     progress : callable
         See `cutcell.runtime.progress`; the stage is called "weights".
     **options
@@ -70,32 +74,74 @@ def skinning_weights(
             f"{known} nearest joints of each vertex alone: measure them again with this method"
         )
 
-    def tell(done: float) -> None:
-        progress("weights", done)
+    context = weight_context(
+        distances, method, allowed, adjustments, surface, lambda done: progress("weights", done)
+    )
+    weights = np.empty((0, 0))
+    for step in weight_steps(context):
+        weights = step.run(weights, context)
+    return weights
 
-    if adjustments is not None and method.falloff == "paper":
+
+def weight_context(
+    distances: BoneDistances,
+    method: Method,
+    allowed: NDArray[np.bool_] | None = None,
+    adjustments: Adjustments | None = None,
+    surface: SurfaceOperators | None = None,
+    report: Tell = lambda done: None,
+) -> WeightContext:
+    """Prepare what the steps of a method's falloff need."""
+    division = diffusion = None
+    if method.falloff == "rig":
+        surface = surface or SurfaceOperators.of(distances.graph)
+        prepared = share_of(report, 0, 0.4)
+        division, diffusion = divide_and_prepare(distances, surface, adjustments, prepared)
+    elif adjustments is not None:
         distances = _divided(distances, adjustments.gain)
-    graph, alpha = distances.graph, method.alpha  # alpha is None with the falloff "rig"
-    kept = method.max_influences, method.threshold, _by_position(distances)
-    if allowed is not None:  # vertices that were welded may follow different joints
-        if alpha is not None:
-            weights = paper_kernel(distances.joint, graph.lattice.diagonal, alpha)
-        else:
-            surface = SurfaceOperators.of(graph)
-            weights = rig_weights(distances, surface, tell, adjustments=adjustments)
-            weights = weights[graph.vertex_node]
-        return prune(permitted(weights, distances.joint, allowed), *kept)
-    if alpha is not None:
-        welded = pruned_paper_kernel(distances.at_welded, graph.lattice.diagonal, alpha, *kept)
-    else:
-        welded = rig_weights(
-            distances,
-            SurfaceOperators.of(graph),
-            share_of(tell, 0, 0.8),
-            adjustments=adjustments,
-        )
-        welded = prune(welded, *kept, share_of(tell, 0.8, 0.9))
-    return of_vertices(graph, welded, share_of(tell, 0.9, 1))
+    return WeightContext(distances, method, allowed, adjustments, division, diffusion, report)
+
+
+def weight_steps(context: WeightContext) -> tuple[Step, ...]:
+    """List the steps from distances to weights, in their order. The first one takes no weights."""
+    is_rig = context.division is not None
+    if context.allowed is None:
+        falloff = RIG_STEPS if is_rig else (Step("falloff", equation_1),)
+        return (*falloff, Step("normalise", limit), Step("vertices", per_vertex, True))
+    # Vertices that were welded may follow different joints.
+    falloff = (Step("falloff", equation_1, True),)
+    if is_rig:
+        falloff = (*RIG_STEPS, Step("vertices", per_vertex, True))
+    return (*falloff, Step("storable", permit, True), Step("normalise", limit, True))
+
+
+def equation_1(weights: NDArray[np.float64], context: WeightContext) -> NDArray[np.float64]:
+    """Begin with the paper's falloff of the distances, see `paper_kernel`."""
+    distances, alpha = context.distances, context.method.alpha
+    assert alpha is not None
+    distance = distances.at_welded if context.allowed is None else distances.joint
+    return paper_kernel(distance, distances.graph.lattice.diagonal, alpha)
+
+
+def permit(weights: NDArray[np.float64], context: WeightContext) -> NDArray[np.float64]:
+    """Drop what a vertex may not follow; one left with nothing follows its nearest joint."""
+    assert context.allowed is not None
+    kept = np.where(context.allowed, weights, 0.0)
+    lost = np.flatnonzero(kept.sum(axis=1) == 0)
+    kept[lost, context.distances.joint[:, lost].argmin(axis=0)] = 1
+    return kept / kept.sum(axis=1, keepdims=True)
+
+
+def limit(weights: NDArray[np.float64], context: WeightContext) -> NDArray[np.float64]:
+    """Keep the largest weights of each vertex."""
+    most, threshold = context.method.max_influences, context.method.threshold
+    order = _by_position(context.distances)
+    return prune(weights, most, threshold, order, share_of(context.report, 0.8, 0.9))
+
+
+def per_vertex(weights: NDArray[np.float64], context: WeightContext) -> NDArray[np.float64]:
+    """Return the weights of all vertices, from those of welded ones."""
+    return of_vertices(context.distances.graph, weights, share_of(context.report, 0.9, 1))
 
 
 def of_vertices(

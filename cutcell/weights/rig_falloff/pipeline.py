@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -12,6 +10,7 @@ from ...runtime.compiled import no_refcount
 from ...runtime.progress import Tell, share_of
 from ...runtime.threads import run_parallel
 from ..adjustments import Adjustments
+from ..context import Step, WeightContext
 from .containment import make_rigid
 from .diffusion import Diffusion
 from .division import Division
@@ -22,57 +21,60 @@ TAIL = 0.05
 """Of a vertex' largest weight: subtracted from all its weights, so that they end somewhere."""
 
 
-Record = Callable[[str, NDArray], None]
-"""Is told the name of each step and what it has computed, which may change afterwards."""
-
-
-def rig_weights(
+def divide_and_prepare(
     distances: BoneDistances,
     surface: SurfaceOperators,
-    tell: Tell = lambda done: None,
-    record: Record = lambda step, array: None,
     adjustments: Adjustments | None = None,
-) -> NDArray[np.float64]:
-    """Turn distances into weights for animation.
-
-    Returns shapes (k, j).
-    """
-    division, diffusion = run_parallel(
+    report: Tell = lambda done: None,
+) -> tuple[Division, Diffusion]:
+    """Divide the surface; prepare its diffusion by the distance to the nearest bone."""
+    depth, resolution = distances.at_welded.min(axis=0), distances.graph.lattice.resolution
+    return run_parallel(
         lambda: Division.by(distances, surface, adjustments),
-        lambda: diffusion_of(distances, surface),
+        lambda: Diffusion.over(surface, depth, resolution),
     )
-    for step in ("penalty", "radius", "beyond"):
-        record(step, getattr(division, step))
-    record("falloff", division.weights)
-    weights = diffusion.spread(division.weights, share_of(tell, 0.5, 1))
-    record("spread", weights)
-    weights = with_rigid_parts(division, weights, adjustments)
-    record("rigid", weights)
-    subtract_tail(weights)
+
+
+def share(weights: NDArray[np.float64], context: WeightContext) -> NDArray[np.float64]:
+    """Begin with each joint's share of the surface."""
+    assert context.division is not None
+    return context.division.weights
+
+
+def spread(weights: NDArray[np.float64], context: WeightContext) -> NDArray[np.float64]:
+    """Spread shares over the skin by diffusion."""
+    assert context.diffusion is not None
+    return context.diffusion.spread(weights, share_of(context.report, 0.4, 0.8))
+
+
+def with_rigid_parts(weights: NDArray[np.float64], context: WeightContext) -> NDArray[np.float64]:
+    """Let plates, wheels, eyes, buttons... move rigidly."""
+    assert context.division is not None
+    containment, surface = context.division.containment, context.division.surface
+    by_itself = np.zeros(len(containment), np.bool_)
+    if context.adjustments is not None:
+        by_itself[surface.component[context.adjustments.by_itself]] = True
+    if len(containment) > 1:
+        weights = make_rigid(containment, surface.component, weights, by_itself)
+    return attach_accessories(context.distances.graph, surface, containment, weights, by_itself)
+
+
+def without_tail(weights: NDArray[np.float64], context: WeightContext) -> NDArray[np.float64]:
+    """Subtract a part of each vertex' largest weight from all of them, in place."""
+    _subtract_tail(weights)
     return weights
 
 
-def diffusion_of(distances: BoneDistances, surface: SurfaceOperators) -> Diffusion:
-    """Return the diffusion over a surface whose depth is the distance to the nearest bone."""
-    depth = distances.at_welded.min(axis=0)
-    return Diffusion.over(surface, depth, distances.graph.lattice.resolution)
-
-
-def with_rigid_parts(
-    division: Division, weights: NDArray[np.float64], adjustments: Adjustments | None
-) -> NDArray[np.float64]:
-    """Let plates, wheels, eyes, buttons... move rigidly: weights (k, j) before and after."""
-    containment, surface = division.containment, division.surface
-    by_itself = None if adjustments is None else adjustments.by_itself
-    if len(containment) > 1:
-        weights = make_rigid(containment, surface.component, weights, by_itself)
-    graph = division.distances.graph
-    return attach_accessories(graph, surface, containment, weights, by_itself)
+RIG_STEPS = (
+    Step("falloff", share),
+    Step("spread", spread),
+    Step("rigid", with_rigid_parts),
+    Step("tail", without_tail),
+)
 
 
 @no_refcount
-def subtract_tail(weights):
-    """Subtract a part of each vertex' largest weight from all of them, down to zero, in place."""
+def _subtract_tail(weights):
     for v in range(len(weights)):
         largest = 0.0
         for j in range(weights.shape[1]):
@@ -83,16 +85,3 @@ def subtract_tail(weights):
             total += weights[v, j]
         for j in range(weights.shape[1]):
             weights[v, j] /= total
-
-
-def permitted(
-    weights: NDArray[np.float64], distance: NDArray[np.float64], allowed: NDArray[np.bool_]
-) -> NDArray[np.float64]:
-    """Take away what a vertex may not follow; one left with nothing follows its nearest joint.
-
-    Shapes: weights (n, j), distance (j, n), allowed (n, j); returns (n, j).
-    """
-    kept = np.where(allowed, weights, 0.0)
-    lost = np.flatnonzero(kept.sum(axis=1) == 0)
-    kept[lost, distance[:, lost].argmin(axis=0)] = 1
-    return kept / kept.sum(axis=1, keepdims=True)

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +10,6 @@ from numpy.typing import NDArray
 from ...geometry.laplacian import stiffness, vertex_areas, vertex_normals
 from ...graph import CutCellGraph
 from ...runtime.compiled import compiled
-from ...runtime.threads import submit
 from .components import label_components
 
 
@@ -43,18 +40,8 @@ class SurfaceOperators:
 
     @classmethod
     def of(cls, graph: CutCellGraph) -> SurfaceOperators:
-        """Return those of a graph's mesh, which are computed once for each graph."""
-        cls.begin(graph)
-        found = _of_graph[graph]()
-        _of_graph[graph] = lambda: found
-        return found
-
-    @classmethod
-    def begin(cls, graph: CutCellGraph) -> None:
-        """Let another core compute them while this one does something else."""
-        if graph not in _of_graph:
-            points, faces = graph.nodes[: graph.first_point], graph.faces
-            _of_graph[graph] = submit(lambda: cls.over(points, faces))
+        """Compute those of a graph's mesh."""
+        return cls.over(graph.nodes[: graph.first_point], graph.faces)
 
     @classmethod
     def over(cls, points: NDArray[np.float64], faces: NDArray[np.int32]) -> SurfaceOperators:
@@ -62,9 +49,6 @@ class SurfaceOperators:
         a, b, c = faces.T
         faces = faces[(a != b) & (b != c) & (c != a)]  # the others were welded to nothing
         return cls(points, faces, *_operators(points, faces))
-
-
-_of_graph: WeakKeyDictionary[CutCellGraph, Callable[[], SurfaceOperators]] = WeakKeyDictionary()
 
 
 # One compiled function: each call from another thread has to wait for Python's lock.

@@ -92,11 +92,6 @@ def test_a_body_in_patches_has_no_accessories():
     assert attach_accessories(graph, surface, containment, weights) is weights
 
 
-def test_the_operators_of_a_graph_are_computed_once():
-    graph = build_graph(TriangleMesh(*meshes.box()), 4)
-    assert SurfaceOperators.of(graph) is SurfaceOperators.of(graph)
-
-
 def test_a_lone_component_has_no_penalty():
     penalty = cross_component_penalty(np.array([[0.2, 0.0, 1.0]]))
     np.testing.assert_array_equal(penalty, 1.0)

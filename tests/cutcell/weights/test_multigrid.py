@@ -16,7 +16,6 @@ from cutcell.weights.rig_falloff.multigrid import (
     Multigrid,
     factorise,
 )
-from cutcell.weights.rig_falloff.pipeline import rig_weights
 from cutcell.weights.rig_falloff.surface_operators import SurfaceOperators
 from tests.bars import grid_box
 
@@ -142,11 +141,11 @@ def bar():
 def test_weights_are_those_of_the_factors(bar, monkeypatch):
     surface = SurfaceOperators.of(bar.graph)
     assert COARSEST < len(surface.points) <= MANY
-    by_factors = rig_weights(bar, surface)
+    by_factors = cutcell.skinning_weights(bar, surface=surface, threshold=0)
     monkeypatch.setattr(diffusion, "MANY", 0)
     depth = bar.at_welded.min(axis=0)
     assert isinstance(Diffusion.over(surface, depth, 24).solver, Multigrid)
-    difference = rig_weights(bar, surface) - by_factors
+    difference = cutcell.skinning_weights(bar, surface=surface, threshold=0) - by_factors
     assert 0 < np.abs(difference).max() < SAME
 
 

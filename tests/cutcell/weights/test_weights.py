@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from cutcell import ParameterError, Skeleton, TriangleMesh
-from cutcell.weights.paper_kernel import paper_kernel, pruned_paper_kernel
+from cutcell.weights.paper_kernel import paper_kernel
 from cutcell.weights.prune import prune
 from tests import meshes, naive
 from tests.paper import bone_distances, build_graph, skinning_weights
@@ -51,20 +51,6 @@ def test_vertices_at_one_place_may_follow_different_joints():
     free = skinning_weights(bone_distances(graph, CHAIN), max_influences=None)
     expected = np.where(allowed, free, 0)
     np.testing.assert_allclose(found, expected / expected.sum(axis=1, keepdims=True), atol=1e-12)
-
-
-@pytest.mark.parametrize(("most", "threshold"), [(1, 0.0), (4, 0.0), (4, 0.2), (None, 0.05)])
-@pytest.mark.parametrize("count", [1, 64, 201])
-def test_falloff_and_pruning_in_one_go_are_the_two_in_turn(most, threshold, count):
-    random = np.random.default_rng(count)
-    distance = random.integers(1, 6, (9, count)) / 7  # many are equal
-    distance[random.random(distance.shape) < 0.6] = np.inf
-    distance[0, np.isinf(distance).all(axis=0)] = 0.0
-    order = random.permutation(9)
-    found = pruned_paper_kernel(distance, 1.3, 0.4, most, threshold, order)
-    np.testing.assert_array_equal(
-        found, prune(paper_kernel(distance, 1.3, 0.4), most, threshold, order)
-    )
 
 
 def test_pruning_keeps_the_largest():
