@@ -172,7 +172,7 @@ def binary_ending(rig: Rig) -> str:
 
 
 def is_avatar(rig: Rig) -> bool:
-    """Tell whether a rig is saved with the extensions that make its document a VRM."""
+    """Return whether a rig is saved with the extensions that make its document a VRM."""
     if not isinstance(rig.source, GltfSource):
         return False
     extensions = rig.source.document.json.get("extensions")
@@ -180,7 +180,7 @@ def is_avatar(rig: Rig) -> bool:
 
 
 def keeps_document(rig: Rig) -> bool:
-    """Tell whether a rig is saved as the glTF document that it came from, materials and all."""
+    """Return whether a rig is saved as the glTF document that it came from, materials and all."""
     source = rig.source
     if isinstance(source, GltfSource):
         return source.document.path.suffix.lower() in GLTF  # not made of an FBX or USD file

@@ -11,10 +11,10 @@ thousand joints for each vertex take some 200 times as much as what they are sto
 
 
 class Allowance:
-    """What is left of the memory that a file may take.
+    """The rest of the memory that a file may use.
 
-    A few bytes can ask for any amount: an accessor without data, one mesh that stands in a thousand
-    places, a header that announces more than follows.
+    A few bytes can ask for any amount: an accessor without data, one mesh that is used in a
+    thousand places, a header that announces more than follows.
 
     Parameters
     ----------

@@ -94,9 +94,9 @@ def _array(archive: zipfile.ZipFile, member: zipfile.ZipInfo, allowance: Allowan
             "holds pickled Python objects, which could run any code and are not opened; "
             "save its arrays as plain numbers and text"
         )
-    size, there = math.prod(shape) * dtype.itemsize, member.file_size - stored.tell()
-    if min(shape, default=0) < 0 or size != there:
-        raise FileError(f"{what} announces {size:,} bytes and holds {there:,}")
+    size, available = math.prod(shape) * dtype.itemsize, member.file_size - stored.tell()
+    if min(shape, default=0) < 0 or size != available:
+        raise FileError(f"{what} announces {size:,} bytes and holds {available:,}")
     stored.seek(0)
     return npy.read_array(stored, allow_pickle=False)
 
@@ -177,12 +177,12 @@ def articulation_bytes(rig: Rig) -> bytes:
     `root_index` is the first root; further roots are joints on which no bone ends.
     """
     skeleton = rig.skeleton
-    held = np.flatnonzero(skeleton.parents >= 0)
+    children = np.flatnonzero(skeleton.parents >= 0)
     arrays = {
         "vertices": rig.mesh.vertices,
         "faces": rig.mesh.faces,
         "joints": skeleton.joints,
-        "bones": np.stack([skeleton.parents[held], held], axis=1).astype(np.int32),
+        "bones": np.stack([skeleton.parents[children], children], axis=1).astype(np.int32),
         "root_index": np.array(int(np.flatnonzero(skeleton.parents < 0)[0])),
         KEY: skeleton.deform,
         "joint_names": np.array([whole_characters(name) for name in skeleton.names], np.str_),

@@ -33,13 +33,13 @@ def with_deform(
     if stored is None or not (stored == 1).any():
         return _inferred(mesh, skeleton, weights)
     deform = stored == 1
-    told: list[str] = []
+    warnings: list[str] = []
     if (stored < 0).any():  # such as a skin that another program added
-        inferred, told = _inferred(mesh, skeleton, weights)
+        inferred, warnings = _inferred(mesh, skeleton, weights)
         deform = np.where(stored < 0, inferred.deform, deform)
     if weights is not None:
-        told += _told_weighted(skeleton, (stored == 0) & (weights > 0).any(axis=0))
-    return replace(skeleton, deform=deform), told
+        warnings += _weighted_warnings(skeleton, (stored == 0) & (weights > 0).any(axis=0))
+    return replace(skeleton, deform=deform), warnings
 
 
 def _inferred(
@@ -48,16 +48,16 @@ def _inferred(
     total = 0.0 if weights is None else float(weights.sum())
     if weights is None or total == 0:
         deform = deform_joints(mesh, skeleton).deform
-        return replace(skeleton, deform=deform), _told(skeleton, ~deform)
+        return replace(skeleton, deform=deform), _control_warnings(skeleton, ~deform)
     share = weights.sum(axis=0) / total
     carries = share > 0
     stray = carries & (share < STRAY)
     if stray.any():
         stray &= ~deform_joints(mesh, skeleton).deform
-    return replace(skeleton, deform=carries & ~stray), _told_stray(skeleton, stray)
+    return replace(skeleton, deform=carries & ~stray), _stray_warnings(skeleton, stray)
 
 
-def _told(skeleton: Skeleton, out: NDArray[np.bool_]) -> list[str]:
+def _control_warnings(skeleton: Skeleton, out: NDArray[np.bool_]) -> list[str]:
     if not out.any():
         return []
     return [
@@ -66,7 +66,7 @@ def _told(skeleton: Skeleton, out: NDArray[np.bool_]) -> list[str]:
     ]
 
 
-def _told_stray(skeleton: Skeleton, stray: NDArray[np.bool_]) -> list[str]:
+def _stray_warnings(skeleton: Skeleton, stray: NDArray[np.bool_]) -> list[str]:
     if not stray.any():
         return []
     return [
@@ -75,7 +75,7 @@ def _told_stray(skeleton: Skeleton, stray: NDArray[np.bool_]) -> list[str]:
     ]
 
 
-def _told_weighted(skeleton: Skeleton, weighted: NDArray[np.bool_]) -> list[str]:
+def _weighted_warnings(skeleton: Skeleton, weighted: NDArray[np.bool_]) -> list[str]:
     if not weighted.any():
         return []
     return [

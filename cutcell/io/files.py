@@ -20,7 +20,7 @@ LARGEST = 2**28
 def naming(path: Path) -> Iterator[None]:
     """Put the file's name in front of every cutcell error raised inside.
 
-    Where several of these stand inside each other, the innermost knows best.
+    Of several nested ones, the innermost names the file.
     """
     try:
         yield
@@ -65,8 +65,8 @@ def read_bytes(path: Path) -> bytes:
 
 def one_line(error: Exception) -> str:
     """Return what another library says of a file, as part of a sentence."""
-    said = " ".join(str(error).split()) or type(error).__name__
-    return said if len(said) <= LONGEST else f"{said[:LONGEST]}..."
+    message = " ".join(str(error).split()) or type(error).__name__
+    return message if len(message) <= LONGEST else f"{message[:LONGEST]}..."
 
 
 def read_text(path: Path) -> str:
@@ -87,15 +87,15 @@ def read_beside(path: Path, names: Iterable[str], label: str, largest: int = LAR
     folder = path.parent.resolve()
     for name in _tried(names):
         try:
-            found = folder.joinpath(name).resolve()
-            if not found.is_relative_to(folder) or not found.is_file():
+            file = folder.joinpath(name).resolve()
+            if not file.is_relative_to(folder) or not file.is_file():
                 continue
-            size = found.stat().st_size
+            size = file.stat().st_size
         except (OSError, ValueError, RuntimeError):  # too long a name; links in a circle
             continue
         if size > largest:
             raise FileError(f"{label} has {size / 2**20:,.0f} MB, more than is read")
-        return read_bytes(found)
+        return read_bytes(file)
     raise FileError(f"{label} is not in the folder of {path.name}")
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 
 def whole_characters(text: str) -> str:
-    """Return a text in which � stands for each half of a character.
+    """Return a text with � in place of each half of a character.
 
     Characters beyond the first 65,536 are pairs of surrogates in UTF-16 and in JSON's escapes. A
     surrogate alone is no character: UTF-8 cannot hold it, and many readers refuse JSON with it.
@@ -13,9 +13,9 @@ def whole_characters(text: str) -> str:
 
 
 def has_halves(text: str) -> bool:
-    """Tell whether a text holds surrogates that stand alone."""
+    """Return whether a text has surrogates without their pair."""
     return not text.isascii() and whole_characters(text) != text
 
 
 HALVES = "a name in it holds half of a character (a lone surrogate), for which � stands"
-"""What is told of a file with such names."""
+"""The warning of a file with such names."""

@@ -28,7 +28,7 @@ MAX_DIGITS = 20
 
 @dataclass
 class _Text:
-    """What the lines of a rig file say."""
+    """The lines of a rig file."""
 
     positions: dict[str, list[float]] = field(default_factory=dict)
     parents: dict[str, str] = field(default_factory=dict)
@@ -37,13 +37,13 @@ class _Text:
 
 
 def rig_file(path: Path) -> Path | None:
-    """Return the rig file that stands beside an OBJ, if there is one."""
+    """Return the rig file next to an OBJ, if there is one."""
     choices = (path.with_suffix(".txt"), path.with_name(f"{path.stem}_rig.txt"))
     return next((c for c in choices if c.is_file()), None)
 
 
 def mesh_file(path: Path) -> Path:
-    """Return the OBJ that stands beside a rig file."""
+    """Return the OBJ next to a rig file."""
     choices = [path.with_suffix(".obj")]
     if path.stem.endswith("_rig"):
         choices.insert(0, path.with_name(path.stem.removesuffix("_rig") + ".obj"))
@@ -62,85 +62,85 @@ def read_rignet(path: Path) -> Rig:
         lines = read_text(obj)
         mesh = parse_obj(lines)
     with naming(path):
-        said = _parse(text)
-        skeleton_names = tuple(said.positions)
-        read = _weights(said, len(mesh.vertices), skeleton_names, f'mesh "{obj.stem}"')
-        skeleton, told = with_deform(mesh, _skeleton(said), read.weights)
+        contents = _parse(text)
+        skeleton_names = tuple(contents.positions)
+        read = _weights(contents, len(mesh.vertices), skeleton_names, f'mesh "{obj.stem}"')
+        skeleton, warnings = with_deform(mesh, _skeleton(contents), read.weights)
         return Rig(
             mesh,
             skeleton,
             read.weights,
             name=obj.stem,
-            warnings=(*read.warnings, *told),
+            warnings=(*read.warnings, *warnings),
             weight_sums=read.sums,
             source=ColouredObj.of(obj, lines, mesh),
         )
 
 
 def _parse(text: str) -> _Text:
-    said = _Text()
-    for number, words in numbered_words(text):
-        kind, rest = words[0], words[1:]
+    contents = _Text()
+    for number, tokens in numbered_words(text):
+        kind, rest = tokens[0], tokens[1:]
         if kind == "joints":
             if not rest:
                 raise FileError(f"line {number}: a joint needs a name")
-            if rest[0] in said.positions:
+            if rest[0] in contents.positions:
                 raise SkeletonError(f'line {number}: the joint "{rest[0][:40]}" is there twice')
-            said.positions[rest[0]] = numbers(rest[1:], 3, number)
+            contents.positions[rest[0]] = numbers(rest[1:], 3, number)
         elif kind == "root":
-            said.roots += [_joint(rest, 0, number)]
+            contents.roots += [_joint(rest, 0, number)]
         elif kind == "hier":
             parent, child = _joint(rest, 0, number), _joint(rest, 1, number)
-            if said.parents.get(child, parent) != parent:
+            if contents.parents.get(child, parent) != parent:
                 raise SkeletonError(f'line {number}: the joint "{child[:40]}" has two parents')
-            said.parents[child] = parent
+            contents.parents[child] = parent
         elif kind == "skin":
-            said.skin.append((number, rest))
+            contents.skin.append((number, rest))
         else:
             raise FileError(
                 f'line {number}: starts with "{kind[:40]}", expected joints, root, hier or skin'
             )
-    if not said.positions:
+    if not contents.positions:
         raise SkeletonError("has no joints (no lines that start with the word joints)")
-    for name in [*said.parents, *said.parents.values(), *said.roots]:
-        if name not in said.positions:
+    for name in [*contents.parents, *contents.parents.values(), *contents.roots]:
+        if name not in contents.positions:
             raise SkeletonError(f'the joint "{name[:40]}" has no line that gives its position')
-    for name in said.roots:
-        if name in said.parents:
+    for name in contents.roots:
+        if name in contents.parents:
             raise SkeletonError(
-                f'the joint "{name[:40]}" is a root but hangs on "{said.parents[name][:40]}"'
+                f'the joint "{name[:40]}" is a root but hangs on "{contents.parents[name][:40]}"'
             )
-    return said
+    return contents
 
 
-def _joint(words: list[str], at: int, line: int) -> str:
-    if len(words) <= at:
+def _joint(tokens: list[str], at: int, line: int) -> str:
+    if len(tokens) <= at:
         raise FileError(f"line {line}: the name of a joint is missing")
-    return words[at]
+    return tokens[at]
 
 
-def _skeleton(said: _Text) -> Skeleton:
-    place = {name: j for j, name in enumerate(said.positions)}
-    parents = [place[said.parents[n]] if n in said.parents else -1 for n in place]
-    return Skeleton(np.array(list(said.positions.values())), np.array(parents), tuple(place))
+def _skeleton(contents: _Text) -> Skeleton:
+    place = {name: j for j, name in enumerate(contents.positions)}
+    parents = [place[contents.parents[n]] if n in contents.parents else -1 for n in place]
+    return Skeleton(np.array(list(contents.positions.values())), np.array(parents), tuple(place))
 
 
-def _weights(said: _Text, vertices: int, names: tuple[str, ...], owner: str) -> ReadWeights:
-    if not said.skin:
+def _weights(contents: _Text, vertices: int, names: tuple[str, ...], owner: str) -> ReadWeights:
+    if not contents.skin:
         return NO_WEIGHTS
     place = {name: j for j, name in enumerate(names)}
     rows, columns, values = [], [], []
-    for line, words in said.skin:
-        known = words and words[0].isdecimal() and len(words[0]) <= MAX_DIGITS
-        vertex = int(words[0]) if known else -1
+    for line, tokens in contents.skin:
+        is_index = tokens and tokens[0].isdecimal() and len(tokens[0]) <= MAX_DIGITS
+        vertex = int(tokens[0]) if is_index else -1
         if not 0 <= vertex < vertices:
             raise WeightsError(
-                f"line {line}: there is no vertex {words[0][:40] if words else '(missing)'}; the "
+                f"line {line}: there is no vertex {tokens[0][:40] if tokens else '(missing)'}; the "
                 f"mesh has {vertices} (numbered from 0)"
             )
-        if len(words) % 2 == 0:
+        if len(tokens) % 2 == 0:
             raise WeightsError(f"line {line}: joints and weights must come in pairs")
-        for name, word in zip(words[1::2], words[2::2], strict=True):
+        for name, word in zip(tokens[1::2], tokens[2::2], strict=True):
             if name not in place:
                 raise WeightsError(f'line {line}: there is no joint "{name[:40]}"')
             rows.append(vertex)
@@ -174,7 +174,7 @@ def rignet_files(path: Path, rig: Rig) -> dict[Path, bytes]:
 
 
 def check_mesh_file(path: Path, mesh: TriangleMesh) -> bool:
-    """Tell whether the mesh stands beside a rig file already; it then stays as it is.
+    """Return whether the mesh exists next to a rig file; it is then not written.
 
     Its texture coordinates, normals and materials are not the rig's to write again.
     """
@@ -200,14 +200,14 @@ def _mesh_goal(path: Path) -> Path:
 
 def word_names(names: tuple[str, ...]) -> list[str]:
     """Return names without spaces, still unique: words are what these lines are made of."""
-    words: list[str] = []
-    taken: set[str] = set()
+    tokens: list[str] = []
+    used: set[str] = set()
     numbers: dict[str, int] = {}
     for name in names:
         word = base = "_".join(whole_characters(name).split()) or "joint"
-        while word in taken:
+        while word in used:
             numbers[base] = numbers.get(base, 1) + 1
             word = f"{base}_{numbers[base]}"
-        taken.add(word)
-        words.append(word)
-    return words
+        used.add(word)
+        tokens.append(word)
+    return tokens

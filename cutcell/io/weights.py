@@ -1,4 +1,4 @@
-"""What all formats do with the weights they read."""
+"""Normalisation of the weights that a file contains."""
 
 from __future__ import annotations
 

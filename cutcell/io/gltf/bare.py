@@ -1,4 +1,4 @@
-"""The meshes of a glTF document that has no skin: one mesh, where they stand in the scene."""
+"""The meshes of a glTF document that has no skin: one mesh, in the space of the scene."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class StoredMesh:
 
 @dataclass(frozen=True, eq=False)
 class BareSource:
-    """What a rig remembers of its glTF file without a skin, for saving.
+    """The glTF file without a skin that a rig came from, for saving.
 
     Parameters
     ----------
@@ -59,14 +59,14 @@ class BareSource:
 
 def read_bare(document: Document, nodes: Nodes, name: str) -> Rig:
     """Return the scene's meshes as a rig without joints, in the scene's space and units."""
-    here = set(nodes.in_scene())
-    shown = [i for i, node in enumerate(nodes.raw) if "mesh" in node and i in here]
-    shown = shown or [i for i, node in enumerate(nodes.raw) if "mesh" in node]
+    in_scene = set(nodes.in_scene())
+    mesh_nodes = [i for i, node in enumerate(nodes.raw) if "mesh" in node and i in in_scene]
+    mesh_nodes = mesh_nodes or [i for i, node in enumerate(nodes.raw) if "mesh" in node]
     hidden = hidden_nodes(nodes)
     vertices, faces, parts, stored, total = [], [], [], [], 0
     stored_faces: list[StoredFaces] = []
     triangles = 0
-    for i in shown:
+    for i in mesh_nodes:
         mesh = nodes.raw[i]["mesh"]
         points, corners, drawn = read_triangles(document, mesh, document.label("nodes", i))
         if not len(corners):
@@ -103,5 +103,5 @@ def read_bare(document: Document, nodes: Nodes, name: str) -> Rig:
 
 def _drawing(document: Document, mesh: int, user: str) -> list[int]:
     """Return the numbers of a mesh's primitives that draw triangles."""
-    found = enumerate(primitives(document, mesh, user))
-    return [k for k, primitive in found if draws_triangles(primitive)]
+    numbered = enumerate(primitives(document, mesh, user))
+    return [k for k, primitive in numbered if draws_triangles(primitive)]

@@ -69,7 +69,7 @@ class BufferWriter:
         live += [view for i, view in enumerate(self.views) if i not in self._dead]
         self._ranges = list(ranges_in([rest, live]))
         self._arrays: dict[Any, tuple[int, bytearray]] = {}
-        self._added: list[tuple[int, bytes]] = []
+        self._added: list[tuple[int, bytearray]] = []
 
     def stored_type(self, accessor: int | None) -> Any:
         """Return the component type of an accessor, if there is one."""
@@ -138,12 +138,12 @@ class BufferWriter:
 
     def add_view(self, content: bytes) -> int:
         """Store bytes and return their buffer view."""
-        self._added.append((_new(self.views), content))
+        self._added.append((_new(self.views), bytearray(content)))
         return self._added[-1][0]
 
     def fill_view(self, view: int, content: bytes) -> None:
         """Store bytes as the content of a buffer view that names no buffer yet."""
-        self._added.append((view, content))
+        self._added.append((view, bytearray(content)))
 
     def finish(self) -> bytes:
         """Return the one buffer; the document then refers to it, and to no other.
@@ -253,7 +253,7 @@ def ranges_in(value: Any) -> Iterator[dict[str, Any]]:
 
 
 def _objects_in(value: Any, but: str | None = None) -> Iterator[dict[str, Any]]:
-    """Yield every object inside a JSON value, except what stands under one key."""
+    """Yield every object inside a JSON value, except below one key."""
     stack = [value]
     while stack:
         value = stack.pop()

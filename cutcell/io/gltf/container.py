@@ -56,7 +56,7 @@ class Document:
     allowance: Allowance = field(init=False)
     """Memory that may be taken to read it."""
     warnings: list[str] = field(default_factory=list)
-    """What a person should know of how it was read, in sentences."""
+    """Warnings of reading it, in sentences."""
     surfaces: Any = None
     """Of a document that was made of another format: the `Surfaces` that colour its meshes."""
 
@@ -69,30 +69,30 @@ class Document:
 
     def forget(self) -> None:
         """Let go of what was only needed to read it."""
-        for found in (self.accessors, self.decoded, self.finite, self.triangles):
-            found.clear()
+        for cache in (self.accessors, self.decoded, self.finite, self.triangles):
+            cache.clear()
 
     def items(self, kind: str) -> list[dict[str, Any]]:
         """Return a top-level list of objects such as "nodes"; empty when absent."""
-        found = self.json.get(kind, [])
-        if found is not self._checked.get(kind):  # long lists are asked for again and again
-            if not isinstance(found, list) or not all(isinstance(x, dict) for x in found):
+        objects = self.json.get(kind, [])
+        if objects is not self._checked.get(kind):  # long lists are asked for again and again
+            if not isinstance(objects, list) or not all(isinstance(x, dict) for x in objects):
                 raise FileError(f'"{kind}" of the glTF document must be a list of objects')
-            self._checked[kind] = found
-        return found
+            self._checked[kind] = objects
+        return objects
 
     def item(self, kind: str, index: Any, user: str) -> dict[str, Any]:
         """Return one object of a top-level list; `user` is who refers to it."""
-        found = self.json.get(kind, [])
-        if not isinstance(found, list):
+        objects = self.json.get(kind, [])
+        if not isinstance(objects, list):
             raise FileError(f'"{kind}" of the glTF document must be a list of objects')
-        if type(index) is not int or not 0 <= index < len(found):
+        if type(index) is not int or not 0 <= index < len(objects):
             raise FileError(
-                f"{user} refers to {kind}[{index}], but the file has {len(found)} {kind}"
+                f"{user} refers to {kind}[{index}], but the file has {len(objects)} {kind}"
             )
-        if not isinstance(found[index], dict):
+        if not isinstance(objects[index], dict):
             raise FileError(f"{kind}[{index}] of the glTF document is not an object")
-        return found[index]
+        return objects[index]
 
     def label(self, kind: str, index: int) -> str:
         """Return how to name an object to people: by its name, else by its number."""
@@ -118,7 +118,7 @@ def indices(owner: dict[str, Any], key: str, user: str) -> list[int]:
 
 
 def is_gltf(data: bytes) -> bool:
-    """Tell whether bytes look like a GLB container or like JSON text."""
+    """Return whether bytes look like a GLB container or like JSON text."""
     return data[:4] == MAGIC or data.lstrip(b"\xef\xbb\xbf \t\r\n")[:1] == b"{"
 
 
@@ -204,7 +204,7 @@ def _buffer_bytes(
     user = f"buffers[{i}]"
     length = whole(buffer, "byteLength", user)
     if _is_placeholder(buffer):
-        return b""  # nothing lies here: its buffer views are compressed, and lie elsewhere
+        return b""  # it is empty: its buffer views are compressed, in another buffer
     uri = buffer.get("uri")
     if uri is None:
         if i != 0 or binary is None:
@@ -223,8 +223,8 @@ def _buffer_bytes(
 
 def _is_placeholder(buffer: dict[str, Any]) -> bool:
     extensions = buffer.get("extensions")
-    said = extensions.values() if isinstance(extensions, dict) else ()
-    return any(isinstance(value, dict) and value.get("fallback") is True for value in said)
+    values = extensions.values() if isinstance(extensions, dict) else ()
+    return any(isinstance(value, dict) and value.get("fallback") is True for value in values)
 
 
 def read_uri(path: Path, uri: Any, user: str) -> bytes:

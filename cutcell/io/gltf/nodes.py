@@ -1,4 +1,4 @@
-"""The node tree of a glTF document: who hangs on whom, and where everything is."""
+"""The node tree of a glTF document: parents and matrices."""
 
 from __future__ import annotations
 
@@ -89,30 +89,30 @@ class Nodes:
             world[:, level] = world[:, parents[level]] @ local[:, level]
         return world
 
-    def with_ancestors(self, some: list[int]) -> list[int]:
+    def with_ancestors(self, nodes: list[int]) -> list[int]:
         """Return some nodes and all that are above any of them, each once."""
-        found: set[int] = set()
-        for node in some:
-            while node >= 0 and node not in found:
-                found.add(node)
+        reached: set[int] = set()
+        for node in nodes:
+            while node >= 0 and node not in reached:
+                reached.add(node)
                 node = self.parents[node]
-        return sorted(found)
+        return sorted(reached)
 
-    def nearest(self, some: Collection[int]) -> list[int]:
+    def nearest(self, nodes: Collection[int]) -> list[int]:
         """Return for each node the nearest of some, itself or above it; -1 for none."""
-        found = [-1] * len(self.raw)
+        nearest = [-1] * len(self.raw)
         for level in self.levels:
             for i in level.tolist():
                 parent = self.parents[i]
-                found[i] = i if i in some else found[parent] if parent >= 0 else -1
-        return found
+                nearest[i] = i if i in nodes else nearest[parent] if parent >= 0 else -1
+        return nearest
 
-    def relative_to(self, some: list[int]) -> NDArray[np.float64]:
+    def relative_to(self, nodes: list[int]) -> NDArray[np.float64]:
         """Return matrices, shape (k, 4, 4), from each node to the nearest of some above it."""
         relative = self.local.copy()
         parents = np.array(self.parents, int)
         chosen = np.zeros(len(self.raw), bool)
-        chosen[some] = True
+        chosen[nodes] = True
         relative[chosen] = np.eye(4)
         for level in self.levels[1:]:
             other = level[~chosen[level]]
@@ -157,8 +157,8 @@ def _levels(document: Document, parents: list[int]) -> list[NDArray]:
         levels.append([c for i in levels[-1] for c in children.get(i, ())])
     reached = sum(len(level) for level in levels)
     if reached < len(parents):
-        seen = {i for level in levels for i in level}
-        stuck = next(i for i in range(len(parents)) if i not in seen)
+        reached_nodes = {i for level in levels for i in level}
+        stuck = next(i for i in range(len(parents)) if i not in reached_nodes)
         raise SkeletonError(
             f"the node tree has a cycle at {document.label('nodes', stuck)}: a node hangs on itself"
         )

@@ -1,4 +1,4 @@
-"""What colours the faces of a rig, whatever its file's format.
+"""Colours of the faces of a rig, of any file format.
 
 Images are handed over as they are stored; nothing is decoded here.
 """
@@ -57,12 +57,12 @@ class Layer:
 
 @dataclass(frozen=True, eq=False)
 class FaceColors:
-    """What colours the corners of some faces.
+    """Colours of the corners of faces.
 
     Parameters
     ----------
     corners : array, shape (m, 3, 4), float32
-        Of each corner: where it lies in the image, from the upper left corner of it; the
+        Of each corner: its position in the image, from the upper left corner; the
         number of the layer, -1 for none; and how the image goes on, 3 across + down (see `REPEAT`),
         `BLENDED` added where alpha counts for what is behind.
     tints : array, shape (m, 3, 3), uint8

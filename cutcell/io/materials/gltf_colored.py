@@ -23,11 +23,13 @@ from .transfer import has_materials, read_materials
 
 def with_rig_colors(document: dict[str, Any], data: bytes, rig: Rig) -> BufferWriter | None:
     """Give a new document the base colours of a rig's file."""
-    found = read_materials(rig) if has_materials(rig) else None
-    if found is None:
+    materials = read_materials(rig) if has_materials(rig) else None
+    if materials is None:
         return None
-    meshes = dict(enumerate([found.body, *found.attachments]))
-    return _colored(document, data, meshes, Uses(found.layers, found.images, found.names))
+    meshes = dict(enumerate([materials.body, *materials.attachments]))
+    return _colored(
+        document, data, meshes, Uses(materials.layers, materials.images, materials.names)
+    )
 
 
 def with_surface_colors(buffer: BufferWriter, surfaces: Surfaces | None) -> BufferWriter:
@@ -35,8 +37,8 @@ def with_surface_colors(buffer: BufferWriter, surfaces: Surfaces | None) -> Buff
     if surfaces is None or not surfaces.coloured:
         return buffer
     document, data = buffer.document, buffer.finish()
-    found = Collected(surfaces.notes)
-    paint = SurfacePaint(surfaces, found)
+    collected = Collected(surfaces.notes)
+    paint = SurfacePaint(surfaces, collected)
     view = Document(surfaces.path, document, [data])
     meshes = {}
     for number, surface in surfaces.meshes.items():
@@ -45,21 +47,23 @@ def with_surface_colors(buffer: BufferWriter, surfaces: Surfaces | None) -> Buff
         colors = face_colors(faces, [piece], paint)
         if colors is not None:
             meshes[number] = colors
-    return _colored(document, data, meshes, Uses(list(found.layers), found.images, found.names))
+    return _colored(
+        document, data, meshes, Uses(list(collected.layers), collected.images, collected.names)
+    )
 
 
 def color_notes(rig: Rig) -> tuple[str, ...]:
     """Say what a new document cannot hold of the base colours of a rig's file."""
     if not has_materials(rig):
         return ()
-    found = read_materials(rig)
-    if found is None:
+    materials = read_materials(rig)
+    if materials is None:
         return ("its materials are not saved: its faces are no longer those of its file",)
-    return (*found.notes, *image_notes(found.images))
+    return (*materials.notes, *image_notes(materials.images))
 
 
 class _Mesh(NamedTuple):
-    """What is to be stored of a mesh with one primitive.
+    """The new arrays of a mesh with one primitive.
 
     Parameters
     ----------
@@ -67,7 +71,7 @@ class _Mesh(NamedTuple):
         The accessors that are given up: "indices", the weights', other attributes' if vertices
         were split.
     arrays : dict of str to array
-        By attribute, of all vertices; weights stand last.
+        By attribute, of all vertices; weights are last.
     faces : array, shape (m, 3)
     groups : list of Group
         Empty where the mesh keeps the plain material.
@@ -88,17 +92,17 @@ def _colored(
     """
     view, palette = Document(Path(), document, [data]), Palette(uses)
     count = len(document["meshes"])
-    taken = [_take(view, number, meshes.get(number), palette) for number in range(count)]
-    buffer = BufferWriter(document, [data], [i for mesh in taken for i in mesh.old.values()])
+    new_meshes = [_take(view, number, meshes.get(number), palette) for number in range(count)]
+    buffer = BufferWriter(document, [data], [i for mesh in new_meshes for i in mesh.old.values()])
     plain = palette.store(buffer)
-    for mesh, found in zip(document["meshes"], taken, strict=True):
-        _store(buffer, mesh["primitives"], found, plain)
-    for mesh, found in zip(document["meshes"], taken, strict=True):
-        weights = {name: values for name, values in found.arrays.items() if _is_weight(name)}
-        stored = {name: buffer.store(weights[name], found.old[name]) for name in weights}
+    for mesh, new in zip(document["meshes"], new_meshes, strict=True):
+        _store(buffer, mesh["primitives"], new, plain)
+    for mesh, new in zip(document["meshes"], new_meshes, strict=True):
+        weights = {name: values for name, values in new.arrays.items() if _is_weight(name)}
+        stored = {name: buffer.store(weights[name], new.old[name]) for name in weights}
         for primitive in mesh["primitives"]:
             primitive["attributes"].update(stored)
-    if all(mesh.groups for mesh in taken):
+    if all(mesh.groups for mesh in new_meshes):
         document["materials"].pop()
     return buffer
 

@@ -72,7 +72,7 @@ def image_notes(images: Sequence[StoredImage]) -> tuple[str, ...]:
 
 
 def carry_images(buffer: BufferWriter, document: Document, target: Path) -> dict[Path, bytes]:
-    """Keep images that lie in files of their own reachable from the new document.
+    """Keep images in separate files reachable from the new document.
 
     A ``.gltf`` that becomes a ``.glb``, or a ``.glb`` that moves, takes them in; a ``.gltf``
     that moves takes them along. A file that is not there is left as it is named.
@@ -87,12 +87,12 @@ def carry_images(buffer: BufferWriter, document: Document, target: Path) -> dict
         uri = image.get("uri")
         if not isinstance(uri, str) or uri.startswith("data:"):
             continue
-        found, goal = beside(source, uri), beside(target, uri)
-        content = None if found is None else _content(found)
-        if found is None or goal is None or content is None:
+        file, goal = beside(source, uri), beside(target, uri)
+        content = None if file is None else _content(file)
+        if file is None or goal is None or content is None:
             continue
         if not to_text:
-            _embed(buffer, image, found.name, content)
+            _embed(buffer, image, file.name, content)
         elif not os.path.lexists(goal):
             files[goal] = content
         elif _content(goal) != content:

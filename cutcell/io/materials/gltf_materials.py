@@ -1,4 +1,4 @@
-"""The base colours of a glTF document's materials: factors, vertex colours, where images lie."""
+"""The base colours of a glTF document's materials: factors, vertex colours, textures."""
 
 from __future__ import annotations
 
@@ -27,14 +27,14 @@ from .face_colors import (
 )
 
 MALFORMED = (TypeError, ValueError, KeyError, IndexError, AttributeError, OverflowError)
-"""What reading raises where a document is not what it says."""
+"""Errors of reading a malformed document."""
 WRAPS = {33071: CLAMP, 33648: MIRROR}
 """glTF's numbers for these; any other repeats."""
 NEAREST = 9728
 
 
 class _Base(NamedTuple):
-    """What a material says of its base colour."""
+    """The base colour of a material."""
 
     factor: tuple[float, ...] = (1.0, 1.0, 1.0, 1.0)
     texture: Any = None
@@ -51,33 +51,33 @@ def _base(document: Document, primitive: dict[str, Any]) -> _Base:
         return _Base()
     material = document.item("materials", primitive["material"], "a primitive")
     older = extension(material, "KHR_materials_pbrSpecularGlossiness")
-    said = older or material.get("pbrMetallicRoughness") or {}
+    parameters = older or material.get("pbrMetallicRoughness") or {}
     prefix = "diffuse" if older else "baseColor"
-    factor = np.clip(np.array(said.get(f"{prefix}Factor", (1, 1, 1, 1)), np.float64), 0, 1)
+    factor = np.clip(np.array(parameters.get(f"{prefix}Factor", (1, 1, 1, 1)), np.float64), 0, 1)
     if factor.shape != (4,):
         raise FileError(f'a material\'s "{prefix}Factor" must be four numbers')
-    return _Base(tuple(factor.tolist()), said.get(f"{prefix}Texture"), material)
+    return _Base(tuple(factor.tolist()), parameters.get(f"{prefix}Texture"), material)
 
 
 def is_coloured(document: Document, drawn: Iterable[dict[str, Any]]) -> bool:
-    """Tell whether primitives are coloured: by an image, by vertex, or not in one grey alone."""
+    """Return whether primitives are coloured: by an image, by vertex, or not in one grey alone."""
     factors = set()
     for primitive in drawn:
         try:
-            found = _base(document, primitive)
+            base = _base(document, primitive)
         except (CutcellError, *MALFORMED):
             continue
-        if found.texture or "COLOR_0" in attributes(primitive, "the document"):
+        if base.texture or "COLOR_0" in attributes(primitive, "the document"):
             return True
-        factors.add(found.factor[:3])
+        factors.add(base.factor[:3])
     return len(factors) > 1 or any(len(set(factor)) > 1 for factor in factors)
 
 
 class PrimitivePaint:
     """Colours primitives, one after the other; see `face_colors.Paint`."""
 
-    def __init__(self, document: Document, found: Collected) -> None:
-        self.document, self.found = document, found
+    def __init__(self, document: Document, collected: Collected) -> None:
+        self.document, self.collected = document, collected
 
     def __call__(self, primitive: dict[str, Any], at: NDArray, colors: FaceColors) -> None:
         """Fill the rows of one primitive; `at` are its vertices by its own numbers."""
@@ -91,7 +91,7 @@ class PrimitivePaint:
         if base.material is not None:
             name = base.material.get("name")
             named = name if isinstance(name, str) else ""
-            colors.materials[:] = self.found.material(primitive["material"], named)
+            colors.materials[:] = self.collected.material(primitive["material"], named)
         self._fill(colors, base, factor)
         try:
             if "COLOR_0" in attributes(primitive, "a primitive"):
@@ -121,30 +121,30 @@ class PrimitivePaint:
             label = self.document.label("materials", material)  # type: ignore[arg-type]
         except CutcellError:
             label = "a material"
-        self.found.note(label, error)
+        self.collected.note(label, error)
 
     def _vertex_colors(self, primitive: dict[str, Any]) -> NDArray:
         index = primitive["attributes"]["COLOR_0"]
         kind = self.document.item("accessors", index, "COLOR_0").get("type")
         kind = kind if kind in ("VEC3", "VEC4") else "VEC4"
-        found = read_accessor(self.document, index, kind, "COLOR_0")
-        return found if kind == "VEC4" else np.pad(found, ((0, 0), (0, 1)), constant_values=1)
+        values = read_accessor(self.document, index, kind, "COLOR_0")
+        return values if kind == "VEC4" else np.pad(values, ((0, 0), (0, 1)), constant_values=1)
 
     def _layer(self, texture: dict[str, Any], base: _Base) -> int:
         """Return the number of the use of a texture's image by a material."""
         use = layer(self.document, texture, base.material, base.factor[3])
-        return self.found.layer(use, lambda: stored_image(self.document, use.image))
+        return self.collected.layer(use, lambda: stored_image(self.document, use.image))
 
 
 def extension(owner: dict[str, Any], name: str) -> dict[str, Any]:
     """Return what an object says by an extension; empty if nothing."""
     extensions = owner.get("extensions")
-    found = extensions.get(name) if isinstance(extensions, dict) else None
-    return found if isinstance(found, dict) else {}
+    value = extensions.get(name) if isinstance(extensions, dict) else None
+    return value if isinstance(value, dict) else {}
 
 
 def places(document: Document, primitive: dict[str, Any], info: dict[str, Any]) -> NDArray:
-    """Return where each vertex of a primitive lies in a material's image, shape (n, 2)."""
+    """Return the position of each vertex of a primitive in a material's image, shape (n, 2)."""
     moved = extension(info, "KHR_texture_transform")
     name = f"TEXCOORD_{moved.get('texCoord', info.get('texCoord', 0))}"
     named = attributes(primitive, "a primitive")

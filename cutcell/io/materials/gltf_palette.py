@@ -20,7 +20,7 @@ PLAIN = "plain"
 
 
 class Uses(NamedTuple):
-    """What the numbers in `FaceColors` mean; see `Materials`."""
+    """Layers, images and names by the numbers in `FaceColors`; see `Materials`."""
 
     layers: Sequence[Layer]
     images: Sequence[StoredImage]
@@ -47,7 +47,7 @@ class Group(NamedTuple):
 
 
 @dataclass(frozen=True)
-class _Look:
+class _MaterialKey:
     """A material: number of the name, layer, whether it is blended, and factor as bytes."""
 
     name: int
@@ -67,19 +67,19 @@ class Palette:
     def __init__(self, uses: Uses) -> None:
         self._uses = uses
         self._embedded = [embedded(image) for image in uses.images]
-        self._looks: dict[_Look, int] = {}
+        self._keys: dict[_MaterialKey, int] = {}
 
     def groups(self, colors: FaceColors) -> tuple[list[Group], NDArray[np.float32]]:
         """Part faces by material.
 
         Returns shapes values (m, 3, 6).
         """
-        layers, rgba = self._shown(colors)
+        layers, rgba = self._visible(colors)
         # Blending matters where there is an image, or a colour that is not opaque.
         counts = (layers >= 0) | (rgba[..., 3] < OPAQUE).any(axis=1)
         blended = (colors.corners[:, 0, 3] >= BLENDED) & counts
         kinds = np.column_stack([colors.materials, layers, blended])
-        found, first, of_face = np.unique(
+        unique, first, of_face = np.unique(
             kinds.astype(int), axis=0, return_index=True, return_inverse=True
         )
         of_face = of_face.reshape(-1)
@@ -89,7 +89,7 @@ class Palette:
         values[..., 2:] = FULL
         groups = []
         for k in np.argsort(first).tolist():
-            name, layer, is_blended = found[k].tolist()
+            name, layer, is_blended = unique[k].tolist()
             rows = faces[k]
             corners = rgba[rows]
             varied = bool((corners != corners[0, 0]).any())
@@ -99,12 +99,12 @@ class Palette:
                 values[rows, :, 5] = corners[..., 3] * (FULL / OPAQUE)
             if layer >= 0:
                 values[rows, :, :2] = colors.corners[rows, :, :2] + 0.0  # -0 is 0
-            look = _Look(name, layer, bool(is_blended), factor)
-            number = self._looks.setdefault(look, len(self._looks))
+            key = _MaterialKey(name, layer, bool(is_blended), factor)
+            number = self._keys.setdefault(key, len(self._keys))
             groups.append(Group(number, rows, layer >= 0, varied))
         return groups, values
 
-    def _shown(self, colors: FaceColors) -> tuple[NDArray[np.intp], NDArray[np.uint8]]:
+    def _visible(self, colors: FaceColors) -> tuple[NDArray[np.intp], NDArray[np.uint8]]:
         """Return the layer of each face, -1 where its image cannot be taken in, and its colours.
 
         These have the shape (m, 3, 4): red, green, blue and opacity, sRGB.
@@ -122,33 +122,33 @@ class Palette:
     def store(self, buffer: BufferWriter) -> int:
         """Put the materials before the one of a document, and return the number of that."""
         document = buffer.document
-        document["materials"] = [*map(self._material, self._looks), *document["materials"]]
-        if any(look.layer >= 0 for look in self._looks):
+        document["materials"] = [*map(self._material, self._keys), *document["materials"]]
+        if any(key.layer >= 0 for key in self._keys):
             self._store_images(buffer)
-        return len(self._looks)
+        return len(self._keys)
 
     def _store_images(self, buffer: BufferWriter) -> None:
         document = buffer.document
         images: dict[int, int] = {}
-        for look, material in zip(self._looks, document["materials"], strict=False):
-            if look.layer >= 0:
-                number = images.setdefault(self._uses.layers[look.layer].image, len(images))
+        for key, material in zip(self._keys, document["materials"], strict=False):
+            if key.layer >= 0:
+                number = images.setdefault(self._uses.layers[key.layer].image, len(images))
                 material["pbrMetallicRoughness"]["baseColorTexture"] = {"index": number}
         document["images"] = [
             _image(self._uses.images[k].name, self._embedded[k], buffer) for k in images
         ]
         document["textures"] = [{"source": number} for number in range(len(images))]
 
-    def _material(self, look: _Look) -> dict[str, Any]:
+    def _material(self, key: _MaterialKey) -> dict[str, Any]:
         base: dict[str, Any] = {"metallicFactor": 0.0, "roughnessFactor": 0.8}
-        if look.factor != (OPAQUE,) * 4:
-            *rgb, alpha = look.factor
+        if key.factor != (OPAQUE,) * 4:
+            *rgb, alpha = key.factor
             base["baseColorFactor"] = [*linear(rgb).tolist(), alpha / OPAQUE]
-        name = whole_characters(self._uses.names[look.name]) if look.name >= 0 else PLAIN
+        name = whole_characters(self._uses.names[key.name]) if key.name >= 0 else PLAIN
         made: dict[str, Any] = {"name": name} if name else {}
         made |= {"pbrMetallicRoughness": base, "doubleSided": True}
-        use = self._uses.layers[look.layer] if look.layer >= 0 else None
-        if look.blended or (use is not None and use.blended):
+        use = self._uses.layers[key.layer] if key.layer >= 0 else None
+        if key.blended or (use is not None and use.blended):
             made["alphaMode"] = "BLEND"
         elif use is not None and use.cutoff is not None:
             made |= {"alphaMode": "MASK", "alphaCutoff": use.cutoff}

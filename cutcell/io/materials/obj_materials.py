@@ -42,7 +42,7 @@ class ColouredObj:
     Parameters
     ----------
     path : Path
-        Its .mtl files and images lie beside it.
+        Its .mtl files and images are in its folder.
     mesh : TriangleMesh
         As `parse_obj` reads it.
     """
@@ -57,7 +57,7 @@ class ColouredObj:
 
     @cached_property
     def surfaces(self) -> Surfaces:
-        """What colours the mesh; nothing if the file has gone meanwhile."""
+        """The materials of the mesh; empty if the file was removed."""
         try:
             return _surfaces(self.path, read_text(self.path), self.mesh)
         except FileError:
@@ -65,29 +65,31 @@ class ColouredObj:
 
 
 def _surfaces(path: Path, text: str, mesh: TriangleMesh) -> Surfaces:
-    said = _read(text)
-    materials, images, notes = _materials(path, said)
+    contents = _read(text)
+    materials, images, notes = _materials(path, contents)
     count = len(mesh.faces)
-    uv = np.array(said.places, float).reshape(-1, 2)
-    at = np.array(said.corners, int).reshape(-1, 3)
+    uv = np.array(contents.places, float).reshape(-1, 2)
+    at = np.array(contents.corners, int).reshape(-1, 3)
     places = None
-    if len(at) == count and (known := (at >= 0) & (at < len(uv))).any():
-        found = np.where(known[..., None], uv[np.where(known, at, 0)], 0)
-        places = np.stack([found[..., 0], 1 - found[..., 1]], axis=2).astype(np.float32)
+    if len(at) == count and (is_valid := (at >= 0) & (at < len(uv))).any():
+        uv_of_corners = np.where(is_valid[..., None], uv[np.where(is_valid, at, 0)], 0)
+        places = np.stack([uv_of_corners[..., 0], 1 - uv_of_corners[..., 1]], axis=2).astype(
+            np.float32
+        )
     colors = None
-    if len(said.colors) == len(mesh.vertices):
-        values = np.clip(np.nan_to_num(np.array(said.colors)), 0, 1)
+    if len(contents.colors) == len(mesh.vertices):
+        values = np.clip(np.nan_to_num(np.array(contents.colors)), 0, 1)
         colors = np.round(255 * values).astype(np.uint8)[mesh.faces]
     material = np.full(count, -1, np.int32)
-    if len(said.materials) == count:
-        material[:] = said.materials
+    if len(contents.materials) == count:
+        material[:] = contents.materials
     surface = Surface(mesh.faces, material, places, colors)
     return Surfaces(path, {0: surface}, materials, images, notes)
 
 
 @dataclass
 class _Said:
-    """What the lines of an OBJ say; of each triangle, in the order of `parse_obj`."""
+    """The contents of an OBJ; of each triangle, in the order of `parse_obj`."""
 
     libraries: list[str] = field(default_factory=list)
     names: dict[str, int] = field(default_factory=dict)
@@ -98,24 +100,24 @@ class _Said:
 
 
 def _read(text: str) -> _Said:
-    said, material = _Said(), -1
-    for _, words in numbered_words(text):
-        kind = words[0]
+    contents, material = _Said(), -1
+    for _, tokens in numbered_words(text):
+        kind = tokens[0]
         if kind == "f":
-            at = [_place(word, len(said.places)) for word in words[1:]]
+            at = [_place(word, len(contents.places)) for word in tokens[1:]]
             fan = [(at[0], b, c) for b, c in pairwise(at[1:])]
-            said.corners += fan
-            said.materials += [material] * len(fan)
+            contents.corners += fan
+            contents.materials += [material] * len(fan)
         elif kind == "vt":
-            u, v, *_ = [*words[1:3], "0", "0"]  # the second may be missing
-            said.places.append((_number(u), _number(v)))
-        elif kind == "v" and len(words) in (7, 8):
-            said.colors.append([_number(word) for word in words[4:7]])
+            u, v, *_ = [*tokens[1:3], "0", "0"]  # the second may be missing
+            contents.places.append((_number(u), _number(v)))
+        elif kind == "v" and len(tokens) in (7, 8):
+            contents.colors.append([_number(word) for word in tokens[4:7]])
         elif kind == "usemtl":
-            material = said.names.setdefault(" ".join(words[1:]), len(said.names))
+            material = contents.names.setdefault(" ".join(tokens[1:]), len(contents.names))
         elif kind == "mtllib":
-            said.libraries.append(" ".join(words[1:]))
-    return said
+            contents.libraries.append(" ".join(tokens[1:]))
+    return contents
 
 
 def _place(word: str, count: int) -> int:
@@ -138,98 +140,98 @@ def _number(word: str) -> float:
 
 
 def _materials(
-    path: Path, said: _Said
+    path: Path, contents: _Said
 ) -> tuple[tuple[Material, ...], tuple[ImageFile, ...], tuple[str, ...]]:
     """Return the materials by the numbers that faces have, their images, and what is missing."""
-    known: dict[str, Material] = {}
+    by_name: dict[str, Material] = {}
     images: dict[tuple[str, ...], int] = {}
     notes: dict[str, None] = {}
-    for label, names in list(_libraries(said.libraries))[:MAX_LIBRARIES]:
+    for label, names in list(_libraries(contents.libraries))[:MAX_LIBRARIES]:
         try:
             text = read_beside(path, names, label, LARGEST).decode("utf-8", "replace")
         except FileError as error:
             notes[f"the materials of {path.name} are not used: {error}"] = None
             continue
-        known = {**parse_mtl(text, images), **known}
-    missing = [name for name in said.names if name not in known]
+        by_name = {**parse_mtl(text, images), **by_name}
+    missing = [name for name in contents.names if name not in by_name]
     if missing and not notes:
         named = ", ".join(f'"{name[:80]}"' for name in missing[:3])
         notes[f"no .mtl file tells of the materials that faces have ({named})"] = None
-    found = tuple(known.get(name, Material(name)) for name in said.names)
-    return found, tuple(map(ImageFile, images)), tuple(notes)
+    used = tuple(by_name.get(name, Material(name)) for name in contents.names)
+    return used, tuple(map(ImageFile, images)), tuple(notes)
 
 
 def _libraries(lines: list[str]) -> Iterator[tuple[str, tuple[str, ...]]]:
     """Return what to call each .mtl file, and its names: a line is one name, or some."""
     for line in dict.fromkeys(lines):
-        words = line.split()
-        several = len(words) > 1 and all(word.lower().endswith(".mtl") for word in words)
-        for name in words if several else [line]:
+        tokens = line.split()
+        several = len(tokens) > 1 and all(word.lower().endswith(".mtl") for word in tokens)
+        for name in tokens if several else [line]:
             yield f"{name[:80]}", (name,)
 
 
 def parse_mtl(text: str, images: dict[tuple[str, ...], int]) -> dict[str, Material]:
     """Return the materials of a file by name."""
-    found: dict[str, Material] = {}
-    said: dict[str, list[str]] = {}
+    materials: dict[str, Material] = {}
+    fields: dict[str, list[str]] = {}
     name = None
-    for _, words in numbered_words(text):
-        if words[0] == "newmtl":
+    for _, tokens in numbered_words(text):
+        if tokens[0] == "newmtl":
             if name is not None:
-                found.setdefault(name, _material(name, said, images))
-            name, said = " ".join(words[1:]), {}
+                materials.setdefault(name, _material(name, fields, images))
+            name, fields = " ".join(tokens[1:]), {}
         else:
-            said[words[0].lower()] = words[1:]
+            fields[tokens[0].lower()] = tokens[1:]
     if name is not None:
-        found.setdefault(name, _material(name, said, images))
-    return found
+        materials.setdefault(name, _material(name, fields, images))
+    return materials
 
 
 def _material(
-    name: str, said: dict[str, list[str]], images: dict[tuple[str, ...], int]
+    name: str, fields: dict[str, list[str]], images: dict[tuple[str, ...], int]
 ) -> Material:
-    color = _numbers(said.get("kd", []))
+    color = _numbers(fields.get("kd", []))
     if len(color) == 1:
         color *= 3
     color = color if len(color) == 3 else [1.0] * 3
-    opacity = _opacity(said)
-    file = _file(said.get("map_kd", []))
+    opacity = _opacity(fields)
+    file = _file(fields.get("map_kd", []))
     if not file:
         return Material(name, tuple(color), opacity=opacity)
     if not any(color):
         color = [1.0] * 3  # some programs write black where there is an image
     image = images.setdefault((file,), len(images))
-    return Material(name, tuple(color), image, opacity, blended="map_d" in said)
+    return Material(name, tuple(color), image, opacity, blended="map_d" in fields)
 
 
-def _opacity(said: dict[str, list[str]]) -> float:
+def _opacity(fields: dict[str, list[str]]) -> float:
     """Return how opaque a material is; one that is not there at all was meant the other way."""
-    dissolve, through = (_numbers(said.get(key, [])) for key in ("d", "tr"))
-    found = dissolve[0] if dissolve else 1 - through[0] if through else 1.0
-    return found if 0 < found < 1 else 1.0
+    dissolve, through = (_numbers(fields.get(key, [])) for key in ("d", "tr"))
+    opacity = dissolve[0] if dissolve else 1 - through[0] if through else 1.0
+    return opacity if 0 < opacity < 1 else 1.0
 
 
-def _file(words: list[str]) -> str:
+def _file(tokens: list[str]) -> str:
     """Return the file of an image, without the options before it."""
-    words = list(words)
-    while words and words[0].lower() in OPTIONS:
-        option = words.pop(0).lower()
+    tokens = list(tokens)
+    while tokens and tokens[0].lower() in OPTIONS:
+        option = tokens.pop(0).lower()
         for _ in range(OPTIONS[option]):
-            if not words or (option in NUMBERS and not _numbers(words[:1])):
+            if not tokens or (option in NUMBERS and not _numbers(tokens[:1])):
                 break
-            words.pop(0)
-    return " ".join(words)
+            tokens.pop(0)
+    return " ".join(tokens)
 
 
-def _numbers(words: list[str]) -> list[float]:
+def _numbers(tokens: list[str]) -> list[float]:
     """Return finite numbers as far as there are any."""
-    found = []
-    for word in words[:3]:
+    numbers = []
+    for word in tokens[:3]:
         try:
             value = float(word)
         except ValueError:
             break
         if not np.isfinite(value):
             break
-        found.append(value)
-    return found
+        numbers.append(value)
+    return numbers

@@ -19,7 +19,7 @@ WHITE = (1.0, 1.0, 1.0)
 
 @dataclass(frozen=True, eq=False)
 class Surface:
-    """What a file tells of a mesh's faces.
+    """The materials of a mesh's faces.
 
     Parameters
     ----------
@@ -28,7 +28,7 @@ class Surface:
     material : array, shape (m,), int32
         Of each face, -1 for none.
     places : array, shape (m, 3, 2), float32, optional
-        Where each corner lies in the image, from the upper left corner of it.
+        Position of each corner in the image, from its upper left corner.
     colors : array, shape (m, 3, 3), uint8, optional
         Of each corner, sRGB.
     """
@@ -80,7 +80,7 @@ class ImageFile:
     names : tuple of str
         Of a file beside, as far as the file tells; the first that is there is taken.
     content : bytes
-        Empty where it lies in a file beside.
+        Empty for a separate file.
     """
 
     names: tuple[str, ...]
@@ -94,7 +94,7 @@ class Surfaces:
     Parameters
     ----------
     path : Path
-        The file; images lie in its folder.
+        The file; images are in its folder.
     meshes : mapping of int to Surface
         By the numbers of the meshes in the document that was made of the file; else 0 alone.
     materials : tuple of Material
@@ -113,10 +113,10 @@ class Surfaces:
     def coloured(self) -> bool:
         """Whether there is more to see than one grey."""
         used = {int(k) for one in self.meshes.values() for k in np.unique(one.material)}
-        found = [self.materials[k] for k in used if k >= 0]
-        if any(one.image >= 0 for one in found):
+        materials = [self.materials[k] for k in used if k >= 0]
+        if any(one.image >= 0 for one in materials):
             return True
-        shades = {one.color for one in found} | ({WHITE} if -1 in used else set())
+        shades = {one.color for one in materials} | ({WHITE} if -1 in used else set())
         grey = len(shades) == 1 and all(len(set(shade)) == 1 for shade in shades)
         return (bool(shades) and not grey) or any(_varied(one) for one in self.meshes.values())
 
@@ -129,8 +129,8 @@ def _varied(surface: Surface) -> bool:
 class SurfacePaint:
     """Colours faces of surfaces, one mesh after the other; see `face_colors.Paint`."""
 
-    def __init__(self, surfaces: Surfaces, found: Collected) -> None:
-        self.surfaces, self.found = surfaces, found
+    def __init__(self, surfaces: Surfaces, collected: Collected) -> None:
+        self.surfaces, self.collected = surfaces, collected
 
     def __call__(self, surface: Surface | None, at: NDArray, colors: FaceColors) -> None:
         """Fill the rows of one mesh; `at` are its vertices by its own numbers."""
@@ -142,7 +142,7 @@ class SurfacePaint:
         for k in np.unique(material[material >= 0]).tolist():
             rows = np.flatnonzero(material == k)
             one = self.surfaces.materials[k]
-            colors.materials[rows] = self.found.material(k, one.name)
+            colors.materials[rows] = self.collected.material(k, one.name)
             colors.tints[rows] = one.tint
             through = one.blended or one.opacity < 1
             colors.opacity[rows] = round(OPAQUE * min(max(one.opacity, 0), 1))
@@ -150,7 +150,7 @@ class SurfacePaint:
             try:
                 layer = self._layer(one, places)
             except CutcellError as error:
-                self.found.note(f'material "{one.name}"' if one.name else "a material", error)
+                self.collected.note(f'material "{one.name}"' if one.name else "a material", error)
                 continue
             if layer >= 0 and places is not None:
                 if one.replaced:
@@ -168,7 +168,7 @@ class SurfacePaint:
             raise FileError("its mesh has no texture coordinates")
         instead = material.tint if material.replaced else None
         use = Layer(material.image, blended=material.blended, color=instead)
-        return self.found.layer(use, lambda: self._stored(material.image))
+        return self.collected.layer(use, lambda: self._stored(material.image))
 
     def _stored(self, number: int) -> StoredImage:
         image = self.surfaces.images[number]
@@ -238,13 +238,13 @@ def stored_corners(stored: NDArray, faces: NDArray) -> NDArray[np.intp] | None:
             return way
     both = np.sort(np.concatenate([stored, faces]), axis=1)
     which = np.unique(both, axis=0, return_inverse=True)[1].reshape(-1)
-    ours, theirs = which[: len(stored)], which[len(stored) :]
+    stored_groups, groups = which[: len(stored)], which[len(stored) :]
     # Of faces with the same corners the first is the first, and so on.
-    sorted_ours = np.argsort(ours, kind="stable")
-    at = np.searchsorted(ours[sorted_ours], theirs) + _repeats(theirs)
-    known = at < len(stored)
-    rows = sorted_ours[np.where(known, at, 0)]
-    if not known.all() or (ours[rows] != theirs).any():
+    sorted_rows = np.argsort(stored_groups, kind="stable")
+    at = np.searchsorted(stored_groups[sorted_rows], groups) + _repeats(groups)
+    is_stored = at < len(stored)
+    rows = sorted_rows[np.where(is_stored, at, 0)]
+    if not is_stored.all() or (stored_groups[rows] != groups).any():
         return None
     corner = (stored[rows][:, None, :] == faces[:, :, None]).argmax(axis=2)
     return 3 * rows[:, None] + corner
@@ -253,7 +253,7 @@ def stored_corners(stored: NDArray, faces: NDArray) -> NDArray[np.intp] | None:
 def _repeats(values: NDArray) -> NDArray[np.intp]:
     """Return how many equal values come before each."""
     order = np.argsort(values, kind="stable")
-    held = values[order]
+    ordered = values[order]
     before = np.empty(len(values), np.intp)
-    before[order] = np.arange(len(values)) - np.searchsorted(held, held)
+    before[order] = np.arange(len(values)) - np.searchsorted(ordered, ordered)
     return before

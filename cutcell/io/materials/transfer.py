@@ -19,7 +19,7 @@ BYTES_PER_FACE = 3 * (4 * 4 + 4)
 
 
 def has_materials(rig: Rig) -> bool:
-    """Tell whether a rig's file colours it: by an image, by vertex, or not in one grey alone."""
+    """Return whether a rig's file colours it: by an image, by vertex, or not in one grey alone."""
     source = _source(rig)
     if isinstance(source, Surfaces):
         return source.coloured
@@ -37,14 +37,14 @@ def has_materials(rig: Rig) -> bool:
 def read_materials(rig: Rig) -> Materials | None:
     """Return the base colours that a rig's file gives it.
 
-    What cannot be read is shown in the material's factor, or white, and told in `notes`.
+    Unreadable images are replaced by the material's factor, or white, with a note.
     """
     source = _source(rig)
     if isinstance(source, Surfaces):
-        found = Collected(source.notes)
+        collected = Collected(source.notes)
         pieces = [(surface, 0, slice(0, len(rig.mesh.faces))) for surface in source.meshes.values()]
-        body = face_colors(rig.mesh.faces, pieces, SurfacePaint(source, found))
-        return _complete(body, [], found)
+        body = face_colors(rig.mesh.faces, pieces, SurfacePaint(source, collected))
+        return _complete(body, [], collected)
     if not isinstance(source, GltfSource | BareSource):
         return None
     attached = _attached(source)
@@ -54,15 +54,15 @@ def read_materials(rig: Rig) -> Materials | None:
     stored = source.document
     document = Document(stored.path, stored.json, stored.buffers, stored.size)
     document.surfaces = stored.surfaces
-    found, paint = _paint(document)
-    taken = len(rig.mesh.faces) + sum(len(one.mesh.faces) for one in rig.attachments)
-    document.allowance.take(taken * BYTES_PER_FACE, "its materials")
+    collected, paint = _paint(document)
+    face_count = len(rig.mesh.faces) + sum(len(one.mesh.faces) for one in rig.attachments)
+    document.allowance.take(face_count * BYTES_PER_FACE, "its materials")
     body = face_colors(rig.mesh.faces, _of_body(document, source), paint)
     hung = [
         face_colors(one.mesh.faces, _of_node(document, node), paint)
         for one, node in zip(rig.attachments, attached, strict=True)
     ]
-    return _complete(body, hung, found)
+    return _complete(body, hung, collected)
 
 
 def _source(rig: Rig) -> Any:
@@ -70,22 +70,22 @@ def _source(rig: Rig) -> Any:
 
 
 def _complete(
-    body: FaceColors | None, hung: list[FaceColors | None], found: Collected
+    body: FaceColors | None, hung: list[FaceColors | None], collected: Collected
 ) -> Materials | None:
     whole = [colors for colors in hung if colors is not None]
     if body is None or len(whole) < len(hung):
         return None
-    layers = tuple(found.layers)
-    return Materials(body, tuple(whole), layers, found.images, found.notes, found.names)
+    layers = tuple(collected.layers)
+    return Materials(body, tuple(whole), layers, collected.images, collected.notes, collected.names)
 
 
 def _paint(document: Document) -> tuple[Collected, Any]:
     surfaces = document.surfaces
     if surfaces is None:
-        found = Collected()
-        return found, PrimitivePaint(document, found)
-    found = Collected(surfaces.notes)
-    return found, SurfacePaint(surfaces, found)
+        collected = Collected()
+        return collected, PrimitivePaint(document, collected)
+    collected = Collected(surfaces.notes)
+    return collected, SurfacePaint(surfaces, collected)
 
 
 def _attached(source: GltfSource | BareSource) -> tuple[int, ...]:

@@ -25,14 +25,14 @@ MESHES = (".obj", ".ply", ".stl", ".off")
 def read_soup(path: Path, skeleton: Path | None) -> Rig:
     """Load a mesh and its skeleton, if it has one; the mesh comes without weights."""
     mesh, surfaces = read_mesh(path)
-    found = skeleton or skeleton_file(path)
-    if found is None:
+    skeleton_path = skeleton or skeleton_file(path)
+    if skeleton_path is None:
         return Rig(mesh, Skeleton([], []), name=path.stem, source=surfaces)  # type: ignore[arg-type]
-    joints, says_deform = read_skeleton_json(found)
-    told: list[str] = []
+    joints, says_deform = read_skeleton_json(skeleton_path)
+    warnings: list[str] = []
     if not says_deform:
-        joints, told = with_deform(mesh, joints, None)
-    return Rig(mesh, joints, name=path.stem, warnings=tuple(told), source=surfaces)
+        joints, warnings = with_deform(mesh, joints, None)
+    return Rig(mesh, joints, name=path.stem, warnings=tuple(warnings), source=surfaces)
 
 
 def read_mesh(path: Path) -> tuple[TriangleMesh, Surfaces | ColouredObj | None]:
@@ -67,9 +67,9 @@ def _coloured(path: Path, mesh: TriangleMesh, visual: Any) -> Surfaces | None:
         kind = getattr(visual, "kind", None)
         if kind not in ("vertex", "face"):
             return None
-        found = np.asarray(visual.vertex_colors if kind == "vertex" else visual.face_colors)
+        values = np.asarray(visual.vertex_colors if kind == "vertex" else visual.face_colors)
         faces = mesh.faces if kind == "vertex" else np.arange(len(mesh.faces))[:, None].repeat(3, 1)
-        colors = np.ascontiguousarray(found[faces][..., :3], np.uint8)
+        colors = np.ascontiguousarray(values[faces][..., :3], np.uint8)
     except Exception:  # trimesh looks at them only now
         return None
     none = np.full(len(mesh.faces), -1, np.int32)

@@ -22,11 +22,11 @@ def parse_obj(text: str) -> TriangleMesh:
     """
     vertices: list[list[float]] = []
     faces: list[tuple[int, int, int]] = []
-    for number, words in numbered_words(text):
-        if words[0] == "v":
-            vertices.append(numbers(words[1:4], 3, number))
-        elif words[0] == "f":
-            corners = [_corner(word, len(vertices), number) for word in words[1:]]
+    for number, tokens in numbered_words(text):
+        if tokens[0] == "v":
+            vertices.append(numbers(tokens[1:4], 3, number))
+        elif tokens[0] == "f":
+            corners = [_corner(word, len(vertices), number) for word in tokens[1:]]
             if len(corners) < 3:
                 raise FileError(f"line {number}: a face needs at least 3 corners")
             faces += [(corners[0], b, c) for b, c in pairwise(corners[1:])]
@@ -45,18 +45,18 @@ def write_obj(mesh: TriangleMesh) -> str:
 def numbered_words(text: str) -> Iterator[tuple[int, list[str]]]:
     """Yield the number and the words of each line that is neither empty nor a comment."""
     for number, line in enumerate(text.splitlines(), start=1):
-        words = line.split()
-        if words and not words[0].startswith("#"):
-            yield number, words
+        tokens = line.split()
+        if tokens and not tokens[0].startswith("#"):
+            yield number, tokens
 
 
-def numbers(words: list[str], count: int, line: int) -> list[float]:
+def numbers(tokens: list[str], count: int, line: int) -> list[float]:
     """Return exactly `count` finite numbers."""
-    values = [one_number(word, line) for word in words]
+    values = [one_number(word, line) for word in tokens]
     if len(values) != count:
         raise FileError(f"line {line}: {len(values)} numbers, expected {count}")
     if not np.isfinite(values).all():
-        raise FileError(f"line {line}: {' '.join(words)[:80]} is not finite")
+        raise FileError(f"line {line}: {' '.join(tokens)[:80]} is not finite")
     return values
 
 

@@ -1,4 +1,4 @@
-"""A skeleton in a small JSON file, to stand beside a bare mesh."""
+"""A skeleton in a small JSON file next to a bare mesh."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ FIELDS = ("name", "position", "parent", "deform")
 
 
 def skeleton_file(path: Path) -> Path | None:
-    """Return the skeleton file that stands beside a mesh, if there is one."""
+    """Return the skeleton file next to a mesh, if there is one."""
     choices = (path.with_name(f"{path.stem}.skeleton.json"), path.with_suffix(".json"))
     return next((c for c in choices if c.is_file()), None)
 

@@ -1,4 +1,4 @@
-"""FBX files: read in a process of their own, then as the glTF document that they amount to."""
+"""FBX files, read in a subprocess and converted to a glTF document."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from .joints import scene_world
 BINARY = b"Kaydara FBX Binary"
 SECONDS, SECONDS_A_MEGABYTE = 60.0, 5.0
 MIN_MEMORY, MEMORY_A_BYTE = 2**30, 100
-"""What reading may take. Text takes some 20 bytes for each of its own; arrays may be packed."""
+"""Memory limit of the reader. A byte of text takes some 20; arrays may be packed."""
 LOST = (
     "of an FBX, the meshes, skeleton, weights and clips are read, and of its materials the base "
     "colours with their images; it is saved as a GLB without what else its materials have, and "

@@ -23,9 +23,9 @@ def scene_skins(scene: Mapping[str, NDArray]) -> dict[int, SceneSkin]:
     """Return the skin of each mesh that has one.
 
     A skin names the joints that hold a vertex. The other bones of the same tree (fingertips,
-    roots, helpers) join the first mesh that is bound to it, where they stand at rest beside
-    the nearest bone above that it knows. In a scene without any weights each mesh that hangs
-    on no bone is bound to all bones as they stand.
+    roots, helpers) join the first mesh that is bound to it, where they are at rest relative to
+    the nearest bone above that it knows. In a scene without any weights each mesh that is
+    below no bone is bound to all bones in their current position.
     """
     parents = scene["node_parents"].tolist()
     world = _worlds(scene["node_transforms"], parents)
@@ -38,17 +38,17 @@ def scene_skins(scene: Mapping[str, NDArray]) -> dict[int, SceneSkin]:
     }
     if not skins:
         return _unbound(scene, parents, world, bones)
-    taken: set[int] = {joint for skin in skins.values() for joint in skin.joints}
+    assigned: set[int] = {joint for skin in skins.values() for joint in skin.joints}
     for k, skin in list(skins.items()):
         trees = {_above(joint, parents)[-1] for joint in skin.joints}
-        more = [b for b in bones if b not in taken and _above(b, parents)[-1] in trees]
+        more = [b for b in bones if b not in assigned and _above(b, parents)[-1] in trees]
         skins[k] = _with_more(skin, more, parents, world)
-        taken.update(more)
+        assigned.update(more)
     return skins
 
 
 def scene_world(scene: Mapping[str, NDArray]) -> NDArray | None:
-    """Return where the first skinned mesh stands, which its joints in a pose may not tell."""
+    """Return the matrix of the first skinned mesh, since its joints may be posed."""
     with np.errstate(over="ignore", invalid="ignore"):
         skinned = scene_skins(scene)
     if not skinned:
@@ -62,7 +62,7 @@ def scene_world(scene: Mapping[str, NDArray]) -> NDArray | None:
 
 def _worlds(transforms: NDArray, parents: list[int]) -> NDArray:
     world = compose(transforms[:, :3], transforms[:, 3:7], transforms[:, 7:])
-    for i, parent in enumerate(parents):  # a parent stands before its children
+    for i, parent in enumerate(parents):  # parents come before their children
         if parent >= 0:
             world[i] = world[parent] @ world[i]
     return world
@@ -80,10 +80,10 @@ def _with_more(skin: SceneSkin, more: list[int], parents: list[int], world: NDAr
     place = {joint: k for k, joint in enumerate(skin.joints)}
     added = []
     for bone in more:
-        known = next((a for a in _above(bone, parents) if a in place), skin.joints[0])
+        ancestor = next((a for a in _above(bone, parents) if a in place), skin.joints[0])
         inverse, solvable = _inverse(world[bone])
         if solvable:
-            added.append((bone, inverse @ world[known] @ skin.inverse[place[known]]))
+            added.append((bone, inverse @ world[ancestor] @ skin.inverse[place[ancestor]]))
     return SceneSkin(
         [*skin.joints, *(bone for bone, _ in added)],
         np.concatenate([skin.inverse, np.array([m for _, m in added]).reshape(-1, 4, 4)]),
@@ -93,13 +93,13 @@ def _with_more(skin: SceneSkin, more: list[int], parents: list[int], world: NDAr
 def _unbound(
     scene: Mapping[str, NDArray], parents: list[int], world: NDArray, bones: list[int]
 ) -> dict[int, SceneSkin]:
-    found = [(bone, *_inverse(world[bone])) for bone in bones]
-    able = [(bone, inverse) for bone, inverse, solvable in found if solvable]
+    inverses = [(bone, *_inverse(world[bone])) for bone in bones]
+    able = [(bone, inverse) for bone, inverse, solvable in inverses if solvable]
     skins = {}
     for k, node in enumerate(scene["mesh_nodes"].tolist()):
         if able and not set(_above(node, parents)) & set(bones):
-            here = world[node] @ scene[f"mesh_{k}_place"]
-            inverse = np.array([matrix @ here for _, matrix in able])
+            place = world[node] @ scene[f"mesh_{k}_place"]
+            inverse = np.array([matrix @ place for _, matrix in able])
             skins[k] = SceneSkin([bone for bone, _ in able], inverse)
     return skins
 

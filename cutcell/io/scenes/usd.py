@@ -1,4 +1,4 @@
-"""USD files with UsdSkel: read in a process of their own, where usd-core is installed."""
+"""USD files with UsdSkel, read in a subprocess where usd-core is installed."""
 
 from __future__ import annotations
 

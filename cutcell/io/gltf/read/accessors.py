@@ -84,9 +84,9 @@ def read_accessor(document: Document, index: Any, kind: str, user: str) -> NDArr
 
     Returns shapes (count, width).
     """
-    found = find_accessor(document, index, kind, user)
+    accessor = find_accessor(document, index, kind, user)
     if index not in document.decoded:
-        document.decoded[index] = found.decoded()
+        document.decoded[index] = accessor.decoded()
     return document.decoded[index]
 
 

@@ -88,8 +88,8 @@ class Track:
         if self.how != pygltflib.ANIM_CUBICSPLINE:
             return np.stack([one.decoded(at) for one in self.values.values()], axis=1)
         three = (3 * at[:, None] + np.arange(3)).ravel()
-        found = [one.decoded(three).reshape(len(at), 3, -1) for one in self.values.values()]
-        return np.stack(found, axis=1)
+        values = [one.decoded(three).reshape(len(at), 3, -1) for one in self.values.values()]
+        return np.stack(values, axis=1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,15 +122,15 @@ class Channels:
 
     def sample(self, seconds: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return skinning matrices at some times, shape (f, j, 4, 4)."""
-        found = np.empty((len(seconds), self.joints, 4, 4))
+        matrices = np.empty((len(seconds), self.joints, 4, 4))
         step = self._step
         for first in range(0, len(seconds), step):
             frames = slice(first, first + step)
             with np.errstate(over="ignore", invalid="ignore"):
-                found[frames] = self.tree.skinning(self.tracks, seconds[frames])
-        if not np.isfinite(found).all():
+                matrices[frames] = self.tree.skinning(self.tracks, seconds[frames])
+        if not np.isfinite(matrices).all():
             raise FileError(f"{self.label} leads to matrices that are not finite numbers")
-        return found
+        return matrices
 
     def moved(
         self, joints: NDArray[np.float64], parents: NDArray[np.int32], by: NDArray[np.float64]
@@ -206,10 +206,10 @@ class _Subtree:
     """The joints and all above them, numbered parents first."""
 
     def __init__(self, nodes: Nodes, joints: list[int], back: NDArray, inverse: NDArray) -> None:
-        wanted = nodes.with_ancestors(joints)
-        depth = nodes.depth[wanted]
+        subtree = nodes.with_ancestors(joints)
+        depth = nodes.depth[subtree]
         by_depth = np.argsort(depth, kind="stable")
-        order = np.array(wanted)[by_depth].tolist()
+        order = np.array(subtree)[by_depth].tolist()
         self.place = {node: k for k, node in enumerate(order)}
         self.parents = np.array([self.place.get(nodes.parents[i], -1) for i in order])
         self.rest = {
@@ -226,13 +226,13 @@ class _Subtree:
 
     def moved(self, by: NDArray[np.float64]) -> _Subtree:
         """Return it with joints moved at rest by `by`, shape (j, 3), in the rig's space."""
-        own = np.einsum("jab,jb->ja", self.inverse[:, :3, :3], by)
+        frame_shifts = np.einsum("jab,jb->ja", self.inverse[:, :3, :3], by)
         at = np.zeros_like(self.shift)
-        at[self.joints] = own
+        at[self.joints] = frame_shifts
         other = copy(self)
         other.shift = self.shift + node_shifts(self.local, self.parents, at)
         other.inverse = self.inverse.copy()
-        other.inverse[:, :3, 3] -= own
+        other.inverse[:, :3, 3] -= frame_shifts
         return other
 
     def skinning(self, tracks: list[Track], seconds: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -112,23 +112,27 @@ def _decoded(document: Document, compressed: dict[str, Any], user: str) -> NDArr
 
 def decompress_draco(document: Document) -> None:
     """Replace compressed primitives by plain ones; the numbers of accessors stay."""
-    found = _compressed(document)
-    packed = [(user, primitive, own) for user, primitive, own in found if not _plain(document, own)]
-    views = list(dict.fromkeys(own["bufferView"] for _, _, own in packed))
+    compressed = _compressed(document)
+    packed = [
+        (user, primitive, extension)
+        for user, primitive, extension in compressed
+        if not _plain(document, extension)
+    ]
+    views = list(dict.fromkeys(extension["bufferView"] for _, _, extension in packed))
     if packed:
         decoded = _decode(document, views)
         unpacking = _Unpacking(BufferWriter(document.json, document.buffers, (), views), decoded)
-        for user, primitive, own in packed:
-            mesh = views.index(own["bufferView"])
-            unpacking.fill_primitive(document, primitive, own, mesh, user)
+        for user, primitive, extension in packed:
+            mesh = views.index(extension["bufferView"])
+            unpacking.fill_primitive(document, primitive, extension, mesh, user)
         document.buffers = [unpacking.writer.finish()]
-    if found:
+    if compressed:
         _forget_extension(document, DRACO, "Draco")
 
 
 def _compressed(document: Document) -> list[tuple[str, dict[str, Any], dict[str, Any]]]:
     """Take the extension off all primitives; return their labels, themselves and what it said."""
-    found = []
+    compressed = []
     for m, mesh in enumerate(document.items("meshes")):
         if "primitives" not in mesh:
             continue
@@ -136,19 +140,19 @@ def _compressed(document: Document) -> list[tuple[str, dict[str, Any], dict[str,
             if not _has(primitive, DRACO):
                 continue
             user = f"{document.label('meshes', m)}, primitive {k}"
-            own = _take(primitive, DRACO, user)
-            if not isinstance(own.get("attributes"), dict):
+            extension = _take(primitive, DRACO, user)
+            if not isinstance(extension.get("attributes"), dict):
                 raise FileError(f"{user}: its {DRACO} must name attributes and a bufferView")
-            own["plain"] = [primitive.get("indices"), *attributes(primitive, user).values()]
-            found.append((user, primitive, own))
-    return found
+            extension["plain"] = [primitive.get("indices"), *attributes(primitive, user).values()]
+            compressed.append((user, primitive, extension))
+    return compressed
 
 
-def _plain(document: Document, own: dict[str, Any]) -> bool:
-    """Tell whether a primitive is also stored plainly, for readers without a decoder."""
+def _plain(document: Document, extension: dict[str, Any]) -> bool:
+    """Return whether a primitive is also stored plainly, for readers without a decoder."""
     accessors = document.items("accessors")
-    found = [accessors[i] for i in own["plain"] if type(i) is int and 0 <= i < len(accessors)]
-    return len(found) == len(own["plain"]) and all("bufferView" in a for a in found)
+    used = [accessors[i] for i in extension["plain"] if type(i) is int and 0 <= i < len(accessors)]
+    return len(used) == len(extension["plain"]) and all("bufferView" in a for a in used)
 
 
 def _decode(document: Document, views: list[int]) -> dict[str, NDArray]:
@@ -164,11 +168,14 @@ def _decode(document: Document, views: list[int]) -> dict[str, NDArray]:
 
 
 def _bytes(document: Document, view: Any) -> bytes:
-    found = document.item("bufferViews", view, DRACO)
+    view_object = document.item("bufferViews", view, DRACO)
     name = f"bufferViews[{view}]"
-    document.item("buffers", found.get("buffer"), name)
-    start, length = whole(found, "byteOffset", name, 0), whole(found, "byteLength", name)
-    data = document.buffers[found["buffer"]][start : start + length]
+    document.item("buffers", view_object.get("buffer"), name)
+    start, length = (
+        whole(view_object, "byteOffset", name, 0),
+        whole(view_object, "byteLength", name),
+    )
+    data = document.buffers[view_object["buffer"]][start : start + length]
     if len(data) < length or not length:
         raise FileError(f"{name} is cut short: {length} bytes announced, {len(data)} there")
     return data
@@ -183,7 +190,7 @@ class _Unpacking:
         """By accessor, its mesh and attribute."""
 
     def fill_primitive(
-        self, document: Document, primitive: dict[str, Any], own: dict[str, Any], mesh: int,
+        self, document: Document, primitive: dict[str, Any], extension: dict[str, Any], mesh: int,
         user: str,
     ) -> None:  # fmt: skip
         """Fill a primitive's accessors; it draws plain triangles afterwards."""
@@ -192,7 +199,7 @@ class _Unpacking:
         primitive["indices"] = self._fill(document, primitive.get("indices"), faces, key, user)
         primitive["mode"] = pygltflib.TRIANGLES
         count = None
-        for name, unique in own["attributes"].items():
+        for name, unique in extension["attributes"].items():
             values = self.decoded.get(f"values_{mesh}_{unique}")
             if values is None or name not in primitive["attributes"]:
                 raise FileError(f"{user}: {name} is not in its Draco data")

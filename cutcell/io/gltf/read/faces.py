@@ -43,19 +43,19 @@ def _edited(
     stored: StoredFaces, kept: NDArray[np.bool_], turned: NDArray[np.bool_], ends: NDArray[np.intp]
 ) -> StoredFaces:
     rows = stored.rows
-    here, mine = kept[rows], turned[rows]
-    before = stored.turned if stored.turned is not None else np.zeros(len(here), bool)
-    same = here.all() and not mine.any() and stored.turned is None
+    is_left, flips = kept[rows], turned[rows]
+    before = stored.turned if stored.turned is not None else np.zeros(len(is_left), bool)
+    same = is_left.all() and not flips.any() and stored.turned is None
     return replace(
         stored,
         rows=slice(int(ends[rows.start]), int(ends[rows.stop])),
-        turned=None if same else (before ^ mine)[here],
+        turned=None if same else (before ^ flips)[is_left],
     )
 
 
 @dataclass(frozen=True, eq=False)
 class NewFaces:
-    """What is to be stored of a primitive whose faces changed.
+    """The new arrays of a primitive whose faces changed.
 
     Parameters
     ----------
@@ -78,7 +78,7 @@ def take_faces(document: dict[str, Any], rig: Rig) -> list[NewFaces]:
     these.
     """
     source: GltfSource = rig.source
-    found = []
+    replaced = []
     for stored in source.faces:
         if stored.turned is None:
             continue
@@ -92,13 +92,13 @@ def take_faces(document: dict[str, Any], rig: Rig) -> list[NewFaces]:
         old = {name: primitive["attributes"].pop(name) for name in arrays if name != "indices"}
         if "indices" in primitive:
             old["indices"] = primitive.pop("indices")
-        found.append(NewFaces(primitive, arrays, old))
-    return found
+        replaced.append(NewFaces(primitive, arrays, old))
+    return replaced
 
 
-def store_faces(buffer: BufferWriter, found: list[NewFaces]) -> None:
+def store_faces(buffer: BufferWriter, replaced: list[NewFaces]) -> None:
     """Store what `take_faces` found."""
-    for new in found:
+    for new in replaced:
         for name, values in new.arrays.items():
             is_index = name == "indices"
             owner = new.primitive if is_index else new.primitive["attributes"]
@@ -133,9 +133,9 @@ def _normals(
     wrong = (agreement < 0) & ~others
     if not wrong.any():
         return {}
-    found = {"NORMAL": np.where(wrong[:, None], -normals, normals).astype("<f4")}
+    arrays = {"NORMAL": np.where(wrong[:, None], -normals, normals).astype("<f4")}
     if "TANGENT" in named:
         tangents = read_accessor(source.document, named["TANGENT"], "VEC4", "TANGENT").copy()
         tangents[wrong, 3] *= -1
-        found["TANGENT"] = tangents.astype("<f4")
-    return found
+        arrays["TANGENT"] = tangents.astype("<f4")
+    return arrays

@@ -26,15 +26,17 @@ def hidden_nodes(nodes: Nodes) -> set[int]:
     for level in nodes.levels:
         for i in level.tolist():
             extensions = nodes.raw[i].get("extensions")
-            said = extensions.get("KHR_node_visibility") if isinstance(extensions, dict) else None
-            off = isinstance(said, dict) and said.get("visible", True) is False
+            visibility = (
+                extensions.get("KHR_node_visibility") if isinstance(extensions, dict) else None
+            )
+            off = isinstance(visibility, dict) and visibility.get("visible", True) is False
             if off or nodes.parents[i] in hidden:
                 hidden.add(i)
     return hidden
 
 
 def vanishes(nodes: Nodes, node: int) -> bool:
-    """Tell whether a node is scaled to nothing, as game characters hide their weapons."""
+    """Return whether a node is scaled to nothing, as game characters hide their weapons."""
     return bool(np.linalg.matrix_rank(nodes.world[node][:3, :3]) < 2)
 
 
@@ -42,12 +44,12 @@ def left_out_meshes(
     document: Document, nodes: Nodes, bound: Iterable[int], attached: Iterable[int]
 ) -> tuple[LeftOut, ...]:
     """List the meshes that no part and no attachment shows, with the reason."""
-    here = set(nodes.in_scene())
-    kept = {*bound, *attached}
-    found = []
+    in_scene = set(nodes.in_scene())
+    used = {*bound, *attached}
+    left_out = []
     draws: dict[int, bool] = {}
     for i, node in enumerate(nodes.raw):
-        if "mesh" not in node or i in kept:
+        if "mesh" not in node or i in used:
             continue
         mesh = node["mesh"]
         if mesh not in draws:
@@ -55,11 +57,11 @@ def left_out_meshes(
             draws[mesh] = any(draws_triangles(p) for p in drawn)
         if not draws[mesh]:
             why = "is points or lines"
-        elif i not in here:
+        elif i not in in_scene:
             why = "is outside of the scene"
         elif vanishes(nodes, i):
             why = "is scaled to nothing"
         else:
             why = "has no skin and hangs on no joint"
-        found.append(LeftOut(mesh_name(document, nodes, i), why))
-    return tuple(found)
+        left_out.append(LeftOut(mesh_name(document, nodes, i), why))
+    return tuple(left_out)

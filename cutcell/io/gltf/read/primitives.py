@@ -57,31 +57,31 @@ class StoredFaces:
 
 def primitives(document: Document, mesh: Any, user: str) -> list[dict[str, Any]]:
     """Return a mesh's primitives."""
-    found = document.item("meshes", mesh, user).get("primitives")
-    if not isinstance(found, list) or not all(isinstance(p, dict) for p in found):
+    listed = document.item("meshes", mesh, user).get("primitives")
+    if not isinstance(listed, list) or not all(isinstance(p, dict) for p in listed):
         raise FileError(f'{document.label("meshes", mesh)}: "primitives" must be a list of objects')
-    return found
+    return listed
 
 
 def attributes(primitive: dict[str, Any], user: str) -> dict[str, Any]:
     """Return a primitive's attributes."""
-    found = primitive.get("attributes")
-    if not isinstance(found, dict):
+    named = primitive.get("attributes")
+    if not isinstance(named, dict):
         raise FileError(f'{user}: has no "attributes"')
-    return found
+    return named
 
 
 def draws_triangles(primitive: dict[str, Any]) -> bool:
-    """Tell whether a primitive is triangles, not points or lines."""
+    """Return whether a primitive is triangles, not points or lines."""
     return primitive.get("mode", pygltflib.TRIANGLES) in DRAWS_TRIANGLES
 
 
 def read_positions(document: Document, primitive: dict[str, Any], user: str) -> NDArray:
     """Return the vertices, shape (n, 3), float64."""
-    found = attributes(primitive, user)
-    if "POSITION" not in found:
+    named = attributes(primitive, user)
+    if "POSITION" not in named:
         raise MeshError(f"{user} has no POSITION")
-    index = found["POSITION"]
+    index = named["POSITION"]
     positions = np.asarray(read_accessor(document, index, "VEC3", user), np.float64)
     if index in document.finite:  # many primitives may share it
         return positions
@@ -143,8 +143,8 @@ def _triangles(document: Document, mesh: int, user: str) -> tuple[NDArray, NDArr
     drawn: list[Drawn] = []
     start: dict[Any, int] = {}
     total = triangles = 0
-    found = [p for p in primitives(document, mesh, user) if draws_triangles(p)]
-    for k, primitive in enumerate(found):
+    drawing = [p for p in primitives(document, mesh, user) if draws_triangles(p)]
+    for k, primitive in enumerate(drawing):
         name = f"{document.label('meshes', mesh)}, primitive {k}"
         positions = read_positions(document, primitive, name)
         key = primitive["attributes"]["POSITION"]
@@ -161,9 +161,9 @@ def _triangles(document: Document, mesh: int, user: str) -> tuple[NDArray, NDArr
     return np.concatenate(vertices), np.concatenate(faces), drawn
 
 
-def influence_sets(found: dict[str, Any]) -> list[int]:
+def influence_sets(named: dict[str, Any]) -> list[int]:
     """Return the n of all JOINTS_n, ascending."""
-    sets = [k.removeprefix("JOINTS_") for k in found if k.startswith("JOINTS_")]
+    sets = [k.removeprefix("JOINTS_") for k in named if k.startswith("JOINTS_")]
     return sorted(int(n) for n in sets if n.isdecimal())
 
 
@@ -175,13 +175,13 @@ def read_weights(
     Rows are scaled to sum to one; rows of zero stay zero. Weights that are negative or not a
     number count as none, of which the document warns.
     """
-    found = attributes(primitive, user)
-    sets = influence_sets(found)
+    named = attributes(primitive, user)
+    sets = influence_sets(named)
     if not sets:
         return NO_WEIGHTS
     joint_sets, share_sets = [], []
     for n in sets:
-        where, share = _influences(document, found, n, user)
+        where, share = _influences(document, named, n, user)
         document.allowance.take(len(where) * BYTES_PER_SET, user)
         if len(where) != count or len(share) != count:
             raise WeightsError(
@@ -192,22 +192,22 @@ def read_weights(
         share_sets.append(share)
     document.allowance.take_weights(count, joints)
     where, share = np.concatenate(joint_sets, axis=1), np.concatenate(share_sets, axis=1)
-    held = share != 0  # also true for what is not a number
-    rows = np.nonzero(held)[0]
-    read = summed(rows, where[held], share[held], (count, joints), user)
+    is_used = share != 0  # also true for what is not a number
+    rows = np.nonzero(is_used)[0]
+    read = summed(rows, where[is_used], share[is_used], (count, joints), user)
     document.warnings += read.warnings
     return read
 
 
 def _influences(
-    document: Document, found: dict[str, Any], n: int, user: str
+    document: Document, named: dict[str, Any], n: int, user: str
 ) -> tuple[NDArray, NDArray]:
-    if f"WEIGHTS_{n}" not in found:
+    if f"WEIGHTS_{n}" not in named:
         raise WeightsError(f"{user} has JOINTS_{n} but no WEIGHTS_{n}")
-    where = read_accessor(document, found[f"JOINTS_{n}"], "VEC4", user)
+    where = read_accessor(document, named[f"JOINTS_{n}"], "VEC4", user)
     if where.dtype.kind != "u":
         raise FileError(f"{user}: JOINTS_{n} are {where.dtype}, not unsigned integers")
-    share = read_accessor(document, found[f"WEIGHTS_{n}"], "VEC4", user)
+    share = read_accessor(document, named[f"WEIGHTS_{n}"], "VEC4", user)
     if share.dtype.kind != "f":
         raise FileError(f"{user}: WEIGHTS_{n} are {share.dtype}, neither floats nor normalised")
     return where, share

@@ -50,7 +50,7 @@ class StoredPart:
 
 @dataclass(frozen=True, eq=False)
 class GltfSource:
-    """What a rig remembers of its glTF file, for saving."""
+    """The glTF file that a rig came from, for saving."""
 
     document: Document
     parts: list[StoredPart]
@@ -98,7 +98,7 @@ def read_rig(document: Document, path: Path, world: NDArray | None = None) -> Ri
     mesh = TriangleMesh(np.concatenate(stored.vertices), np.concatenate(stored.faces))  # type: ignore[arg-type]
     weights, sums = _dense(document, parts, stored.weights, len(mesh.vertices), len(bind.nodes))
     stored_deform = read_deform(document, bind.skins, len(bind.nodes))
-    skeleton, told = with_deform(mesh, read_skeleton(nodes, bind), weights, stored_deform)
+    skeleton, warnings = with_deform(mesh, read_skeleton(nodes, bind), weights, stored_deform)
     attached = _read_attachments(document, nodes, bind)
     inverse = np.array(bind.inverse)
     clips = read_clips(document, nodes, bind.nodes, inverse, bind.world)
@@ -114,7 +114,7 @@ def read_rig(document: Document, path: Path, world: NDArray | None = None) -> Ri
         allowed=_allowed(parts, len(mesh.vertices), len(bind.nodes)),
         parts=tuple(stored.named),
         left_out=left_out_meshes(document, nodes, skinned, attached),
-        warnings=(*document.warnings, *told),
+        warnings=(*document.warnings, *warnings),
         weight_sums=sums,
         source=GltfSource(
             document, parts, skeleton, bind.nodes, inverse, tuple(stored.drawn), tuple(attached)
@@ -131,7 +131,7 @@ def _skinned_nodes(nodes: Nodes) -> list[int]:
 
 
 class _Stored(NamedTuple):
-    """What is stored of the skinned meshes; vertices and weights are those of `parts`."""
+    """Arrays of the skinned meshes; vertices and weights are those of `parts`."""
 
     parts: list[StoredPart]
     vertices: list[NDArray]
@@ -144,20 +144,20 @@ class _Stored(NamedTuple):
 def _read_parts(document: Document, nodes: Nodes, skinned: list[int], bind: Bind) -> _Stored:
     """Read every vertex buffer once, however many primitives draw from it.
 
-    A mesh that stands in the scene twice, with two skins, is read for the first: both
+    A mesh that is in the scene twice, with two skins, is read for the first: both
     draw with the same stored weights.
     """
     parts: dict[Any, StoredPart] = {}
     _, vertices, weights, faces, drawn, named = stored = _Stored([], [], [], [], [], [])
     hidden = hidden_nodes(nodes)
-    seen: set[int] = set()
+    read_meshes: set[int] = set()
     total = triangles = 0
     for i in skinned:
         mesh, skin, first = nodes.raw[i]["mesh"], nodes.raw[i]["skin"], total
         document.item("meshes", mesh, document.label("nodes", i))
-        if mesh in seen:
+        if mesh in read_meshes:
             continue
-        seen.add(mesh)
+        read_meshes.add(mesh)
         for k, primitive in enumerate(primitives(document, mesh, document.label("nodes", i))):
             if not draws_triangles(primitive):
                 continue
@@ -190,9 +190,9 @@ def _read_parts(document: Document, nodes: Nodes, skinned: list[int], bind: Bind
 
 
 def _vertex_key(primitive: dict[str, Any], label: str) -> tuple:
-    found = attributes(primitive, label)
+    named = attributes(primitive, label)
     names = ("POSITION", "JOINTS_", "WEIGHTS_")
-    return tuple(sorted((k, v) for k, v in found.items() if k.startswith(names)))
+    return tuple(sorted((k, v) for k, v in named.items() if k.startswith(names)))
 
 
 def _moved(points: NDArray, matrix: NDArray) -> NDArray:
@@ -233,7 +233,7 @@ def _read_attachments(document: Document, nodes: Nodes, bind: Bind) -> dict[int,
     """Return the attachment of each node that has one."""
     place = {node: j for j, node in enumerate(bind.nodes)}
     hidden = hidden_nodes(nodes)
-    found: dict[int, Attachment] = {}
+    attachments: dict[int, Attachment] = {}
     nearest = nodes.nearest(place)
     # From the mesh up to the joint by the local transforms: a joint that is scaled to nothing at
     # rest (a hidden weapon) could not be inverted.
@@ -249,10 +249,10 @@ def _read_attachments(document: Document, nodes: Nodes, bind: Bind) -> dict[int,
         to_rig = np.linalg.inv(bind.inverse[joint]) @ local[i]
         if np.linalg.det(to_rig[:3, :3]) < 0:
             faces = faces[:, ::-1]
-        name = node.get("name") or f"attachment {len(found)}"
+        name = node.get("name") or f"attachment {len(attachments)}"
         try:
             mesh = TriangleMesh(_moved(vertices, to_rig), faces)  # type: ignore[arg-type]
         except MeshError as e:
             raise MeshError(f"{document.label('nodes', i)}: {e}") from None
-        found[i] = Attachment(str(name), mesh, joint, i in hidden or vanishes(nodes, i))
-    return found
+        attachments[i] = Attachment(str(name), mesh, joint, i in hidden or vanishes(nodes, i))
+    return attachments

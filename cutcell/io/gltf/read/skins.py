@@ -1,6 +1,6 @@
 """From glTF skins to one skeleton in one space.
 
-The space is the bind space of the first skin: there a vertex stands as its accessor says.
+The space is the bind space of the first skin: there vertices have the positions of their accessor.
 A joint's rest position is where its inverse bind matrix comes from, inverse(IBM) · 0.
 """
 
@@ -48,14 +48,14 @@ def read_bind(
     place: dict[int, int] = {}
     for skin in skins:
         joints = _skin_joints(document, skin)
-        inverse, given = _inverse_binds(document, skin, joints)
+        inverse, has_binds = _inverse_binds(document, skin, joints)
         shared = [k for k, node in enumerate(joints) if node in place]
         if not bind.nodes:
             to_rig = np.eye(4)
             bind.world = _rest_world(nodes, joints, inverse) if world is None else world
         elif shared:
-            known = bind.inverse[place[joints[shared[0]]]]
-            to_rig = np.linalg.inv(known) @ inverse[shared[0]]
+            reference = bind.inverse[place[joints[shared[0]]]]
+            to_rig = np.linalg.inv(reference) @ inverse[shared[0]]
         else:
             to_rig = np.linalg.inv(bind.world) @ _rest_world(nodes, joints, inverse)
         if not _invertible(to_rig):
@@ -68,7 +68,7 @@ def read_bind(
                 place[node] = len(bind.nodes)
                 bind.nodes.append(node)
                 bind.inverse.append(moved[k])
-                if not given and len(joints) > 1:
+                if not has_binds and len(joints) > 1:
                     bind.unbound.add(place[node])
         bind.skins[skin] = [place[node] for node in joints]
         bind.to_rig[skin] = to_rig
@@ -110,7 +110,7 @@ def _inverse_binds(document: Document, skin: int, joints: list[int]) -> tuple[ND
 
 
 def _invertible(matrices: NDArray) -> NDArray[np.bool_]:
-    """Tell which matrices, shape (..., 4, 4), can be inverted."""
+    """Return which matrices, shape (..., 4, 4), can be inverted."""
     linear = matrices[..., :3, :3]
     with np.errstate(over="ignore", invalid="ignore"):
         size = np.linalg.norm(linear, axis=-2).prod(axis=-1)
@@ -119,9 +119,9 @@ def _invertible(matrices: NDArray) -> NDArray[np.bool_]:
 
 
 def _rest_world(nodes: Nodes, joints: list[int], inverse: NDArray) -> NDArray:
-    """Return where a skin's bind space stands in the scene, as its topmost joint sees it.
+    """Return the matrix from a skin's bind space to the scene, by its topmost joint.
 
-    The other joints may stand in a pose; the topmost one seldom does.
+    The other joints may be posed; the topmost one seldom is.
     """
     for k in np.argsort(nodes.depth[joints], kind="stable").tolist():
         world = nodes.world[joints[k]] @ inverse[k]
@@ -133,7 +133,7 @@ def _rest_world(nodes: Nodes, joints: list[int], inverse: NDArray) -> NDArray:
 def read_skeleton(nodes: Nodes, bind: Bind) -> Skeleton:
     """Return the joints with positions, orientations, parents and unique names."""
     place = {node: j for j, node in enumerate(bind.nodes)} | {-1: -1}
-    nearest = [*nodes.nearest(set(bind.nodes)), -1]  # the last stands for what is above a root
+    nearest = [*nodes.nearest(set(bind.nodes)), -1]  # the last is the parent of roots
     parents = [place[nearest[nodes.parents[node]]] for node in bind.nodes]
     at_rest = np.linalg.inv(np.array(bind.inverse))
     if bind.unbound:
@@ -156,16 +156,16 @@ def _nearest_orthogonal(linear: NDArray) -> NDArray:
 
 def unique_names(names: list) -> tuple[str, ...]:
     """Name the unnamed after their number and number those that are named alike."""
-    given = [n if isinstance(n, str) and n else f"joint {i}" for i, n in enumerate(names)]
-    taken = set(given)
-    seen: set[str] = set()
+    originals = [n if isinstance(n, str) and n else f"joint {i}" for i, n in enumerate(names)]
+    reserved = set(originals)
+    assigned: set[str] = set()
     numbers: dict[str, int] = {}
     unique = []
-    for name in given:
+    for name in originals:
         candidate = name
-        while candidate in seen or (candidate != name and candidate in taken):
+        while candidate in assigned or (candidate != name and candidate in reserved):
             numbers[name] = numbers.get(name, 1) + 1
             candidate = f"{name} ({numbers[name]})"
-        seen.add(candidate)
+        assigned.add(candidate)
         unique.append(candidate)
     return tuple(unique)

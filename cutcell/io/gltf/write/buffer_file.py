@@ -14,23 +14,23 @@ from urllib.parse import quote
 from ..container import Document, beside
 
 UNFIT = re.compile(r"[\x00-\x1f\x7f:\\\ud800-\udfff]")
-"""What a file's name may hold and a relative URI cannot, or `beside` does not take."""
+"""Characters of file names that a relative URI cannot contain, or `beside` refuses."""
 
 
-def buffer_file(path: Path, source: Document, taken: Collection[Path] = ()) -> Path:
+def buffer_file(path: Path, source: Document, reserved: Collection[Path] = ()) -> Path:
     """Return the file for the buffer of a document: NAME.bin, or NAME-2.bin and so on.
 
     A file that is there is replaced only if it is the buffer of the document that is replaced.
     One that the rig was read from is replaced only if its document is.
     """
-    own = _buffers_of(path)
+    replaceable = _buffers_of(path)
     if os.path.realpath(path) != os.path.realpath(source.path):
-        own -= {os.path.realpath(file) for file in _files_of(source.path, source.json)}
+        replaceable -= {os.path.realpath(file) for file in _files_of(source.path, source.json)}
     stem = UNFIT.sub("_", path.stem)
     for k in count(1):
         choice = path.with_name(f"{stem}.bin" if k == 1 else f"{stem}-{k}.bin")
-        free = not os.path.lexists(choice) and choice not in taken
-        if free or os.path.realpath(choice) in own:
+        free = not os.path.lexists(choice) and choice not in reserved
+        if free or os.path.realpath(choice) in replaceable:
             return choice
     raise AssertionError("count ends")
 
@@ -53,11 +53,11 @@ def _files_of(
     path: Path, document: Any, kinds: Collection[str] = ("buffers", "images")
 ) -> list[Path]:
     """Return the files beside a document that it refers to."""
-    found: list[Path | None] = []
+    files: list[Path | None] = []
     for kind in kinds:
         objects = document.get(kind) if isinstance(document, dict) else None
         for item in objects if isinstance(objects, list) else ():
             uri = item.get("uri") if isinstance(item, dict) else None
             if isinstance(uri, str) and not uri.startswith("data:"):
-                found.append(beside(path, uri))
-    return [file for file in found if file is not None]
+                files.append(beside(path, uri))
+    return [file for file in files if file is not None]

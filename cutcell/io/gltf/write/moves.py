@@ -1,9 +1,9 @@
-"""Joints of a glTF document that stand elsewhere at rest: nodes, bind matrices, motions.
+"""Joints of a glTF document that were moved at rest: nodes, bind matrices, motions.
 
 A joint's frame moves within itself by d, which takes three edits. Its inverse bind matrices,
 of every skin, become T(-d) IBM. Its node is shifted by what d is in its parent's frame; all that
 hangs on it by -d, so that it stays where it is. Keys of translations, which are absolute, are
-shifted by as much as the node that they move. A vertex stands at rest where it stood.
+shifted by as much as the node that they move. Vertices do not move at rest.
 """
 
 from __future__ import annotations
@@ -24,19 +24,19 @@ from ..nodes import Nodes
 from ..read.accessors import read_accessor
 
 BINDS = "inverseBindMatrices"
-"""What a skin calls them."""
+"""The key of a skin."""
 
 
 def node_shifts(
-    local: NDArray[np.float64], parents: ArrayLike, own: NDArray[np.float64]
+    local: NDArray[np.float64], parents: ArrayLike, frame_shifts: NDArray[np.float64]
 ) -> NDArray[np.float64]:
     """Return how far nodes are shifted in their parents' frames when frames move.
 
     Shapes: local (k, 4, 4), parents (k,), own (k, 3); returns (k, 3).
     """
     above = np.asarray(parents)
-    shifts = np.einsum("kab,kb->ka", local[:, :3, :3], own)
-    return shifts - np.where(above[:, None] >= 0, own[above], 0.0)
+    shifts = np.einsum("kab,kb->ka", local[:, :3, :3], frame_shifts)
+    return shifts - np.where(above[:, None] >= 0, frame_shifts[above], 0.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,13 +65,13 @@ def take_moves(document: dict[str, Any], rig: Rig) -> list[NewValues]:
     if not by.any():
         return []
     nodes = Nodes(source.document)
-    own = np.zeros((len(nodes.raw), 3))
-    own[source.nodes] = by
-    shifts = node_shifts(nodes.local, nodes.parents, own)
+    frame_shifts = np.zeros((len(nodes.raw), 3))
+    frame_shifts[source.nodes] = by
+    shifts = node_shifts(nodes.local, nodes.parents, frame_shifts)
     for i in np.flatnonzero(shifts.any(axis=1)).tolist():
         _shift(document["nodes"][i], shifts[i])
-    found = _binds(document, source.document, own)
-    return found + _translations(document, source.document, shifts)
+    replaced = _binds(document, source.document, frame_shifts)
+    return replaced + _translations(document, source.document, shifts)
 
 
 def own_moves(rig: Rig) -> NDArray[np.float64]:
@@ -79,16 +79,18 @@ def own_moves(rig: Rig) -> NDArray[np.float64]:
     source = rig.source
     by = np.zeros_like(source.skeleton.joints)
     origin = np.arange(len(by)) if rig.origin is None else rig.origin
-    there = origin >= 0
-    by[origin[there]] = rig.skeleton.joints[there] - source.skeleton.joints[origin[there]]
+    has_origin = origin >= 0
+    by[origin[has_origin]] = (
+        rig.skeleton.joints[has_origin] - source.skeleton.joints[origin[has_origin]]
+    )
     moved: NDArray[np.float64] = np.einsum("jab,jb->ja", source.inverse[:, :3, :3], by)
     return moved
 
 
-def store_moves(buffer: BufferWriter, found: list[NewValues]) -> None:
+def store_moves(buffer: BufferWriter, replaced: list[NewValues]) -> None:
     """Store what `take_moves` found."""
     stored: dict[tuple[int, bytes], int] = {}
-    for new in found:
+    for new in replaced:
         same = new.old, new.values.tobytes()
         if same not in stored:
             stored[same] = buffer.store(new.values, new.old, target=None)
@@ -111,10 +113,12 @@ def no_binds(label: str) -> SkeletonError:
     )
 
 
-def _binds(document: dict[str, Any], loaded: Document, own: NDArray[np.float64]) -> list[NewValues]:
-    found = []
+def _binds(
+    document: dict[str, Any], loaded: Document, frame_shifts: NDArray[np.float64]
+) -> list[NewValues]:
+    replaced = []
     for i, skin in enumerate(document.get("skins", [])):
-        shift = own[skin["joints"]]
+        shift = frame_shifts[skin["joints"]]
         if not shift.any():
             continue
         label = loaded.label("skins", i)
@@ -123,14 +127,14 @@ def _binds(document: dict[str, Any], loaded: Document, own: NDArray[np.float64])
         old = skin.pop(BINDS)
         values = read_accessor(loaded, old, "MAT4", label).astype(np.float64)
         values[: len(shift), 12:15] -= shift
-        found.append(NewValues(skin, BINDS, values.astype("<f4"), old))
-    return found
+        replaced.append(NewValues(skin, BINDS, values.astype("<f4"), old))
+    return replaced
 
 
 def _translations(
     document: dict[str, Any], loaded: Document, shifts: NDArray[np.float64]
 ) -> list[NewValues]:
-    found = []
+    replaced = []
     for i, animation in enumerate(document.get("animations", [])):
         label = loaded.label("animations", i)
         samplers, channels = animation["samplers"], animation["channels"]
@@ -151,5 +155,5 @@ def _translations(
                 values[1::3] += shifts[node]  # between the tangents
             else:
                 values += shifts[node]
-            found.append(NewValues(sampler, "output", values.astype("<f4"), old))
-    return found
+            replaced.append(NewValues(sampler, "output", values.astype("<f4"), old))
+    return replaced

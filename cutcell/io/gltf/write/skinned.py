@@ -1,7 +1,7 @@
 """A skin for the meshes of a glTF document that has none; whatever else it holds stays.
 
-A skinned mesh stands where its joints take it, whatever its node does. So the inverse bind matrices
-of a mesh lead from where its node has it, and it hangs on a node of its own that does not move it.
+The node of a skinned mesh does not move it, only its joints do. So its inverse bind matrices start
+from the world matrix of its old node, and the mesh moves to a new node.
 """
 
 from __future__ import annotations
@@ -29,15 +29,15 @@ INSTANCES = "EXT_mesh_gpu_instancing"
 
 
 def can_be_skinned(rig: Rig) -> bool:
-    """Tell whether the document that a rig's mesh came from can hold its skeleton and weights."""
+    """Return whether the document that a rig's mesh came from can hold its skeleton and weights."""
     source = rig.source
     if not isinstance(source, BareSource) or rig.clips:
         return False
     if source.document.path.suffix.lower() not in (".glb", ".gltf"):
         return False  # what was made of another format has no more than a new document
     same = all(
-        np.array_equal(ours, its)
-        for ours, its in (
+        np.array_equal(current, original)
+        for current, original in (
             (rig.mesh.vertices, source.mesh.vertices),
             (rig.mesh.faces, source.mesh.faces),
         )
@@ -59,7 +59,7 @@ def skinned(rig: Rig, path: Path) -> dict[Path, bytes]:
 
 
 def _is_plain(source: BareSource, one: StoredMesh) -> bool:
-    """Tell whether a skin can take a mesh: all of it is triangles, and its node mirrors nothing."""
+    """Return whether a mesh can be skinned: triangles only, and its node mirrors nothing."""
     loaded = source.document.json
     of_triangles = all(draws_triangles(p) for p in loaded["meshes"][one.mesh]["primitives"])
     extensions = loaded["nodes"][one.node].get("extensions")
@@ -68,7 +68,7 @@ def _is_plain(source: BareSource, one: StoredMesh) -> bool:
 
 
 class _Edit:
-    """A document on its way to a skeleton."""
+    """A document that gets a skeleton."""
 
     def __init__(self, document: dict[str, Any], buffer: BufferWriter, rig: Rig) -> None:
         self.document, self.buffer, self.rig = document, buffer, rig
@@ -88,11 +88,11 @@ class _Edit:
             number = len(meshes) - 1
         primitives = meshes[number]["primitives"]
         for primitive, first in zip(primitives, one.first_vertices, strict=True):
-            held = primitive["attributes"]
-            for name in [k for k in held if k.startswith(("JOINTS_", "WEIGHTS_"))]:
-                del held[name]
-            count = self.document["accessors"][held["POSITION"]]["count"]
-            held.update(self._stored(first, count))
+            attributes = primitive["attributes"]
+            for name in [k for k in attributes if k.startswith(("JOINTS_", "WEIGHTS_"))]:
+                del attributes[name]
+            count = self.document["accessors"][attributes["POSITION"]]["count"]
+            attributes.update(self._stored(first, count))
         new = {key: place.pop(key) for key in ("mesh", "weights") if key in place}
         new |= {"mesh": number, "skin": self._skin(one.world)}
         if one.hidden:
@@ -127,11 +127,11 @@ class _Edit:
         return self._skins[key]
 
     def _stand(self, node: int) -> None:
-        """Let a node stand in the scene."""
+        """Add a node to the scene."""
         scenes = self.document.setdefault("scenes", [{}])
-        here = scenes[self.document.setdefault("scene", 0)]
-        if "nodes" not in here:
+        scene = scenes[self.document.setdefault("scene", 0)]
+        if "nodes" not in scene:
             nodes = self.document["nodes"]
             below = {child for one in nodes for child in one.get("children", [])}
-            here["nodes"] = [i for i in range(node) if i not in below]
-        here["nodes"].append(node)
+            scene["nodes"] = [i for i in range(node) if i not in below]
+        scene["nodes"].append(node)

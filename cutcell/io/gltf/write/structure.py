@@ -1,4 +1,4 @@
-"""Joints of a glTF document that are added, removed or hung on others: nodes and skins.
+"""Joints of a glTF document that are added, removed or reparented: nodes and skins.
 
 A joint goes on to move against its parent as it did (`skinning.restructure`). So a node that is
 hung on another joint stands behind a node that does not move, which leads from the bind frame of
@@ -31,14 +31,14 @@ def take_structure(
     if has_its_joints and np.array_equal(rig.skeleton.parents, source.skeleton.parents):
         return source.parts, moves
     edit = _Edit(document, rig)
-    edit.still_removed()
-    edit.hang_added()
-    edit.hang_elsewhere()
+    edit.freeze_removed_joints()
+    edit.add_joints()
+    edit.reparent()
     return edit.skins(moves)
 
 
 class _Edit:
-    """A document on its way to other joints."""
+    """A document whose joints change."""
 
     def __init__(self, document: dict[str, Any], rig: Rig) -> None:
         self.document, self.rig = document, rig
@@ -58,7 +58,7 @@ class _Edit:
         self.bind = {j: self.inverse[f] for f, j in self.number.items()}
         """The inverse bind matrix of each of the rig's joints."""
 
-    def still_removed(self) -> None:
+    def freeze_removed_joints(self) -> None:
         """Let nothing move the nodes of removed joints against their parents."""
         removed = [f for f in range(len(self.source.nodes)) if f not in self.number]
         for f in removed:
@@ -66,23 +66,23 @@ class _Edit:
             before = self._behind(f)
             matrix = np.linalg.inv(before) @ self._frame_above(f) @ np.linalg.inv(self.inverse[f])
             _set_matrix(self.document["nodes"][node], matrix)
-        still = {self.source.nodes[f] for f in removed}
-        kept = []
+        frozen = {self.source.nodes[f] for f in removed}
+        animations = []
         for animation in self.document.get("animations", []):
             animation["channels"] = [
                 channel
                 for channel in animation["channels"]
-                if channel["target"].get("node") not in still
+                if channel["target"].get("node") not in frozen
                 or channel["target"].get("path") == "weights"
             ]
             if animation["channels"]:  # glTF has no motion of nothing
-                kept.append(animation)
+                animations.append(animation)
         if "animations" in self.document:
-            self.document["animations"] = kept
-            if not kept:
+            self.document["animations"] = animations
+            if not animations:
                 del self.document["animations"]
 
-    def hang_added(self) -> None:
+    def add_joints(self) -> None:
         """Make nodes for joints that were added, turned as their parents are."""
         skeleton = self.rig.skeleton
         for j in np.argsort(skeleton.depth, kind="stable").tolist():
@@ -99,36 +99,36 @@ class _Edit:
                 new["translation"] = (self.bind[above] @ [*place, 1])[:3].tolist()
                 self.node[j] = self._add(new, self.node[above])
 
-    def hang_elsewhere(self) -> None:
+    def reparent(self) -> None:
         """Hang the nodes of joints on those of their new parents."""
         for f, j in self.number.items():
             above = int(self.parents[f])
             while above >= 0 and above not in self.number:
                 above = int(self.parents[above])
-            wanted = int(self.rig.skeleton.parents[j])
-            if wanted == (self.number[above] if above >= 0 else -1):
+            new_parent = int(self.rig.skeleton.parents[j])
+            if new_parent == (self.number[above] if above >= 0 else -1):
                 continue
             frame = np.linalg.inv(self._frame_above(f)) @ self._behind(f)
             node = self.node[j]
             holder: dict[str, Any] = {"children": [node]}
             self._take_off(node)
-            if wanted < 0:
+            if new_parent < 0:
                 self._add_root(holder, self.rig.world @ frame)
             else:
-                _set_matrix(holder, self.bind[wanted] @ frame)
-                self._add(holder, self.node[wanted])
+                _set_matrix(holder, self.bind[new_parent] @ frame)
+                self._add(holder, self.node[new_parent])
 
     def skins(self, moves: list[NewValues]) -> tuple[list[StoredPart], list[NewValues]]:
         """Let the skins name the rig's joints, and say where they are bound."""
-        source, found = self.source, list(moves)
+        source, replaced = self.source, list(moves)
         columns: dict[int, list[int]] = {}
         for part in source.parts:
             if part.skin not in columns:
-                columns[part.skin], new = self._skin(part, found)
-                found.append(new)
-        return [replace(part, joints=columns[part.skin]) for part in source.parts], found
+                columns[part.skin], new = self._skin(part, replaced)
+                replaced.append(new)
+        return [replace(part, joints=columns[part.skin]) for part in source.parts], replaced
 
-    def _skin(self, part: StoredPart, found: list[NewValues]) -> tuple[list[int], NewValues]:
+    def _skin(self, part: StoredPart, replaced: list[NewValues]) -> tuple[list[int], NewValues]:
         skin, loaded = self.document["skins"][part.skin], self.source.document
         label = loaded.label("skins", part.skin)
         stored = loaded.json["skins"][part.skin]
@@ -136,9 +136,9 @@ class _Edit:
             raise no_binds(label)
         before = read_accessor(loaded, stored[BINDS], "MAT4", label).astype(np.float64)
         values = before
-        for move in [move for move in found if move.owner is skin and move.key == BINDS]:
+        for move in [move for move in replaced if move.owner is skin and move.key == BINDS]:
             values = move.values.astype(np.float64)
-            found.remove(move)
+            replaced.remove(move)
         skin.pop(BINDS, None)
         slots = [slot for slot, f in enumerate(part.joints) if f in self.number]
         joints = [self.number[part.joints[slot]] for slot in slots]
@@ -160,16 +160,16 @@ class _Edit:
         return columns, new
 
     def _frame_above(self, f: int) -> NDArray[np.float64]:
-        """Return the inverse bind matrix of what a file's joint hangs on; the world's for a root.
+        """Return the inverse bind matrix of a joint's parent; the world matrix for a root.
 
         A skinning matrix of the parent is its world matrix times this.
         """
         above = int(self.parents[f])
-        found: NDArray[np.float64] = self.inverse[above] if above >= 0 else self.rig.world
-        return found
+        frame: NDArray[np.float64] = self.inverse[above] if above >= 0 else self.rig.world
+        return frame
 
     def _behind(self, f: int) -> NDArray[np.float64]:
-        """Return the matrix at rest of what a joint's node hangs on, seen from its parent joint.
+        """Return the rest matrix of a joint's parent node, relative to its parent joint.
 
         Seen from the scene for a root.
         """
@@ -186,7 +186,7 @@ class _Edit:
         return [scene["nodes"] for scene in scenes if "nodes" in scene]
 
     def _add(self, node: dict[str, Any], on: int) -> int:
-        """Add a node that hangs on another one."""
+        """Add a node below another one."""
         nodes = self.document["nodes"]
         nodes.append(node)
         nodes[on].setdefault("children", []).append(len(nodes) - 1)
@@ -206,7 +206,7 @@ class _Edit:
         return self._add(node, base)
 
     def _new_base(self) -> int:
-        """Add a node on which all nodes hang that root joints were."""
+        """Add a node above the nodes of all root joints."""
         roots = {self.source.nodes[f] for f in np.flatnonzero(self.parents < 0)}
         roots = {node for node in roots if self.nodes.parents[node] < 0}
         nodes = self.document["nodes"]
@@ -218,7 +218,7 @@ class _Edit:
         return self._base
 
     def _take_off(self, node: int) -> None:
-        """Let a node hang on nothing, and stand in no scene by itself."""
+        """Remove a node from its parent and from the roots of scenes."""
         for roots in self._roots():
             if node in roots:
                 roots.remove(node)
@@ -230,7 +230,7 @@ class _Edit:
 
 
 def _set_matrix(node: dict[str, Any], matrix: NDArray[np.float64]) -> None:
-    """Give a node a matrix in place of what told where it is."""
+    """Set a node's matrix in place of its translation, rotation and scale."""
     for key in ("translation", "rotation", "scale", "matrix"):
         node.pop(key, None)
     if not np.allclose(matrix, np.eye(4), rtol=0, atol=1e-12):

@@ -65,8 +65,8 @@ def _check_same(rig: Rig, source: GltfSource) -> None:
     count = source.faces[-1].rows.stop
     if len(rig.mesh.faces) != count:
         raise MeshError(f"the rig has {len(rig.mesh.faces)} faces, its document {count}; {remedy}")
-    ours, its = rig.skeleton, source.skeleton
-    same = ours.names == its.names and np.array_equal(ours.parents, its.parents)
+    current, original = rig.skeleton, source.skeleton
+    same = current.names == original.names and np.array_equal(current.parents, original.parents)
     if not same and rig.origin is None:
         raise SkeletonError(
             "the rig's joints are no longer those of its document; save it as .npz or .txt, or "
@@ -85,12 +85,12 @@ def _rename(document: dict[str, Any], rig: Rig) -> None:
 
 def _take_influences(document: dict[str, Any], part: StoredPart) -> dict[str, int]:
     """Remove JOINTS_n and WEIGHTS_n from a part's primitives and return what they were."""
-    taken: dict[str, int] = {}
+    removed: dict[str, int] = {}
     for primitive in _primitives(document, part):
-        found = primitive["attributes"]
-        for name in [k for k in found if k.startswith(("JOINTS_", "WEIGHTS_"))]:
-            taken[name] = found.pop(name)
-    return taken
+        attributes = primitive["attributes"]
+        for name in [k for k in attributes if k.startswith(("JOINTS_", "WEIGHTS_"))]:
+            removed[name] = attributes.pop(name)
+    return removed
 
 
 def _primitives(document: dict[str, Any], part: StoredPart) -> list[dict[str, Any]]:
@@ -126,14 +126,14 @@ def packed(
     """Return the files of a document that was edited, without the images that go along."""
     uris = [one.get("uri") for one in document.items("buffers")]
     data = buffer.finish()
-    own = buffer.document["buffers"][0] if data else {}
-    own.pop("uri", None)
+    buffer_object = buffer.document["buffers"][0] if data else {}
+    buffer_object.pop("uri", None)
     if path.suffix.lower() != ".gltf":
         return {path: pack_glb(json_bytes(buffer.document), data, document.chunks)}
     if uris and all(isinstance(u, str) and u.startswith("data:") for u in uris):
         head = "data:application/octet-stream;base64,"
-        own["uri"] = head + base64.b64encode(data).decode()
+        buffer_object["uri"] = head + base64.b64encode(data).decode()
         return {path: json_bytes(buffer.document)}
     file = buffer_file(path, document, carried)
-    own["uri"] = relative_uri(file)
+    buffer_object["uri"] = relative_uri(file)
     return {file: data, path: json_bytes(buffer.document)}
