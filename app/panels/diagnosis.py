@@ -96,7 +96,7 @@ def _entry(session: Session, finding: Finding) -> pmui.Column:
         lines.append(_line(finding.advice, "text.primary"))
         if finding.repair:
             lines.append(_line(f"Repair: {finding.repair}.", "text.primary"))
-            lines.append(_button("Repair it", "build", lambda: repair(session, [finding.code])))
+            lines.append(_button("Repair", "build", lambda: repair(session, [finding.code])))
         carrying = [j for j in finding.joints if session.state.rig.skeleton.deform[j]]
         if finding.code in LEFT_OUT and carrying:
             label = _left_out(session.state.rig, carrying)
@@ -135,7 +135,7 @@ def _repairs(session: Session) -> list[Any]:
             "download",
             lambda: export_repaired(session, session.view.offer),
         ),
-        _button("Take the repair back", "undo", lambda: take_back(session)),
+        _button("Undo repair", "undo", lambda: take_back(session)),
     ]
 
 

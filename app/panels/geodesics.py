@@ -103,7 +103,7 @@ def _wave(state: State) -> list[Any]:
         state.param.update(wave=True, animating=not state.animating)
 
     button = pmui.Button(
-        label=when(lambda on: "Halt the wave" if on else "Let it run", state.param.animating),
+        label=when(lambda on: "Pause the wave" if on else "Play the wave", state.param.animating),
         icon=when(lambda on: "pause" if on else "play_arrow", state.param.animating),
         size="small",
         variant="outlined",
@@ -113,7 +113,7 @@ def _wave(state: State) -> list[Any]:
     )
     front = slider(
         state.param.front,
-        "How far it came",
+        "Progress",
         step=0.005,
         visible=when(lambda on, runs: on and not runs, state.param.wave, state.param.animating),
     )

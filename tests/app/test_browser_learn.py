@@ -22,7 +22,7 @@ def test_a_link_to_a_step_shows_its_scene_and_the_tour_goes_on(browser, url):
     expect(visit.page.get_by_role("combobox", name="Bone")).to_have_text("hand.L")
     visit.page.wait_for_function("'path' in __cutcell.report().actors", timeout=LOAD_MS)
     assert not visit.page.get_by_text(re.compile("^Vertex ")).is_visible()
-    visit.button("Back").click()
+    visit.button("Previous").click()
     expect(card(visit)).to_contain_text(TOUR[2].title)
     visit.page.wait_for_function("__cutcell.renderer.views.length === 2", timeout=LOAD_MS)
     visit.settle()
@@ -60,13 +60,13 @@ def test_a_link_to_a_step_shows_its_scene_and_the_tour_goes_on(browser, url):
 def test_another_person_sees_the_same_comparison(browser, visit):
     one = visit
     one.go("?rig=robot&panel=compare&resolution=24")
-    one.page.get_by_role("checkbox", name="The file's own").uncheck()
+    one.page.get_by_role("checkbox", name="From file").uncheck()
     one.choose("Difference to", "Euclidean")
     one.expect_text("difference")
     one.page.wait_for_function("location.search.includes('minus=euclidean')", timeout=LOAD_MS)
     one.settle()
     captions = one.page.locator(".caption").all_inner_texts()
-    assert captions == ["cutcell, as set here − Euclidean", "Euclidean − itself"]
+    assert captions == ["cutcell (current settings) − Euclidean", "Euclidean − itself"]
     other = Visit(browser, one.page.url)
     other.wait_until_bound()
     expect(other.page.locator(".caption")).to_have_text(captions, timeout=LOAD_MS)
