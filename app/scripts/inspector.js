@@ -245,7 +245,6 @@ function card(model, facts) {
 
 export function render({model}) {
   const root = document.createElement("div")
-  root.style.maxHeight = "inherit"
   const show = () => {
     const old = root.querySelector(".vertex-card")
     const [label, top] = [old?.getAttribute("aria-label"), old?.scrollTop ?? 0]

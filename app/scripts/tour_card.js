@@ -37,7 +37,7 @@ export function render({model}) {
   title.tabIndex = -1
   const body = make("div")
   body.setAttribute("aria-live", "polite")
-  const back = make("button", "go", "Previous")
+  const back = make("button", "go", "Back")
   const next = make("button", "go next", "Next")
   const dots = make("div", "dots")
   dots.setAttribute("role", "group")

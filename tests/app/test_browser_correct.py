@@ -217,6 +217,22 @@ def test_a_vertex_is_overruled_on_its_card_and_undone(visit, robot):
     visit.expect_text("Nothing is corrected")
 
 
+def test_the_card_of_a_vertex_scrolls_within_a_small_window(visit):
+    size = visit.page.viewport_size
+    visit.page.set_viewport_size({"width": 1366, "height": 600})
+    visit.click_vertex()
+    visit.card.get_by_role("button", name="Why these weights?").click()
+    override = visit.card.get_by_role("button", name="Override")
+    override.scroll_into_view_if_needed()
+    box = override.bounding_box()
+    assert box["y"] + box["height"] <= 600
+    canvas = visit.page.get_by_role("application").bounding_box()
+    assert canvas["y"] > 0, "the page itself has not scrolled"
+    visit.card.get_by_role("button", name="Hide why").click()
+    visit.close_card()
+    visit.page.set_viewport_size(size)
+
+
 def test_weights_are_painted_on_a_posed_body_and_stay_so(visit, robot, tmp_path):
     joint = robot.skeleton.names.index("forearm.L")
     computed = cutcell.bind(robot, 24).weights[:, joint]

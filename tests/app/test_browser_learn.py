@@ -22,7 +22,7 @@ def test_a_link_to_a_step_shows_its_scene_and_the_tour_goes_on(browser, url):
     expect(visit.page.get_by_role("combobox", name="Bone")).to_have_text("hand.L")
     visit.page.wait_for_function("'path' in __cutcell.report().actors", timeout=LOAD_MS)
     assert not visit.page.get_by_text(re.compile("^Vertex ")).is_visible()
-    visit.button("Previous").click()
+    visit.button("Back").click()
     expect(card(visit)).to_contain_text(TOUR[2].title)
     visit.page.wait_for_function("__cutcell.renderer.views.length === 2", timeout=LOAD_MS)
     visit.settle()
