@@ -20,7 +20,7 @@ from cutcell_viewers.marks import path_tube
 from cutcell_viewers.palette import BODY
 
 from ..state import State
-from ..state.geodesics import MEASURES
+from ..state.distance import MEASURES
 from .common import SEE_PATH, character
 from .memo import Memo
 

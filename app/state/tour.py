@@ -148,7 +148,7 @@ TOUR = (
         r"d(v, b) = \min_{\gamma: b \to v,\ \gamma \subset \text{body}} \text{length}(\gamma)",
         "Follow the red line, the shortest path from thigh to hand. Click anywhere to see another.",
         Look(
-            "geodesics",
+            "distance",
             bone="hand.L",
             focus="forearm.L",
             near=0.5,
@@ -231,7 +231,7 @@ TOUR = (
         r"d(s) = \min_{x \in \text{bone}} \|s - x\|_2",
         "The dots on the bone are its samples and sources. Choose another bone in the list.",
         Look(
-            "geodesics",
+            "distance",
             bone="forearm.L",
             focus="forearm.L",
             near=0.3,
@@ -248,7 +248,7 @@ TOUR = (
         r"d(v) \leftarrow \min\bigl(d(v),\ d(u) + \text{length}(u, v)\bigr)",
         "The wave runs from the hand. It passes the shoulder long before it reaches the thigh.",
         Look(
-            "geodesics",
+            "distance",
             bone="hand.L",
             focus="chest",
             near=0.8,
@@ -266,7 +266,7 @@ TOUR = (
         r"\|x\|_1 = |x_1| + |x_2| + |x_3| \;\ge\; \|x\|_2",
         "Only the axes are allowed now. Allow any angle and watch the diamonds become round.",
         Look(
-            "geodesics",
+            "distance",
             bone="spine2",
             focus="spine2",
             near=0.36,

@@ -39,7 +39,7 @@ def test_a_step_sets_the_scene_and_can_be_left_and_taken_up(session, loop):
     go(session, -1)
     assert (state.tour, state.panel) == (-1, "graph")  # there was no character before it
     go(session, 9)
-    assert (state.tour, state.panel, state.resolution) == (9, "geodesics", 64)
+    assert (state.tour, state.panel, state.resolution) == (9, "distance", 64)
 
 
 def test_a_step_on_another_character_opens_it(session, loop):
@@ -54,7 +54,7 @@ def test_a_link_to_a_step_alone_sets_its_scene(session, loop):
     arrival.arrive(session, "?panel=learn&step=10", lambda: pytest.fail("the step has a character"))
     state, look = session.state, TOUR[9].look
     loop.run_until(lambda: state.binding is not None)
-    assert (state.tour, state.demo, state.panel) == (9, "biped", "geodesics")
+    assert (state.tour, state.demo, state.panel) == (9, "biped", "distance")
     assert state.rig.skeleton.names[state.joint] == look.bone
     assert (state.connectivity, state.cut_axis) == (6, "z")
     assert session.view.camera == camera_of(session, look)

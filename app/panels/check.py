@@ -11,8 +11,8 @@ from cutcell.diagnosis import SEVERITIES, Finding
 from cutcell.rig.rig import Rig
 from cutcell.runtime.display import shown_name
 
+from ..commands.check import look_at, repair, take_back
 from ..commands.correct import leave_out
-from ..commands.diagnosis import look_at, repair, take_back
 from ..commands.export import export_repaired
 from ..commands.session import Session
 from ..state import State
@@ -26,7 +26,7 @@ LEFT_OUT = ("stray-weights", "joints-outside")
 """What is mended by joints that carry no weight."""
 
 
-def diagnosis(session: Session) -> pmui.Column:
+def check(session: Session) -> pmui.Column:
     """Return the controls of the panel Diagnose."""
     state = session.state
     place = pmui.Column(margin=0, sizing_mode="stretch_width")

@@ -8,12 +8,12 @@ import panel_material_ui as pmui
 
 from ..commands.session import Session
 from ..state import State
-from ..state.geodesics import MAX_MEASURES, MEASURES
+from ..state.distance import MAX_MEASURES, MEASURES
 from .cutting import cutting
 from .parts import GAP, caption, choice, lead, section, slider, weightless, when
 
 
-def geodesics(session: Session) -> pmui.Column:
+def distance(session: Session) -> pmui.Column:
     """Return the controls of the panel Geodesics."""
     state = session.state
     idle = caption(
