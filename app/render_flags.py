@@ -85,7 +85,7 @@ Slice = Annotated[
 ]
 Sources = Annotated[
     bool,
-    typer.Option("--sources", help="Where distances begin.", rich_help_panel=INSIDE),
+    typer.Option("--sources", help="Sources of the distances.", rich_help_panel=INSIDE),
 ]
 PathFrom = Annotated[
     int | None,

@@ -156,7 +156,7 @@ def panels(visit: Visit) -> None:
     take(visit, "wave")
     visit.button("Whole").click()
     visit.panel("Weights")
-    visit.choose("Colours show", "Difference to the file's own")
+    visit.choose("Colour by", "Difference from the file's")
     click_vertex(visit, CHEST)
     take(visit, "weights")
 

@@ -14,7 +14,7 @@ from .description import Description, Legend, Reading
 from .palette import UNREACHED, joint_colors, to_bytes
 
 MIXED = "Each bone's colour, mixed by weight"
-MOST = "The bone that holds most"
+MOST = "Dominant bone"
 
 
 def weights_scene(
@@ -102,7 +102,7 @@ def count_colors(rig: Rig, weights: ArrayLike) -> tuple[dict[str, Any], Legend]:
     """Colour each vertex by the number of joints that it follows; see `weight_colors`."""
     count = (np.asarray(weights) > 0).sum(axis=1).astype(np.float32)
     most = max(int(count.max(initial=1)), 2)
-    legend = Legend("Joints that a vertex follows", "count", "1", f"{most}")
+    legend = Legend("Influences", "count", "1", f"{most}")
     look = {"scalars": count, "colormap": "count", "limits": (1.0, float(most))}
     return {**look, "reading": Reading("joints: ")}, legend
 

@@ -142,7 +142,7 @@ def cancel(session: Session) -> None:
     state = session.state
     if session.tasks.jobs("main").cancel():
         session.uploads.stay(session.uploads.key)
-        state.param.update(busy=False, message=("info", "Cancelled. The page keeps what it had."))
+        state.param.update(busy=False, message=("info", "Cancelled. Nothing was changed."))
         if state.graph is not None:
             _go_back(session, session.bound_for)
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from cutcell.editing.corrections import Corrections
 
 from ..scenes.common import first_joint
@@ -11,9 +9,7 @@ from ..state import State
 from ..state.corrections import applied, changes, news
 from ..state.url import defaults
 from . import brush, pairs
-from .binding import restore
-from .history import RESULT, plain, restoring
-from .loading import load_again
+from .loading import revisit
 from .session import Session
 
 
@@ -26,8 +22,8 @@ def act(session: Session, name: str) -> None:
     """Do what a key or a button says."""
     state = session.state
     does = {
-        "undo": lambda: _go(session, session.history.undo()),
-        "redo": lambda: _go(session, session.history.redo()),
+        "undo": lambda: revisit(session, session.history.undo()),
+        "redo": lambda: revisit(session, session.history.redo()),
         "reset": lambda: reset(session),
         "play": lambda: play(state),
         "next": lambda: step(session, 1),
@@ -87,21 +83,3 @@ def to_child(state: State) -> None:
     below = [] if state.bare else state.rig.skeleton.children[state.joint]
     if len(below):
         state.joint = int(below[0])
-
-
-def _go(session: Session, choices: dict[str, Any] | None) -> None:
-    if not choices:
-        return
-    if choices.get("character", session.character) == session.character:
-        restore(session, choices)
-        return
-    # Another character stood there then. It is opened as its file has it.
-    session.history.drop(RESULT)
-    chosen = {name: value for name, value in plain(choices).items() if name not in RESULT}
-
-    def chosen_then() -> None:
-        session.returning = True
-        with restoring(session):
-            session.state.param.update(**chosen)
-
-    load_again(session, choices["character"], chosen_then)

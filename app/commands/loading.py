@@ -22,7 +22,7 @@ from ..scenes.common import bones_part, bounds_of, camera_part, first_joint
 from ..state.url import first_clip
 from ..work.jobs import READING
 from . import history
-from .binding import bind
+from .binding import bind, restore
 from .compare import carry
 from .correct import taken
 from .look import look
@@ -128,6 +128,26 @@ def load_again(session: Session, character: str, chosen: Callable[[], None] = la
         session.state.param.trigger("demo")
     else:
         load_files(session, paths, key, chosen)
+
+
+def revisit(session: Session, choices: dict[str, Any] | None) -> None:
+    """Return to choices of the history, and to their character; None for nothing."""
+    if not choices:
+        return
+    arriving = session.state.demo != session.character.partition(" ")[2]
+    if not arriving and choices.get("character", session.character) == session.character:
+        restore(session, choices)
+        return
+    # The other character is opened as its file has it.
+    session.history.drop(history.RESULT)
+    chosen = {n: v for n, v in history.plain(choices).items() if n not in history.RESULT}
+
+    def choose() -> None:
+        session.returning = True
+        with history.restoring(session):
+            session.state.param.update(**chosen)
+
+    load_again(session, choices["character"], choose)
 
 
 def receiver(session: Session) -> Receiver:

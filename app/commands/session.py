@@ -84,6 +84,8 @@ class Session:
         Files of this machine that the page was opened with.
     returning : bool
         Whether that character is shown because somebody went back to it.
+    before_tour : tuple or None
+        The choices and the camera from before the tour.
     arrival : dict
         What an address says of the character that is on its way.
     notice : str
@@ -117,6 +119,7 @@ class Session:
         self.character = ""
         self.given: list[Path] | None = None
         self.returning = False
+        self.before_tour: tuple[dict[str, Any], Camera | None] | None = None
         self.arrival: dict[str, Any] = {}
         self.notice = ""
         self.bound_for: dict[str, Any] = {}

@@ -14,13 +14,13 @@ from ..scenes.common import bounds_of
 from ..state.corrections import applied, changes, news
 from ..state.tour import TOUR, Look
 from ..state.url import defaults
-from .loading import load_demo
+from .loading import load_demo, revisit
 from .look import look as look_from
 from .session import Session
 
 
 def go(session: Session, index: int, said: frozenset[str] = frozenset()) -> None:
-    """Show a step of the tour; -1 leaves it, and the page stays as it is.
+    """Show a step of the tour; -1 leaves it, and brings back what the page showed before.
 
     Parameters
     ----------
@@ -31,8 +31,11 @@ def go(session: Session, index: int, said: frozenset[str] = frozenset()) -> None
     """
     state = session.state
     if not 0 <= index < len(TOUR):
-        state.tour = -1
+        leave(session)
         return
+    if state.tour < 0 and state.rig is not None:
+        camera = None if session.view.at_home else session.view.camera
+        session.before_tour = session.history.now, camera
     look = TOUR[index].look
     state.tour = index
     if _stands(state, look.demo):
@@ -45,6 +48,17 @@ def go(session: Session, index: int, said: frozenset[str] = frozenset()) -> None
             lambda: show(session, look, said),
             lambda: None if "camera" in said else aim(session, look),
         )
+
+
+def leave(session: Session) -> None:
+    """Leave the tour; the character, the choices and the camera are those from before it."""
+    session.state.tour = -1
+    if session.before_tour is not None:
+        choices, camera = session.before_tour
+        session.before_tour = None
+        revisit(session, choices)
+        if choices["character"] == session.character:
+            look_from(session, camera)
 
 
 def offer(session: Session, index: int) -> None:
@@ -91,6 +105,7 @@ def show(session: Session, look: Look, said: frozenset[str] = frozenset()) -> No
         "vertex": clicked(state.rig, look),
         "moving": False,
         "playing": False,
+        "animating": False,
         **look.choices,
     }
     kept = said - {"panel"} if state.panel == "learn" else said

@@ -6,11 +6,11 @@ from . import (
     arrival,
     binding,
     brush,
+    check,
     compare,
     cutting,
-    diagnosis,
+    distance,
     explain,
-    geodesics,
     history,
     keys,
     look,
@@ -26,6 +26,6 @@ from .session import Session
 def follow(session: Session) -> None:
     """Let everything follow the state of a new session."""
     # In this order: what is seen comes before what is computed for it.
-    seen = (look, cutting, moving, brush, geodesics, pose, materials, compare, pairs)
-    for one in (*seen, binding, explain, history, keys, rest, diagnosis, arrival):
+    seen = (look, cutting, moving, brush, distance, pose, materials, compare, pairs)
+    for one in (*seen, binding, explain, history, keys, rest, check, arrival):
         one.watch(session)

@@ -103,7 +103,7 @@ def layout(session: Session) -> pmui.Page:
     """Return the page of a session."""
     view: Any = session.view
     tagline = words(
-        "geodesic skinning weights for any mesh",
+        "Skinning weights that follow the body, not the air",
         sx={"color": "text.secondary", "fontSize": 13, "display": {"xs": "none", "sm": "block"}},
         margin=(2, 0, 0, 16),
     )
@@ -149,6 +149,11 @@ def layout(session: Session) -> pmui.Page:
         wide = event.new >= NARROW
         session.tasks.later(lambda: result.param.update(sidebar_open=wide))
 
+    def toured(event: Any) -> None:
+        # On a phone the sidebar covers the card and half of the figure.
+        if event.new >= 0 and 0 < view.window_width < NARROW:
+            session.tasks.later(lambda: result.param.update(sidebar_open=False))
+
     def told(event: Any) -> None:
         # Over the canvas nobody reads what lies behind the sidebar.
         if event.new and event.new[0] == "error" and 0 < view.window_width < NARROW:
@@ -158,6 +163,7 @@ def layout(session: Session) -> pmui.Page:
     result.param.watch(themed, "dark_theme")
     view.param.watch(sized, "window_width")
     session.state.param.watch(told, "message")
+    session.state.param.watch(toured, "tour")
     session.state.param.watch(lambda event: tidy_soon(), "binding")
     view.param.watch(remembered, "dark")
     session.state.dark = result.dark_theme

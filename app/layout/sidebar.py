@@ -15,7 +15,7 @@ from ..panels.parts import lead, when
 from ..panels.templates import skeleton_menu
 from ..widgets.tabs import Tabs
 
-BARE = ("graph", "diagnosis", "learn")
+BARE = ("graph", "check", "learn")
 """The panels for a mesh without a skeleton."""
 NO_SKELETON = (
     "This mesh has no skeleton, so it has no bones to measure from, to weigh or to move; its graph "

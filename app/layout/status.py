@@ -11,7 +11,7 @@ from cutcell.graph import INTERIOR, MESH, SURFACE
 from cutcell.rig.rig import Rig
 
 from ..commands.binding import cancel
-from ..commands.diagnosis import go_to
+from ..commands.check import go_to
 from ..commands.session import Session
 from ..panels.parts import when, words
 from ..scenes.warnings import Door, warnings

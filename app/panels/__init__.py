@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from ..commands.session import Session
+from .check import check
 from .compare import compare
-from .diagnosis import diagnosis
-from .geodesics import geodesics
+from .distance import distance
 from .graph import graph
 from .learn import learn
 from .pairs import pairs
@@ -49,11 +49,11 @@ PANELS = (
         graph,
     ),
     Panel(
-        "geodesics",
+        "distance",
         "Distance",
         '<circle cx="5" cy="19" r="1.6"/><path d="M5 13a6 6 0 0 1 6 6M5 8.5A10.5 10.5 0 0 1 '
         '15.5 19M5 4a15 15 0 0 1 15 15"/>',
-        geodesics,
+        distance,
     ),
     Panel(
         "weights",
@@ -75,10 +75,10 @@ PANELS = (
         compare,
     ),
     Panel(
-        "diagnosis",
+        "check",
         "Check",
         '<path d="M2.5 12.5h4l2.5-6 4 12 3-9 1.5 3h4"/>',
-        diagnosis,
+        check,
     ),
     Panel(
         "learn",

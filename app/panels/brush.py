@@ -95,7 +95,7 @@ def _selection(session: Session) -> pmui.Column:
 
 def _told(rig: Any, joint: int, mode: str) -> str:
     if mode == "smooth":
-        return "Evens out the weights of all joints that are not locked."
+        return "Smooths all unlocked joints."
     if mode == "select":
         return "Selects what the other tools may paint; Ctrl takes away."
     if rig is None or joint >= len(rig.skeleton.names):

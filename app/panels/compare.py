@@ -91,7 +91,7 @@ def _minus(state: State) -> pmui.Select:
 
     def offered() -> tuple[dict[str, str], str]:
         named = {title_of(name): name for name in state.methods}
-        return {"None: each by itself": "", **named}, state.minus
+        return {"None": "", **named}, state.minus
 
     return follow(select, state, "minus", offered, ["methods"])
 

@@ -17,9 +17,9 @@ from .parts import GAP, caption, offer, section, unique_names
 
 WAYS = {
     "As computed": "",
-    "Glued to a joint": "glued",
-    "Follows the body where it touches": "touching",
-    "Bound by itself": "itself",
+    "Rigid, to one joint": "glued",
+    "With the body it touches": "touching",
+    "Separately": "itself",
 }
 WATCHED = ["panel", "rig", "corrections", "part"]
 SHORT = {"glued": "glued", "touching": "follows", "itself": "by itself"}
@@ -38,7 +38,7 @@ def parts_of_mesh(session: Session) -> pmui.Column:
     )
     place = pmui.Column(rows, margin=GAP, sizing_mode="stretch_width", max_height=200, scroll="y")
     way = pmui.Select(
-        label="This part is", options=WAYS, value="", size="small", margin=(16, 0, 4, 0),
+        label="Bind this part", options=WAYS, value="", size="small", margin=(16, 0, 4, 0),
         sizing_mode="stretch_width",
     )  # fmt: skip
     glue = pmui.Select(

@@ -20,7 +20,7 @@ def cutting(session: Session) -> list[Any]:
     free = when(lambda axis: axis == "free", state.param.cut_axis)
     look = {"format": "0°", "step": 1, "visible": free}
     facing = pmui.Button(
-        label="Face the eye",
+        label="Face camera",
         size="small",
         variant="outlined",
         margin=GAP,
@@ -30,9 +30,9 @@ def cutting(session: Session) -> list[Any]:
     )
     return [
         choice(state.param.cut_axis, AXES),
-        slider(state.param.cut_position, "Where the cut lies", step=0.005, visible=cut),
-        slider(state.param.cut_yaw, "Turned about the upright axis", **look),
-        slider(state.param.cut_pitch, "Tilted", **look),
+        slider(state.param.cut_position, "Position", step=0.005, visible=cut),
+        slider(state.param.cut_yaw, "Yaw", **look),
+        slider(state.param.cut_pitch, "Pitch", **look),
         facing,
         caption("Or drag its handles in the scene.", visible=cut),
     ]

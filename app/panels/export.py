@@ -20,7 +20,7 @@ def export(session: Session) -> pmui.Column:
     """Return the section of the downloads."""
     state, offer = session.state, session.view.offer
     bound = pmui.Button(
-        label="Download the bound GLB",
+        label="Export GLB",
         icon="download",
         size="small",
         margin=GAP,
@@ -63,7 +63,7 @@ def _described(rig: Rig | None) -> str:
         kept = "The GLB is a new one: mesh, skeleton, weights, motions and base colours."
     else:
         kept = "The GLB is a new one: mesh, skeleton, weights and motions, without materials."
-    return f"{kept} Pictures show what you see."
+    return f"{kept} Images show the current view."
 
 
 def _menu(

@@ -78,7 +78,7 @@ def _switch_colors(state: State, layer: str) -> dict[str, Any]:
 def _nodes(state: State) -> pmui.Column:
     """Return the switch of the nodes of the layers that are seen."""
     switch = pmui.Switch.from_param(
-        state.param.nodes, label="Their nodes", size="small", margin=(1, 0), description=""
+        state.param.nodes, label="Nodes", size="small", margin=(1, 0), description=""
     )
     hint = caption("Click a node: a card tells all of it.", visible=state.param.nodes)
     seen = when(lambda slicing: not slicing, state.param.slicing)
@@ -125,9 +125,9 @@ def _inside(session: Session) -> list[Any]:
     keeps = {"Half": "half", "Face only": "face", "Slab": "slab"}
     return [
         pmui.Column(*cutting(session), margin=0, sizing_mode="stretch_width", visible=whole),
-        caption("The face of the cut shows", margin=(2, 0, 0, 0), visible=cut),
+        caption("Cut face", margin=(2, 0, 0, 0), visible=cut),
         choice(state.param.graph_face, faces, visible=cut),
-        caption("Behind it are kept", margin=(2, 0, 0, 0), visible=cut),
+        caption("Keep behind", margin=(2, 0, 0, 0), visible=cut),
         choice(state.param.cut_keeps, keeps, visible=cut),
         slider(state.param.slab, "Thickness of the slab", step=0.01, visible=thick),
         pmui.Switch.from_param(
@@ -138,11 +138,11 @@ def _inside(session: Session) -> list[Any]:
             description="",
         ),
         pmui.Column(
-            caption("The slice is perpendicular to", margin=(2, 0, 0, 0)),
+            caption("Slice normal", margin=(2, 0, 0, 0)),
             choice(state.param.slice_axis, AXES),
-            caption("Its rays run along", margin=(2, 0, 0, 0)),
+            caption("Ray direction", margin=(2, 0, 0, 0)),
             choice(state.param.slice_rays, AXES),
-            slider(state.param.slice_position, "Where the slice lies", step=0.005),
+            slider(state.param.slice_position, "Position", step=0.005),
             caption("Rest the pointer on a ray: it tells the winding number there."),
             margin=0,
             sizing_mode="stretch_width",
@@ -187,7 +187,7 @@ def _build(session: Session) -> list[Any]:
     state.param.watch(shown, "resolution")
     threshold = slider(state.param.winding_threshold, "Winding threshold τ", step=0.01)
     again = pmui.Button(
-        label="Compute again",
+        label="Recompute",
         size="small",
         variant="outlined",
         margin=GAP,
@@ -202,7 +202,7 @@ def _build(session: Session) -> list[Any]:
     )
     orient = pmui.Switch.from_param(
         state.param.orient,
-        label="Turn inverted faces",
+        label="Flip inverted faces",
         size="small",
         margin=(4, 0, 2, 0),
         description="",
@@ -221,7 +221,7 @@ def _build(session: Session) -> list[Any]:
         caption("Paths inside run along", margin=(4, 0, 0, 0)),
         choice(state.param.connectivity, {"6 axes": 6, "26 diagonals": 26, "Any angle": "any"}),
         caption(SEARCHED, visible=when(lambda value: value == "any", state.param.connectivity)),
-        caption("Leaf bones are", margin=(4, 0, 0, 0)),
+        caption("Leaf bones", margin=(4, 0, 0, 0)),
         choice(state.param.leaf, {LEAF_TITLES.get(leaf, leaf): leaf for leaf in LEAVES}),
         again,
     ]

@@ -65,7 +65,7 @@ def joints(session: Session) -> pmui.Column:
     listed()
     counts = caption(when(_counted, state.param.rig))
     guesser = pmui.Button(
-        label="Guess which deform", size="small", variant="text", margin=0, on_click=anew,
+        label="Detect deforming joints", size="small", variant="text", margin=0, on_click=anew,
         description="From their names, and where they lie in the body",
     )  # fmt: skip
     return section("Joints", counts, tree, guesser, *_chosen(session))
@@ -83,8 +83,8 @@ def _chosen(session: Session) -> list[Any]:
     called = pmui.TextInput(
         label="Name", value="", size="small", margin=(8, 0), sizing_mode="stretch_width"
     )
-    carries = _switch("Carries weight")
-    locked = _switch("Keeps the file's weights")
+    carries = _switch("Deforms the mesh")
+    locked = _switch("Lock to file weights")
     gain = pmui.FloatSlider(
         label="Reach", start=-DOUBLINGS, end=DOUBLINGS, step=STEP, value=0.0, size="small",
         margin=GAP, sizing_mode="stretch_width", show_value=False, track=False, tooltips=False,
@@ -94,7 +94,7 @@ def _chosen(session: Session) -> list[Any]:
         sizing_mode="stretch_width", placeholder="measured from the body",
     )  # fmt: skip
     reset = pmui.Button(
-        label="As computed", icon="undo", size="small", variant="outlined", margin=GAP,
+        label="Reset", icon="undo", size="small", variant="outlined", margin=GAP,
         sizing_mode="stretch_width",
     )  # fmt: skip
     showing = [False]

@@ -1,4 +1,4 @@
-"""Learn: the list of the tour's steps, each of which can be gone to."""
+"""Learn: the list of the tour's steps."""
 
 from __future__ import annotations
 
@@ -20,17 +20,17 @@ def learn(session: Session) -> pmui.Column:
         go(session, max(state.tour, 0))
 
     start = pmui.Button(
-        label=when(lambda at: "Start the tour" if at < 0 else "Go on", state.param.tour),
+        label=when(lambda at: "Start the tour" if at < 0 else "Continue", state.param.tour),
         icon="school",
         size="small",
         margin=GAP,
         sizing_mode="stretch_width",
         on_click=begin,
     )
-    hint = "Each sets the page so that its point is seen; look around, and change what you like."
+    hint = "Each step sets the scene. Look around and change anything."
     steps = [_entry(session, index) for index in range(len(TOUR))]
     return pmui.Column(
-        lead(f"How skin comes to follow bones, in {len(TOUR)} short steps."),
+        lead(f"How skin follows bones, in {len(TOUR)} short steps."),
         section("", caption(hint), start, *steps, margin=(4, 20, 4, 20)),
         margin=0,
         sizing_mode="stretch_width",

@@ -40,7 +40,7 @@ def place(session: Session) -> list[Any]:
             sizing_mode="stretch_width", on_click=lambda event, act=act: act(session),
         )
         for label, act, margin in (
-            ("Centre in limb", moving.centre, 8), ("Put back", moving.put_back, 0),
+            ("Centre in limb", moving.centre, 8), ("Reset position", moving.put_back, 0),
         )
     )  # fmt: skip
     showing = [False]

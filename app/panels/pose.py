@@ -219,7 +219,7 @@ WORST_TEXT = "The worst turns by 30°, mean over the vertices. Press one to see 
 def error_text(state: State, error: tuple[float, float] | None) -> str:
     """Return the error of what is seen, in a sentence."""
     if error is None:
-        return "Switch the colours on to measure the motion." if not state.heat else ""
+        return 'Turn on "Error as colours" to measure the motion.' if not state.heat else ""
     if not state.posed:
         return "At rest there is no error. Distances are squared, the longest side scaled to 1 m."
     mean, greatest = error

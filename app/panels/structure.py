@@ -10,14 +10,14 @@ from ..commands import structure as actions
 from ..commands.session import Session
 from .parts import GAP, caption, unique_names
 
-NOTHING = "Nothing: it is a root"
+NOTHING = "None (root)"
 
 
 def structure(session: Session) -> pmui.Column:
     """Return what changes which joints there are."""
     state = session.state
     on = pmui.Select(
-        label="Hangs on", options=[NOTHING], value=NOTHING, size="small", margin=(8, 0),
+        label="Parent", options=[NOTHING], value=NOTHING, size="small", margin=(8, 0),
         sizing_mode="stretch_width",
     )  # fmt: skip
     look: dict[str, Any] = {"size": "small", "variant": "outlined", "sizing_mode": "stretch_width"}
@@ -25,7 +25,7 @@ def structure(session: Session) -> pmui.Column:
         pmui.Button(label=label, icon=icon, margin=margin, on_click=done, **look)
         for label, icon, margin, done in (
             ("Add a joint", "add", (4, 4, 4, 0), lambda event: actions.add(session)),
-            ("Remove it", "remove", (4, 0, 4, 4), lambda event: actions.remove(session)),
+            ("Remove joint", "remove", (4, 0, 4, 4), lambda event: actions.remove(session)),
         )
     )
     known: dict[str, list[str]] = {"names": []}

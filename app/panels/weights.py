@@ -19,22 +19,22 @@ from .parts import GAP, caption, choice, follow, lead, section, slider, when
 
 SHOWN = {
     "All bones": "mix",
-    "The strongest bone": "dominant",
-    "The chosen bone": "bone",
+    "Dominant bone": "dominant",
+    "Selected bone": "bone",
     "Influences per vertex": "count",
 }
 DIFFERENCE = {
-    "Difference to the file's own": "difference",
-    "The chosen bone's difference": "bone_difference",
+    "Difference from the file's": "difference",
+    "Difference of the selected bone": "bone_difference",
 }
-FALLOFF_TITLES = {"rig": "To animate with", "paper": "The paper's"}
+FALLOFF_TITLES = {"rig": "Animation", "paper": "Paper"}
 
 
 def weights(session: Session) -> pmui.Column:
     """Return the controls of the panel Weights."""
     state = session.state
     shown = pmui.Select(
-        label="Colours show", options=SHOWN, size="small", margin=GAP, sizing_mode="stretch_width"
+        label="Colour by", options=SHOWN, size="small", margin=GAP, sizing_mode="stretch_width"
     )
 
     def offered() -> tuple[dict[str, str], str]:
@@ -51,7 +51,7 @@ def weights(session: Session) -> pmui.Column:
     # The colours go first.
     state.param.watch(lambda *events: session.tasks.after_a_pause(tell, "told"), ["binding", "rig"])
     return pmui.Column(
-        lead("How much each bone moves each point of the skin."),
+        lead("How strongly each bone moves the skin."),
         section("", shown, *_sides(state), facts, margin=(8, 20, 4, 20)),
         brush(session),
         joints(session),
@@ -65,7 +65,7 @@ def weights(session: Session) -> pmui.Column:
 
 def _sides(state: State) -> list[Any]:
     """Return the choices between what was computed and what the file says."""
-    names = {"Ours": "ours", "The file's own": "file"}
+    names = {"Computed": "ours", "From file": "file"}
     whose = choice(
         state.param.weights_of,
         names,
@@ -99,8 +99,8 @@ def _falloff(state: State) -> list[Any]:
     return [
         *([choice(state.param.falloff, kernels)] if len(kernels) > 1 else []),
         alpha,
-        slider(state.param.max_influences, "Influences per vertex, at most", whole=True),
-        slider(state.param.threshold, "Drop weights below", step=0.005, end=0.3),
+        slider(state.param.max_influences, "Max influences", whole=True),
+        slider(state.param.threshold, "Ignore weights below", step=0.005, end=0.3),
     ]
 
 

@@ -20,15 +20,8 @@ from ..state.weights import SHOWN
 from .names import find_bone, find_clip
 from .options import apply
 
-PANELS = {
-    "graph": "graph",
-    "distance": "geodesics",
-    "weights": "weights",
-    "pose": "pose",
-    "compare": "compare",
-    "check": "diagnosis",
-}
-"""What panels are called here, and in the state."""
+PANELS = ("graph", "distance", "weights", "pose", "compare", "check")
+"""The panels whose scenes can be rendered."""
 
 VIEWS = {
     "three-quarter": (0.42, 0.16, 1.0),
@@ -125,7 +118,7 @@ def state_of(rig: Rig, choices: Choices) -> State:
     ParameterError
         See `check`.
     """
-    panel = PANELS[check_choice("panel", choices.panel, PANELS)]
+    panel = check_choice("panel", choices.panel, PANELS)
     if panel != "graph":
         rig.skeleton.require_joints()
     state = State(rig=rig, panel=panel, dark=choices.dark, skeleton=choices.skeleton)

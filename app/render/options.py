@@ -12,7 +12,7 @@ from cutcell.errors import ParameterError
 from cutcell.rig.checks import check_choice
 
 from ..state import State
-from ..state.geodesics import MAX_MEASURES, MEASURES
+from ..state.distance import MAX_MEASURES, MEASURES
 
 LAYERS = {
     "body": "body",

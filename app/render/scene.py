@@ -18,7 +18,7 @@ from ..commands.compare import measured
 from ..commands.pose import motion_error
 from ..scenes import following, resolve
 from ..scenes.common import has_field
-from ..scenes.geodesics import wants_field
+from ..scenes.distance import wants_field
 from ..scenes.measures import measuring
 from .choices import Choices, state_of
 from .names import find_clip
@@ -76,7 +76,7 @@ def describe(
         binding = bind(rig, resolution, method=choices.method, progress=progress)
     state.binding = binding
     state.materials = (rig.mesh, textures or textures_for(rig, choices))
-    if state.panel == "diagnosis":
+    if state.panel == "check":
         state.diagnosis = diagnose(rig, resolution, progress=progress)
         state.finding = choices.finding or ""
         if state.finding and state.found is None:
@@ -85,7 +85,7 @@ def describe(
     if wants_field(state):
         distances = state.binding.distances
         state.field = (distances, state.joint, distances.field(state.joint))
-    if state.panel == "geodesics" and has_field(state) and state.measures:
+    if state.panel == "distance" and has_field(state) and state.measures:
         try:
             state.beside_resolution = resolution
         except ValueError:

@@ -10,10 +10,10 @@ from cutcell_viewers.palette import ATTACHMENT, MARK, SOURCE
 from cutcell_viewers.skin import skin_of_weights
 
 from ..state import State
+from .check import check
 from .common import POSED, plain
 from .compare import compare
-from .diagnosis import diagnosis
-from .geodesics import geodesics
+from .distance import distance
 from .graph import graph
 from .memo import Memo
 from .pairs import pairs
@@ -24,11 +24,11 @@ __all__ = ["SCENES", "Memo", "following", "resolve"]
 
 SCENES: dict[str, Callable[[State, Memo], Description]] = {
     "graph": graph,
-    "geodesics": geodesics,
+    "distance": distance,
     "weights": weights,
     "pose": pose,
     "compare": compare,
-    "diagnosis": diagnosis,
+    "check": check,
     "learn": weights,
     "pairs": pairs,
 }
@@ -49,7 +49,7 @@ def resolve(state: State, memo: Memo | None = None) -> Description:
     """
     if state.rig is None:
         return Description()
-    is_bare = state.bare and state.panel != "diagnosis"
+    is_bare = state.bare and state.panel != "check"
     scene = SCENES["graph"] if is_bare else SCENES.get(state.panel, plain)
     whole = scene(state, memo or Memo())
     if whole.legend is None or not (_coloured(whole.actors) and state.rig.attachments):

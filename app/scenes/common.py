@@ -33,7 +33,7 @@ SEE_THROUGH = 0.22
 POSED = ("pose", "compare")
 """The panels on which the character moves; on all others it rests."""
 
-CUT = ("graph", "geodesics")
+CUT = ("graph", "distance")
 """The panels on which it can be cut."""
 
 
@@ -105,7 +105,7 @@ def plain(state: State, memo: Memo) -> Description:
 
 def cut_of(state: State) -> Cut | None:
     """Return the cutting plane, across the box of the body; none through bodies side by side."""
-    if state.cut_axis == "off" or (state.panel == "geodesics" and state.measures):
+    if state.cut_axis == "off" or (state.panel == "distance" and state.measures):
         return None
     across = cut_normal(state) if state.cut_axis == "free" else state.cut_axis
     return cut_at(bounds_of(state), across, state.cut_position)

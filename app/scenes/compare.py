@@ -22,12 +22,12 @@ from .memo import Memo
 from .pose import pose_of
 
 TITLES = {
-    NOW: "cutcell, as set here",
-    "artist": "The file's own",
+    NOW: "cutcell (current settings)",
+    "artist": "From file",
     "bbw": "Bounded biharmonic",
-    "cutcell": "Cut-cell, the paper's",
+    "cutcell": "cutcell (paper)",
     "cutcell_any": "Cut-cell, any angle",
-    "cutcell_rig": "Cut-cell, to animate with",
+    "cutcell_rig": "cutcell (animation)",
     "visibility": "RigNet's distance",
     "voxel": "Voxel binding",
     "voxel_unirig": "Voxel binding, UniRig's",

@@ -16,7 +16,7 @@ from cutcell_viewers.slice_scene import file_axis, slice_place, slice_scene
 
 from ..state import LAYERS, State
 from .common import SEE_THROUGH, cells_of, character, cut_of, theme_of
-from .geodesics import field_of, path_of
+from .distance import field_of, path_of
 from .memo import Memo
 from .section import field_section, winding_section
 

@@ -19,7 +19,7 @@ from cutcell_viewers.marks import path_tube
 from cutcell_viewers.palette import BODY
 
 from ..state import State
-from ..state.geodesics import MEASURES
+from ..state.distance import MEASURES
 from ..work.measured_distance import Measure, MeasuredDistance, measure_distance
 from .common import SEE_PATH, character
 from .memo import Memo

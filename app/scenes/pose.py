@@ -27,7 +27,7 @@ MAX_NUMBERS = 2**22
 """Of a motion, sent to the browser (16 MB): a long one of many joints has fewer frames there."""
 TOGETHER = 64
 """Frames that are sampled at a time."""
-VIEWS = ("cutcell", "The file's own weights")
+VIEWS = ("cutcell", "Weights from the file")
 
 
 def pose(state: State, memo: Memo) -> Description:

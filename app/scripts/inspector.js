@@ -131,7 +131,7 @@ function explained(bone, first) {
   }
   const far = `Distance ${LENGTH(bone.distance)}, through the air ${LENGTH(bone.straight)}`
   const factors = bone.factors.map(([name, value]) => `×\u202f${value.toPrecision(2)} ${name}`)
-  const counts = factors.length ? `; ${factors.join(", ")}: counts as ${LENGTH(bone.effective)}` : ""
+  const counts = factors.length ? `; ${factors.join(", ")}: effective ${LENGTH(bone.effective)}` : ""
   root.append(element("div", "quiet", `${far}${counts}.`), waterfall(bone))
   return root
 }
@@ -139,8 +139,8 @@ function explained(bone, first) {
 // What a person gives the vertex in place of what is computed; it is scaled to sum to one.
 function overruling(model, facts) {
   const form = element("form", "overrule")
-  const heading = element("h3", "", "Overrule")
-  heading.append(element("small", "", facts.overruled ? "given by you" : "scaled to sum to one"))
+  const heading = element("h3", "", "Override")
+  heading.append(element("small", "", facts.overruled ? "set manually" : "scaled to sum to one"))
   form.append(heading)
   const fields = facts.offered.map(({joint, name, color, weight}) => {
     const label = element("label")
@@ -155,11 +155,11 @@ function overruling(model, facts) {
     return [joint, input]
   })
   const buttons = element("div", "buttons")
-  const give = element("button", "", "Overrule")
+  const give = element("button", "", "Override")
   give.type = "submit"
   buttons.append(give)
   if (facts.overruled) {
-    const reset = element("button", "", "As computed")
+    const reset = element("button", "", "Reset")
     reset.type = "button"
     reset.addEventListener("click", () => model.send_msg({type: "overrule", weights: null}))
     buttons.append(reset)
@@ -201,7 +201,7 @@ function card(model, facts) {
     root.append(apart)
   }
 
-  const heading = element("h3", "", facts.overruled ? "Weights, given by you" : "Weights")
+  const heading = element("h3", "", facts.overruled ? "Weights, set manually" : "Weights")
   if (facts.artist) { heading.append(element("small", "", "outlined: the file's own")) }
   root.append(heading)
   for (const bone of facts.weights) {
@@ -229,7 +229,7 @@ function card(model, facts) {
   why.setAttribute("aria-expanded", String(facts.explain))
   why.addEventListener("click", () => model.send_msg({type: "explain"}))
   root.append(why)
-  if (facts.explain && !facts.why.length) { root.append(element("div", "quiet", "Tracing its paths …")) }
+  if (facts.explain && !facts.why.length) { root.append(element("div", "quiet", "Tracing paths …")) }
   root.append(...facts.why.map((bone, number) => explained(bone, number === 0)))
   if (facts.explain) { root.append(overruling(model, facts)) }
 
@@ -245,7 +245,6 @@ function card(model, facts) {
 
 export function render({model}) {
   const root = document.createElement("div")
-  root.style.maxHeight = "inherit"
   const show = () => {
     const old = root.querySelector(".vertex-card")
     const [label, top] = [old?.getAttribute("aria-label"), old?.scrollTop ?? 0]

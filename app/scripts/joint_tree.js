@@ -52,7 +52,7 @@ export function render({model}) {
     twist.addEventListener("click", (e) => { e.stopPropagation(); toggle(i) })
     const box = element("span", "box", row.carries ? "✓" : "", made)
     box.classList.toggle("changed", row.changed)
-    box.title = row.carries ? "Carries weight" : "Carries no weight"
+    box.title = row.carries ? "Deforms the mesh" : "Does not deform the mesh"
     box.addEventListener("click", (e) => { e.stopPropagation(); carry(i) })
     const chip = element("span", row.control ? "chip control" : "chip", "", made)
     chip.style.setProperty("--own", row.color)
@@ -61,7 +61,7 @@ export function render({model}) {
     if (row.locked) {
       const lock = element("span", "lock", "", made)
       lock.innerHTML = LOCK
-      lock.title = "Keeps the file's weights"
+      lock.title = "Lock to file weights"
     }
     if (row.gain !== 1) { element("span", "gain", `×${Number(row.gain.toPrecision(2))}`, made) }
     const bars = element("span", "bars", "", made)

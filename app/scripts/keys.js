@@ -7,7 +7,7 @@ const KEYS = [
   ["← →", "the bone before, the next bone"],
   ["↑ ↓", "towards the root, away from it"],
   ["Ctrl Z", "undo a choice"],
-  ["Ctrl Shift Z", "choose it again"],
+  ["Ctrl Shift Z", "redo"],
   ["PgDn PgUp", "the tour's next step, the one before"],
   ["?", "show or hide this card"],
   ["Esc", "close it"],
@@ -16,7 +16,7 @@ const CANVAS_KEYS = [
   ["Tab", "to the canvas; then the arrows turn the view"],
   ["+ −", "nearer, farther"],
   ["Shift ← →", "with Shift the arrows move it"],
-  ["Home", "the view one begins with"],
+  ["Home", "reset the view"],
   ["Enter", "choose the point of the body at the cross"],
 ]
 
@@ -40,7 +40,7 @@ const POINTER = [
   ["right-drag", "move (or Shift and drag)", "two fingers"],
   ["wheel", "nearer, farther", "pinch"],
   ["click", "choose a bone, or a point of the body", "tap"],
-  ["double click", "the view one begins with", "double tap"],
+  ["double click", "reset the view", "double tap"],
 ]
 
 const styled = await stylesheet("keys.css")
@@ -110,7 +110,7 @@ export class Keys {
       .map(([title, ways]) => [title, pointer(ways)])
     const sections = [...hands, ...keys].map(([title, all]) =>
       `<section><h3>${title}</h3>${list(all)}</section>`)
-    card.innerHTML = `<h2 id="keys-title">How to get about</h2><div>${sections.join("")}</div>`
+    card.innerHTML = `<h2 id="keys-title">Controls</h2><div>${sections.join("")}</div>`
       + `<button type="button">Close</button>`
     card.querySelector("button").addEventListener("click", () => card.close())
     card.addEventListener("click", (e) => { if (e.target === card) { card.close() } })

@@ -39,7 +39,7 @@ export class Overlay {
       ? "one finger paints · beside the body it turns · two move"
       : "drag over the body to paint · beside it to turn · [ ] size · Esc ends"
     this.waiting = make("div", "card waiting", this.root, false)
-    this.waiting.textContent = "The character is on its way …"
+    this.waiting.textContent = "Loading the character …"
     this.failed = make("div", "card failed", this.root)
     this.drop = make("div", "card drop", this.root)
   }

@@ -60,8 +60,12 @@ export function render({model}) {
   close.addEventListener("click", () => ask(-1))
   for (const button of card.querySelectorAll("button")) { button.type = "button" }
 
+  // The button that starts the tour is gone then; a page that opens on a step keeps its focus.
+  let shown = false
   const show = async () => {
     const step = model.steps[model.step]
+    const entering = card.hidden && shown
+    shown = true
     card.hidden = !step
     if (!step) { return }
     count.textContent = `Step ${model.step + 1} of ${model.steps.length}`
@@ -85,6 +89,7 @@ export function render({model}) {
       if (i === model.step) { dot.setAttribute("aria-current", "step") } else { dot.removeAttribute("aria-current") }
     })
     card.scrollTop = 0
+    if (entering) { title.focus({preventScroll: true}) }
     const katex = await loadKatex(model.katex_url)
     if (!katex) { formula.textContent = step.formula; return }
     formula.innerHTML = katex.renderToString(step.formula, {

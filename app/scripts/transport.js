@@ -41,7 +41,7 @@ export class Transport {
     this.overlay.root.classList.toggle("moving", Boolean(clip))
     if (clip) { this.track.max = clip.duration }
     this.button.innerHTML = playing ? PAUSE_ICON : PLAY_ICON
-    this.button.setAttribute("aria-label", playing ? "Halt the motion" : "Run the motion")
+    this.button.setAttribute("aria-label", playing ? "Pause the motion" : "Play the motion")
   }
 
   tick(clip, time) {

@@ -9,11 +9,11 @@ from types import SimpleNamespace
 from typing import Any
 
 from .brush import BrushChoices
+from .check import DiagnosisChoices
 from .common import PANELS, UNSEEN, Common
 from .compare import CompareChoices
 from .corrections import CorrectionsChoices
-from .diagnosis import DiagnosisChoices
-from .geodesics import GeodesicsChoices
+from .distance import GeodesicsChoices
 from .graph import LAYERS, GraphChoices
 from .pairs import PairsChoices
 from .pose import PoseChoices
@@ -49,7 +49,7 @@ class State(
         """Whether what stands there is small enough to be described at once."""
         if self.rig is None:
             return True
-        if self.cut_axis != "off" and self.panel in ("graph", "geodesics"):
+        if self.cut_axis != "off" and self.panel in ("graph", "distance"):
             return False  # the face of a cut takes some tenths of a second
         mesh, graph, joints = self.rig.mesh, self.graph, len(self.rig.skeleton.joints)
         shown = len(mesh.vertices) + len(mesh.faces) + A_JOINT * joints

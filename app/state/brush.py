@@ -43,7 +43,7 @@ class BrushChoices(param.Parameterized):
     )
     brush_strength: Any = param.Number(0.5, bounds=(MIN_STRENGTH, 1))
     brush_value: Any = param.Number(1.0, bounds=(0, 1), doc="What weights are replaced by.")
-    brush_mirrored: Any = param.Boolean(True, label="The other side, too")
+    brush_mirrored: Any = param.Boolean(True, label="Mirror")
     brush_selection: Any = param.Parameter(
         None, doc="The `Selection` that strokes are limited to, of whatever mesh; or None."
     )

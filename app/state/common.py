@@ -6,7 +6,7 @@ from typing import Any
 
 import param
 
-PANELS = ("graph", "geodesics", "weights", "pose", "compare", "diagnosis", "learn", "pairs")
+PANELS = ("graph", "distance", "weights", "pose", "compare", "check", "learn", "pairs")
 """The ids of the panels, in the order in which they are offered; the last for an audit alone."""
 
 

@@ -30,8 +30,8 @@ class CorrectionsChoices(param.Parameterized):
 
     corrections: Any = param.Parameter(Corrections(), doc="A cutcell.Corrections.")
     own: Any = param.Parameter(None, doc="The character where nothing is corrected: a cutcell.Rig.")
-    joint_handle: Any = param.Boolean(False, label="Move it in the scene")
-    mirrored: Any = param.Boolean(True, label="The other side moves along")
+    joint_handle: Any = param.Boolean(False, label="Show move handle")
+    mirrored: Any = param.Boolean(True, label="Mirror")
     dragged: Any = param.Parameter(
         None, doc="A `Dragged` while joints are on their way, which the corrections do not tell."
     )

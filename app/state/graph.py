@@ -27,7 +27,7 @@ class GraphChoices(param.Parameterized):
     )
     connectivity: Any = param.Selector(default=default("connectivity"), objects=[6, 26, "any"])
     winding_threshold: Any = param.Number(default("winding_threshold"), bounds=(0, 1))
-    orient: Any = param.Boolean(default("orient"), label="Turn inverted faces")
+    orient: Any = param.Boolean(default("orient"), label="Flip inverted faces")
     leaf: Any = param.Selector(default=default("leaf"), objects=list(LEAVES))
 
     body: Any = param.Boolean(True, label="Surface")

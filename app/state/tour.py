@@ -1,4 +1,4 @@
-"""The guided tour: what each step says, and what the page shows meanwhile."""
+"""The guided tour: the text of each step, and the scene that it sets."""
 
 from __future__ import annotations
 
@@ -10,25 +10,25 @@ Angles = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class Look:
-    """What the page shows during a step.
+    """The scene of a step.
 
     Parameters
     ----------
     panel : str
     bone : str
     focus : str
-        The joint that the camera looks at; the whole character without one.
+        The joint at the centre of the view; empty for the whole character.
     near : float
-        How near: 1 sees the whole, 0.3 a third of it.
+        Distance of the camera: 1 fits the whole character, 0.3 a third of it.
     angles : tuple of float
         Degrees: around the character, and from above.
     turns : dict
         Degrees about x, y and z by which joints are turned.
     clicked : str
-        A vertex is clicked: the one nearest to the bone, of those that follow this joint.
+        Joint of the clicked vertex: the vertex nearest to the bone that follows this joint.
     demo : str
     choices : dict
-        What else is chosen, beside what one begins with.
+        Parameters of the state that differ from their defaults.
     """
 
     panel: str
@@ -50,7 +50,7 @@ class Offer:
     ----------
     label : str
     choices : dict
-        What it chooses.
+        Parameters of the state that it sets.
     """
 
     label: str
@@ -65,14 +65,14 @@ class Step:
     ----------
     title : str
     text : str
-        Two or three short paragraphs, parted by empty lines.
+        Two short paragraphs, separated by an empty line.
     formula : str
         In TeX; empty for none.
     task : str
-        What to look at, or to try, in one sentence.
+        What to look at or to try.
     look : Look
     offers : tuple of Offer
-        What the card itself changes, so that nobody is sent to look for a control.
+        Buttons on the card, so that the step needs no control of the sidebar.
     """
 
     title: str
@@ -84,31 +84,33 @@ class Step:
 
 
 CUT = {"cut_axis": "z", "cut_position": 0.5, "skeleton": False}
-"""Through the middle of the body, seen from its front, with no bones before it."""
+"""Through the middle of the body, seen from its front, without bones in front of it."""
 
+
+EDGES = {"slicing": False, "mesh_edges": False, "interior_edges": False, "surface_edges": False}
 
 TOUR = (
     Step(
-        "A skin on bones",
-        "A character on a screen is a skin of triangles. To move it, one puts a skeleton inside: "
-        "bones that meet in joints. An animator turns the joints, never the thousands of points "
+        "Skin follows bones",
+        "A character on a screen is a skin of triangles. To move it, we put a skeleton inside: "
+        "bones that meet in joints. An animator rotates the joints, never the thousands of points "
         "of the skin.\n\n"
-        "So every point of the skin must know which bones it goes along with, and how much. These "
-        "shares are its weights. They add up to one, and the point goes where the bones take it, "
-        "each by its share.",
+        "So every point of the skin needs to know which bones it follows, and how strongly. "
+        "These shares are its weights. They add up to one, and the point moves to the weighted "
+        "mean of where the bones would take it.",
         r"v' = \sum_j w_j\, T_j\, v \qquad \sum_j w_j = 1",
-        "The walk moves the bones; the weights that were just computed move the skin.",
+        "The walk moves the bones. The weights, computed a moment ago, move the skin.",
         Look("pose", bone="upper_arm.L", choices={"moving": True, "playing": True}),
     ),
     Step(
-        "One bone's share",
-        "Here are the weights of one bone, the left upper arm. Where the skin glows it follows "
-        "this bone alone; where it is grey it does not care.\n\n"
-        "What matters lies between: around the elbow and the shoulder two bones share the skin, "
-        "and it bends smoothly. Where nothing is shared it would break like a hinge; where too "
-        "much is shared it turns to rubber.",
+        "The weights of one bone",
+        "These are the weights of the left upper arm. Bright skin follows this bone alone; grey "
+        "skin ignores it.\n\n"
+        "The transition matters most. Around the elbow and the shoulder two bones share the skin, "
+        "and it bends smoothly. With no transition it breaks like a hinge; with too wide a "
+        "transition it turns to rubber.",
         r"0 \le w_j(v) \le 1",
-        "Press → to go from bone to bone.",
+        "Click another bone, or press → for the next one.",
         Look(
             "weights",
             bone="upper_arm.L",
@@ -118,104 +120,158 @@ TOUR = (
         ),
     ),
     Step(
-        "Near is not the same as together",
-        "The simplest thought: a point belongs to the bones that are near. But look at the hand. "
-        "It hangs a finger's breadth from the hip; in a straight line the thigh is about as near "
-        "to the hand's bone as the hand's own fingertips.\n\n"
-        "Now the arm is lifted. With straight distances the hand pulls the trousers along: its "
-        "weights have leaked across the gap of air.",
-        r"\|v - b\|_2 \;\text{ sees no air}",
-        "On the left by straight distance, on the right through the body, as the next step tells. "
-        "The colours are the hand's weights: they should end at the wrist.",
+        "Close is not connected",
+        "The simplest idea: a point follows whichever bones are nearest. But look at the hand. "
+        "It almost touches the hip; in a straight line, the thigh is about as close to the hand's "
+        "bone as the hand's own fingertips.\n\n"
+        "Now the arm is raised. With straight-line distances the hand pulls the trousers along: "
+        "its weights have leaked across the gap of air.",
+        r"\|v - b\|_2 \;\text{ cuts through the air}",
+        "Left: straight-line distance. Right: distance through the body, with the same falloff. "
+        "The colours are the hand's weights. They should end at the wrist.",
         Look(
             "compare",
             bone="hand.L",
             focus="forearm.L",
             turns={"upper_arm.L": (0, 0, 45)},
-            choices={"methods": ["euclidean", "now"], "skeleton": False},
+            choices={"methods": ["euclidean", "cutcell_any"], "skeleton": False},
         ),
     ),
     Step(
         "Through the body",
-        "So we measure the way an ant would have to go that may walk inside the body but not "
-        "through the air: from the hand up the arm, over the shoulder, down to the hip. That is "
-        "the geodesic distance.\n\n"
-        "In a straight line the thigh is 4 cm from the hand's bone, when the character is one "
-        "metre tall. Through the body it is 37 cm. Lines of equal distance are "
-        "drawn; where the colour jumps from the hand to the hip, air lies between.",
+        "So we measure the path of an ant that can burrow through the body but cannot cross the "
+        "air: from the hand up the arm, over the shoulder, down to the hip. Its length is the "
+        "geodesic distance.\n\n"
+        "On a character one metre tall, the thigh is 4 cm from the hand's bone in a straight "
+        "line, and 37 cm through the body. The lines mark equal distances. Where the colour jumps "
+        "from the hand to the hip, there is air in between.",
         r"d(v, b) = \min_{\gamma: b \to v,\ \gamma \subset \text{body}} \text{length}(\gamma)",
-        "Follow the red line: it is the shortest way from the thigh to the hand. Click any other "
-        "place to see its way.",
+        "Follow the red line, the shortest path from thigh to hand. Click anywhere to see another.",
         Look(
-            "geodesics",
+            "distance",
             bone="hand.L",
             focus="forearm.L",
             near=0.5,
             angles=(6.0, 6.0),
             clicked="thigh.L",
-            choices={**CUT, "cut_position": 0.52},
+            choices={**CUT, "cut_position": 0.52, "starts": True},
         ),
     ),
     Step(
-        "A graph to walk on",
-        "A computer needs a map of the ways. We shoot rays through the body, along three axes, a "
-        "lattice of them. Each ray is cut by the skin into pieces, some inside and some outside. "
-        "The pieces inside become streets of the map.\n\n"
-        "Where a ray meets the skin, the crossing is tied to the corners of the triangle it hit. "
-        "So every point of the skin is on the map: blue streets follow the skin, orange ones run "
-        "inside, green ones tie both together.",
+        "Rays find the inside",
+        "A computer needs a map of the body. We shoot a lattice of rays through it, along three "
+        "axes. The skin cuts each ray into segments, some inside and some outside.\n\n"
+        "The winding number decides: it counts how often the skin wraps around a point. A segment "
+        "is kept if the number at its midpoint is at least τ = ½.",
+        r"s \text{ is inside} \iff w(\text{midpoint of } s) \ge \tau",
+        "One slice with its rays. Hover over a ray to read its winding number.",
+        Look(
+            "graph",
+            bone="chest",
+            focus="spine2",
+            near=0.55,
+            angles=(0.0, 2.0),
+            choices={"slicing": True, "resolution": 40, "skeleton": False},
+        ),
+    ),
+    Step(
+        "A graph of three kinds of edges",
+        "The segments inside become the orange edges of a graph. The edges of the mesh are its "
+        "blue edges: they follow the skin.\n\n"
+        "Where a ray meets the skin, green edges connect the crossing to the three corners of the "
+        "triangle. They connect both parts, so every vertex of the skin can be reached from "
+        "inside.",
         r"G = \underbrace{E_{\text{mesh}}}_{\text{blue}} \cup "
-        r"\underbrace{E_{\text{inside}}}_{\text{orange}} \cup "
+        r"\underbrace{E_{\text{interior}}}_{\text{orange}} \cup "
         r"\underbrace{E_{\text{surface}}}_{\text{green}}",
-        "Go through the body, from its back to its front.",
+        "Show one kind of edge at a time, then all of them.",
         Look(
             "graph",
             bone="chest",
             focus="upper_arm.L",
             near=0.24,
             angles=(14.0, 10.0),
-            choices={**CUT, "mesh_edges": True, "surface_edges": True, "resolution": 40},
+            choices={**CUT, **EDGES, "interior_edges": True, "resolution": 40},
         ),
-        tuple(
-            Offer(label, {"cut_axis": "z", "cut_position": at})
-            for label, at in (("Back", 0.35), ("Middle", 0.5), ("Front", 0.65))
+        (
+            Offer("Mesh", {**EDGES, "mesh_edges": True}),
+            Offer("Interior", {**EDGES, "interior_edges": True}),
+            Offer("Surface", {**EDGES, "surface_edges": True}),
+            Offer(
+                "All",
+                {**EDGES, "mesh_edges": True, "interior_edges": True, "surface_edges": True},
+            ),
         ),
     ),
     Step(
-        "How fine a map",
-        "R says how many cells of the lattice lie along the longest side. With few cells the map "
-        "is quick to draw, but thin parts have no street inside: at R = 20 a cell is as wide as "
-        "three fingers, and fingers are left to the streets on their skin.\n\n"
-        "Twice as many cells show twice as fine details, and there are eight times as many of "
-        "them. R = 64 does for most characters.",
+        "How fine should the graph be?",
+        "The resolution R is the number of lattice cells along the longest side. With few cells "
+        "the graph is small, but thin parts have no edges inside: at R = 20 a cell is as wide as "
+        "three fingers.\n\n"
+        "Doubling R halves the smallest detail, at eight times the cells. R = 64 is enough for "
+        "most characters.",
         r"h = \frac{\text{longest side}}{R} \qquad \text{cells} \propto R^3",
-        "Not one orange street leads into the fingers. Choose more cells, and watch them fill.",
+        "No orange edge leads into the fingers. Choose more cells and watch the fingers fill.",
         Look(
             "graph",
             bone="hand.L",
             focus="hand.L",
             near=0.26,
             angles=(10.0, 4.0),
-            choices={"resolution": 20, "skeleton": False, "mesh_edges": True},
+            choices={"resolution": 20, "skeleton": False},
         ),
         tuple(Offer(f"R = {cells}", {"resolution": cells}) for cells in (20, 64, 128)),
     ),
     Step(
-        "Diamonds and circles",
-        "Who may walk along the axes alone goes round corners, as in a city of blocks: one step "
-        "right and one up are two, where the crow flies 1.41. Places equally far from a bone "
-        "then form diamonds, and that does not get better with more streets.\n\n"
-        "So the default lets the way run straight as far as it can see, at any angle. Equal "
-        "distances become round, as they are in truth.",
-        r"\|x\|_1 = |x_1| + |x_2| + |x_3| \;\ge\; \|x\|_2",
-        "Here only axes are allowed. Allow any angle, and see the diamonds become round.",
+        "Sources on the bone",
+        "Distances start at the bone. We take five samples along it, and each starts at its "
+        "nearest nodes of the graph: the sources.\n\n"
+        "A source is not exactly on the bone, so it does not start at zero. It starts at its own "
+        "distance from the bone.",
+        r"d(s) = \min_{x \in \text{bone}} \|s - x\|_2",
+        "The dots on the bone are its samples and sources. Choose another bone in the list.",
         Look(
-            "geodesics",
+            "distance",
+            bone="forearm.L",
+            focus="forearm.L",
+            near=0.3,
+            angles=(6.0, 6.0),
+            choices={**CUT, "cut_position": 0.52, "skeleton": True, "starts": True},
+        ),
+    ),
+    Step(
+        "Dijkstra's search",
+        "From the sources the search spreads like a wave. It always continues at the node with "
+        "the smallest distance so far, and updates the neighbours of that node.\n\n"
+        "When a node's turn has come, no shorter path to it exists. One search for each bone gives "
+        "the distance to every vertex.",
+        r"d(v) \leftarrow \min\bigl(d(v),\ d(u) + \text{length}(u, v)\bigr)",
+        "The wave runs from the hand. It passes the shoulder long before it reaches the thigh.",
+        Look(
+            "distance",
+            bone="hand.L",
+            focus="chest",
+            near=0.8,
+            angles=(6.0, 6.0),
+            choices={**CUT, "cut_position": 0.52, "wave": True, "front": 0.0, "animating": True},
+        ),
+    ),
+    Step(
+        "Diamonds and circles",
+        "If you may only walk along the axes, you go round every corner, as in Manhattan: one "
+        "block right and one up make two, while a straight line is 1.41. Points at equal distance "
+        "from a bone then form diamonds, and more cells do not help.\n\n"
+        "So by default a path runs straight, at any angle, for as long as it stays inside. Equal "
+        "distances become round, as they should be.",
+        r"\|x\|_1 = |x_1| + |x_2| + |x_3| \;\ge\; \|x\|_2",
+        "Only the axes are allowed now. Allow any angle and watch the diamonds become round.",
+        Look(
+            "distance",
             bone="spine2",
             focus="spine2",
             near=0.36,
             angles=(0.0, 4.0),
-            choices={**CUT, "connectivity": 6},
+            choices={**CUT, "connectivity": 6, "starts": True},
         ),
         (
             Offer("Axes only", {"connectivity": 6}),
@@ -225,13 +281,14 @@ TOUR = (
     ),
     Step(
         "From distance to weight",
-        "Near bones shall count much, far ones little. The paper turns the distance d, measured "
-        "by the body's diagonal D, into a weight by this formula, and divides by the sum over all "
-        "bones.\n\n"
-        "α says how steep it falls: at 0 like 1/d², at 1 like 1/d⁴. Steep is stiff, each bone "
-        "keeps to its own; flat is soft, and far bones have a say.",
+        "Near bones should count a lot, far ones little. The paper divides the distance d by the "
+        "diagonal D of the bounding box, turns it into a weight by this formula, and divides by "
+        "the sum over all bones.\n\n"
+        "α sets how fast weights fall: like 1/d² at 0, like 1/d⁴ at 1. The paper gives these soft "
+        "weights to a network. The animation falloff, which cutcell uses by default, is much "
+        "sharper.",
         r"w = \left(\frac{1}{(1-\alpha)\,\frac{d}{D} + \alpha\,(\frac{d}{D})^2}\right)^{2}",
-        "Even the far head is tinged. Choose another α: no distance is measured again.",
+        "Even the head, far away, gets some colour. Choose another α: distances stay the same.",
         Look(
             "weights",
             bone="chest",
@@ -239,22 +296,24 @@ TOUR = (
             near=0.6,
             choices={"weights_shown": "bone", "falloff": "paper", "alpha": 0.5},
         ),
-        tuple(
-            Offer(f"α = {alpha:g}", {"falloff": "paper", "alpha": alpha})
-            for alpha in (0.0, 0.5, 1.0)
+        (
+            *(
+                Offer(f"α = {alpha:g}", {"falloff": "paper", "alpha": alpha})
+                for alpha in (0.0, 0.5, 1.0)
+            ),
+            Offer("Animation", {"falloff": "rig"}),
         ),
     ),
     Step(
-        "Why this one failed: inside out",
-        "How does a ray know that it is inside? It asks for the winding number: how often the "
-        "skin wraps around a point, counted with a sign. It is 1 inside and 0 outside; what has "
-        "at least τ = ½ is kept.\n\n"
-        "On this twin the triangles of the right arm face inwards. The skin wraps the other way "
-        "round and the number is −1: for the map the arm is hollow. It has no orange streets, "
-        "and its distances creep along the skin. So faces whose back is what one sees from outside "
-        "are turned round first; here they are not.",
-        r"w(p) = \frac{1}{4\pi}\sum_{t} \Omega_t(p) \;\ge\; \tau",
-        "Compare the two arms in the cut. Then turn the inverted faces round: the arm fills.",
+        "When it fails: inside out",
+        "The winding number counts how often the skin wraps around a point, with a sign. It is 1 "
+        "inside and 0 outside.\n\n"
+        "On this character, the triangles of the right arm face inward. The winding number there "
+        "is −1, so the arm counts as hollow: it has no orange edges, and distances run along its "
+        "skin. By default cutcell flips such faces first. Here that is switched off.",
+        r"w(p) = \frac{1}{4\pi}\sum_{t} \Omega_t(p), \quad "
+        r"\Omega_t: \text{solid angle of triangle } t",
+        "Compare the two arms in the cut. Then flip the inverted faces: the arm fills.",
         Look(
             "graph",
             bone="forearm.R",
@@ -265,32 +324,30 @@ TOUR = (
             choices={**CUT, "orient": False},
         ),
         (
-            Offer("As they are", {"orient": False}),
-            Offer("Turn them round", {"orient": True}),
+            Offer("As in the file", {"orient": False}),
+            Offer("Flipped", {"orient": True}),
         ),
     ),
     Step(
-        "Why this one fails: no way in",
-        "The cape is a single sheet of cloth that touches nothing. It has no inside, and no "
-        "street leads to it: its distance from every bone is infinite.\n\n"
-        "The page says so instead of guessing in silence, and lets these points follow the three "
-        "bones that are nearest in a straight line. For a cape on a back that looks fair; for a "
-        "coat between two legs it would leak again.",
+        "When it fails: no way in",
+        "The cape is a single sheet of cloth that touches nothing. It has no inside, and no edge "
+        "leads to it: its distance from every bone is infinite.\n\n"
+        "The page reports this, and lets these vertices follow their three nearest bones in a "
+        "straight line. That works for a cape on a back. A coat between two legs would leak again.",
         r"d(v, b) = \infty \;\Rightarrow\; \|v - b\|_2 \text{ of 3 bones}",
-        "Turn the character, and see from which bones the cape takes its colours.",
+        "Orbit the character, and see which bones the cape takes its colours from.",
         Look("weights", bone="spine2", angles=(152.0, 12.0), demo="biped_cape"),
     ),
     Step(
-        "Torn, and still whole",
-        "This twin has a vertex of its own for every corner, and holes: no triangle knows its "
-        "neighbour. Methods that walk on the skin cannot take a step here, and those that fill "
-        "it with tetrahedra refuse.\n\n"
-        "The map does not mind. Corners at one place count as one, and the winding number only "
-        "sinks a little near a hole: just inside it is still more than ½. The body is there, so "
-        "the weights are.",
+        "Torn, but still whole",
+        "In this file every triangle has its own corners, and there are holes: no triangle is "
+        "connected to its neighbours. Methods that walk on the skin cannot take a step here, and "
+        "most tetrahedral meshers fail.\n\n"
+        "The graph copes. Corners at the same position count as one, and the winding number drops "
+        "only a little near a hole: just inside it is still above ½.",
         r"w(p) \approx 1 - \frac{\Omega_{\text{hole}}(p)}{4\pi} \;>\; \tfrac12",
-        "That was the tour. Drop a character of your own, and see what it says.",
+        "That was the tour. Now drop a character of your own.",
         Look("weights", bone="spine2", focus="chest", near=0.6, demo="biped_soup"),
     ),
 )
-"""In the order in which they are told."""
+"""In the order of the tour."""

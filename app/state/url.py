@@ -23,6 +23,9 @@ OWN = frozenset({"name", "demo", "queued", "joint", "dark", "moving", "playing",
 NOTED = ("joint", "turns", "clip", "methods", "minus", "corrections")
 """What is chosen, too, but only means something on the character that stands there."""
 
+FORMER_PANELS = {"geodesics": "distance", "diagnosis": "check"}
+"""Names of panels in older addresses, and their names today."""
+
 CAMERA = 6
 """Numbers of a camera: where the eye is, and what it looks at."""
 
@@ -125,6 +128,8 @@ def from_query(query: str, state: State) -> tuple[dict[str, Any], dict[str, Any]
                 (arrival[name],) = _methods(text, 1)
             elif name == "camera":
                 arrival[name] = _numbers(text, CAMERA)
+            elif name == "panel":
+                choices[name] = _value(known[name], FORMER_PANELS.get(text, text))
             elif name in known:
                 choices[name] = _value(known[name], text)
             else:

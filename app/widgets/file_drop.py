@@ -14,7 +14,7 @@ from .modules import script
 class FileDrop(JSComponent):
     """A place to drop files on, or to choose them with a click."""
 
-    label = param.String("Drop a character here, or choose")
+    label = param.String("Drop a character here, or browse")
     hint = param.String("")
 
     _esm = script("file_drop")

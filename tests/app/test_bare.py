@@ -59,7 +59,7 @@ def test_every_panel_can_be_looked_at(bare, loop, panel):
     assert "body" in resolve(bare.state).actors
     _, place = bare.built[0]
     told = [one.object for one in place.objects if one.visible and hasattr(one, "object")]
-    assert (told == [NO_SKELETON]) == (panel not in ("graph", "diagnosis", "learn"))
+    assert (told == [NO_SKELETON]) == (panel not in ("graph", "check", "learn"))
 
 
 def test_cuts_slices_and_keys_do_no_harm(bare, loop):

@@ -23,7 +23,7 @@ def test_the_first_demo_stands_there_without_a_click(browser, url):
     # It moves, in the colours of its weights, until somebody halts it.
     visit.status.wait_for(timeout=BIND_MS)
     visit.page.wait_for_function("__cutcell.report().playing && __cutcell.report().time > 0.2")
-    visit.button("Halt the motion").click()
+    visit.button("Pause the motion").click()
     seen = visit.look()
     assert visit.page.evaluate("__cutcell.renderer.actors.get('body').coloured")
     assert visit.page.get_by_role("combobox", name="Character").inner_text() == "Walker"
@@ -50,7 +50,7 @@ def test_the_cutting_plane_moves_through_the_body(visit):
     visit.button("Cut X").click()
     half = visit.look()
     assert changed(whole, half) > 0.01
-    visit.slide("Where the cut lies", "ArrowLeft", 10)
+    visit.slide("Position", "ArrowLeft", 10)
     less = visit.look()
     assert changed(half, less) > 0.001
     visit.button("Half").click()
@@ -334,7 +334,7 @@ def test_a_long_computation_can_be_cancelled(visit):
     box.fill("512")  # some seconds of work, even for a small character
     box.press("Enter")
     visit.click_when_seen("Cancel")
-    visit.expect_text("Cancelled. The page keeps what it had.")
+    visit.expect_text("Cancelled. Nothing was changed.")
     visit.dismiss()
     visit.wait_until_bound()
     assert changed(before, visit.look()) < 0.001

@@ -51,7 +51,7 @@ def test_methods_stand_side_by_side_with_their_measures(visit):
     assert deformation > 0
     assert seconds >= 0
     visit.settle()
-    assert captions(visit) == ["cutcell, as set here", "The file's own", "Euclidean"]
+    assert captions(visit) == ["cutcell (current settings)", "From file", "Euclidean"]
     three = visit.look()
     box(visit, "Voxel binding, UniRig's").check()
     measured(visit, "UniRig")
@@ -62,8 +62,8 @@ def test_methods_stand_side_by_side_with_their_measures(visit):
     box(visit, "Voxel binding, UniRig's").uncheck()
     box(visit, "Euclidean").uncheck()
     visit.settle()
-    assert captions(visit) == ["cutcell, as set here", "The file's own"]
-    expect(box(visit, "The file's own")).to_be_disabled()
+    assert captions(visit) == ["cutcell (current settings)", "From file"]
+    expect(box(visit, "From file")).to_be_disabled()
 
 
 def test_one_camera_turns_all(visit):
@@ -105,11 +105,11 @@ def test_a_bone_is_picked_in_any_view(visit):
 
 def test_differences_errors_and_poses_are_seen(visit):
     plain = visit.look()
-    visit.choose("Difference to", "The file's own")
+    visit.choose("Difference to", "From file")
     visit.expect_text("difference")
     difference = visit.look()
     assert changed(plain, difference) > 0.005
-    assert captions(visit)[0] == "cutcell, as set here − The file's own"
+    assert captions(visit)[0] == "cutcell (current settings) − From file"
     visit.button("Error").click()
     visit.expect_text("Worst error in any turn by 30°")
     assert changed(difference, visit.look()) > 0.005

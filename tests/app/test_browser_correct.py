@@ -53,7 +53,7 @@ def corrected(visit):
 def exported(visit, tmp_path):
     """Return the character that the page exports."""
     with visit.page.expect_download() as saved:
-        visit.button("Download the bound GLB").click()
+        visit.button("Export GLB").click()
     path = tmp_path / "bound.glb"
     saved.value.save_as(path)
     return cutcell.load(path)
@@ -82,7 +82,7 @@ def test_joints_are_corrected_by_keys_kept_and_exported(visit, robot, tmp_path):
     expect(visit.bone).to_have_text(name)
     visit.page.keyboard.press(" ")
     expect(last).to_have_attribute("aria-checked", "false")
-    visit.switch("Keeps the file's weights")
+    visit.switch("Lock to file weights")
     visit.slide("Reach", "ArrowRight", 5)
     visit.settle()
     assert faults(visit) == []
@@ -118,7 +118,7 @@ def test_joints_are_corrected_by_keys_kept_and_exported(visit, robot, tmp_path):
 def test_a_joint_is_dragged_and_typed_and_stays_so_in_the_file(visit, robot, tmp_path):
     joint = robot.skeleton.names.index("forearm.L")
     visit.choose("Bone", "forearm.L")
-    visit.switch("Move it in the scene")
+    visit.switch("Show move handle")
     visit.settle()
     before = visit.look()
     x, y = visit.page.evaluate("__cutcell.jointHandle()")
@@ -147,7 +147,7 @@ def test_a_joint_is_dragged_and_typed_and_stays_so_in_the_file(visit, robot, tmp
     visit.wait_until_bound()
     visit.dismiss()
     assert corrected(visit) == held
-    visit.button("Put back").click()
+    visit.button("Reset position").click()
     visit.settle()
     visit.expect_text("Nothing is corrected")
     visit.button("Undo").click()
@@ -181,7 +181,7 @@ def test_a_part_is_glued_to_a_joint(visit, robot, tmp_path):
     visit.page.keyboard.press("Enter")
     expect(ring).to_have_attribute("aria-current", "true")
     assert changed(whole, visit.look()) > 0.02
-    visit.choose("This part is", "Glued to a joint")
+    visit.choose("Bind this part", "Rigid, to one joint")
     expect(ring).to_contain_text("glued: ")
     visit.settle()
     assert faults(visit) == []
@@ -204,19 +204,35 @@ def test_a_vertex_is_overruled_on_its_card_and_undone(visit, robot):
     expect(numbers.first).to_have_value("0.25")
     expect(numbers.last).to_be_focused()
     visit.page.keyboard.press("Enter")
-    expect(visit.card).to_contain_text("Weights, given by you")
+    expect(visit.card).to_contain_text("Weights, set manually")
     visit.settle()
     expect(visit.card.locator("details").first).to_contain_text("corrected0.75")
     assert faults(visit) == []
     assert sorted(corrected(visit).vertices[vertex].values()) == [0.25, 0.75]
     visit.button("Undo").click()
-    expect(visit.card).not_to_contain_text("given by you")
+    expect(visit.card).not_to_contain_text("set manually")
     visit.button("Redo").click()
-    visit.card.get_by_role("button", name="As computed").click()
-    expect(visit.card).not_to_contain_text("given by you")
+    visit.card.get_by_role("button", name="Reset").click()
+    expect(visit.card).not_to_contain_text("set manually")
     visit.card.get_by_role("button", name="Hide why").click()
     visit.close_card()
     visit.expect_text("Nothing is corrected")
+
+
+def test_the_card_of_a_vertex_scrolls_within_a_small_window(visit):
+    size = visit.page.viewport_size
+    visit.page.set_viewport_size({"width": 1366, "height": 600})
+    visit.click_vertex()
+    visit.card.get_by_role("button", name="Why these weights?").click()
+    override = visit.card.get_by_role("button", name="Override")
+    override.scroll_into_view_if_needed()
+    box = override.bounding_box()
+    assert box["y"] + box["height"] <= 600
+    canvas = visit.page.get_by_role("application").bounding_box()
+    assert canvas["y"] > 0, "the page itself has not scrolled"
+    visit.card.get_by_role("button", name="Hide why").click()
+    visit.close_card()
+    visit.page.set_viewport_size(size)
 
 
 def test_weights_are_painted_on_a_posed_body_and_stay_so(visit, robot, tmp_path):

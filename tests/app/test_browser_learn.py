@@ -63,13 +63,13 @@ def test_a_link_to_a_step_shows_its_scene_and_the_tour_goes_on(browser, url):
 def test_another_person_sees_the_same_comparison(browser, visit):
     one = visit
     one.go("?rig=robot&panel=compare&resolution=24")
-    one.page.get_by_role("checkbox", name="The file's own").uncheck()
+    one.page.get_by_role("checkbox", name="From file").uncheck()
     one.choose("Difference to", "Euclidean")
     one.expect_text("difference")
     one.page.wait_for_function("location.search.includes('minus=euclidean')", timeout=LOAD_MS)
     one.settle()
     captions = one.page.locator(".caption").all_inner_texts()
-    assert captions == ["cutcell, as set here − Euclidean", "Euclidean − itself"]
+    assert captions == ["cutcell (current settings) − Euclidean", "Euclidean − itself"]
     other = Visit(browser, one.page.url)
     other.wait_until_bound()
     expect(other.page.locator(".caption")).to_have_text(captions, timeout=LOAD_MS)

@@ -86,7 +86,7 @@ def test_a_slab_and_a_slice_with_its_rays(visit):
         }"""
     )
     assert told == "winding number 1"
-    visit.slide("Where the slice lies", "ArrowRight", 12)
+    visit.slide("Position", "ArrowRight", 12)
     assert changed(slice_, visit.look()) > 0.003
 
 
@@ -106,10 +106,10 @@ def test_the_field_its_starts_and_the_way_back(visit):
     visit.panel("Distance")
     visit.expect_text("Distance from")
     whole = visit.look()
-    visit.switch("Where distances begin")
+    visit.switch("Sources")
     visit.expect_text(re.compile(r"\d+ sources, up to 0\.\d+ from the bone"))
     assert visit.report()["actors"]["sources"]["points"] > 0
-    visit.switch("Where distances begin")
+    visit.switch("Sources")
     visit.click_vertex("__cutcell.renderer.actors.get('body').values[vertex] < 0.04")
     visit.expect_text(re.compile(r"shortest path, \d\.\d+ long"))
     assert visit.report()["actors"]["path"]["points"] > 0
@@ -125,7 +125,7 @@ def test_the_field_its_starts_and_the_way_back(visit):
     visit.page.mouse.move(knob["x"] + 66, knob["y"] + 6, steps=3)
     visit.page.mouse.up()
     visit.page.wait_for_function("n => __cutcell.cut.normal[0] !== n[0]", arg=across)
-    visit.slide("Tilted", "ArrowRight", 2)
+    visit.slide("Pitch", "ArrowRight", 2)
     visit.button("Winding number").click()
     visit.expect_text("where the plane meets the mesh")
     visit.switch("Straight line")
@@ -148,15 +148,15 @@ def test_the_wave_runs_and_halts(visit):
     some = visit.look()
     assert changed(whole, some) > 0.01
     front = visit.report()["front"]
-    visit.slide("How far it came", "ArrowRight", 8)
+    visit.slide("Progress", "ArrowRight", 8)
     visit.page.wait_for_function("f => __cutcell.report().front > f", arg=front)
-    visit.button("Let it run").click()
+    visit.button("Play the wave").click()
     visit.page.wait_for_function("__cutcell.report().animating")
     messages = visit.report()["messages"]
     first = visit.report()["front"]
     visit.page.wait_for_function("f => __cutcell.report().front !== f", arg=first)
     assert visit.report()["messages"] == messages  # nothing is streamed
-    visit.button("Halt the wave").click()
+    visit.button("Pause the wave").click()
     visit.page.wait_for_function("!__cutcell.report().animating")
     visit.settle()
     visit.switch("Wavefront")
@@ -167,23 +167,23 @@ def test_weights_in_many_ways(visit):
     visit.panel("Weights")
     mixed = after = visit.look()
     for option, legend in (
-        ("The strongest bone", None),
-        ("The chosen bone", "Weight of"),
-        ("Influences per vertex", "Joints that a vertex follows"),
+        ("Dominant bone", None),
+        ("Selected bone", "Weight of"),
+        ("Influences per vertex", "Influences"),
     ):
         before = after
-        visit.choose("Colours show", option)
+        visit.choose("Colour by", option)
         if legend:
             visit.expect_text(legend)
         after = visit.look()
         assert changed(before, after) > 0.001, option
-    visit.slide("Influences per vertex, at most", "Home")
+    visit.slide("Max influences", "Home")
     visit.expect_text("1.0 influences per vertex")
     assert changed(after, visit.look()) > 0.0005
     for _ in range(3):
-        visit.slide("Influences per vertex, at most", "ArrowRight")
+        visit.slide("Max influences", "ArrowRight")
         visit.settle()
-    visit.choose("Colours show", "All bones")
+    visit.choose("Colour by", "All bones")
     assert changed(mixed, visit.look()) < 0.001
 
 

@@ -164,7 +164,7 @@ def test_the_files_weights_are_a_ghost_or_a_neighbour(visit):
     ghost = visit.look()
     assert changed(alone, ghost) > 0.0005
     visit.button("Side by side").click()
-    visit.expect_text("The file's own weights")
+    visit.expect_text("Weights from the file")
     beside = visit.look()
     assert changed(ghost, beside) > 0.02
     half = beside.shape[1] // 2
@@ -180,7 +180,7 @@ def test_a_motion_runs_halts_and_is_moved_through(visit):
     still = visit.points()
     visit.button("Play").click()
     visit.page.wait_for_function("__cutcell.report().time > 0.1")
-    visit.button("Halt the motion").click()
+    visit.button("Pause the motion").click()
     visit.page.wait_for_function("!__cutcell.report().playing")
     track = visit.page.get_by_role("slider", name="Time in the motion")
     track.focus()

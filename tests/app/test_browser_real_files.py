@@ -59,7 +59,7 @@ def looks_at_weights(visit, rig, binding):
     visit.expect_text(f"Weight of {name}")
     assert changed(mixed, visit.look()) > 0.002
     visit.close_card()
-    visit.choose("Colours show", "Difference to the file's own")
+    visit.choose("Colour by", "Difference from the file's")
     visit.expect_text("Difference to the file's weights")
 
 
@@ -112,7 +112,7 @@ def compares(visit):
     assert deformation > 0
     visit.settle()
     captions = visit.page.locator(".caption").all_inner_texts()
-    assert captions == ["cutcell, as set here", "The file's own", "Euclidean"]
+    assert captions == ["cutcell (current settings)", "From file", "Euclidean"]
 
 
 def begins_the_tour(visit):

@@ -64,7 +64,7 @@ def test_nothing_over_a_wide_canvas_hides_a_part_of_the_character(wide, demo):
     visit.page.wait_for_function("__cutcell.report().playing", timeout=LOAD_MS)
     bar = visit.page.locator(".transport")
     expect(bar).to_be_visible()
-    visit.button("Halt the motion").click()
+    visit.button("Pause the motion").click()
     assert behind(visit, bar) == 0
 
 

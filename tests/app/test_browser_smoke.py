@@ -20,7 +20,7 @@ def test_a_file_goes_in_and_the_bound_one_comes_out(visit, tmp_path):
     visit.open(path)
     assert changed(before, visit.look()) > 0.02
     with visit.page.expect_download() as download:
-        visit.button("Download the bound GLB", exact=False).click()
+        visit.button("Export GLB", exact=False).click()
     bound = tmp_path / download.value.suggested_filename
     assert bound.name == "my character-bound.glb"
     download.value.save_as(bound)

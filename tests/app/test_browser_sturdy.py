@@ -64,7 +64,7 @@ def test_keys_change_the_bone_play_and_list_themselves(visit):
     address(visit, "bone=")
     expect(bone).not_to_have_text(before)
     visit.page.keyboard.press("?")
-    card = visit.page.get_by_role("dialog", name="How to get about")
+    card = visit.page.get_by_role("dialog", name="Controls")
     card.wait_for()
     visit.page.keyboard.press("Escape")
     card.wait_for(state="hidden")

@@ -36,7 +36,7 @@ def test_from_a_statue_to_a_character(visit, tmp_path):
     visit.wait_until_bound()
     expect(visit.bone).to_contain_text("arm")
     with visit.page.expect_download() as saved:
-        visit.button("Download the bound GLB").click()
+        visit.button("Export GLB").click()
     path = tmp_path / "bound.glb"
     saved.value.save_as(path)
     found = cutcell.load(path)

@@ -260,7 +260,7 @@ def test_the_tree_and_what_stands_below_it(bound, loop):
     radius.value = "wide"
     assert "Radius must be a number" in bound.state.message[1]
     assert radius.value == "0.25"
-    next(b for b in section.select(pmui.Button) if b.label == "As computed").clicks += 1
+    next(b for b in section.select(pmui.Button) if b.label == "Reset").clicks += 1
     assert not bound.state.corrections
     restore(bound, {"corrections": ALL})
     assert gain.value == 0.0

@@ -9,7 +9,7 @@ from cutcell_viewers.camera import Camera
 
 
 def test_a_plane_that_is_dragged_lies_where_it_was_left(bound):
-    bound.state.param.update(panel="geodesics", cut_axis="x")
+    bound.state.param.update(panel="distance", cut_axis="x")
     cut = cut_of(bound.state)
     low, high = bounds_of(bound.state)
     there = low + 0.25 * (high - low)
@@ -21,7 +21,7 @@ def test_a_plane_that_is_dragged_lies_where_it_was_left(bound):
 
 
 def test_a_plane_that_is_turned_becomes_free(bound):
-    bound.state.param.update(panel="geodesics", cut_axis="z")
+    bound.state.param.update(panel="distance", cut_axis="z")
     out = np.array([0.36, 0.48, 0.8])
     there = bounds_of(bound.state).mean(axis=0) + 0.2 * out
     cutting.put(bound, there, 3 * out)
@@ -50,7 +50,7 @@ def test_the_handles_are_there_while_there_is_a_plane(bound):
     np.testing.assert_allclose(bound.view.told("handles")["box"], bounds_of(state))
     state.slicing = True
     assert bound.view.told("handles") is None
-    state.param.update(panel="geodesics")
+    state.param.update(panel="distance")
     assert bound.view.told("handles") is not None
     state.panel = "weights"
     assert bound.view.told("handles") is None

@@ -8,10 +8,10 @@ import pytest
 import cutcell
 from cutcell.rig.rig import TriangleMesh
 from cutcell_app.commands import loading
-from cutcell_app.commands.diagnosis import look_at, repair, take_back
+from cutcell_app.commands.check import look_at, repair, take_back
 from cutcell_app.commands.export import export_repaired
 from cutcell_app.panels.character import faults
-from cutcell_app.panels.diagnosis import diagnosis, told
+from cutcell_app.panels.check import check, told
 from cutcell_app.scenes import resolve
 from cutcell_app.scenes.common import bounds_of
 from cutcell_app.state import State
@@ -36,7 +36,7 @@ def spoiled_arm():
 @pytest.fixture
 def spoiled(session, loop):
     """Let the session show the spoiled arm, diagnosed, on the panel."""
-    session.state.param.update(resolution=16, panel="diagnosis")
+    session.state.param.update(resolution=16, panel="check")
     loading.show_rig(session, spoiled_arm())
     loop.run_until(lambda: session.state.diagnosis is not None)
     return session
@@ -48,7 +48,7 @@ def codes(session):
 
 def texts(session):
     """Return all that the panel says."""
-    found, todo = [], [diagnosis(session)]
+    found, todo = [], [check(session)]
     while todo:
         one = todo.pop()
         todo += list(getattr(one, "objects", []))

@@ -8,8 +8,8 @@ import cutcell
 from cutcell.rig.rig import TriangleMesh
 from cutcell_app.commands import arrival, correct, keys, loading
 from cutcell_app.commands.arrival import GONE
+from cutcell_app.commands.check import repair
 from cutcell_app.commands.compare import choose
-from cutcell_app.commands.diagnosis import repair
 from cutcell_app.layout.session import begin
 from cutcell_app.scenes.common import first_joint
 from cutcell_app.state import State
@@ -56,6 +56,13 @@ def test_an_address_brings_back_what_was_chosen():
         methods=state.methods, **choices,
     )  # fmt: skip
     assert to_query(other, camera=arrival["camera"]) == query
+
+
+@pytest.mark.parametrize(("old", "new"), [("geodesics", "distance"), ("diagnosis", "check")])
+def test_addresses_with_the_former_names_of_panels_open(old, new):
+    for name in (old, new):
+        choices, _, problems = from_query(f"panel={name}", State())
+        assert (choices["panel"], problems) == (new, [])
 
 
 def test_what_is_ones_own_or_of_the_moment_is_not_in_the_address():

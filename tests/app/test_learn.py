@@ -12,7 +12,7 @@ from cutcell_app.state.tour import TOUR
 from cutcell_assets import DEMOS
 
 
-def test_every_step_can_be_told():
+def test_every_step_has_its_demo_panel_and_choices():
     demos = {demo.id for demo in DEMOS}
     for step in TOUR:
         assert step.look.demo in demos
@@ -28,18 +28,18 @@ def computed_at(state, resolution):
 
 
 def test_a_step_sets_the_scene_and_can_be_left_and_taken_up(session, loop):
-    go(session, 5)
-    state, look = session.state, TOUR[5].look
+    go(session, 6)
+    state, look = session.state, TOUR[6].look
     loop.run_until(lambda: computed_at(state, look.choices["resolution"]), 90)
-    assert (state.tour, state.demo, state.panel) == (5, look.demo, "graph")
+    assert (state.tour, state.demo, state.panel) == (6, look.demo, "graph")
     assert state.rig.skeleton.names[state.joint] == look.bone
     assert session.view.camera == camera_of(session, look)
     assert "interior edges" in resolve(state).actors
-    assert "step=6" in session.view._parts["address"]
+    assert "step=7" in session.view._parts["address"]
     go(session, -1)
-    assert (state.tour, state.panel) == (-1, "graph")
-    go(session, 6)
-    assert (state.tour, state.panel, state.resolution) == (6, "geodesics", 64)
+    assert (state.tour, state.panel) == (-1, "graph")  # there was no character before it
+    go(session, 9)
+    assert (state.tour, state.panel, state.resolution) == (9, "distance", 64)
 
 
 def test_a_step_on_another_character_opens_it(session, loop):
@@ -51,10 +51,10 @@ def test_a_step_on_another_character_opens_it(session, loop):
 
 
 def test_a_link_to_a_step_alone_sets_its_scene(session, loop):
-    arrival.arrive(session, "?panel=learn&step=7", lambda: pytest.fail("the step has a character"))
-    state, look = session.state, TOUR[6].look
+    arrival.arrive(session, "?panel=learn&step=10", lambda: pytest.fail("the step has a character"))
+    state, look = session.state, TOUR[9].look
     loop.run_until(lambda: state.binding is not None)
-    assert (state.tour, state.demo, state.panel) == (6, "biped", "geodesics")
+    assert (state.tour, state.demo, state.panel) == (9, "biped", "distance")
     assert state.rig.skeleton.names[state.joint] == look.bone
     assert (state.connectivity, state.cut_axis) == (6, "z")
     assert session.view.camera == camera_of(session, look)
@@ -63,24 +63,24 @@ def test_a_link_to_a_step_alone_sets_its_scene(session, loop):
 
 def test_what_a_link_says_beside_a_step_is_set_on_its_scene(session, loop):
     arrival.arrive(
-        session, "?panel=weights&step=5&resolution=20&camera=1,2,3,0,1,0&kitchen=1", lambda: None
+        session, "?panel=weights&step=6&resolution=20&camera=1,2,3,0,1,0&kitchen=1", lambda: None
     )
     state = session.state
     loop.run_until(lambda: computed_at(state, 20))
-    assert (state.tour, state.panel, state.cut_axis) == (4, "weights", "z")
+    assert (state.tour, state.panel, state.cut_axis) == (5, "weights", "z")
     assert session.view.camera.position == (1, 2, 3)
     assert "kitchen=1" in state.message[1]
 
 
 def test_a_link_of_a_person_on_the_tour_brings_back_what_they_made_of_it(session, loop):
-    go(session, 6)
+    go(session, 9)
     loop.run_until(lambda: session.state.binding is not None)
     session.state.param.update(connectivity="any", panel="learn")
     query = session.view.told("address")
     again = begin(loop)
     arrival.arrive(again, query, lambda: None)
     loop.run_until(lambda: again.state.binding is not None)
-    assert (again.state.tour, again.state.panel) == (6, "learn")
+    assert (again.state.tour, again.state.panel) == (9, "learn")
     assert again.state.connectivity == "any"
     again.close()
 
@@ -104,11 +104,30 @@ def test_the_vertex_of_a_step_lies_where_its_text_says(session, loop):
 
 
 def test_two_steps_at_once_show_the_last(session, loop):
-    go(session, 8)
+    go(session, 11)
     go(session, 0)
     loop.run_until(lambda: session.state.binding is not None)
     assert (session.state.tour, session.state.demo) == (0, TOUR[0].look.demo)
-    go(session, 9)
-    go(session, 10)
+    go(session, 12)
+    go(session, 13)
     loop.run_until(lambda: session.state.rig.name == "biped_soup", 60)
-    assert session.state.tour == 10
+    assert session.state.tour == 13
+
+
+def test_leaving_brings_back_the_character_the_choices_and_the_camera(session, loop):
+    state = session.state
+    arrival.arrive(
+        session, "?rig=robot&panel=weights&resolution=24&camera=1,2,3,0,1,0", lambda: None
+    )
+    loop.run_until(lambda: state.binding is not None)
+    go(session, 12)
+    loop.run_until(lambda: state.binding is not None and state.demo == "biped_cape")
+    go(session, -1)
+    loop.run_until(lambda: state.demo == "robot" and computed_at(state, 24))
+    assert (state.tour, state.panel) == (-1, "weights")
+    go(session, 1)
+    loop.run_until(lambda: state.demo == "biped" and state.binding is not None)
+    go(session, 2)
+    go(session, -1)
+    loop.run_until(lambda: state.demo == "robot" and computed_at(state, 24))
+    assert (state.tour, state.panel, state.resolution) == (-1, "weights", 24)

@@ -130,10 +130,10 @@ def test_numbers_put_a_joint_and_back(held, loop):
     moving.put(held, [0.25, 0.1, 0.1])
     buttons["Centre in limb"].clicks += 1
     assert state.rig.skeleton.joints[ELBOW] == pytest.approx([0.25, 0, 0], abs=0.02)
-    buttons["Put back"].clicks += 1
+    buttons["Reset position"].clicks += 1
     assert not state.corrections
     assert [field.value for field in fields] == ["0", "0", "0"]
-    assert buttons["Put back"].disabled
+    assert buttons["Reset position"].disabled
     state.joint = 0
     moving.put(held, [-5, 0, 0])
     held.tasks.after_a_pause(lambda: None)

@@ -164,7 +164,7 @@ def test_picking_a_bone_shows_its_weights(bound):
 
 
 def test_the_field_is_fetched_when_it_is_wanted(bound, loop):
-    bound.state.param.update(panel="geodesics", cut_axis="x", joint=1)
+    bound.state.param.update(panel="distance", cut_axis="x", joint=1)
     loop.run_until(lambda: bound.state.field is not None)
     assert bound.state.field[:2] == (bound.state.binding.distances, 1)
     np.testing.assert_allclose(bound.state.field[2], bound.state.binding.distances.field(1))
@@ -298,7 +298,7 @@ def test_a_vertex_is_chosen_and_forgotten_with_its_character(bound, loop):
 def test_the_wave_is_told_once_and_not_frame_by_frame(bound, loop):
     told = []
     bound.view.tell = lambda **parts: told.append(parts)
-    bound.state.panel = "geodesics"
+    bound.state.panel = "distance"
     loop.run_until(lambda: bound.state.field is not None)
     bound.state.param.update(wave=True, animating=True)
     films = [parts["animation"] for parts in told if "animation" in parts]

@@ -50,7 +50,7 @@ class Page:
 
 def test_each_method_has_a_view_of_its_own_and_bones_stand_in_all(state, rig, euclidean):
     scene = resolve(state)
-    assert scene.views == ("cutcell, as set here", "The file's own", "Euclidean")
+    assert scene.views == ("cutcell (current settings)", "From file", "Euclidean")
     bodies = [scene.actors[name] for name in ("body", "body 1", "body 2")]
     assert [body.view for body in bodies] == [0, 1, 2]
     assert scene.actors["bones"].view is None
@@ -72,8 +72,8 @@ def test_they_are_posed_by_their_own_weights(state):
 def test_a_difference_is_taken_from_the_method_that_is_named(state, rig, euclidean):
     state.minus = "artist"
     scene = resolve(state)
-    assert scene.views[1] == "The file's own − itself"
-    assert scene.views[2] == "Euclidean − The file's own"
+    assert scene.views[1] == "From file − itself"
+    assert scene.views[2] == "Euclidean − From file"
     expected = euclidean.weights[:, 1] - rig.weights[:, 1]
     np.testing.assert_allclose(scene.actors["body 2"].scalars, expected, atol=1e-6)
     assert scene.actors["body 1"].scalars.any() == False  # noqa: E712

@@ -7,10 +7,10 @@ import cutcell
 from cutcell.geodesics import path_length
 from cutcell_app.commands import loading
 from cutcell_app.scenes import following, resolve
-from cutcell_app.scenes.geodesics import farthest, wants_field
+from cutcell_app.scenes.distance import farthest, wants_field
 from cutcell_app.scenes.measures import WAITING, measured_of, measuring
 from cutcell_app.state import State
-from cutcell_app.state.geodesics import MEASURES as NAMED
+from cutcell_app.state.distance import MEASURES as NAMED
 from cutcell_app.state.url import from_query, to_query
 from cutcell_app.work.measured_distance import MEASURES, measure_distance
 from cutcell_viewers.palette import BODY
@@ -29,7 +29,7 @@ def binding(rig):
 
 @pytest.fixture
 def state(rig, binding):
-    state = State(rig=rig, binding=binding, joint=1, panel="geodesics", beside_resolution=16)
+    state = State(rig=rig, binding=binding, joint=1, panel="distance", beside_resolution=16)
     state.param.update(beside_straight=True, beside_voxel=True, beside_any=True)
     for name in state.measures:
         state.measured = {**state.measured, name: measuring(state, name)()}
@@ -118,7 +118,7 @@ def test_they_are_computed_one_after_the_other(session, loop):
     state = session.state
     state.param.update(resolution=16, beside_resolution=16)
     loading.show_rig(session, arm_rig())
-    state.param.update(panel="geodesics", beside_surface=True, beside_6=True)
+    state.param.update(panel="distance", beside_surface=True, beside_6=True)
     loop.run_until(lambda: len(state.measured) == 2, 60)
     assert state.measuring == ""
     assert state.field is None
@@ -134,11 +134,11 @@ def test_one_that_fails_is_told_and_taken_off(session, loop, monkeypatch):
 
         return measure if name == "6" else measuring(state, name)
 
-    monkeypatch.setattr("cutcell_app.commands.geodesics.measuring", fails)
+    monkeypatch.setattr("cutcell_app.commands.distance.measuring", fails)
     state = session.state
     state.param.update(resolution=16, beside_resolution=16)
     loading.show_rig(session, arm_rig())
-    state.param.update(panel="geodesics", beside_6=True, beside_straight=True)
+    state.param.update(panel="distance", beside_6=True, beside_straight=True)
     loop.run_until(lambda: "straight" in state.measured and not state.measuring, 60)
     assert state.measures == ["straight"]
     assert state.message == ("error", "The mesh is too large.")

@@ -8,7 +8,7 @@ import pytest
 import cutcell
 from cutcell_app.scenes import RIGID, Memo, following, resolve
 from cutcell_app.scenes.common import SEE_THROUGH, bones_part, cells_of, first_joint
-from cutcell_app.scenes.geodesics import field_of, wants_field
+from cutcell_app.scenes.distance import field_of, wants_field
 from cutcell_app.scenes.pose import clip_of, clip_part, pose_of
 from cutcell_app.state import LAYERS, PANELS, State
 from cutcell_viewers.palette import DARK, LIGHT
@@ -171,7 +171,7 @@ def test_the_weights_of_all_bones_or_of_one(state, binding):
 
 
 def test_the_distance_on_the_surface(state, binding):
-    state.panel = "geodesics"
+    state.panel = "distance"
     at_once = resolve(state)  # what lies inside comes later
     known = binding.distances.joint[state.joint]
     np.testing.assert_allclose(at_once.actors["body"].scalars, known, rtol=1e-6)
@@ -216,7 +216,7 @@ def test_the_cut_and_its_slab(state):
     assert not scene.actors["bones"].clipped
 
 
-@pytest.mark.parametrize("panel", ["graph", "geodesics", "weights"])
+@pytest.mark.parametrize("panel", ["graph", "distance", "weights"])
 def test_the_character_rests_where_it_is_not_posed(state, panel):
     state.param.update(panel="pose", turns={1: (0, 0, 45)})
     assert resolve(state).pose is not None
@@ -226,7 +226,7 @@ def test_the_character_rests_where_it_is_not_posed(state, panel):
 
 def test_the_field_is_used_only_for_its_own_joint_and_distances(state, binding):
     assert not wants_field(state)
-    state.param.update(panel="geodesics", cut_axis="x")
+    state.param.update(panel="distance", cut_axis="x")
     assert wants_field(state)
     assert field_of(state) is None
     assert "inside" not in resolve(state).actors
@@ -243,12 +243,12 @@ def test_the_field_is_used_only_for_its_own_joint_and_distances(state, binding):
 
 def test_a_joint_without_weight_has_no_field(state, rig):
     skeleton = replace(rig.skeleton, deform=np.array([True, False, True]))
-    state.param.update(rig=replace(rig, skeleton=skeleton), panel="geodesics", cut_axis="x")
+    state.param.update(rig=replace(rig, skeleton=skeleton), panel="distance", cut_axis="x")
     assert not wants_field(state)
     assert resolve(state).actors["body"].scalars is None
 
 
-@pytest.mark.parametrize("panel", ["geodesics", "weights", "compare"])
+@pytest.mark.parametrize("panel", ["distance", "weights", "compare"])
 def test_grey_parts_are_named_where_colours_tell_something(state, rig, panel):
     state.panel = panel
     named = [text for _, text in resolve(state).legend.swatches]
@@ -266,7 +266,7 @@ def test_the_legend_of_a_motion_names_only_what_moves(state, binding):
         moving = following(state).actors[name]
         assert (moving.visible, moving.opacity) == (True, 1.0)
     field = binding.distances.field(1)
-    state.param.update(panel="geodesics", starts=True, vertex=0)
+    state.param.update(panel="distance", starts=True, vertex=0)
     state.field = (binding.distances, 1, field)
     whole, moving = resolve(state).legend, following(state).legend
     assert {text for _, text in whole.swatches} > {RIGID}

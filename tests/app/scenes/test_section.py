@@ -16,7 +16,7 @@ from tests.viewers.arm import arm_rig
 @pytest.fixture(scope="module")
 def state():
     rig = arm_rig()
-    state = State(rig=rig, panel="geodesics")
+    state = State(rig=rig, panel="distance")
     state.binding = cutcell.bind(rig, 16)
     distances = state.binding.distances
     state.joint = 1
@@ -26,7 +26,7 @@ def state():
 
 def test_the_face_shows_what_is_chosen(state):
     memo = Memo()
-    state.param.update(panel="geodesics", cut_axis="free", cut_face="field")
+    state.param.update(panel="distance", cut_axis="free", cut_face="field")
     scene = resolve(state, memo)
     face = scene.actors["inside"]
     away = (face.points - np.array(scene.cut.origin)) @ np.array(scene.cut.normal)
@@ -53,7 +53,7 @@ def test_a_finding_is_shown_in_its_pose(state):
         "stretched-edges", "warning", "", "", vertices=np.arange(30, 40), joints=np.array([1]),
         pose=Pose(1, "z", 60.0),
     )  # fmt: skip
-    state.param.update(panel="diagnosis", diagnosis={found.code: found}, finding=found.code)
+    state.param.update(panel="check", diagnosis={found.code: found}, finding=found.code)
     scene = resolve(state)
     assert scene.pose is not None
     assert scene.actors["body"].skin is not None

@@ -11,8 +11,8 @@ from cutcell.diagnosis import SEVERITIES, Finding
 from cutcell.rig.rig import Rig
 from cutcell.runtime.display import shown_name
 
+from ..commands.check import look_at, repair, take_back
 from ..commands.correct import leave_out
-from ..commands.diagnosis import look_at, repair, take_back
 from ..commands.export import export_repaired
 from ..commands.session import Session
 from ..state import State
@@ -26,7 +26,7 @@ LEFT_OUT = ("stray-weights", "joints-outside")
 """What is mended by joints that carry no weight."""
 
 
-def diagnosis(session: Session) -> pmui.Column:
+def check(session: Session) -> pmui.Column:
     """Return the controls of the panel Diagnose."""
     state = session.state
     place = pmui.Column(margin=0, sizing_mode="stretch_width")
@@ -96,7 +96,7 @@ def _entry(session: Session, finding: Finding) -> pmui.Column:
         lines.append(_line(finding.advice, "text.primary"))
         if finding.repair:
             lines.append(_line(f"Repair: {finding.repair}.", "text.primary"))
-            lines.append(_button("Repair it", "build", lambda: repair(session, [finding.code])))
+            lines.append(_button("Repair", "build", lambda: repair(session, [finding.code])))
         carrying = [j for j in finding.joints if session.state.rig.skeleton.deform[j]]
         if finding.code in LEFT_OUT and carrying:
             label = _left_out(session.state.rig, carrying)
@@ -135,7 +135,7 @@ def _repairs(session: Session) -> list[Any]:
             "download",
             lambda: export_repaired(session, session.view.offer),
         ),
-        _button("Take the repair back", "undo", lambda: take_back(session)),
+        _button("Undo repair", "undo", lambda: take_back(session)),
     ]
 
 

@@ -9,7 +9,7 @@ from cutcell.runtime.progress import Progress
 from cutcell_viewers.finding_scene import camera_on
 
 from ..scenes.common import bounds_of
-from ..state.diagnosis import Repair
+from ..state.check import Repair
 from ..state.method import GRAPH, method_of
 from .binding import asked, swap
 from .look import look
@@ -51,7 +51,7 @@ def examine(session: Session) -> None:
 
     def done(diagnosis: Diagnosis) -> None:
         state.diagnosis = diagnosis
-        if state.panel == "diagnosis":
+        if state.panel == "check":
             _look(session)
 
     session.tasks.jobs("diagnosis").start(work, done, session.fail, lambda stage, fraction: None)
@@ -74,7 +74,7 @@ def look_at(session: Session, code: str) -> None:
 def go_to(session: Session, code: str) -> None:
     """Go where a warning is told: to the panel that shows what a finding names, and its advice."""
     state = session.state
-    state.param.update(panel="diagnosis", finding=code)
+    state.param.update(panel="check", finding=code)
     _look(session)  # where the check is not done yet, it is looked at then
 
 

@@ -6,9 +6,9 @@ from typing import Any
 
 from cutcell.runtime.progress import Progress
 
-from ..scenes.geodesics import farthest, field_of, has_field, wants_field
+from ..scenes.distance import farthest, field_of, has_field, wants_field
 from ..scenes.measures import measured_of, measuring
-from ..state.geodesics import MEASURES
+from ..state.distance import MEASURES
 from .session import Session
 
 WAVE_SECONDS = 6.0
@@ -38,7 +38,7 @@ def run_wave(session: Session) -> None:
     """Let the wavefront run in the browser, or halt it; told only when it is another one."""
     state = session.state
     end = farthest(state)
-    runs = state.panel == "geodesics" and state.wave and state.animating and end is not None
+    runs = state.panel == "distance" and state.wave and state.animating and end is not None
     animation = {"end": end, "seconds": WAVE_SECONDS} if runs else None
     if session.view.told("animation") != animation:
         session.view.tell(animation=animation)
@@ -64,7 +64,7 @@ def find_field(session: Session) -> None:
 def find_measured(session: Session) -> None:
     """Compute the next of the measures side by side that is not there, unless that goes on."""
     state, jobs = session.state, session.tasks.jobs("measures")
-    if state.panel != "geodesics" or not has_field(state) or jobs.running:
+    if state.panel != "distance" or not has_field(state) or jobs.running:
         return
     name = next((one for one in state.measures if measured_of(state, one) is None), None)
     if name is None:

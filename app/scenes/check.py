@@ -25,7 +25,7 @@ def named(finding: Finding) -> str:
     return ", ".join(count(len(which), kind) for kind, which in kinds.items() if len(which))
 
 
-def diagnosis(state: State, memo: Memo) -> Description:
+def check(state: State, memo: Memo) -> Description:
     """Return the scene of the panel Diagnose; plain while no finding is looked at."""
     rig, finding = state.rig, state.found
     if finding is None:

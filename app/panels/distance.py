@@ -8,12 +8,12 @@ import panel_material_ui as pmui
 
 from ..commands.session import Session
 from ..state import State
-from ..state.geodesics import MAX_MEASURES, MEASURES
+from ..state.distance import MAX_MEASURES, MEASURES
 from .cutting import cutting
 from .parts import GAP, caption, choice, lead, section, slider, weightless, when
 
 
-def geodesics(session: Session) -> pmui.Column:
+def distance(session: Session) -> pmui.Column:
     """Return the controls of the panel Geodesics."""
     state = session.state
     idle = caption(
@@ -103,7 +103,7 @@ def _wave(state: State) -> list[Any]:
         state.param.update(wave=True, animating=not state.animating)
 
     button = pmui.Button(
-        label=when(lambda on: "Halt the wave" if on else "Let it run", state.param.animating),
+        label=when(lambda on: "Pause the wave" if on else "Play the wave", state.param.animating),
         icon=when(lambda on: "pause" if on else "play_arrow", state.param.animating),
         size="small",
         variant="outlined",
@@ -113,7 +113,7 @@ def _wave(state: State) -> list[Any]:
     )
     front = slider(
         state.param.front,
-        "How far it came",
+        "Progress",
         step=0.005,
         visible=when(lambda on, runs: on and not runs, state.param.wave, state.param.animating),
     )

@@ -26,7 +26,7 @@ class GeodesicsChoices(param.Parameterized):
     """Which distances are seen."""
 
     field: Any = param.Parameter(None, doc="(distances, joint, distance at every graph node).")
-    starts: Any = param.Boolean(False, label="Where distances begin")
+    starts: Any = param.Boolean(False, label="Sources")
     path: Any = param.Boolean(True, label="Shortest path from the clicked vertex")
     front: Any = param.Number(0.35, bounds=(0, 1), doc="How far the wave came, of all the way.")
     wave: Any = param.Boolean(

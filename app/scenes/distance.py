@@ -19,7 +19,7 @@ from .memo import Memo
 from .section import field_section, winding_section
 
 
-def geodesics(state: State, memo: Memo) -> Description:
+def distance(state: State, memo: Memo) -> Description:
     """Return the scene of the panel Geodesics: a bone's field, on the surface and inside."""
     if state.binding is None:
         return Description(character(state, memo))
@@ -115,7 +115,7 @@ def farthest(state: State) -> float | None:
 
 def wants_field(state: State) -> bool:
     """Whether the distance is to be known at every node of the graph."""
-    wanted = (state.panel == "geodesics" and not state.measures) or (
+    wanted = (state.panel == "distance" and not state.measures) or (
         state.panel == "graph"
         and (
             state.edge_colors == "distance"
