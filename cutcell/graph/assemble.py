@@ -63,8 +63,7 @@ def assemble(
         steps = lattice_steps(nodes, edges[len(mesh_edges) : edge], len(vertices), first_surface)
         diagonals = diagonal_edges(steps, len(vertices))
         edges = np.concatenate([edges[:edge], diagonals, edges[edge:]])
-        ends = nodes[diagonals]
-        distance = np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1)
+        distance = np.linalg.norm(np.diff(nodes[diagonals], axis=1)[:, 0], axis=1)
         lengths = np.concatenate([lengths[:edge], distance, lengths[edge:]])
         edge_kinds[INTERIOR] += len(diagonals)
     return CutCellGraph(

@@ -126,7 +126,7 @@ def test_loose_triangles_take_memory_in_proportion_to_their_queries():
 
 
 def test_cells_that_do_not_fit_in_memory_are_refused(monkeypatch):
-    surface, hits = prepared(*large_and_loose(60), RESOLUTION)
+    surface, hits = prepared(*large_and_loose(4), RESOLUTION)
     monkeypatch.setattr("cutcell.runtime.memory.available_memory", lambda: 10**4)
     treecode_intervals(surface, hits, 0.5)  # too few to look
     monkeypatch.setattr("cutcell.graph.winding.treecode.cells.UNCHECKED", 0)

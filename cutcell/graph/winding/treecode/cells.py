@@ -115,10 +115,10 @@ def classify_cells(
     # The last corner lies outside: never an empty list.
     classified = in_threads(classify, [*corners, np.full(3, resolution)], tell)
     rows = count = 0
-    for blocks, fine, expanded, _ in classified:
+    for blocks, row, expanded, _ in classified:
         coarse[tuple(blocks.T)] += rows
-        fine[fine >= 0] += count
-        rows, count = rows + len(fine), count + len(expanded)
+        row[row >= 0] += count
+        rows, count = rows + len(row), count + len(expanded)
     _, fine, expanded, near = (np.concatenate(parts) for parts in zip(*classified, strict=True))
     start = np.concatenate([[0], np.cumsum(expanded[:, COUNT], dtype=np.int64)])
     columns = (0, SIZE), (SIZE, CROSSED)
