@@ -226,7 +226,8 @@ def _rows(
 ) -> dict[str, NDArray[np.float64]]:
     """Run the steps of `bind`, and keep a vertex' row of each."""
     node = context.distances.graph.vertex_node[vertex]
-    weights, rows = np.empty((0, 0)), {}
+    rows: dict[str, NDArray[np.float64]] = {}
+    weights = np.empty((0, 0))
     for step in weight_steps(context):
         weights = step.run(weights, context)
         row = weights[vertex if step.is_per_vertex else node].copy()

@@ -247,11 +247,11 @@ def bone_distances(
         may_follow = None if allowed is None else allowed[np.ix_(lost, bones.joint)]
         straight = straight_to_nearest(graph.nodes[node[lost]], bones, nearest, may_follow)
         joint[np.ix_(np.unique(bones.joint), lost)] = _least(straight, bones)
+    shared = nearest_joints, bones, sources
     if allowed is None:
-        at_welded, of_vertices, fallback = joint, None, fallback[graph.vertex_node]
-    else:
-        at_welded, of_vertices = joint[:, np.unique(node, return_index=True)[1]], joint
-    return BoneDistances(at_welded, of_vertices, nearest_joints, bones, sources, fallback, solver)
+        return BoneDistances(joint, None, *shared, fallback[graph.vertex_node], solver)
+    first = np.unique(node, return_index=True)[1]
+    return BoneDistances(joint[:, first], joint, *shared, fallback, solver)
 
 
 def distances_from(graph: CutCellGraph, bones: Bones, samples: int, joints: int) -> BoneDistances:

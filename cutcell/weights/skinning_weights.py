@@ -92,26 +92,27 @@ def weight_context(
     report: Tell = lambda done: None,
 ) -> WeightContext:
     """Prepare what the steps of a method's falloff need."""
-    division = diffusion = None
-    if method.falloff == "rig":
-        surface = surface or SurfaceOperators.of(distances.graph)
-        prepared = share_of(report, 0, 0.4)
-        division, diffusion = divide_and_prepare(distances, surface, adjustments, prepared)
-    elif adjustments is not None:
-        distances = _divided(distances, adjustments.gain)
+    if method.falloff == "paper":
+        if adjustments is not None:
+            distances = _divided(distances, adjustments.gain)
+        return WeightContext(distances, method, allowed, adjustments, None, None, report)
+    surface = surface or SurfaceOperators.of(distances.graph)
+    prepared = share_of(report, 0, 0.4)
+    division, diffusion = divide_and_prepare(distances, surface, adjustments, prepared)
     return WeightContext(distances, method, allowed, adjustments, division, diffusion, report)
 
 
 def weight_steps(context: WeightContext) -> tuple[Step, ...]:
     """List the steps from distances to weights, in their order. The first one takes no weights."""
-    is_rig = context.division is not None
-    if context.allowed is None:
-        falloff = RIG_STEPS if is_rig else (Step("falloff", equation_1),)
-        return (*falloff, Step("normalise", limit), Step("vertices", per_vertex, True))
-    # Vertices that were welded may follow different joints.
-    falloff = (Step("falloff", equation_1, True),)
-    if is_rig:
-        falloff = (*RIG_STEPS, Step("vertices", per_vertex, True))
+    is_per_vertex = context.allowed is not None  # welded vertices may follow different joints
+    falloff: tuple[Step, ...] = (Step("falloff", equation_1, is_per_vertex),)
+    if context.division is not None:
+        falloff = RIG_STEPS
+    expand = Step("vertices", per_vertex, True)
+    if not is_per_vertex:
+        return (*falloff, Step("normalise", limit), expand)
+    if context.division is not None:
+        falloff = (*RIG_STEPS, expand)
     return (*falloff, Step("storable", permit, True), Step("normalise", limit, True))
 
 
