@@ -53,13 +53,13 @@ def read_articulation(path: Path) -> Rig:
     names = tuple(map(whole_characters, names))
     skeleton = Skeleton(joints, parents, names)
     stored = _deform(arrays, count, warnings)
-    skeleton, told = with_deform(mesh, skeleton, read.weights, stored)
+    skeleton, deform_warnings = with_deform(mesh, skeleton, read.weights, stored)
     return Rig(
         mesh,
         skeleton,
         read.weights,
         name=path.stem,
-        warnings=(*warnings, *told),
+        warnings=(*warnings, *deform_warnings),
         weight_sums=read.sums,
     )
 

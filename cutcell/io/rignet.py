@@ -182,9 +182,9 @@ def check_mesh_file(path: Path, mesh: TriangleMesh) -> bool:
     if not os.path.lexists(obj):
         return False
     with suppress(CutcellError):
-        there = parse_obj(read_text(obj))
-        same = np.array_equal(there.vertices, mesh.vertices)
-        if same and np.array_equal(there.faces, mesh.faces):
+        existing = parse_obj(read_text(obj))
+        same = np.array_equal(existing.vertices, mesh.vertices)
+        if same and np.array_equal(existing.faces, mesh.faces):
             return True
     raise FileError(
         f"its mesh belongs in {obj.name}, but a file of that name is there and holds another "
