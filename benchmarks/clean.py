@@ -20,7 +20,7 @@ import cutcell
 from cutcell.baselines import METHODS
 from cutcell.diagnosis import cleaning
 from cutcell.metrics import deformation_error, find_gaps, vertex_shares, weight_l1
-from cutcell.rig.rig import Rig
+from cutcell.rig import Rig
 
 from .document import fill
 from .rigs import SHARED

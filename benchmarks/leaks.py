@@ -22,7 +22,7 @@ import cutcell
 from cutcell.baselines.body import Body
 from cutcell.baselines.cages.cage_methods import harmonic
 from cutcell.baselines.volumes.voxel_binding import voxel_distances
-from cutcell.rig.rig import Rig
+from cutcell.rig import Rig
 
 from .document import fill
 from .rigs import ROOT

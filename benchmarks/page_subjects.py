@@ -13,7 +13,7 @@ import trimesh
 
 import cutcell
 from cutcell import Rig, TriangleMesh
-from cutcell.rig.rig import Clip
+from cutcell.rig import Clip
 from cutcell_app.scenes.common import camera_part
 from cutcell_app.scenes.pose import clip_part
 from cutcell_app.state import State

@@ -28,7 +28,7 @@ from cutcell.baselines import METHODS, BaselineBinding
 from cutcell.baselines.compare import Comparison, compare, comparison_markdown
 from cutcell.baselines.compare.plot import plot_comparison
 from cutcell.metrics.deformation import longest_side
-from cutcell.rig.rig import Rig
+from cutcell.rig import Rig
 from cutcell.runtime.writing import write_all
 
 from .document import fill

@@ -24,7 +24,7 @@ import cutcell
 from cutcell.geodesics import BoneDistances, bone_distances
 from cutcell.graph import build_graph
 from cutcell.method import ANIMATION
-from cutcell.rig.rig import Rig
+from cutcell.rig import Rig
 from cutcell.weights import keep_strongest
 from cutcell.weights.rig_falloff.pipeline import TAIL
 from cutcell.weights.rig_falloff.surface_operators import SurfaceOperators

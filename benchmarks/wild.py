@@ -20,7 +20,7 @@ import numpy as np
 import cutcell
 from cutcell.errors import CutcellError
 from cutcell.metrics import deformation_error, vertex_shares, weight_l1
-from cutcell.rig.rig import Rig
+from cutcell.rig import Rig
 
 from .document import fill
 from .rigs import SHARED

@@ -27,9 +27,9 @@ from .geodesics import BoneDistances, bone_distances
 from .graph import CutCellGraph, build_graph
 from .graph.lattice import Lattice
 from .method import ANIMATION, Method, MethodName, Options, method_of
+from .rig import Rig
 from .rig.checks import check_positions
 from .rig.inputs import RigLike, as_rig
-from .rig.rig import Rig
 from .runtime.memory import check_matrix
 from .runtime.progress import Progress, silent
 from .runtime.threads import cancellable, submit

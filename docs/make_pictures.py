@@ -19,7 +19,7 @@ ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT))
 
 import cutcell  # noqa: E402
-from cutcell.rig.rig import Rig  # noqa: E402
+from cutcell.rig import Rig  # noqa: E402
 from cutcell_assets import demo_path  # noqa: E402
 from cutcell_viewers.camera import Camera, framing  # noqa: E402
 from cutcell_viewers.character import body  # noqa: E402

@@ -10,7 +10,7 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
 from cutcell.geometry.triangles import normals
-from cutcell.rig.rig import Rig, Skeleton, TriangleMesh
+from cutcell.rig import Rig, Skeleton, TriangleMesh
 
 from .description import Actor
 from .palette import ATTACHMENT, BODY, BONE, BONE_CHOSEN, BONE_EDGE, BONE_IDLE, to_bytes

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from cutcell.metrics import DeformationError, deformation_error
 from cutcell.metrics.deformation import CM2
-from cutcell.rig.rig import Rig, Skeleton, TriangleMesh
+from cutcell.rig import Rig, Skeleton, TriangleMesh
 from cutcell.runtime.progress import Progress, silent
 
 from .character import attachments, body, bones, pose_in_scene, to_scene

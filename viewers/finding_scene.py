@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from cutcell.diagnosis import Finding
 from cutcell.pose import rotate_joint
-from cutcell.rig.rig import Rig
+from cutcell.rig import Rig
 
 from .camera import FRONT, Camera, framing
 from .character import pose_in_scene, to_scene

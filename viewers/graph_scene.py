@@ -10,7 +10,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from cutcell.graph import INTERIOR, MESH, SURFACE, CutCellGraph
-from cutcell.rig.rig import Rig
+from cutcell.rig import Rig
 
 from . import palette
 from .character import to_scene

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from cutcell.rig.rig import Rig
+from cutcell.rig import Rig
 
 from .character import across, smooth_normals, to_scene
 from .description import Actor

@@ -13,7 +13,7 @@ from PIL import Image
 
 from cutcell.io.materials.face_colors import FaceColors, Layer, Materials, StoredImage
 from cutcell.io.materials.transfer import read_materials
-from cutcell.rig.rig import Rig
+from cutcell.rig import Rig
 
 FORMATS = ("PNG", "JPEG", "WEBP", "BMP", "TGA")
 LARGEST = 2**26

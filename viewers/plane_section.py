@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy.spatial import Delaunay, QhullError, cKDTree
 
 from cutcell.graph.winding import winding_number
-from cutcell.rig.rig import Rig, TriangleMesh
+from cutcell.rig import Rig, TriangleMesh
 
 from .character import to_scene
 from .description import Cut

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from cutcell.pose import clips as motion
+from cutcell.rig import Rig
 from cutcell.rig.clip import Clip
-from cutcell.rig.rig import Rig
 
 from .character import attachments, body, bones, pose_in_scene
 from .description import Description

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.spatial import cKDTree
 
 from cutcell.graph import CutCellGraph
-from cutcell.rig.rig import Rig, TriangleMesh
+from cutcell.rig import Rig, TriangleMesh
 
 from .description import Actor, Cut, Legend, Reading
 from .distance_scene import distance_look

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cutcell.graph import RaySlice
-from cutcell.rig.rig import Rig
+from cutcell.rig import Rig
 
 from .character import to_scene
 from .description import Actor, Cut, Legend, Reading

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from cutcell.geodesics import BoneDistances, bone_samples
-from cutcell.rig.rig import Rig
+from cutcell.rig import Rig
 
 from .character import to_scene
 from .description import Actor

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from cutcell.rig.rig import Rig
+from cutcell.rig import Rig
 
 from .character import attachments, body, bones
 from .description import Description, Legend, Reading

@@ -21,7 +21,7 @@ from cutcell.editing.correct import adjustments_of
 from cutcell.editing.corrections import Corrections
 from cutcell.errors import CutcellError
 from cutcell.method import joints_needed
-from cutcell.rig.rig import Rig
+from cutcell.rig import Rig
 from cutcell.runtime.progress import Progress
 from cutcell.weights import keep_strongest, skinning_weights
 from cutcell_app.work.preview import Preview

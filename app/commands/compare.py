@@ -19,7 +19,7 @@ from cutcell.metrics import (
     vertex_shares,
     weight_l1,
 )
-from cutcell.rig.rig import Rig
+from cutcell.rig import Rig
 from cutcell.runtime.progress import Progress
 
 from ..scenes.compare import found_of

@@ -19,8 +19,8 @@ from cutcell.editing.corrections import Corrections, JointCorrection, PartCorrec
 from cutcell.editing.locks import lock_joints, locked_joints
 from cutcell.errors import CutcellError, ParameterError
 from cutcell.graph import CutCellGraph
+from cutcell.rig import Rig, Skeleton
 from cutcell.rig.deform_joints import DeformJoints, deform_joints
-from cutcell.rig.rig import Rig, Skeleton
 from cutcell.runtime.display import shown_name
 
 from ..files.receive import safe_name

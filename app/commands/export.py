@@ -11,7 +11,7 @@ from typing import Any
 
 import cutcell
 from cutcell.io import binary_ending
-from cutcell.rig.rig import Clip
+from cutcell.rig import Clip
 from cutcell.runtime.progress import Progress
 from cutcell_viewers.camera import Camera
 from cutcell_viewers.description import Description

@@ -10,7 +10,7 @@ from param.parameterized import batch_call_watchers
 
 from cutcell.editing.corrections import Corrections
 from cutcell.errors import CutcellError, FileError, ParameterError
-from cutcell.rig.rig import Rig
+from cutcell.rig import Rig
 from cutcell.runtime.progress import Progress
 from cutcell_assets import DEMOS
 from cutcell_viewers.camera import Camera, framing

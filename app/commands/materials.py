@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from cutcell.errors import FileError
 from cutcell.io.materials.transfer import has_materials, read_materials
-from cutcell.rig.rig import Rig
+from cutcell.rig import Rig
 from cutcell.runtime.progress import Progress
 from cutcell_viewers.materials import Textures, as_textures, decoded, none_decoded
 

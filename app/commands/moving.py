@@ -14,7 +14,7 @@ from cutcell.editing.correct import corrected_rig
 from cutcell.editing.corrections import Corrections, JointCorrection
 from cutcell.editing.symmetry import Mirror, find_joint_mirror
 from cutcell.errors import CutcellError, SkeletonError
-from cutcell.rig.rig import Rig
+from cutcell.rig import Rig
 from cutcell.runtime.progress import Progress
 from cutcell_viewers.character import to_scene
 

@@ -10,7 +10,7 @@ from cutcell.dataset import save_verdicts
 from cutcell.dataset.audit.audit_files import read_verdicts
 from cutcell.dataset.read.sources import read_source
 from cutcell.errors import CutcellError
-from cutcell.rig.rig import Rig
+from cutcell.rig import Rig
 from cutcell.runtime.progress import Progress
 
 from ..state.pairs import Beside, OpenedAudit

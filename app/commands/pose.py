@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from cutcell.errors import CutcellError
-from cutcell.rig.rig import Clip, Rig
+from cutcell.rig import Clip, Rig
 from cutcell.runtime.progress import Progress, silent
 from cutcell_viewers.error_scene import WHOLE, Gap, scene_error
 from cutcell_viewers.pose_scene import pose_at, turn

@@ -10,7 +10,7 @@ import numpy as np
 
 from cutcell.editing.corrections import Corrections, JointCorrection, PartCorrection
 from cutcell.errors import CutcellError, ParameterError
-from cutcell.rig.rig import Rig
+from cutcell.rig import Rig
 
 from .correct import check_alone, correct, taken
 from .moving import mirror_of, moves_along, rounded

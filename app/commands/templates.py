@@ -7,7 +7,7 @@ from collections.abc import Collection
 import numpy as np
 
 from cutcell.editing.corrections import Corrections, JointCorrection
-from cutcell.rig.rig import Rig, Skeleton
+from cutcell.rig import Rig, Skeleton
 from cutcell.runtime.progress import Progress
 from cutcell.templates import Template, fit_skeleton, names_of
 

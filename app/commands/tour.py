@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from cutcell.rig.rig import Rig
+from cutcell.rig import Rig
 from cutcell_viewers.camera import Camera, framing
 from cutcell_viewers.character import to_scene
 

@@ -12,7 +12,7 @@ import cutcell
 from cutcell.errors import FileError
 from cutcell.io.files import naming
 from cutcell.io.materials.transfer import has_materials
-from cutcell.rig.rig import Rig
+from cutcell.rig import Rig
 from cutcell_assets import demo_path
 
 from ..work.processes import in_process

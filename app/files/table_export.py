@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from cutcell.errors import FileError, ParameterError
-from cutcell.rig.rig import Rig
+from cutcell.rig import Rig
 from cutcell.runtime.display import spreadsheet_cell
 from cutcell.runtime.writing import check_place, write_all
 

@@ -8,7 +8,7 @@ import numpy as np
 import panel_material_ui as pmui
 
 from cutcell.graph import INTERIOR, MESH, SURFACE
-from cutcell.rig.rig import Rig
+from cutcell.rig import Rig
 
 from ..commands.binding import cancel
 from ..commands.check import go_to

@@ -8,7 +8,7 @@ from typing import Any
 import panel_material_ui as pmui
 
 from cutcell.diagnosis import SEVERITIES, Finding
-from cutcell.rig.rig import Rig
+from cutcell.rig import Rig
 from cutcell.runtime.display import shown_name
 
 from ..commands.check import look_at, repair, take_back

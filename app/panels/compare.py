@@ -6,7 +6,7 @@ from typing import Any
 
 import panel_material_ui as pmui
 
-from cutcell.rig.rig import Rig
+from cutcell.rig import Rig
 
 from ..commands import compare as actions
 from ..commands import pose as moving

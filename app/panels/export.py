@@ -9,7 +9,7 @@ import panel_material_ui as pmui
 
 from cutcell.io import keeps_document
 from cutcell.io.materials.transfer import has_materials
-from cutcell.rig.rig import Rig
+from cutcell.rig import Rig
 
 from ..commands import export as actions
 from ..commands.session import Session

@@ -10,8 +10,8 @@ from cutcell import ANIMATION, Method
 from cutcell.baselines import METHODS
 from cutcell.errors import ParameterError
 from cutcell.io.materials.transfer import has_materials
+from cutcell.rig import Rig
 from cutcell.rig.checks import check_choice
-from cutcell.rig.rig import Rig
 
 from ..scenes.common import first_joint
 from ..state import State

@@ -5,7 +5,7 @@ from __future__ import annotations
 from difflib import get_close_matches
 
 from cutcell.errors import ParameterError
-from cutcell.rig.rig import Clip, Rig
+from cutcell.rig import Clip, Rig
 
 
 def find_bone(rig: Rig, name: str) -> int:

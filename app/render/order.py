@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from cutcell.rig import Rig
 from cutcell.rig.checks import check_choice, check_number
-from cutcell.rig.rig import Rig
 from cutcell_viewers.camera import Camera, framing
 from cutcell_viewers.character import drawn_segments
 from cutcell_viewers.description import Description

@@ -7,7 +7,7 @@ from typing import Any
 
 from cutcell import bind, build_graph, diagnose
 from cutcell.errors import ParameterError
-from cutcell.rig.rig import Rig
+from cutcell.rig import Rig
 from cutcell.runtime.progress import Progress, silent
 from cutcell_viewers.description import Description
 from cutcell_viewers.error_scene import Gap

@@ -10,7 +10,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
-from cutcell.rig.rig import Rig
+from cutcell.rig import Rig
 from cutcell.runtime.display import shown_name
 from cutcell_viewers.camera import Camera
 from cutcell_viewers.character import attachments, body, bones, drawn_segments, to_scene

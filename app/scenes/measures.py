@@ -11,7 +11,7 @@ import numpy as np
 
 import cutcell
 from cutcell.geodesics import BoneDistances, path_length
-from cutcell.rig.rig import Rig
+from cutcell.rig import Rig
 from cutcell_viewers.character import to_scene
 from cutcell_viewers.description import Actor, Description
 from cutcell_viewers.distance_scene import distance_colors, distance_limits, distance_look

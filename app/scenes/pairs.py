@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from cutcell.rig.rig import Rig
+from cutcell.rig import Rig
 from cutcell.runtime.display import shown_name
 from cutcell_viewers.character import body, bones, to_scene
 from cutcell_viewers.description import Actor, Description

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from cutcell.rig.rig import Clip
+from cutcell.rig import Clip
 from cutcell_viewers.character import body, pose_in_scene
 from cutcell_viewers.description import Actor, Apart, Description, Legend
 from cutcell_viewers.error_scene import Gap, error_legend, error_limits, error_look, squared_unit

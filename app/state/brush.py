@@ -10,7 +10,7 @@ import param
 from numpy.typing import NDArray
 
 from cutcell.editing.stroke import BrushMode
-from cutcell.rig.rig import TriangleMesh
+from cutcell.rig import TriangleMesh
 
 MIN_RADIUS, MAX_RADIUS = 0.005, 0.5
 """Of the character's longest side."""

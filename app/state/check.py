@@ -7,7 +7,7 @@ from typing import Any
 
 import param
 
-from cutcell.rig.rig import Rig
+from cutcell.rig import Rig
 
 
 @dataclass(frozen=True, eq=False)

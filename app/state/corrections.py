@@ -15,7 +15,7 @@ from cutcell.binding import Binding
 from cutcell.editing.corrections import Corrections, JointCorrection
 from cutcell.editing.restructure import restructured, restructured_skeleton
 from cutcell.errors import CutcellError
-from cutcell.rig.rig import Rig
+from cutcell.rig import Rig
 
 MAX_IN_ADDRESS = 1500
 """Letters: longer addresses are cut by some programs that pass them on."""

@@ -11,7 +11,7 @@ from typing import Any
 import param
 
 from cutcell.dataset import Audit, Pair
-from cutcell.rig.rig import Rig
+from cutcell.rig import Rig
 
 TIERS = ("all", "twin", "variant", "near", "posed", "overruled")
 

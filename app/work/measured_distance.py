@@ -23,8 +23,8 @@ from cutcell.geometry.edges import find_edges
 from cutcell.geometry.segments import closest_on_segment, distance_to_segment
 from cutcell.graph import build_graph
 from cutcell.method import Method
+from cutcell.rig import Rig
 from cutcell.rig.checks import check_choice
-from cutcell.rig.rig import Rig
 
 Measure = Literal["straight", "surface", "voxel", "6", "26", "any"]
 MEASURES: tuple[Measure, ...] = get_args(Measure)

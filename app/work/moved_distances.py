@@ -12,7 +12,7 @@ from cutcell.geodesics.bones import Bones
 from cutcell.geodesics.distances import BoneDistances, bone_distances
 from cutcell.geodesics.fallback import REACHED
 from cutcell.method import Method
-from cutcell.rig.rig import Skeleton
+from cutcell.rig import Skeleton
 
 
 class MovedDistances:

@@ -12,7 +12,7 @@ from cutcell.editing.correct import adjustments_of, joints_measured
 from cutcell.editing.corrections import Corrections
 from cutcell.geodesics import BoneDistances
 from cutcell.method import Method
-from cutcell.rig.rig import Rig
+from cutcell.rig import Rig
 from cutcell.weights.context import WeightContext
 from cutcell.weights.rig_falloff.division import Division
 from cutcell.weights.rig_falloff.pipeline import with_rigid_parts, without_tail

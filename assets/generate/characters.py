@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cutcell.errors import MissingLibraryError
+from cutcell.rig import Rig, TriangleMesh
 from cutcell.rig.checks import check_choice, check_flag, check_integer
-from cutcell.rig.rig import Rig, TriangleMesh
 
 from .shapes import Limbs, boxed, melted
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from cutcell.rig.rig import Rig, Skeleton, TriangleMesh
+from cutcell.rig import Rig, Skeleton, TriangleMesh
 
 POSED = ("upperarm", "lowerarm", "upperleg", "lowerleg", "spine", "neck")
 """Beginnings of the names of the bones that are turned."""

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from cutcell.errors import MissingLibraryError
 from cutcell.geometry.segments import closest_on_segment
-from cutcell.rig.rig import Rig, Skeleton, TriangleMesh
+from cutcell.rig import Rig, Skeleton, TriangleMesh
 
 INFLUENCES = 4
 MARGIN = 3

@@ -13,7 +13,7 @@ from ..geometry.segments import closest_on_segment, distance_to_segment
 from ..geometry.weld import weld
 from ..graph import Lattice
 from ..method import Leaf
-from ..rig.rig import Rig
+from ..rig import Rig
 
 NEAREST = 3
 """Bones that a vertex follows which none reaches."""

@@ -9,8 +9,8 @@ from scipy.sparse.linalg import splu
 
 from ..geometry.laplacian import cotangent_laplacian, vertex_areas, vertex_normals
 from ..method import PAPER, Leaf
+from ..rig import Rig
 from ..rig.checks import check_number
-from ..rig.rig import Rig
 from ..weights.rig_falloff.components import label_components
 from .body import Body
 from .frame import BaselineBinding, Run, bind_by

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..method import PAPER, Leaf
-from ..rig.rig import Rig
+from ..rig import Rig
 from ..weights.paper_kernel import paper_kernel
 from .body import Body
 from .frame import BaselineBinding, Run, bind_by

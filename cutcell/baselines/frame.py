@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ..isolated.run import WorkFailedError
 from ..method import Method
-from ..rig.rig import Rig
+from ..rig import Rig
 from ..weights.prune import prune
 from .body import Body
 

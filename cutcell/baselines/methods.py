@@ -9,7 +9,7 @@ from typing import Any
 
 from ..binding import bind
 from ..method import ANIMATION, PAPER, Method
-from ..rig.rig import Rig
+from ..rig import Rig
 from .bone_heat import bone_heat
 from .cages.cage_methods import harmonic, mean_value
 from .euclidean import euclidean

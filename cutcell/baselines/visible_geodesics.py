@@ -9,8 +9,8 @@ from scipy.sparse.csgraph import dijkstra
 
 from ..geometry.edges import find_edges
 from ..method import PAPER, Leaf
+from ..rig import Rig
 from ..rig.checks import check_number
-from ..rig.rig import Rig
 from ..runtime.progress import Progress, silent
 from ..weights.paper_kernel import paper_kernel
 from .body import Body, follow_nearest

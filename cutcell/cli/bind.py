@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from ..editing.corrections import Corrections
     from ..graph import CutCellGraph
     from ..method import Method
-    from ..rig.rig import Rig
+    from ..rig import Rig
     from ..runtime.progress import Progress
     from ..templates import Template
 

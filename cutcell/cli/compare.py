@@ -14,7 +14,7 @@ from .options import Json, Networks, Quiet, Resolution
 
 if TYPE_CHECKING:
     from ..metrics import Turned
-    from ..rig.rig import Rig
+    from ..rig import Rig
 
 EPILOG = """Examples:
 

@@ -12,7 +12,7 @@ from scipy.sparse.csgraph import connected_components
 from ..geodesics import FALLBACK_REASONS, BoneDistances
 from ..geometry.triangles import face_edges
 from ..graph import INTERIOR, MESH, SURFACE, CutCellGraph
-from ..rig.rig import Rig, Skeleton, TriangleMesh
+from ..rig import Rig, Skeleton, TriangleMesh
 
 KINDS = {"mesh": MESH, "interior": INTERIOR, "surface": SURFACE}
 """Name of each kind of node and edge."""

@@ -18,8 +18,8 @@ from ..geometry.segments import distance_to_segment
 from ..geometry.triangles import face_edges
 from ..io.meshes.obj import write_obj
 from ..io.rignet import word_names
+from ..rig import TriangleMesh
 from ..rig.checks import check_choice
-from ..rig.rig import TriangleMesh
 from ..runtime.writing import replacing, write_all
 from .audit.points import mesh_normals, sample_surface
 from .read.store import Entry, Store

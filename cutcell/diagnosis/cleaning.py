@@ -12,8 +12,8 @@ from ..errors import WeightsError
 from ..geodesics import BoneDistances
 from ..method import ANIMATION, check_resolution
 from ..metrics import vertex_shares
+from ..rig import Rig
 from ..rig.inputs import RigLike, as_rig
-from ..rig.rig import Rig
 from ..runtime.progress import Progress, silent
 from ..weights.prune import prune
 from ..weights.rig_falloff.diffusion import MIN_CELLS

@@ -13,7 +13,7 @@ from ..geodesics.fallback import NOT_ALLOWED, UNREACHED
 from ..geometry.laplacian import vertex_areas, vertex_normals
 from ..graph import INTERIOR
 from ..graph.winding import winding_number
-from ..rig.rig import TriangleMesh
+from ..rig import TriangleMesh
 from ..runtime.display import shown_name
 from ..weights.rig_falloff.components import bone_containment
 from ..weights.rig_falloff.rigid_accessories import SMALL

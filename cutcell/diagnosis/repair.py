@@ -12,7 +12,7 @@ from scipy.spatial import cKDTree
 from ..geometry.weld import weld
 from ..graph.lattice import Lattice
 from ..io.gltf.read.faces import with_faces
-from ..rig.rig import Rig
+from ..rig import Rig
 from ..weights.prune import prune
 from .cleaning import clean
 from .finding import Finding

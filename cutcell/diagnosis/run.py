@@ -9,7 +9,7 @@ from typing import Any
 from ..errors import CutcellError, ParameterError
 from ..geodesics import BoneDistances
 from ..method import check_resolution
-from ..rig.rig import Rig
+from ..rig import Rig
 from ..runtime.progress import Progress, silent
 from .finding import SEVERITIES, Finding, by_severity
 from .joints import check_joints

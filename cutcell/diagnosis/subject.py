@@ -12,9 +12,9 @@ from ..geometry.edges import MeshEdges, find_edges
 from ..geometry.triangles import areas
 from ..graph import CutCellGraph, build_graph
 from ..graph.winding.boundary import Boundary, boundary_of
+from ..rig import Rig, TriangleMesh
 from ..rig.deform_joints import DeformJoints, deform_joints
 from ..rig.deform_joints.body import SPACING, Body
-from ..rig.rig import Rig, TriangleMesh
 from ..runtime.progress import Progress, silent
 from ..weights.rig_falloff.components import label_components
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ..geodesics import FALLBACK_REASONS, BoneDistances
 from ..graph import CutCellGraph
-from ..rig.rig import Rig
+from ..rig import Rig
 from ..runtime.display import listed
 from ..weights.rig_falloff.surface_operators import SurfaceOperators
 from .correct import locked_by

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from ..errors import ParameterError, SkeletonError
 from ..graph import CutCellGraph
 from ..method import Method
-from ..rig.rig import Rig
+from ..rig import Rig
 from ..weights.adjustments import Adjustments
 from ..weights.rig_falloff.rigid_accessories import attach
 from ..weights.rig_falloff.surface_operators import SurfaceOperators

@@ -19,9 +19,9 @@ from ..geodesics.fallback import REACHED
 from ..geometry.segments import distance_to_segment
 from ..graph import build_graph
 from ..method import ANIMATION, Method, MethodName, Options, method_of
+from ..rig import Rig
 from ..rig.checks import check_integer
 from ..rig.inputs import RigLike, as_rig
-from ..rig.rig import Rig
 from ..runtime.progress import Progress, silent
 from ..weights.context import WeightContext
 from ..weights.rig_falloff.division import facing

@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 
 from ..errors import SkeletonError
 from ..graph.winding import winding_number
+from ..rig import Rig, Skeleton
 from ..rig.checks import check_integer
-from ..rig.rig import Rig, Skeleton
 
 DIRECTIONS = 96
 """In the plane across the limb, in which the skin is looked for."""

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import ParameterError, WeightsError
+from ..rig import Rig, Skeleton
 from ..rig.checks import LONG, check_integer, one_line, shown
-from ..rig.rig import Rig, Skeleton
 
 
 def lock_joints(

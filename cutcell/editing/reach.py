@@ -11,7 +11,7 @@ from scipy.sparse.csgraph import dijkstra
 
 from ..geometry.edges import find_edges
 from ..geometry.weld import WELD_TOLERANCE, weld
-from ..rig.rig import TriangleMesh
+from ..rig import TriangleMesh
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,8 +12,8 @@ from scipy.sparse import csr_array
 from ..geometry.edges import find_edges
 from ..geometry.weld import WELD_TOLERANCE, weld
 from ..method import ANIMATION, Method, MethodName, method_of
+from ..rig import Rig, TriangleMesh
 from ..rig.checks import check_flag, check_integer
-from ..rig.rig import Rig, TriangleMesh
 from ..weights.prune import prune
 from .locks import lock_joints, locked_joints
 from .symmetry import balance, find_mirror, mirror_weights

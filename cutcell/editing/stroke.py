@@ -15,8 +15,8 @@ from scipy.spatial import cKDTree
 
 from ..errors import ParameterError
 from ..geometry.laplacian import cotangent_laplacian, vertex_areas
+from ..rig import Rig, TriangleMesh
 from ..rig.checks import check_choice, check_number
-from ..rig.rig import Rig, TriangleMesh
 from .locks import joint_index
 from .reach import SurfaceReach
 from .symmetry import Mirror

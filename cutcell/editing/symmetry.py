@@ -12,7 +12,7 @@ from scipy.spatial.distance import cdist
 
 from ..errors import MeshError, SkeletonError
 from ..geometry.weld import WELD_TOLERANCE, weld
-from ..rig.rig import Rig, Skeleton
+from ..rig import Rig, Skeleton
 
 VERTEX_TOLERANCE = 1e-3
 """Of the bounding box's diagonal: how far from its mirror image a vertex's partner may lie."""

@@ -11,8 +11,8 @@ from ..errors import MeshError
 from ..geometry.segments import distance_to_segment
 from ..graph import CutCellGraph
 from ..method import LEAVES
+from ..rig import Skeleton
 from ..rig.checks import check_choice
-from ..rig.rig import Skeleton
 from ..runtime.compiled import no_refcount
 from .any_angle.contraction import Contraction
 from .nearest import NodeGrid

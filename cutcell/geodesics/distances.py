@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from ..errors import ParameterError, SkeletonError, WeightsError
 from ..graph import CutCellGraph
 from ..method import ANIMATION, DistanceOptions, Method, MethodName, method_of
+from ..rig import Skeleton
 from ..rig.checks import check_integer, check_number, check_positions
-from ..rig.rig import Skeleton
 from ..runtime.progress import Progress, silent
 from .bones import Bones, Sources
 from .fallback import NOT_ALLOWED, REACHED, UNREACHED, UNUSED, straight_to_nearest

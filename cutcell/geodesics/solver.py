@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..graph import CutCellGraph
-from ..rig.rig import Skeleton
+from ..rig import Skeleton
 from ..runtime.progress import Progress, silent
 from ..runtime.threads import submit
 from .any_angle.contraction import Contraction, contract

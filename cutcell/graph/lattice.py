@@ -9,8 +9,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..errors import MeshError
 from ..method import check_resolution
+from ..rig import TriangleMesh
 from ..rig.checks import LARGEST, check_positions
-from ..rig.rig import TriangleMesh
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 from ..errors import ParameterError
 from ..method import check_resolution
+from ..rig import TriangleMesh
 from ..rig.checks import check_choice, check_integer, check_number
-from ..rig.rig import TriangleMesh
 from .lattice import Lattice
 from .rays import AXES, cast_rays, points_on_rays
 from .segments import divide_rays

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from ..errors import MeshError
 from ..geometry.edges import find_edges
 from ..geometry.weld import weld
-from ..rig.rig import TriangleMesh
+from ..rig import TriangleMesh
 from ..runtime.progress import Tell
 from .lattice import Lattice
 from .orientation.orient import find_inverted, flipped

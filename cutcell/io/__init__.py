@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import CutcellError, FileError
-from ..rig.rig import Rig
+from ..rig import Rig
 from ..runtime.writing import check_place, write_all
 from .articulation import articulation_bytes, read_articulation
 from .files import naming, read_bytes

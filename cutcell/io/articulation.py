@@ -18,7 +18,7 @@ from numpy.lib import format as npy
 from numpy.typing import NDArray
 
 from ..errors import CutcellError, FileError, SkeletonError, WeightsError
-from ..rig.rig import Rig, Skeleton, TriangleMesh
+from ..rig import Rig, Skeleton, TriangleMesh
 from .allowance import Allowance
 from .deforming import KEY, with_deform
 from .files import one_line, read_bytes

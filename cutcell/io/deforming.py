@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ..rig import Skeleton, TriangleMesh
 from ..rig.deform_joints import deform_joints
-from ..rig.rig import Skeleton, TriangleMesh
 from ..runtime.display import listed
 
 KEY = "cutcell_deform"

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import CutcellError, FileError, SkeletonError, WeightsError
-from ..rig.rig import Rig, Skeleton, TriangleMesh
+from ..rig import Rig, Skeleton, TriangleMesh
 from .deforming import with_deform
 from .files import naming, read_text
 from .materials.obj_materials import ColouredObj

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..pose import linear_blend_skinning
+from ..rig import Rig
 from ..rig.checks import check_integer
-from ..rig.rig import Rig
 from .counting import vertex_shares
 from .deformation import CM2, check_fit, longest_side
 from .weight_error import checked_pair

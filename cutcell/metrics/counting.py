@@ -7,8 +7,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..errors import ParameterError
 from ..geometry.weld import WELD_TOLERANCE, weld
+from ..rig import TriangleMesh
 from ..rig.checks import check_choice
-from ..rig.rig import TriangleMesh
 
 COUNTS = ("welded", "vertices")
 

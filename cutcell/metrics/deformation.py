@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import ParameterError, WeightsError
+from ..rig import Rig, Skeleton, TriangleMesh
 from ..rig.checks import check_choice, check_number
-from ..rig.rig import Rig, Skeleton, TriangleMesh
 from ..runtime.progress import Progress, silent
 from .counting import vertex_shares
 from .weight_error import checked_pair

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..rig.rig import Rig, Skeleton, TriangleMesh
+from ..rig import Rig, Skeleton, TriangleMesh
 from .counting import vertex_shares
 from .deformation import deformation_error, parts_of
 from .weight_error import checked_pair

@@ -15,7 +15,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial.transform import Rotation
 
 from ..pose import forward_kinematics, linear_blend_skinning
-from ..rig.rig import Skeleton
+from ..rig import Skeleton
 from .samples import Sample
 
 SCALES = 0.8, 1.25

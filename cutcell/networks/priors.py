@@ -19,8 +19,8 @@ from ..baselines.methods import known_options
 from ..binding import bind
 from ..dataset.read.sources import Source, find_sources, read_source
 from ..errors import CutcellError, WeightsError
+from ..rig import Rig
 from ..rig.checks import check_choice
-from ..rig.rig import Rig
 from ..runtime.progress import Progress, silent
 from ..runtime.writing import write_all
 from .recipe import PRIOR_NAMES

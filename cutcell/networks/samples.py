@@ -15,7 +15,7 @@ from ..errors import WeightsError
 from ..geometry.edges import find_edges
 from ..geometry.weld import WELD_TOLERANCE, weld
 from ..metrics.deformation import longest_side
-from ..rig.rig import Rig, Skeleton
+from ..rig import Rig, Skeleton
 
 RING, NEAR = 6, 16
 """Neighbours of a point: those for the one-ring, and those for the geodesic ball."""

@@ -19,7 +19,7 @@ from ..baselines.frame import Run, bind_by
 from ..errors import FileError
 from ..isolated.run import run_isolated
 from ..method import PAPER
-from ..rig.rig import Rig
+from ..rig import Rig
 from ..runtime.memory import BYTES_PER_WEIGHT, check_room
 from ..runtime.progress import Progress, silent
 from .priors import prior_of

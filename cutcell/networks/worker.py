@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import CutcellError
-from ..rig.rig import Rig, Skeleton, TriangleMesh
+from ..rig import Rig, Skeleton, TriangleMesh
 from .samples import deal_rig
 
 

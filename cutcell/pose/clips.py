@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import ParameterError
+from ..rig import Skeleton
 from ..rig.clip import Clip
-from ..rig.rig import Skeleton
 from .kinematics import axis_rotation, checked_joint, forward_kinematics
 
 

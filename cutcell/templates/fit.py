@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from ..errors import MeshError
 from ..graph import CutCellGraph, build_graph
+from ..rig import Skeleton
 from ..rig.checks import check_choice
 from ..rig.inputs import MeshLike, as_mesh
-from ..rig.rig import Skeleton
 from ..runtime.progress import Progress, silent
 from . import biped, chain, hand, quadruped
 from .frame import Joints, lying, standing

@@ -7,7 +7,7 @@ import numpy as np
 from ..geometry.triangles import face_edges
 from ..graph import INTERIOR, MESH, CutCellGraph, Lattice
 from ..graph.interior import InteriorPoints
-from ..rig.rig import Skeleton, TriangleMesh
+from ..rig import Skeleton, TriangleMesh
 
 AROUND = 16
 """Vertices around the tube: its open ends are holes too wide for a few triangles."""

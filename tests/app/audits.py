@@ -8,7 +8,7 @@ import numpy as np
 
 import cutcell
 from cutcell.dataset import audit, save_audit
-from cutcell.rig.rig import Rig, Skeleton
+from cutcell.rig import Rig, Skeleton
 from tests.viewers.arm import arm_rig
 
 

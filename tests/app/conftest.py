@@ -6,7 +6,7 @@ import pytest
 from playwright.sync_api import Browser, sync_playwright
 
 import cutcell
-from cutcell.rig.rig import Rig
+from cutcell.rig import Rig
 from cutcell_app.commands import loading
 from cutcell_app.commands.session import Session
 from cutcell_app.layout.session import begin

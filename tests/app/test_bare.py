@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from cutcell.errors import SkeletonError
-from cutcell.rig.rig import Rig, Skeleton
+from cutcell.rig import Rig, Skeleton
 from cutcell_app.commands import keys, loading, look
 from cutcell_app.layout.sidebar import NO_SKELETON, panels
 from cutcell_app.layout.status import messages, summary

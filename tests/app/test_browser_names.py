@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import cutcell
-from cutcell.rig.rig import Clip, Rig, Skeleton
+from cutcell.rig import Clip, Rig, Skeleton
 from tests.viewers.arm import arm_rig
 
 pytestmark = pytest.mark.slow

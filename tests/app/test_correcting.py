@@ -9,7 +9,7 @@ import trimesh
 
 import cutcell
 from cutcell import Corrections, JointCorrection, PartCorrection
-from cutcell.rig.rig import TriangleMesh
+from cutcell.rig import TriangleMesh
 from cutcell_app.commands import arrival, correct, keys, loading, look, tour
 from cutcell_app.commands.binding import restore
 from cutcell_app.panels.components import parts_of_mesh

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import cutcell
-from cutcell.rig.rig import TriangleMesh
+from cutcell.rig import TriangleMesh
 from cutcell_app.commands import loading
 from cutcell_app.commands.check import look_at, repair, take_back
 from cutcell_app.commands.export import export_repaired

@@ -8,7 +8,7 @@ import pytest
 
 import cutcell
 from cutcell.graph.winding import winding_number as cutcell_winding
-from cutcell.rig.rig import TriangleMesh
+from cutcell.rig import TriangleMesh
 from cutcell_app.files.graph_numbers import save_graph
 from cutcell_app.scenes import Memo
 from cutcell_app.scenes.facts import NO_WEIGHT, components, node_facts, vertex_facts

@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 import cutcell
-from cutcell.rig.rig import TriangleMesh
+from cutcell.rig import TriangleMesh
 from cutcell_app.commands import arrival, correct, keys, loading
 from cutcell_app.commands.arrival import GONE
 from cutcell_app.commands.check import repair

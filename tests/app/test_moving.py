@@ -11,7 +11,7 @@ import cutcell
 from cutcell import Corrections, JointCorrection
 from cutcell.editing import cross_section_centre
 from cutcell.errors import SkeletonError
-from cutcell.rig.rig import Skeleton, TriangleMesh
+from cutcell.rig import Skeleton, TriangleMesh
 from cutcell_app.commands import keys, loading, moving
 from cutcell_app.panels.moving import place
 from cutcell_app.scenes import resolve

@@ -6,7 +6,7 @@ import pytest
 
 import cutcell
 from cutcell.editing.corrections import JointCorrection
-from cutcell.rig.rig import Rig, Skeleton
+from cutcell.rig import Rig, Skeleton
 from cutcell_app.commands import correct, export, keys, loading, structure
 from cutcell_app.panels.structure import NOTHING
 from cutcell_app.panels.structure import structure as controls

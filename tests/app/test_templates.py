@@ -5,7 +5,7 @@ import panel_material_ui as pmui
 import pytest
 
 import cutcell
-from cutcell.rig.rig import Rig, Skeleton
+from cutcell.rig import Rig, Skeleton
 from cutcell_app.commands import correct, export, keys, loading, moving, templates
 from cutcell_app.layout.sidebar import sidebar
 from cutcell_app.panels.joints import joints

@@ -4,7 +4,7 @@ import numpy as np
 import trimesh
 
 from cutcell.pose import rotate_joint
-from cutcell.rig.rig import Attachment, Clip, Rig, Skeleton, TriangleMesh
+from cutcell.rig import Attachment, Clip, Rig, Skeleton, TriangleMesh
 
 # The beam's space has z up, the scene y.
 WORLD = np.array([[1.0, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]])

@@ -7,7 +7,7 @@ import pytest
 
 import cutcell
 from cutcell.graph import INTERIOR, MESH, SURFACE
-from cutcell.rig.rig import Skeleton
+from cutcell.rig import Skeleton
 from cutcell_viewers import palette
 from cutcell_viewers.character import (
     body,

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from ...geometry.segments import distance_to_segment
 from ...isolated.run import LIMIT, WorkFailedError, run_isolated
 from ...method import PAPER, Leaf, check_resolution
+from ...rig import Rig
 from ...rig.checks import check_integer
-from ...rig.rig import Rig
 from ..body import Body, Same
 from ..frame import BaselineBinding, Run, bind_by
 from ..volumes.voxels import PAD, voxelize

@@ -23,8 +23,8 @@ from ...metrics import (
     vertex_shares,
     weight_l1,
 )
+from ...rig import Rig
 from ...rig.checks import check_choice
-from ...rig.rig import Rig
 from ...runtime.progress import Progress, silent
 from .. import METHODS, Baseline, BaselineBinding
 from ..methods import known_options

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from ...isolated.run import LIMIT, WorkFailedError, run_isolated
 from ...method import PAPER, Leaf
+from ...rig import Rig
 from ...rig.checks import check_integer, check_number
-from ...rig.rig import Rig
 from ..body import Body, Same
 from ..frame import BaselineBinding, Run, bind_by
 

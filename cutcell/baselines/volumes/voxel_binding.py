@@ -13,7 +13,7 @@ from scipy.spatial import cKDTree
 
 from ...geometry.edges import find_edges
 from ...method import PAPER, Leaf
-from ...rig.rig import Rig
+from ...rig import Rig
 from ...weights.paper_kernel import paper_kernel
 from ..body import NEAREST, Body, follow_nearest, unreached
 from ..frame import BaselineBinding, Run, bind_by

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...rig.rig import Rig
+from ...rig import Rig
 
 SAME_BONES = 0.02
 """Bone lengths that differ by less than this share of their sum are those of one skeleton."""

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from ...errors import MeshError
 from ...geometry.laplacian import vertex_normals
 from ...geometry.triangles import areas, unit_normals
-from ...rig.rig import Rig
+from ...rig import Rig
 
 
 @dataclass(frozen=True, eq=False)

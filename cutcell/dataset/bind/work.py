@@ -19,8 +19,8 @@ from ...graph import INTERIOR, MESH, SURFACE
 from ...graph.memory import needed_memory
 from ...graph.rays import expected_hits
 from ...metrics import deformation_error, precision_recall, weight_l1
+from ...rig import Rig, Skeleton
 from ...rig.checks import one_line
-from ...rig.rig import Rig, Skeleton
 from ..read.sources import Content, read_content
 from ..read.store import Entry, Outcome, Parameters, entry_bytes
 

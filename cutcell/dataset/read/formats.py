@@ -17,8 +17,8 @@ from ...geometry.triangles import face_edges
 from ...io.articulation import HEADERS, articulation_bytes
 from ...io.deforming import with_deform
 from ...io.weights import normalised
+from ...rig import Rig, Skeleton, TriangleMesh
 from ...rig.checks import one_line
-from ...rig.rig import Rig, Skeleton, TriangleMesh
 from .unpickle import plain_objects
 
 SAMPLE = "sample_"

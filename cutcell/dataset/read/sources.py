@@ -15,7 +15,7 @@ from ...errors import CutcellError, FileError
 from ...io import load
 from ...io.files import naming, read_bytes
 from ...io.rignet import rig_file
-from ...rig.rig import Rig, Skeleton, TriangleMesh
+from ...rig import Rig, Skeleton, TriangleMesh
 from .archive import MEMBER
 from .formats import read_samples, read_unirig, samples_of
 from .store import STORE, Store, read_entry

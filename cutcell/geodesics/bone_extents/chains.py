@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from scipy.sparse.csgraph import dijkstra
 from scipy.spatial.distance import cdist
 
-from ...rig.rig import Skeleton
+from ...rig import Skeleton
 from .probe import BodyProbe
 from .rest_axis import rest_directions
 

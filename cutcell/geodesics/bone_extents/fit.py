@@ -15,7 +15,7 @@ from scipy.spatial.distance import cdist
 
 from ...geometry.vectors import length, triangle_normal
 from ...graph import CutCellGraph
-from ...rig.rig import Skeleton
+from ...rig import Skeleton
 from ...runtime.compiled import no_refcount
 from ..bones import Bones
 from ..nearest import NodeGrid

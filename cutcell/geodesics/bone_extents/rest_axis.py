@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ...rig.rig import Skeleton
+from ...rig import Skeleton
 
 ALONG = np.cos(np.radians(10))
 """An axis points along a bone if it is within 10 degrees of it."""

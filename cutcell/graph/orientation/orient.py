@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from ...geometry.edges import find_edges
 from ...geometry.weld import weld
-from ...rig.rig import TriangleMesh
+from ...rig import TriangleMesh
 from ...runtime.progress import Tell
 from ..lattice import Lattice
 from ..winding.boundary import boundary_of

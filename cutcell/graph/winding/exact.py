@@ -20,7 +20,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ...errors import ParameterError
 from ...geometry.weld import weld
-from ...rig.rig import TriangleMesh
+from ...rig import TriangleMesh
 from ...runtime.compiled import compiled, no_refcount
 from ...runtime.threads import in_threads, parts
 from ..lattice import Lattice

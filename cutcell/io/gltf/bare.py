@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import MeshError
-from ...rig.rig import Part, Rig, Skeleton, TriangleMesh
+from ...rig import Part, Rig, Skeleton, TriangleMesh
 from .container import Document
 from .nodes import Nodes
 from .read.parts import hidden_nodes, left_out_meshes, mesh_name, vanishes

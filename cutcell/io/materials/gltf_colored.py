@@ -10,7 +10,7 @@ import numpy as np
 import pygltflib
 from numpy.typing import NDArray
 
-from ...rig.rig import Rig
+from ...rig import Rig
 from ..gltf.buffer import BufferWriter
 from ..gltf.container import Document
 from ..gltf.read.accessors import find_accessor

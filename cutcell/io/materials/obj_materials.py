@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from ...errors import FileError
-from ...rig.rig import TriangleMesh
+from ...rig import TriangleMesh
 from ..files import read_beside, read_text
 from ..meshes.obj import numbered_words
 from .surfaces import ImageFile, Material, Surface, Surfaces

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from ...rig.rig import Rig
+from ...rig import Rig
 from ..gltf.bare import BareSource
 from ..gltf.container import Document
 from ..gltf.read.primitives import primitives, read_triangles

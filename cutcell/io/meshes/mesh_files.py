@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ...errors import FileError, MeshError
-from ...rig.rig import Rig, Skeleton, TriangleMesh
+from ...rig import Rig, Skeleton, TriangleMesh
 from ..deforming import with_deform
 from ..files import one_line, read_bytes, read_text
 from ..materials.obj_materials import ColouredObj

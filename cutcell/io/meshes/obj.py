@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 
 from ...errors import FileError, MeshError
-from ...rig.rig import TriangleMesh
+from ...rig import TriangleMesh
 
 MOST = 2**31 - 2
 """Number of a vertex, counted from 0."""

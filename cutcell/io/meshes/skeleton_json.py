@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ...errors import FileError, SkeletonError
-from ...rig.rig import Skeleton
+from ...rig import Skeleton
 from ..files import naming, one_line, read_text
 from ..names import has_halves
 

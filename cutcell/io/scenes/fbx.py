@@ -8,7 +8,7 @@ import numpy as np
 
 from ...errors import FileError
 from ...isolated.run import WorkFailedError, run_isolated
-from ...rig.rig import Rig
+from ...rig import Rig
 from ..files import read_bytes
 from ..gltf.read.read import read_rig
 from .document import scene_document

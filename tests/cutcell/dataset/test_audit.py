@@ -15,7 +15,7 @@ from cutcell.dataset.audit.likeness import Similarity, features_of, likeness, sa
 from cutcell.dataset.audit.points import Normalised, normalised, sample_surface
 from cutcell.dataset.read.store import read_table
 from cutcell.errors import MeshError, ParameterError
-from cutcell.rig.rig import Rig, Skeleton, TriangleMesh
+from cutcell.rig import Rig, Skeleton, TriangleMesh
 from cutcell_assets.generate import KINDS, generate
 
 ALIKE = Similarity("copy", True, 0.0, 0.0, 0.0, 1.0, 0.0)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from cutcell.editing.reach import SurfaceReach
-from cutcell.rig.rig import TriangleMesh
+from cutcell.rig import TriangleMesh
 from tests import meshes, naive
 
 

@@ -5,7 +5,7 @@ import pytest
 
 import cutcell
 from cutcell import Corrections, JointCorrection, ParameterError, SkeletonError
-from cutcell.rig.rig import Rig, Skeleton
+from cutcell.rig import Rig, Skeleton
 from tests.viewers.arm import arm_rig
 
 TIP = JointCorrection(added=True, position=(1.3, 0, 0), parent="wrist")

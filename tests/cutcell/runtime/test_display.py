@@ -16,7 +16,7 @@ from cutcell.baselines.compare.scores import Comparison, MethodScore, RigScore
 from cutcell.baselines.compare.terminal import comparison_table
 from cutcell.cli.console import print_json, print_line, print_table, print_warnings, progress_bars
 from cutcell.metrics import Turn
-from cutcell.rig.rig import Rig, Skeleton, TriangleMesh
+from cutcell.rig import Rig, Skeleton, TriangleMesh
 from cutcell.runtime.display import (
     MAX_LETTERS,
     json_safe,

@@ -10,7 +10,7 @@ import pygltflib
 from numpy.typing import NDArray
 
 from ....geometry import triangles
-from ....rig.rig import Rig, TriangleMesh
+from ....rig import Rig, TriangleMesh
 from ..bare import BareSource
 from ..buffer import BufferWriter
 from .accessors import read_accessor

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from ....rig.rig import LeftOut
+from ....rig import LeftOut
 from ..container import Document
 from ..nodes import Nodes
 from .primitives import draws_triangles, primitives

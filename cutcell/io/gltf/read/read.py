@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....errors import CutcellError, FileError, MeshError
-from ....rig.rig import Attachment, Part, Rig, Skeleton, TriangleMesh
+from ....rig import Attachment, Part, Rig, Skeleton, TriangleMesh
 from ...deforming import with_deform
 from ...weights import ReadWeights
 from ..bare import read_bare

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....errors import FileError, SkeletonError
-from ....rig.rig import Skeleton
+from ....rig import Skeleton
 from ..container import Document, indices
 from ..nodes import Nodes
 from .accessors import read_accessor

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from .... import __version__
 from ....errors import CutcellError, MeshError, SkeletonError, WeightsError
 from ....geometry.triangles import normals
-from ....rig.rig import Clip, Rig, Skeleton, TriangleMesh
+from ....rig import Clip, Rig, Skeleton, TriangleMesh
 from ....rig.transforms import relative
 from ...deforming import KEY
 from ...materials.gltf_colored import with_rig_colors

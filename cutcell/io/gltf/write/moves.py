@@ -17,7 +17,7 @@ import pygltflib
 from numpy.typing import ArrayLike, NDArray
 
 from ....errors import SkeletonError
-from ....rig.rig import Rig
+from ....rig import Rig
 from ..buffer import BufferWriter
 from ..container import Document
 from ..nodes import Nodes

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....errors import WeightsError
-from ....rig.rig import Rig
+from ....rig import Rig
 from ...materials.gltf_images import carry_images
 from ..bare import BareSource, StoredMesh
 from ..buffer import BufferWriter

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....errors import MeshError, SkeletonError, WeightsError
-from ....rig.rig import Rig
+from ....rig import Rig
 from ...materials.gltf_colored import with_surface_colors
 from ...materials.gltf_images import carry_images
 from ..buffer import BufferWriter
