@@ -115,8 +115,8 @@ def classify_cells(
     # The last corner lies outside: never an empty list.
     classified = in_threads(classify, [*corners, np.full(3, resolution)], tell)
     rows = count = 0
-    for blocks, row, expanded, _ in classified:
-        coarse[tuple(blocks.T)] += rows
+    for corner, row, expanded, _ in classified:
+        coarse[tuple(corner.T)] += rows
         row[row >= 0] += count
         rows, count = rows + len(row), count + len(expanded)
     _, fine, expanded, near = (np.concatenate(parts) for parts in zip(*classified, strict=True))

@@ -81,8 +81,8 @@ def _check_places(
 def _document(rig: Rig) -> tuple[dict[str, Any], bytes]:
     """Return the document of a rig, in one plain material, and its buffer."""
     builder, count = GltfBuilder(f"cutcell {__version__}"), len(rig.skeleton.joints)
-    for node in joint_nodes(rig.skeleton, 0):
-        builder.add_node(node)
+    for joint in joint_nodes(rig.skeleton, 0):
+        builder.add_node(joint)
     if not np.array_equal(rig.world, np.eye(4)):
         builder.json["nodes"][count]["matrix"] = rig.world.T.ravel().tolist()
     influences = pack_influences(rig.weights)  # type: ignore[arg-type]
