@@ -163,7 +163,7 @@ def test_a_joint_is_turned_as_the_core_turns_it(visit, robot):
 def play(visit):
     """Let the motion run for a while."""
     begin = visit.report()["time"]
-    visit.page.get_by_role("button", name="Play").click()
+    visit.page.get_by_role("button", name="Play", exact=True).click()
     visit.page.wait_for_function("begin => __cutcell.report().time > begin + 0.4", arg=begin)
 
 
@@ -173,7 +173,7 @@ def test_the_motion_plays_and_halts(visit):
     play(visit)
     moving = visit.points()
     assert np.abs(moving - rest).max() > 0.01
-    visit.page.get_by_role("button", name="Pause").click()
+    visit.page.get_by_role("button", name="Pause", exact=True).click()
     visit.page.wait_for_function("!__cutcell.report().playing")
     visit.settle()
     halted = visit.points()

@@ -6,7 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from cutcell import MeshError, Rig, Skeleton, SkeletonError, TriangleMesh, WeightsError
-from cutcell.rig import FAR_OUTSIDE, Clip
+from cutcell.rig import Clip
+from cutcell.rig.rig import FAR_OUTSIDE
 
 CORNERS = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], float)
 TETRAHEDRON = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
