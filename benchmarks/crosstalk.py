@@ -11,7 +11,6 @@ import argparse
 import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from inspect import signature
 from pathlib import Path
 
 import numpy as np
@@ -19,6 +18,7 @@ from numpy.typing import NDArray
 
 import cutcell
 from cutcell.baselines import METHODS, BaselineBinding
+from cutcell.baselines.methods import known_options
 from cutcell.graph import build_graph
 from cutcell.metrics import crosstalk, find_gaps
 
@@ -64,11 +64,8 @@ def gaps(place: Place, rig: cutcell.Rig) -> NDArray[np.int32]:
 def bound(
     method: Callable[..., BaselineBinding], rig: cutcell.Rig, resolution: int
 ) -> BaselineBinding:
-    """Bind with those options that a method knows."""
-    options = {"resolution": resolution, "max_influences": None}
-    options = signature(method).parameters
-    every = any(p.kind is p.VAR_KEYWORD for p in options.values())
-    return method(rig, **{key: value for key, value in options.items() if every or key in options})
+    """Bind with those options that a method accepts."""
+    return method(rig, **known_options(method, resolution=resolution, max_influences=None))
 
 
 def strongest(weights: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -20,8 +20,8 @@ from cutcell_viewers.palette import BODY
 
 from ..state import State
 from ..state.distance import MEASURES
-from ..work.measured_distance import Measure, MeasuredDistance, measure_distance
 from .common import SEE_PATH, character
+from .measured_distance import Measure, MeasuredDistance, measure_distance
 from .memo import Memo
 
 WAITING = 0.28

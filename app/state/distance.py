@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Literal
 
 import param
 
-from ..work.measured_distance import Measure
+Measure = Literal["straight", "surface", "voxel", "6", "26", "any"]
 
 MAX_MEASURES = 4
 """That stand side by side."""

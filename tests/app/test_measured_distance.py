@@ -10,7 +10,7 @@ from cutcell.baselines.body import Body
 from cutcell.baselines.volumes.voxel_binding import voxel_distances
 from cutcell.baselines.volumes.voxels import voxelize
 from cutcell.errors import ParameterError
-from cutcell_app.work.measured_distance import MEASURES, measure_distance
+from cutcell_app.scenes.measured_distance import MEASURES, measure_distance
 from tests.bars import bar, fork
 
 METHOD = cutcell.PAPER.with_options(resolution=24)

@@ -8,11 +8,11 @@ from cutcell.geodesics import path_length
 from cutcell_app.commands import loading
 from cutcell_app.scenes import following, resolve
 from cutcell_app.scenes.distance import farthest, wants_field
+from cutcell_app.scenes.measured_distance import MEASURES, measure_distance
 from cutcell_app.scenes.measures import WAITING, measured_of, measuring
 from cutcell_app.state import State
 from cutcell_app.state.distance import MEASURES as NAMED
 from cutcell_app.state.url import from_query, to_query
-from cutcell_app.work.measured_distance import MEASURES, measure_distance
 from cutcell_viewers.palette import BODY
 from tests.viewers.arm import arm_rig
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from itertools import product
-from typing import Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,8 +25,7 @@ from cutcell.method import Method
 from cutcell.rig import Rig
 from cutcell.rig.checks import check_choice
 
-Measure = Literal["straight", "surface", "voxel", "6", "26", "any"]
-MEASURES: tuple[Measure, ...] = get_args(Measure)
+from ..state.distance import MEASURES, Measure
 
 SIDES = np.array([
     [[0, 0, 0], [0, 0, 1], [0, 1, 1], [0, 1, 0]],
