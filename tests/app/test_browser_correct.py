@@ -224,6 +224,7 @@ def test_the_card_of_a_vertex_scrolls_within_a_small_window(visit):
     visit.page.set_viewport_size({"width": 1366, "height": 600})
     visit.click_vertex()
     visit.card.get_by_role("button", name="Why these weights?").click()
+    expect(visit.card).to_contain_text("shares by distance")  # the card is not built again then
     override = visit.card.get_by_role("button", name="Override")
     override.scroll_into_view_if_needed()
     box = override.bounding_box()
