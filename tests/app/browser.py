@@ -29,11 +29,6 @@ BIND_MS = 240_000
 expect.set_options(timeout=LOAD_MS)  # a loaded machine is slow, and patience costs nothing
 ANSWER_MS = 10_000
 
-# Software draws each pixel, and a core computes each node: no more of either than is looked at.
-SIZE = {"width": 960, "height": 560}
-RESOLUTION = 24
-ROBOT = f"/?rig=robot&resolution={RESOLUTION}"
-
 # What was clicked is in the server's hands before it is asked; twice, since what it then does may
 # let a person's choice begin the next thing. The widgets show what arrived a frame later.
 SETTLED = """async (limit) => {
@@ -155,7 +150,7 @@ class Visit:
 
     def __init__(self, browser: Browser, url: str, smooth: bool = False, **context: Any) -> None:
         self.context = browser.new_context(
-            **{"viewport": SIZE, "accept_downloads": True, **context}
+            **{"viewport": {"width": 1100, "height": 720}, "accept_downloads": True, **context}
         )
         self.context.set_default_timeout(LOAD_MS)
         if not smooth:
@@ -197,6 +192,7 @@ class Visit:
     def remember_beginning(self) -> None:
         """Note what `begin_anew` goes back to."""
         self.first = self.beginning
+        self.first_bone = self.bone.inner_text()
 
     def begin_anew(self) -> bool:
         """Go back to how the page began; return whether it is as it was."""
@@ -206,7 +202,12 @@ class Visit:
             self.page.mouse.move(2, 2)
             if self.page.evaluate(SAME_RIG, self.first[0]):
                 self.button("Reset all choices").click(timeout=ANSWER_MS)
-            self.go(self.first[0])
+                self.panel("Weights")
+                if self.bone.inner_text() != self.first_bone:
+                    self.choose("Bone", self.first_bone)
+                    self.settle()
+            if self.beginning != self.first:
+                self.go(self.first[0])
             if self.button("Close").is_visible():
                 self.dismiss()
             return self.beginning == self.first
@@ -318,10 +319,6 @@ class Visit:
         self.drop(path, *beside)
         self.page.get_by_text(re.compile(f"^{count:,} vertices .* surface")).wait_for()
         self.settle()
-
-    def leave_field(self) -> None:
-        """Click the line at the bottom, so that keys are the page's."""
-        self.page.mouse.click(700, SIZE["height"] - 30)
 
     def click_bone(self, joint: int) -> None:
         """Click the middle of a joint's bone in the canvas."""

@@ -12,7 +12,7 @@ from cutcell_app.commands.session import Session
 from cutcell_app.layout.session import begin
 from cutcell_assets import demo_path
 from scripts.get_chromium import FLAGS
-from tests.app.browser import ROBOT, Visit, served
+from tests.app.browser import Visit, served
 from tests.app.loop import Loop
 from tests.viewers.arm import arm_rig
 
@@ -76,7 +76,7 @@ def kept() -> Iterator[list[Visit]]:
 
 @pytest.fixture
 def visit(browser: Browser, url: str, kept: list[Visit]) -> Iterator[Visit]:
-    """Show the robot, bound coarsely, on the panel Weights, with nothing else chosen.
+    """Show the robot, bound, on the panel Weights, with nothing else chosen.
 
     It is the page of the test before, where that can be brought back to its beginning.
     """
@@ -85,7 +85,7 @@ def visit(browser: Browser, url: str, kept: list[Visit]) -> Iterator[Visit]:
         visit.context.close()
         visit = None
     if visit is None:
-        visit = Visit(browser, url + ROBOT)
+        visit = Visit(browser, url + "/?rig=robot")
         visit.wait_until_bound()
         visit.dismiss()  # the robot's ring, which no bone reaches
         visit.remember_beginning()

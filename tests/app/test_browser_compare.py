@@ -5,7 +5,7 @@ import pytest
 from playwright.sync_api import expect
 
 from cutcell_assets import demo_path
-from tests.app.browser import ROBOT, Visit, changed
+from tests.app.browser import Visit, changed
 from tests.conftest import SHARED_RIGS
 
 pytestmark = pytest.mark.slow
@@ -16,7 +16,7 @@ SOURCE = REAL if REAL.exists() else demo_path("rabbit")
 
 @pytest.fixture(scope="module")
 def opened(browser, url):
-    visit = Visit(browser, url + ROBOT)
+    visit = Visit(browser, url + "/?rig=robot", viewport={"width": 1000, "height": 640})
     visit.open(SOURCE)
     visit.panel("Compare")
     yield visit, visit.address

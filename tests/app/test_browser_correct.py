@@ -10,7 +10,7 @@ from playwright.sync_api import expect
 
 import cutcell
 from cutcell import Corrections, JointCorrection
-from tests.app.browser import IN_SIGHT, ROBOT, Visit, changed
+from tests.app.browser import IN_SIGHT, Visit, changed
 from tests.cutcell.diagnosis.test_leaks import soldier
 
 pytestmark = pytest.mark.slow
@@ -18,7 +18,7 @@ pytestmark = pytest.mark.slow
 
 @pytest.fixture(scope="module")
 def opened(browser, url):
-    visit = Visit(browser, url + ROBOT + "&bone=hips")
+    visit = Visit(browser, url + "/?rig=robot&resolution=24&bone=hips")
     visit.wait_until_bound()
     visit.dismiss()
     yield visit, visit.address

@@ -7,13 +7,13 @@ import pytest
 from playwright.sync_api import expect
 
 import cutcell
-from tests.app.browser import RESOLUTION, changed
+from tests.app.browser import changed
 
 pytestmark = pytest.mark.slow
 
 
 def test_a_vertex_is_looked_at_closely(visit, robot):
-    binding = cutcell.bind(robot, RESOLUTION)
+    binding = cutcell.bind(robot)
     vertex = visit.click_vertex()
     expect(visit.card).to_contain_text(f"Vertex {vertex:,}")
     strongest = int(binding.weights[vertex].argmax())
@@ -39,7 +39,7 @@ def test_a_vertex_is_looked_at_closely(visit, robot):
 
 
 def test_a_vertex_that_no_bone_reaches_says_why(visit, robot):
-    lost = np.flatnonzero(cutcell.bind(robot, RESOLUTION).distances.fallback)
+    lost = np.flatnonzero(cutcell.bind(robot).distances.fallback)
     visit.click_vertex(f"{lost.tolist()}.includes(vertex)")
     expect(visit.card).to_contain_text("no path through the body leads from a bone")
     expect(visit.card).to_contain_text(re.compile(r"Part \d+ of \d+"))
@@ -49,7 +49,7 @@ def test_a_vertex_that_no_bone_reaches_says_why(visit, robot):
 
 def test_the_graphs_layers_are_counted_and_coloured(visit, robot):
     visit.panel("Graph")
-    graph = cutcell.bind(robot, RESOLUTION).graph
+    graph = cutcell.bind(robot).graph
     for kind in range(3):
         visit.expect_text(f"{(graph.edge_kind == kind).sum():,}")
     kinds = visit.look()
@@ -165,21 +165,21 @@ def test_the_wave_runs_and_halts(visit):
 
 def test_weights_in_many_ways(visit):
     visit.panel("Weights")
-    mixed = after = visit.look()
+    mixed = visit.look()
     for option, legend in (
         ("Dominant bone", None),
         ("Selected bone", "Weight of"),
         ("Influences per vertex", "Influences"),
     ):
-        before = after
+        before = visit.look()
         visit.choose("Colour by", option)
         if legend:
             visit.expect_text(legend)
-        after = visit.look()
-        assert changed(before, after) > 0.001, option
+        assert changed(before, visit.look()) > 0.001, option
+    one = visit.look()
     visit.slide("Max influences", "Home")
     visit.expect_text("1.0 influences per vertex")
-    assert changed(after, visit.look()) > 0.0005
+    assert changed(one, visit.look()) > 0.0005
     for _ in range(3):
         visit.slide("Max influences", "ArrowRight")
         visit.settle()

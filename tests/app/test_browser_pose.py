@@ -10,7 +10,7 @@ import cutcell
 from cutcell_assets import demo_path
 from cutcell_viewers.character import pose_in_scene
 from cutcell_viewers.pose_scene import joint_turns, turn
-from tests.app.browser import RESOLUTION, ROBOT, Visit, changed
+from tests.app.browser import Visit, changed
 from tests.conftest import SHARED_RIGS
 from tests.viewers.textures import png, seen, squares, wall
 
@@ -23,7 +23,8 @@ SOURCE = REAL if REAL.exists() else demo_path("rabbit")
 
 @pytest.fixture(scope="module")
 def opened(browser, url):
-    visit = Visit(browser, url + ROBOT, has_touch=True)
+    size = {"width": 1000, "height": 640}
+    visit = Visit(browser, url + "/?rig=robot", viewport=size, has_touch=True)
     visit.open(SOURCE)
     visit.panel("Pose")
     yield visit, visit.address
@@ -92,7 +93,7 @@ def test_a_ring_turns_the_joint_and_the_server_agrees(visit, rig):
     transforms = cutcell.forward_kinematics(
         rig.skeleton, joint_turns(rig, {joint: turn("z", degrees)})
     )
-    weights = cutcell.bind(rig, RESOLUTION).weights
+    weights = cutcell.bind(rig).weights
     expected = cutcell.linear_blend_skinning(still, weights, pose_in_scene(rig, transforms))
     np.testing.assert_allclose(visit.points(), expected, atol=1e-4 * np.ptp(still))
     rest(visit)

@@ -42,10 +42,10 @@ def test_a_link_shows_a_colleague_the_same_and_a_refresh_brings_it_back(browser,
     visit.wait_until_bound()
     visit.dismiss()
     assert changed(seen, visit.look()) < SAME
-    visit.leave_field()
+    visit.page.mouse.click(700, 690)
     visit.button("Cut X").click()
     address(visit, "cut_axis=x")
-    visit.leave_field()
+    visit.page.mouse.click(700, 690)
     visit.page.keyboard.press("Control+z")
     address(visit, "cut_axis=z")
     visit.button("Redo").click()
@@ -59,7 +59,7 @@ def test_a_link_shows_a_colleague_the_same_and_a_refresh_brings_it_back(browser,
 def test_keys_change_the_bone_play_and_list_themselves(visit):
     bone = visit.bone
     before = bone.inner_text()
-    visit.leave_field()
+    visit.page.mouse.click(700, 690)
     visit.page.keyboard.press("ArrowRight")
     address(visit, "bone=")
     expect(bone).not_to_have_text(before)

@@ -93,7 +93,7 @@ def test_what_cannot_be_loaded_is_told(found, tmp_path):
     with pytest.raises(FileError, match="have changed since"):
         load_audit(tmp_path)
     (tmp_path / "audit.json").write_text("{}")
-    with pytest.raises(FileError, match="does not say what it was made of"):
+    with pytest.raises(FileError, match="does not name its inputs"):
         load_audit(tmp_path)
     (tmp_path / "audit.json").write_text("{")
     with pytest.raises(FileError, match="is no JSON"):
