@@ -240,10 +240,10 @@ def render(
         scenes.check(loaded, choices, view)
     from cutcell.binding import bind
 
-    bare = not len(loaded.skeleton.joints)
+    no_skeleton = not len(loaded.skeleton.joints)
     textures = scenes.textures_for(loaded, choices)
     with progress_bars(quiet) as progress:
-        binding = None if bare else bind(loaded, method=method, progress=progress)
+        binding = None if no_skeleton else bind(loaded, method=method, progress=progress)
         description = scenes.describe(
             loaded,
             choices,
@@ -288,8 +288,8 @@ def _libraries() -> tuple[Any, Any, Any]:
 
 
 def _size(text: str) -> tuple[int, int]:
-    found = re.fullmatch(r"(\d{1,5})\s*[xX×]\s*(\d{1,5})", text.strip())
-    sides = tuple(int(side) for side in found.groups()) if found else ()
+    match = re.fullmatch(r"(\d{1,5})\s*[xX×]\s*(\d{1,5})", text.strip())
+    sides = tuple(int(side) for side in match.groups()) if match else ()
     if not sides or not all(16 <= side <= LARGEST for side in sides):
         raise ParameterError(
             f"size must be width x height in pixels, 16 to {LARGEST} each, such as 1600x1200, "
@@ -301,10 +301,10 @@ def _size(text: str) -> tuple[int, int]:
 def _turn(text: str | None) -> tuple[str, float] | None:
     if text is None:
         return None
-    found = re.fullmatch(r"\s*([xyzXYZ])\s*=\s*([-+]?\d+(?:\.\d*)?)\s*°?\s*", text)
-    if not found:
+    match = re.fullmatch(r"\s*([xyzXYZ])\s*=\s*([-+]?\d+(?:\.\d*)?)\s*°?\s*", text)
+    if not match:
         raise ParameterError(f'turn must be an axis and degrees, such as z=30, not "{text}"')
-    return found[1].lower(), float(found[2])
+    return match[1].lower(), float(match[2])
 
 
 def _kilobytes(path: Path) -> str:

@@ -187,10 +187,10 @@ def allowed_hosts(address: str, port: int) -> list[str]:
     """Return the hosts, with their port, under which a browser may know this server."""
     names = ["localhost", "127.0.0.1", *(["[::1]"] if ":" in address else [])]
     if address not in LOCAL:
-        known = {in_brackets(address), socket.gethostname(), socket.getfqdn()}
+        hosts = {in_brackets(address), socket.gethostname(), socket.getfqdn()}
         if address in ("0.0.0.0", "::"):
-            known |= {in_brackets(str(info[4][0])) for info in _own_addresses()}
-        names += sorted(known - {*names})
+            hosts |= {in_brackets(str(info[4][0])) for info in _own_addresses()}
+        names += sorted(hosts - {*names})
     # Bokeh's own setting, for names that only a person can know: of a proxy, or a tunnel.
     return [*(f"{name}:{port}".lower() for name in names), *settings.allowed_ws_origin()]
 

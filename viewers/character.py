@@ -92,8 +92,8 @@ def bones(
     """
     start, end, joint = drawn_segments(rig)
     if shown is not None:
-        kept = np.asarray(shown, bool)
-        start, end, joint = start[kept], end[kept], joint[kept]
+        visible_bones = np.asarray(shown, bool)
+        start, end, joint = start[visible_bones], end[visible_bones], joint[visible_bones]
     size = float(np.linalg.norm(np.ptp(to_scene(rig, rig.mesh.vertices), axis=0)))
     of_chosen = joint == chosen
     edge = np.where(of_chosen[:, None] & (colors is not None), BONE_CHOSEN, BONE_EDGE)
@@ -117,11 +117,11 @@ def bones(
             _octahedra(start, end, size, rig.skeleton.deform[joint], wider)
             .reshape(-1, 3)
             .astype(np.float32),
-            colors=np.repeat(to_bytes(own), 6, axis=0),
+            colors=np.repeat(to_bytes(color_of), 6, axis=0),
             hull=name != "bones",
             **common,
         )
-        for name, own, wider in (
+        for name, color_of, wider in (
             ("bones", color, np.zeros(len(joint))),
             ("bone outlines", edge, thick),
         )
@@ -254,18 +254,18 @@ def smooth_normals(points: NDArray[np.float64], faces: NDArray) -> NDArray[np.fl
     degrees: exporters split vertices at texture seams as well as at hard edges.
     """
     area = normals(points[faces])
-    own = np.zeros_like(points)
+    face_sum = np.zeros_like(points)
     for k in range(3):
-        np.add.at(own, faces[:, k], area)
-    unit = own / np.maximum(np.linalg.norm(own, axis=1, keepdims=True), 1e-300)
+        np.add.at(face_sum, faces[:, k], area)
+    unit = face_sum / np.maximum(np.linalg.norm(face_sum, axis=1, keepdims=True), 1e-300)
     group = _places(points)
     order = np.argsort(group, kind="stable")
     group = group[order]
-    total = own.copy()
+    total = face_sum.copy()
     for shift in range(1, min(int(np.bincount(group).max()), MAX_AT_A_PLACE)):
         a, b = order[:-shift], order[shift:]
         near = (group[:-shift] == group[shift:]) & ((unit[a] * unit[b]).sum(axis=1) > CREASE)
-        np.add.at(total, a[near], own[b[near]])
-        np.add.at(total, b[near], own[a[near]])
+        np.add.at(total, a[near], face_sum[b[near]])
+        np.add.at(total, b[near], face_sum[a[near]])
     length = np.linalg.norm(total, axis=1, keepdims=True)
     return np.where(length > 0, total / np.where(length > 0, length, 1), [0.0, 1, 0])

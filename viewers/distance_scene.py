@@ -61,11 +61,11 @@ def distance_colors(
     What is not reached is grey. The limits are those of the distances when left out.
     """
     limits = limits or distance_limits(distance)
-    look, unreached = distance_look(distance, limits)
+    style, unreached = distance_look(distance, limits)
     legend = distance_legend(rig, joint, limits)
     if unreached:
         legend = replace(legend, swatches=((UNREACHED, "no path leads there"),))
-    return {**look, "reading": Reading(f"from {rig.skeleton.names[joint]}: ")}, legend
+    return {**style, "reading": Reading(f"from {rig.skeleton.names[joint]}: ")}, legend
 
 
 def distance_look(distance: ArrayLike, limits: tuple[float, float]) -> tuple[dict[str, Any], bool]:

@@ -51,8 +51,8 @@ class Gap:
         matrices = np.asarray(pose, np.float32)[:, :3].reshape(-1, 12)
         matrices = np.vstack([matrices, np.eye(3, 4, dtype=np.float32).ravel()])
         blended = (self._between @ matrices).reshape(-1, 3, 4)
-        apart = (blended[:, :, :3] @ self._points[:, :, None])[:, :, 0] + blended[:, :, 3]
-        return np.asarray(self._unit * (apart * apart).sum(axis=1), np.float32)
+        displacement = (blended[:, :, :3] @ self._points[:, :, None])[:, :, 0] + blended[:, :, 3]
+        return np.asarray(self._unit * (displacement * displacement).sum(axis=1), np.float32)
 
 
 def error_scene(
@@ -85,9 +85,9 @@ def error_scene(
     pose = pose_in_scene(rig, transforms)
     limits = error_limits(Gap(rig, weights, reference).squared(pose))
     apart = Apart(skin_of_weights(reference), squared_unit(rig))
-    look = error_look(len(rig.mesh.vertices), apart, limits)
+    style = error_look(len(rig.mesh.vertices), apart, limits)
     actors = {
-        "body": body(rig, weights, **look),
+        "body": body(rig, weights, **style),
         **attachments(rig),
         **bones(rig, chosen, skeleton),
     }

@@ -113,8 +113,8 @@ def camera_on(
     pose = finding_pose(rig, finding)
     if pose is not None and rig.weights is not None:
         of = np.concatenate([finding.vertices, rig.mesh.faces[finding.faces].ravel()])
-        held = np.concatenate([rig.weights[of], np.eye(len(joints))[finding.joints]])
-        points = moved(points, skin_of_weights(held), pose)
+        weights = np.concatenate([rig.weights[of], np.eye(len(joints))[finding.joints]])
+        points = moved(points, skin_of_weights(weights), pose)
     return _towards(points, bounds, aspect)
 
 

@@ -74,12 +74,12 @@ def decoded(
     problems : dict of int to str
         Why some layers cannot be.
     """
-    shown, more = layers[:MAX_LAYERS], range(MAX_LAYERS, len(layers))
+    used_layers, more = layers[:MAX_LAYERS], range(MAX_LAYERS, len(layers))
     problems = dict.fromkeys(more, f"{MAX_LAYERS} images of a file are shown, it has more")
     opened = [_opened(image) for image in images]
-    side = _side(opened, len(shown))
-    pixels = np.full((len(shown), side, side, 4), OPAQUE, np.uint8)
-    for k, layer in enumerate(shown):
+    side = _side(opened, len(used_layers))
+    pixels = np.full((len(used_layers), side, side, 4), OPAQUE, np.uint8)
+    for k, layer in enumerate(used_layers):
         found = opened[layer.image]
         problem = found if isinstance(found, str) else _fill(pixels[k], images[layer.image], layer)
         if problem:
@@ -110,7 +110,9 @@ def as_textures(
         f"{materials.images[materials.layers[k].image].name} cannot be shown: {problem}": None
         for k, problem in problems.items()
     }
-    shown = np.array([-1.0 if k in problems else k for k in range(len(materials.layers))] + [-1.0])
+    layer_numbers = np.array(
+        [-1.0 if k in problems else k for k in range(len(materials.layers))] + [-1.0]
+    )
     is_mirrored = bool(np.linalg.det(rig.world[:3, :3]) < 0)
 
     def turned(colors: FaceColors) -> FaceColors:
@@ -119,7 +121,7 @@ def as_textures(
         for k in problems:
             if (instead := materials.layers[k].color) is not None:
                 tints[layers == k] = instead
-        corners[..., 2] = shown[layers]
+        corners[..., 2] = layer_numbers[layers]
         way = slice(None, None, -1 if is_mirrored else 1)  # as the faces, see `character`
         return FaceColors(
             np.ascontiguousarray(corners[:, way]),
@@ -141,8 +143,8 @@ def _opened(image: StoredImage) -> tuple[int, int] | str:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("error", Image.DecompressionBombWarning)
-            with Image.open(BytesIO(image.content), formats=FORMATS) as found:
-                width, height = found.size
+            with Image.open(BytesIO(image.content), formats=FORMATS) as picture:
+                width, height = picture.size
     except (Image.DecompressionBombWarning, Image.DecompressionBombError):
         return _TOO_LARGE
     except Exception:  # whatever Pillow's readers make of it
@@ -165,9 +167,9 @@ def _fill(pixels: NDArray[np.uint8], image: StoredImage, layer: Layer) -> str:
     """Decode an image into a layer, shape (s, s, 4); return what is wrong with it, or nothing."""
     side = len(pixels)
     try:
-        with Image.open(BytesIO(image.content), formats=FORMATS) as found:
-            found.draft("RGB", (side, side))
-            whole = found.convert("RGBA")
+        with Image.open(BytesIO(image.content), formats=FORMATS) as picture:
+            picture.draft("RGB", (side, side))
+            whole = picture.convert("RGBA")
     except Exception:  # whatever Pillow's readers make of it
         return "it is damaged"
     squares = layer.nearest and max(whole.size) < side

@@ -74,8 +74,8 @@ def write_mp4(path: Path, frames: Iterator[NDArray[np.uint8]], rate: int) -> Non
             with suppress(BrokenPipeError):  # it has ended and says why
                 for pixels in chain([first], frames):
                     ffmpeg.stdin.write(pixels.tobytes())
-            said = ffmpeg.communicate()[1].decode(errors="replace")
+            message = ffmpeg.communicate()[1].decode(errors="replace")
         if ffmpeg.returncode:
-            reason = re.sub(r"^\[.*?\] ", "", said.strip().partition("\n")[0])
+            reason = re.sub(r"^\[.*?\] ", "", message.strip().partition("\n")[0])
             reason = reason or f"ffmpeg ended with code {ffmpeg.returncode}"
             raise FileError(f"{path.name}: cannot be written ({reason})")

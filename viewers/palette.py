@@ -198,14 +198,14 @@ def joint_colors(parents: ArrayLike) -> NDArray[np.float64]:
 @lru_cache(maxsize=16)
 def _joint_colors(told: tuple[int, ...]) -> NDArray[np.float64]:
     parents = np.array(told, int)
-    apart = _differences()
-    used = np.zeros(len(apart))
+    differences = _differences()
+    used = np.zeros(len(differences))
     chosen = np.zeros(len(parents), int)
     for joint, parent in enumerate(parents):
-        siblings = np.flatnonzero(parents[:joint] == parent)[-(len(apart) - 3) :]
+        siblings = np.flatnonzero(parents[:joint] == parent)[-(len(differences) - 3) :]
         above = [parent, parents[parent]] if parent >= 0 else []
         near = [k for k in (*above, *siblings) if 0 <= k < joint]
-        score = apart[:, chosen[near]].min(axis=1, initial=1.0) - EVENNESS * used
+        score = differences[:, chosen[near]].min(axis=1, initial=1.0) - EVENNESS * used
         chosen[joint] = int(np.argmax(score))
         used[chosen[joint]] += 1
     return np.array(JOINT_COLORS)[chosen] / 255

@@ -113,16 +113,16 @@ def part_above(
         part = value[:, :1] / (value[:, :1] - value[:, 1:])
         meets = place[:, :1] + part[:, :, None] * (place[:, 1:] - place[:, :1])
         contour.append(meets)
-        kept = [place[:, :1], meets] if k == 1 else [meets[:, ::-1], place[:, 1:]]
-        ring = np.concatenate(kept, axis=1)
+        ends = [place[:, :1], meets] if k == 1 else [meets[:, ::-1], place[:, 1:]]
+        ring = np.concatenate(ends, axis=1)
         at = used + np.arange(len(ring) * ring.shape[1]).reshape(len(ring), ring.shape[1])
         fans = ([0, 1, 2],) if k == 1 else ([0, 1, 2], [0, 2, 3])
         corners.append(ring.reshape(-1, 3))
         polygons += [at[:, fan] for fan in fans]
         used += at.size
     points, faces = np.concatenate(corners), np.concatenate(polygons)
-    seen, again = np.unique(faces, return_inverse=True)
-    return points[seen], again.reshape(-1, 3), np.concatenate(contour)
+    crossed, again = np.unique(faces, return_inverse=True)
+    return points[crossed], again.reshape(-1, 3), np.concatenate(contour)
 
 
 def _outline(

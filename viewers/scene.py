@@ -220,19 +220,23 @@ def _values(actor: Actor, pose: NDArray[np.float64] | None) -> Any:
 
 
 def _paint(drawn: pv.Actor, actor: Actor, front: float | None = None) -> None:
-    look = drawn.prop
-    look.color, look.opacity, look.line_width = actor.color, actor.opacity, actor.width
-    look.ambient, look.diffuse = shading(actor)
-    look.lighting = actor.kind == "surface" and not actor.hull
-    look.point_size = actor.width * PICTURE_WIDTH
-    look.render_points_as_spheres = actor.kind == "points" and actor.form == "round"
+    appearance = drawn.prop
+    appearance.color, appearance.opacity, appearance.line_width = (
+        actor.color,
+        actor.opacity,
+        actor.width,
+    )
+    appearance.ambient, appearance.diffuse = shading(actor)
+    appearance.lighting = actor.kind == "surface" and not actor.hull
+    appearance.point_size = actor.width * PICTURE_WIDTH
+    appearance.render_points_as_spheres = actor.kind == "points" and actor.form == "round"
     if actor.kind == "lines":
         # Not as tubes: VTK gets the depth of many wrong, and they vanish behind the body.
-        look.line_width = actor.width * PICTURE_WIDTH
+        appearance.line_width = actor.width * PICTURE_WIDTH
     if actor.kind == "points" and actor.form != "round":
         shader = drawn.GetShaderProperty()
         shader.AddFragmentShaderReplacement("//VTK::Color::Impl", True, _FORMS[actor.form], False)
-    look.interpolation = "flat" if actor.normals is None else "phong"
+    appearance.interpolation = "flat" if actor.normals is None else "phong"
     mapper = drawn.mapper
     by_color = actor.colors is not None or actor.materials is not None
     mapper.scalar_visibility = by_color or actor.scalars is not None
@@ -251,7 +255,7 @@ def _paint(drawn: pv.Actor, actor: Actor, front: float | None = None) -> None:
         mapper.lookup_table = pv.LookupTable(values=np.hstack([table, opaque]))
         mapper.scalar_range = actor.limits
     if actor.hull:
-        look.culling = "front"
+        appearance.culling = "front"
     if actor.behind:
         mapper.SetResolveCoincidentTopologyToPolygonOffset()
         mapper.SetRelativeCoincidentTopologyPolygonOffsetParameters(2, 30)

@@ -62,8 +62,8 @@ def field_face(
     """
     points, faces, _ = part_above(section, threshold)
     values = values_at(graph, graph.lattice.to_unit(from_scene(rig, points)), field)
-    look, _ = distance_look(values, limits)
-    return _face(points, faces, **look, reading=Reading(text))
+    style, _ = distance_look(values, limits)
+    return _face(points, faces, **style, reading=Reading(text))
 
 
 def winding_face(section: PlaneSection) -> tuple[Actor, Legend]:
@@ -118,12 +118,12 @@ def values_at(
     more (moving least squares), without nodes that are near through the air alone.
     """
     field = np.asarray(field, float)
-    known = np.flatnonzero(graph.connected)
-    if not len(known) or not len(points):
+    nodes = np.flatnonzero(graph.connected)
+    if not len(nodes) or not len(points):
         return np.full(len(points), np.inf)
-    count = min(NEAREST, len(known))
-    far, near = cKDTree(graph.nodes[known]).query(points, k=list(range(1, count + 1)))
-    near = known[near]
+    count = min(NEAREST, len(nodes))
+    far, near = cKDTree(graph.nodes[nodes]).query(points, k=list(range(1, count + 1)))
+    near = nodes[near]
     value, place = field[near], graph.nodes[near]
     first = np.where(np.isfinite(value[:, :1]), value[:, :1], 0.0)
     steep = STEEPEST * np.linalg.norm(place - place[:, :1], axis=2) + 1e-9
@@ -140,8 +140,8 @@ def values_at(
     low = np.where(counts, away, np.inf).min(axis=1)
     high = np.where(counts, away, -np.inf).max(axis=1)
     spread = 0.5 / graph.lattice.resolution
-    found = first[:, 0] + np.clip(fitted[:, 0, 0], low - spread, high + spread)
-    return np.where(np.isfinite(value[:, 0]), np.maximum(found, 0.0), np.inf)
+    crossings = first[:, 0] + np.clip(fitted[:, 0, 0], low - spread, high + spread)
+    return np.where(np.isfinite(value[:, 0]), np.maximum(crossings, 0.0), np.inf)
 
 
 def _face(points: NDArray, faces: NDArray, **look: Any) -> Actor:

@@ -43,10 +43,10 @@ def skin_of_weights(weights: ArrayLike) -> Skin:
     weights = np.asarray(weights, float)
     count = int(np.clip((weights > 0).sum(axis=1).max(initial=1), 1, MAX_INFLUENCES))
     joints = np.argsort(-weights, axis=1, kind="stable")[:, :count]
-    kept = np.take_along_axis(weights, joints, axis=1)
-    total = kept.sum(axis=1, keepdims=True)
-    kept = np.divide(kept, total, out=np.zeros_like(kept), where=total > 0)
-    return Skin(joints.astype(np.uint16), kept.astype(np.float32))
+    largest = np.take_along_axis(weights, joints, axis=1)
+    total = largest.sum(axis=1, keepdims=True)
+    largest = np.divide(largest, total, out=np.zeros_like(largest), where=total > 0)
+    return Skin(joints.astype(np.uint16), largest.astype(np.float32))
 
 
 def rigid_skin(joints: ArrayLike) -> Skin:
@@ -72,8 +72,8 @@ def moved(points: ArrayLike, skin: Skin, pose: ArrayLike) -> NDArray[np.float64]
     pose = np.asarray(pose, float)[:, :3]
     blended = np.einsum("nk,nkab->nab", skin.weights, pose[skin.joints])
     result = np.einsum("nab,nb->na", blended[:, :, :3], points) + blended[:, :, 3]
-    still = skin.weights.sum(axis=1) == 0
-    result[still] = points[still]
+    unweighted = skin.weights.sum(axis=1) == 0
+    result[unweighted] = points[unweighted]
     return result
 
 

@@ -39,8 +39,8 @@ def start_scene(rig: Rig, distances: BoneDistances, joint: int, theme: Theme) ->
 
     points, bone = bone_samples(graph, bones)
     samples = points[bones.joint[bone] == joint]
-    mine = bones.joint[sources.bone] == joint
-    nodes, of = graph.nodes[sources.node[mine]], sources.bone[mine]
+    of_joint = bones.joint[sources.bone] == joint
+    nodes, of = graph.nodes[sources.node[of_joint]], sources.bone[of_joint]
     start, along = bones.start[of], bones.end[of] - bones.start[of]
     squared = (along**2).sum(axis=1)
     travel = ((nodes - start) * along).sum(axis=1)

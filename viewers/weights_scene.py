@@ -77,16 +77,16 @@ def weight_colors(
 def _mixed(rig: Rig, weights: NDArray) -> NDArray[np.float64]:
     """Mix the joints' colours by vertex; most weights are zero, and cost nothing."""
     count, joints = weights.shape
-    held = np.flatnonzero(weights > 0)
-    vertex = held // joints
-    joint = held - vertex * joints
+    weighted = np.flatnonzero(weights > 0)
+    vertex = weighted // joints
+    joint = weighted - vertex * joints
     # Many small weights mix to grey; a power lets the strongest show its colour.
-    strong = np.square(np.square(weights.ravel()[held]))
+    strong = np.square(np.square(weights.ravel()[weighted]))
     total = np.bincount(vertex, strong, count)[:, None]
     channels = joint_colors(rig.skeleton.parents).T
     mixed = [np.bincount(vertex, strong * channel[joint], count) for channel in channels]
-    shown = np.stack(mixed, axis=1) / np.where(total > 0, total, 1)
-    return np.where(total > 0, shown, UNREACHED)
+    blended = np.stack(mixed, axis=1) / np.where(total > 0, total, 1)
+    return np.where(total > 0, blended, UNREACHED)
 
 
 def dominant_colors(rig: Rig, weights: ArrayLike) -> tuple[dict[str, Any], Legend]:
@@ -94,8 +94,8 @@ def dominant_colors(rig: Rig, weights: ArrayLike) -> tuple[dict[str, Any], Legen
     reading = _strongest(rig, weights)
     colors = to_bytes(joint_colors(rig.skeleton.parents))
     assert reading.values is not None
-    look = {"colors": colors[reading.values.astype(int)], "reading": reading}
-    return look, Legend(MOST)
+    style = {"colors": colors[reading.values.astype(int)], "reading": reading}
+    return style, Legend(MOST)
 
 
 def count_colors(rig: Rig, weights: ArrayLike) -> tuple[dict[str, Any], Legend]:
@@ -103,8 +103,8 @@ def count_colors(rig: Rig, weights: ArrayLike) -> tuple[dict[str, Any], Legend]:
     count = (np.asarray(weights) > 0).sum(axis=1).astype(np.float32)
     most = max(int(count.max(initial=1)), 2)
     legend = Legend("Influences", "count", "1", f"{most}")
-    look = {"scalars": count, "colormap": "count", "limits": (1.0, float(most))}
-    return {**look, "reading": Reading("joints: ")}, legend
+    style = {"scalars": count, "colormap": "count", "limits": (1.0, float(most))}
+    return {**style, "reading": Reading("joints: ")}, legend
 
 
 def difference_colors(
@@ -116,8 +116,8 @@ def difference_colors(
     """
     moved = np.abs(np.asarray(weights, np.float32) - np.asarray(other, np.float32)).sum(axis=1) / 2
     legend = Legend("Difference to the file's weights", "error", "0 %", "100 %")
-    look = {"scalars": moved.astype(np.float32), "colormap": "error", "limits": (0.0, 1.0)}
-    return {**look, "reading": Reading("Weights differ from the file's by ", percent=True)}, legend
+    style = {"scalars": moved.astype(np.float32), "colormap": "error", "limits": (0.0, 1.0)}
+    return {**style, "reading": Reading("Weights differ from the file's by ", percent=True)}, legend
 
 
 def bone_difference_colors(
@@ -142,8 +142,8 @@ def bone_difference_colors(
     more = np.asarray(weights)[:, joint] - np.asarray(truth)[:, joint]
     title = f"Weight of {name}: {names[0]} minus {names[1]}"
     legend = Legend(title, "difference", "\N{MINUS SIGN}1", "+1")
-    look = {"scalars": more.astype(np.float32), "colormap": "difference", "limits": (-1.0, 1.0)}
-    return {**look, "reading": Reading(f"{name} ")}, legend
+    style = {"scalars": more.astype(np.float32), "colormap": "difference", "limits": (-1.0, 1.0)}
+    return {**style, "reading": Reading(f"{name} ")}, legend
 
 
 def _strongest(rig: Rig, weights: ArrayLike) -> Reading:

@@ -48,9 +48,9 @@ def draw_apart(order: Order, path: str | Path, progress: Progress = silent) -> N
     path = Path(path)
     check_picture_file(path, moves=order.turntable or order.motion is not None)
     with tempfile.TemporaryDirectory(prefix="cutcell-draw-") as folder:
-        wanted, drawn = Path(folder) / "order", Path(folder) / f"drawn{path.suffix.lower()}"
-        wanted.write_bytes(pickle.dumps(order))
-        command = [sys.executable, "-m", __name__, str(wanted), str(drawn)]
+        order_path, drawn = Path(folder) / "order", Path(folder) / f"drawn{path.suffix.lower()}"
+        order_path.write_bytes(pickle.dumps(order))
+        command = [sys.executable, "-m", __name__, str(order_path), str(drawn)]
         with subprocess.Popen(
             command,
             stdout=subprocess.PIPE,
@@ -79,19 +79,19 @@ def _watch(process: subprocess.Popen[str], progress: Progress) -> str:
     threading.Thread(target=listen, daemon=True).start()
     other = threading.Thread(target=lambda: grumbles.extend(process.stderr or ()), daemon=True)
     other.start()
-    told: dict[str, Any] = {"stage": "drawing", "fraction": 0.0}
+    status: dict[str, Any] = {"stage": "drawing", "fraction": 0.0}
     try:
         while True:
-            progress(told["stage"], told["fraction"])
+            progress(status["stage"], status["fraction"])
             try:
                 line = lines.get(timeout=ASK_EVERY)
             except Empty:
                 continue
             if line is None:
                 break
-            told = json.loads(line)
-            if "error" in told:
-                raise getattr(errors, told["error"], CutcellError)(told["message"])
+            status = json.loads(line)
+            if "error" in status:
+                raise getattr(errors, status["error"], CutcellError)(status["message"])
         other.join()
         process.wait()
         return "".join(grumbles[-1:]).strip() or f"exit code {process.returncode}"

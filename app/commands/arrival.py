@@ -59,8 +59,8 @@ def choose(session: Session, query: str, first: str = "") -> None:
     if first and not query:
         choices["panel"] = GREETING
     demo = tour.demo_of(arrival) if tour.opens(arrival) else arrival.get("rig", first)
-    known = {demo.id for demo in DEMOS if demo.path.exists()}
-    state.param.update(**choices, demo=demo if demo in known else "")
+    demo_ids = {demo.id for demo in DEMOS if demo.path.exists()}
+    state.param.update(**choices, demo=demo if demo in demo_ids else "")
 
 
 def arrive(session: Session, query: str, otherwise: Callable[[], None]) -> None:
@@ -77,11 +77,11 @@ def arrive(session: Session, query: str, otherwise: Callable[[], None]) -> None:
     session.state.param.update(**choices)
     session.arrival = arrival
     rig = arrival.get("rig", "")
-    kept = session.uploads.take(rig[1:]) if rig.startswith("~") else None
+    uploaded = session.uploads.take(rig[1:]) if rig.startswith("~") else None
     demo = any(demo.id == rig and demo.path.exists() for demo in DEMOS)
     if rig and not rig.startswith("~") and not demo:
         problems.append(f"rig={rig}"[:60])
-    if rig.startswith("~") and kept is None:
+    if rig.startswith("~") and uploaded is None:
         arrival["told"] = GONE
     elif problems:
         arrival["told"] = (
@@ -90,8 +90,8 @@ def arrive(session: Session, query: str, otherwise: Callable[[], None]) -> None:
         )
     if tour.opens(arrival):
         tour.go(session, arrival["tour"], frozenset({**choices, **arrival}))
-    elif kept is not None:
-        load_files(session, kept, rig[1:])
+    elif uploaded is not None:
+        load_files(session, uploaded, rig[1:])
     elif demo:
         load_demo(session, rig)
     else:

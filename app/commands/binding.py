@@ -62,24 +62,24 @@ def bind(session: Session, message: tuple[str, str] | None = None) -> None:
     if state.bare:
         _build(session, message)
         return
-    wanted = session.bound_for = asked(state)
+    request = session.bound_for = asked(state)
     few, corrections = kept(state), state.corrections
-    work = binder(state, rig, corrections, _known_graph(session, rig, wanted))
+    work = binder(state, rig, corrections, _known_graph(session, rig, request))
 
-    def done(found: tuple[csr_array, Binding]) -> None:
-        session.built_for, session.corrected = wanted, corrections
+    def done(result: tuple[csr_array, Binding]) -> None:
+        session.built_for, session.corrected = request, corrections
         session.reach = reach_of(method["falloff"])
-        many, binding = found
-        session.graph = (rig.mesh, wanted, binding.graph)
+        many, binding = result
+        session.graph = (rig.mesh, request, binding.graph)
         session.falloffs = {method["falloff"]: (binding.distances, many)}
         notice, session.notice = session.notice, ""
-        told = ("info", notice) if notice and message is None else message
-        state.param.update(binding=binding, field=None, message=told)
+        notice_shown = ("info", notice) if notice and message is None else message
+        state.param.update(binding=binding, field=None, message=notice_shown)
         chosen = {**{name: method[name] for name in WEIGHTS}, **few}
         if method_of(state, WEIGHTS) != chosen or state.corrections != corrections:
             weigh(session)  # others were chosen in the meantime
 
-    session.start(work, done, failed=lambda: _go_back(session, wanted))
+    session.start(work, done, failed=lambda: _go_back(session, request))
 
 
 def binder(
@@ -92,9 +92,9 @@ def binder(
     method, few = effective(generous(state)), kept(state)
 
     def work(progress: Progress) -> tuple[csr_array, Binding]:
-        known = {"graph": graph, "corrections": measured(corrections)}
-        found = cutcell.bind(rig, **known, progress=progress, **method)
-        return csr_array(found.weights), pruned(found, few, rig, corrections)
+        reusable = {"graph": graph, "corrections": measured(corrections)}
+        result = cutcell.bind(rig, **reusable, progress=progress, **method)
+        return csr_array(result.weights), pruned(result, few, rig, corrections)
 
     return work
 
@@ -109,9 +109,9 @@ def previewer(state: State) -> Callable[[Rig, Corrections], Binding]:
     def preview(moved: Rig, corrections: Corrections) -> Binding:
         if not made:
             made.append(Preview(rig, binding, method, before))
-        found = made[0].bind(moved)
-        weights = finished(moved, found.graph, found.weights, corrections, most)
-        return replace(found, weights=weights)
+        result = made[0].bind(moved)
+        weights = finished(moved, result.graph, result.weights, corrections, most)
+        return replace(result, weights=weights)
 
     return preview
 
@@ -165,52 +165,52 @@ def restore(session: Session, choices: dict[str, Any]) -> None:
     """Choose again what was chosen once; the character that it was chosen of is bound again."""
     state, plain = session.state, history.plain(choices)
     corrections = choices.get("corrections", state.corrections)
-    own = choices.get("own") or state.own
-    rig = choices.get("rig") or applied(own, corrections)
+    file_rig = choices.get("own") or state.own
+    rig = choices.get("rig") or applied(file_rig, corrections)
     if not same_structure(rig, state.rig):
-        history.restore(session, {**changes(state, rig, corrections), **plain, "own": own})
+        history.restore(session, {**changes(state, rig, corrections), **plain, "own": file_rig})
     elif rig.mesh is state.rig.mesh and rig.weights is state.rig.weights:
-        history.restore(session, {**plain, "rig": rig, "own": own})  # at most joints moved
+        history.restore(session, {**plain, "rig": rig, "own": file_rig})  # at most joints moved
     else:
         history.restore(session, plain)
         with history.restoring(session):
-            swap(session, rig, repair=choices["repair"], own=own)
+            swap(session, rig, repair=choices["repair"], own=file_rig)
     history.tell(session)
 
 
 def _build(session: Session, message: tuple[str, str] | None) -> None:
     """Build the graph of a mesh without a skeleton."""
     rig = session.state.rig
-    wanted = session.bound_for = asked(session.state)
-    chosen = {name: wanted[name] for name in GRAPH if name != "leaf"}
+    request = session.bound_for = asked(session.state)
+    chosen = {name: request[name] for name in GRAPH if name != "leaf"}
 
-    known = _known_graph(session, rig, wanted)
+    known = _known_graph(session, rig, request)
 
     def work(progress: Progress) -> Any:
         return known or cutcell.build_graph(rig.mesh, progress=progress, **chosen)
 
     def done(graph: Any) -> None:
-        session.built_for, session.corrected = wanted, Corrections()
-        session.graph = (rig.mesh, wanted, graph)
+        session.built_for, session.corrected = request, Corrections()
+        session.graph = (rig.mesh, request, graph)
         session.state.param.update(bare_graph=graph, message=message)
 
     session.start(
         work,
         done,
-        failed=lambda: _go_back(session, wanted),
+        failed=lambda: _go_back(session, request),
     )
 
 
 def _go_back(session: Session, wanted: dict[str, Any]) -> None:
     """Choose what the page holds instead of what nothing came of; at first, the defaults."""
     state = session.state
-    held, corrections = asked(State()), Corrections()
+    request, corrections = asked(State()), Corrections()
     if state.graph is not None:
-        held, corrections = session.built_for, session.corrected
-    if asked(state) != wanted or (wanted == held and state.corrections == corrections):
+        request, corrections = session.built_for, session.corrected
+    if asked(state) != wanted or (wanted == request and state.corrections == corrections):
         return
-    session.bound_for = held
-    _withdraw(session, {name: held[name] for name in GRAPH}, corrections)
+    session.bound_for = request
+    _withdraw(session, {name: request[name] for name in GRAPH}, corrections)
     if state.graph is None:
         bind(session, state.message)
 
@@ -218,8 +218,8 @@ def _go_back(session: Session, wanted: dict[str, Any]) -> None:
 def _withdraw(session: Session, choices: dict[str, Any], corrections: Corrections) -> None:
     """Choose something again, and the corrections that there were."""
     state = session.state
-    found = changes(state, applied(state.own, corrections), corrections)
-    history.withdraw(session, {**choices, **found})
+    changed = changes(state, applied(state.own, corrections), corrections)
+    history.withdraw(session, {**choices, **changed})
 
 
 def _rebind(session: Session) -> None:
@@ -233,8 +233,8 @@ def _correct(session: Session) -> None:
     state = session.state
     if state.rig is None:
         return
-    there = state.bare_graph if state.bare else state.binding
-    if there is None and not session.tasks.jobs("main").running:
+    is_ready = state.bare_graph if state.bare else state.binding
+    if is_ready is None and not session.tasks.jobs("main").running:
         session.bound_for = {}  # it was dropped with the joints that it was of
     if asked(state) != session.bound_for:
         session.tasks.after_a_pause(lambda: _rebind(session))
@@ -275,15 +275,15 @@ def weigh(session: Session) -> None:
     if state.binding is None or asked(state)["corrections"] != session.built_for["corrections"]:
         return  # they are about to be measured
     distances, falloff, few = state.binding.distances, state.falloff, kept(state)
-    known = session.falloffs.get(falloff)
+    cached = session.falloffs.get(falloff)
     if session.reach < reach_of(falloff) or not _measured(
         distances, falloff, few["max_influences"]
     ):
         bind(session)
     elif falloff in QUICK:
         _soon(session, partial(_weights, state.still(), **few))
-    elif known is not None and known[0] is distances:
-        many = known[1]
+    elif cached is not None and cached[0] is distances:
+        many = cached[1]
         _soon(session, lambda: keep_strongest(distances, many.toarray(), **few))
     else:
         now = state.still()
@@ -313,8 +313,8 @@ def _weights(state: Any, **few: Any) -> NDArray:
 
 def _measured(distances: Any, falloff: Any, most: int) -> bool:
     """Whether distances are known from as many joints as a falloff needs."""
-    known, needed = distances.nearest_joints, joints_needed(falloff, most)
-    return known is None or (needed is not None and needed <= known)
+    nearest, needed = distances.nearest_joints, joints_needed(falloff, most)
+    return nearest is None or (needed is not None and needed <= nearest)
 
 
 def _soon(session: Session, make: Callable[[], NDArray]) -> None:

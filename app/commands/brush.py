@@ -87,8 +87,8 @@ def strengthen(session: Session, steps: int) -> None:
 
 def paints(state: State) -> bool:
     """Whether there are weights in sight that the brush can paint."""
-    there = state.rig is not None and not state.bare and state.binding is not None
-    return bool(state.brush and there and state.panel in PAINTED and not state.playing)
+    is_ready = state.rig is not None and not state.bare and state.binding is not None
+    return bool(state.brush and is_ready and state.panel in PAINTED and not state.playing)
 
 
 def radius_of(state: State) -> float:
@@ -188,12 +188,12 @@ class Hand:
         mesh = state.rig.mesh
         surface = session.memo("paint surface", (mesh,), lambda: PaintSurface(mesh))
         self._selects, within = None, selected(state)
-        wanted: Any = mode or state.brush_mode
+        new_mode: Any = mode or state.brush_mode
         if state.brush_mode == "select":
             self._selects, self._selected = mode != "subtract", within
-            wanted, within = "smooth", None
+            new_mode, within = "smooth", None
         try:
-            brush = Brush(radius_of(state), wanted, state.brush_strength, state.brush_value)
+            brush = Brush(radius_of(state), new_mode, state.brush_strength, state.brush_value)
             self._stroke = Stroke(
                 surface,
                 state.rig,
@@ -222,14 +222,14 @@ class Hand:
             self._stroke = None
 
     def _show(self, vertices: NDArray, rows: NDArray) -> None:
-        found: dict[str, Any]
+        message: dict[str, Any]
         colors = painted_colors(self._session.state, vertices, rows)
-        found = {name: np.ascontiguousarray(some).ravel() for name, some in colors.items()}
+        message = {name: np.ascontiguousarray(some).ravel() for name, some in colors.items()}
         if self._session.state.panel == "pose" and len(vertices):
             skin = skin_of_weights(rows)
             influences = {"joints": skin.joints.ravel(), "weights": skin.weights.ravel()}
-            found |= {**influences, "count": skin.joints.shape[1]}
-        self._session.view.answer(painted={"vertices": vertices.astype(np.uint32), **found})
+            message |= {**influences, "count": skin.joints.shape[1]}
+        self._session.view.answer(painted={"vertices": vertices.astype(np.uint32), **message})
 
     def _take(self, vertices: NDArray, rows: NDArray) -> None:
         session, state = self._session, self._session.state
@@ -239,9 +239,9 @@ class Hand:
             self._show(vertices, before)
             return
         try:
-            given = rows_by_name(session, vertices[changed], rows[changed])
+            row_of = rows_by_name(session, vertices[changed], rows[changed])
             session.history.part()
-            correct(session, replace(corrections, vertices={**corrections.vertices, **given}))
+            correct(session, replace(corrections, vertices={**corrections.vertices, **row_of}))
         except CutcellError as error:
             session.fail(error)
         if state.corrections == corrections:
@@ -259,11 +259,11 @@ def rows_by_name(session: Session, vertices: NDArray, rows: NDArray) -> dict[int
     skeleton = session.state.rig.skeleton
     for joint in np.flatnonzero(rows.any(axis=0)):
         check_alone(skeleton, int(joint))
-    found: dict[int, dict[str, float]] = {int(vertex): {} for vertex in vertices}
+    rows_of: dict[int, dict[str, float]] = {int(vertex): {} for vertex in vertices}
     steps = in_steps(rows)
     for row, joint in zip(*np.nonzero(steps), strict=True):
-        found[int(vertices[row])][skeleton.names[joint]] = int(steps[row, joint]) / STEPS
-    return found
+        rows_of[int(vertices[row])][skeleton.names[joint]] = int(steps[row, joint]) / STEPS
+    return rows_of
 
 
 def in_steps(rows: NDArray) -> NDArray[np.int64]:

@@ -44,10 +44,10 @@ def examine(session: Session) -> None:
         return
     rig, resolution = state.rig, state.resolution
     session.diagnosed = distances or state.graph
-    known = distances if _is_standard(state) else None
+    cached = distances if _is_standard(state) else None
 
     def work(progress: Progress) -> Diagnosis:
-        return diagnose(rig, resolution, distances=known, progress=progress)
+        return diagnose(rig, resolution, distances=cached, progress=progress)
 
     def done(diagnosis: Diagnosis) -> None:
         state.diagnosis = diagnosis

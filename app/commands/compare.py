@@ -104,8 +104,8 @@ def find(session: Session) -> None:
     def work(progress: Progress) -> Compared:
         return measured(rig, name, binding, resolution, progress)
 
-    def done(found: Compared) -> None:
-        state.param.update(compared={**state.compared, name: found}, comparing="")
+    def done(result: Compared) -> None:
+        state.param.update(compared={**state.compared, name: result}, comparing="")
         find(session)
 
     def failed(error: Exception) -> None:
@@ -122,9 +122,11 @@ def cancel(session: Session) -> None:
     """Stop what is being computed; it and what waits are taken off the page."""
     state = session.state
     session.tasks.jobs("compare").cancel()
-    there = [name for name in state.methods if name in state.compared or name == NOW]
+    methods = [name for name in state.methods if name in state.compared or name == NOW]
     spare = [name for name in ("artist", "euclidean") if name in offered(state.rig)]
-    names = (there + [name for name in spare if name not in there])[: max(len(there), FEWEST_VIEWS)]
+    names = (methods + [name for name in spare if name not in methods])[
+        : max(len(methods), FEWEST_VIEWS)
+    ]
     state.param.update(comparing="", methods=names)
 
 
@@ -138,12 +140,12 @@ def measured(rig: Rig, name: str, binding: Any, resolution: int, progress: Progr
             method = METHODS[name]
             with stoppable(lambda: progress(name, 0.0)):
                 options = known_options(method, resolution=resolution, progress=progress)
-                found = method(rig, **options)
+                result = method(rig, **options)
         except CutcellError as error:
             return Compared(rig, None, shown(str(error)))
-        if found.weights is None:
-            return Compared(rig, None, shown(found.failed), float(sum(found.seconds.values())))
-        weights, seconds, source = found.weights, found.seconds, None
+        if result.weights is None:
+            return Compared(rig, None, shown(result.failed), float(sum(result.seconds.values())))
+        weights, seconds, source = result.weights, result.seconds, None
     progress(name, 0.9)
     share = vertex_shares(rig.mesh)
     total, none = float(sum(seconds.values())), unweighted(weights, share)

@@ -60,15 +60,15 @@ def correct_joint(session: Session, joint: int, **wanted: Any) -> None:
     name = state.rig.skeleton.names[joint]
     if "deform" in wanted and wanted["deform"] == bool(state.own_skeleton.deform[joint]):
         wanted["deform"] = None
-    held = state.corrections.joints
+    corrected = state.corrections.joints
     try:
         check_alone(state.rig.skeleton, joint)
-        one = replace(held.get(name, JointCorrection()), **wanted)
+        one = replace(corrected.get(name, JointCorrection()), **wanted)
     except CutcellError as error:
         session.fail(error)
         state.param.trigger("corrections")
         return
-    correct(session, replace(state.corrections, joints={**held, name: one}))
+    correct(session, replace(state.corrections, joints={**corrected, name: one}))
 
 
 def rename(session: Session, joint: int, name: str) -> None:
@@ -108,11 +108,13 @@ def choose_deform(session: Session, joints: Collection[int]) -> None:
         session.fail(ParameterError("no joint is left that may carry weight; keep at least one"))
         state.param.trigger("corrections")
         return
-    held = dict(state.corrections.joints)
+    corrected = dict(state.corrections.joints)
     for joint, name in enumerate(state.rig.skeleton.names):
-        wanted = None if deform[joint] == state.own_skeleton.deform[joint] else bool(deform[joint])
-        held[name] = replace(held.get(name, JointCorrection()), deform=wanted)
-    correct(session, replace(state.corrections, joints=held))
+        override = (
+            None if deform[joint] == state.own_skeleton.deform[joint] else bool(deform[joint])
+        )
+        corrected[name] = replace(corrected.get(name, JointCorrection()), deform=override)
+    correct(session, replace(state.corrections, joints=corrected))
 
 
 def guess(session: Session, done: Any) -> None:
@@ -128,10 +130,10 @@ def guess(session: Session, done: Any) -> None:
 def correct_part(session: Session, vertices: Collection[int], part: PartCorrection | None) -> None:
     """Bind a connected component, all of its vertices, in another way; None for as computed."""
     state = session.state
-    held = {v: one for v, one in state.corrections.parts.items() if v not in vertices}
+    corrected = {v: one for v, one in state.corrections.parts.items() if v not in vertices}
     if part is not None:
-        held[int(min(vertices))] = part
-    correct(session, replace(state.corrections, parts=held))
+        corrected[int(min(vertices))] = part
+    correct(session, replace(state.corrections, parts=corrected))
 
 
 def overrule(session: Session, vertex: int, weights: Mapping[int, float] | None) -> None:
@@ -148,11 +150,11 @@ def overrule(session: Session, vertex: int, weights: Mapping[int, float] | None)
         if state.rig.allowed is not None:
             stored = state.rig.allowed[together][:, [j for j, w in weights.items() if w]]
             together = together[stored.all(axis=1) | (together == vertex)]
-    held = {v: row for v, row in state.corrections.vertices.items() if v not in together}
+    corrected = {v: row for v, row in state.corrections.vertices.items() if v not in together}
     if given is not None:
-        held.update(dict.fromkeys(together.tolist(), given))
+        corrected.update(dict.fromkeys(together.tolist(), given))
     try:
-        corrections = replace(state.corrections, vertices=held)
+        corrections = replace(state.corrections, vertices=corrected)
     except CutcellError as error:
         session.fail(error)
         return
@@ -167,9 +169,9 @@ def leave_out(session: Session, joints: Collection[int]) -> None:
     before = state.corrections
     choose_deform(session, carrying - set(joints))
     if state.corrections != before:
-        some = names[0] if len(names) == 1 else f"{len(names)} joints"
+        subject = names[0] if len(names) == 1 else f"{len(names)} joints"
         verb = "carries" if len(names) == 1 else "carry"
-        session.notice = f"{some} {verb} no weight any more; undo takes it back."
+        session.notice = f"{subject} {verb} no weight any more; undo takes it back."
 
 
 def clear(session: Session) -> None:

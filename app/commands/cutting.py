@@ -25,8 +25,10 @@ def show_handles(session: Session) -> None:
     """Tell the view whether the plane can be dragged, and what box it crosses."""
     state = session.state
     sliced = state.panel == "graph" and state.slicing
-    seen = state.rig is not None and state.panel in CUT and state.cut_axis != "off" and not sliced
-    handles = {"box": bounds_of(state).tolist()} if seen else None
+    is_shown = (
+        state.rig is not None and state.panel in CUT and state.cut_axis != "off" and not sliced
+    )
+    handles = {"box": bounds_of(state).tolist()} if is_shown else None
     if session.view.told("handles") != handles:
         session.view.tell(handles=handles)
 

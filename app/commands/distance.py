@@ -72,8 +72,8 @@ def find_measured(session: Session) -> None:
     measure = measuring(state, name)
     state.measuring = name
 
-    def done(found: Any) -> None:
-        state.param.update(measured={**state.measured, name: found}, measuring="")
+    def done(result: Any) -> None:
+        state.param.update(measured={**state.measured, name: result}, measuring="")
         find_measured(session)
 
     def failed(error: Exception) -> None:

@@ -39,7 +39,7 @@ def explain(session: Session) -> None:
             **method,
         )
 
-    def done(found: Any) -> None:
-        state.explanation = (binding, found)
+    def done(result: Any) -> None:
+        state.explanation = (binding, result)
 
     newest.do(work, done)

@@ -109,8 +109,8 @@ def export_numbers(session: Session, what: str, ending: str, done: Done) -> None
             tables["weights"] = binding.weights
         if what != "weights":
             tables["distances"] = binding.distances.all_joints(progress).T
-        wanted = partial(progress, "writing the numbers", 0.0)
-        in_process(partial(save_numbers, path, named, **tables), wanted=wanted, ended=ENDED)
+        check = partial(progress, "writing the numbers", 0.0)
+        in_process(partial(save_numbers, path, named, **tables), wanted=check, ended=ENDED)
 
     _hand_over(session, name, write, done)
 
@@ -138,8 +138,8 @@ def export_bound(session: Session, done: Done) -> None:
     rig = state.rig.with_weights(state.binding.weights)
 
     def write(path: Path, progress: Progress) -> None:
-        wanted = partial(progress, "writing the file", 0.0)
-        in_process(cutcell.save, path, rig, wanted=wanted, ended=ENDED)
+        check = partial(progress, "writing the file", 0.0)
+        in_process(cutcell.save, path, rig, wanted=check, ended=ENDED)
 
     _hand_over(session, f"{_stem(session)}-bound{binary_ending(rig)}", write, done)
 
@@ -149,8 +149,8 @@ def export_repaired(session: Session, done: Done) -> None:
     rig = session.state.rig
 
     def write(path: Path, progress: Progress) -> None:
-        wanted = partial(progress, "writing the file", 0.0)
-        in_process(cutcell.save, path, rig, wanted=wanted, ended=ENDED)
+        check = partial(progress, "writing the file", 0.0)
+        in_process(cutcell.save, path, rig, wanted=check, ended=ENDED)
 
     _hand_over(session, f"{_stem(session)}-repaired{binary_ending(rig)}", write, done)
 
@@ -170,14 +170,14 @@ def picture_size(pixels: int, aspect: float) -> tuple[int, int]:
 
 def _draw(session: Session, ending: str, done: Done, order: Callable[[Seen], Order]) -> None:
     """Draw what is seen now; describing a large character takes a while, too."""
-    seen = Seen.now(session)
+    snapshot = Seen.now(session)
     stage = "drawing the picture" if ending == "png" else "drawing the film"
 
     def write(path: Path, progress: Progress) -> None:
         progress(stage, 0.0)
-        draw_apart(order(seen), path, lambda _, fraction: progress(stage, fraction))
+        draw_apart(order(snapshot), path, lambda _, fraction: progress(stage, fraction))
 
-    _hand_over(session, f"{_stem(session)}-{seen.state.panel}.{ending}", write, done, DRAWING)
+    _hand_over(session, f"{_stem(session)}-{snapshot.state.panel}.{ending}", write, done, DRAWING)
 
 
 def _hand_over(

@@ -80,12 +80,12 @@ def tell(session: Session) -> None:
     """Tell the view what the address says now, and whether one can go back, if that is new."""
     if session.state.rig is None:
         return
-    said = {
+    message = {
         "address": "?" + query(session),
         "able": [session.history.can_undo, session.history.can_redo],
     }
-    if {name: session.view.told(name) for name in said} != said:
-        session.view.tell(**said)
+    if {name: session.view.told(name) for name in message} != message:
+        session.view.tell(**message)
 
 
 def query(session: Session) -> str:

@@ -46,8 +46,8 @@ def reset(session: Session) -> None:
     state = session.state
     first = {**defaults(state), "moving": False, "playing": False}
     rig = applied(state.own, Corrections())
-    found = {**changes(state, rig, Corrections()), **news(state, first)}
-    state.param.update(**{**found, "joint": first_joint(rig)})
+    changed = {**changes(state, rig, Corrections()), **news(state, first)}
+    state.param.update(**{**changed, "joint": first_joint(rig)})
     session.view.tell(home=True)
 
 

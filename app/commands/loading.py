@@ -227,19 +227,19 @@ def _load(
 
 def _correct(session: Session, said: str) -> None:
     """Take the corrections that an address says, or that are chosen already, if they fit."""
-    state, found = session.state, session.state.corrections
+    state, corrections = session.state, session.state.corrections
     try:
         if said:
-            kept = session.kept.read(said)
-            if kept is None:
+            stored = session.kept.read(said)
+            if stored is None:
                 raise ParameterError("the server no longer has them")
-            found = kept
-        news = taken(session, found)
-        if "joint" in news:  # what is chosen already is of the corrected skeleton
-            news = {k: v for k, v in news.items() if k not in ("joint", "turns")}
+            corrections = stored
+        changed = taken(session, corrections)
+        if "joint" in changed:  # what is chosen already is of the corrected skeleton
+            changed = {k: v for k, v in changed.items() if k not in ("joint", "turns")}
             if said:
-                news["joint"] = first_joint(news["rig"])
-        state.param.update(**news)
+                changed["joint"] = first_joint(changed["rig"])
+        state.param.update(**changed)
     except (CutcellError, ValueError) as error:
         state.corrections = Corrections()
         session.notice = f"The corrections of this address were not taken: {error}"

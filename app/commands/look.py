@@ -15,8 +15,8 @@ def watch(session: Session) -> None:
     """Let the view follow the state, and the state what is picked in the view."""
     state, view = session.state, session.view
     drawn = {"brush", "brush_selection"}
-    seen = [name for name in state.param if name not in UNSEEN | (BRUSH - drawn)]
-    state.param.watch(lambda *events: show(session), seen)
+    watched = [name for name in state.param if name not in UNSEEN | (BRUSH - drawn)]
+    state.param.watch(lambda *events: show(session), watched)
     state.param.watch(lambda *events: show_theme(session), "dark")
     view.listen("pick", lambda message: pick(session, int(message["joint"])))
     view.listen("pick-vertex", lambda message: pick_vertex(session, int(message["vertex"])))

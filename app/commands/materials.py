@@ -23,17 +23,17 @@ def find(session: Session) -> None:
     """Read the materials of the character that stands there, if they are wanted and not known."""
     state = session.state
     rig = state.rig
-    known = state.materials is not None and rig is not None and state.materials[0] is rig.mesh
-    if not known:
+    is_current = state.materials is not None and rig is not None and state.materials[0] is rig.mesh
+    if not is_current:
         state.materials = None  # of another character, or as it was before a repair
-    wanted = state.panel == "pose" and state.pose_colors == "materials"
-    if known or not wanted or rig is None or not has_materials(rig):
+    is_needed = state.panel == "pose" and state.pose_colors == "materials"
+    if is_current or not is_needed or rig is None or not has_materials(rig):
         session.tasks.jobs("materials").cancel()
         return
 
-    def done(found: Textures | None) -> None:
+    def done(textures: Textures | None) -> None:
         if state.rig is not None and state.rig.mesh is rig.mesh:
-            state.materials = (rig.mesh, found)
+            state.materials = (rig.mesh, textures)
 
     session.tasks.jobs("materials").start(
         lambda progress: read(rig, progress), done, session.fail, lambda stage, fraction: None
@@ -45,13 +45,13 @@ def read(rig: Rig, progress: Progress) -> Textures | None:
     materials = read_materials(rig)
     if materials is None:
         return None
-    given = materials.images, materials.layers
+    inputs = materials.images, materials.layers
 
     def wanted() -> None:
         progress("materials", 0.0)
 
     try:
-        pixels, problems = in_process(decoded, *given, wanted=wanted, ended=ENDED)
+        pixels, problems = in_process(decoded, *inputs, wanted=wanted, ended=ENDED)
     except FileError as error:
         pixels, problems = none_decoded(materials.layers, str(error))
     return as_textures(rig, materials, pixels, problems)

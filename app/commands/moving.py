@@ -45,9 +45,9 @@ def tell_bones(session: Session) -> None:
     if state.rig is None:
         return
     # Compared by what lies in it: the rig is another one for many reasons.
-    said, bones = session.view.told("bones"), bones_part(state)
-    same = said is not None and said["names"] == bones["names"]
-    if not same or not np.array_equal(said["start"], bones["start"]):
+    sent, bones = session.view.told("bones"), bones_part(state)
+    same = sent is not None and sent["names"] == bones["names"]
+    if not same or not np.array_equal(sent["start"], bones["start"]):
         session.view.tell(bones=bones)
 
 
@@ -84,9 +84,9 @@ def mirror_of(session: Session) -> Mirror | None:
             return None
 
     skeleton = state.own_skeleton
-    known = skeleton.joints.tobytes().hex() + repr(skeleton.parents.tolist())
-    found: Mirror | None = session.memo("mirror", (state.rig.mesh, known), find)
-    return found
+    key = skeleton.joints.tobytes().hex() + repr(skeleton.parents.tolist())
+    mirror: Mirror | None = session.memo("mirror", (state.rig.mesh, key), find)
+    return mirror
 
 
 def partner_of(session: Session) -> int | None:
@@ -115,13 +115,13 @@ def put(session: Session, place: ArrayLike) -> None:
 def put_back(session: Session) -> None:
     """Put the chosen joint, and its partner, where the file has them."""
     state = session.state
-    held = dict(state.corrections.joints)
+    corrected = dict(state.corrections.joints)
     for joint in (state.joint, moves_along(session)):
         if joint is not None:
             name = state.rig.skeleton.names[joint]
-            if not held.get(name, JointCorrection()).added:
-                held[name] = replace(held.get(name, JointCorrection()), position=None)
-    correct(session, replace(state.corrections, joints=held))
+            if not corrected.get(name, JointCorrection()).added:
+                corrected[name] = replace(corrected.get(name, JointCorrection()), position=None)
+    correct(session, replace(state.corrections, joints=corrected))
 
 
 def centre(session: Session) -> None:
@@ -150,17 +150,17 @@ def moved(session: Session, place: ArrayLike) -> Corrections:
         other[mirror.axis] = 2 * mirror.position - other[mirror.axis]
         places[partner] = other
     digits = digits_of(state.rig)
-    held = dict(state.corrections.joints)
+    corrected = dict(state.corrections.joints)
     for one, at in places.items():
         check_alone(state.rig.skeleton, one)
-        name, own = state.rig.skeleton.names[one], state.own_skeleton.joints[one]
-        before = held.get(name, JointCorrection())
-        same = np.array_equal(np.round(at, digits), np.round(own, digits))
+        name, rest = state.rig.skeleton.names[one], state.own_skeleton.joints[one]
+        before = corrected.get(name, JointCorrection())
+        same = np.array_equal(np.round(at, digits), np.round(rest, digits))
         position = (
             None if same and not before.added else tuple(round(x, digits) for x in at.tolist())
         )
-        held[name] = replace(before, position=position)
-    corrections = replace(state.corrections, joints=held)
+        corrected[name] = replace(before, position=position)
+    corrections = replace(state.corrections, joints=corrected)
     corrected_rig(state.own, corrections)
     return corrections
 

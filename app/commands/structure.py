@@ -40,28 +40,28 @@ def hang_on(session: Session, parent: str) -> None:
     hung = {joint: on}
     mirror, partner = mirror_of(session), moves_along(session)
     # Where one side hangs on the other, the other cannot hang on it.
-    apart = partner is not None and not (on >= 0 and skeleton.subtree[partner][on])
-    if mirror is not None and partner is not None and apart:
+    independent = partner is not None and not (on >= 0 and skeleton.subtree[partner][on])
+    if mirror is not None and partner is not None and independent:
         across = int(mirror.joint[on]) if on >= 0 else -1
         hung[partner] = across if across >= 0 else on
-    held = dict(state.corrections.joints)
+    corrected = dict(state.corrections.joints)
     try:
         for one, above in hung.items():
             check_alone(skeleton, one)
             name = skeleton.names[one]
             to = skeleton.names[above] if above >= 0 else ""
-            held[name] = replace(held.get(name, JointCorrection()), parent=to)
+            corrected[name] = replace(corrected.get(name, JointCorrection()), parent=to)
     except CutcellError as error:
         session.fail(error)
         state.param.trigger("corrections")  # the menu shows again what there is
         return
-    correct(session, replace(state.corrections, joints=held))
+    correct(session, replace(state.corrections, joints=corrected))
 
 
 def may_hang_on(rig: Rig, joint: int) -> list[str]:
     """List the joints that one may hang on: all that do not hang on it."""
     below = rig.skeleton.subtree[joint]
-    return [name for name, own in zip(rig.skeleton.names, below, strict=True) if not own]
+    return [name for name, is_below in zip(rig.skeleton.names, below, strict=True) if not is_below]
 
 
 def with_child(rig: Rig, corrections: Corrections, name: str) -> tuple[Corrections, str]:
@@ -72,13 +72,13 @@ def with_child(rig: Rig, corrections: Corrections, name: str) -> tuple[Correctio
     skeleton = rig.skeleton
     joint = skeleton.names.index(name)
     children, parent = skeleton.children[joint], int(skeleton.parents[joint])
-    here = skeleton.joints[joint]
+    start = skeleton.joints[joint]
     if len(children) == 1:
-        place = (here + skeleton.joints[children[0]]) / 2
+        place = (start + skeleton.joints[children[0]]) / 2
     elif parent >= 0:
-        place = here + BEYOND * (here - skeleton.joints[parent])
+        place = start + BEYOND * (start - skeleton.joints[parent])
     else:
-        place = here + BEYOND * (rig.mesh.bounds.mean(axis=0) - here)
+        place = start + BEYOND * (rig.mesh.bounds.mean(axis=0) - start)
     new = _unused(name, {*skeleton.names, *corrections.joints})
     put = tuple(np.asarray(rounded(rig, place)).tolist())
     joints = {**corrections.joints, new: JointCorrection(added=True, position=put, parent=name)}
@@ -118,12 +118,12 @@ def without(rig: Rig, corrections: Corrections, name: str) -> tuple[Corrections,
     }
     vertices: dict[int, dict[str, float]] = {}
     for vertex, weights in corrections.vertices.items():
-        found: dict[str, float] = {}
+        similarity: dict[str, float] = {}
         for joint, weight in weights.items():
             if heir or joint != name:
-                found[now(joint)] = found.get(now(joint), 0.0) + weight
-        if any(found.values()):
-            vertices[vertex] = found
+                similarity[now(joint)] = similarity.get(now(joint), 0.0) + weight
+        if any(similarity.values()):
+            vertices[vertex] = similarity
     removed = corrections.removed if one.added else (*corrections.removed, one.was or name)
     left = replace(corrections, joints=joints, parts=parts, vertices=vertices, removed=removed)
     return left, heir
@@ -151,10 +151,10 @@ def _change(
             check_alone(state.rig.skeleton, joint)
             corrections, leads_to = change(state.rig, corrections, names[joint])
             chosen.append(leads_to)
-        news = taken(session, corrections)
+        changed = taken(session, corrections)
     except CutcellError as error:
         session.fail(error)
         return
-    found = news["rig"].skeleton.names
-    news["joint"] = found.index(chosen[0]) if chosen[0] in found else 0
-    state.param.update(**news)  # at once: it is one step to undo
+    found = changed["rig"].skeleton.names
+    changed["joint"] = found.index(chosen[0]) if chosen[0] in found else 0
+    state.param.update(**changed)  # at once: it is one step to undo

@@ -28,9 +28,14 @@ def fit(session: Session, template: Template) -> None:
 
     def done(skeleton: Skeleton) -> None:
         corrections = Corrections(added(state.own, skeleton))
-        news = taken(session, corrections)
+        changed = taken(session, corrections)
         state.param.update(
-            **{**news, "joint": first_joint(news["rig"]), "panel": "weights", "joint_handle": True}
+            **{
+                **changed,
+                "joint": first_joint(changed["rig"]),
+                "panel": "weights",
+                "joint_handle": True,
+            }
         )
 
     session.start(work, done)
@@ -38,8 +43,8 @@ def fit(session: Session, template: Template) -> None:
 
 def take_out(session: Session) -> None:
     """Leave the mesh without a skeleton again."""
-    news = taken(session, Corrections())
-    session.state.param.update(**{**news, "panel": "graph"})
+    changed = taken(session, Corrections())
+    session.state.param.update(**{**changed, "panel": "graph"})
 
 
 def is_template(names: Collection[str], template: Template) -> bool:

@@ -36,17 +36,17 @@ def go(session: Session, index: int, said: frozenset[str] = frozenset()) -> None
     if state.tour < 0 and state.rig is not None:
         camera = None if session.view.at_home else session.view.camera
         session.before_tour = session.history.now, camera
-    look = TOUR[index].look
+    aspect = TOUR[index].look
     state.tour = index
-    if _stands(state, look.demo):
-        show(session, look, said)
-        aim(session, look)
+    if _stands(state, aspect.demo):
+        show(session, aspect, said)
+        aim(session, aspect)
     else:
         load_demo(
             session,
-            look.demo,
-            lambda: show(session, look, said),
-            lambda: None if "camera" in said else aim(session, look),
+            aspect.demo,
+            lambda: show(session, aspect, said),
+            lambda: None if "camera" in said else aim(session, aspect),
         )
 
 
@@ -108,11 +108,11 @@ def show(session: Session, look: Look, said: frozenset[str] = frozenset()) -> No
         "animating": False,
         **look.choices,
     }
-    kept = said - {"panel"} if state.panel == "learn" else said
-    if "corrections" not in kept:
+    given_choices = said - {"panel"} if state.panel == "learn" else said
+    if "corrections" not in given_choices:
         rig = applied(state.own, scene["corrections"])
         scene = {**changes(state, rig, scene["corrections"]), **scene, "rig": rig}
-    chosen = {name: value for name, value in scene.items() if name not in kept}
+    chosen = {name: value for name, value in scene.items() if name not in given_choices}
     state.param.update(**news(state, chosen))
 
 
@@ -125,8 +125,8 @@ def points_out(state: Any) -> bool:
     """Whether the chosen vertex is one that the tour clicked, not a person."""
     if state.tour < 0 or state.rig is None or state.vertex is None:
         return False
-    look = TOUR[state.tour].look
-    return state.demo == look.demo and state.vertex == clicked(state.rig, look)
+    aspect = TOUR[state.tour].look
+    return state.demo == aspect.demo and state.vertex == clicked(state.rig, aspect)
 
 
 def clicked(rig: Rig, look: Look) -> int | None:
@@ -158,5 +158,5 @@ def camera_of(session: Session, look: Look) -> Camera:
 
 def _stands(state: Any, demo: str) -> bool:
     """Whether a demo character is there, and not just on its way."""
-    here = state.rig is not None and state.rig.name == demo
-    return bool(state.demo == demo and here)
+    is_loaded = state.rig is not None and state.rig.name == demo
+    return bool(state.demo == demo and is_loaded)

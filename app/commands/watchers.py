@@ -26,6 +26,6 @@ from .session import Session
 def follow(session: Session) -> None:
     """Let everything follow the state of a new session."""
     # In this order: what is seen comes before what is computed for it.
-    seen = (look, cutting, moving, brush, distance, pose, materials, compare, pairs)
-    for one in (*seen, binding, explain, history, keys, rest, check, arrival):
+    watched = (look, cutting, moving, brush, distance, pose, materials, compare, pairs)
+    for one in (*watched, binding, explain, history, keys, rest, check, arrival):
         one.watch(session)

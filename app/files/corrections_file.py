@@ -62,11 +62,11 @@ class CorrectionsFile:
         self._leave()
         self._taken = text[1:]
         try:
-            found = Corrections.load(paths[0])
+            loaded = Corrections.load(paths[0])
         except CutcellError as error:
             raise ValueError(str(error)) from None
-        self._said = (found, text)
-        return found
+        self._said = (loaded, text)
+        return loaded
 
     def close(self) -> None:
         """Use the files no longer; they stay for a while."""

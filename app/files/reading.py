@@ -74,13 +74,13 @@ def main_file(paths: list[Path]) -> Path:
     FileError
         There is none, or more than one.
     """
-    found = [path for path in paths if path.suffix.lower() not in COMPANIONS]
+    characters = [path for path in paths if path.suffix.lower() not in COMPANIONS]
     names = ", ".join(path.name for path in paths)
-    if not found:
+    if not characters:
         raise FileError(
             f"no character among the dropped files ({names}); drop a GLB, glTF, VRM, FBX, USD, "
             "OBJ, PLY, STL, OFF or NPZ file, and the files that belong to it together with it"
         )
-    if len(found) > 1:
+    if len(characters) > 1:
         raise FileError(f"more than one character was dropped ({names}); drop one at a time")
-    return found[0]
+    return characters[0]

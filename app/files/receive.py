@@ -147,6 +147,6 @@ def _problem(error: Exception) -> Exception:
 def safe_name(name: str) -> str:
     """Return the last part of a name from the browser, fit to be a file's name here."""
     last = name.replace("\\", "/").rsplit("/", 1)[-1]
-    kept = "".join(c for c in last if c.isprintable() and c not in '<>:"|?*').strip(". ")
+    printable = "".join(c for c in last if c.isprintable() and c not in '<>:"|?*').strip(". ")
     # Systems count bytes, and what matters of a long name is its end.
-    return kept.encode()[-NAME_BYTES:].decode(errors="ignore").strip(". ") or "file"
+    return printable.encode()[-NAME_BYTES:].decode(errors="ignore").strip(". ") or "file"

@@ -162,18 +162,18 @@ class UploadCache:
                 f"the files have {_mb(size)} together; a page takes {_mb(MAX_OF_A_PAGE)} (the "
                 "cutcell command takes any)"
             )
-        held = self._make_room(size, MAX_OF_A_PAGE, owner)
-        if held + size > MAX_OF_A_PAGE:
+        used = self._make_room(size, MAX_OF_A_PAGE, owner)
+        if used + size > MAX_OF_A_PAGE:
             raise FileError(
-                f"this page has sent {_mb(held)} that are still in use, and may send "
+                f"this page has sent {_mb(used)} that are still in use, and may send "
                 f"{_mb(MAX_OF_A_PAGE)}; reload it, or open the file by the cutcell command"
             )
 
     def _check_all(self, size: int) -> None:
-        held = self._make_room(size, MAX_BYTES)
-        if held + size > MAX_BYTES:
+        used = self._make_room(size, MAX_BYTES)
+        if used + size > MAX_BYTES:
             raise FileError(
-                f"the server holds {_mb(held)} of uploaded files that are in use, and takes "
+                f"the server holds {_mb(used)} of uploaded files that are in use, and takes "
                 f"{_mb(MAX_BYTES)}; try again when others have closed their pages"
             )
         if self.storage.free() - size < SPARE_BYTES:
@@ -188,14 +188,14 @@ class UploadCache:
     def _make_room(self, size: int, most: int, owner: object = None) -> int:
         """Remove what nobody uses, the oldest first, until a size fits; return what is held."""
         groups = [one for one in self._groups.values() if owner in (None, one.owner)]
-        held = sum(group.size for group in groups)
+        used = sum(group.size for group in groups)
         unused = (group for group in groups if group.users <= 0)
         for group in sorted(unused, key=lambda group: group.left):
-            if held + size <= most:
+            if used + size <= most:
                 break
             self._remove(group)
-            held -= group.size
-        return held
+            used -= group.size
+        return used
 
     def _sweep(self) -> None:
         old = time.monotonic() - self._seconds

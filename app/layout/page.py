@@ -84,8 +84,8 @@ def page(path: Path | None = None, opened: OpenedAudit | None = None) -> pmui.Pa
 
 def asked() -> str:
     """Return what the address that was asked for says behind its question mark."""
-    given = pn.state.session_args or {}
-    pairs = [(name, value) for name, values in given.items() for value in values[:1]]
+    arguments = pn.state.session_args or {}
+    pairs = [(name, value) for name, values in arguments.items() for value in values[:1]]
     return urlencode(pairs)
 
 

@@ -63,10 +63,10 @@ def panels(session: Session) -> tuple[Tabs, pmui.Column]:
         tabs.value = state.panel
         missing.visible = state.bare and state.panel not in BARE
         for panel in PANELS:
-            seen = panel.id == state.panel and not missing.visible
+            is_visible = panel.id == state.panel and not missing.visible
             if panel.id in built:
-                built[panel.id].visible = seen
-            elif seen:
+                built[panel.id].visible = is_visible
+            elif is_visible:
                 built[panel.id] = panel.build(session)
                 place.append(built[panel.id])
 

@@ -157,8 +157,8 @@ def _door(session: Session, door: Door) -> pmui.Button:
 def only_weights(event: Any) -> bool:
     """Whether a change of the binding left the distances as they were."""
     old, new = event.old, event.new
-    known = event.name == "binding" and old is not None and new is not None
-    return known and old.distances is new.distances
+    is_update = event.name == "binding" and old is not None and new is not None
+    return is_update and old.distances is new.distances
 
 
 def warning(state: State) -> tuple[str, str] | None:

@@ -33,7 +33,7 @@ def bone(session: Session) -> pmui.Column:
     state.param.watch(listed, ["rig", "joint"])
     select.param.watch(chosen, "value")
     listed()
-    seen = pmui.ToggleIcon.from_param(
+    toggle = pmui.ToggleIcon.from_param(
         state.param.skeleton,
         label="",
         icon="visibility_off",
@@ -42,6 +42,6 @@ def bone(session: Session) -> pmui.Column:
         size="18px",
         margin=(4, 0, 0, 8),
     )
-    row = pmui.Row(select, seen, margin=0, sizing_mode="stretch_width")
-    shown = when(lambda rig: not state.bare, state.param.rig)
-    return section("", row, margin=(2, 20, 4, 20), visible=shown)
+    row = pmui.Row(select, toggle, margin=0, sizing_mode="stretch_width")
+    has_skeleton = when(lambda rig: not state.bare, state.param.rig)
+    return section("", row, margin=(2, 20, 4, 20), visible=has_skeleton)

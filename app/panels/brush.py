@@ -26,9 +26,9 @@ HOW = (
 def brush(session: Session) -> pmui.Column:
     """Return the section of the brush."""
     state = session.state
-    look: dict[str, Any] = {"size": "small", "margin": (3, 0), "description": ""}
+    style: dict[str, Any] = {"size": "small", "margin": (3, 0), "description": ""}
     switch, mirrored = (
-        pmui.Switch.from_param(parameter, label=parameter.label, **look)
+        pmui.Switch.from_param(parameter, label=parameter.label, **style)
         for parameter in (state.param.brush, state.param.brush_mirrored)
     )
 
@@ -58,8 +58,8 @@ def brush(session: Session) -> pmui.Column:
         margin=0,
         sizing_mode="stretch_width",
     )  # fmt: skip
-    shown = when(lambda binding: binding is not None, state.param.binding)
-    return section("Brush", switch, tools, visible=shown)
+    has_binding = when(lambda binding: binding is not None, state.param.binding)
+    return section("Brush", switch, tools, visible=has_binding)
 
 
 def _selection(session: Session) -> pmui.Column:

@@ -48,18 +48,18 @@ def character(session: Session) -> pmui.Column:
 
     def shown(*events: Any) -> None:
         listed = session.uploads.offered()
-        own = {} if now() == "~" and session.given is None else {OWN: "~"}
+        choices = {} if now() == "~" and session.given is None else {OWN: "~"}
         if session.given is not None:
-            own = {shown_name(session.given[0].name): "~"}
+            choices = {shown_name(session.given[0].name): "~"}
         elif state.demo or session.uploads.key in listed:
-            own = {}
+            choices = {}
         names = unique_names(list(listed.values()))
         opened = {name: f"~{key}" for name, key in zip(names, listed, strict=True)}
-        select.param.update(options={**own, **opened, **demos}, value=now())
+        select.param.update(options={**choices, **opened, **demos}, value=now())
         lessons = {demo.id: demo.lesson for demo in DEMOS}
-        found = faults(state)
-        name = state.rig.name + ":" * bool(found) if state.rig else ""
-        lesson.object = as_text(" ".join([lessons.get(state.demo) or name, *found]))
+        problems = faults(state)
+        name = state.rig.name + ":" * bool(problems) if state.rig else ""
+        lesson.object = as_text(" ".join([lessons.get(state.demo) or name, *problems]))
 
     select.param.watch(chosen, "value")
     state.param.watch(shown, ["demo", "rig", "diagnosis"])

@@ -109,25 +109,25 @@ def _entry(session: Session, finding: Finding) -> pmui.Column:
 
 
 def _left_out(rig: Rig, joints: list[int]) -> str:
-    some = f"these {len(joints)} joints"
+    subject = f"these {len(joints)} joints"
     if len(joints) == 1:
-        some = shown_name(rig.skeleton.names[joints[0]])
-    return f"Let {some} carry no weight"
+        subject = shown_name(rig.skeleton.names[joints[0]])
+    return f"Let {subject} carry no weight"
 
 
 def _repairs(session: Session) -> list[Any]:
     """Return what can be repaired at once, and what was repaired: before and after."""
     state = session.state
-    shown: list[Any] = []
+    rows: list[Any] = []
     able = [] if state.diagnosis is None else [f for f in state.diagnosis.findings if f.repair]
     if len(able) > 1:
         codes = [finding.code for finding in able]
-        shown.append(_button(f"Repair all {len(able)}", "build", lambda: repair(session, codes)))
+        rows.append(_button(f"Repair all {len(able)}", "build", lambda: repair(session, codes)))
     if state.repair is None:
-        return shown
+        return rows
     now = "" if state.diagnosis is None else f", now {counted(state.diagnosis.counts)}"
     return [
-        *shown,
+        *rows,
         _line(f"Repaired. Before: {counted(state.repair.counts)}{now}.", "text.primary"),
         *(_line(text) for text in state.repair.done),
         _button(
@@ -154,5 +154,7 @@ def _button(label: str, icon: str, act: Any) -> pmui.Button:
 def _line(text: str, color: str = "text.secondary") -> pmui.Typography:
     if color == "text.secondary":
         return caption(text, margin=(0, 0, 4, 6))
-    look = {"color": color, "lineHeight": 1.45, "display": "block", "letterSpacing": 0}
-    return words(text, variant="caption", sx=look, margin=(0, 0, 4, 6), sizing_mode="stretch_width")
+    style = {"color": color, "lineHeight": 1.45, "display": "block", "letterSpacing": 0}
+    return words(
+        text, variant="caption", sx=style, margin=(0, 0, 4, 6), sizing_mode="stretch_width"
+    )

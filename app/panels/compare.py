@@ -70,9 +70,9 @@ def about(rig: Rig | None) -> str:
 
 def _field(state: State) -> pmui.RadioButtonGroup:
     def offered() -> tuple[dict[str, str], str]:
-        known = state.rig is None or state.rig.weights is not None
+        no_weights = state.rig is None or state.rig.weights is not None
         value = state.compare_field if state.rig is None else field_shown(state)
-        return {**FIELDS, **(ERROR if known else {})}, value
+        return {**FIELDS, **(ERROR if no_weights else {})}, value
 
     row = pmui.RadioButtonGroup(options=FIELDS, value="bone", **BUTTONS)
     return follow(row, state, "compare_field", offered, ["rig"])
@@ -122,10 +122,10 @@ def _motion(session: Session) -> pmui.Row:
 def rows_of(state: State) -> list[dict[str, Any]]:
     """Return the rows of the table, as `js/methods.js` takes them."""
     names = offered(state.rig)
-    found = {name: found_of(state, name) for name in names}
+    results = {name: found_of(state, name) for name in names}
     best = {
         measure: min(
-            (getattr(one, measure) for name, one in found.items()
+            (getattr(one, measure) for name, one in results.items()
              if one is not None and name != "artist" and getattr(one, measure) is not None),
             default=None,
         )
@@ -133,7 +133,7 @@ def rows_of(state: State) -> list[dict[str, Any]]:
     }  # fmt: skip
     rows = []
     for name in names:
-        one, chosen = found[name], name in state.methods
+        one, chosen = results[name], name in state.methods
         note, kind = _note(state, name, one, chosen)
         values = (None,) * 3 if one is None else (one.l1, one.deformation, one.seconds)
         if name == "artist":

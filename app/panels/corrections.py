@@ -52,7 +52,7 @@ def told(held: Corrections) -> str:
     numbers: list[tuple[Any, str]] = [
         (held.joints, "joint"), (held.parts, "part"), (held.vertices, "vertex"),
     ]  # fmt: skip
-    some = [count(len(which), one) for which, one in numbers if which]
-    if not some:
+    parts = [count(len(which), one) for which, one in numbers if which]
+    if not parts:
         return NONE
-    return f"Corrected: {', '.join(some)}. They go into the exported file, too."
+    return f"Corrected: {', '.join(parts)}. They go into the exported file, too."

@@ -18,7 +18,7 @@ def cutting(session: Session) -> list[Any]:
     state = session.state
     cut = when(lambda axis: axis != "off", state.param.cut_axis)
     free = when(lambda axis: axis == "free", state.param.cut_axis)
-    look = {"format": "0°", "step": 1, "visible": free}
+    style = {"format": "0°", "step": 1, "visible": free}
     facing = pmui.Button(
         label="Face camera",
         size="small",
@@ -31,8 +31,8 @@ def cutting(session: Session) -> list[Any]:
     return [
         choice(state.param.cut_axis, AXES),
         slider(state.param.cut_position, "Position", step=0.005, visible=cut),
-        slider(state.param.cut_yaw, "Yaw", **look),
-        slider(state.param.cut_pitch, "Pitch", **look),
+        slider(state.param.cut_yaw, "Yaw", **style),
+        slider(state.param.cut_pitch, "Pitch", **style),
         facing,
         caption("Or drag its handles in the scene.", visible=cut),
     ]

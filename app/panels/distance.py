@@ -37,8 +37,8 @@ def distance(session: Session) -> pmui.Column:
 
 def _face(state: State) -> Any:
     faces = {"Distance": "field", "Winding number": "winding"}
-    seen = when(lambda axis: axis != "off", state.param.cut_axis)
-    return choice(state.param.cut_face, faces, visible=seen)
+    has_cut = when(lambda axis: axis != "off", state.param.cut_axis)
+    return choice(state.param.cut_face, faces, visible=has_cut)
 
 
 def _one(session: Session) -> pmui.Column:
@@ -66,17 +66,17 @@ def _beside(state: State) -> list[Any]:
         )
         one.disabled = full
         switches.append(one)
-    some = when(lambda *chosen: any(chosen), *_switches(state))
+    any_chosen = when(lambda *chosen: any(chosen), *_switches(state))
     rate = choice(
         state.param.beside_resolution,
         {f"R = {n}": n for n in state.param.beside_resolution.objects},
-        visible=some,
+        visible=any_chosen,
     )
-    told = (
+    hint = (
         "Up to four, under one camera and on one scale; the last three go through the cut-cell "
         "graph. Click the body: each draws its own path."
     )
-    return [caption(told), *switches, rate]
+    return [caption(hint), *switches, rate]
 
 
 def _more(state: State) -> list[Any]:

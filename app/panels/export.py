@@ -58,12 +58,12 @@ def export(session: Session) -> pmui.Column:
 def _described(rig: Rig | None) -> str:
     """Say what the bound file holds."""
     if rig is None or keeps_document(rig):
-        kept = "The GLB is as it was, but for the weights."
+        summary = "The GLB is as it was, but for the weights."
     elif has_materials(rig):
-        kept = "The GLB is a new one: mesh, skeleton, weights, motions and base colours."
+        summary = "The GLB is a new one: mesh, skeleton, weights, motions and base colours."
     else:
-        kept = "The GLB is a new one: mesh, skeleton, weights and motions, without materials."
-    return f"{kept} Images show the current view."
+        summary = "The GLB is a new one: mesh, skeleton, weights and motions, without materials."
+    return f"{summary} Images show the current view."
 
 
 def _menu(

@@ -81,8 +81,8 @@ def _nodes(state: State) -> pmui.Column:
         state.param.nodes, label="Nodes", size="small", margin=(1, 0), description=""
     )
     hint = caption("Click a node: a card tells all of it.", visible=state.param.nodes)
-    seen = when(lambda slicing: not slicing, state.param.slicing)
-    return pmui.Column(switch, hint, margin=0, sizing_mode="stretch_width", visible=seen)
+    no_slice = when(lambda slicing: not slicing, state.param.slicing)
+    return pmui.Column(switch, hint, margin=0, sizing_mode="stretch_width", visible=no_slice)
 
 
 def count(state: State, layer: str) -> str:
@@ -108,8 +108,8 @@ def _colors(state: State) -> list[Any]:
         ),
     )
     options = {"Kind": "kind", "Depth": "depth", "Distance": "distance", "Part": "component"}
-    seen = when(lambda slicing: not slicing, state.param.slicing)
-    return [choice(state.param.edge_colors, options, visible=seen), idle]
+    no_slice = when(lambda slicing: not slicing, state.param.slicing)
+    return [choice(state.param.edge_colors, options, visible=no_slice), idle]
 
 
 def _inside(session: Session) -> list[Any]:

@@ -36,10 +36,10 @@ def joints(session: Session) -> pmui.Column:
         sizing_mode="stretch_width",
         margin=GAP,
     )
-    known: dict[str, Any] = {"of": None, "guess": None}
+    cache: dict[str, Any] = {"of": None, "guess": None}
 
     def guessed(found: DeformJoints) -> None:
-        known["guess"] = found
+        cache["guess"] = found
         listed()
 
     def listed(*events: Any) -> None:
@@ -47,10 +47,10 @@ def joints(session: Session) -> pmui.Column:
         if rig is None or state.bare or state.panel != "weights":
             return  # it is shown when somebody looks
         of = (rig.mesh, rig.skeleton.names)
-        if known["of"] != of:
-            known.update(of=of, guess=None)
+        if cache["of"] != of:
+            cache.update(of=of, guess=None)
             correct.guess(session, guessed)
-        tree.param.update(rows=joint_rows(state, session.memo, known["guess"]), chosen=state.joint)
+        tree.param.update(rows=joint_rows(state, session.memo, cache["guess"]), chosen=state.joint)
 
     def anew(event: Any) -> None:
         correct.guess(
@@ -147,14 +147,14 @@ def _chosen(session: Session) -> list[Any]:
     state.param.watch(lambda *events: show(), ["rig", "joint", "corrections", "falloff"])
     state.param.watch(lambda event: session.tasks.after_a_pause(tell, "held"), "binding")
     show()
-    given = [heading, holds, called, structure(session), carries, locked, gain, radius]
-    return [*given, *place(session), reset]
+    controls = [heading, holds, called, structure(session), carries, locked, gain, radius]
+    return [*controls, *place(session), reset]
 
 
 def _structure(one: JointCorrection) -> dict[str, Any]:
     """Return what makes a correction one of the skeleton's structure, and is no other."""
-    held = {"parent": one.parent, "was": one.was, "added": one.added}
-    return {**held, "position": one.position} if one.added else held
+    origin = {"parent": one.parent, "was": one.was, "added": one.added}
+    return {**origin, "position": one.position} if one.added else origin
 
 
 def _put_back(state: State) -> dict[str, Any]:
@@ -187,13 +187,13 @@ def _doublings(gain: float) -> float:
 def _held(session: Session) -> str:
     """Say how much of the skin the chosen joint holds."""
     state = session.state
-    ours, own = shares_of(state, session.memo)
-    told = []
-    if ours is not None:
-        told.append(f"Holds {_percent(ours[state.joint])} of the skin")
+    computed, own = shares_of(state, session.memo)
+    lines = []
+    if computed is not None:
+        lines.append(f"Holds {_percent(computed[state.joint])} of the skin")
     if own is not None:
-        told.append(f"{_percent(own[state.joint])} in the file")
-    text = ", ".join(told)
+        lines.append(f"{_percent(own[state.joint])} in the file")
+    text = ", ".join(lines)
     return text[:1].upper() + text[1:] + "." if text else ""
 
 

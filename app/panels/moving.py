@@ -22,9 +22,9 @@ NUMBER = "%.6g"
 def place(session: Session) -> list[Any]:
     """Return what moves the chosen joint."""
     state = session.state
-    look: dict[str, Any] = {"size": "small", "margin": (3, 0), "description": ""}
+    style: dict[str, Any] = {"size": "small", "margin": (3, 0), "description": ""}
     handle, mirrored = (
-        pmui.Switch.from_param(parameter, label=parameter.label, **look)
+        pmui.Switch.from_param(parameter, label=parameter.label, **style)
         for parameter in (state.param.joint_handle, state.param.mirrored)
     )
     fields = [

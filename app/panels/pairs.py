@@ -101,22 +101,22 @@ def facts(state: State) -> str:
     if pair is None:
         return ""
     alike = pair.likeness
-    said = [FOUND[alike.kind]]
+    sentences = [FOUND[alike.kind]]
     if pair.surface < float("inf"):
-        said += [
+        sentences += [
             f"Chamfer distance of the surfaces {pair.surface:.2g} ({pair.tier}), of the joints "
             f"{pair.joints:.2g}",
             f"One surface reaches {alike.reach:.1%} of the longest side beyond the other",
         ]
     if alike.degrees is None or alike.bones is None:
-        said.append("The joints form different trees")
+        sentences.append("The joints form different trees")
     else:
-        said.append(
+        sentences.append(
             f"The joints form the same tree; bones differ by {alike.bones:.0%} in length and "
             f"{alike.degrees:.0f}° in direction"
         )
-    said.append(f"The smaller mesh has {alike.faces:.0%} of the other's faces")
-    return ". ".join(said) + "."
+    sentences.append(f"The smaller mesh has {alike.faces:.0%} of the other's faces")
+    return ". ".join(sentences) + "."
 
 
 def kept(state: State) -> str:
@@ -127,8 +127,10 @@ def kept(state: State) -> str:
         return counts
     ends = [audit.names[pair.a], *([] if audit.crossed else [audit.others[pair.b]])]
     whole = set(audit.keep)
-    said = [f"{shown_name(name)} is {'kept' if name in whole else 'left out'}" for name in ends]
-    return f"{counts} {'; '.join(said)}."
+    sentences = [
+        f"{shown_name(name)} is {'kept' if name in whole else 'left out'}" for name in ends
+    ]
+    return f"{counts} {'; '.join(sentences)}."
 
 
 def _ahead(state: State, count: int) -> bool:

@@ -30,8 +30,8 @@ _PUNCTUATION = re.compile(r"[!-&(-+\-/<-@\[-`{-~]|[.:](?=\S)|(?<=\d)\.")
 
 def words(text: Any, **params: Any) -> pmui.Typography:
     """Return a text, or what follows a parameter, as it stands."""
-    shown = as_text(text) if isinstance(text, str) else when(as_text, text)
-    return pmui.Typography(shown, **params)
+    content = as_text(text) if isinstance(text, str) else when(as_text, text)
+    return pmui.Typography(content, **params)
 
 
 def section(title: str, *objects: Any, **params: Any) -> pmui.Column:
@@ -50,15 +50,15 @@ def section(title: str, *objects: Any, **params: Any) -> pmui.Column:
 
 def lead(text: Any) -> pmui.Typography:
     """Return the sentence that a panel begins with: what is seen there."""
-    look = {"fontSize": "13px", "lineHeight": 1.45, "color": "text.primary", "display": "block"}
-    return words(text, sx=look, margin=(12, 20, 0, 20), sizing_mode="stretch_width")
+    style = {"fontSize": "13px", "lineHeight": 1.45, "color": "text.primary", "display": "block"}
+    return words(text, sx=style, margin=(12, 20, 0, 20), sizing_mode="stretch_width")
 
 
 def caption(text: Any = "", **params: Any) -> pmui.Typography:
     """Return a line of small, quiet text."""
-    look = {"color": "text.secondary", "lineHeight": 1.45, "display": "block", "letterSpacing": 0}
+    style = {"color": "text.secondary", "lineHeight": 1.45, "display": "block", "letterSpacing": 0}
     params = {"margin": (2, 0, 6, 0), "sizing_mode": "stretch_width", **params}
-    return words(text, variant="caption", sx=look, **params)
+    return words(text, variant="caption", sx=style, **params)
 
 
 def when(function: Callable[..., Any], *parameters: Any) -> Any:
@@ -130,10 +130,10 @@ def choice(parameter: Any, options: dict[str, Any], **params: Any) -> pmui.Radio
 def slider(parameter: Any, label: str, whole: bool = False, **params: Any) -> Any:
     """Return a slider that follows a parameter while it is dragged."""
     kind = pmui.IntSlider if whole else pmui.FloatSlider
-    look = {"size": "small", "margin": GAP, "sizing_mode": "stretch_width", "description": ""}
+    style = {"size": "small", "margin": GAP, "sizing_mode": "stretch_width", "description": ""}
     if not whole:
-        look["format"] = "0.00"
-    made: Any = kind.from_param(parameter, **{"label": label, **look, **params})
+        style["format"] = "0.00"
+    made: Any = kind.from_param(parameter, **{"label": label, **style, **params})
     # Panel holds a change back for 50 ms in case another follows; what is seen must not wait.
     made._priority_changes = ["value"]
     return made

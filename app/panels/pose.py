@@ -149,14 +149,14 @@ def _colours(session: Session) -> pmui.Column:
         names = {"Weights": "weights", "Plain": "plain"}
         if state.rig is None or has_materials(state.rig):
             names["Materials"] = "materials"
-        known = state.pose_colors in names.values()
-        return names, state.pose_colors if known else "weights"
+        is_weight_color = state.pose_colors in names.values()
+        return names, state.pose_colors if is_weight_color else "weights"
 
     follow(colours, state, "pose_colors", offered, ["rig"])
-    told = state.param.materials
+    message = state.param.materials
     notes = caption(
-        when(lambda *_: notes_text(state), told),
-        visible=when(lambda *_: bool(notes_text(state)), told),
+        when(lambda *_: notes_text(state), message),
+        visible=when(lambda *_: bool(notes_text(state)), message),
     )
     return section("Colours of the body", colours, notes)
 

@@ -20,15 +20,15 @@ def structure(session: Session) -> pmui.Column:
         label="Parent", options=[NOTHING], value=NOTHING, size="small", margin=(8, 0),
         sizing_mode="stretch_width",
     )  # fmt: skip
-    look: dict[str, Any] = {"size": "small", "variant": "outlined", "sizing_mode": "stretch_width"}
+    style: dict[str, Any] = {"size": "small", "variant": "outlined", "sizing_mode": "stretch_width"}
     add, remove = (
-        pmui.Button(label=label, icon=icon, margin=margin, on_click=done, **look)
+        pmui.Button(label=label, icon=icon, margin=margin, on_click=done, **style)
         for label, icon, margin, done in (
             ("Add a joint", "add", (4, 4, 4, 0), lambda event: actions.add(session)),
             ("Remove joint", "remove", (4, 0, 4, 4), lambda event: actions.remove(session)),
         )
     )
-    known: dict[str, list[str]] = {"names": []}
+    cache: dict[str, list[str]] = {"names": []}
 
     def shown(*events: Any) -> None:
         if state.rig is None or state.joint >= len(state.rig.skeleton.names):
@@ -36,14 +36,14 @@ def structure(session: Session) -> pmui.Column:
         skeleton = state.rig.skeleton
         names = actions.may_hang_on(state.rig, state.joint)
         titles, parent = unique_names(names), int(skeleton.parents[state.joint])
-        known["names"] = names
+        cache["names"] = names
         value = titles[names.index(skeleton.names[parent])] if parent >= 0 else NOTHING
         on.param.update(options=[NOTHING, *titles], value=value)
 
     def chosen(event: Any) -> None:
-        titles = unique_names(known["names"])
+        titles = unique_names(cache["names"])
         if event.new == NOTHING or event.new in titles:
-            parent = "" if event.new == NOTHING else known["names"][titles.index(event.new)]
+            parent = "" if event.new == NOTHING else cache["names"][titles.index(event.new)]
             actions.hang_on(session, parent)
 
     on.param.watch(chosen, "value")

@@ -33,16 +33,16 @@ FALLOFF_TITLES = {"rig": "Animation", "paper": "Paper"}
 def weights(session: Session) -> pmui.Column:
     """Return the controls of the panel Weights."""
     state = session.state
-    shown = pmui.Select(
+    select = pmui.Select(
         label="Colour by", options=SHOWN, size="small", margin=GAP, sizing_mode="stretch_width"
     )
 
     def offered() -> tuple[dict[str, str], str]:
-        own = state.rig is not None and state.rig.weights is not None
-        options = {**SHOWN, **(DIFFERENCE if own else {})}
+        has_weights = state.rig is not None and state.rig.weights is not None
+        options = {**SHOWN, **(DIFFERENCE if has_weights else {})}
         return options, state.weights_shown if state.weights_shown in options.values() else "mix"
 
-    follow(shown, state, "weights_shown", offered, ["rig"])
+    follow(select, state, "weights_shown", offered, ["rig"])
     facts = caption(told(state))
 
     def tell() -> None:
@@ -52,7 +52,7 @@ def weights(session: Session) -> pmui.Column:
     state.param.watch(lambda *events: session.tasks.after_a_pause(tell, "told"), ["binding", "rig"])
     return pmui.Column(
         lead("How strongly each bone moves the skin."),
-        section("", shown, *_sides(state), facts, margin=(8, 20, 4, 20)),
+        section("", select, *_sides(state), facts, margin=(8, 20, 4, 20)),
         brush(session),
         joints(session),
         section("Falloff with distance", *_falloff(state)),
@@ -108,13 +108,13 @@ def told(state: State) -> str:
     """Return what there is to say of the weights in a line."""
     if state.binding is None:
         return ""
-    held = state.binding.weights
-    some = np.flatnonzero(held > 0)
-    text = f"{len(some) / max(len(held), 1):.1f} influences per vertex"
-    own = state.rig.weights
-    if own is not None and own.shape == held.shape:
+    weights = state.binding.weights
+    positive = np.flatnonzero(weights > 0)
+    text = f"{len(positive) / max(len(weights), 1):.1f} influences per vertex"
+    file_weights = state.rig.weights
+    if file_weights is not None and file_weights.shape == weights.shape:
         # Of |a - b| = a + b - 2 min(a, b) the last is zero where ours is: nearly everywhere.
-        both = np.minimum(held.ravel()[some], own.ravel()[some]).sum()
-        apart = ((len(held) + own.sum()) / 2 - both) / max(len(held), 1)
-        text += f"; they differ from the file's by {apart:.0%}"
+        both = np.minimum(weights.ravel()[positive], file_weights.ravel()[positive]).sum()
+        difference = ((len(weights) + file_weights.sum()) / 2 - both) / max(len(weights), 1)
+        text += f"; they differ from the file's by {difference:.0%}"
     return text + "."

@@ -43,8 +43,8 @@ def _find(what: str, name: str, names: list[str], rig: Rig) -> int:
         return folded.index(name.casefold())
     near = get_close_matches(name.casefold(), folded, 3, 0.5)
     near += [one for one in folded if name.casefold() in one][: 3 - len(near)]
-    found = [names[folded.index(one)] for one in dict.fromkeys(near)]
-    few = found or names[:8]
-    told = "the nearest names are" if found else "there are" if len(names) <= 8 else "some are"
+    matches = [names[folded.index(one)] for one in dict.fromkeys(near)]
+    few = matches or names[:8]
+    intro = "the nearest names are" if matches else "there are" if len(names) <= 8 else "some are"
     quoted = ", ".join(f'"{one}"' for one in few)
-    raise ParameterError(f'{rig.name} has no {what} "{name}"; {told} {quoted}')
+    raise ParameterError(f'{rig.name} has no {what} "{name}"; {intro} {quoted}')

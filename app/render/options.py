@@ -48,37 +48,40 @@ def settings_of(
     ParameterError
         One of them cannot be read; the sentence shows how it is written.
     """
-    said: dict[str, Any] = {}
+    choices: dict[str, Any] = {}
     if colors is not None:
-        said["pose_colors"] = colors
+        choices["pose_colors"] = colors
     if layers is not None:
         names = [name.strip() for name in layers.split(",") if name.strip()]
         for name in names:
             check_choice("layer", name, LAYERS)
-        said |= {choice: name in names for name, choice in LAYERS.items()}
+        choices |= {choice: name in names for name, choice in LAYERS.items()}
     if color_by is not None:
-        said["edge_colors"] = color_by
+        choices["edge_colors"] = color_by
     if cut is not None:
-        said |= _cut(cut)
+        choices |= _cut(cut)
     if face is not None:
-        shown = FACES[check_choice("face", face, FACES)]
-        said |= {"graph_face": shown, **({} if shown == "open" else {"cut_face": shown})}
+        face_state = FACES[check_choice("face", face, FACES)]
+        choices |= {
+            "graph_face": face_state,
+            **({} if face_state == "open" else {"cut_face": face_state}),
+        }
     if keep is not None:
-        said |= _keep(keep)
+        choices |= _keep(keep)
     if slices is not None:
-        said |= _slice(slices)
+        choices |= _slice(slices)
     if sources:
-        said["starts"] = True
+        choices["starts"] = True
     if path is not None:
-        said |= {"vertex": path, "path": True}
+        choices |= {"vertex": path, "path": True}
     if wave is not None:
-        said |= {"wave": True, "front": wave}
+        choices |= {"wave": True, "front": wave}
     if measures is not None:
         for name in [name.strip() for name in measures.split(",")]:
-            said[f"beside_{check_choice('measure', name, MEASURES)}"] = True
-        if sum(one.startswith("beside_") for one in said) > MAX_MEASURES:
+            choices[f"beside_{check_choice('measure', name, MEASURES)}"] = True
+        if sum(one.startswith("beside_") for one in choices) > MAX_MEASURES:
             raise ParameterError(f"at most {MAX_MEASURES} measures stand side by side")
-    return said
+    return choices
 
 
 def apply(state: State, settings: Mapping[str, Any]) -> None:
@@ -103,8 +106,8 @@ def apply(state: State, settings: Mapping[str, Any]) -> None:
 
 def _refusal(name: str, value: Any, parameter: Any) -> str:
     if isinstance(parameter, param.Selector):
-        known = ", ".join(str(one) for one in parameter.objects)
-        return f'{name} must be one of {known}, not "{value}"'
+        allowed = ", ".join(str(one) for one in parameter.objects)
+        return f'{name} must be one of {allowed}, not "{value}"'
     if isinstance(parameter, param.Number) and parameter.bounds is not None:
         low, high = parameter.bounds
         return f"{name} must be a number from {low} to {high}, not {value}"
@@ -113,9 +116,9 @@ def _refusal(name: str, value: Any, parameter: Any) -> str:
 
 def _cut(text: str) -> dict[str, Any]:
     across, _, at = text.partition("=")
-    said: dict[str, Any] = {"cut_position": _part("cut", at, text)} if at else {}
+    choices: dict[str, Any] = {"cut_position": _part("cut", at, text)} if at else {}
     if across.lower() in AXES:
-        return {"cut_axis": across.lower(), **said}
+        return {"cut_axis": across.lower(), **choices}
     angles = re.fullmatch(r"([-+]?[\d.]+),([-+]?[\d.]+)", across)
     if not angles:
         raise ParameterError(
@@ -123,7 +126,7 @@ def _cut(text: str) -> dict[str, Any]:
             f'and may tell where, such as z=0.4 or 30,20=0.5, not "{text}"'
         )
     yaw, pitch = float(angles[1]), float(angles[2])
-    return {"cut_axis": "free", "cut_yaw": yaw, "cut_pitch": pitch, **said}
+    return {"cut_axis": "free", "cut_yaw": yaw, "cut_pitch": pitch, **choices}
 
 
 def _keep(text: str) -> dict[str, Any]:
@@ -132,16 +135,16 @@ def _keep(text: str) -> dict[str, Any]:
 
 
 def _slice(text: str) -> dict[str, Any]:
-    found = re.fullmatch(r"([xyz])(?:=([\d.]+))?(?::([xyz]))?", text.lower())
-    if not found:
+    match = re.fullmatch(r"([xyz])(?:=([\d.]+))?(?::([xyz]))?", text.lower())
+    if not match:
         raise ParameterError(
             "slice must be an axis, and may tell where and along which axis its rays run, such as "
             f'z, z=0.5 or z=0.5:x, not "{text}"'
         )
-    said: dict[str, Any] = {"slicing": True, "slice_axis": found[1]}
-    if found[2]:
-        said["slice_position"] = _part("slice", found[2], text)
-    return {**said, **({"slice_rays": found[3]} if found[3] else {})}
+    choices: dict[str, Any] = {"slicing": True, "slice_axis": match[1]}
+    if match[2]:
+        choices["slice_position"] = _part("slice", match[2], text)
+    return {**choices, **({"slice_rays": match[3]} if match[3] else {})}
 
 
 def _part(name: str, text: str, whole: str) -> float:

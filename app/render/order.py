@@ -78,8 +78,8 @@ def _near(
 ) -> Camera:
     """Return a camera that looks at the middle of the chosen bone, at rest."""
     start, end, of = drawn_segments(rig)
-    own = of == (first_joint(rig) if choices.bone is None else find_bone(rig, choices.bone))
-    ends = np.concatenate([start[own], end[own]]) if own.any() else description.bounds
+    of_bone = of == (first_joint(rig) if choices.bone is None else find_bone(rig, choices.bone))
+    ends = np.concatenate([start[of_bone], end[of_bone]]) if of_bone.any() else description.bounds
     half = part / 2 * float(np.ptp(description.bounds, axis=0).max())
     middle = ends.mean(axis=0)
     return framing(np.stack([middle - half, middle + half]), aspect, direction)

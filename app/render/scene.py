@@ -80,8 +80,8 @@ def describe(
         state.diagnosis = diagnose(rig, resolution, progress=progress)
         state.finding = choices.finding or ""
         if state.finding and state.found is None:
-            there = ", ".join(one.code for one in state.diagnosis.findings) or "none at all"
-            raise ParameterError(f'{rig.name} has no finding "{state.finding}"; there are {there}')
+            codes = ", ".join(one.code for one in state.diagnosis.findings) or "none at all"
+            raise ParameterError(f'{rig.name} has no finding "{state.finding}"; there are {codes}')
     if wants_field(state):
         distances = state.binding.distances
         state.field = (distances, state.joint, distances.field(state.joint))
@@ -89,16 +89,16 @@ def describe(
         try:
             state.beside_resolution = resolution
         except ValueError:
-            known = ", ".join(map(str, state.param.beside_resolution.objects))
+            allowed = ", ".join(map(str, state.param.beside_resolution.objects))
             raise ParameterError(
-                f"measures side by side are drawn at a resolution of {known}, not {resolution}"
+                f"measures side by side are drawn at a resolution of {allowed}, not {resolution}"
             ) from None
         for name in state.measures:
             state.measured = {**state.measured, name: measuring(state, name)()}
     if state.panel == "compare":
         for name in state.methods:
-            found = measured(rig, name, state.binding, resolution, progress)
-            state.compared = {**state.compared, name: found}
+            measure = measured(rig, name, state.binding, resolution, progress)
+            state.compared = {**state.compared, name: measure}
     if choices.clip is None:
         return resolve(state)
     clip = find_clip(rig, choices.clip)

@@ -90,8 +90,8 @@ def _left_of(legend: Legend | None, actors: dict[str, Actor]) -> Legend | None:
     """Return what a legend says of that which moves: nothing of edges, sources and ways."""
     if legend is None or not _coloured(actors):
         return None
-    still = (MARK, SOURCE)
-    return replace(legend, swatches=tuple(one for one in legend.swatches if one[0] not in still))
+    static = (MARK, SOURCE)
+    return replace(legend, swatches=tuple(one for one in legend.swatches if one[0] not in static))
 
 
 def _coloured(actors: dict[str, Actor]) -> bool:

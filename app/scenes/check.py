@@ -37,8 +37,8 @@ def check(state: State, memo: Memo) -> Description:
     swatches: tuple[tuple[Color, str], ...] = ((MARK, named(finding)),)
     placed = memo("finding pose", (rig, finding), lambda: finding_pose(rig, finding))
     if placed is not None:
-        held = memo("file skin", (rig,), lambda: skin_of_weights(rig.weights))
-        actors["body"] = replace(actors["body"], skin=held)
+        skin = memo("file skin", (rig,), lambda: skin_of_weights(rig.weights))
+        actors["body"] = replace(actors["body"], skin=skin)
         actors.pop("vertex", None)  # it stays where it is at rest
         turned = rig.skeleton.names[finding.pose.joint]
         swatches += (

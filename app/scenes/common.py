@@ -61,13 +61,13 @@ def character(
     hung = memo("attachments", (rig.attachments, rig.world), lambda: attachments(rig))
     mark = {}
     if state.vertex is not None and state.vertex < len(rig.mesh.vertices):
-        held = state.weights if skin is not None else None
-        of = (rig, held, state.vertex)
-        mark["vertex"] = memo("vertex", of, lambda: vertex_mark(rig, state.vertex, held))
-    seen = {name: look[name] for name in ("visible", "opacity", "clipped") if name in look}
+        weights = state.weights if skin is not None else None
+        of = (rig, weights, state.vertex)
+        mark["vertex"] = memo("vertex", of, lambda: vertex_mark(rig, state.vertex, weights))
+    visibility = {name: look[name] for name in ("visible", "opacity", "clipped") if name in look}
     return {
         "body": replace(plain, skin=skin, **look),
-        **{name: replace(actor, **seen) for name, actor in hung.items()},
+        **{name: replace(actor, **visibility) for name, actor in hung.items()},
         **mark,
         **_skeleton(state, memo, bones_coloured),
     }
@@ -77,15 +77,21 @@ def _skeleton(state: State, memo: Memo, coloured: bool) -> dict[str, Actor]:
     if state.bare:
         return {}
     rig = state.rig
-    shown = memo("segments", (rig,), lambda: drawn_segments(rig))
-    kept = _behind_cut(state, *shown) if state.panel in CUT else None
+    segments = memo("segments", (rig,), lambda: drawn_segments(rig))
+    visible_bones = _behind_cut(state, *segments) if state.panel in CUT else None
 
     def make() -> dict[str, Actor]:
         colors = joint_colors(rig.skeleton.parents) if coloured else None
-        return bones(rig, state.joint, state.skeleton, colors, kept)
+        return bones(rig, state.joint, state.skeleton, colors, visible_bones)
 
-    known = (rig, state.joint, state.skeleton, coloured, None if kept is None else kept.tobytes())
-    return memo("bones", known, make)
+    inputs = (
+        rig,
+        state.joint,
+        state.skeleton,
+        coloured,
+        None if visible_bones is None else visible_bones.tobytes(),
+    )
+    return memo("bones", inputs, make)
 
 
 def _behind_cut(state: State, start: NDArray, end: NDArray, joint: NDArray) -> NDArray | None:
@@ -94,8 +100,8 @@ def _behind_cut(state: State, start: NDArray, end: NDArray, joint: NDArray) -> N
     if cut is None:
         return None
     nearer = np.minimum((start - cut.origin) @ cut.normal, (end - cut.origin) @ cut.normal)
-    kept = (nearer <= 0) | (joint == state.joint)
-    return None if kept.all() else kept
+    is_behind = (nearer <= 0) | (joint == state.joint)
+    return None if is_behind.all() else is_behind
 
 
 def plain(state: State, memo: Memo) -> Description:

@@ -47,7 +47,7 @@ def compare(state: State, memo: Memo) -> Description:
     plain = shared.pop("body")
     names = list(state.methods)
     tables = {name: weights_of(state, name) for name in names}
-    looks, legend = looks_of(state, tables, memo)
+    styles, legend = looks_of(state, tables, memo)
     actors: dict[str, Actor] = {}
     for view, name in enumerate(names):
         key = f"body {view}" if view else "body"
@@ -56,23 +56,23 @@ def compare(state: State, memo: Memo) -> Description:
             actors[key] = replace(plain, view=view, opacity=WAITING)
             continue
         skin = memo(f"skin {name}", (weights,), partial(skin_of_weights, weights))
-        actors[key] = replace(plain, view=view, skin=skin, **looks[name])
+        actors[key] = replace(plain, view=view, skin=skin, **styles[name])
     captions = tuple(caption_of(state, name) for name in names)
     return Description({**actors, **shared}, pose=pose_of(state), legend=legend, views=captions)
 
 
 def title_of(name: str) -> str:
     """Return what a method is called."""
-    own = getattr(METHODS.get(name), "title", None)
-    return TITLES.get(name) or own or name.replace("_", " ").capitalize()
+    title = getattr(METHODS.get(name), "title", None)
+    return TITLES.get(name) or title or name.replace("_", " ").capitalize()
 
 
 def caption_of(state: State, name: str) -> str:
     """Return what stands over a method's view."""
     title = title_of(name)
-    found = found_of(state, name)
+    result = found_of(state, name)
     if weights_of(state, name) is None:
-        if found is not None and found.failed:
+        if result is not None and result.failed:
             return f"{title} · failed"
         return f"{title} · {'computing' if state.comparing == name else 'waiting'}"
     if state.minus and subtracted(state) is not None:
@@ -87,16 +87,16 @@ def weights_of(state: State, name: str) -> Any:
         return None if state.binding is None else state.binding.weights
     if name == "artist":
         return state.rig.weights
-    found = found_of(state, name)
-    return None if found is None else found.weights
+    result = found_of(state, name)
+    return None if result is None else result.weights
 
 
 def found_of(state: State, name: str) -> Any:
     """Return the Compared of a method, unless it is of another character or out of date."""
-    found = state.compared.get(name)
-    if found is None or found.rig is not state.rig:
+    result = state.compared.get(name)
+    if result is None or result.rig is not state.rig:
         return None
-    return None if name == NOW and found.source is not state.binding else found
+    return None if name == NOW and result.source is not state.binding else result
 
 
 def subtracted(state: State) -> Any:
@@ -108,31 +108,31 @@ def looks_of(
     state: State, tables: dict[str, Any], memo: Memo
 ) -> tuple[dict[str, dict[str, Any]], Legend | None]:
     """Return how each method's body is coloured, and the legend that holds for all."""
-    known = {name: table for name, table in tables.items() if table is not None}
+    computed = {name: table for name, table in tables.items() if table is not None}
     joint = state.joint
-    shown = field_shown(state)
-    if shown == "error":
-        return error_looks(state, known)
+    field = field_shown(state)
+    if field == "error":
+        return error_looks(state, computed)
     base = subtracted(state)
-    if base is not None and shown == "bone":
-        looks = {
-            name: _difference(table[:, joint] - base[:, joint]) for name, table in known.items()
+    if base is not None and field == "bone":
+        styles = {
+            name: _difference(table[:, joint] - base[:, joint]) for name, table in computed.items()
         }
         title = f"Weight of {state.rig.skeleton.names[joint]}, difference"
-        return looks, Legend(title, "difference", "−1", "+1")
+        return styles, Legend(title, "difference", "−1", "+1")
     if base is not None:
-        looks = {
+        styles = {
             name: memo(f"apart {name}", (table, base), partial(_sum_of_differences, table, base))
-            for name, table in known.items()
+            for name, table in computed.items()
         }
-        return looks, Legend("Difference of the weights", "error", "0 %", "100 %")
-    which = joint if shown == "bone" else None
-    looks, legend = {}, None
-    for name, table in known.items():
-        looks[name], legend = memo(
+        return styles, Legend("Difference of the weights", "error", "0 %", "100 %")
+    which = joint if field == "bone" else None
+    styles, legend = {}, None
+    for name, table in computed.items():
+        styles[name], legend = memo(
             f"colors {name}", (table, which), partial(weight_colors, state.rig, table, which)
         )
-    return looks, legend
+    return styles, legend
 
 
 def field_shown(state: State) -> str:
@@ -147,21 +147,21 @@ def error_looks(
 ) -> tuple[dict[str, dict[str, Any]], Legend | None]:
     """Return the colours of the deformation error, on one scale for all methods."""
     errors = {name: errors_of(state, name) for name in known}
-    found = {name: one for name, one in errors.items() if one is not None}
-    if not found:
+    measured = {name: one for name, one in errors.items() if one is not None}
+    if not measured:
         return {name: {} for name in known}, None
-    limits = max(error_limits(one.vertex) for one in found.values())
-    looks: dict[str, dict[str, Any]] = {name: {} for name in known}
-    for name, one in found.items():
+    limits = max(error_limits(one.vertex) for one in measured.values())
+    styles: dict[str, dict[str, Any]] = {name: {} for name in known}
+    for name, one in measured.items():
         values = one.vertex.astype(np.float32)
-        looks[name] = {"scalars": values, "colormap": "error", "limits": limits}
-    return looks, Legend("Worst error in any turn by 30°", "error", "0", f"{limits[1]:g} cm²")
+        styles[name] = {"scalars": values, "colormap": "error", "limits": limits}
+    return styles, Legend("Worst error in any turn by 30°", "error", "0", f"{limits[1]:g} cm²")
 
 
 def errors_of(state: State, name: str) -> Any:
     """Return the DeformationError of a method's weights against the file's, if it is known."""
-    found = found_of(state, name)
-    return None if found is None else found.errors
+    result = found_of(state, name)
+    return None if result is None else result.errors
 
 
 def _difference(values: NDArray[np.float64]) -> dict[str, Any]:

@@ -67,7 +67,7 @@ def listed(state: State, memo: Memo) -> list[Component]:
     firsts = memo("first vertices", (which,), lambda: np.unique(which, return_index=True)[1])
     corrected = {int(which[v]): part for v, part in state.corrections.parts.items()}
     weights = state.binding.weights
-    held = memo("of parts", (which, weights), lambda: _mean(which, weights, len(sizes)))
+    mean_weights = memo("of parts", (which, weights), lambda: _mean(which, weights, len(sizes)))
     names = {} if len(state.rig.parts) < 2 else state.rig.parts
     starts = [part.vertices.start for part in names]
     return [
@@ -78,8 +78,8 @@ def listed(state: State, memo: Memo) -> list[Component]:
             name=shown_name(names[np.searchsorted(starts, firsts[k], "right") - 1].name)
             if names
             else "",
-            joint=int(held[k].argmax()),
-            share=float(held[k].max()),
+            joint=int(mean_weights[k].argmax()),
+            share=float(mean_weights[k].max()),
             correction=corrected.get(k),
         )
         for k in range(min(len(sizes), MOST))
@@ -107,18 +107,18 @@ def seen_apart(state: State, memo: Memo, actors: dict[str, Actor]) -> dict[str, 
 
 
 def _faces(state: State, memo: Memo, body: Actor) -> NDArray:
-    mine = np.zeros(len(body.points), np.bool_)
-    mine[vertices_of(state, memo, state.part)] = True
+    in_part = np.zeros(len(body.points), np.bool_)
+    in_part[vertices_of(state, memo, state.part)] = True
     assert body.cells is not None
-    return np.ascontiguousarray(body.cells[mine[body.cells].all(axis=1)])
+    return np.ascontiguousarray(body.cells[in_part[body.cells].all(axis=1)])
 
 
 def _components(state: State, memo: Memo) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
     graph = state.binding.graph
-    found: tuple[NDArray[np.intp], NDArray[np.intp]] = memo(
+    edges: tuple[NDArray[np.intp], NDArray[np.intp]] = memo(
         "components", (graph,), lambda: components(graph)
     )
-    return found
+    return edges
 
 
 def _mean(which: NDArray[np.intp], weights: NDArray, count: int) -> NDArray[np.float64]:

@@ -69,11 +69,11 @@ def _surface(state: State, memo: Memo) -> tuple[dict[str, Any], Legend, tuple[fl
 
     def make() -> tuple[dict[str, Any], Legend, tuple[float, float]]:
         if field is None:
-            known = binding.distances.at(joint, slice(None))
-            limits = distance_limits(known)
+            distances = binding.distances.at(joint, slice(None))
+            limits = distance_limits(distances)
         else:
-            known, limits = field[binding.graph.vertex_node], distance_limits(field)
-        return *distance_colors(rig, known, joint, limits), limits
+            distances, limits = field[binding.graph.vertex_node], distance_limits(field)
+        return *distance_colors(rig, distances, joint, limits), limits
 
     return memo("distance", (rig, binding.distances, field, joint), make)
 
@@ -107,15 +107,15 @@ def path_of(state: State, memo: Memo) -> Any:
 def farthest(state: State) -> float | None:
     """Return the greatest distance that is seen, where the wavefront ends; None if none is yet."""
     if state.measures:
-        known = [one for name in state.measures if (one := measured_of(state, name)) is not None]
-        return max((distance_limits(one.vertices)[1] for one in known), default=None)
+        measured = [one for name in state.measures if (one := measured_of(state, name)) is not None]
+        return max((distance_limits(one.vertices)[1] for one in measured), default=None)
     field = field_of(state)
     return None if field is None else distance_limits(field)[1]
 
 
 def wants_field(state: State) -> bool:
     """Whether the distance is to be known at every node of the graph."""
-    wanted = (state.panel == "distance" and not state.measures) or (
+    is_needed = (state.panel == "distance" and not state.measures) or (
         state.panel == "graph"
         and (
             state.edge_colors == "distance"
@@ -123,7 +123,7 @@ def wants_field(state: State) -> bool:
             or (state.cut_axis != "off" and state.graph_face == "field")
         )
     )
-    return wanted and has_field(state)
+    return is_needed and has_field(state)
 
 
 def field_of(state: State) -> Any:

@@ -40,8 +40,8 @@ def explanation_facts(state: State) -> dict[int, dict[str, Any]]:
         the nearest), "path" (kind and length of each run of pieces of a kind), "factors" (what the
         distance is multiplied by, and why), "effective" and "steps" (name and weight).
     """
-    found = explanation_of(state)
-    shares = () if found is None else found.joints[:MAX_JOINTS]
+    explanation = explanation_of(state)
+    shares = () if explanation is None else explanation.joints[:MAX_JOINTS]
     return {share.joint: _facts(share) for share in shares}
 
 
@@ -69,8 +69,12 @@ def _finite(length: float) -> float | None:
 
 def explained_paths(state: State, memo: Memo) -> dict[str, Actor]:
     """Return the paths from the chosen vertex to the joints that are explained, as tubes."""
-    found = explanation_of(state)
-    return {} if found is None else memo("explained", (found,), lambda: _tubes(state, found))
+    explanation = explanation_of(state)
+    return (
+        {}
+        if explanation is None
+        else memo("explained", (explanation,), lambda: _tubes(state, explanation))
+    )
 
 
 def _tubes(state: State, found: Explanation) -> dict[str, Actor]:

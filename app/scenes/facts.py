@@ -57,29 +57,29 @@ def vertex_facts(state: State, memo: Memo) -> dict[str, Any] | None:
         }
 
     artist = None if rig.weights is None else rig.weights[vertex]
-    ours = binding.weights[vertex]
-    either = ours if artist is None else np.maximum(ours, artist)
-    shown = [j for j in np.argsort(-either, kind="stable")[:MAX_WEIGHTS] if either[j] > NO_WEIGHT]
+    computed = binding.weights[vertex]
+    either = computed if artist is None else np.maximum(computed, artist)
+    listed = [j for j in np.argsort(-either, kind="stable")[:MAX_WEIGHTS] if either[j] > NO_WEIGHT]
     distance = binding.distances.at(slice(None), vertex)
     near = [j for j in np.argsort(distance, kind="stable")[:MAX_DISTANCES]]
     which, sizes = memo("components", (binding.graph,), lambda: components(binding.graph))
-    own = int(which[vertex])
+    component = int(which[vertex])
     fallback = int(binding.distances.fallback[vertex])
     return {
         **facts,
         "artist": artist is not None,
         "weights": [
-            bone(j, ours=float(ours[j]), artist=0.0 if artist is None else float(artist[j]))
-            for j in shown
+            bone(j, ours=float(computed[j]), artist=0.0 if artist is None else float(artist[j]))
+            for j in listed
         ],
         "distances": [bone(j, distance=float(distance[j])) for j in near if distance[j] < np.inf],
-        "component": {"number": own + 1, "of": len(sizes), "vertices": int(sizes[own])},
+        "component": {"number": component + 1, "of": len(sizes), "vertices": int(sizes[component])},
         "reached": fallback == 0,
         "reason": FALLBACK_REASONS[fallback],
         "explain": state.explain,
-        "why": [bone(j, **told) for j, told in explanation_facts(state).items()],
+        "why": [bone(j, **details) for j, details in explanation_facts(state).items()],
         "overruled": vertex in state.corrections.vertices,
-        "offered": [bone(j, weight=float(ours[j])) for j in _offered(state, ours, distance)]
+        "offered": [bone(j, weight=float(computed[j])) for j in _offered(state, computed, distance)]
         if state.explain
         else [],
     }
@@ -90,10 +90,10 @@ def _offered(state: State, weights: NDArray, distance: NDArray) -> list[int]:
     allowed = np.ones(len(weights), bool)
     if state.rig.allowed is not None:
         allowed = state.rig.allowed[state.vertex]
-    held = [j for j in np.argsort(-weights, kind="stable").tolist() if weights[j] > 0]
+    weighted = [j for j in np.argsort(-weights, kind="stable").tolist() if weights[j] > 0]
     near = [j for j in np.argsort(distance, kind="stable").tolist() if distance[j] < np.inf]
-    found = dict.fromkeys([*held, state.joint, *near])
-    return [j for j in found if allowed[j]][: max(len(held) + 1, MIN_OFFERED)]
+    joints = dict.fromkeys([*weighted, state.joint, *near])
+    return [j for j in joints if allowed[j]][: max(len(weighted) + 1, MIN_OFFERED)]
 
 
 MAX_NEIGHBOURS = 26

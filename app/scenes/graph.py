@@ -55,8 +55,8 @@ def graph(state: State, memo: Memo) -> Description:
     if path is not None and len(path):
         places = to_scene(state.rig, state.graph.lattice.to_file(path))
         actors["path"] = memo("sight", (path,), lambda: path_tube(state.rig, places))
-        told = f"lines of sight that vertex {state.vertex:,} is measured along"
-        swatches = ((MARK, told), *(() if legend is None else legend.swatches))
+        hint = f"lines of sight that vertex {state.vertex:,} is measured along"
+        swatches = ((MARK, hint), *(() if legend is None else legend.swatches))
         legend = replace(legend or Legend("The graph's edges"), swatches=swatches)
     for name, actor in actors.items():
         if actor.clipped:
@@ -70,13 +70,13 @@ def graph_layers(state: State, memo: Memo) -> tuple[dict[str, Actor], Legend | N
     if state.graph is None:
         return {}, None
     rig, lattice, theme = state.rig, state.graph, theme_of(state)
-    field, look, legend = _field(state, memo)
+    field, style, legend = _field(state, memo)
     drawn = memo(
         "graph",
-        (rig, lattice, theme.name, field, look.get("shades", ""), look.get("colors")),
-        lambda: graph_scene(rig, lattice, theme=theme, field=field, **look).actors,
+        (rig, lattice, theme.name, field, style.get("shades", ""), style.get("colors")),
+        lambda: graph_scene(rig, lattice, theme=theme, field=field, **style).actors,
     )
-    seen = {
+    layers = {
         name: replace(drawn[name], visible=getattr(state, layer), opacity=_thin(state, name))
         for layer, name in LAYERS.items()
         if name in drawn
@@ -84,8 +84,8 @@ def graph_layers(state: State, memo: Memo) -> tuple[dict[str, Actor], Legend | N
     for layer, name in LAYERS.items():
         nodes = name.replace("edges", "nodes")
         if nodes in drawn and nodes != name:
-            seen[nodes] = replace(drawn[nodes], visible=state.nodes and getattr(state, layer))
-    return seen, legend
+            layers[nodes] = replace(drawn[nodes], visible=state.nodes and getattr(state, layer))
+    return layers, legend
 
 
 def _face(
@@ -137,8 +137,8 @@ def _field(state: State, memo: Memo) -> tuple[Any, dict[str, Any], Legend | None
 def kinds_legend(state: State) -> Legend | None:
     """Return what the colours of the layers of edges that are seen stand for."""
     colored = zip(theme_of(state).edges, KINDS.items(), strict=True)
-    seen = tuple((color, text) for color, (name, text) in colored if getattr(state, name))
-    return Legend("The graph's edges", swatches=seen) if seen else None
+    layers = tuple((color, text) for color, (name, text) in colored if getattr(state, name))
+    return Legend("The graph's edges", swatches=layers) if layers else None
 
 
 def body_opacity(state: State) -> float:
@@ -168,7 +168,7 @@ def _slice(state: State, memo: Memo) -> Description:
     if axis == normal:
         axis = (normal + 1) % 3
     inputs = (rig, resolution, axis, normal, index, state.winding_threshold, state.orient)
-    found = memo(
+    nodes = memo(
         "slice",
         inputs,
         lambda: slice_rays(
@@ -182,7 +182,7 @@ def _slice(state: State, memo: Memo) -> Description:
         ),
     )
     actors, legend = memo(
-        "slice scene", (found, theme.name), lambda: slice_scene(rig, found, theme)
+        "slice scene", (nodes, theme.name), lambda: slice_scene(rig, nodes, theme)
     )
     shell = character(state, memo, visible=state.body, opacity=SHELL)
     for name in {"bones", "bone outlines"} & shell.keys():

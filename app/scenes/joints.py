@@ -24,14 +24,14 @@ def shares_of(state: State, memo: Memo) -> tuple[NDArray | None, NDArray | None]
     """Return which part of the skin each joint holds, shape (j,): as computed, and in the file."""
     rig, binding = state.rig, state.binding
     count = memo("vertex shares", (rig.mesh,), lambda: vertex_shares(rig.mesh))
-    own = memo(
+    shares = memo(
         "file's shares",
         (rig.mesh, rig.weights),
         lambda: None if rig.weights is None else count @ rig.weights,
     )
     if binding is None:
-        return None, own
-    return memo("shares", (rig.mesh, binding.weights), lambda: count @ binding.weights), own
+        return None, shares
+    return memo("shares", (rig.mesh, binding.weights), lambda: count @ binding.weights), shares
 
 
 def joint_rows(state: State, memo: Memo, guess: DeformJoints | None) -> list[dict[str, Any]]:
@@ -56,7 +56,7 @@ def joint_rows(state: State, memo: Memo, guess: DeformJoints | None) -> list[dic
     rig = state.rig
     skeleton = rig.skeleton
     colors = memo("colors", (rig,), lambda: joint_colors(skeleton.parents))
-    ours, own = shares_of(state, memo)
+    computed, own = shares_of(state, memo)
     rows = []
     for joint in in_order(skeleton):
         name = skeleton.names[joint]
@@ -73,7 +73,7 @@ def joint_rows(state: State, memo: Memo, guess: DeformJoints | None) -> list[dic
                 "why": guess.reason[joint] if control and guess is not None else "",
                 "carries": bool(skeleton.deform[joint]),
                 "changed": one.deform is not None,
-                "ours": None if ours is None else float(ours[joint]),
+                "ours": None if computed is None else float(computed[joint]),
                 "file": None if own is None else float(own[joint]),
                 "locked": one.locked,
                 "gain": one.gain,
@@ -87,10 +87,10 @@ def joint_rows(state: State, memo: Memo, guess: DeformJoints | None) -> list[dic
 
 def in_order(skeleton: Any) -> list[int]:
     """Return the joints so that each comes behind its parent, with all that hang on it."""
-    found: list[int] = []
+    ordered: list[int] = []
     waiting = np.flatnonzero(skeleton.parents < 0)[::-1].tolist()
     while waiting:
         joint = waiting.pop()
-        found.append(joint)
+        ordered.append(joint)
         waiting += skeleton.children[joint][::-1].tolist()
-    return found
+    return ordered

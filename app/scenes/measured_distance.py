@@ -65,7 +65,7 @@ def measure_distance(
     check_choice("measure", measure, MEASURES)
     if joint not in distances.bones.joint:
         raise ParameterError(f"joint {joint} has no bone: it may not carry weight")
-    bones = distances.bones.some(distances.bones.joint == joint)
+    bones = distances.bones.subset(distances.bones.joint == joint)
     body = replace(Body.of(rig, resolution=method.resolution), bones=bones)
     if measure == "straight":
         return _straight(body)
@@ -98,8 +98,8 @@ def _over_surface(body: Body) -> MeasuredDistance:
     tree, near, away = cKDTree(points[used]), [], []
     for one, other in zip(start, end, strict=True):
         steps = int(np.ceil(body.lattice.resolution * np.linalg.norm(other - one))) + 1
-        found = tree.query(one + np.linspace(0, 1, steps)[:, None] * (other - one))[1]
-        near.append(used[np.unique(found)])
+        nearest = tree.query(one + np.linspace(0, 1, steps)[:, None] * (other - one))[1]
+        near.append(used[np.unique(nearest)])
         away.append(distance_to_segment(points[near[-1]], one, other))
     edges = find_edges(body.faces).edges
     lengths = np.linalg.norm(points[edges[:, 0]] - points[edges[:, 1]], axis=1)
@@ -119,18 +119,18 @@ def _along_voxels(body: Body) -> MeasuredDistance:
     ends = zip(body.bones.start, body.bones.end, strict=True)
     near = np.unique(np.concatenate([voxels_of_bone(voxels, *pair) for pair in ends]))
     reached, before = _search(len(voxels.centres), links, lengths, near, np.zeros(len(near)))
-    own = voxels.at(body.points)
-    away = np.linalg.norm(body.points - voxels.centres[own], axis=1)
+    start = voxels.at(body.points)
+    away = np.linalg.norm(body.points - voxels.centres[start], axis=1)
 
     def path_from(vertex: int) -> NDArray[np.float64]:
         welded = body.index[vertex]
-        centres = voxels.centres[_walk(before, reached, own[welded])]
+        centres = voxels.centres[_walk(before, reached, start[welded])]
         whole = np.concatenate([body.points[[welded]], centres]) if len(centres) else centres
         return body.lattice.to_file(whole)
 
     sides, at_corners = _seen_sides(voxels, reached)
     sides = body.lattice.to_file(sides)
-    return MeasuredDistance((reached[own] + away)[body.index], path_from, sides, at_corners)
+    return MeasuredDistance((reached[start] + away)[body.index], path_from, sides, at_corners)
 
 
 def _in_graph(rig: Rig, bones: Bones, joint: int, method: Method) -> MeasuredDistance:
@@ -193,14 +193,14 @@ def _seen_sides(
 
     A corner, of shape (s, 4), has the mean of the solid voxels that it is one of.
     """
-    lows, found = np.argwhere(voxels.solid), []  # in the order of their numbers
+    lows, numbers = np.argwhere(voxels.solid), []  # in the order of their numbers
     for axis in range(3):
         for step in (-1, 1):
-            beside = np.roll(voxels.number, -step, axis=axis)
-            low = lows[voxels.number[(voxels.number >= 0) & (beside < 0)]]
+            neighbour = np.roll(voxels.number, -step, axis=axis)
+            low = lows[voxels.number[(voxels.number >= 0) & (neighbour < 0)]]
             low[:, axis] += step > 0
-            found.append(low[:, None] + (SIDES[axis] if step < 0 else SIDES[axis][::-1]))
-    corners = np.concatenate(found)
+            numbers.append(low[:, None] + (SIDES[axis] if step < 0 else SIDES[axis][::-1]))
+    corners = np.concatenate(numbers)
     total, count = np.zeros((2, *np.add(voxels.solid.shape, 1)))
     for corner in product((0, 1), repeat=3):
         at = tuple((lows + corner).T)

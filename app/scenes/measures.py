@@ -34,15 +34,15 @@ WITH_RESOLUTION = ("voxel", "6", "26", "any")
 def side_by_side(state: State, memo: Memo) -> Description:
     """Return the scene of some measures, each in a view of its own."""
     names, rig, joint = state.measures, state.rig, state.joint
-    found = {name: measured_of(state, name) for name in names}
-    known = [one for one in found.values() if one is not None]
-    limits = (0.0, max((distance_limits(one.vertices)[1] for one in known), default=1.0))
+    results = {name: measured_of(state, name) for name in names}
+    computed = [one for one in results.values() if one is not None]
+    limits = (0.0, max((distance_limits(one.vertices)[1] for one in computed), default=1.0))
     shared = character(state, memo)
     plain = shared.pop("body")
     actors: dict[str, Actor] = {}
     legend, captions = None, []
     for view, name in enumerate(names):
-        body, one = f"body {view}" if view else "body", found[name]
+        body, one = f"body {view}" if view else "body", results[name]
         title = title_of(name, state.beside_resolution)
         if one is None:
             actors[body] = replace(plain, view=view, opacity=WAITING)
@@ -95,8 +95,8 @@ def measuring(state: State, name: Measure) -> Callable[[], tuple[BoneDistances, 
     )
 
     def measure() -> tuple[BoneDistances, int, int, Any]:
-        found = measure_distance(rig, distances, joint, name, method)
-        return distances, joint, resolution, found
+        result = measure_distance(rig, distances, joint, name, method)
+        return distances, joint, resolution, result
 
     return measure
 
@@ -128,5 +128,5 @@ def _voxels(rig: Rig, one: MeasuredDistance, limits: tuple[float, float]) -> Act
     first = 4 * np.arange(len(one.sides), dtype=np.int32)[:, None]
     halves = np.array([[0, 1, 2], [0, 2, 3]], np.int32)
     cells = np.concatenate([first + half for half in halves])
-    look, _ = distance_look(one.side_distance.ravel(), limits)
-    return Actor("surface", points, cells, np.repeat(normals, 4, axis=0), **look)
+    style, _ = distance_look(one.side_distance.ravel(), limits)
+    return Actor("surface", points, cells, np.repeat(normals, 4, axis=0), **style)

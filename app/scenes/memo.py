@@ -17,10 +17,10 @@ class Memo:
 
         Numbers and texts are compared by value, all else by identity.
         """
-        kept = self._kept.get(name)
-        if kept is None or not _same_inputs(kept[0], inputs):
-            kept = self._kept[name] = (inputs, make())
-        return kept[1]
+        cached = self._kept.get(name)
+        if cached is None or not _same_inputs(cached[0], inputs):
+            cached = self._kept[name] = (inputs, make())
+        return cached[1]
 
 
 def _same_inputs(a: tuple[Any, ...], b: tuple[Any, ...]) -> bool:

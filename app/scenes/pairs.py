@@ -27,11 +27,11 @@ def pairs(state: State, memo: Memo) -> Description:
     if state.beside is None:
         return Description(views=captions)
     made = memo("pair", (state.beside, state.rig), lambda: side_by_side(state))
-    shown = {
+    rigs = {
         name: replace(actor, visible=state.skeleton) if actor.overlay else actor
         for name, actor in made.items()
     }
-    return Description(shown, views=captions)
+    return Description(rigs, views=captions)
 
 
 def side_by_side(state: State) -> dict[str, Actor]:
@@ -39,8 +39,8 @@ def side_by_side(state: State) -> dict[str, Actor]:
     actors: dict[str, Actor] = {}
     for view, rig in enumerate(state.beside.rigs):
         placed = into_box(rig, bounds_of(state))
-        look = {} if rig.weights is None else weight_colors(rig, rig.weights, None)[0]
-        parts = {"pair": body(placed, **look), **bones(placed)}
+        style = {} if rig.weights is None else weight_colors(rig, rig.weights, None)[0]
+        parts = {"pair": body(placed, **style), **bones(placed)}
         for name, actor in parts.items():
             actors[f"{name} of {'AB'[view]}"] = replace(actor, view=view, skin=None)
     return actors

@@ -34,37 +34,37 @@ def pose(state: State, memo: Memo) -> Description:
     """Return the scene of the panel Pose."""
     placed = pose_of(state)
     textures = textures_of(state)
-    look, legend, coloured = _colours(state, memo, weights_seen(state), "weights")
+    style, legend, coloured = _colours(state, memo, weights_seen(state), "weights")
     if state.heat and has_rival(state):
         limits = error_limits_of(state, placed, memo)
-        apart = memo(
+        reference_skin = memo(
             "apart",
             (state.rig,),
             lambda: Apart(skin_of_weights(state.rig.weights), squared_unit(state.rig)),
         )
-        look = memo(
+        style = memo(
             "error look",
             (state.rig, limits[1]),
-            lambda: error_look(len(state.rig.mesh.vertices), apart, limits),
+            lambda: error_look(len(state.rig.mesh.vertices), reference_skin, limits),
         )
         legend, coloured = error_legend(limits), False
-    actors = character(state, memo, bones_coloured=coloured, **look)
+    actors = character(state, memo, bones_coloured=coloured, **style)
     actors |= selection_marks(state, memo, actors["body"])
     if textures is not None:
         actors |= _attachments_in_materials(actors, textures)
-    seen = Description(
+    description = Description(
         actors, pose=placed, legend=legend, images=None if textures is None else textures.images
     )
     if state.rival == "alone" or not has_rival(state):
-        return seen
-    rival = rival_of(state, memo)
+        return description
+    reference = rival_of(state, memo)
     if state.rival == "ghost":
-        rival = replace(rival, color=GHOST, opacity=GHOST_OPACITY, behind=True)
-        return replace(seen, actors={**actors, "rival": rival})
+        reference = replace(reference, color=GHOST, opacity=GHOST_OPACITY, behind=True)
+        return replace(description, actors={**actors, "rival": reference})
     actors["body"] = replace(actors["body"], view=0)
-    own = {} if state.heat else _colours(state, memo, state.rig.weights, "file weights")[0]
-    rival = replace(rival, view=1, **own)
-    return replace(seen, actors={**actors, "rival": rival}, views=VIEWS)
+    file_style = {} if state.heat else _colours(state, memo, state.rig.weights, "file weights")[0]
+    reference = replace(reference, view=1, **file_style)
+    return replace(description, actors={**actors, "rival": reference}, views=VIEWS)
 
 
 def textures_of(state: State) -> Textures | None:
@@ -121,8 +121,8 @@ def error_of(state: State, memo: Memo) -> tuple[float, float] | None:
     if not has_rival(state):
         return None
     if state.moving:
-        found = motion_error_of(state)
-        return found and found[:2]
+        error = motion_error_of(state)
+        return error and error[:2]
     placed = pose_of(state)
     if placed is None:
         return (0.0, 0.0)
@@ -132,9 +132,9 @@ def error_of(state: State, memo: Memo) -> tuple[float, float] | None:
 
 def motion_error_of(state: State) -> Any:
     """Return mean, greatest and nearly greatest error of the motion in cm², if known."""
-    found = state.motion_error
-    known = found is not None and found[0] is state.binding and found[1] == state.motion
-    return found[2] if known else None
+    cached = state.motion_error
+    is_current = cached is not None and cached[0] is state.binding and cached[1] == state.motion
+    return cached[2] if is_current else None
 
 
 def squared_of(state: State, placed: np.ndarray, memo: Memo) -> np.ndarray:
@@ -146,8 +146,8 @@ def squared_of(state: State, placed: np.ndarray, memo: Memo) -> np.ndarray:
 def error_limits_of(state: State, placed: np.ndarray | None, memo: Memo) -> tuple[float, float]:
     """Return the range of the error's colours: round, and enough for what is seen."""
     if state.moving:
-        found = motion_error_of(state)
-        return error_limits([0.0 if found is None else found[2]])
+        error = motion_error_of(state)
+        return error_limits([0.0 if error is None else error[2]])
     return error_limits([0.0] if placed is None else squared_of(state, placed, memo))
 
 

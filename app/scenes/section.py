@@ -45,8 +45,8 @@ def winding_section(state: State, memo: Memo, cut: Cut) -> tuple[dict[str, Actor
 def _section(state: State, memo: Memo, cut: Cut) -> PlaneSection:
     rig, graph = state.rig, state.graph
     inputs = (rig, graph, *cut.origin, *cut.normal)
-    found: PlaneSection = memo("section", inputs, lambda: body_section(rig, graph, cut))
-    return found
+    section: PlaneSection = memo("section", inputs, lambda: body_section(rig, graph, cut))
+    return section
 
 
 def _lines(
@@ -54,9 +54,9 @@ def _lines(
 ) -> tuple[dict[str, Actor], tuple[Any, ...]]:
     tau, theme = state.winding_threshold, theme_of(state)
     size = float(np.ptp(bounds_of(state), axis=0).max())
-    found: tuple[dict[str, Actor], tuple[Any, ...]] = memo(
+    actors: tuple[dict[str, Actor], tuple[Any, ...]] = memo(
         "section lines",
         (section, tau, theme.name, contour),
         lambda: section_lines(section, tau, cut, size, theme, contour),
     )
-    return found
+    return actors

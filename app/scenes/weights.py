@@ -41,11 +41,11 @@ def weights(state: State, memo: Memo) -> Description:
     held = weights_seen(state)
     if held is None:
         return Description(character(state, memo))
-    look, legend, coloured = weights_look(state, memo, held)
+    style, legend, coloured = weights_look(state, memo, held)
     paths = explained_paths(state, memo)
     if paths:
-        look = {**look, "opacity": SEE_PATHS}
-    actors = character(state, memo, bones_coloured=coloured, **look)
+        style = {**style, "opacity": SEE_PATHS}
+    actors = character(state, memo, bones_coloured=coloured, **style)
     if not paths:
         actors = seen_apart(state, memo, actors)
     actors |= selection_marks(state, memo, actors["body"])
@@ -57,8 +57,8 @@ def selection_marks(state: State, memo: Memo, body: Actor) -> dict[str, Actor]:
     chosen = selected(state) if state.brush else None
     if chosen is None:
         return {}
-    known = body.points, body.normals, body.skin, chosen
-    dots = memo("selection", known, lambda: vertex_dots(body, np.flatnonzero(chosen)))
+    inputs = body.points, body.normals, body.skin, chosen
+    dots = memo("selection", inputs, lambda: vertex_dots(body, np.flatnonzero(chosen)))
     return {"selection": dots}
 
 
@@ -66,10 +66,10 @@ def as_dragged(state: Any) -> Any:
     """Return a state as it is seen while joints are dragged."""
     if state.dragged is None:
         return state
-    seen = state.still() if isinstance(state, State) else SimpleNamespace(**vars(state))
-    seen.rig, seen.binding = state.dragged.rig, state.dragged.binding
-    seen.weights = seen.binding.weights
-    return seen
+    snapshot = state.still() if isinstance(state, State) else SimpleNamespace(**vars(state))
+    snapshot.rig, snapshot.binding = state.dragged.rig, state.dragged.binding
+    snapshot.weights = snapshot.binding.weights
+    return snapshot
 
 
 def weights_look(
@@ -87,7 +87,7 @@ def weights_look(
     """
     shown = weights_shown(state)
     which = state.joint if shown in ("bone", "bone_difference") else -1
-    look, legend = memo(
+    style, legend = memo(
         name,
         (
             state.rig.mesh,
@@ -104,11 +104,11 @@ def weights_look(
     coloured = shown in ("mix", "dominant")
     if coloured:
         bone = state.rig.skeleton.names[state.joint]
-        own = joint_colors(state.rig.skeleton.parents)[state.joint]
-        legend = replace(legend, swatches=((tuple(own.tolist()), bone),))
+        color = joint_colors(state.rig.skeleton.parents)[state.joint]
+        legend = replace(legend, swatches=((tuple(color.tolist()), bone),))
     if held is state.rig.weights and shown not in DIFFERENCES:
         legend = replace(legend, title=f"{FILES}: {legend.title}")
-    return look, legend, coloured
+    return style, legend, coloured
 
 
 def painted_colors(state: State, vertices: NDArray, rows: NDArray) -> dict[str, NDArray]:
@@ -130,23 +130,26 @@ def painted_colors(state: State, vertices: NDArray, rows: NDArray) -> dict[str, 
     posed = state.panel == "pose" and (state.pose_colors != "weights" or state.heat)
     if posed or weights_seen(state) is not state.weights:
         return {}
-    own = state.rig.weights
+    file_weights = state.rig.weights
     few = SimpleNamespace(
         rig=SimpleNamespace(
-            skeleton=state.rig.skeleton, weights=None if own is None else own[vertices]
+            skeleton=state.rig.skeleton,
+            weights=None if file_weights is None else file_weights[vertices],
         ),
         weights=rows,
         joint=state.joint,
         truth=state.truth,
     )
-    look, _ = coloring(few, weights_shown(state), rows)
-    return {name: look[name] for name in ("colors", "scalars") if name in look}
+    style, _ = coloring(few, weights_shown(state), rows)
+    return {name: style[name] for name in ("colors", "scalars") if name in style}
 
 
 def weights_seen(state: State) -> Any:
     """Return the weights that colours tell: the file's own also until others are computed."""
-    own = state.rig.weights
-    return own if state.weights_of == "file" and own is not None else state.weights
+    file_weights = state.rig.weights
+    return (
+        file_weights if state.weights_of == "file" and file_weights is not None else state.weights
+    )
 
 
 def weights_shown(state: State) -> str:
@@ -163,8 +166,8 @@ def coloring(state: Any, shown: str, held: NDArray) -> tuple[dict[str, Any], Leg
     if shown == "difference":
         return difference_colors(rig, state.weights, rig.weights)
     if shown == "bone_difference":
-        ours, own = state.weights, rig.weights
-        pair = (ours, own) if state.truth == "file" else (own, ours)
+        computed, own = state.weights, rig.weights
+        pair = (computed, own) if state.truth == "file" else (own, computed)
         who = ("ours", "the file") if state.truth == "file" else ("the file", "ours")
         return bone_difference_colors(rig, *pair, state.joint, who)
     if shown == "count":

@@ -71,7 +71,7 @@ def guard(
         "bokeh_websocket_path": "/ws",
         "hosts": hosts,
     }
-    ours: list[Any] = [
+    routes: list[Any] = [
         (r"/?", PageHandler, {"context": context, "text": text}),
         (r"/ws", SocketHandler, websocket),
         # These would begin sessions, too.
@@ -82,7 +82,7 @@ def guard(
             for address, path in (static or {}).items()
         ),
     ]
-    tornado.add_handlers(".*", ours)
+    tornado.add_handlers(".*", routes)
     strange = Rule(Strange(hosts), Misdirected, {"hosts": hosts})
     tornado.default_router.rules.insert(0, tornado.default_router.process_rule(strange))
     return text
@@ -250,11 +250,11 @@ class Misdirected(RequestHandler):
     def prepare(self) -> None:
         """Refuse."""
         self.set_status(421)
-        known = " or ".join(f"http://{host}" for host in self._hosts)
-        asked = escape(self.request.host[:100])
+        links = " or ".join(f"http://{host}" for host in self._hosts)
+        requested = escape(self.request.host[:100])
         self.finish(
             PLAIN.format(
-                f"This server does not know itself as {asked}. Open {escape(known)}. To serve "
+                f"This server does not know itself as {requested}. Open {escape(links)}. To serve "
                 "under another name, behind a proxy for one, put it into the environment "
                 "variable BOKEH_ALLOW_WS_ORIGIN, with its port, and start again."
             )

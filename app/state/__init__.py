@@ -58,10 +58,10 @@ class State(
 
     def still(self) -> Any:
         """Return all of it as it is now, for a thread that takes its time to look at it."""
-        ours = [kind for kind in type(self).__mro__ if kind.__module__.startswith(__name__)]
+        kinds = [kind for kind in type(self).__mro__ if kind.__module__.startswith(__name__)]
         worked_out = {
             name: getattr(self, name)
-            for kind in ours
+            for kind in kinds
             for name, value in vars(kind).items()
             if isinstance(value, property)
         }

@@ -17,8 +17,8 @@ MAX_VIEWS = 4
 
 def offered(rig: Any) -> list[str]:
     """Return all methods by name: what is on the page, the file's own, and the registered."""
-    own = ["artist"] if rig is not None and rig.weights is not None else []
-    return [NOW, *own, *(name for name in METHODS if name != "artist")]
+    file_methods = ["artist"] if rig is not None and rig.weights is not None else []
+    return [NOW, *file_methods, *(name for name in METHODS if name != "artist")]
 
 
 def standard(rig: Any) -> list[str]:

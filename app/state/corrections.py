@@ -96,14 +96,14 @@ def changes(state: Any, rig: Rig, corrections: Corrections) -> dict[str, Any]:
     Where the skeleton has other joints, nothing that was computed holds any more, and what was
     chosen of joints follows them.
     """
-    found = {"corrections": corrections, "rig": rig}
+    changed = {"corrections": corrections, "rig": rig}
     if same_structure(state.rig, rig):
-        return news(state, found)
+        return news(state, changed)
     number = _numbers(state.rig, rig)
     turns = {number[j]: turn for j, turn in state.turns.items() if j in number}
     joint = number.get(state.joint, 0)
     computed = dict.fromkeys(("binding", "bare_graph", "field", "dragged"))
-    return news(state, {**found, **computed, "turns": turns, "joint": joint})
+    return news(state, {**changed, **computed, "turns": turns, "joint": joint})
 
 
 def same_structure(one: Rig, other: Rig) -> bool:
@@ -124,8 +124,8 @@ def _numbers(before: Rig, after: Rig) -> dict[int, int]:
     a, b = before.skeleton, after.skeleton
     if np.array_equal(a.parents, b.parents) and np.array_equal(a.joints, b.joints):
         return {j: j for j in range(len(a.names))}  # some are called otherwise
-    found = {key: j for j, key in enumerate(keys(after))}
-    return {j: found[key] for j, key in enumerate(keys(before)) if key in found}
+    index_of = {key: j for j, key in enumerate(keys(after))}
+    return {j: index_of[key] for j, key in enumerate(keys(before)) if key in index_of}
 
 
 def measured(corrections: Corrections) -> Corrections:
@@ -147,10 +147,10 @@ def renamed(corrections: Corrections, name: str, new: str) -> Corrections:
     one = corrections.joints.get(name, JointCorrection())
     was = None if one.added else one.was or name
     one = replace(one, was=None if was == new else was)
-    held = {now(key): other for key, other in {**corrections.joints, name: one}.items()}
+    corrected = {now(key): other for key, other in {**corrections.joints, name: one}.items()}
     return replace(
         corrections,
-        joints={key: replace(other, parent=now(other.parent)) for key, other in held.items()},
+        joints={key: replace(other, parent=now(other.parent)) for key, other in corrected.items()},
         parts={v: replace(part, joint=now(part.joint)) for v, part in corrections.parts.items()},
         vertices={
             v: {now(joint): weight for joint, weight in weights.items()}

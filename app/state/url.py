@@ -33,8 +33,8 @@ CAMERA = 6
 def simple(state: State) -> dict[str, param.Parameter]:
     """Return the parameters that hold a plain choice: a switch, a number, one of a few."""
     kinds = (param.Boolean, param.Selector, param.Number)
-    found = state.param.objects("existing")
-    return {n: p for n, p in found.items() if n not in OWN and isinstance(p, kinds)}
+    allowed = state.param.objects("existing")
+    return {n: p for n, p in allowed.items() if n not in OWN and isinstance(p, kinds)}
 
 
 def taken(state: State) -> dict[str, Any]:
@@ -64,35 +64,37 @@ def to_query(
     corrections : str
         As `CorrectionsFile.said` tells them.
     """
-    said: dict[str, str] = {}
+    values: dict[str, str] = {}
     if state.demo or kept:
-        said["rig"] = state.demo or f"~{kept}"
-    said["panel"] = state.panel
+        values["rig"] = state.demo or f"~{kept}"
+    values["panel"] = state.panel
     if state.rig is not None:
         if not state.bare:
-            said["bone"] = state.rig.skeleton.names[state.joint]
+            values["bone"] = state.rig.skeleton.names[state.joint]
         if state.vertex is not None:
-            said["vertex"] = str(state.vertex)
+            values["vertex"] = str(state.vertex)
     for name, parameter in simple(state).items():
         value = getattr(state, name)
         if name != "panel" and value != parameter.default:
-            said[name] = _text(value)
+            values[name] = _text(value)
     if state.clip != first_clip(state.rig):
-        said["clip"] = str(state.clip)
+        values["clip"] = str(state.clip)
     if state.methods != standard(state.rig):
-        said["methods"] = ",".join(state.methods)
+        values["methods"] = ",".join(state.methods)
     if state.minus:
-        said["minus"] = state.minus
+        values["minus"] = state.minus
     turned = {j: t for j, t in state.turns.items() if any(t)}
     if turned:
-        said["turns"] = ";".join(f"{j}:{','.join(f'{a:g}' for a in t)}" for j, t in turned.items())
+        values["turns"] = ";".join(
+            f"{j}:{','.join(f'{a:g}' for a in t)}" for j, t in turned.items()
+        )
     if corrections:
-        said["corrections"] = corrections
+        values["corrections"] = corrections
     if state.tour >= 0:
-        said["step"] = str(state.tour + 1)
+        values["step"] = str(state.tour + 1)
     if camera is not None:
-        said["camera"] = ",".join(f"{x:.4g}" for x in camera)
-    return urlencode(said, quote_via=quote, safe=",:;~", errors="replace")
+        values["camera"] = ",".join(f"{x:.4g}" for x in camera)
+    return urlencode(values, quote_via=quote, safe=",:;~", errors="replace")
 
 
 def from_query(query: str, state: State) -> tuple[dict[str, Any], dict[str, Any], list[str]]:
@@ -108,7 +110,7 @@ def from_query(query: str, state: State) -> tuple[dict[str, Any], dict[str, Any]
     problems : list of str
         What could not be read, each as the address says it.
     """
-    known = simple(state)
+    current = simple(state)
     choices: dict[str, Any] = {}
     arrival: dict[str, Any] = {}
     problems: list[str] = []
@@ -129,9 +131,9 @@ def from_query(query: str, state: State) -> tuple[dict[str, Any], dict[str, Any]
             elif name == "camera":
                 arrival[name] = _numbers(text, CAMERA)
             elif name == "panel":
-                choices[name] = _value(known[name], FORMER_PANELS.get(text, text))
-            elif name in known:
-                choices[name] = _value(known[name], text)
+                choices[name] = _value(current[name], FORMER_PANELS.get(text, text))
+            elif name in current:
+                choices[name] = _value(current[name], text)
             else:
                 raise ValueError(name)
         except (ValueError, IndexError):
@@ -179,10 +181,10 @@ def _positive(text: str) -> int:
 def _turns(text: str) -> dict[int, tuple[float, ...]]:
     turns = {}
     for part in filter(None, text.split(";")):
-        found = re.fullmatch(r"(\d{1,5}):([-+.\de,]+)", part)
-        if not found:
+        match = re.fullmatch(r"(\d{1,5}):([-+.\de,]+)", part)
+        if not match:
             raise ValueError(part)
-        turns[int(found.group(1))] = tuple(_numbers(found.group(2), 3))
+        turns[int(match.group(1))] = tuple(_numbers(match.group(2), 3))
     return turns
 
 

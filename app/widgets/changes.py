@@ -105,11 +105,11 @@ def _colouring(old: Actor | None, new: Actor) -> dict[str, Any]:
     if new.materials is not None:
         if old is not None and old.materials is new.materials:
             return {}
-        found = new.materials
-        tints = np.concatenate([found.tints, found.opacity[..., None]], axis=2)
+        materials = new.materials
+        tints = np.concatenate([materials.tints, materials.opacity[..., None]], axis=2)
         return {
             "materials": {
-                "corners": _flat(found.corners, np.float32), "tints": _flat(tints, np.uint8)
+                "corners": _flat(materials.corners, np.float32), "tints": _flat(tints, np.uint8)
             }
         }  # fmt: skip
     old = None if old is not None and old.materials is not None else old

@@ -14,8 +14,8 @@ FOLDER = Path(__file__).parents[1] / "scripts"
 def _version() -> str:
     """Return what is another one whenever a script or a style is."""
     files = sorted(path for path in FOLDER.iterdir() if path.suffix in (".js", ".css", ".woff"))
-    held = b"".join(path.name.encode() + path.read_bytes() for path in files)
-    return hashlib.sha256(held).hexdigest()[:12]
+    content = b"".join(path.name.encode() + path.read_bytes() for path in files)
+    return hashlib.sha256(content).hexdigest()[:12]
 
 
 ADDRESS = f"scripts-{_version()}"

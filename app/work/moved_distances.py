@@ -46,46 +46,48 @@ class MovedDistances:
 
         Joints that may carry weight are the same ones as before.
         """
-        known, method = self._known, self._method
-        bones = _carried(known, skeleton, method)
+        distances, method = self._known, self._method
+        bones = _carried(distances, skeleton, method)
         if bones is None:  # some continue others now that did not
             return bone_distances(
-                known.solver,
+                distances.solver,
                 skeleton,
                 method=method,
-                nearest_joints=known.nearest_joints,
+                nearest_joints=distances.nearest_joints,
                 within=self._within,
             )
-        old = known.bones
+        old = distances.bones
         changed = ((bones.start != old.start) | (bones.end != old.end)).any(axis=1)
         joints = np.unique(bones.joint[changed])
         if not len(joints):
-            return known
+            return distances
         is_moved = np.isin(bones.joint, joints)
-        moved = bones.some(is_moved)
-        sources = known.solver.sources(moved, method.samples)
-        nearest = known.nearest_joints and min(known.nearest_joints, len(joints))
-        fresh = known.solver.paths(moved, sources, nearest, self._within, self._nearest_distance)
+        moved = bones.subset(is_moved)
+        sources = distances.solver.sources(moved, method.samples)
+        nearest = distances.nearest_joints and min(distances.nearest_joints, len(joints))
+        fresh = distances.solver.paths(
+            moved, sources, nearest, self._within, self._nearest_distance
+        )
         return replace(
-            known,
+            distances,
             at_welded=self._merged(joints, fresh),
             bones=bones,
-            sources=known.sources.replaced(is_moved, sources),
+            sources=distances.sources.replaced(is_moved, sources),
         )
 
     def _merged(self, joints: NDArray[np.intp], fresh: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return the distances of all joints, from what was known and what was measured of some."""
-        known, merged = self._known, self._known.at_welded.copy()
+        distances, merged = self._known, self._known.at_welded.copy()
         before = merged[joints]
         after = np.where(self._reached, fresh, before)
-        if known.nearest_joints is not None:
+        if distances.nearest_joints is not None:
             after[(after > self._farthest) & np.isinf(before)] = np.inf
         merged[joints] = after
-        if known.nearest_joints is not None:
+        if distances.nearest_joints is not None:
             least = merged.min(axis=0)
             lost = np.isinf(least)
             after[:, lost] = before[:, lost]
-            least = np.maximum(least, ON_BONE / known.graph.lattice.resolution)
+            least = np.maximum(least, ON_BONE / distances.graph.lattice.resolution)
             after[(after > self._within * least) & self._reached] = np.inf
             merged[joints] = after
         return merged

@@ -66,8 +66,8 @@ class Preview:
                 distances, method=self._method, adjustments=self._adjustments
             )
         else:
-            kept = self._method.max_influences, self._method.threshold
-            welded = keep_strongest(distances, self._falloff.weights(distances), *kept)
+            options = self._method.max_influences, self._method.threshold
+            welded = keep_strongest(distances, self._falloff.weights(distances), *options)
             weights = of_vertices(distances.graph, welded)
         return replace(self._binding, distances=distances, weights=weights)
 

@@ -84,15 +84,15 @@ def in_process(
     Exception
         Whatever `work` or `wanted` raises.
     """
-    here, there = _CONTEXT.Pipe(duplex=False)
+    receiver, there = _CONTEXT.Pipe(duplex=False)
     process = _CONTEXT.Process(target=_run, args=(there, work, given), daemon=True)
-    with here:
+    with receiver:
         try:
             process.start()
             there.close()
-            while not here.poll(ASK_EVERY):
+            while not receiver.poll(ASK_EVERY):
                 wanted()
-            good, outcome = pickle.loads(here.recv_bytes())
+            good, outcome = pickle.loads(receiver.recv_bytes())
         except (EOFError, ConnectionError):
             raise FileError(f"{ended} ({_ending(process)})") from None
         finally:

@@ -175,8 +175,8 @@ def through_body(
         which = np.isin(distances.bones.joint, joint[unknown])
         subset = replace(
             distances,
-            bones=distances.bones.some(which),
-            sources=distances.sources.some(which),
+            bones=distances.bones.subset(which),
+            sources=distances.sources.subset(which),
         )
         through = subset.all_joints(subject.progress)[joint, vertex]
     return through

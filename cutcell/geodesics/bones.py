@@ -24,7 +24,7 @@ a lattice cell has eight nearest nodes, and rounding must not choose among them.
 
 @dataclass(frozen=True, eq=False)
 class Bones:
-    """The segments that stand for the joints.
+    """Bones of the joints, as segments.
 
     Parameters
     ----------
@@ -38,7 +38,7 @@ class Bones:
     end: NDArray[np.float64]
     joint: NDArray[np.int32]
 
-    def some(self, which: NDArray[np.bool_]) -> Bones:
+    def subset(self, which: NDArray[np.bool_]) -> Bones:
         """Return those bones for which `which`, shape (b,), is true."""
         return Bones(self.start[which], self.end[which], self.joint[which])
 
@@ -101,20 +101,20 @@ class Sources:
     bone: NDArray[np.int32]
     distance: NDArray[np.float64]
 
-    def some(self, which: NDArray[np.bool_]) -> Sources:
+    def subset(self, which: NDArray[np.bool_]) -> Sources:
         """Return those of the bones for which `which`, shape (b,), is true, renumbered."""
-        mine = which[self.bone]
+        chosen = which[self.bone]
         number = np.cumsum(which, dtype=np.int32) - 1
-        return Sources(self.node[mine], number[self.bone[mine]], self.distance[mine])
+        return Sources(self.node[chosen], number[self.bone[chosen]], self.distance[chosen])
 
     def replaced(self, which: NDArray[np.bool_], other: Sources) -> Sources:
         """Return these sources with those of some bones replaced; `other` numbers only these."""
-        kept = ~which[self.bone]
-        bone = np.concatenate([self.bone[kept], np.flatnonzero(which)[other.bone]])
+        remains = ~which[self.bone]
+        bone = np.concatenate([self.bone[remains], np.flatnonzero(which)[other.bone]])
         order = np.argsort(bone, kind="stable")
         node, distance = (
-            np.concatenate([mine[kept], others])[order]
-            for mine, others in ((self.node, other.node), (self.distance, other.distance))
+            np.concatenate([old[remains], new])[order]
+            for old, new in ((self.node, other.node), (self.distance, other.distance))
         )
         return Sources(node, bone[order].astype(np.int32), distance)
 
@@ -184,7 +184,7 @@ def find_sources(
     bones : Bones
         In the unit cube.
     samples : int
-        N, points on each bone, both ends included; a single one lies in the middle. With
+        N, points on each bone, both ends included; a single one is in the middle. With
         connectivity "any" at least one for each lattice cell.
     grid : NodeGrid
         Of the graph's nodes.
@@ -199,6 +199,6 @@ def find_sources(
     point, nearest = grid.nearest(points, TIE)
     node = nearest if contraction is None else contraction.representative(nearest)
     pairs = np.unique(bone[point] * len(graph.nodes) + node)
-    own, where = (x.astype(np.int32) for x in np.divmod(pairs, len(graph.nodes)))
-    straight = distance_to_segment(graph.nodes[where], bones.start[own], bones.end[own])
-    return Sources(where, own, straight)
+    bone_of, where = (x.astype(np.int32) for x in np.divmod(pairs, len(graph.nodes)))
+    straight = distance_to_segment(graph.nodes[where], bones.start[bone_of], bones.end[bone_of])
+    return Sources(where, bone_of, straight)

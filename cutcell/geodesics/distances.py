@@ -63,7 +63,7 @@ class BoneDistances:
         """Distances from joints to vertices, shape (j, n), float64.
 
         The minimum over the bones of each joint; infinite where no path leads, for joints that
-        may not carry weight, and for joints that are not among a vertex' nearest. n is the
+        may not carry weight, and for joints that are not among the nearest of a vertex. n is the
         number of vertices of the mesh as given.
         """
         if self.of_vertices is not None:
@@ -95,7 +95,7 @@ class BoneDistances:
 
     @cached_property
     def inside(self) -> Inside:
-        """Tells which straight segments stay inside the body."""
+        """The test for straight segments inside the body."""
         return Inside(self.graph, self.solver.contraction)
 
     @property
@@ -124,7 +124,7 @@ class BoneDistances:
         if joint not in self.bones.joint:
             raise ParameterError(f"joint {joint} has no bone: it may not carry weight")
         of_joint = self.bones.joint == joint
-        bones, sources = self.bones.some(of_joint), self.sources.some(of_joint)
+        bones, sources = self.bones.subset(of_joint), self.sources.subset(of_joint)
         everywhere = np.arange(len(self.graph.nodes), dtype=np.int32)
         return self.solver.paths(bones, sources, targets=everywhere)[0]
 
@@ -142,7 +142,7 @@ class BoneDistances:
         return np.where(self.fallback == REACHED, through, self.joint[joint])
 
     def all_joints(self, progress: Progress = silent) -> NDArray[np.float64]:
-        """Compute all joints' distances at every vertex, nearest or not, shape (j, n)."""
+        """Compute the distances of all joints at every vertex, nearest or not, shape (j, n)."""
         if self.nearest_joints is None:
             return self.joint
         by_node = self.solver.paths(self.bones, self.sources, progress=progress)
@@ -180,13 +180,13 @@ def bone_distances(
     nearest : int
         How many bones a vertex follows that no path reaches, 1 or more.
     nearest_joints : int, optional
-        Measure from so many of each vertex' nearest joints, 1 or more, and from at most as
-        many others; from as many as the method needs when left out, which are all for
+        Number of nearest joints to measure from at each vertex, 1 or more; at most as many others
+        are measured, too. By default the number that the method needs: all for
         `cutcell.PAPER`. Fewer take less time with connectivity "any"; with others they do not,
         and neither where `allowed` is given: then all are measured.
     within : float, optional
-        Leave out joints that are so many times as far as the nearest, 1 or more; as the method
-        needs when left out. Only where `nearest_joints` are measured, and to about half a
+        Leave out joints farther than this factor times the nearest, 1 or more; by default the
+        factor of the method. Only where `nearest_joints` are measured, and to about half a
         lattice cell.
     allowed : array, shape (n, j), bool, optional
         Which joints each vertex may follow; see `Rig.allowed`.

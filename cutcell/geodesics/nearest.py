@@ -45,20 +45,20 @@ class NodeGrid:
 
         Shapes: points (p, 3); returns point, node (f,).
         """
-        room = 8 * len(points)  # the middle of a lattice cell is equally near to all corners
+        capacity = 8 * len(points)  # the middle of a lattice cell is equally near to all corners
         while True:
-            found = np.empty((2, room), np.int64)
+            pairs = np.empty((2, capacity), np.int64)
             grid = self._nodes, self._start, self._order, self._side
-            count = _find_nearest(grid, points, 1 + tie, found)
-            if count <= room:
-                return found[0, :count], found[1, :count]
-            room = count
+            count = _find_nearest(grid, points, 1 + tie, pairs)
+            if count <= capacity:
+                return pairs[0, :count], pairs[1, :count]
+            capacity = count
 
-    def beside(self, points: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """Tell for each point (p, 3) whether a node is in its lattice cell or next to it."""
+    def near(self, points: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """Return for each point (p, 3) whether a node is in its lattice cell or next to it."""
         # Points far outside are moved to where they still have no neighbour in the cube.
         grid = self._nodes, self._start, self._order, self._side
-        return _beside(grid, self._resolution, np.clip(points, -1, 2))
+        return _is_near(grid, self._resolution, np.clip(points, -1, 2))
 
 
 @compiled(inline="always")
@@ -79,8 +79,8 @@ def _sort_into_cells(nodes, chosen, side):
 
 
 @compiled
-def _find_nearest(grid, points, slack, found):
-    """List nodes for each point; return their number, even if there is no room for all."""
+def _find_nearest(grid, points, slack, pairs):
+    """List nodes for each point; return their number, even if it exceeds the capacity."""
     nodes, start, order, side = grid
     count = 0
     for p in range(len(points)):
@@ -94,11 +94,11 @@ def _find_nearest(grid, points, slack, found):
                 for j in range(_cell(y - around, side), _cell(y + around, side) + 1):
                     row = (i * side + j) * side
                     for o in range(start[row + low], start[row + high + 1]):
-                        apart = _squared(nodes, order[o], x, y, z)
-                        least = min(least, apart)
-                        if listing and apart <= limit:
-                            if count < found.shape[1]:
-                                found[0, count], found[1, count] = p, order[o]
+                        squared = _squared(nodes, order[o], x, y, z)
+                        least = min(least, squared)
+                        if listing and squared <= limit:
+                            if count < pairs.shape[1]:
+                                pairs[0, count], pairs[1, count] = p, order[o]
                             count += 1
     return count
 
@@ -124,9 +124,9 @@ def _near_enough(grid, x, y, z):
 
 
 @compiled
-def _beside(grid, resolution, points):
+def _is_near(grid, resolution, points):
     nodes, start, order, side = grid
-    found = np.zeros(len(points), np.bool_)
+    is_near = np.zeros(len(points), np.bool_)
     for p in range(len(points)):
         x, y, z = points[p, 0] * resolution, points[p, 1] * resolution, points[p, 2] * resolution
         x, y, z = np.floor(x), np.floor(y), np.floor(z)
@@ -138,18 +138,18 @@ def _beside(grid, resolution, points):
                 row = (i * side + j) * side
                 for o in range(start[row + z0], start[row + z1 + 1]):
                     n = order[o]
-                    found[p] |= (
+                    is_near[p] |= (
                         abs(np.floor(nodes[n, 0] * resolution) - x) <= 1
                         and abs(np.floor(nodes[n, 1] * resolution) - y) <= 1
                         and abs(np.floor(nodes[n, 2] * resolution) - z) <= 1
                     )
-                    if found[p]:
+                    if is_near[p]:
                         break
-                if found[p]:
+                if is_near[p]:
                     break
-            if found[p]:
+            if is_near[p]:
                 break
-    return found
+    return is_near
 
 
 @compiled(inline="always")

@@ -49,10 +49,10 @@ def shortest_paths(
 
     def one_group(group: int) -> None:
         column = sources.bone - group * BATCH
-        mine = (column >= 0) & (column < BATCH)
+        in_group = (column >= 0) & (column < BATCH)
         distance, waiting = np.full((len(rank), BATCH), np.inf), np.zeros(len(rank), np.bool_)
-        np.minimum.at(distance, (begin[mine], column[mine]), sources.distance[mine])
-        waiting[begin[mine]] = True
+        np.minimum.at(distance, (begin[in_group], column[in_group]), sources.distance[in_group])
+        waiting[begin[in_group]] = True
         _sweep_body(adjacency, waiting, distance, lambda done: shares.tell(group, done))
         result[group * BATCH : (group + 1) * BATCH] = distance[end].T
         shares.tell(group, 1.0)
@@ -75,7 +75,7 @@ def _sort_along_body(graph: CutCellGraph) -> tuple[NDArray[np.int32], Adjacency]
     rank[order] = np.arange(len(order), dtype=np.int32)
     edges = np.empty_like(graph.edges)
     shares = parts(len(edges), threads())
-    in_threads(lambda own: _renumber(graph.edges[own], rank, edges[own]), shares)
+    in_threads(lambda part: _renumber(graph.edges[part], rank, edges[part]), shares)
     return rank, list_neighbours(edges, graph.lengths, len(rank))
 
 
@@ -89,11 +89,11 @@ def _sweep_body(
     adjacency: Adjacency,
     waiting: NDArray[np.bool_],
     distance: NDArray[np.float64],
-    tell: Tell,
+    report: Tell,
 ) -> None:
     """Sweep the slices forth and back until no node is waiting.
 
-    How many sweeps are left is unknown: for the progress each counts as half of the rest.
+    The number of sweeps is unknown: progress treats each as half of the rest.
     """
     forth, waited, left = True, True, 1.0
     while waited:
@@ -101,7 +101,7 @@ def _sweep_body(
         for k in range(SLICES):
             bounds = _slice(0, len(waiting), k, forth)
             waited |= _sweep_slice(*adjacency, waiting, distance, *bounds, forth)
-            tell(1 - left)
+            report(1 - left)
         forth, left = not forth, left / 2
 
 

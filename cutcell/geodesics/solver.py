@@ -75,7 +75,7 @@ class BoneDistanceSolver:
         bones = aim_leaf_bones(
             self.graph, bones, aimed, *self._reach(bones, sources, aimed, progress)
         )
-        return bones, sources.replaced(aimed, self.sources(bones.some(aimed), samples))
+        return bones, sources.replaced(aimed, self.sources(bones.subset(aimed), samples))
 
     def _reach(
         self, bones: Bones, sources: Sources, aimed: NDArray[np.bool_], progress: Progress
@@ -88,7 +88,12 @@ class BoneDistanceSolver:
         nearest = self.nearest_distance(bones, sources, progress)
         assert nearest is not None
         reach = self.paths(
-            bones.some(aimed), sources.some(aimed), REGION_LEAVES, REGION_WITHIN, nearest, progress
+            bones.subset(aimed),
+            sources.subset(aimed),
+            REGION_LEAVES,
+            REGION_WITHIN,
+            nearest,
+            progress,
         )
         return reach, nearest[self.contraction.number[self.targets]]
 

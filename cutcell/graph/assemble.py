@@ -110,7 +110,7 @@ def _fill_mesh(vertices, mesh_edges, nodes, edges, lengths):
     for e in range(len(mesh_edges)):
         a, b = mesh_edges[e, 0], mesh_edges[e, 1]
         edges[e, 0], edges[e, 1] = a, b
-        lengths[e] = _apart(vertices, a, vertices, b)
+        lengths[e] = _distance(vertices, a, vertices, b)
 
 
 @compiled
@@ -133,10 +133,10 @@ def _fill_surface(resolution, axes, hits, mesh, first, nodes, triangle, edges, l
                 e = first_edge + 3 * (n - first_surface) + k
                 corner = faces[of_triangle[c], k]
                 edges[e, 0], edges[e, 1] = n, corner
-                lengths[e] = _apart(nodes, n, vertices, corner)
+                lengths[e] = _distance(nodes, n, vertices, corner)
 
 
 @compiled(inline="always")
-def _apart(a, i, b, j):
+def _distance(a, i, b, j):
     x, y, z = a[i, 0] - b[j, 0], a[i, 1] - b[j, 1], a[i, 2] - b[j, 2]
     return np.sqrt(x * x + y * y + z * z)

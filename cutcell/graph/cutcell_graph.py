@@ -94,13 +94,13 @@ class CutCellGraph:
 
     @cached_property
     def winding_numbers(self) -> WindingNumbers:
-        """The winding number of the graph's mesh, faces as they count, at points."""
+        """Winding numbers of the graph's oriented mesh."""
         return WindingNumbers(self.nodes[: self.first_point], self.faces)
 
     @cached_property
     def connected(self) -> NDArray[np.bool_]:
         """Whether any edge ends at each node, shape (N,)."""
-        found = np.ones(len(self.nodes), np.bool_)
-        found[: self.first_point] = False  # only mesh vertices may be without edges
-        found[self.edges[: np.searchsorted(self.edge_kind, MESH, side="right")]] = True
-        return found
+        is_connected = np.ones(len(self.nodes), np.bool_)
+        is_connected[: self.first_point] = False  # only mesh vertices may be without edges
+        is_connected[self.edges[: np.searchsorted(self.edge_kind, MESH, side="right")]] = True
+        return is_connected

@@ -51,20 +51,20 @@ def _fill_edges(where, intervals, table, ends, edges, lengths):
     position, surface_node = ends
     for r in range(len(ray)):
         e = start[r]
-        here, at = NONE, 0.0  # the previous node and its position
+        previous, previous_position = NONE, 0.0
         if low[r] != NONE:
-            here, at = surface_node[low[r]], position[low[r]]
+            previous, previous_position = surface_node[low[r]], position[low[r]]
         for k in range(first[r], last[r] + 1):
             column, z = point_on_ray(axis, ray[r], k, resolution)
             point = point_number(table[0], table[1], table[2], table[3], column, z)
-            if here != NONE:
-                edges[e, 0], edges[e, 1] = here, first_point + point
-                lengths[e] = (k + 0.5) / resolution - at
+            if previous != NONE:
+                edges[e, 0], edges[e, 1] = previous, first_point + point
+                lengths[e] = (k + 0.5) / resolution - previous_position
                 e += 1
-            here, at = first_point + point, (k + 0.5) / resolution
+            previous, previous_position = first_point + point, (k + 0.5) / resolution
         if high[r] != NONE:
-            edges[e, 0], edges[e, 1] = here, surface_node[high[r]]
-            lengths[e] = position[high[r]] - at
+            edges[e, 0], edges[e, 1] = previous, surface_node[high[r]]
+            lengths[e] = position[high[r]] - previous_position
 
 
 def lattice_steps(
@@ -105,12 +105,11 @@ def diagonal_edges(steps: NDArray[np.int32], first_point: int) -> NDArray[np.int
 
 
 def cells_inside(steps: NDArray[np.int32]) -> NDArray[np.bool_]:
-    """Tell which interior points are the lowest corner of a cell whose twelve edges lie inside.
+    """Return which interior points are the lowest corner of a cell whose twelve edges lie inside.
 
     `steps` as of `lattice_steps`; shape (p,).
     """
-    found: NDArray[np.bool_] = _mark_cells(steps)
-    return found
+    return _mark_cells(steps)
 
 
 @compiled(inline="always")

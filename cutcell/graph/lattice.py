@@ -26,7 +26,7 @@ class Lattice:
     size : float
         Longest side of the bounding box, file units: one side of the cube.
     offset : array, shape (3,)
-        Where `low` lies in the cube.
+        Position of `low` in the cube.
     diagonal : float
         D, the diagonal of the mesh's bounding box in the cube's units.
     """

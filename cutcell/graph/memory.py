@@ -32,7 +32,7 @@ def check_hits(surface: Surface) -> None:
 def check_nodes(
     vertices: int, points: int, surface: int, resolution: int, connectivity: int | str
 ) -> None:
-    """Refuse a graph of so many nodes if it would take more memory than is free."""
+    """Refuse a graph of this size if it needs more memory than is free."""
     # Points fill the volume, surface nodes the surface, and vertices stay as they are.
     _require(
         lambda scale: needed_memory(vertices, points * scale**3, surface * scale**2, connectivity),
@@ -54,7 +54,7 @@ def _require(needed: Callable[[float], float], resolution: int) -> None:
 
 
 def needed_memory(vertices: float, points: float, surface: float, connectivity: int | str) -> float:
-    """Return how many bytes a graph of so many nodes and its distances take at their peak."""
+    """Return the peak memory of a graph of this size and its distances, in bytes."""
     bytes_ = (vertices + points + surface) * BYTES_PER_NODE[connectivity] + FIXED_BYTES
     if connectivity != "any":
         return bytes_

@@ -17,14 +17,14 @@ def list_neighbours(
     edges: NDArray[np.int32], lengths: NDArray[np.float64], count: int
 ) -> Adjacency:
     """List the neighbours of each of `count` nodes: indptr (N + 1,), indices and lengths (2E,)."""
-    # Each thread reads all edges, and writes the neighbours of its own nodes.
+    # Each thread reads all edges, and writes the neighbours of a part of the nodes.
     shares = parts(count, threads())
     indptr = np.zeros(count + 1, np.int32)
-    in_threads(lambda own: count_ends(edges, own.start, own.stop, indptr[1:]), shares)
+    in_threads(lambda part: count_ends(edges, part.start, part.stop, indptr[1:]), shares)
     np.cumsum(indptr, out=indptr)
     indices, both_ways = np.empty(2 * len(edges), np.int32), np.empty(2 * len(edges))
     lists = indptr[:-1].copy(), indices, both_ways
-    in_threads(lambda own: list_ends(edges, lengths, own.start, own.stop, *lists), shares)
+    in_threads(lambda part: list_ends(edges, lengths, part.start, part.stop, *lists), shares)
     return indptr, indices, both_ways
 
 

@@ -44,8 +44,8 @@ def cast_rays_open3d(
         o3d.core.Tensor(vertices.astype(np.float32)), o3d.core.Tensor(faces.astype(np.uint32))
     )
     rays = np.concatenate(_rays(resolution, axis, 1), axis=1)
-    found = scene.list_intersections(o3d.core.Tensor(rays))
-    ray, triangle = (found[key].numpy().astype(np.int64) for key in ("ray_ids", "primitive_ids"))
+    hits = scene.list_intersections(o3d.core.Tensor(rays))
+    ray, triangle = (hits[key].numpy().astype(np.int64) for key in ("ray_ids", "primitive_ids"))
     return _ray_hits(vertices, faces, resolution, axis, ray, triangle)
 
 
@@ -130,8 +130,8 @@ def _follow(
         last[live] = hit
         hits.append(np.stack([live, hit])[:, ~again])
         position = _positions(vertices, faces, resolution, axis, live, hit)
-        here = origins[live, along].astype(np.float64)
-        ahead = np.maximum(position * direction, here * direction) + step[live]
+        origin = origins[live, along].astype(np.float64)
+        ahead = np.maximum(position * direction, origin * direction) + step[live]
         origins[live, along] = ahead * direction
     return np.concatenate(hits, axis=1)
 
@@ -189,7 +189,7 @@ def _with_twins(faces: Faces, ray: Hits, triangle: Hits) -> tuple[Hits, Hits]:
 def _repeated(
     faces: Faces, ray: Hits, triangle: Hits, sign: NDArray[np.int8], position: NDArray[np.float64]
 ) -> NDArray[np.bool_]:
-    """Tell which hits repeat an earlier one: a ray through an edge or corner hits all around it.
+    """Mark hits that repeat an earlier one: a ray through an edge or corner hits all around it.
 
     Triangles with all three corners in common are separate layers, not neighbours.
     """
@@ -205,7 +205,7 @@ def _repeated(
         if not near.any():
             continue
         pair = np.flatnonzero(near)
-        mine, other = faces[triangle[pair + back]], faces[triangle[pair]]
-        shared = (mine[:, :, None] == other[:, None, :]).any(axis=2).sum(axis=1)
+        corners, other = faces[triangle[pair + back]], faces[triangle[pair]]
+        shared = (corners[:, :, None] == other[:, None, :]).any(axis=2).sum(axis=1)
         repeated[pair[(shared > 0) & (shared < 3)] + back] = True
     return repeated

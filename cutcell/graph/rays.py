@@ -8,7 +8,7 @@ the edge get the same number to the last bit. Whatever rounding does, a ray ther
 closed surface as often as it enters it.
 
 Rays exactly through an edge or a vertex are treated by symbolic perturbation: the ray is moved by
-infinitesimal amounts, far less along u than along v. A vertex on the column line counts as left
+infinitesimal amounts, far less along u than along v. A vertex on the column line is taken as left
 of it, and an edge at exactly the ray's height as below it. In all three families of rays u comes
 before v in the order x, y, z, so they are perturbed consistently.
 """
@@ -73,10 +73,10 @@ def cast_all_rays(
     vertices: NDArray[np.float64],
     faces: NDArray[np.int32],
     resolution: int,
-    tell: Tell = lambda done: None,
+    report: Tell = lambda done: None,
 ) -> list[RayHits]:
     """Cast the rays along x, y and z, see `cast_rays` and `progress.Tell`."""
-    return _cast(vertices, faces, resolution, (0, 1, 2), tell)
+    return _cast(vertices, faces, resolution, (0, 1, 2), report)
 
 
 def expected_hits(
@@ -86,7 +86,7 @@ def expected_hits(
     return resolution**2 * _projected_area(vertices, faces)
 
 
-def _cast(vertices, faces, resolution, axes, tell=lambda done: None):
+def _cast(vertices, faces, resolution, axes, report=lambda done: None):
     if len(faces) == 0:  # the caps of a closed mesh
         start = np.zeros(resolution * resolution + 1, np.int64)
         nothing = RayHits(start, np.empty(0), np.empty(0, np.int32), np.empty(0, np.int8))
@@ -99,14 +99,14 @@ def _cast(vertices, faces, resolution, axes, tell=lambda done: None):
         flip = -1 if axis == 1 else 1  # x cross z points along -y
         return _rasterise(projected[axis], faces, resolution, flip, first, last)
 
-    strips = in_threads(rasterise, [(axis, *bound) for axis in axes for bound in bounds], tell)
-    found = []
+    strips = in_threads(rasterise, [(axis, *bound) for axis in axes for bound in bounds], report)
+    hits = []
     for k in range(len(axes)):
         parts = zip(*strips[k * len(bounds) : (k + 1) * len(bounds)], strict=True)
         counts, position, triangle, sign = (np.concatenate(part) for part in parts)
         start = np.concatenate([[0], np.cumsum(counts)])
-        found.append(RayHits(start, position, triangle, sign))
-    return found
+        hits.append(RayHits(start, position, triangle, sign))
+    return hits
 
 
 def strip_bounds(resolution: int, work: float) -> list[tuple[int, int]]:

@@ -30,7 +30,7 @@ class InsideIntervals:
     Parameters
     ----------
     ray, first, last, low, high : arrays, shape (r,), int32
-        `low` and `high` are indices into the axis' `RayHits`, or -1.
+        `low` and `high` are indices into the `RayHits` of the axis, or -1.
     """
 
     ray: NDArray[np.int32]
@@ -126,7 +126,7 @@ def divide_rays(hits: RayHits, rays: NDArray[np.intp], resolution: int) -> Segme
     number_in_ray = np.arange(len(ray)) - np.repeat(np.cumsum(gaps) - gaps, gaps)
     from_wall, to_wall = number_in_ray == 0, number_in_ray == count[ray]
     gap = hits.start[ray] + number_in_ray
-    # Padded, so that the walls need no case of their own.
+    # Padded, so that the walls are no special case.
     position = np.concatenate([hits.position, [0.0]])
     low = np.where(from_wall, 0.0, position[gap - 1])
     high = np.where(to_wall, 1.0, position[np.minimum(gap, len(position) - 1)])

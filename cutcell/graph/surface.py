@@ -87,7 +87,7 @@ def prepare_surface(
 
 
 def _check_layers(vertices: NDArray[np.float64], faces: NDArray[np.int32]) -> None:
-    """Refuse faces in so many layers that a small file would take minutes."""
+    """Refuse a mesh whose faces are in too many layers: a small file could take minutes."""
     layers = expected_hits(vertices, faces, 1) / 3
     if layers > MAX_LAYERS:
         raise MeshError(

@@ -35,7 +35,7 @@ MANY_VERTICES = 50_000
 
 @dataclass(frozen=True, eq=False)
 class Contraction:
-    """The kept nodes with numbers of their own, and the representatives of contracted ones.
+    """Numbers of the kept nodes, and the representatives of contracted ones.
 
     Numbers follow the order of the graph's nodes, except that of many mesh vertices those in one
     lattice cell come one after the other.
@@ -129,7 +129,7 @@ def _find_blocks(places, resolution, steps):
 
 @compiled(inline="always")
 def _begins_block(place, resolution, outward):
-    """Tell if a point is innermost in its block; write the columns of `steps` that lead outward."""
+    """Return whether a point is innermost in its block; write the outward columns of `steps`."""
     begins = True
     for axis in range(3):
         k = int(place[axis] * resolution)
@@ -142,7 +142,7 @@ def _begins_block(place, resolution, outward):
 
 @compiled(inline="always")
 def _fill_block(p, steps, deep, outward, block):
-    """List the points of a block, up to the first that is not deep inside; tell if all are."""
+    """List the points of a block, up to the first that is not deep inside; return if all are."""
     block[0] = p
     for k in range(1, BLOCK_POINTS):
         axis = 2 if k >= 4 else 1 if k >= 2 else 0
@@ -160,12 +160,12 @@ def _contract(nodes, edges, block, mesh):
     ends = len(edges) - CORNERS * (len(nodes) - first_surface)
     representative = _find_representatives(edges[:ends], block, mesh, len(nodes))
     node, number = _number(representative)
-    kept = np.empty_like(edges)
-    count = _keep_edges(nodes, edges, block, mesh, representative, number, kept)
+    kept_edges = np.empty_like(edges)
+    count = _keep_edges(nodes, edges, block, mesh, representative, number, kept_edges)
     # Kept nodes are below 0 here, and left out.
     start, order = counting_sort(representative[first_surface:] - mesh, len(block))
-    count = _add_shortcuts(edges, ends, start, order, mesh, number, kept, count)
-    indptr, indices = _list_neighbours(kept[:count], len(node))
+    count = _add_shortcuts(edges, ends, start, order, mesh, number, kept_edges, count)
+    indptr, indices = _list_neighbours(kept_edges[:count], len(node))
     places, crossing = np.empty((len(node), 3)), 0
     for n in range(len(node)):
         for axis in range(3):
@@ -208,7 +208,7 @@ def _number(representative):
 
 
 @compiled
-def _keep_edges(nodes, edges, block, mesh, representative, number, kept):
+def _keep_edges(nodes, edges, block, mesh, representative, number, kept_edges):
     """List the edges between kept nodes, and one edge between neighbouring blocks."""
     first_surface = mesh + len(block)
     count = 0
@@ -222,7 +222,7 @@ def _keep_edges(nodes, edges, block, mesh, representative, number, kept):
             between = a != NO_BLOCK and b != NO_BLOCK
             if between and (a == b or not _in_line(nodes, mesh + a, u, v)):
                 continue
-        kept[count, 0], kept[count, 1] = number[u], number[v]
+        kept_edges[count, 0], kept_edges[count, 1] = number[u], number[v]
         count += 1
     return count
 
@@ -240,7 +240,7 @@ def _list_neighbours(edges, count):
 
 @compiled(inline="always")
 def _in_line(nodes, a, u, v):
-    """Tell if a node lies on the axis-parallel line through two others."""
+    """Return whether a node lies on the axis-parallel line through two others."""
     for axis in range(3):
         if nodes[u, axis] == nodes[v, axis] and nodes[u, axis] != nodes[a, axis]:
             return False
@@ -248,20 +248,20 @@ def _in_line(nodes, a, u, v):
 
 
 @compiled
-def _add_shortcuts(edges, ends, start, order, mesh, number, kept, count):
+def _add_shortcuts(edges, ends, start, order, mesh, number, kept_edges, count):
     """List shortcuts from lattice points to corners, each once, from row `count` on.
 
     `order` from start[p] on are the surface nodes that the lattice point p represents. Edges of
     surface nodes to corners begin at `ends`.
     """
     for p in range(len(start) - 1):
-        own = count  # the first of its shortcuts
+        first = count  # the first of its shortcuts
         for c in order[start[p] : start[p + 1]]:
             for e in range(ends + CORNERS * c, ends + CORNERS * c + CORNERS):
-                k = own
-                while k < count and kept[k, 1] != edges[e, 1]:
+                k = first
+                while k < count and kept_edges[k, 1] != edges[e, 1]:
                     k += 1
                 if k == count:
-                    kept[k, 0], kept[k, 1] = number[mesh + p], edges[e, 1]
+                    kept_edges[k, 0], kept_edges[k, 1] = number[mesh + p], edges[e, 1]
                     count += 1
     return count

@@ -1,7 +1,7 @@
 """Labels of nodes: for each of a node's nearest joints the distance and the path's parent vertex.
 
 With k labels a node, label s of node v has the index v * k + s. Parents are read far more often
-than the rest and have an array of their own: those of a node fit into one cache line.
+than the rest and are in a separate array: those of a node fit into one cache line.
 """
 
 from __future__ import annotations
@@ -48,19 +48,19 @@ def _empty(labels):
 @compiled(inline="always")
 def find_room(labels, each, v, joint):
     """Return the label of a joint at node v or, if there is none, the farthest label."""
-    own, farthest, most = -1, v * each, 0.0
+    existing, farthest, most = -1, v * each, 0.0
     for label in range(v * each, v * each + each):
-        own = label if labels[label].joint == joint else own
+        existing = label if labels[label].joint == joint else existing
         distance = labels[label].distance
         farthest = label if distance > most else farthest
         most = max(distance, most)
-    return own if own >= 0 else farthest
+    return existing if existing >= 0 else farthest
 
 
 @compiled(inline="always")
 def has_parent(parents, each, v, parent):
-    """Tell whether any label of node v has this parent."""
-    found = False
+    """Return whether any label of node v has this parent."""
+    is_parent = False
     for label in range(v * each, v * each + each):
-        found |= parents[label] == parent
-    return found
+        is_parent |= parents[label] == parent
+    return is_parent

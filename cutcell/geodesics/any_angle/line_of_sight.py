@@ -17,7 +17,7 @@ from .labels import has_parent
 
 
 def body_of(graph: CutCellGraph, contraction: Contraction) -> tuple:
-    """Return what kernels need of a contracted graph.
+    """Return the arrays of a contracted graph that kernels need.
 
     These are the resolution; the first lattice point and surface node that are kept; the positions
     of kept nodes; and, to step between lattice points, `steps` with the `node` and
@@ -29,15 +29,15 @@ def body_of(graph: CutCellGraph, contraction: Contraction) -> tuple:
 
 
 @compiled(inline="always")
-def parent_position(nodes, bones, each, parent, here):
-    """Return the position of a parent; of a bone, its point nearest to `here`."""
+def parent_position(nodes, bones, each, parent, position):
+    """Return the position of a parent; of a bone, its point nearest to `position`."""
     if parent >= 0:
         n = parent // each
         return nodes[n, 0], nodes[n, 1], nodes[n, 2]
     b = ~parent
     x, y, z = bones[b, 0], bones[b, 1], bones[b, 2]
     ex, ey, ez, inverse = bones[b, 3], bones[b, 4], bones[b, 5], bones[b, 6]
-    along = (here[0] - x) * ex + (here[1] - y) * ey + (here[2] - z) * ez
+    along = (position[0] - x) * ex + (position[1] - y) * ey + (position[2] - z) * ez
     t = min(max(along * inverse, 0.0), 1.0)
     return x + t * ex, y + t * ey, z + t * ez
 
@@ -50,13 +50,17 @@ def straight(p, q):
 
 
 @compiled(inline="always")
-def has_line_of_sight(body, parents, each, u, v, here, parent, origin):
-    """Tell whether the lattice point v, at `here`, has line of sight to a parent at `origin`.
+def has_line_of_sight(body, parents, each, u, v, position, parent, origin):
+    """Return whether the lattice point v, at `position`, has line of sight to a parent at `origin`.
 
     Its neighbour u has.
     """
     resolution, first_point, _, _, (steps, node, number) = body
-    x, y, z = int(here[0] * resolution), int(here[1] * resolution), int(here[2] * resolution)
+    x, y, z = (
+        int(position[0] * resolution),
+        int(position[1] * resolution),
+        int(position[2] * resolution),
+    )
     dx = origin[0] * resolution - 0.5 - x
     dy = origin[1] * resolution - 0.5 - y
     dz = origin[2] * resolution - 0.5 - z
@@ -64,9 +68,9 @@ def has_line_of_sight(body, parents, each, u, v, here, parent, origin):
     point = node[v] - first_point
     if far > 1:
         direction = np.rint(dx / far), np.rint(dy / far), np.rint(dz / far)
-        w = _beside(steps, point, direction)
+        w = _neighbour(steps, point, direction)
         if far > 2 and w != OUTSIDE and number[first_point + w] == v:  # in the block of v
-            w = _beside(steps, w, direction)
+            w = _neighbour(steps, w, direction)
         if w != OUTSIDE:
             w = number[first_point + w]
             sees = w == u or (parent >= 0 and w == parent // each)
@@ -81,8 +85,8 @@ def has_line_of_sight(body, parents, each, u, v, here, parent, origin):
 
 
 @compiled(inline="always")
-def _beside(steps, point, direction):
-    """Return the lattice point that lies in a direction of -1, 0 or 1 along each axis."""
+def _neighbour(steps, point, direction):
+    """Return the lattice point in a direction of -1, 0 or 1 along each axis."""
     for axis in range(3):
         point = _step(steps, point, axis, direction[axis])
     return point
@@ -98,7 +102,7 @@ def _step(steps, point, axis, direction):
 
 @no_refcount
 def _traverse(steps, point, x, y, z):
-    """Tell if edges join all cells on a line of (x, y, z) cells (Amanatides & Woo 1987)."""
+    """Return whether edges join all cells on a line of (x, y, z) cells (Amanatides & Woo 1987)."""
     dx, dy, dz = abs(x), abs(y), abs(z)
     # Where the line next leaves its cell along each axis, as a fraction of its length.
     tx = 0.5 / dx if dx else np.inf

@@ -18,14 +18,12 @@ The graph is contracted first, see `contraction.py`.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 from numpy.typing import NDArray
 
 from ...graph import CutCellGraph
 from ...runtime.compiled import no_refcount
-from ...runtime.progress import Progress, Shares, silent
+from ...runtime.progress import Progress, Shares, Tell, silent
 from ...runtime.threads import in_threads, parts, threads
 from ..bones import TIE, Bones, Sources
 from .contraction import Contraction
@@ -128,7 +126,7 @@ def _propagate(
     ranking: Ranking,
     front: Wavefront,
     within: float,
-    tell: Callable[[float], None],
+    report: Tell,
 ) -> None:
     """Settle all labels."""
     labels = front.labels
@@ -138,14 +136,14 @@ def _propagate(
     enqueue(labels, front.each, head, scale, contraction.node, contraction.number)
     adjacency = contraction.indptr, contraction.indices
     ahead = np.empty(int(np.diff(adjacency[0]).max()) + 1, np.int64)
-    known = adjacency, body, ranking.table, within
-    given = *known, slots, labels, front.parents, front.least, head, scale, ahead
+    graph = adjacency, body, ranking.table, within
+    arguments = *graph, slots, labels, front.parents, front.least, head, scale, ahead
     last, origin, settled = len(head) - 1, 0.0, 0
     bucket = 0
     while True:
-        bucket, count = _settle(*given, origin, bucket, BATCH)
+        bucket, count = _settle(*arguments, origin, bucket, BATCH)
         settled += count
-        tell(min(settled / len(labels), 0.99))
+        report(min(settled / len(labels), 0.99))
         if bucket == last:
             if head[last] == END:
                 return
@@ -161,13 +159,13 @@ def _read(nodes, body, bones, labels, parents, each, targets, row, distance):
     _, _, _, places, (_, node, number) = body
     for t in range(len(targets)):
         target, v = targets[t], number[targets[t]]
-        here = nodes[target, 0], nodes[target, 1], nodes[target, 2]
+        position = nodes[target, 0], nodes[target, 1], nodes[target, 2]
         for label in range(v * each, v * each + each):
             if labels[label].joint == NO_JOINT:
                 continue
             reached, parent = labels[label].distance, parents[label]
             if node[v] != target:
-                reached = straight(here, parent_position(places, bones, each, parent, here))
+                reached = straight(position, parent_position(places, bones, each, parent, position))
                 reached += labels[parent].distance if parent >= 0 else 0.0
             distance[row[labels[label].joint], t] = reached
 
@@ -234,24 +232,26 @@ def _settle(
                 limit = labels[slot].distance
                 if labels[slot].joint != joint:
                     limit *= 1 + TIE if joint < labels[slot].joint else 1 - TIE
-                here = nodes[v, 0], nodes[v, 1], nodes[v, 2]
-                start = parent_position(nodes, bones, each, grandparent, here)
-                reached, parent = to_grandparent + straight(here, start), grandparent
+                position = nodes[v, 0], nodes[v, 1], nodes[v, 2]
+                start = parent_position(nodes, bones, each, grandparent, position)
+                reached, parent = to_grandparent + straight(position, start), grandparent
                 if reached >= limit:
                     continue  # a path by way of u is no shorter
                 if reached > within * max(least[v], ON_BONE / resolution):
                     continue
-                beside = straight(here, (nodes[u, 0], nodes[u, 1], nodes[u, 2]))
+                step = straight(position, (nodes[u, 0], nodes[u, 1], nodes[u, 2]))
                 if u < first_point:
-                    seen = False
+                    sees = False
                 elif v < first_point:
-                    seen = beside * resolution < NEAR
+                    sees = step * resolution < NEAR
                 elif v >= first_surface:
-                    seen = u < first_surface
+                    sees = u < first_surface
                 else:
-                    seen = has_line_of_sight(body, parents, each, u, v, here, grandparent, start)
-                if not seen:
-                    reached, parent = labels[label].distance + beside, label
+                    sees = has_line_of_sight(
+                        body, parents, each, u, v, position, grandparent, start
+                    )
+                if not sees:
+                    reached, parent = labels[label].distance + step, label
                     if reached >= limit:
                         continue
                 leave(head, labels, slot)

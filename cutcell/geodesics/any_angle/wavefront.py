@@ -1,4 +1,4 @@
-"""Wavefronts of any-angle paths: bones and joints ranked by position, and the sources' labels."""
+"""Wavefronts of any-angle paths: bones and joints ranked by position, and labels of the sources."""
 
 from __future__ import annotations
 
@@ -91,9 +91,9 @@ def _rank(order, start, end, joint, bone):
                 places[count, axis] = start[b, axis]
             count += 1
         rank[row] = rank_of[joint[b]]
-    own = row_of[bone]
-    _, by_bone = counting_sort(own, len(order))
-    return joints[:count], places[:count], table, rank, own[by_bone], by_bone
+    source_row = row_of[bone]
+    _, by_bone = counting_sort(source_row, len(order))
+    return joints[:count], places[:count], table, rank, source_row[by_bone], by_bone
 
 
 def partition_sources(places: NDArray[np.float64]) -> list[NDArray[np.bool_]]:
@@ -102,10 +102,10 @@ def partition_sources(places: NDArray[np.float64]) -> list[NDArray[np.bool_]]:
     Each joint in turn goes to the group that its nearest predecessor is not in. A single joint is
     one group.
     """
-    apart = cdist(places, places)
+    distance = cdist(places, places)
     odd = np.zeros(len(places), np.bool_)
     for k in range(1, len(places)):
-        odd[k] = not odd[apart[k, :k].argmin()]
+        odd[k] = not odd[distance[k, :k].argmin()]
     return [half for half in (~odd, odd) if half.any()]
 
 
@@ -116,23 +116,9 @@ def begin(
     each: int,
     least: NDArray[np.float64] | None = None,
 ) -> Wavefront:
-    """Start a wavefront: label the sources of some joints.
+    """Start a wavefront of `each` labels a node: label the sources of a group of joints, by rank.
 
-    Parameters
-    ----------
-    ranking : Ranking
-    nodes : int
-        N, kept nodes of the contracted graph.
-    group : array, shape (j,), bool
-        Which joints, by rank.
-    each : int
-        k, labels a node.
-    least : array, shape (N,), optional
-        The distance of the nearest joint to each node, if known.
-
-    Returns
-    -------
-    Wavefront
+    Shapes: group (j,); least (N,), the distance of the nearest joint to each node, if known.
     """
     labels, parents = no_labels(nodes, each)
     least = np.full(nodes, np.inf) if least is None else least.copy()

@@ -1,6 +1,6 @@
-"""Bone chains: which bones continue which, from the joints' places in the body.
+"""Bone chains: which bones continue which, from the places of joints in the body.
 
-The joint tree of a file says what moves with what. Most of its parent-child pairs are bones, but
+The joint tree of a file defines which joints move together. Most of its parent-child pairs are bones, but
 not all: feet for inverse kinematics are children of a root below the ground, arms and ears branch
 off sideways, and some files list their joints without any tree.
 """
@@ -98,15 +98,17 @@ def find_chains(skeleton: Skeleton, joints: NDArray[np.float64], probe: BodyProb
 def _leads_in(
     skeleton: Skeleton, joints: NDArray[np.float64], near: NDArray[np.bool_], probe: BodyProbe
 ) -> NDArray[np.bool_]:
-    """Tell which joints outside the body begin a bone into it, such as one in an open mouth.
+    """Find joints outside the body that begin a bone into it, such as one in an open mouth.
 
     They have one child, which is in the body, unlike a root on the ground, on which feet hang, too.
     """
     only = [len(children) == 1 for children in skeleton.children]
-    some = np.flatnonzero(skeleton.deform & ~near & only)
-    child = np.array([skeleton.children[j][0] for j in some], np.intp)
+    candidates = np.flatnonzero(skeleton.deform & ~near & only)
+    child = np.array([skeleton.children[j][0] for j in candidates], np.intp)
     leads = np.zeros(len(joints), np.bool_)
-    leads[some] = near[child] & (probe.inner_part(joints[some], joints[child]) >= IN_BODY)
+    leads[candidates] = near[child] & (
+        probe.inner_part(joints[candidates], joints[child]) >= IN_BODY
+    )
     return leads
 
 
@@ -202,10 +204,10 @@ def _inferred_bones(
         choice = _clear_choice(distance, joints[loose])
         suits = np.arange(len(loose)) == choice[:, None]
         suitor = _clear_choice(np.where(suits, distance, np.inf).T, joints[leaves])
-        found = np.flatnonzero(suitor >= 0)
-        for k in found:
+        chosen = np.flatnonzero(suitor >= 0)
+        for k in chosen:
             inferred[leaves[suitor[k]]].append(int(loose[k]))
-        fits[suitor[found]], fits[:, found] = False, False
+        fits[suitor[chosen]], fits[:, chosen] = False, False
     return inferred
 
 

@@ -79,7 +79,7 @@ def fit_bones(
 
 
 def _share_with_leaves(bones: Bones, leaf: NDArray[np.bool_], probe: BodyProbe) -> Bones:
-    """Shorten bones that end at a leaf bone without room, such as a foot on the ground.
+    """Shorten bones that end at a leaf bone too short to fit, such as a foot on the ground.
 
     The leaf bone's joint lies at the very end of the body. If the bone before it reached as far,
     no skin would be nearest to the leaf bone.
@@ -89,10 +89,10 @@ def _share_with_leaves(bones: Bones, leaf: NDArray[np.bool_], probe: BodyProbe) 
     continues = leaf & (cdist(bones.end, bones.start) < SAME_PLACE)
     before = np.flatnonzero(~leaf & continues.any(axis=1))
     depth = probe.depth((bones.start[before] + bones.end[before]) / 2)
-    own, left = room[before], np.where(continues[before], room, 0.0).max(axis=1, initial=0.0)
-    short = left < np.minimum(own, NO_ROOM * depth)
-    cut = np.minimum((own - left) / 2, GIVEN * depth)
-    share = np.divide(cut, own, out=np.zeros_like(own), where=short)
+    extent, left = room[before], np.where(continues[before], room, 0.0).max(axis=1, initial=0.0)
+    short = left < np.minimum(extent, NO_ROOM * depth)
+    cut = np.minimum((extent - left) / 2, GIVEN * depth)
+    share = np.divide(cut, extent, out=np.zeros_like(extent), where=short)
     end[before] += (bones.start - bones.end)[before] * share[:, None]
     return Bones(bones.start, end, bones.joint)
 
@@ -134,14 +134,14 @@ def _others(
 
 
 def _close_under_skin(places: NDArray[np.float64], probe: BodyProbe) -> NDArray[np.bool_]:
-    """Tell which leaf joints (t, 3) lie close under the skin of something large, among others.
+    """Find leaf joints (t, 3) that lie close under the skin of something large, among others.
 
     Such are the joints of a face. Each moves the skin about it, not half a head: its bone is a
     point.
     """
     room = probe.room(places)
-    apart = cdist(places, places)
-    nearby = ((apart > SAME_PLACE) & (apart < room[:, None])).any(axis=1)
+    distance = cdist(places, places)
+    nearby = ((distance > SAME_PLACE) & (distance < room[:, None])).any(axis=1)
     close = probe.to_skin(places) < UNDER_SKIN * room
     return nearby & close & (room > MIN_ROOM / probe.resolution)
 
@@ -163,8 +163,8 @@ def aim_leaf_bones(
     _add_areas(points, graph.faces, area)
     total, middle = np.zeros(len(distance)), np.zeros((len(distance), 3))
     _sum_regions(points, area, distance, nearest, total, middle)
-    some = total > 0
-    end[np.flatnonzero(aimed)[some]] = middle[some] / total[some, None]
+    has_skin = total > 0
+    end[np.flatnonzero(aimed)[has_skin]] = middle[has_skin] / total[has_skin, None]
     return Bones(bones.start, end, bones.joint)
 
 
@@ -173,9 +173,9 @@ def _sum_regions(points, area, distance, nearest, total, middle):
     """Sum the area of each leaf bone's skin, and its first moment."""
     for leaf in range(len(distance)):
         for k in range(len(points)):
-            own = distance[leaf, k]
-            if own < np.inf:
-                part = area[k] * (nearest[k] / own if own > 0 else 1.0) ** REGION_POWER
+            to_leaf = distance[leaf, k]
+            if to_leaf < np.inf:
+                part = area[k] * (nearest[k] / to_leaf if to_leaf > 0 else 1.0) ** REGION_POWER
                 total[leaf] += part
                 for axis in range(3):
                     middle[leaf, axis] += part * points[k, axis]

@@ -46,15 +46,15 @@ class BodyProbe:
         self.resolution = graph.lattice.resolution
 
     def inside(self, points: ArrayLike) -> NDArray[np.bool_]:
-        """Tell for each point (..., 3) whether its lattice cell's centre is inside."""
+        """Return for each point (..., 3) whether its lattice cell's centre is inside."""
         points = np.asarray(points, np.float64)
-        found = _inside(points.reshape(-1, 3), self.resolution, self._graph.interior.table)
-        return found.reshape(points.shape[:-1])
+        is_inside = _inside(points.reshape(-1, 3), self.resolution, self._graph.interior.table)
+        return is_inside.reshape(points.shape[:-1])
 
     def near(self, points: ArrayLike) -> NDArray[np.bool_]:
-        """Tell for each point (..., 3) whether the body is in its lattice cell or next to it."""
+        """Return for each point (..., 3) whether the body is in its lattice cell or an adjacent one."""
         points = np.asarray(points, np.float64)
-        return self._grid.beside(points.reshape(-1, 3)).reshape(points.shape[:-1])
+        return self._grid.near(points.reshape(-1, 3)).reshape(points.shape[:-1])
 
     def inner_part(
         self, start: ArrayLike, end: ArrayLike, *, strictly: bool = False
@@ -108,10 +108,10 @@ class BodyProbe:
 
 @compiled
 def _inside(points, resolution, table):
-    found = np.empty(len(points), np.bool_)
+    is_inside = np.empty(len(points), np.bool_)
     for p in range(len(points)):
-        found[p] = _is_inside(resolution, table, points[p, 0], points[p, 1], points[p, 2])
-    return found
+        is_inside[p] = _is_inside(resolution, table, points[p, 0], points[p, 1], points[p, 2])
+    return is_inside
 
 
 @compiled(inline="always")
@@ -148,14 +148,14 @@ def _exit_distances(start, direction, step, resolution, table):
 @compiled
 def _distance_to_others(point, direction, limit, start, end, step, resolution, table):
     for k in range(1, int(limit / step) + 1):
-        here = point + k * step * direction
+        p = point + k * step * direction
         for b in range(len(start)):
-            there = start[b] + segment_fraction(start[b], end[b], here) * (end[b] - start[b]) - here
-            if (there * there).sum() > (NEARER * k * step) ** 2:
+            offset = start[b] + segment_fraction(start[b], end[b], p) * (end[b] - start[b]) - p
+            if (offset * offset).sum() > (NEARER * k * step) ** 2:
                 continue
             inside = 0
             for share in ALONG:
-                x, y, z = here + share * there
+                x, y, z = p + share * offset
                 inside += _is_inside(resolution, table, x, y, z)
             if inside >= SEEN * len(ALONG):
                 return k * step

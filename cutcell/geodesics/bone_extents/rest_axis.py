@@ -18,7 +18,7 @@ SHORTEST = 1e-3
 
 
 def rest_directions(skeleton: Skeleton, joints: NDArray[np.float64]) -> NDArray[np.float64] | None:
-    """Find the local axis along which the joints' bones point, and its direction at each joint.
+    """Find the local axis along which the bones of joints point, and its direction at each joint.
 
     Modelling programs orient joints so that one local axis, nearly always +Y, runs along the bone.
     Joints with one child show which axis it is; leaf joints have it, too.

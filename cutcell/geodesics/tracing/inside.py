@@ -14,7 +14,7 @@ from ..any_angle.contraction import Contraction
 SPACING = 0.5
 """Lattice cells between samples of a segment."""
 BESIDE = 0.2
-"""Lattice cells: a sample also counts as inside if a point this far from it along an axis is, so
+"""Lattice cells: a sample is also taken as inside if a point this far from it along an axis is, so
 that segments may run along the surface."""
 TOLERANCE = SPACING / 2 + BESIDE
 """Lattice cells: no point of a segment whose samples are all inside is farther from the body."""
@@ -22,7 +22,7 @@ _STEPS = BESIDE * np.concatenate([np.eye(3), -np.eye(3)])
 
 
 class Inside:
-    """Tells which segments are inside, by the winding number: nowhere farther out than `TOLERANCE`.
+    """Test for points and segments inside the body, at most `TOLERANCE` outside, by winding number.
 
     Parameters
     ----------
@@ -36,7 +36,7 @@ class Inside:
         self._graph, self._contraction = graph, contraction
 
     def points(self, points: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """Tell which points (q, 3) of the unit cube are inside or beside it, shape (q,)."""
+        """Return which points (q, 3) of the unit cube are inside or beside it, shape (q,)."""
         inside = self._in_whole_cell(points)
         for steps in (np.zeros((1, 3)), _STEPS / self._graph.lattice.resolution):
             rest = np.flatnonzero(~inside)
@@ -51,7 +51,7 @@ class Inside:
     ) -> list[NDArray[np.bool_]]:
         """Sample segments between points (s, 3); tell for each which of its samples are inside.
 
-        The k-th of m samples stands for the k-th of m equal parts of the segment.
+        The k-th of m samples represents the k-th of m equal parts of the segment.
         """
         cells = np.linalg.norm(end - start, axis=1) * self._graph.lattice.resolution
         counts = np.maximum(np.ceil(cells / SPACING).astype(int), 1)
@@ -82,8 +82,8 @@ class Inside:
         if not len(self._cells):
             return np.zeros(len(points), np.bool_)
         at = np.minimum(np.searchsorted(self._cells, number), len(self._cells) - 1)
-        found: NDArray[np.bool_] = is_in & (self._cells[at] == number)
-        return found
+        in_cell: NDArray[np.bool_] = is_in & (self._cells[at] == number)
+        return in_cell
 
 
 def _number(corner: NDArray[np.float64], resolution: int) -> NDArray[np.int64]:

@@ -44,8 +44,8 @@ class TracedPath:
     @property
     def lengths(self) -> NDArray[np.float64]:
         """The length of each piece, shape (p - 1,)."""
-        apart: NDArray[np.float64] = np.linalg.norm(np.diff(self.points, axis=0), axis=1)
-        return apart
+        length: NDArray[np.float64] = np.linalg.norm(np.diff(self.points, axis=0), axis=1)
+        return length
 
     @property
     def length(self) -> float:
@@ -79,7 +79,7 @@ def shortest_path(
 def trace_path(
     distances: BoneDistances, joint: int, vertex: int, field: ArrayLike | None = None
 ) -> TracedPath:
-    """Walk from a vertex back to the nearest of a joint's bones, and tell what each piece is.
+    """Walk from a vertex back to the nearest of a joint's bones, and classify its pieces.
 
     No piece is farther than about half a lattice cell from the body (`inside.TOLERANCE`), except
     those of the kind "outside": the way from the node nearest to a bone to that bone, where the
@@ -116,8 +116,8 @@ def trace_path(
     node = int(graph.vertex_node[vertex])
     if not np.isfinite(field[node]):
         return TracedPath(np.empty((0, 3)), np.empty(0, np.uint8))
-    own = distances.bones.joint == joint
-    bones, sources = distances.bones.some(own), distances.sources.some(own)
+    of_joint = distances.bones.joint == joint
+    bones, sources = distances.bones.subset(of_joint), distances.sources.subset(of_joint)
     source = np.full(len(graph.nodes), np.inf)
     np.minimum.at(source, sources.node, sources.distance)
     chain, inside = _descend(graph, field, source, node), distances.inside
@@ -126,11 +126,11 @@ def trace_path(
     if not at_source and not inside.segments(graph.nodes[chain[-1:]], feet[-1:])[0].all():
         chain = _search(graph, source, node)
         feet = _nearest_on(bones, graph.nodes[chain])
-    kept = list(range(len(chain)))
+    bends = list(range(len(chain)))
     if graph.connectivity == "any":
-        kept = taut(inside, graph.nodes[chain], field[chain], feet)
-    path, kinds = _pieces(graph, [chain[k] for k in kept], np.diff(kept) > 1)
-    last, to_bone = _to_bone(inside, path[-1], feet[kept[-1]])
+        bends = taut(inside, graph.nodes[chain], field[chain], feet)
+    path, kinds = _pieces(graph, [chain[k] for k in bends], np.diff(bends) > 1)
+    last, to_bone = _to_bone(inside, path[-1], feet[bends[-1]])
     return TracedPath(np.concatenate([path, last]), np.concatenate([kinds, to_bone]))
 
 
@@ -151,13 +151,13 @@ def _descend(
     indptr, indices, lengths = graph.adjacency
     chain = [node]
     while field[chain[-1]] < source[chain[-1]] - ROUNDING:
-        here = chain[-1]
-        around = slice(indptr[here], indptr[here + 1])
+        current = chain[-1]
+        around = slice(indptr[current], indptr[current + 1])
         near, length = indices[around], lengths[around]
         if graph.connectivity == "any":
-            falls = field[near] < field[here]
+            falls = field[near] < field[current]
             with np.errstate(divide="ignore", invalid="ignore"):
-                cost = np.where(falls, (field[near] - field[here]) / length, np.inf)
+                cost = np.where(falls, (field[near] - field[current]) / length, np.inf)
         else:  # edges may have zero length
             cost = np.where(np.isin(near, chain), np.inf, field[near] + length)
         if not len(near) or cost.min() == np.inf:

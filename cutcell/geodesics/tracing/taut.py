@@ -28,26 +28,26 @@ def taut(
     start, end = np.triu_indices(count + 1, 1)
     end_of = np.where((end < count)[:, None], points[np.minimum(end, count - 1)], feet[start])
     length = np.full((count + 1, count + 1), np.inf)
-    apart = np.linalg.norm(end_of - points[start], axis=1)
+    distance = np.linalg.norm(end_of - points[start], axis=1)
     fall = field[start] - np.append(field, 0.0)[end]
-    may = (fall <= apart * STRAIGHT) & (fall >= SLACK * apart)
+    may = (fall <= distance * STRAIGHT) & (fall >= SLACK * distance)
     may |= end == start + 1  # edges, and the way to the bone from the node next to it
-    length[start[may], end[may]] = apart[may]
-    known = np.eye(count + 1, k=1, dtype=bool)
+    length[start[may], end[may]] = distance[may]
+    is_tested = np.eye(count + 1, k=1, dtype=bool)
     while True:
         path = _shortest(length)
         pairs = np.stack([path[:-1], path[1:]], axis=1)
-        asked = pairs[~known[pairs[:, 0], pairs[:, 1]]]
-        if not len(asked):
+        new = pairs[~is_tested[pairs[:, 0], pairs[:, 1]]]
+        if not len(new):
             return path[:-1]
         # All pieces of the path at once; where one fails, those beside it are next.
         ends = np.where(
-            (asked[:, 1] < count)[:, None],
-            points[np.minimum(asked[:, 1], count - 1)],
-            feet[asked[:, 0]],
+            (new[:, 1] < count)[:, None],
+            points[np.minimum(new[:, 1], count - 1)],
+            feet[new[:, 0]],
         )
-        for (a, b), is_in in zip(asked, inside.segments(points[asked[:, 0]], ends), strict=True):
-            known[a, b] = True
+        for (a, b), is_in in zip(new, inside.segments(points[new[:, 0]], ends), strict=True):
+            is_tested[a, b] = True
             if not is_in.all():
                 length[a, b] = np.inf
 

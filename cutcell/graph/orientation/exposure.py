@@ -35,35 +35,37 @@ def exposure(
     vertices: NDArray[np.float64],
     faces: NDArray[np.int32],
     patch: NDArray[np.int32],
-    wanted: NDArray[np.bool_],
-    tell: Tell = lambda done: None,
+    is_measured: NDArray[np.bool_],
+    report: Tell = lambda done: None,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Measure how much of the outside is seen from the front and from the back of patches.
+    """Measure the share of rays that escape from the front and from the back of patches.
 
-    Shapes: vertices (n, 3), faces (m, 3), patch (m,), wanted (p,); returns front, back (p,).
+    Shapes: vertices (n, 3), faces (m, 3), patch (m,), is_measured (p,); returns front, back (p,).
 
     References
     ----------
     Takayama, Jacobson, Kavan & Sorkine-Hornung, "A simple method for correcting facet
     orientations in polygon meshes based on ray casting", 2014.
     """
-    count = len(wanted)
-    face, points = _samples(vertices, faces, patch, wanted)
+    count = len(is_measured)
+    face, points = _samples(vertices, faces, patch, is_measured)
     normals = unit_normals(vertices[faces[face]])
     of = patch[face]
-    single, own = _each_once(faces)
-    own = own[face]
+    single, index = _each_once(faces)
+    own_face = index[face]
 
     def along(turn: NDArray[np.float64]) -> NDArray[np.float64]:
-        seen = [np.ascontiguousarray((x - 0.5) @ turn.T / SHRINK + 0.5) for x in (vertices, points)]
-        is_free = _escape(seen[1], own, seen[0], single)
+        rotated = [
+            np.ascontiguousarray((x - 0.5) @ turn.T / SHRINK + 0.5) for x in (vertices, points)
+        ]
+        is_free = _escape(rotated[1], own_face, rotated[0], single)
         cosine = normals @ turn[2]
         weight, is_up = np.abs(cosine), cosine > 0
         front = weight * np.where(is_up, is_free[:, 0], is_free[:, 1])
         back = weight * np.where(is_up, is_free[:, 1], is_free[:, 0])
         return np.stack([np.bincount(of, x, count) for x in (front, back, weight)])
 
-    front, back, every = np.sum(in_threads(along, _turns(), tell), axis=0)
+    front, back, every = np.sum(in_threads(along, _turns(), report), axis=0)
     every = np.maximum(every, 1e-300)
     return front / every, back / every
 
@@ -87,9 +89,9 @@ def _turns() -> list[NDArray[np.float64]]:
     lines = np.stack([out * np.cos(turn), out * np.sin(turn), height], axis=1)
     turns = []
     for line in lines:
-        beside = np.cross(line, (0.3, 0.5, 0.81))
-        beside /= np.linalg.norm(beside)
-        turns.append(np.stack([beside, np.cross(line, beside), line]))
+        across = np.cross(line, (0.3, 0.5, 0.81))
+        across /= np.linalg.norm(across)
+        turns.append(np.stack([across, np.cross(line, across), line]))
     return turns
 
 
@@ -97,33 +99,33 @@ def _samples(
     vertices: NDArray[np.float64],
     faces: NDArray[np.int32],
     patch: NDArray[np.int32],
-    wanted: NDArray[np.bool_],
+    is_measured: NDArray[np.bool_],
 ) -> tuple[NDArray[np.intp], NDArray[np.float64]]:
     """Place points evenly by area on patches; return the face and the position of each."""
-    mine = np.flatnonzero(wanted[patch])
+    selected = np.flatnonzero(is_measured[patch])
     # Sorted by corners: the result depends neither on the order of faces nor on their winding.
-    corners = np.sort(faces[mine], axis=1)
-    order = np.lexsort((*corners.T[::-1], patch[mine]))
-    mine, triangles = mine[order], vertices[corners[order]]
+    corners = np.sort(faces[selected], axis=1)
+    order = np.lexsort((*corners.T[::-1], patch[selected]))
+    selected, triangles = selected[order], vertices[corners[order]]
     reached = np.cumsum(areas(triangles))
-    first = np.flatnonzero(np.diff(patch[mine], prepend=-1))
-    last = np.append(first[1:], len(mine)) - 1
+    first = np.flatnonzero(np.diff(patch[selected], prepend=-1))
+    last = np.append(first[1:], len(selected)) - 1
     low = np.concatenate([[0], reached[last[:-1]]])
     each = int(np.clip(MAX_SAMPLES // len(first), *SAMPLES))
     share = (np.arange(each) + 0.5) / each
     places = low[:, None] + share * (reached[last] - low)[:, None]
-    found = np.clip(np.searchsorted(reached, places), first[:, None], last[:, None]).ravel()
+    sampled = np.clip(np.searchsorted(reached, places), first[:, None], last[:, None]).ravel()
     # A plane sequence of low discrepancy (Roberts), folded into the triangle.
     k = np.tile(np.arange(each), len(first))
     u, v = 0.7548777 * (k + 1) % 1, 0.5698403 * (k + 1) % 1
     u, v = np.where(u + v > 1, 1 - u, u)[:, None], np.where(u + v > 1, 1 - v, v)[:, None]
-    a, b, c = triangles[found].transpose(1, 0, 2)
-    return mine[found], a + u * (b - a) + v * (c - a)
+    a, b, c = triangles[sampled].transpose(1, 0, 2)
+    return selected[sampled], a + u * (b - a) + v * (c - a)
 
 
 @compiled
-def _escape(points, own, vertices, faces):
-    """Tell for each point whether the rays upward and downward escape, shape (p, 2)."""
+def _escape(points, own_face, vertices, faces):
+    """Return for each point whether the rays upward and downward escape, shape (p, 2)."""
     column = np.empty(len(points), np.int64)
     for q in range(len(points)):
         column[q] = int(points[q, 0] * COLUMNS) * COLUMNS + int(points[q, 1] * COLUMNS)
@@ -146,7 +148,7 @@ def _escape(points, own, vertices, faces):
             last = start[i * COLUMNS + int(high_v * COLUMNS) + 1]
             for q in order[first:last]:
                 pu, pv = points[q, 0], points[q, 1]
-                if own[q] == f or not (low_u <= pu <= high_u and low_v <= pv <= high_v):
+                if own_face[q] == f or not (low_u <= pu <= high_u and low_v <= pv <= high_v):
                     continue
                 if not (is_free[q, 0] or is_free[q, 1]):
                     continue

@@ -3,8 +3,8 @@
 Connected faces are first oriented consistently (`patches.py`). Then it remains to decide which side
 of each patch is the outer one. A patch that encloses a volume (closed, or with small holes) should
 enclose a positive one. If the volume is negative, rays decide whether the outside sees its back
-(`exposure.py`). So an inverted arm is flipped; a cavity in a body, which nobody sees, is not; nor
-is a sheet, which is seen from both sides and encloses nothing.
+(`exposure.py`). An inverted arm is flipped; a cavity in a body, which is invisible, is not, and
+neither is a sheet, which is visible from both sides and encloses nothing.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ MOSTLY = 0.75
 
 
 def inverted_faces(mesh: TriangleMesh) -> NDArray[np.bool_]:
-    """Tell which faces of a mesh are inside out.
+    """Find the faces of a mesh that are inside out.
 
     Parameters
     ----------
@@ -46,7 +46,7 @@ def inverted_faces(mesh: TriangleMesh) -> NDArray[np.bool_]:
     -------
     array, shape (m,), bool
         Faces to flip. Where the outer side is undecidable, as on a sheet seen from both sides,
-        faces stay as the file has them.
+        faces remain unchanged.
 
     References
     ----------
@@ -62,20 +62,20 @@ def find_inverted(
     vertices: NDArray[np.float64],
     faces: NDArray[np.int32],
     partner: NDArray[np.int32],
-    tell: Tell = lambda done: None,
+    report: Tell = lambda done: None,
 ) -> NDArray[np.bool_]:
-    """Tell which welded faces are inside out.
+    """Find the welded faces that are inside out.
 
     Shapes: vertices (n, 3), faces (m, 3), partner (3 m,); returns (m,).
     """
     a, b, c = faces.T
     proper = (a != b) & (b != c) & (c != a)
     if proper.all():
-        return _find_inverted(vertices, faces, partner, tell)
+        return _find_inverted(vertices, faces, partner, report)
     inverted = np.zeros(len(faces), np.bool_)
     if proper.any():
         faces = faces[proper]
-        inverted[proper] = _find_inverted(vertices, faces, find_edges(faces).partner, tell)
+        inverted[proper] = _find_inverted(vertices, faces, find_edges(faces).partner, report)
     return inverted
 
 
@@ -83,7 +83,7 @@ def _find_inverted(
     vertices: NDArray[np.float64],
     faces: NDArray[np.int32],
     partner: NDArray[np.int32],
-    tell: Tell,
+    report: Tell,
 ) -> NDArray[np.bool_]:
     areas, volumes = measure_faces(vertices, faces)
     flips, patch, rims, of_rim = find_patches(vertices, faces, partner, areas)
@@ -96,11 +96,11 @@ def _find_inverted(
         doubtful |= is_sheet  # in a soup nothing else decides
     if not doubtful.any():
         return flips
-    front, back = exposure(vertices, faces, patch, doubtful, tell)
+    front, back = exposure(vertices, faces, patch, doubtful, report)
     wrong = (back >= SEEN) & (back >= CLEARLY * front)
     right = (front >= SEEN) & (front >= CLEARLY * back) | ~(doubtful | is_sheet)
     if wrong.any() and area[wrong].sum() >= MOSTLY * area[wrong | right].sum():
-        wrong = ~right  # what is undecidable was inverted with the rest
+        wrong = ~right  # undecidable patches were inverted with the rest
     return flips ^ wrong[patch]
 
 

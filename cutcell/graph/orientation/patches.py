@@ -102,17 +102,17 @@ def _flood(faces, partner, areas):
     consistent as they are; and whether all are orientable.
     """
     flips, patch = np.zeros(len(faces), np.bool_), np.full(len(faces), NONE, np.int32)
-    found = np.empty(len(faces), np.int32)  # faces in the order in which they are reached
+    queue = np.empty(len(faces), np.int32)  # faces in the order in which they are reached
     count, reached, is_plain, is_orientable = 0, 0, True, True
     for seed in range(len(faces)):
         if patch[seed] != NONE:
             continue
         begin, is_consistent, as_is, kept_area = reached, True, True, 0.0
-        found[reached], patch[seed] = seed, count
+        queue[reached], patch[seed] = seed, count
         reached += 1
         done = begin
         while done < reached:
-            f = found[done]
+            f = queue[done]
             done += 1
             kept_area += -areas[f] if flips[f] else areas[f]
             for half_edge in range(3 * f, 3 * f + 3):
@@ -126,7 +126,7 @@ def _flood(faces, partner, areas):
                 if patch[g] == NONE:
                     patch[g], flips[g] = count, flips[f] != against
                     as_is &= not flips[g]
-                    found[reached] = g
+                    queue[reached] = g
                     reached += 1
                 elif flips[g] != (flips[f] != against):
                     is_consistent = False
@@ -134,7 +134,7 @@ def _flood(faces, partner, areas):
             is_orientable = False
         is_plain &= as_is
         for k in range(begin, begin if as_is else reached):
-            f = found[k]
+            f = queue[k]
             flips[f] = is_consistent and flips[f] == (kept_area >= 0)
         count += 1
     return flips, patch, is_plain and is_orientable, is_orientable
@@ -160,10 +160,10 @@ def _rims(faces, partner, flips, patch):
     for half_edge in range(len(partner)):
         other = partner[half_edge]
         is_open[half_edge] = other == NONE or not _is_consistent(faces, flips, half_edge, other)
-    found = np.flatnonzero(is_open)
-    rims, of_rim = np.empty((len(found), 2), np.int32), np.empty(len(found), np.int32)
-    for s in range(len(found)):
-        f, k = found[s] // 3, found[s] % 3
+    open_edges = np.flatnonzero(is_open)
+    rims, of_rim = np.empty((len(open_edges), 2), np.int32), np.empty(len(open_edges), np.int32)
+    for s in range(len(open_edges)):
+        f, k = open_edges[s] // 3, open_edges[s] % 3
         start, end = faces[f, k], faces[f, (k + 1) % 3]
         rims[s, 0], rims[s, 1] = (end, start) if flips[f] else (start, end)
         of_rim[s] = patch[f]
@@ -172,7 +172,7 @@ def _rims(faces, partner, flips, patch):
 
 @compiled(inline="always")
 def _is_consistent(faces, flips, half_edge, other):
-    """Tell whether two faces traverse their shared edge in opposite directions, once flipped."""
+    """Return whether two faces traverse their shared edge in opposite directions, once flipped."""
     f, g = half_edge // 3, other // 3
     against = faces[f, half_edge % 3] == faces[g, other % 3]
     return against == (flips[f] != flips[g])

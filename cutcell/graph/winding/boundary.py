@@ -108,12 +108,12 @@ def _loops(edges, count, vertices):
     for first in range(vertices):
         path[0], slot[first], length = first, 0, 1
         while length > 1 or cursor[first] < leaving[first + 1]:
-            there = following[cursor[path[length - 1]]]
-            if slot[there] < 0:
-                path[length], slot[there] = there, length
+            vertex = following[cursor[path[length - 1]]]
+            if slot[vertex] < 0:
+                path[length], slot[vertex] = vertex, length
                 length += 1
                 continue
-            around = path[slot[there] : length]
+            around = path[slot[vertex] : length]
             least = unused[cursor[around[0]]]
             for a in around:
                 least = min(least, unused[cursor[a]])
@@ -124,7 +124,7 @@ def _loops(edges, count, vertices):
                 slot[a] = -1
             start.append(len(loop))
             times.append(least)
-            slot[there] = length - len(around)
-            length = slot[there] + 1
+            slot[vertex] = length - len(around)
+            length = slot[vertex] + 1
         slot[first] = -1
     return np.array(loop), np.array(start), np.array(times)

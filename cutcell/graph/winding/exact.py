@@ -140,8 +140,8 @@ def boundary_angle(vertices, boundary, pu, pv, height):
     """
     loop, start, times = boundary
     # Each solid angle is twice the argument of a complex number. The arguments are added by
-    # multiplying the numbers (x, y); full turns are counted apart: the sum of two arguments in
-    # one half plane has wrapped around if the product lies in the other.
+    # multiplying the numbers (x, y); full turns are counted separately: the sum of two
+    # arguments in one half plane has wrapped around if the product is in the other.
     total, x, y, turns = 0.0, 1.0, 0.0, 0.0
     for k in range(len(times)):
         b = loop[start[k + 1] - 1]
@@ -189,9 +189,9 @@ def _relative(vertices, a, pu, pv, height):
     # Symbolic perturbation: a ray through a vertex passes it at an infinitesimal distance.
     if u == 0 and v == 0:
         v = -INFINITESIMAL
-    beside = u * u + v * v
-    length = np.sqrt(beside + w * w)
-    return u, v, beside / (length + w) if w > 0 else length - w
+    squared = u * u + v * v
+    length = np.sqrt(squared + w * w)
+    return u, v, squared / (length + w) if w > 0 else length - w
 
 
 @compiled

@@ -64,7 +64,7 @@ DEPTH = 12
 """More often blocks are never halved."""
 MAX_NEAR = 64
 """Near clusters that a block lists. Where there are more, nearly all are near, and its queries
-traverse all clusters. A list of its own for each block would take gigabytes."""
+traverse all clusters. A separate list for each block would take gigabytes."""
 
 UNCHECKED = 1 << 26
 """Bytes of classes for which free memory is not looked up."""
@@ -92,9 +92,9 @@ def classify_cells(
     clusters: Clusters,
     resolution: int,
     winding_threshold: float,
-    tell: Tell = lambda done: None,
+    report: Tell = lambda done: None,
 ) -> CellClasses:
-    """Bound the caps' winding number over the cells of the lattice."""
+    """Bound the winding number of the caps over the cells of the lattice."""
     blocks = -(-resolution // BLOCK)
     coarse = np.full((blocks,) * 3, CONSTANT + int(np.ceil(winding_threshold)), np.int32)
     corners, top = np.zeros((0, 3), np.int64), BLOCK
@@ -113,7 +113,7 @@ def classify_cells(
         return parts
 
     # The last corner lies outside: never an empty list.
-    classified = in_threads(classify, [*corners, np.full(3, resolution)], tell)
+    classified = in_threads(classify, [*corners, np.full(3, resolution)], report)
     rows = count = 0
     for corner, row, expanded, _ in classified:
         coarse[tuple(corner.T)] += rows
@@ -129,7 +129,7 @@ def classify_cells(
 
 @compiled(inline="always")
 def required_crossings(total, error):
-    """Round a sum, tau plus the caps' winding number, up; AMBIGUOUS if the error does not tell."""
+    """Round up tau plus the winding number of the caps; AMBIGUOUS if the error leaves it open."""
     required = np.ceil(total - error)
     return np.int64(required) if required == np.ceil(total + error) else AMBIGUOUS
 
@@ -142,19 +142,19 @@ def class_at(classes, axis, ray, cell, stop):
     """
     x, y, z = in_space(axis, ray[0], ray[1], cell)
     stop = min(stop, (cell // BLOCK + 1) * BLOCK)
-    found = classes.coarse[x // BLOCK, y // BLOCK, z // BLOCK]
-    if found < 0:
-        return found, max(stop, cell + 1)
-    block = classes.fine[found]
+    cell_class = classes.coarse[x // BLOCK, y // BLOCK, z // BLOCK]
+    if cell_class < 0:
+        return cell_class, max(stop, cell + 1)
+    block = classes.fine[cell_class]
     x, y, z = x % BLOCK, y % BLOCK, z % BLOCK
-    found = block[x, y, z]
+    cell_class = block[x, y, z]
     until = cell + 1
     while until < stop:
         x, y, z = x + (axis == 0), y + (axis == 1), z + (axis == 2)
-        if block[x, y, z] != found:
+        if block[x, y, z] != cell_class:
             break
         until += 1
-    return found, until
+    return cell_class, until
 
 
 @compiled
@@ -166,7 +166,7 @@ def _classify(clusters, resolution, tau, corner, top, coarse):
     """
     blocks, fine = np.empty((16, 3), np.int32), np.empty((16, BLOCK, BLOCK, BLOCK), np.int32)
     expanded, all_near = np.empty((64, COUNT + 1)), np.empty(1024, np.int32)
-    rows = kept = listed = 0
+    rows = stored = listed = 0
     waiting, count = np.empty((64, 5), np.int64), 1  # blocks: corner, size and depth
     copy_to(corner, waiting[0])
     waiting[0, 3], waiting[0, 4] = top, 1
@@ -191,10 +191,10 @@ def _classify(clusters, resolution, tau, corner, top, coarse):
         close = near[depth, : nears[depth]]
         copy_to(far[depth], local)
         is_crossed = add_clusters(clusters, close, local, q, reach, TOLERANCE)
-        found = _class_of(local, is_crossed, half, size, tau)
+        cell_class = _class_of(local, is_crossed, half, size, tau)
         a, b, c, wide = x // BLOCK, y // BLOCK, z // BLOCK, size // BLOCK
-        if size >= BLOCK and found < 0:
-            coarse[a : a + wide, b : b + wide, c : c + wide] = found
+        if size >= BLOCK and cell_class < 0:
+            coarse[a : a + wide, b : b + wide, c : c + wide] = cell_class
             continue
         if size == BLOCK:
             if rows == len(fine):
@@ -202,32 +202,32 @@ def _classify(clusters, resolution, tau, corner, top, coarse):
             blocks[rows, 0], blocks[rows, 1], blocks[rows, 2] = a, b, c
             coarse[a, b, c] = rows
             rows += 1
-        if size > BLOCK or (found == AMBIGUOUS and size > SMALLEST):
+        if size > BLOCK or (cell_class == AMBIGUOUS and size > SMALLEST):
             count = _halve(waiting, count)
             continue
-        if found >= 0:
-            if kept == len(expanded):
+        if cell_class >= 0:
+            if stored == len(expanded):
                 expanded = grown(expanded)
-            row = expanded[kept]
+            row = expanded[stored]
             level = depth if len(close) <= MAX_NEAR else 0  # at 0 are all clusters, and no far ones
-            copy_to(far[level] if found == AMBIGUOUS else local, row)
+            copy_to(far[level] if cell_class == AMBIGUOUS else local, row)
             row[SIZE], row[SIZE + 1], row[SIZE + 2] = q
-            row[CROSSED], row[COUNT] = is_crossed and found != AMBIGUOUS, 0
-            if found == AMBIGUOUS:
+            row[CROSSED], row[COUNT] = is_crossed and cell_class != AMBIGUOUS, 0
+            if cell_class == AMBIGUOUS:
                 close = near[level, : nears[level]]
                 row[COUNT] = len(close)
                 while listed + len(close) > len(all_near):
                     all_near = grown(all_near)
                 copy_to(close, all_near[listed:])
                 listed += len(close)
-            found = kept
-            kept += 1
+            cell_class = stored
+            stored += 1
         i, j, k = x % BLOCK, y % BLOCK, z % BLOCK
-        fine[rows - 1, i : i + size, j : j + size, k : k + size] = found
+        fine[rows - 1, i : i + size, j : j + size, k : k + size] = cell_class
     return (
         blocks[:rows].copy(),
         fine[:rows].copy(),
-        expanded[:kept].copy(),
+        expanded[:stored].copy(),
         all_near[:listed].copy(),
     )
 

@@ -1,4 +1,4 @@
-"""The caps' winding number in a ball, as a local expansion with a proven error.
+"""Winding number of the caps in a ball, as a local expansion with a proven error.
 
 A local (Taylor) expansion is a row of SIZE numbers: value, gradient (x, y, z), the second
 derivatives (xx, yy, xy, xz, yz), and a bound of the error; zz = -xx - yy, as the function is
@@ -44,7 +44,7 @@ SMALL = 1e-60
 
 
 class LocalExpansions(NamedTuple):
-    """Local expansions of the caps' winding number in blocks of cells.
+    """Local expansions of the winding number of the caps in blocks of cells.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ def evaluate(local, x, y, z):
 
 @compiled(inline="always")
 def value_at(expansions, row, point):
-    """Return the caps' winding number at a point of a block, and a bound of the error."""
+    """Return the winding number of the caps at a point of a block, and its error bound."""
     x, y, z = between(expansions.centre[row], point)
     local = expansions.local[row]
     return evaluate(local, x, y, z), local[ERROR] + ROUNDING
@@ -153,7 +153,7 @@ def add_clusters(clusters, among, local, q, reach, tolerance):
 
 @no_refcount
 def _add_caps(clusters, leaf, local, q, reach, may_cross):
-    """Add the caps of a leaf of the tree one by one; tell whether one crosses the ball."""
+    """Add the caps of a leaf of the tree one by one; return whether one crosses the ball."""
     is_crossed = False
     for loop in range(clusters.start[leaf], clusters.start[leaf + 1]):
         rim = clusters.rim[clusters.first[loop] : clusters.first[loop + 1]]
@@ -178,8 +178,8 @@ def _winding_number(rim, apex, q):
 
     Half the solid angle of a triangle is the argument of a complex number (van Oosterom &
     Strackee 1983). The arguments are added by multiplying the numbers (x, y); full turns are
-    counted apart: the sum of two arguments in one half plane has wrapped around if the product
-    lies in the other.
+    counted separately: the sum of two arguments in one half plane has wrapped around if the
+    product is in the other.
     """
     x, y, turns = 1.0, 0.0, 0.0
     # Where the apex is the rim's first vertex, the edges at it span no triangle.
@@ -208,7 +208,7 @@ def _winding_number(rim, apex, q):
 
 @no_refcount
 def _add_gradient(local, rim, apex, q, reach, may_cross):
-    """Add the gradient of a cap, and its error; tell whether the cap crosses the ball."""
+    """Add the gradient of a cap, and its error; return whether the cap crosses the ball."""
     is_crossed = False
     c = between(q, apex)
     b = between(q, rim[len(rim) - 1])
@@ -259,7 +259,7 @@ def _distance_to_edge(a, b):
 
 @compiled
 def _is_within(a, b, c, reach):
-    """Tell whether a triangle comes within reach of the origin; its edge a, b is left out."""
+    """Return whether a triangle comes within reach of the origin, without its edge a, b."""
     n = triangle_normal(a, b, c)
     height = dot(a, n)
     if height * height > reach * reach * dot(n, n):

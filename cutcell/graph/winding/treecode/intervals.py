@@ -27,22 +27,22 @@ from .queries import query_points
 from .strips import keep_strip
 
 MAX_QUERIES = 2**21
-"""Queries that are answered together once there are as many. Each takes 140 bytes at the peak."""
+"""Queries that are evaluated together, at 140 bytes each at the peak."""
 
 
 def treecode_intervals(
     surface: Surface,
     hits: Sequence[RayHits],
     winding_threshold: float,
-    tell: Tell = lambda done: None,
+    report: Tell = lambda done: None,
 ) -> list[InsideIntervals]:
     """Find the intervals that `segments.inside_intervals` finds by exact winding numbers."""
     vertices, boundary, resolution = surface.vertices, surface.boundary, surface.resolution
     caps = smallest_caps(vertices, boundary)
-    tell(0.05)
-    cap_hits = cast_all_rays(caps.vertices, caps.faces, resolution, share_of(tell, 0.05, 0.15))
+    report(0.05)
+    cap_hits = cast_all_rays(caps.vertices, caps.faces, resolution, share_of(report, 0.05, 0.15))
     clusters = build_tree(caps)
-    classes = classify_cells(clusters, resolution, winding_threshold, share_of(tell, 0.15, 0.3))
+    classes = classify_cells(clusters, resolution, winding_threshold, share_of(report, 0.15, 0.3))
     shared = resolution, winding_threshold, classes, boundary, clusters, np.array([ROOT], np.int32)
     families = []
     for axis, (u, v, along) in enumerate(AXES):
@@ -54,34 +54,34 @@ def treecode_intervals(
     work = [(rays, i * resolution, j * resolution) for rays in families for i, j in strips]
     ambiguous = np.count_nonzero(classes.fine >= 0)
     expected = 3 * ambiguous + hit_count if ambiguous else 0
-    rows = _rows_of_strips(shared, work, expected, share_of(tell, 0.3, 1))
+    rows = _rows_of_strips(shared, work, expected, share_of(report, 0.3, 1))
     count = len(strips)
     of_axes = [np.concatenate(rows[count * k : count * (k + 1)]) for k in range(3)]
     return [InsideIntervals(*np.ascontiguousarray(of_axis.T)) for of_axis in of_axes]
 
 
-def _rows_of_strips(shared, work, expected, tell):
+def _rows_of_strips(shared, work, expected, report):
     """Return the intervals of each strip of rays, as rows.
 
-    Strips are listed some at a time, and their queries are answered as soon as there are many. This
-    bounds the memory that they take. `expected` is how many there are at most in all strips.
+    Strips are processed in groups, and their queries are evaluated as soon as there are many, to
+    limit their memory. `expected` is the maximum number of queries in all strips.
     """
     intervals, listed = [], []
     step = max(1, min(len(work), MAX_QUERIES * len(work) // max(expected, 1)))
     for first in range(0, len(work), step):
         strips = work[first : first + step]
-        part = share_of(tell, first / len(work), (first + len(strips)) / len(work))
+        part = share_of(report, first / len(work), (first + len(strips)) / len(work))
         listed += in_threads(
             lambda strip: (strip, *keep_strip(shared, strip)), strips, share_of(part, 0, 0.3)
         )
         is_last = first + step >= len(work)
         if is_last or sum(len(queries) for *_, queries, _ in listed) >= MAX_QUERIES:
-            intervals += _answered(shared, listed, share_of(part, 0.3, 1))
+            intervals += _evaluate_queries(shared, listed, share_of(part, 0.3, 1))
             listed = []
     return intervals
 
 
-def _answered(shared, listed, tell):
+def _evaluate_queries(shared, listed, report):
     """Return the intervals of strips whose queries are listed."""
     intervals = [rows for _, rows, *_ in listed]
     again = [k for k, (*_, is_undecided) in enumerate(listed) if is_undecided]
@@ -90,11 +90,11 @@ def _answered(shared, listed, tell):
     row, queries = (np.concatenate([listed[k][column] for k in again]) for column in (2, 3))
     ends = np.cumsum([len(listed[k][2]) for k in again])
     _, _, classes, _, clusters, _ = shared
-    results = query_points(classes.expansions, clusters, row, queries, share_of(tell, 0, 0.85))
+    results = query_points(classes.expansions, clusters, row, queries, share_of(report, 0, 0.85))
     decided = in_threads(
         lambda part: keep_strip(shared, listed[part[0]][0], part[1])[0],
         zip(again, np.split(results, ends[:-1]), strict=True),
-        share_of(tell, 0.85, 1),
+        share_of(report, 0.85, 1),
     )
     for k, rows in zip(again, decided, strict=True):
         intervals[k] = rows

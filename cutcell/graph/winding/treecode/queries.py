@@ -52,7 +52,7 @@ def query_points(
     clusters: Clusters,
     row: NDArray[np.int32],
     queries: NDArray[np.float64],
-    tell: Tell = lambda done: None,
+    report: Tell = lambda done: None,
 ) -> NDArray[np.uint8]:
     """Decide whether midpoints are inside.
 
@@ -62,11 +62,11 @@ def query_points(
     results = np.empty(len(row), np.uint8)
     every = np.array([ROOT], np.int32)
 
-    def some(part: tuple[int, int]) -> None:
+    def evaluate_portion(part: tuple[int, int]) -> None:
         points = np.empty(WORKSPACE)
         _query(expansions, clusters, queries, row, start, order, every, *part, points, results)
 
-    in_threads(some, _portions(clusters, row, start, order), tell)
+    in_threads(evaluate_portion, _portions(clusters, row, start, order), report)
     return results
 
 
@@ -74,8 +74,8 @@ def _portions(clusters, row, start, order):
     """Divide the sorted queries into portions of limited time that do not divide batches."""
     begins = np.flatnonzero((np.arange(len(order)) - start[row[order]]) % BATCH == 0)
     size = max(BATCH, PORTION // len(clusters.apex))
-    wanted = np.arange(0, begins.max(initial=-1) + 1, size)
-    bounds = np.unique(begins[np.searchsorted(begins, wanted)])
+    targets = np.arange(0, begins.max(initial=-1) + 1, size)
+    bounds = np.unique(begins[np.searchsorted(begins, targets)])
     return list(pairwise([*bounds.tolist(), len(order)]))
 
 
@@ -86,10 +86,10 @@ def _query(expansions, clusters, queries, row, start, order, every, first, last,
     `every` holds the cluster of all caps; `points` is a workspace.
     """
     while first < last:
-        here = row[order[first]]
-        end = min(first + BATCH, start[here + 1])
+        block = row[order[first]]
+        end = min(first + BATCH, start[block + 1])
         batch = order[first:end]
-        _query_batch(expansions, clusters, queries, here, batch, every, points, results)
+        _query_batch(expansions, clusters, queries, block, batch, every, points, results)
         first = end
 
 

@@ -1,4 +1,4 @@
-"""The caps' winding number (solid angle over 4 pi) at several points, within a proven bound.
+"""Winding number (solid angle over 4 pi) of the caps at several points, within a proven bound.
 
 The points traverse the tree of clusters together, and each cluster is evaluated for all of them by
 vector instructions. So the loops over points have no branches.

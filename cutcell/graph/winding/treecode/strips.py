@@ -1,4 +1,4 @@
-"""Which segments of a strip of rays are kept: `graph/segments.py`, fused with the treecode."""
+"""Selection of the segments of a strip of rays: `graph/segments.py`, fused with the treecode."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ NO_RESULTS = np.zeros(0, np.uint8)
 def keep_strip(shared, strip, results=None):
     """Run algorithm 1 on a strip of rays; list the queries where there are no results yet.
 
-    Returns the rows of the intervals; the queries' rows of the expansions; the queries; and
+    Returns the rows of the intervals; the row of the expansions of each query; the queries; and
     whether any segment is undecided.
     """
     rays, ray, last_ray = strip
@@ -53,7 +53,7 @@ def _doubled(array: NDArray) -> NDArray:
 def _keep_segments(
     shared, rays, last_ray, results, listing, first_ray, filled, rows, row, queries, points
 ):
-    """Run algorithm 1 on rays while there is room.
+    """Run algorithm 1 on rays until the buffers are full.
 
     Writes the intervals as `rows` (ray, first, last, low, high). When `listing` it has no results
     yet and lists the queries: the row of the expansions, and what `query_points` takes. `points`
@@ -90,9 +90,9 @@ def _keep_segments(
             while s <= beyond:
                 # The segment is kept if the winding number at its midpoint is at least tau.
                 if is_constant:
-                    kept, until = crossings >= required, beyond + 1
+                    is_kept, until = crossings >= required, beyond + 1
                 elif (s == k and c == begin) or (s == beyond and c == end):  # to a wall
-                    kept, until = False, s + 1
+                    is_kept, until = False, s + 1
                 else:
                     left = before if s == k else (s - 0.5) / resolution
                     right = after if s == beyond else (s + 0.5) / resolution
@@ -107,7 +107,7 @@ def _keep_segments(
                     cell_class, until = class_at(classes, axis, (i, j), cell, stop)
                     pu, pv = (i + 0.5) / resolution, (j + 0.5) / resolution
                     if cell_class < 0:  # holds for all segments of this class up to the next hit
-                        kept = crossings + cap_crossings >= cell_class - CONSTANT
+                        is_kept = crossings + cap_crossings >= cell_class - CONSTANT
                     else:
                         until = cell + 1
                         undecided += listing
@@ -123,29 +123,29 @@ def _keep_segments(
                                     shared, rays, where, point, cell_class, cap_crossings, points
                                 )
                                 crossed = cell_class
-                            kept = not listing and crossings + offset >= needed
+                            is_kept = not listing and crossings + offset >= needed
                         elif listing:
                             row[query] = cell_class
                             queries[query, 0], queries[query, 1], queries[query, 2] = point
                             queries[query, SLACK] = crossings + cap_crossings - tau
-                            kept, query = False, query + 1
+                            is_kept, query = False, query + 1
                         else:
-                            kept = results[query] == INSIDE
+                            is_kept = results[query] == INSIDE
                             if results[query] == UNDECIDED:
                                 angle = _rest(boundary, rays, (pu, pv, middle))
                                 winding_number = crossings + angle
-                                kept = winding_number >= tau
+                                is_kept = winding_number >= tau
                             query += 1
                     until = max(s + 1, min(until, beyond + (c < end)))
-                if kept and not is_open:
+                if is_kept and not is_open:
                     rows[count, 0] = r
                     rows[count, 1] = k if s == k else s - 1
                     rows[count, 3] = c - 1 if s == k and c > begin else NONE
-                elif is_open and not kept:
+                elif is_open and not is_kept:
                     rows[count, 2], rows[count, 4] = s - 1, NONE
                     count += 1
-                s, is_open = until, kept
-            # Intervals end at every hit: what follows is an interval of its own. From the wall
+                s, is_open = until, is_kept
+            # Intervals end at every hit: what follows is another interval. From the wall
             # straight to a hit there is no segment.
             if is_open and (beyond > k or begin < c < end):
                 rows[count, 2] = beyond - 1
@@ -159,14 +159,14 @@ def _keep_segments(
 def _crossed_offset(shared, rays, where, point, row, cap_crossings, points):
     """Return the whole number n of a ray in a block crossed by caps: w = crossings + n - expansion.
 
-    Where the ray passes a cap, the cap crossing count and the caps' winding number jump alike. So
-    their difference is smooth, and n is the same all along the ray in this block: one evaluation,
+    Where the ray passes a cap, cap crossing count and winding number of the caps jump alike.
+    Their difference is smooth, and n is the same all along the ray in this block: one evaluation,
     at any point, gives it.
     """
     _, _, classes, boundary, clusters, every = shared
     value, error = value_at(classes.expansions, row, point)
     points[0], points[Y], points[Z] = point
-    alone = np.int64(1)  # a literal would be a type of its own, compiled anew
+    alone = np.int64(1)  # a literal has another type, compiled anew
     error += caps_winding_numbers(clusters, every, point, 0.0, FIRST, points, alone)
     angle = cap_crossings - points[VALUE]
     if error >= 0.5 or points[CLEAR] <= 0:
