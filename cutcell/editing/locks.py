@@ -72,7 +72,7 @@ def joint_index(skeleton: Skeleton, joint: int | str) -> int:
 
 
 def _largest(weights: NDArray[np.float64], count: NDArray[np.intp]) -> NDArray[np.float64]:
-    """Keep the `room` largest weights of each row; ties go to the lower index."""
+    """Keep the `count` largest weights of each row; ties go to the lower index."""
     order = np.argsort(-weights, axis=1, kind="stable")
     rank = np.empty_like(order)
     np.put_along_axis(rank, order, np.arange(weights.shape[1])[None, :], axis=1)

@@ -1,4 +1,4 @@
-"""What a person adjusts of the falloff, as arrays."""
+"""Adjustments of the falloff by a person, as arrays."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ class Adjustments:
         Distances of each joint are divided by this; 1 for most.
     radius : array, shape (j,)
         Of the surface about each joint's bones, in the unit cube; NaN where it is measured.
-    by_itself : array, shape (c,), integers
+    independent : array, shape (c,), integers
         Welded vertices whose connected components are never rigid.
     """
 
     gain: NDArray[np.float64]
     radius: NDArray[np.float64]
-    by_itself: NDArray[np.integer]
+    independent: NDArray[np.integer]

@@ -19,7 +19,7 @@ from .rig_falloff.division import Division
 
 @dataclass(frozen=True, eq=False)
 class WeightContext:
-    """What the steps from distances to weights need.
+    """The inputs of the steps from distances to weights.
 
     Parameters
     ----------

@@ -10,8 +10,8 @@ from ..runtime.progress import Tell
 from ..runtime.threads import in_threads, parts, threads
 
 EQUAL = 1 + 1e-9
-"""Weights that differ by less than this factor count as equal. Two bones that meet in a joint weigh
-the same wherever that joint is the nearest point of both, and rounding must not choose."""
+"""Weights that differ by less than this factor are equal. Two bones that meet in a joint weigh the
+same wherever that joint is the nearest point of both, and rounding must not choose."""
 
 A_PART = 2_000_000
 """Weights of one part of the work, which takes some hundredths of a second."""
@@ -22,7 +22,7 @@ def prune(
     max_influences: int | None,
     threshold: float,
     priority: NDArray[np.intp],
-    tell: Tell = lambda done: None,
+    report: Tell = lambda done: None,
 ) -> NDArray[np.float64]:
     """Keep the largest weights of each vertex and make them sum to one again.
 
@@ -33,21 +33,21 @@ def prune(
     in_threads(
         lambda part: _prune(weights[part], most, threshold, priority, pruned[part]),
         parts(len(weights), threads() + weights.size // A_PART),
-        tell,
+        report,
     )
     return pruned
 
 
 @compiled
 def _prune(weights, most, threshold, priority, pruned):
-    kept = np.empty(len(priority), np.intp)
+    joints = np.empty(len(priority), np.intp)
     for v in range(len(weights)):
-        _keep_largest(weights[v], most, threshold, priority, kept, pruned[v])
+        _keep_largest(weights[v], most, threshold, priority, joints, pruned[v])
 
 
 @compiled
-def _keep_largest(row, most, threshold, priority, kept, pruned):
-    """Prune one vertex: see `prune`. `pruned` is all zeros, and `kept` has room for all joints."""
+def _keep_largest(row, most, threshold, priority, joints, pruned):
+    """Prune one vertex, see `prune`. `pruned` is zero; `joints` is scratch space for all joints."""
     count = 0
     for joint in priority:
         weight = row[joint]
@@ -55,20 +55,20 @@ def _keep_largest(row, most, threshold, priority, kept, pruned):
             continue
         if count < most:
             count += 1
-        elif weight <= EQUAL * row[kept[count - 1]]:
+        elif weight <= EQUAL * row[joints[count - 1]]:
             continue
         rank = count - 1
-        while rank > 0 and EQUAL * row[kept[rank - 1]] < weight:
-            kept[rank] = kept[rank - 1]
+        while rank > 0 and EQUAL * row[joints[rank - 1]] < weight:
+            joints[rank] = joints[rank - 1]
             rank -= 1
-        kept[rank] = joint
+        joints[rank] = joint
     # Now the largest come first.
     total = 0.0
     for k in range(count):
-        total += row[kept[k]]
+        total += row[joints[k]]
     least = threshold * total
-    while count > 1 and row[kept[count - 1]] < least:
+    while count > 1 and row[joints[count - 1]] < least:
         count -= 1
-        total -= row[kept[count]]
+        total -= row[joints[count]]
     for k in range(count):
-        pruned[kept[k]] = row[kept[k]] / total
+        pruned[joints[k]] = row[joints[k]] / total

@@ -67,11 +67,11 @@ def skinning_weights(
     Paper section 3.2, equation 1.
     """
     method = method_of(method, **options)
-    known, needed = distances.nearest_joints, method.joints_needed
-    if known is not None and (needed is None or needed > known):
+    measured, needed = distances.nearest_joints, method.joints_needed
+    if measured is not None and (needed is None or needed > measured):
         raise ParameterError(
             f"max_influences is {method.max_influences}, but the distances were measured from the "
-            f"{known} nearest joints of each vertex alone: measure them again with this method"
+            f"{measured} nearest joints of each vertex alone: measure them again with this method"
         )
 
     context = weight_context(
@@ -127,10 +127,10 @@ def equation_1(weights: NDArray[np.float64], context: WeightContext) -> NDArray[
 def permit(weights: NDArray[np.float64], context: WeightContext) -> NDArray[np.float64]:
     """Drop what a vertex may not follow; one left with nothing follows its nearest joint."""
     assert context.allowed is not None
-    kept = np.where(context.allowed, weights, 0.0)
-    lost = np.flatnonzero(kept.sum(axis=1) == 0)
-    kept[lost, context.distances.joint[:, lost].argmin(axis=0)] = 1
-    return kept / kept.sum(axis=1, keepdims=True)
+    permitted = np.where(context.allowed, weights, 0.0)
+    lost = np.flatnonzero(permitted.sum(axis=1) == 0)
+    permitted[lost, context.distances.joint[:, lost].argmin(axis=0)] = 1
+    return permitted / permitted.sum(axis=1, keepdims=True)
 
 
 def limit(weights: NDArray[np.float64], context: WeightContext) -> NDArray[np.float64]:
@@ -146,14 +146,14 @@ def per_vertex(weights: NDArray[np.float64], context: WeightContext) -> NDArray[
 
 
 def of_vertices(
-    graph: CutCellGraph, welded: NDArray[np.float64], tell: Tell = lambda done: None
+    graph: CutCellGraph, welded: NDArray[np.float64], report: Tell = lambda done: None
 ) -> NDArray[np.float64]:
     """Return the weights (n, j) of all vertices, from those (k, j) of welded ones."""
     weights = np.empty((len(graph.vertex_node), welded.shape[1]))
     in_threads(
         lambda part: welded.take(graph.vertex_node[part], 0, out=weights[part], mode="clip"),
         parts(len(weights), threads() + weights.size // A_PART),
-        tell,
+        report,
     )
     return weights
 
@@ -199,7 +199,7 @@ def _divided(distances: BoneDistances, gain: NDArray[np.float64]) -> BoneDistanc
 
 
 def _by_position(distances: BoneDistances) -> NDArray[np.intp]:
-    """Order the joints by where they are, so that ties do not hang on how they are numbered."""
+    """Order the joints by where they are, so that ties do not depend on their numbers."""
     positions = np.full((len(distances.at_welded), 3), np.inf)
     positions[distances.bones.joint] = distances.bones.start
     return np.lexsort(positions.T[::-1])

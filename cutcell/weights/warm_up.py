@@ -32,7 +32,7 @@ def warm_up() -> None:
     global _is_warm
     is_complete = compile_cache.is_complete()
     with nullcontext() if is_complete else _without_garbage_collection():
-        with nullcontext() if is_complete else _beside("compile_after_graph"):
+        with nullcontext() if is_complete else _helper_process("compile_after_graph"):
             graphs = [build_graph(tube(), 8, connectivity=kind) for kind in ("any", 26)]
         for graph in graphs:
             _compile_after(graph)
@@ -76,7 +76,7 @@ def _compile_after(graph: CutCellGraph) -> None:
 
 
 @contextmanager
-def _beside(function: str) -> Iterator[None]:
+def _helper_process(function: str) -> Iterator[None]:
     """Let another process call a function of this module meanwhile; wait for it at the end.
 
     Only one thread of a process can compile. What that process fails to do is left to this one.
@@ -103,12 +103,12 @@ def _beside(function: str) -> Iterator[None]:
 
 
 def _can_be_helped() -> bool:
-    """Tell whether another process can start, and hand over what it compiles."""
+    """Return whether another process can start, and hand over what it compiles."""
     # A program that Python is built into could start itself once more.
     is_python = Path(sys.executable or "").stem.lower().startswith("python")
     return is_python and threads() > 1 and compile_cache.write("begun", b"") is not None
 
 
 def is_compiled() -> bool:
-    """Tell whether all functions, as they now are, are compiled: in memory or on this machine."""
+    """Return whether all functions, as they now are, are compiled: in memory or on this machine."""
     return _is_warm or compile_cache.is_complete()

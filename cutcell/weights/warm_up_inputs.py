@@ -28,9 +28,9 @@ def tube() -> TriangleMesh:
     turn = np.linspace(0, 2 * np.pi, AROUND, endpoint=False)
     heights = np.linspace(0, 1, 5)
     rings = [np.stack([np.cos(turn) / 5, np.sin(turn) / 5, np.full(AROUND, z)], 1) for z in heights]
-    here = np.arange((len(heights) - 1) * AROUND)
-    beside = here // AROUND * AROUND + (here + 1) % AROUND
-    faces = [[here, beside, beside + AROUND], [here, beside + AROUND, here + AROUND]]
+    vertex = np.arange((len(heights) - 1) * AROUND)
+    after = vertex // AROUND * AROUND + (vertex + 1) % AROUND
+    faces = [[vertex, after, after + AROUND], [vertex, after + AROUND, vertex + AROUND]]
     whole = np.concatenate([np.stack(face, axis=1) for face in faces])
     cut = np.delete(whole, MISSING, axis=0)
     count = len(rings) * AROUND

@@ -47,8 +47,8 @@ def bone_containment(
 
     def along_axis(axis: int) -> tuple[NDArray, NDArray, NDArray]:
         turn = [(axis + 1) % 3, (axis + 2) % 3, axis]
-        seen = np.ascontiguousarray(points[:, turn]), np.ascontiguousarray(samples[:, turn])
-        face, sample, sign = _intersect(*seen, faces)
+        turned = np.ascontiguousarray(points[:, turn]), np.ascontiguousarray(samples[:, turn])
+        face, sample, sign = _intersect(*turned, faces)
         return of_face[face], sample, sign
 
     hits = in_threads(along_axis, range(3))
@@ -96,7 +96,7 @@ def _sort_into_columns(samples):
 
 @no_refcount
 def _list_hits(points, faces, samples, start, face, sample, sign):
-    """Return how many ray hits there are, also beyond the room for them.
+    """Return the number of ray hits, even if the arrays hold fewer.
 
     Samples in column i * CELLS + j of the grid are those from start[i * CELLS + j] on.
     """
@@ -126,8 +126,8 @@ def _list_hits(points, faces, samples, start, face, sample, sign):
 
 @no_refcount
 def _crosses(points, corners, u, v):
-    """Tell whether a line passes through a face: +1 where that faces up, -1 down, 0 if not."""
-    # On the line u = const, how many edges of the face lie on the side of larger v.
+    """Return 1 or -1 if a line passes through a face that faces up or down, 0 if it misses."""
+    # The number of edges of the face on the line u = const, on the side of larger v.
     above, turn = 0, 0
     for k in range(3):
         i, j = corners[k], corners[(k + 1) % 3]

@@ -1,4 +1,4 @@
-"""What follows from the components that bones lie in: a penalty across them, and rigid parts."""
+"""Effects of the components that contain bones: a penalty across them, and rigid parts."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def joint_containment(surface: SurfaceOperators, bones: Bones, joints: int) -> N
 def cross_component_penalty(containment: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the factor by which each joint's distance grows on each component.
 
-    An arm whose mesh is a component of its own reaches into the shoulder, and its bone with it;
+    An arm whose mesh is a separate component reaches into the shoulder, and its bone with it;
     the surface of the chest there is not the arm's. No factor is on the component that contains
     most of a joint's bone, nor on one that contains more of this bone than of any other.
 
@@ -56,15 +56,15 @@ def make_rigid(
     containment: NDArray[np.float64],
     component: NDArray[np.int32],
     weights: NDArray[np.float64],
-    by_itself: NDArray[np.bool_] | None = None,
+    independent: NDArray[np.bool_] | None = None,
 ) -> NDArray[np.float64]:
     """Let components that contain bones of one joint only follow that joint: plates, wheels.
 
-    Shapes: containment (components, j), component (k,), weights (k, j), by_itself (components,);
+    Shapes: containment (components, j), component (k,), weights (k, j), independent (components,);
     returns (k, j).
     """
     alone = np.count_nonzero(containment, axis=1) == 1
-    rigid = (alone if by_itself is None else alone & ~by_itself)[component]
+    rigid = (alone if independent is None else alone & ~independent)[component]
     if not rigid.any():
         return weights
     result = weights.copy()

@@ -1,4 +1,4 @@
-"""Bone heat on the surface: weights in equilibrium between conduction and the bones' pull."""
+"""Bone heat on the surface: weights in equilibrium between conduction and the pull of bones."""
 
 from __future__ import annotations
 
@@ -70,12 +70,12 @@ class Diffusion:
         return cls(screening, Multigrid.of(matrix[order][:, order]), order)
 
     def spread(
-        self, weights: NDArray[np.float64], tell: Tell = lambda done: None
+        self, weights: NDArray[np.float64], report: Tell = lambda done: None
     ) -> NDArray[np.float64]:
         """Return the equilibrium of weights p, shape (k, j); rows sum to one before and after."""
-        spread = self.equilibrium(weights, tell)
+        spread = self.equilibrium(weights, report)
         self.normalise(spread, weights)
-        tell(1.0)
+        report(1.0)
         return spread
 
     def normalise(self, spread: NDArray[np.float64], weights: NDArray[np.float64]) -> None:
@@ -83,22 +83,22 @@ class Diffusion:
 
         def normalise(part: slice) -> None:
             total = spread[part].sum(axis=1, keepdims=True)
-            # Next to needle triangles rounding may leave nothing: keep the vertex' own weights.
-            known = np.isfinite(total) & (total > 0)
-            if known.all():
+            # Next to needle triangles rounding may leave nothing: the vertex keeps its own weights.
+            is_positive = np.isfinite(total) & (total > 0)
+            if is_positive.all():
                 spread[part] /= total
             else:
-                own = weights[part].copy()
-                spread[part] = np.divide(spread[part], total, out=own, where=known)
+                normalised = weights[part].copy()
+                spread[part] = np.divide(spread[part], total, out=normalised, where=is_positive)
 
         in_threads(normalise, parts(len(spread)))
 
     def equilibrium(
-        self, weights: NDArray[np.float64], tell: Tell = lambda done: None
+        self, weights: NDArray[np.float64], report: Tell = lambda done: None
     ) -> NDArray[np.float64]:
         """Return the equilibrium, where rounding leaves rows that do not quite sum to one."""
         spread = np.zeros(weights.shape)
-        self.solve(weights, np.flatnonzero(weights.max(axis=0)), spread, tell)
+        self.solve(weights, np.flatnonzero(weights.max(axis=0)), spread, report)
         return spread
 
     def solve(
@@ -106,11 +106,11 @@ class Diffusion:
         weights: NDArray[np.float64],
         joints: NDArray[np.intp],
         spread: NDArray[np.float64],
-        tell: Tell = lambda done: None,
+        report: Tell = lambda done: None,
     ) -> None:
-        """Write the equilibrium of some joints' weights into their columns, zeros before."""
+        """Write the equilibrium of the weights of some joints into their columns, zeros before."""
         groups = [joints[i : i + RIGHT_SIDES] for i in range(0, len(joints), RIGHT_SIDES)]
-        shares = Shares(lambda stage, done: tell(done), "weights", len(groups))
+        shares = Shares(lambda stage, done: report(done), "weights", len(groups))
 
         def solve(group: int) -> None:
             self._solve(groups[group], weights, spread, lambda done: shares.tell(group, done))
@@ -123,7 +123,7 @@ class Diffusion:
         joints: NDArray[np.intp],
         weights: NDArray[np.float64],
         spread: NDArray[np.float64],
-        tell: Tell,
+        report: Tell,
     ) -> None:
         """Solve for the weights of at most `RIGHT_SIDES` joints, into `spread`."""
         right = self.screening[:, None] * weights[:, joints]
@@ -132,5 +132,5 @@ class Diffusion:
             return
         padded = np.zeros((len(weights), RIGHT_SIDES))
         padded[:, : len(joints)] = right[self.order]
-        rows, solution = self.solver.solve(padded, tell)
+        rows, solution = self.solver.solve(padded, report)
         spread[self.order[rows][:, None], joints] = np.maximum(solution[:, : len(joints)], 0.0)

@@ -87,15 +87,15 @@ class Division:
             weights = before.weights.copy()
             chosen = before.beyond | (distance != before.distances.at_welded).any(axis=0)
             chosen |= (penalty != before.penalty).any(axis=1)[surface.component]
-        known = distances, surface, containment, penalty
-        cls(*known, np.full(joints, np.inf), chosen, weights)._divide(chosen)
+        fields = distances, surface, containment, penalty
+        cls(*fields, np.full(joints, np.inf), chosen, weights)._divide(chosen)
         resolution = distances.graph.lattice.resolution
         radius = _radii(weights, distance, surface.areas, distances.bones, resolution)
         if adjustments is not None:
             radius = np.where(np.isnan(adjustments.radius), radius, adjustments.radius)
         beyond = np.empty(vertices, np.bool_)
         _mark_beyond(distance, weights, radius, beyond)
-        division = cls(*known, radius, beyond, weights)
+        division = cls(*fields, radius, beyond, weights)
         division._divide(beyond)
         return division
 
@@ -133,7 +133,7 @@ def _divide_by_distance(
     chosen,
     weights,
 ):
-    """Divide chosen vertices among joints by distance; `bone` tells where each joint's bones begin.
+    """Divide chosen vertices among joints by distance; `bone` holds the first bone of each joint.
 
     Distances up to `near` are equal; beyond a joint's `radius` they grow by their square.
     """
@@ -160,13 +160,13 @@ def _divide_by_distance(
 
 
 @no_refcount
-def _mark_beyond(distance, weights, radius, found):
+def _mark_beyond(distance, weights, radius, beyond):
     """Mark the vertices, shape (k,), with a share of a joint that are beyond its radius."""
     for v in range(len(weights)):
-        found[v] = False
+        beyond[v] = False
         for j in range(len(distance)):
             if weights[v, j] > MIN_SHARE and distance[j, v] > radius[j]:
-                found[v] = True
+                beyond[v] = True
 
 
 @no_refcount
@@ -209,9 +209,9 @@ def _radii(
     before = np.concatenate([[0.0], total])[first]
     median = np.searchsorted(total, (before[:-1] + before[1:]) / 2)
     radius = np.full(len(distance), np.inf)
-    known = _leads_on(bones, len(distance)) & (first[1:] > first[:-1])
+    measured = _leads_on(bones, len(distance)) & (first[1:] > first[:-1])
     least = MIN_RADIUS / resolution
-    radius[known] = RADIUS_FACTOR * np.maximum(length[median[known]], least)
+    radius[measured] = RADIUS_FACTOR * np.maximum(length[median[measured]], least)
     return radius
 
 
@@ -220,15 +220,15 @@ def facing(
 ) -> float:
     """Return how much surface at a point faces away from a joint's bones, `FACING_LEAST` to 1.
 
-    Distances are divided by this: a bone in front of the skin, as of another limb, counts as
-    farther.
+    Distances are divided by this: a bone in front of the skin, as of another limb, is
+    treated as farther.
     """
     first, last = np.searchsorted(bones.joint, [joint, joint + 1])
     return float(_facing(point, normal, bones.start, bones.end, first, last))
 
 
 def _leads_on(bones: Bones, joints: int) -> NDArray[np.bool_]:
-    """Tell which joints have a bone that ends where another joint's begins."""
+    """Return which joints have a bone that ends where one of another joint begins."""
     meets = cdist(bones.end, bones.start, "chebyshev") < CONNECTED
     meets &= bones.joint[:, None] != bones.joint
     leads = np.zeros(joints, np.bool_)

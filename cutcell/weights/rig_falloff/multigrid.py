@@ -8,7 +8,7 @@ References
 ----------
 Vanek, Mandel & Brezina 1996, "Algebraic multigrid by smoothed aggregation for second and fourth
 order elliptic problems". Baker, Falgout, Kolev & Yang 2011, "Multigrid smoothers for
-ultraparallel computing" (scaling by the sums of the rows' absolute values).
+ultraparallel computing" (scaling by the absolute row sums).
 """
 
 from __future__ import annotations
@@ -95,7 +95,7 @@ class Level:
         """Return the matrix of the next level."""
         return csr_array(self.restriction @ (self.matrix @ self.interpolation))
 
-    def some(self, rows: NDArray[np.intp]) -> tuple[Level, NDArray[np.intp]]:
+    def subset(self, rows: NDArray[np.intp]) -> tuple[Level, NDArray[np.intp]]:
         """Return the level of some unknowns, and the coarser unknowns that it is left with.
 
         These have no part in other unknowns. So the coarser matrix is still that of this one, and
@@ -105,8 +105,8 @@ class Level:
         parts = np.bincount(interpolation.indices, minlength=interpolation.shape[1])
         coarser = np.flatnonzero(parts == np.diff(self.restriction.indptr))
         interpolation = interpolation[:, coarser]
-        known = _block(self.matrix, rows), self.inverse[rows], interpolation
-        return Level(*known, interpolation.T.tocsr()), coarser
+        matrix = _block(self.matrix, rows)
+        return Level(matrix, self.inverse[rows], interpolation, interpolation.T.tocsr()), coarser
 
 
 def factorise(matrix: csr_array) -> SuperLU:
@@ -119,7 +119,7 @@ def factorise(matrix: csr_array) -> SuperLU:
 
 @dataclass(frozen=True, eq=False)
 class Multigrid:
-    """A symmetric positive definite matrix, and coarser ones that stand for the same equation.
+    """A symmetric positive definite matrix, and coarser ones of the same equation.
 
     Parameters
     ----------
@@ -148,7 +148,7 @@ class Multigrid:
         return cls(levels, matrix, factorise(matrix))
 
     def solve(
-        self, right: NDArray[np.float64], tell: Tell = lambda done: None
+        self, right: NDArray[np.float64], report: Tell = lambda done: None
     ) -> tuple[NDArray[np.intp], NDArray[np.float64]]:
         """Solve for right sides, shape (k, RIGHT_SIDES), of solutions with values from 0 to 1.
 
@@ -157,10 +157,10 @@ class Multigrid:
 
         Returns shapes (r,), (r, RIGHT_SIDES).
         """
-        return self._solve(right, TOLERANCE, tell)
+        return self._solve(right, TOLERANCE, report)
 
     def _solve(
-        self, right: NDArray[np.float64], tolerance: float, tell: Tell
+        self, right: NDArray[np.float64], tolerance: float, report: Tell
     ) -> tuple[NDArray[np.intp], NDArray[np.float64]]:
         if not self.levels:
             return np.arange(len(right)), self.factors.solve(right)
@@ -168,30 +168,30 @@ class Multigrid:
         below = Multigrid(coarser, self.coarsest, self.factors)
         restricted = level.restriction @ right
         coarse = np.zeros_like(restricted)
-        known, coarse_there = below._solve(restricted, COARSE_TOLERANCE, lambda done: tell(0.0))
-        coarse[known] = coarse_there
+        coarse_rows, values = below._solve(restricted, COARSE_TOLERANCE, lambda done: report(0.0))
+        coarse[coarse_rows] = values
         guess = level.interpolation @ coarse
         rows = np.flatnonzero(_is_significant(guess, right, level.inverse))
-        x, there = guess[rows], self._some(rows)
-        residual = right[rows] - there.matrix @ x
-        return rows, x + there._improve(residual, tolerance, tell)
+        x, equation = guess[rows], self._subset(rows)
+        residual = right[rows] - equation.matrix @ x
+        return rows, x + equation._improve(residual, tolerance, report)
 
     @property
     def matrix(self) -> csr_array:
         """The matrix itself."""
         return self.levels[0].matrix if self.levels else self.coarsest
 
-    def _some(self, rows: NDArray[np.intp]) -> Multigrid:
-        """Return the equation for some unknowns, the others being known."""
+    def _subset(self, rows: NDArray[np.intp]) -> Multigrid:
+        """Return the equation for some unknowns; the others stay as they are."""
         levels = []
         for level in self.levels:
-            some, rows = level.some(rows)
-            levels.append(some)
+            restricted, rows = level.subset(rows)
+            levels.append(restricted)
         coarsest = _block(self.coarsest, rows)
         return Multigrid(levels, coarsest, factorise(coarsest))
 
     def _improve(
-        self, residual: NDArray[np.float64], tolerance: float, tell: Tell
+        self, residual: NDArray[np.float64], tolerance: float, report: Tell
     ) -> NDArray[np.float64]:
         """Solve by conjugate gradients with multigrid cycles as preconditioner.
 
@@ -201,7 +201,7 @@ class Multigrid:
         x, direction = np.zeros_like(residual), np.zeros_like(residual)
         before, last = np.ones(RIGHT_SIDES), np.inf
         for count in range(MAX_STEPS):
-            tell(count / MAX_STEPS)
+            report(count / MAX_STEPS)
             step = self._cycle(residual)
             size = max(step.max(initial=0), -step.min(initial=0))
             rate = min(size / last, SLOWEST_RATE) if count else FIRST_RATE
@@ -281,9 +281,9 @@ def _group(start, column, value, diagonal):
 
 
 @compiled(inline="always")
-def _is_strong(value, here, there):
-    """Tell whether two unknowns with these entries on the diagonal are strongly coupled."""
-    return value * value >= STRONG * STRONG * here * there
+def _is_strong(value, diagonal, other_diagonal):
+    """Return whether two unknowns with these diagonal entries are strongly coupled."""
+    return value * value >= STRONG * STRONG * diagonal * other_diagonal
 
 
 def _smooth(
@@ -310,7 +310,7 @@ def _sweep(start, column, value, inverse, right, x, direction):
 
 @compiled
 def _is_significant(guess, right, inverse):
-    """Tell which rows of a solution, (k,), are not negligible: by a guess, or by their own side."""
+    """Return which rows of a solution are not negligible, by a guess or their own side: (k,)."""
     significant = np.empty(len(guess), np.bool_)
     for v in range(len(guess)):
         significant[v] = False

@@ -18,7 +18,7 @@ from .rigid_accessories import attach_accessories
 from .surface_operators import SurfaceOperators
 
 TAIL = 0.05
-"""Of a vertex' largest weight: subtracted from all its weights, so that they end somewhere."""
+"""Of a vertex's largest weight: subtracted from all its weights, so that they end somewhere."""
 
 
 def divide_and_prepare(
@@ -51,16 +51,16 @@ def with_rigid_parts(weights: NDArray[np.float64], context: WeightContext) -> ND
     """Let plates, wheels, eyes, buttons... move rigidly."""
     assert context.division is not None
     containment, surface = context.division.containment, context.division.surface
-    by_itself = np.zeros(len(containment), np.bool_)
+    independent = np.zeros(len(containment), np.bool_)
     if context.adjustments is not None:
-        by_itself[surface.component[context.adjustments.by_itself]] = True
+        independent[surface.component[context.adjustments.independent]] = True
     if len(containment) > 1:
-        weights = make_rigid(containment, surface.component, weights, by_itself)
-    return attach_accessories(context.distances.graph, surface, containment, weights, by_itself)
+        weights = make_rigid(containment, surface.component, weights, independent)
+    return attach_accessories(context.distances.graph, surface, containment, weights, independent)
 
 
 def without_tail(weights: NDArray[np.float64], context: WeightContext) -> NDArray[np.float64]:
-    """Subtract a part of each vertex' largest weight from all of them, in place."""
+    """Subtract a part of each vertex's largest weight from all of them, in place."""
     _subtract_tail(weights)
     return weights
 

@@ -27,21 +27,21 @@ def attach_accessories(
     surface: SurfaceOperators,
     containment: NDArray[np.float64],
     weights: NDArray[np.float64],
-    by_itself: NDArray[np.bool_] | None = None,
+    independent: NDArray[np.bool_] | None = None,
 ) -> NDArray[np.float64]:
     """Let small components without bones follow what they sit on: eyes, buttons, horns, armour.
 
     Each moves rigidly, by the mean weights of the rest of the mesh where they touch.
 
-    Shapes: containment (components, j), weights (k, j), by_itself (components,); returns (k, j).
+    Shapes: containment (components, j), weights (k, j), independent (components,); returns (k, j).
     """
     points, component, areas = surface.points, surface.component, surface.areas
-    # What has no area, such as a vertex without a face, touches nothing.
+    # A component without area, such as a vertex without a face, touches nothing.
     has_area = np.bincount(component, areas, len(containment)) > 0
     is_small = _longest_sides(points, component) <= SMALL
     is_accessory = has_area & is_small & (containment.max(axis=1) == 0)
-    if by_itself is not None:
-        is_accessory &= ~by_itself
+    if independent is not None:
+        is_accessory &= ~independent
     if not is_accessory.any():
         return weights
     on_body = ~is_accessory[component]

@@ -75,7 +75,7 @@ def another_machine(tmp_path, monkeypatch):
     warm_up()
     monkeypatch.setattr(compile_cache, "folders", lambda: (tmp_path / "kernels-new",))
     monkeypatch.setattr(compilation, "_is_warm", False)
-    monkeypatch.setattr(compilation, "_beside", lambda function: nullcontext())
+    monkeypatch.setattr(compilation, "_helper_process", lambda function: nullcontext())
     return tmp_path
 
 
@@ -129,7 +129,7 @@ def test_the_graph_made_by_hand_is_of_the_types_that_are_built():
 
 def test_another_process_compiles_meanwhile(tmp_path, monkeypatch):
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
-    with compilation._beside("compile_cache.mark_complete"):
+    with compilation._helper_process("compile_cache.mark_complete"):
         assert not list(tmp_path.rglob("complete"))  # it takes a second to start
     assert len(list(tmp_path.rglob("complete"))) == 1
 
@@ -139,7 +139,7 @@ def test_no_other_process_is_started_where_it_could_hand_nothing_over(monkeypatc
     monkeypatch.setattr(compile_cache, "refusals", [])
     monkeypatch.delattr(subprocess, "Popen")
     done = []
-    with compilation._beside("compile_after_graph"):
+    with compilation._helper_process("compile_after_graph"):
         done.append(True)
     assert done
 
@@ -150,7 +150,7 @@ def test_it_ends_with_what_is_done_meanwhile(tmp_path, monkeypatch):
     monkeypatch.setattr(
         subprocess, "Popen", lambda *a, **k: started.append(popen(*a, **k)) or started[0]
     )
-    with pytest.raises(KeyboardInterrupt), compilation._beside("compile_after_graph"):
+    with pytest.raises(KeyboardInterrupt), compilation._helper_process("compile_after_graph"):
         raise KeyboardInterrupt
     assert started[0].returncode not in (0, None)
 
@@ -159,7 +159,7 @@ def test_it_ends_with_what_is_done_meanwhile(tmp_path, monkeypatch):
 def test_without_another_process_this_one_goes_on(executable, monkeypatch):
     monkeypatch.setattr(sys, "executable", executable)
     done = []
-    with compilation._beside("compile_after_graph"):
+    with compilation._helper_process("compile_after_graph"):
         done.append(True)
     assert done
 
@@ -170,5 +170,5 @@ def test_a_program_that_python_is_built_into_is_not_started(monkeypatch):
 
     monkeypatch.setattr(subprocess, "Popen", refuse)
     monkeypatch.setattr(sys, "executable", "/opt/maya/bin/maya.bin")
-    with compilation._beside("compile_after_graph"):
+    with compilation._helper_process("compile_after_graph"):
         pass
