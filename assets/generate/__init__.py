@@ -1,5 +1,8 @@
 """Random rigged characters for training and tests."""
 
-from .characters import KINDS, Kind, generate
+import lazy_loader
 
-__all__ = ["KINDS", "Kind", "generate"]
+# The command imports this package whenever `cutcell` starts, and the generator is large.
+__getattr__, __dir__, __all__ = lazy_loader.attach(
+    __name__, submod_attrs={"characters": ["KINDS", "Kind", "generate"]}
+)

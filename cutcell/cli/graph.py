@@ -51,8 +51,8 @@ def graph(
     from ..graph import build_graph
     from ..io import load
     from ..io.files import naming
+    from ..metrics import summary
     from ..rig.deform_joints import choose_deform
-    from . import summary
 
     how = chosen_method(options)
     loaded = load(rig, skeleton=skeleton)

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.random import Generator
 
 import cutcell
-from cutcell import weights as skinning
+from cutcell.weights import warm_up as compilation
 
 from .harness import main
 from .shapes import KINDS, mesh_of
@@ -199,7 +199,7 @@ def _check_progress(stage: str, done: float) -> None:
 
 def warm_up() -> None:
     """Load what is compiled: a case is not to be blamed for that."""
-    skinning.warm_up()
+    compilation.warm_up()
 
 
 if __name__ == "__main__":
