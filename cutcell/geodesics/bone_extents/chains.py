@@ -1,8 +1,8 @@
 """Bone chains: which bones continue which, from the places of joints in the body.
 
-The joint tree of a file defines which joints move together. Most of its parent-child pairs are bones, but
-not all: feet for inverse kinematics are children of a root below the ground, arms and ears branch
-off sideways, and some files list their joints without any tree.
+The joint tree of a file defines which joints move together. Most of its parent-child pairs are
+bones, but not all: feet for inverse kinematics are children of a root below the ground, arms and
+ears branch off sideways, and some files list their joints without any tree.
 """
 
 from __future__ import annotations

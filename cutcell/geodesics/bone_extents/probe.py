@@ -52,7 +52,7 @@ class BodyProbe:
         return is_inside.reshape(points.shape[:-1])
 
     def near(self, points: ArrayLike) -> NDArray[np.bool_]:
-        """Return for each point (..., 3) whether the body is in its lattice cell or an adjacent one."""
+        """Return whether the body is in or beside the lattice cell of each point (..., 3)."""
         points = np.asarray(points, np.float64)
         return self._grid.near(points.reshape(-1, 3)).reshape(points.shape[:-1])
 
