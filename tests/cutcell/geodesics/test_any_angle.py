@@ -188,7 +188,7 @@ def test_some_joints_are_measured_where_no_other_is_much_nearer():
     assert error.max() < 0.2
 
     some = np.isin(bones.joint, (2, 7))
-    mine = sources.some(some), bones.some(some), nodes
+    mine = sources.subset(some), bones.subset(some), nodes
     found = any_angle_paths(graph, contraction, *mine, nearest=2, within=1.5, least=least)
     near = every[[2, 7]] <= 1.5 * np.maximum(least, 0.5 / 24)
     assert 0.1 < near.mean() < 0.5
