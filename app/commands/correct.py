@@ -118,7 +118,7 @@ def choose_deform(session: Session, joints: Collection[int]) -> None:
 
 
 def guess(session: Session, done: Any) -> None:
-    """Guess from names and places which joints deform; `done` is called with what was found."""
+    """Guess from names and places which joints deform; `done` is called with a `DeformJoints`."""
     rig = session.state.rig
 
     def work(progress: Any) -> DeformJoints:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -38,25 +39,29 @@ def joints(session: Session) -> pmui.Column:
     )
     cache: dict[str, Any] = {"of": None, "guess": None}
 
-    def guessed(found: DeformJoints) -> None:
-        cache["guess"] = found
-        listed()
+    def guessed(of: Any, guess: DeformJoints) -> None:
+        if cache["of"] == of:  # otherwise another character was opened meanwhile
+            cache["guess"] = guess
+            listed()
 
     def listed(*events: Any) -> None:
         rig = state.rig
         if rig is None or state.bare or state.panel != "weights":
             return  # it is shown when somebody looks
-        of = (rig.mesh, rig.skeleton.names)
+        of = _character(state)
         if cache["of"] != of:
             cache.update(of=of, guess=None)
-            correct.guess(session, guessed)
+            correct.guess(session, partial(guessed, of))
         tree.param.update(rows=joint_rows(state, session.memo, cache["guess"]), chosen=state.joint)
 
     def anew(event: Any) -> None:
-        correct.guess(
-            session,
-            lambda found: correct.choose_deform(session, np.flatnonzero(found.deform)),
-        )
+        of = _character(state)
+
+        def choose(guess: DeformJoints) -> None:
+            if _character(state) == of:
+                correct.choose_deform(session, np.flatnonzero(guess.deform))
+
+        correct.guess(session, choose)
 
     state.param.watch(lambda *events: session.tasks.later(listed), ["panel", "rig", "corrections"])
     # The colours go first, while a slider moves all the time.
@@ -69,6 +74,11 @@ def joints(session: Session) -> pmui.Column:
         description="From their names, and where they lie in the body",
     )  # fmt: skip
     return section("Joints", counts, tree, guesser, *_chosen(session))
+
+
+def _character(state: State) -> Any:
+    """Return what stays the same while a character's weights are corrected."""
+    return state.rig and (state.rig.mesh, state.rig.skeleton.names)
 
 
 def _choose(state: State, joint: int) -> None:

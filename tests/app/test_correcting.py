@@ -10,6 +10,7 @@ import trimesh
 import cutcell
 from cutcell import Corrections, JointCorrection, PartCorrection
 from cutcell.rig import TriangleMesh
+from cutcell.rig.deform_joints import deform_joints
 from cutcell_app.commands import arrival, correct, keys, loading, look, tour
 from cutcell_app.commands.binding import restore
 from cutcell_app.panels.components import parts_of_mesh
@@ -264,6 +265,26 @@ def test_the_tree_and_what_stands_below_it(bound, loop):
     assert not bound.state.corrections
     restore(bound, {"corrections": ALL})
     assert gain.value == 0.0
+
+
+def test_a_guess_that_arrives_after_another_character_was_opened_is_dropped(
+    bound, loop, monkeypatch
+):
+    waiting = []
+    monkeypatch.setattr(correct, "guess", lambda session, done: waiting.append(done))
+    section = joints(bound)
+    (tree,) = section.select(JointTree)
+    arm = bound.state.rig
+    late = deform_joints(arm.mesh, arm.skeleton)
+    detect = next(b for b in section.select(pmui.Button) if b.label == "Detect deforming joints")
+    detect.clicks += 1
+    loading.load_demo(bound, "robot")
+    loop.run_until(lambda: len(waiting) == 3 and not bound.tasks.running)
+    of_the_arm, by_the_button, _ = waiting
+    of_the_arm(late)
+    by_the_button(late)
+    assert len(tree.rows) == len(bound.state.rig.skeleton.joints)
+    assert not bound.state.corrections
 
 
 def test_a_vertex_is_overruled_with_all_that_lie_in_its_place(bound, loop):
