@@ -38,7 +38,7 @@ class Cancelled(Exception):
 
 
 def comes_from_ctrl_c(error: BaseException | None) -> bool:
-    """Tell whether an error is Ctrl-C, or was raised because of it.
+    """Return whether an error is Ctrl-C, or was raised because of it.
 
     numba's dispatcher raises `SystemError` where Ctrl-C comes while it looks at its arguments.
     """

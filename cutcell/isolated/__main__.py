@@ -44,10 +44,10 @@ def main(task: str, job_path: str, result_path: str, memory: str = "0") -> None:
     module, function = TASKS[task].split(":")
     limit_memory(int(memory))
     with np.load(job_path) as job:
-        given = {name: job[name] for name in job.files}
+        arrays = {name: job[name] for name in job.files}
     begin = perf_counter()
     try:
-        result = getattr(import_module(f".{module}", "cutcell.isolated"), function)(**given)
+        result = getattr(import_module(f".{module}", "cutcell.isolated"), function)(**arrays)
     except ModuleNotFoundError as error:
         extra = EXTRAS.get(task, "cutcell[copyleft]")
         failed = f"{error.name} is not installed; try: pip install '{extra}'"

@@ -10,16 +10,16 @@ def decode(data, ends):
 
     Shapes: data (b,), ends (k,).
     """
-    found, start = {}, 0
+    arrays, start = {}, 0
     for k, end in enumerate(ends.tolist()):
         try:
             mesh = DracoPy.decode(data[start:end].tobytes())
-            found[f"faces_{k}"] = mesh.faces
+            arrays[f"faces_{k}"] = mesh.faces
             for attribute in mesh.attributes:
-                found[f"values_{k}_{attribute['unique_id']}"] = attribute["data"]
+                arrays[f"values_{k}_{attribute['unique_id']}"] = attribute["data"]
         except MemoryError:
             raise RuntimeError(f"mesh {k} takes more memory than it may") from None
         except Exception as error:  # its own errors have no common class
             raise RuntimeError(f"mesh {k} is damaged: {error}") from None
         start = end
-    return found
+    return arrays

@@ -29,7 +29,7 @@ def read(data):
     nodes = kept(scene.nodes)
     place = {node.element_id: i for i, node in enumerate(nodes)}
     parents = [place[p.element_id] if (p := node.parent) else -1 for node in nodes]
-    found = {
+    arrays = {
         "node_names": np.array([node.name for node in nodes], np.str_),
         "node_parents": np.array(parents),
         "node_transforms": np.array([transform(node.local_transform) for node in nodes]),
@@ -51,15 +51,15 @@ def read(data):
             k = len(names)
             names.append(node.name or mesh.name)
             at.append(place[node.element_id])
-            found |= {f"mesh_{k}_{key}": value for key, value in shape.items()}
+            arrays |= {f"mesh_{k}_{key}": value for key, value in shape.items()}
             colours = surface(mesh, node, corners, polygons, palette)
-            found |= {f"mesh_{k}_{key}": value for key, value in colours.items()}
-            found[f"mesh_{k}_place"] = matrix(node.geometry_to_node)
+            arrays |= {f"mesh_{k}_{key}": value for key, value in colours.items()}
+            arrays[f"mesh_{k}_place"] = matrix(node.geometry_to_node)
             if skins:
                 skin = influences(skins, place)
-                found |= {f"mesh_{k}_{key}": value for key, value in skin.items()}
-    found |= {"mesh_names": np.array(names, np.str_), "mesh_nodes": np.array(at, int)}
-    return found | palette.arrays() | clips(scene, place)
+                arrays |= {f"mesh_{k}_{key}": value for key, value in skin.items()}
+    arrays |= {"mesh_names": np.array(names, np.str_), "mesh_nodes": np.array(at, int)}
+    return arrays | palette.arrays() | clips(scene, place)
 
 
 def options():
@@ -95,9 +95,9 @@ def triangles(mesh):
         polygons = np.flatnonzero(count > k + 1)
         start = begin[polygons]
         fans.append(np.stack([start, start + k, start + k + 1, polygons], axis=1))
-    found = np.concatenate(fans) if fans else np.zeros((0, 4), int)
-    found = found[np.argsort(found[:, 0], kind="stable")]
-    return found[:, :3], found[:, 3]
+    triangles = np.concatenate(fans) if fans else np.zeros((0, 4), int)
+    triangles = triangles[np.argsort(triangles[:, 0], kind="stable")]
+    return triangles[:, :3], triangles[:, 3]
 
 
 def geometry(mesh, corners):

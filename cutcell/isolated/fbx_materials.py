@@ -29,9 +29,9 @@ class FbxPalette(Palette):
         """Return the number of a material, -1 for none."""
         if material is None:
             return -1
-        known = self._numbers.get(material.element_id)
-        if known is not None:
-            return known
+        number = self._numbers.get(material.element_id)
+        if number is not None:
+            return number
         keep(material)
         texture = base_texture(material)
         image = -1
@@ -47,9 +47,9 @@ class FbxPalette(Palette):
 
 def base_texture(material):
     """Return the texture of the base colour that has a file; None if there is none."""
-    for found in (material.pbr.base_color, material.fbx.diffuse_color):
-        texture = found.texture
-        if texture is None or not found.texture_enabled:
+    for channel in (material.pbr.base_color, material.fbx.diffuse_color):
+        texture = channel.texture
+        if texture is None or not channel.texture_enabled:
             continue
         keep(texture)
         for one in [texture, *kept(texture.file_textures)]:
@@ -60,30 +60,30 @@ def base_texture(material):
 
 def base_color(material):
     """Return red, green and blue, times the factor."""
-    for found, factor in (
+    for color, factor in (
         (material.pbr.base_color, material.pbr.base_factor),
         (material.fbx.diffuse_color, material.fbx.diffuse_factor),
     ):
-        if found.has_value:
+        if color.has_value:
             share = factor.value_vec4.x if factor.has_value else 1.0
-            return tuple(share * x for x in tuple(found.value_vec4)[:3])
+            return tuple(share * x for x in tuple(color.value_vec4)[:3])
     return (1.0, 1.0, 1.0)
 
 
 def opacity(material):
     """Return how opaque a material is, from 0 to 1."""
     if material.pbr.opacity.has_value:
-        found = material.pbr.opacity.value_vec4.x
+        value = material.pbr.opacity.value_vec4.x
     else:
         color, factor = material.fbx.transparency_color, material.fbx.transparency_factor
         if not color.has_value or not factor.has_value:
             return 1.0
-        found = 1 - factor.value_vec4.x * sum(tuple(color.value_vec4)[:3]) / 3
-    return float(found) if UNSEEN < found < 1 else 1.0
+        value = 1 - factor.value_vec4.x * sum(tuple(color.value_vec4)[:3]) / 3
+    return float(value) if UNSEEN < value < 1 else 1.0
 
 
 def is_cut(material):
-    """Tell whether an image says where a material is not."""
+    """Return whether an image says where a material is not."""
     maps = (material.pbr.opacity, material.fbx.transparency_color, material.fbx.transparency_factor)
     return any(one.texture is not None and one.texture_enabled for one in maps)
 
@@ -97,25 +97,25 @@ def surface(mesh, node, corners, polygons, palette):
     numbers = np.array([*(palette.number(one) for one in materials), -1])
     which = np.array(list(mesh.face_material), int)
     which = which[polygons] if len(which) else np.zeros(len(polygons), int)
-    known = (which >= 0) & (which < len(materials))
-    material = numbers[np.where(known, which, -1)]
-    found = {"materials": material}
+    has_material = (which >= 0) & (which < len(materials))
+    material = numbers[np.where(has_material, which, -1)]
+    arrays = {"materials": material}
     if mesh.vertex_color.exists:
         values, indices = stored(mesh.vertex_color)
         colors = values[indices[corners]][..., :3]
-        found["colors"] = np.round(255 * np.clip(np.nan_to_num(colors), 0, 1)).astype(np.uint8)
+        arrays["colors"] = np.round(255 * np.clip(np.nan_to_num(colors), 0, 1)).astype(np.uint8)
     textured = [k for k in np.unique(material) if k >= 0 and palette.textures[k] is not None]
     if textured and mesh.vertex_uv.exists:
         sets = {one.name: one.vertex_uv for one in kept(mesh.uv_sets)}
-        wanted = {palette.textures[k].uv_set for k in textured}
-        known = {name: stored(sets.get(name) or mesh.vertex_uv) for name in wanted}
+        names = {palette.textures[k].uv_set for k in textured}
+        coordinates = {name: stored(sets.get(name) or mesh.vertex_uv) for name in names}
         places = np.zeros((*corners.shape, 2), np.float32)
         for k in textured:
             texture, rows = palette.textures[k], np.flatnonzero(material == k)
-            values, indices = known[texture.uv_set]
+            values, indices = coordinates[texture.uv_set]
             places[rows] = in_image(values[indices[corners[rows]]], texture)
-        found["places"] = places
-    return found
+        arrays["places"] = places
+    return arrays
 
 
 def stored(attribute):

@@ -35,12 +35,12 @@ class Palette:
 
     def arrays(self):
         """Return what the process hands on."""
-        found = {
+        arrays = {
             "material_names": np.array(self._names, np.str_),
             "material_values": np.array(self._values, float).reshape(-1, 4),
             "material_uses": np.array(self._uses, int).reshape(-1, 2),
             "image_files": np.array([names for names, _ in self._images], np.str_).reshape(-1, 3),
         }
         for k, content in enumerate(self._contents):
-            found[f"image_{k}_content"] = np.frombuffer(content, np.uint8)
-        return found
+            arrays[f"image_{k}_content"] = np.frombuffer(content, np.uint8)
+        return arrays

@@ -53,10 +53,10 @@ def run_isolated(
         if done.returncode != 0 or not result_path.exists():
             raise WorkFailedError(_last_words(done, who))
         with np.load(result_path) as result:
-            found = {name: result[name] for name in result.files}
-    if "failed" in found:
-        raise WorkFailedError(str(found["failed"]))
-    return found
+            arrays = {name: result[name] for name in result.files}
+    if "failed" in arrays:
+        raise WorkFailedError(str(arrays["failed"]))
+    return arrays
 
 
 def _done(command: list[str], folder: str, limit: float, who: str) -> subprocess.CompletedProcess:

@@ -24,12 +24,12 @@ def by_tetgen(points, faces, handles):
 
     faces = faces.astype(np.int64)
     try:
-        found = tetgen.tetrahedralize(np.concatenate([points, handles]), faces, flags=FLAGS)
+        filled = tetgen.tetrahedralize(np.concatenate([points, handles]), faces, flags=FLAGS)
     except RuntimeError:
         raise RuntimeError(
             "TetGen cannot fill the surface: it is open, cuts itself, or encloses nothing"
         ) from None
-    nodes, tets = compact(found[0], found[1])
+    nodes, tets = compact(filled[0], filled[1])
     if len(tets) == 0:
         raise RuntimeError("TetGen found nothing inside the surface")
     away, home = cKDTree(nodes).query(points)
@@ -45,14 +45,14 @@ def by_tetwild(points, faces, handles, edge):
     """Fill any surface, open or not, up to a thousandth of its diagonal."""
     from pytetwild import tetrahedralize
 
-    found = tetrahedralize(
+    filled = tetrahedralize(
         np.ascontiguousarray(points, np.float64),
         np.ascontiguousarray(faces, np.int32),
         edge_length_fac=float(edge),
         num_threads=1,
         quiet=True,
     )
-    nodes, tets = compact(found[0], found[1].astype(np.int64))
+    nodes, tets = compact(filled[0], filled[1].astype(np.int64))
     if len(tets) == 0:
         raise RuntimeError("fTetWild found nothing inside the surface")
     tets = upright(nodes, tets)
@@ -89,9 +89,9 @@ def locate(nodes, tets, points):
     near = cKDTree(nodes[tets].mean(axis=1)).query(points, k=list(range(1, count + 1)))[1]
     best, shares = np.zeros(len(points), np.int64), np.full((len(points), 4), -np.inf)
     for one in near.T:
-        found = barycentric(nodes, tets[one], points)
-        better = found.min(axis=1) > shares.min(axis=1)
-        best[better], shares[better] = one[better], found[better]
+        inside = barycentric(nodes, tets[one], points)
+        better = inside.min(axis=1) > shares.min(axis=1)
+        best[better], shares[better] = one[better], inside[better]
     shares = np.maximum(shares, 0)
     return tets[best], shares / shares.sum(axis=1, keepdims=True)
 

@@ -62,7 +62,7 @@ class Scene:
         if UsdGeom.GetStageUpAxis(stage) == UsdGeom.Tokens.z:
             turn = [-np.sqrt(0.5), 0, 0, np.sqrt(0.5)]
         self.nodes = [("", -1, [0, 0, 0, *turn, *[scale] * 3], False, False)]
-        self.meshes, self.found = [], {}
+        self.meshes, self.mesh_arrays = [], {}
         self.bound = {}
         self.clips, self.tracks, self.keys = [], [], [np.zeros((0, 5))]
         self.cache = UsdSkel.Cache()
@@ -138,23 +138,23 @@ class Scene:
             self.nodes.append((prim.GetName(), 0, [0, 0, 0, 0, 0, 0, 1, 1, 1, 1], hidden, False))
             place = matrix(self.places.GetLocalToWorldTransform(prim))
             faces, corners, polygons = triangles(UsdGeom.Mesh(prim))
-            found = {"vertices": np.array(points, float), "faces": faces}
+            arrays = {"vertices": np.array(points, float), "faces": faces}
             if len(faces) and faces.max() < len(points):  # else it is refused
-                found |= surface(prim, corners, polygons, faces, self.palette)
+                arrays |= surface(prim, corners, polygons, faces, self.palette)
             if prim.GetPath() in self.bound:
                 target, query, first = self.bound[prim.GetPath()]
                 # Joints were bound in their skeleton's own space, and the mesh goes there.
                 stands = self.places.GetLocalToWorldTransform(query.GetPrim())
                 place = matrix(stands) @ matrix(target.GetGeomBindTransform())
-                found |= influences(target, query, first, len(points))
-            found["place"] = place
-            self.found |= {f"mesh_{k}_{key}": value for key, value in found.items()}
+                arrays |= influences(target, query, first, len(points))
+            arrays["place"] = place
+            self.mesh_arrays |= {f"mesh_{k}_{key}": value for key, value in arrays.items()}
 
     def arrays(self):
-        """Return what was found."""
+        """Return the arrays of the scene."""
         names, parents, transforms, hidden, bones = zip(*self.nodes, strict=True)
         return (
-            self.found
+            self.mesh_arrays
             | self.palette.arrays()
             | {
                 "node_names": np.array(names, np.str_),
@@ -186,9 +186,9 @@ def triangles(mesh):
         polygons = np.flatnonzero(count > k + 1)
         start = begin[polygons]
         fans.append(np.stack([polygons, start, start + k, start + k + 1], axis=1))
-    found = np.concatenate(fans)
-    found = found[np.argsort(found[:, 1], kind="stable")]
-    polygons, at = found[:, 0], found[:, 1:]
+    fan = np.concatenate(fans)
+    fan = fan[np.argsort(fan[:, 1], kind="stable")]
+    polygons, at = fan[:, 0], fan[:, 1:]
     if mesh.GetOrientationAttr().Get() == UsdGeom.Tokens.leftHanded:
         at = at[:, ::-1]
     return corners[at], at, polygons
@@ -202,18 +202,18 @@ def influences(target, query, first, count):
     place = matrix(target.GetGeomBindTransform())
     at = {joint: k for k, joint in enumerate(order)}
     joints = [at[joint] for joint in own if joint in at]
-    found = target.ComputeVaryingJointInfluences(count)
-    if found is None or len(joints) != len(own) or len(binds) != len(order):
+    numbers_weights = target.ComputeVaryingJointInfluences(count)
+    if numbers_weights is None or len(joints) != len(own) or len(binds) != len(order):
         raise RuntimeError(f"{target.GetPrim().GetName()} is bound to joints that are not there")
-    numbers, weights = (np.array(values).reshape(count, -1) for values in found)
+    numbers, weights = (np.array(values).reshape(count, -1) for values in numbers_weights)
     if numbers.size and (numbers.min() < 0 or numbers.max() >= len(joints)):
         raise RuntimeError(f"{target.GetPrim().GetName()} is weighted to joints out of range")
     inverse = [np.linalg.inv(matrix(binds[k])) @ place for k in joints]
-    held = weights != 0
+    is_weighted = weights != 0
     return {
         "joints": np.array([first + k for k in joints]),
         "inverse": np.array(inverse),
-        "rows": np.nonzero(held)[0],
-        "columns": numbers[held].astype(int),
-        "values": weights[held].astype(float),
+        "rows": np.nonzero(is_weighted)[0],
+        "columns": numbers[is_weighted].astype(int),
+        "values": weights[is_weighted].astype(float),
     }

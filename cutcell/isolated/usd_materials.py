@@ -47,8 +47,8 @@ class UsdPalette(Palette):
         self.readers.append(reader)
         return self._numbers[path]
 
-    def _image(self, given):
-        asset = given.Get() if given else None
+    def _image(self, port):
+        asset = port.Get() if port else None
         if not asset or not asset.path:
             return -1
         package, _, inside = asset.resolvedPath.rstrip("]").partition("[")
@@ -72,8 +72,8 @@ def packed(file, name):
 
 def source(shader, name, default):
     """Return the value of a shader's input, and the texture that it comes from, if it does."""
-    given = shader.GetInput(name)
-    attributes = UsdShade.Utils.GetValueProducingAttributes(given) if given else []
+    port = shader.GetInput(name)
+    attributes = UsdShade.Utils.GetValueProducingAttributes(port) if port else []
     if not attributes:
         return default, None
     producer = UsdShade.Shader(attributes[0].GetPrim())
@@ -85,16 +85,16 @@ def source(shader, name, default):
 
 def reader_of(texture):
     """Return the name of the texture coordinates of a texture."""
-    given = texture.GetInput("st")
+    port = texture.GetInput("st")
     for _ in range(4):  # a transform may stand between
-        attributes = UsdShade.Utils.GetValueProducingAttributes(given) if given else []
+        attributes = UsdShade.Utils.GetValueProducingAttributes(port) if port else []
         if not attributes:
             break
         shader = UsdShade.Shader(attributes[0].GetPrim())
         name = shader.GetInput("varname") if shader else None
         if name:
             return str(name.Get() or "st")
-        given = shader.GetInput("in") if shader else None
+        port = shader.GetInput("in") if shader else None
     return "st"
 
 
@@ -109,19 +109,19 @@ def surface(prim, corners, polygons, faces, palette):
         own = UsdShade.MaterialBindingAPI(subset.GetPrim()).ComputeBoundMaterial()[0]
         members = np.array(subset.GetIndicesAttr().Get() or [], int)
         material[np.isin(polygons, members)] = palette.number(own)
-    found: dict[str, np.ndarray] = {"materials": material}
+    arrays: dict[str, np.ndarray] = {"materials": material}
     primvars = UsdGeom.PrimvarsAPI(prim)
     colors = at_corners(primvars, "displayColor", 3, corners, polygons, faces)
     if colors is not None and (material < 0).all():
-        found["colors"] = srgb(colors)
+        arrays["colors"] = srgb(colors)
     places = np.zeros((len(faces), 3, 2), np.float32)
     for k in np.unique(material[material >= 0]).tolist():
         rows = np.flatnonzero(material == k)
         uv = at_corners(primvars, palette.readers[k], 2, corners[rows], polygons[rows], faces[rows])
         if palette.readers[k] and uv is not None:
             places[rows] = np.stack([uv[..., 0], 1 - uv[..., 1]], axis=-1)
-            found["places"] = places
-    return found
+            arrays["places"] = places
+    return arrays
 
 
 def at_corners(primvars, name, width, corners, polygons, faces):

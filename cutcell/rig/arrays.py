@@ -54,7 +54,7 @@ def _quietly(array: NDArray, dtype: Any) -> NDArray:
 
 
 def _is_frozen(array: NDArray, dtype: Any) -> bool:
-    """Tell whether an array can be used as it is: read-only, and as it would be copied."""
+    """Return whether an array can be used as it is: read-only, and as it would be copied."""
     flags = array.flags
     return array.dtype == dtype and not flags.writeable and flags.c_contiguous and flags.aligned
 

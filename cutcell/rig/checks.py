@@ -85,7 +85,7 @@ def shown(value: Any) -> str:
 
 
 def _is_real(value: Any) -> bool:
-    """Tell whether this is one real number, of Python or numpy; truth values are none."""
+    """Return whether this is one real number, of Python or numpy; truth values are none."""
     return isinstance(value, Real) and not isinstance(value, bool) and value == value
 
 

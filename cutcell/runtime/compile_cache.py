@@ -96,7 +96,7 @@ class CompileCache(NullCache):
 
 
 def is_complete() -> bool:
-    """Tell whether all functions of a binding, as they now are, have been compiled and kept."""
+    """Return whether all functions of a binding, as they now are, have been compiled and kept."""
     return any(os.path.exists(folder / COMPLETE) for folder in folders())
 
 

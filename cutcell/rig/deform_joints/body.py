@@ -59,7 +59,7 @@ class Body:
         return np.abs(winding) > INSIDE * 4 * np.pi
 
     def encloses(self, point: NDArray[np.float64]) -> bool:
-        """Tell whether the surface encloses a point (3,), however close it is."""
+        """Return whether the surface encloses a point (3,), however close it is."""
         a, b, c = np.moveaxis(self._corners - point, 1, 0)
         la, lb, lc = (np.linalg.norm(x, axis=1) for x in (a, b, c))
         volume = np.einsum("mi,mi->m", a, np.cross(b, c))

@@ -154,7 +154,7 @@ class _Guess:
         return children[self.deform[children]]
 
     def _stands_beside(self, joint: int, below: NDArray[np.intp]) -> bool:
-        """Tell whether a root lies outside, and moves others rather than skin."""
+        """Return whether a root lies outside, and moves others rather than skin."""
         chained = any(len(self._bones_below(k)) for k in below)
         is_all = self.deform.sum() == 1 + len(below)
         if is_all and not chained and self.distance[joint] <= FEW_BONES:
@@ -165,7 +165,7 @@ class _Guess:
         return outside and (is_root(self.names[joint]) or not self._leads_into_body(joint, below))
 
     def _leads_into_body(self, joint: int, others: NDArray[np.intp]) -> bool:
-        """Tell whether a link to any of the others runs through the body."""
+        """Return whether a link to any of the others runs through the body."""
         away = self.joints[others] - self.joints[joint]
         points = (self.joints[joint] + ALONG[:, None] * away[:, None]).reshape(-1, 3)
         near = self.body.to_surface(points) <= OUTSIDE
@@ -173,7 +173,7 @@ class _Guess:
         return bool((near.reshape(-1, len(ALONG)).mean(axis=1) >= THROUGH_BODY).any())
 
     def _ends_a_bone(self, joint: int) -> bool:
-        """Tell whether a last joint lies at the end of a chain of bones, with no skin beyond."""
+        """Return whether a last joint lies at the end of a chain of bones, with no skin beyond."""
         parents, joints = self.parents, self.joints
         parent = parents[joint]
         if parent < 0 or parents[parent] < 0 or len(self.children[parent]) > 1:

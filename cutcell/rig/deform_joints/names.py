@@ -41,13 +41,13 @@ def words(name: str) -> list[str]:
 
 
 def is_end_marker(name: str) -> bool:
-    """Tell whether a name is that of a marker at the end of a bone."""
+    """Return whether a name is that of a marker at the end of a bone."""
     found = words(name)
     return bool(found) and (found[-1] in END_WORDS or found[-1].endswith("nub"))
 
 
 def is_fingertip(name: str) -> bool:
-    """Tell whether a name is that of the tip of a finger or toe.
+    """Return whether a name is that of the tip of a finger or toe.
 
     In the names of HumanIK and Mixamo the fourth joint of a finger is its tip.
     """
@@ -56,7 +56,7 @@ def is_fingertip(name: str) -> bool:
 
 
 def is_control(name: str) -> bool:
-    """Tell whether a name is that of a control."""
+    """Return whether a name is that of a control."""
     found = words(name)
     if not CONTROL_WORDS.isdisjoint(found) or any(p in w for w in found for p in CONTROL_PARTS):
         return True
@@ -64,15 +64,15 @@ def is_control(name: str) -> bool:
 
 
 def may_be_control(name: str) -> bool:
-    """Tell whether a name is that of a control or of a bone: a foot moved by IK is either."""
+    """Return whether a name is that of a control or of a bone: a foot moved by IK is either."""
     return not UNSURE.isdisjoint(words(name))
 
 
 def is_socket(name: str) -> bool:
-    """Tell whether a name is that of a joint that things are attached to."""
+    """Return whether a name is that of a joint that things are attached to."""
     return any(part in word for word in words(name) for part in SOCKET_PARTS)
 
 
 def is_root(name: str) -> bool:
-    """Tell whether a name is that of the root of everything."""
+    """Return whether a name is that of the root of everything."""
     return not ROOT_WORDS.isdisjoint(words(name))
