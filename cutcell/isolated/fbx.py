@@ -95,9 +95,9 @@ def triangles(mesh):
         polygons = np.flatnonzero(count > k + 1)
         start = begin[polygons]
         fans.append(np.stack([start, start + k, start + k + 1, polygons], axis=1))
-    triangles = np.concatenate(fans) if fans else np.zeros((0, 4), int)
-    triangles = triangles[np.argsort(triangles[:, 0], kind="stable")]
-    return triangles[:, :3], triangles[:, 3]
+    rows = np.concatenate(fans) if fans else np.zeros((0, 4), int)
+    rows = rows[np.argsort(rows[:, 0], kind="stable")]
+    return rows[:, :3], rows[:, 3]
 
 
 def geometry(mesh, corners):

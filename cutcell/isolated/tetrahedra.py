@@ -89,9 +89,9 @@ def locate(nodes, tets, points):
     near = cKDTree(nodes[tets].mean(axis=1)).query(points, k=list(range(1, count + 1)))[1]
     best, shares = np.zeros(len(points), np.int64), np.full((len(points), 4), -np.inf)
     for one in near.T:
-        inside = barycentric(nodes, tets[one], points)
-        better = inside.min(axis=1) > shares.min(axis=1)
-        best[better], shares[better] = one[better], inside[better]
+        coordinates = barycentric(nodes, tets[one], points)
+        better = coordinates.min(axis=1) > shares.min(axis=1)
+        best[better], shares[better] = one[better], coordinates[better]
     shares = np.maximum(shares, 0)
     return tets[best], shares / shares.sum(axis=1, keepdims=True)
 

@@ -186,9 +186,9 @@ def triangles(mesh):
         polygons = np.flatnonzero(count > k + 1)
         start = begin[polygons]
         fans.append(np.stack([polygons, start, start + k, start + k + 1], axis=1))
-    fan = np.concatenate(fans)
-    fan = fan[np.argsort(fan[:, 1], kind="stable")]
-    polygons, at = fan[:, 0], fan[:, 1:]
+    rows = np.concatenate(fans)
+    rows = rows[np.argsort(rows[:, 1], kind="stable")]
+    polygons, at = rows[:, 0], rows[:, 1:]
     if mesh.GetOrientationAttr().Get() == UsdGeom.Tokens.leftHanded:
         at = at[:, ::-1]
     return corners[at], at, polygons
@@ -202,10 +202,10 @@ def influences(target, query, first, count):
     place = matrix(target.GetGeomBindTransform())
     at = {joint: k for k, joint in enumerate(order)}
     joints = [at[joint] for joint in own if joint in at]
-    numbers_weights = target.ComputeVaryingJointInfluences(count)
-    if numbers_weights is None or len(joints) != len(own) or len(binds) != len(order):
+    stored = target.ComputeVaryingJointInfluences(count)
+    if stored is None or len(joints) != len(own) or len(binds) != len(order):
         raise RuntimeError(f"{target.GetPrim().GetName()} is bound to joints that are not there")
-    numbers, weights = (np.array(values).reshape(count, -1) for values in numbers_weights)
+    numbers, weights = (np.array(values).reshape(count, -1) for values in stored)
     if numbers.size and (numbers.min() < 0 or numbers.max() >= len(joints)):
         raise RuntimeError(f"{target.GetPrim().GetName()} is weighted to joints out of range")
     inverse = [np.linalg.inv(matrix(binds[k])) @ place for k in joints]

@@ -47,8 +47,8 @@ class UsdPalette(Palette):
         self.readers.append(reader)
         return self._numbers[path]
 
-    def _image(self, port):
-        asset = port.Get() if port else None
+    def _image(self, connected):
+        asset = connected.Get() if connected else None
         if not asset or not asset.path:
             return -1
         package, _, inside = asset.resolvedPath.rstrip("]").partition("[")
@@ -72,8 +72,8 @@ def packed(file, name):
 
 def source(shader, name, default):
     """Return the value of a shader's input, and the texture that it comes from, if it does."""
-    port = shader.GetInput(name)
-    attributes = UsdShade.Utils.GetValueProducingAttributes(port) if port else []
+    connected = shader.GetInput(name)
+    attributes = UsdShade.Utils.GetValueProducingAttributes(connected) if connected else []
     if not attributes:
         return default, None
     producer = UsdShade.Shader(attributes[0].GetPrim())
@@ -85,16 +85,16 @@ def source(shader, name, default):
 
 def reader_of(texture):
     """Return the name of the texture coordinates of a texture."""
-    port = texture.GetInput("st")
+    connected = texture.GetInput("st")
     for _ in range(4):  # a transform may stand between
-        attributes = UsdShade.Utils.GetValueProducingAttributes(port) if port else []
+        attributes = UsdShade.Utils.GetValueProducingAttributes(connected) if connected else []
         if not attributes:
             break
         shader = UsdShade.Shader(attributes[0].GetPrim())
         name = shader.GetInput("varname") if shader else None
         if name:
             return str(name.Get() or "st")
-        port = shader.GetInput("in") if shader else None
+        connected = shader.GetInput("in") if shader else None
     return "st"
 
 
