@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
@@ -197,3 +197,9 @@ class Description:
             return np.array([[-1.0, -1, -1], [1, 1, 1]])
         low = np.min([p.min(axis=0) for p in points], axis=0)
         return np.stack([low, np.max([p.max(axis=0) for p in points], axis=0)]).astype(float)
+
+
+def in_view(description: Description, view: int) -> Description:
+    """Return a scene with the actors of one of its views alone."""
+    actors = {k: a for k, a in description.actors.items() if a.view in (None, view)}
+    return replace(description, actors=actors)
