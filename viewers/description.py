@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +12,9 @@ from cutcell.io.materials.face_colors import FaceColors
 
 from .palette import BODY, Color
 from .skin import Skin
+
+if TYPE_CHECKING:
+    from pyvista import DataSet
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,6 +136,28 @@ class Actor:
     view: int | None = None
     reading: Reading | None = None
     film: bool = False
+
+    @classmethod
+    def from_polydata(cls, mesh: DataSet, scalars: str | None = None, **settings: Any) -> Actor:
+        """Return a PyVista mesh as an actor.
+
+        Parameters
+        ----------
+        mesh : pyvista.DataSet
+            Of anything but `pyvista.PolyData` the surface is taken.
+        scalars : str, optional
+            An array of its points or cells: colours if it holds bytes in three or four columns,
+            else values, of vectors their lengths.
+        **settings
+            Other parameters of an actor, such as `colormap` or `opacity`.
+
+        Returns
+        -------
+        Actor
+        """
+        from .polydata import actor_of
+
+        return actor_of(mesh, scalars, **settings)
 
 
 @dataclass(frozen=True)

@@ -43,6 +43,9 @@ class Scene:
         graphics card.
     pixel_ratio : float
         How many pixels of the picture are one pixel of the page, in which widths are given.
+    layered : bool
+        Whether overlays are a layer over the scene. PyVista's own windows and exports know one
+        layer: overlays are drawn nearer to the eye there.
     """
 
     def __init__(
@@ -51,6 +54,7 @@ class Scene:
         size: tuple[int, int] = (1200, 900),
         fine: bool = False,
         pixel_ratio: float = PICTURE_WIDTH,
+        layered: bool = True,
     ) -> None:
         # Occlusion takes the place of multisampling, so edges are smoothed by four times the pixels.
         self._scale = 2 if fine else 1
@@ -59,12 +63,13 @@ class Scene:
         self.plotter = pv.Plotter(off_screen=True, window_size=window, lighting="none")
         if not fine:
             self.plotter.enable_anti_aliasing("msaa", multi_samples=8)
-        self._overlay = _add_overlay(self.plotter)
+        self._overlay = _add_overlay(self.plotter) if layered else self.plotter.renderer
         self.theme = theme
         for position, intensity in LIGHTS:
             light = pv.Light(position=position, light_type="camera light", intensity=intensity)
             self.plotter.add_light(light)
-            self._overlay.AddLight(light)
+            if layered:
+                self._overlay.AddLight(light)
         self._names: dict[str, list[pv.Actor]] = {}
         self._images: Any = None
         self._textures: dict[tuple[int, int], pv.Texture] = {}
@@ -79,7 +84,10 @@ class Scene:
         for drawn in self._names.values():
             for one in drawn:
                 self._renderer(one).RemoveActor(one)
-        if self._scale > 1:
+        # The pass of ambient occlusion leaves out what is translucent.
+        if self._scale > 1 and any(a.visible and a.opacity < 1 for a in description.actors.values()):
+            self.plotter.disable_ssao()
+        elif self._scale > 1:
             radius = OCCLUSION_RADIUS * float(np.ptp(description.bounds, axis=0).max())
             self.plotter.enable_ssao(radius=radius, bias=radius / 20, kernel_size=32, blur=True)
         if description.images is not self._images:
@@ -158,6 +166,10 @@ class Scene:
             for plane in cut_planes(description.cut, actor.slab):
                 mapper.AddClippingPlane(pv._vtk.vtkPlane(**plane))
         (self._overlay if actor.overlay else self.plotter.renderer).AddActor(drawn)
+        if actor.overlay and self._overlay is self.plotter.renderer:
+            mapper.SetResolveCoincidentTopologyToPolygonOffset()
+            mapper.SetRelativeCoincidentTopologyPolygonOffsetParameters(0, OVERLAY_OFFSET)
+            mapper.SetRelativeCoincidentTopologyLineOffsetParameters(0, OVERLAY_OFFSET)
         return drawn
 
 
@@ -166,6 +178,8 @@ LIGHTS = (((-0.5, 0.7, 1.0), 0.82), ((0.9, -0.1, 0.6), 0.34))
 AMBIENT, DIFFUSE = 0.16, 1.0
 SOFT_AMBIENT, SOFT_DIFFUSE = 0.36, 0.75
 """Of materials: images have shadows of their own, and would be dark where light is, too."""
+OVERLAY_OFFSET = -26_000
+"""Of 65,536 steps of depth: how much nearer overlays are drawn where there is one layer."""
 OCCLUSION_RADIUS = 0.06
 """How far away what darkens a corner may be, in the scene's longest side."""
 
