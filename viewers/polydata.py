@@ -43,7 +43,7 @@ def describe(plotter: pv.Plotter) -> Description:
     return Description(actors)
 
 
-def add_legend(plotter: pv.Plotter, legend: Legend, theme: Theme) -> None:
+def add_legend(plotter: Any, legend: Legend, theme: Theme) -> None:
     """Write a description's legend into a plotter."""
     if legend.colormap:
         table = pv.LookupTable(values=_opaque(colormap(legend.colormap)))

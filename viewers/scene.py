@@ -56,7 +56,7 @@ class Scene:
         pixel_ratio: float = PICTURE_WIDTH,
         layered: bool = True,
     ) -> None:
-        # Occlusion takes the place of multisampling, so edges are smoothed by four times the pixels.
+        # Occlusion takes the place of multisampling: four times the pixels smooth edges.
         self._scale = 2 if fine else 1
         self._pixel_ratio = pixel_ratio * self._scale
         window = [self._scale * side for side in size]
@@ -85,7 +85,9 @@ class Scene:
             for one in drawn:
                 self._renderer(one).RemoveActor(one)
         # The pass of ambient occlusion leaves out what is translucent.
-        if self._scale > 1 and any(a.visible and a.opacity < 1 for a in description.actors.values()):
+        if self._scale > 1 and any(
+            a.visible and a.opacity < 1 for a in description.actors.values()
+        ):
             self.plotter.disable_ssao()
         elif self._scale > 1:
             radius = OCCLUSION_RADIUS * float(np.ptp(description.bounds, axis=0).max())

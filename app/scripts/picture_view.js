@@ -10,7 +10,7 @@ const SHAPE = 0.75  // width over height of a character, about
 export class PictureView {
   constructor(model, overlay) {
     Object.assign(this, {model, overlay, captions: []})
-    overlay.root.classList.add("pictures")
+    overlay.hint.textContent = "drag to turn · right-drag to move · scroll to zoom · drawn by the server"
     this.rendered = new Rendered(overlay, model)
     this.orbit = new Orbit(overlay.canvas, {
       changed: () => this.ask(false), rested: () => this.rested(),

@@ -323,7 +323,7 @@ export function render({model}) {
     begin(new View(model, vtk, overlay), false)
     window.__cutcell = Object.assign(view, probe(view))
   }).catch((error) => {
-    console.warn(`The server draws the 3D view: ${error.message}.`)
+    console.info(`The server draws the 3D view: ${error.message}.`)
     begin(new PictureView(model, overlay), true)
   })
   model.on("remove", () => view?.remove())

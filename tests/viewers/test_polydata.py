@@ -1,8 +1,8 @@
 """PyVista's meshes and plotters become descriptions, and descriptions plotters."""
 
 import numpy as np
-import pyvista as pv
 import pytest
+import pyvista as pv
 
 import cutcell_viewers
 from cutcell_viewers.camera import framing
