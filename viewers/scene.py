@@ -85,13 +85,13 @@ class Scene:
             for one in drawn:
                 self._renderer(one).RemoveActor(one)
         # The pass of ambient occlusion leaves out what is translucent.
-        if self._scale > 1 and any(
-            a.visible and a.opacity < 1 for a in description.actors.values()
-        ):
-            self.plotter.disable_ssao()
-        elif self._scale > 1:
+        opaque = all(a.opacity == 1 for a in description.actors.values() if a.visible)
+        renderer: Any = self.plotter.renderer
+        if self._scale > 1 and opaque:
             radius = OCCLUSION_RADIUS * float(np.ptp(description.bounds, axis=0).max())
-            self.plotter.enable_ssao(radius=radius, bias=radius / 20, kernel_size=32, blur=True)
+            renderer.enable_ssao(radius=radius, bias=radius / 20, kernel_size=32, blur=True)
+        else:
+            renderer.disable_ssao()
         if description.images is not self._images:
             self._images, self._textures = description.images, {}
         self._names = {
