@@ -12,13 +12,13 @@ from . import (
     distance,
     explain,
     history,
+    idle,
     keys,
     look,
     materials,
     moving,
     pairs,
     pose,
-    rest,
 )
 from .session import Session
 
@@ -27,5 +27,5 @@ def follow(session: Session) -> None:
     """Let everything follow the state of a new session."""
     # In this order: what is seen comes before what is computed for it.
     watched = (look, cutting, moving, brush, distance, pose, materials, compare, pairs)
-    for one in (*watched, binding, explain, history, keys, rest, check, arrival):
+    for one in (*watched, binding, explain, history, keys, idle, check, arrival):
         one.watch(session)
