@@ -21,13 +21,13 @@ from cutcell.dataset import load_audit
 from cutcell.weights.warm_up import is_compiled, warm_up
 
 from .files.upload_cache import UPLOADS
+from .jobs.processes import get_ready
 from .layout.page import page
 from .server.handlers import guard
 from .server.log import log_to_terminal
 from .server.memory import settle
 from .state.pairs import OpenedAudit
 from .widgets.modules import STATIC, head
-from .work.processes import get_ready
 
 PORTS_TRIED = 20
 MAX_MESSAGE = 32 * 1024 * 1024

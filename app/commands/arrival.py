@@ -7,8 +7,8 @@ from typing import Any
 
 from cutcell_assets import DEMOS
 
+from ..jobs.messages import shown
 from ..state.url import defaults, from_query
-from ..work.messages import shown
 from . import tour
 from .history import restore
 from .loading import load_demo, load_files

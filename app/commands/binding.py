@@ -24,7 +24,7 @@ from cutcell.method import joints_needed
 from cutcell.rig import Rig
 from cutcell.runtime.progress import Progress
 from cutcell.weights import keep_strongest, skinning_weights
-from cutcell_app.work.preview import Preview
+from cutcell_app.jobs.preview import Preview
 
 from ..state import State
 from ..state.corrections import applied, changes, measured, same_structure

@@ -22,11 +22,11 @@ from cutcell.metrics import (
 from cutcell.rig import Rig
 from cutcell.runtime.progress import Progress
 
+from ..jobs.jobs import COMPARING, WAITING
+from ..jobs.messages import shown, told
 from ..scenes.compare import found_of
 from ..state import State
 from ..state.compare import FEWEST_VIEWS, MAX_VIEWS, NOW, offered, standard
-from ..work.jobs import COMPARING, WAITING
-from ..work.messages import shown, told
 from .session import Session
 
 

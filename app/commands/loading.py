@@ -18,9 +18,9 @@ from cutcell_viewers.camera import Camera, framing
 from ..files.reading import demo_rig, main_file, read
 from ..files.receive import Receiver
 from ..files.upload_cache import Group
+from ..jobs.jobs import READING
 from ..scenes.common import bones_part, bounds_of, camera_part, first_joint
 from ..state.url import first_clip
-from ..work.jobs import READING
 from . import history
 from .binding import bind, restore
 from .compare import carry

@@ -20,12 +20,12 @@ from cutcell_viewers.description import Description
 
 from ..files.corrections_file import CorrectionsFile
 from ..files.upload_cache import UPLOADS, PageUploads
+from ..jobs.jobs import COMPUTING, Schedule, Slots
+from ..jobs.messages import told
+from ..jobs.tasks import Tasks
 from ..scenes import Memo
 from ..state import State
 from ..state.history import History
-from ..work.jobs import COMPUTING, Schedule, Slots
-from ..work.messages import told
-from ..work.tasks import Tasks
 
 logger = logging.getLogger("cutcell.app")
 

@@ -12,6 +12,7 @@ from . import (
     distance,
     explain,
     history,
+    idle,
     keys,
     look,
     materials,
@@ -19,7 +20,6 @@ from . import (
     pairs,
     pose,
     rendered,
-    rest,
 )
 from .session import Session
 
@@ -28,5 +28,5 @@ def follow(session: Session) -> None:
     """Let everything follow the state of a new session."""
     # In this order: what is seen comes before what is computed for it.
     watched = (look, cutting, moving, brush, distance, pose, materials, compare, pairs, rendered)
-    for one in (*watched, binding, explain, history, keys, rest, check, arrival):
+    for one in (*watched, binding, explain, history, keys, idle, check, arrival):
         one.watch(session)

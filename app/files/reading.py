@@ -15,7 +15,7 @@ from cutcell.io.materials.transfer import has_materials
 from cutcell.rig import Rig
 from cutcell_assets import demo_path
 
-from ..work.processes import in_process
+from ..jobs.processes import in_process
 
 IMAGES = {
     ".png",

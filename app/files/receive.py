@@ -7,7 +7,7 @@ from typing import Any
 
 from cutcell.errors import CutcellError, FileError
 
-from ..work.messages import FULL
+from ..jobs.messages import FULL
 from .upload_cache import Group, UploadCache
 
 MAX_UPLOAD = 200 * 1024 * 1024

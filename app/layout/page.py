@@ -19,13 +19,13 @@ from cutcell_assets import DEMOS
 from ..commands import arrival, pairs
 from ..commands.loading import load_demo, load_files
 from ..commands.session import Session
-from ..panels.parts import words
+from ..jobs.jobs import Gate, on_its_thread
+from ..panels.controls import words
 from ..server.memory import let_go, tidy_soon
 from ..state.pairs import OpenedAudit
 from ..widgets.inspector import inspector
 from ..widgets.modules import style
 from ..widgets.tour_card import tour_card
-from ..work.jobs import Gate, on_its_thread
 from .favicon import FAVICON
 from .session import begin
 from .sidebar import sidebar

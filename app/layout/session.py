@@ -5,8 +5,8 @@ from __future__ import annotations
 from ..commands.loading import receiver
 from ..commands.session import Session
 from ..commands.watchers import follow
+from ..jobs.jobs import Schedule
 from ..widgets.view import SceneView
-from ..work.jobs import Schedule
 
 
 def begin(schedule: Schedule) -> Session:

@@ -10,8 +10,8 @@ from ..commands.session import Session
 from ..panels import PANELS
 from ..panels.bone import bone
 from ..panels.character import character
+from ..panels.controls import lead, when
 from ..panels.export import export
-from ..panels.parts import lead, when
 from ..panels.templates import skeleton_menu
 from ..widgets.tabs import Tabs
 

@@ -13,11 +13,11 @@ from cutcell.rig import Rig
 from ..commands.binding import cancel
 from ..commands.check import go_to
 from ..commands.session import Session
-from ..panels.parts import when, words
+from ..jobs.messages import sentence, shown
+from ..panels.controls import when, words
 from ..scenes.warnings import Door, warnings
 from ..state import State
 from ..widgets.modules import style
-from ..work.messages import sentence, shown
 
 TITLES = {
     "compile": "Compiling, once on this machine (about a minute)",

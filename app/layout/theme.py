@@ -87,6 +87,6 @@ PAGE_STYLE: dict[str, Any] = {
     "& .header .MuiToolbar-root": {"minHeight": "52px", "margin": 0},
     "& .MuiToolbar-root": {"minHeight": "52px"},
     "& .sidebar": {"backgroundImage": "none", "borderColor": "divider"},
-    # How high the sheet is that stands there now: scripts/sheet.js.
+    # How high the sheet is that stands there now: frontend/sheet.js.
     NARROW: {"& .main > .MuiBox-root": {"height": "calc(100dvh - var(--sheet, 0px)) !important"}},
 }

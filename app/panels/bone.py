@@ -7,7 +7,7 @@ from typing import Any
 import panel_material_ui as pmui
 
 from ..commands.session import Session
-from .parts import GAP, offer, section, unique_names, when
+from .controls import GAP, offer, section, unique_names, when
 
 
 def bone(session: Session) -> pmui.Column:

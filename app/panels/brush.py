@@ -12,7 +12,7 @@ from ..commands.brush import clear_selection, invert_selection
 from ..commands.moving import mirror_of
 from ..commands.session import Session
 from ..state.brush import MAX_RADIUS, selected
-from .parts import caption, choice, section, slider, when
+from .controls import caption, choice, section, slider, when
 
 MODES = {"Add": "add", "Subtract": "subtract", "Replace": "replace", "Smooth": "smooth",
          "Select": "select"}  # fmt: skip

@@ -14,7 +14,7 @@ from ..commands.session import Session
 from ..files.receive import MAX_UPLOAD
 from ..state import State
 from ..widgets.file_drop import FileDrop
-from .parts import GAP, as_text, caption, section, unique_names
+from .controls import GAP, as_text, caption, section, unique_names
 
 MAX_FAULTS = 2
 """The panel Check tells of all."""

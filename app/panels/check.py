@@ -16,7 +16,7 @@ from ..commands.correct import leave_out
 from ..commands.export import export_repaired
 from ..commands.session import Session
 from ..state import State
-from .parts import GAP, caption, lead, section, when, words
+from .controls import GAP, caption, lead, section, when, words
 
 ICONS = {"error": "error", "warning": "warning", "note": "info"}
 MAX_DETAILS = 8

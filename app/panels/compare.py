@@ -15,7 +15,7 @@ from ..scenes.compare import field_shown, found_of, title_of
 from ..state import State
 from ..state.compare import FEWEST_VIEWS, MAX_VIEWS, offered
 from ..widgets.methods import Methods
-from .parts import BUTTONS, GAP, caption, follow, lead, section, when
+from .controls import BUTTONS, GAP, caption, follow, lead, section, when
 
 FIELDS = {"Chosen bone": "bone", "All bones": "all"}
 ERROR = {"Error": "error"}

@@ -13,7 +13,7 @@ from ..commands import correct
 from ..commands.session import Session
 from ..scenes.components import MOST, Component, chosen, listed, vertices_of
 from ..widgets.rows import Rows
-from .parts import GAP, caption, offer, section, unique_names
+from .controls import GAP, caption, offer, section, unique_names
 
 WAYS = {
     "As computed": "",

@@ -12,7 +12,7 @@ from cutcell.editing.corrections import Corrections
 from ..commands import correct
 from ..commands.session import Session
 from ..widgets.open_file import OpenFile
-from .parts import caption, section, when
+from .controls import caption, section, when
 
 NONE = "Nothing is corrected. What is goes into the exported file, and into files of their own."
 

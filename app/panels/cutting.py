@@ -8,7 +8,7 @@ import panel_material_ui as pmui
 
 from ..commands import cutting as actions
 from ..commands.session import Session
-from .parts import GAP, caption, choice, slider, when
+from .controls import GAP, caption, choice, slider, when
 
 AXES = {"Whole": "off", "Cut X": "x", "Cut Y": "y", "Cut Z": "z", "Free": "free"}
 

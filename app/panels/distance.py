@@ -9,8 +9,8 @@ import panel_material_ui as pmui
 from ..commands.session import Session
 from ..state import State
 from ..state.distance import MAX_MEASURES, MEASURES
+from .controls import GAP, caption, choice, lead, section, slider, weightless, when
 from .cutting import cutting
-from .parts import GAP, caption, choice, lead, section, slider, weightless, when
 
 
 def distance(session: Session) -> pmui.Column:

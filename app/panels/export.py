@@ -13,7 +13,7 @@ from cutcell.rig import Rig
 
 from ..commands import export as actions
 from ..commands.session import Session
-from .parts import GAP, caption, section, when
+from .controls import GAP, caption, section, when
 
 
 def export(session: Session) -> pmui.Column:

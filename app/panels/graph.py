@@ -15,8 +15,8 @@ from ..commands.binding import bind
 from ..commands.session import Session
 from ..scenes.common import theme_of
 from ..state import LAYERS, State
+from .controls import GAP, caption, choice, lead, section, slider, weightless, when, words
 from .cutting import cutting
-from .parts import GAP, caption, choice, lead, section, slider, weightless, when, words
 
 KINDS = {"mesh_edges": MESH, "interior_edges": INTERIOR, "surface_edges": SURFACE}
 LEAF_TITLES = {"point": "Points", "extend": "Extended", "fit": "Fitted"}

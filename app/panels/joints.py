@@ -19,8 +19,8 @@ from ..commands.session import Session
 from ..scenes.joints import joint_rows, shares_of
 from ..state import State
 from ..widgets.joint_tree import JointTree
+from .controls import GAP, as_text, caption, section, when, words
 from .moving import place
-from .parts import GAP, as_text, caption, section, when, words
 from .structure import structure
 
 DOUBLINGS = 2.0

@@ -9,7 +9,7 @@ import panel_material_ui as pmui
 from ..commands.session import Session
 from ..commands.tour import go
 from ..state.tour import TOUR
-from .parts import GAP, caption, lead, section, when
+from .controls import GAP, caption, lead, section, when
 
 
 def learn(session: Session) -> pmui.Column:

@@ -14,7 +14,7 @@ from cutcell.rig.checks import shown
 from ..commands import moving
 from ..commands.session import Session
 from ..state import State
-from .parts import caption
+from .controls import caption
 
 NUMBER = "%.6g"
 

@@ -12,7 +12,7 @@ from cutcell.runtime.display import shown_name
 from ..commands import pairs as actions
 from ..commands.session import Session
 from ..state import State
-from .parts import BUTTONS, GAP, caption, lead, section, when
+from .controls import BUTTONS, GAP, caption, lead, section, when
 
 NONE_OPEN = (
     "Here the near-duplicates of a data set stand side by side. Find them by cutcell dataset "

@@ -16,7 +16,7 @@ from ..scenes.pose import error_of, has_rival
 from ..state import State
 from ..widgets.rows import Rows
 from .brush import brush
-from .parts import (
+from .controls import (
     BUTTONS,
     GAP,
     as_text,

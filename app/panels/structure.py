@@ -8,7 +8,7 @@ import panel_material_ui as pmui
 
 from ..commands import structure as actions
 from ..commands.session import Session
-from .parts import GAP, caption, unique_names
+from .controls import GAP, caption, unique_names
 
 NOTHING = "None (root)"
 

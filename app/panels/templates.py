@@ -11,7 +11,7 @@ from cutcell.templates import TEMPLATES
 from ..commands import templates
 from ..commands.session import Session
 from ..state import State
-from .parts import GAP, caption, section, when
+from .controls import GAP, caption, section, when
 
 NONE = "None"
 CHANGED = "Your own"

@@ -13,9 +13,9 @@ from ..commands.session import Session
 from ..state import State
 from .brush import brush
 from .components import parts_of_mesh
+from .controls import GAP, caption, choice, follow, lead, section, slider, when
 from .corrections import corrections
 from .joints import joints
-from .parts import GAP, caption, choice, follow, lead, section, slider, when
 
 SHOWN = {
     "All bones": "mix",

@@ -13,7 +13,7 @@ from tests.test_layers import ROOT, imports_of, modules_of, package_of
 APP = ROOT / "app"
 
 ROOMS = (
-    {"work", "state", "server"},
+    {"jobs", "state", "server"},
     {"files", "scenes"},
     {"commands"},
     {"widgets"},

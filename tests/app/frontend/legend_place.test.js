@@ -1,7 +1,7 @@
 import assert from "node:assert/strict"
 import {test} from "node:test"
 
-import {corners, freest, LegendPlace, meets} from "../../../app/scripts/legend_place.js"
+import {corners, freest, LegendPlace, meets} from "../../../app/frontend/legend_place.js"
 
 const BOX = {left: 100, right: 900, top: 50, bottom: 650}
 const HOME = {left: 116, right: 316, top: 574, bottom: 634, width: 200, height: 60}

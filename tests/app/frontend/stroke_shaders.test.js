@@ -1,6 +1,6 @@
 import assert from "node:assert"
 import {test} from "node:test"
-import {strokeProgram} from "../../../app/scripts/stroke_shaders.js"
+import {strokeProgram} from "../../../app/frontend/stroke_shaders.js"
 
 // What a card is given to compile: the texts of both shaders.
 function shaders(kind, how) {

@@ -2,7 +2,7 @@ import assert from "node:assert/strict"
 import {readdirSync, readFileSync} from "node:fs"
 import {test} from "node:test"
 
-import {Actor} from "../../../app/scripts/actor.js"
+import {Actor} from "../../../app/frontend/actor.js"
 
 const ASSETS = new URL("../../../assets/", import.meta.url)
 

@@ -1,8 +1,8 @@
 import assert from "node:assert/strict"
 import {test} from "node:test"
 
-import {Fit} from "../../../app/scripts/fit.js"
-import {VIEW_ANGLE} from "../../../app/scripts/orbit.js"
+import {Fit} from "../../../app/frontend/fit.js"
+import {VIEW_ANGLE} from "../../../app/frontend/orbit.js"
 import {bumpy} from "./shapes.js"
 
 const SLOPE = Math.tan(VIEW_ANGLE * Math.PI / 360)

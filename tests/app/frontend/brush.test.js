@@ -1,7 +1,7 @@
 import assert from "node:assert/strict"
 import {test} from "node:test"
 
-import {between, circle, corners, normalOf, PaintBrush} from "../../../app/scripts/brush.js"
+import {between, circle, corners, normalOf, PaintBrush} from "../../../app/frontend/brush.js"
 
 const close = (a, b, more = 1e-9) => {
   assert.equal(a.length, b.length)

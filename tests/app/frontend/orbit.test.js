@@ -1,7 +1,7 @@
 import assert from "node:assert/strict"
 import {test} from "node:test"
 
-import {Orbit} from "../../../app/scripts/orbit.js"
+import {Orbit} from "../../../app/frontend/orbit.js"
 
 const close = (a, b) => a.forEach((x, i) => assert.ok(Math.abs(x - b[i]) < 1e-9, `${a} and ${b}`))
 

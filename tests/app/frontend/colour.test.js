@@ -1,8 +1,8 @@
 import assert from "node:assert/strict"
 import {test} from "node:test"
 
-import {Colours, colourShader, pointIds} from "../../../app/scripts/colour.js"
-import {shaderSwaps} from "../../../app/scripts/shade.js"
+import {Colours, colourShader, pointIds} from "../../../app/frontend/colour.js"
+import {shaderSwaps} from "../../../app/frontend/shade.js"
 
 // A graphics card that only notes what is put into its textures.
 function card() {

@@ -1,8 +1,8 @@
 import assert from "node:assert/strict"
 import {test} from "node:test"
 
-import {ImageLayers, MATERIAL_SHADER, Materials} from "../../../app/scripts/materials.js"
-import {shaderSwaps} from "../../../app/scripts/shade.js"
+import {ImageLayers, MATERIAL_SHADER, Materials} from "../../../app/frontend/materials.js"
+import {shaderSwaps} from "../../../app/frontend/shade.js"
 
 // A graphics card that only notes what is put into its textures.
 function card() {

@@ -1,7 +1,7 @@
 import assert from "node:assert/strict"
 import {test} from "node:test"
 
-import {closedAtFirst, Forest} from "../../../app/scripts/forest.js"
+import {closedAtFirst, Forest} from "../../../app/frontend/forest.js"
 
 const LEVELS = [0, 1, 2, 2, 1, 0]
 const rows = LEVELS.map((level, i) => ({joint: 10 + i, level}))

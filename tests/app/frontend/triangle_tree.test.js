@@ -1,7 +1,7 @@
 import assert from "node:assert/strict"
 import {test} from "node:test"
 
-import {meet, TriangleTree} from "../../../app/scripts/triangle_tree.js"
+import {meet, TriangleTree} from "../../../app/frontend/triangle_tree.js"
 import {bumpy, random, rays} from "./shapes.js"
 
 // What the tree must find, by a look at every triangle.

@@ -1,7 +1,7 @@
 import assert from "node:assert/strict"
 import {test} from "node:test"
 
-import {Clip, skinArrays, skinned, skinVertex, transformed, withRows} from "../../../app/scripts/skin.js"
+import {Clip, skinArrays, skinned, skinVertex, transformed, withRows} from "../../../app/frontend/skin.js"
 
 const moved = (x, y, z) => [1, 0, 0, x, 0, 1, 0, y, 0, 0, 1, z, 0, 0, 0, 1]
 const quarterTurn = [0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]

@@ -1,8 +1,8 @@
 import assert from "node:assert/strict"
 import {test} from "node:test"
 
-import {pickBone, REACH, toSegment, TOUCH} from "../../../app/scripts/pick.js"
-import {hitLine, told} from "../../../app/scripts/surface.js"
+import {pickBone, REACH, toSegment, TOUCH} from "../../../app/frontend/pick.js"
+import {hitLine, told} from "../../../app/frontend/surface.js"
 
 // A renderer whose canvas has the scene's own x and y as pixels; what is behind z = 0 is not seen.
 const renderer = {
