@@ -41,6 +41,7 @@ class Common(param.Parameterized):
         default="open", objects=["open", "field", "winding"], doc="The same, of the graph."
     )
 
+    actors: Any = param.Dict({}, doc="Meshes that the server was started with: name to `Actor`.")
     rendered: Any = param.Boolean(
         False, doc="Whether PyVista draws the view on the server when it rests."
     )
