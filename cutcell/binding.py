@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from .editing.binding_warnings import binding_warnings
 from .editing.correct import (
     adjustments_of,
-    apply_vertex_overrides,
+    apply_overrides,
     corrected_parts,
     corrected_rig,
     joints_measured,
@@ -188,7 +188,7 @@ def _bind(
         )
         weights = corrected_parts(rig, graph, weights, corrections)
         weights = refine_weights(rig, weights, method=method, **refinement)
-        weights = apply_vertex_overrides(rig, weights, corrections)
+        weights = apply_overrides(rig, graph, weights, corrections, refinement["locked"])
         progress("weights", 1.0)
     warnings = binding_warnings(rig, distances, weights, corrections, refinement["locked"])
     return Binding(weights, graph, distances, seconds, warnings)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from cutcell.diagnosis import Diagnosis, Repaired, diagnose
 from cutcell.runtime.progress import Progress
 from cutcell_viewers.finding_scene import camera_on
@@ -23,13 +25,18 @@ def watch(session: Session) -> None:
     """Keep the diagnosis up to the character and its graph."""
     session.state.param.watch(lambda *events: _begin_anew(session), "rig")
     session.state.param.watch(lambda *events: examine(session), ["rig", "binding", "bare_graph"])
+    session.state.param.watch(
+        lambda *events: session.tasks.after_a_pause(lambda: examine_export(session), "export"),
+        ["panel", "binding"],
+    )
 
 
 def _begin_anew(session: Session) -> None:
     state = session.state
     session.tasks.jobs("diagnosis").cancel()
     session.diagnosed = None
-    state.param.update(diagnosis=None, finding="")
+    session.tasks.jobs("export check").cancel()
+    state.param.update(diagnosis=None, export_diagnosis=None, finding="")
     if state.repair is not None and state.repair.after is not state.rig:
         state.repair = None
 
@@ -55,6 +62,26 @@ def examine(session: Session) -> None:
             _look(session)
 
     session.tasks.jobs("diagnosis").start(work, done, session.fail, lambda stage, fraction: None)
+
+
+def examine_export(session: Session) -> None:
+    """Check the weights that an export contains, while the panel shows the findings."""
+    state = session.state
+    if state.panel != "check" or state.binding is None or asked(state) != session.built_for:
+        return
+    rig, resolution = state.rig.with_weights(state.binding.weights), state.resolution
+    last = state.export_diagnosis
+    if last is not None and np.array_equal(last.rig.weights, rig.weights):
+        return
+    distances = state.binding.distances if _is_standard(state) else None
+
+    def work(progress: Progress) -> Diagnosis:
+        return diagnose(rig, resolution, distances=distances, only_weights=True, progress=progress)
+
+    def done(diagnosis: Diagnosis) -> None:
+        state.export_diagnosis = diagnosis
+
+    session.tasks.jobs("export check").start(work, done, session.fail, lambda stage, fraction: None)
 
 
 def _is_standard(state: Any) -> bool:

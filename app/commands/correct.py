@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cutcell.editing.correct import (
-    apply_vertex_overrides,
+    apply_overrides,
     corrected_parts,
     corrected_rig,
     locked_by,
@@ -22,6 +22,7 @@ from cutcell.graph import CutCellGraph
 from cutcell.rig import Rig, Skeleton
 from cutcell.rig.deform_joints import DeformJoints, deform_joints
 from cutcell.runtime.display import shown_name
+from cutcell.weights.rig_falloff.surface_operators import SurfaceOperators
 
 from ..files.receive import safe_name
 from ..state.corrections import changes, renamed, tidy
@@ -161,6 +162,47 @@ def overrule(session: Session, vertex: int, weights: Mapping[int, float] | None)
     correct(session, corrections)
 
 
+def keep_file_parts(session: Session) -> None:
+    """Give every part of the mesh the file's weights, to correct these."""
+    graph = session.state.binding.graph
+    component = SurfaceOperators.of(graph).component[graph.vertex_node]
+    first = np.unique(component, return_index=True)[1]
+    parts = dict.fromkeys(first.tolist(), PartCorrection("file"))
+    correct(session, replace(session.state.corrections, parts=parts))
+
+
+def keep_file_vertices(session: Session, vertices: NDArray[np.intp]) -> None:
+    """Give some vertices the file's weights; those without weights there stay as they are."""
+    state = session.state
+    names, weights = state.rig.skeleton.names, state.rig.weights[vertices]
+    rows: dict[int, dict[str, float]] = {}
+    try:
+        for joint in np.flatnonzero(weights.any(axis=0)):
+            check_alone(state.rig.skeleton, int(joint))
+        for row, joint in zip(*np.nonzero(weights), strict=True):
+            rows.setdefault(int(vertices[row]), {})[names[joint]] = float(weights[row, joint])
+        corrections = replace(state.corrections, vertices={**state.corrections.vertices, **rows})
+    except CutcellError as error:
+        session.fail(error)
+        return
+    correct(session, corrections)
+
+
+def lock(session: Session, joints: Collection[int]) -> None:
+    """Lock joints to the file's weights."""
+    state = session.state
+    corrected = dict(state.corrections.joints)
+    try:
+        for joint in joints:
+            check_alone(state.rig.skeleton, joint)
+            name = state.rig.skeleton.names[joint]
+            corrected[name] = replace(corrected.get(name, JointCorrection()), locked=True)
+    except CutcellError as error:
+        session.fail(error)
+        return
+    correct(session, replace(state.corrections, joints=corrected))
+
+
 def leave_out(session: Session, joints: Collection[int]) -> None:
     """Let some joints carry no weight, and say so when it is done."""
     state = session.state
@@ -207,6 +249,7 @@ def finished(
     if not corrections:
         return weights
     weights = corrected_parts(rig, graph, weights, corrections)
-    weights = lock_joints(rig, weights, locked_by(corrections), max_influences)
-    done: NDArray[np.float64] = apply_vertex_overrides(rig, weights, corrections)
+    locked = locked_by(corrections)
+    weights = lock_joints(rig, weights, locked, max_influences)
+    done: NDArray[np.float64] = apply_overrides(rig, graph, weights, corrections, locked)
     return done

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
 import panel_material_ui as pmui
 
 from cutcell.runtime.display import shown_name
 
 from ..commands.brush import clear_selection, invert_selection
+from ..commands.correct import keep_file_vertices
 from ..commands.moving import mirror_of
 from ..commands.session import Session
 from ..state.brush import MAX_RADIUS, selected
-from .controls import caption, choice, section, slider, when
+from .controls import GAP, caption, choice, folded, has_weights, slider, when
 
 MODES = {"Add": "add", "Subtract": "subtract", "Replace": "replace", "Smooth": "smooth",
          "Select": "select"}  # fmt: skip
@@ -59,7 +61,7 @@ def brush(session: Session) -> pmui.Column:
         sizing_mode="stretch_width",
     )  # fmt: skip
     has_binding = when(lambda binding: binding is not None, state.param.binding)
-    return section("Brush", switch, tools, visible=has_binding)
+    return folded("Brush", switch, tools, needed=state.param.brush, visible=has_binding)
 
 
 def _selection(session: Session) -> pmui.Column:
@@ -84,9 +86,15 @@ def _selection(session: Session) -> pmui.Column:
         return f"Strokes stay on {which} of {len(chosen):,}, marked by dots."
 
     changing = state.param.brush_selection, state.param.rig
+    from_file = pmui.Button(
+        label="As in the file", icon="history", size="small", variant="outlined", margin=GAP,
+        sizing_mode="stretch_width", visible=when(has_weights, state.param.rig),
+        on_click=lambda event: keep_file_vertices(session, np.flatnonzero(selected(state))),
+    )  # fmt: skip
     return pmui.Column(
         caption(when(told, *changing)),
         pmui.Row(clear, invert, margin=0, sizing_mode="stretch_width"),
+        from_file,
         visible=when(lambda *which: selected(state) is not None, *changing),
         margin=0,
         sizing_mode="stretch_width",

@@ -5,25 +5,29 @@ from __future__ import annotations
 from functools import partial
 from typing import Any
 
+import numpy as np
 import panel_material_ui as pmui
+from numpy.typing import NDArray
 
 from cutcell.diagnosis import SEVERITIES, Finding
+from cutcell.diagnosis.leaks import moves_own_part
 from cutcell.rig import Rig
 from cutcell.runtime.display import shown_name
 
 from ..commands.check import look_at, repair, take_back
-from ..commands.correct import leave_out
+from ..commands.correct import keep_file_vertices, leave_out, lock
 from ..commands.export import export_repaired
 from ..commands.session import Session
 from ..state import State
-from .controls import GAP, caption, lead, section, when, words
+from ..state.check import EXPORT
+from .controls import GAP, caption, has_weights, lead, section, when, words
 
 ICONS = {"error": "error", "warning": "warning", "note": "info"}
 MAX_DETAILS = 8
 OF_PARTS = ("boneless-components", "unreachable-vertices")
 """What can be mended by a choice of what parts of the mesh follow."""
 LEFT_OUT = ("stray-weights", "joints-outside")
-"""What is mended by joints that carry no weight."""
+"""What is mended by joints that are locked or excluded."""
 
 
 def check(session: Session) -> pmui.Column:
@@ -32,9 +36,9 @@ def check(session: Session) -> pmui.Column:
     place = pmui.Column(margin=0, sizing_mode="stretch_width")
 
     def listed(*events: Any) -> None:
-        place.objects = [*_repairs(session), *_findings(session)]
+        place.objects = [*_repairs(session), *_findings(session), *_exported(session)]
 
-    state.param.watch(listed, ["diagnosis", "finding", "repair"])
+    state.param.watch(listed, ["diagnosis", "export_diagnosis", "finding", "repair"])
     listed()
     return pmui.Column(
         lead(when(lambda *_: told(state), state.param.diagnosis, state.param.rig)),
@@ -75,9 +79,23 @@ def _findings(session: Session) -> list[Any]:
     ]
 
 
-def _entry(session: Session, finding: Finding) -> pmui.Column:
+def _exported(session: Session) -> list[Any]:
+    """Return the findings about the weights that an export contains."""
+    state = session.state
+    if state.bare or state.binding is None:
+        return []
+    diagnosis = state.export_diagnosis
+    if diagnosis is None:
+        lines: list[Any] = [_line("Checking the weights ...")]
+    else:
+        lines = [_entry(session, one, EXPORT) for one in diagnosis.findings]
+    return [section("Weights in the export", *(lines or [_line("No faults.")]), margin=(8, 0))]
+
+
+def _entry(session: Session, finding: Finding, prefix: str = "") -> pmui.Column:
     """Return a finding as a line; with advice and repair if it is looked at."""
-    is_chosen = session.state.finding == finding.code
+    code = prefix + finding.code
+    is_chosen = session.state.finding == code
     title = pmui.Button(
         label=finding.title,
         icon=ICONS[finding.severity],
@@ -85,11 +103,16 @@ def _entry(session: Session, finding: Finding) -> pmui.Column:
         size="small",
         margin=0,
         sizing_mode="stretch_width",
-        on_click=lambda event: look_at(session, finding.code),
+        on_click=lambda event: look_at(session, code),
         sx={"justifyContent": "flex-start", "textAlign": "left", "color": "text.primary"},
     )
     lines = [title, _line(finding.message)]
-    if is_chosen:
+    if is_chosen and prefix:
+        lines += [_line(text) for text in finding.details[:MAX_DETAILS]]
+        if has_weights(session.state.rig) and len(finding.vertices):
+            keep = partial(keep_file_vertices, session, finding.vertices)
+            lines.append(_button("Use the file's weights there", "history", keep))
+    elif is_chosen:
         more = len(finding.details) - MAX_DETAILS
         lines += [_line(text) for text in finding.details[:MAX_DETAILS]]
         lines += [_line(f"and {more} more")] if more > 0 else []
@@ -97,10 +120,8 @@ def _entry(session: Session, finding: Finding) -> pmui.Column:
         if finding.repair:
             lines.append(_line(f"Repair: {finding.repair}.", "text.primary"))
             lines.append(_button("Repair", "build", lambda: repair(session, [finding.code])))
-        carrying = [j for j in finding.joints if session.state.rig.skeleton.deform[j]]
-        if finding.code in LEFT_OUT and carrying:
-            label = _left_out(session.state.rig, carrying)
-            lines.append(_button(label, "link_off", lambda: leave_out(session, carrying)))
+        if finding.code in LEFT_OUT:
+            lines += _joint_choices(session, finding.joints)
         if finding.code in OF_PARTS and not session.state.bare:
             vertex = int(finding.vertices[0])
             see = partial(session.state.param.update, panel="weights", part=vertex)
@@ -108,11 +129,28 @@ def _entry(session: Session, finding: Finding) -> pmui.Column:
     return pmui.Column(*lines, margin=(0, 0, 6, 0), sizing_mode="stretch_width")
 
 
-def _left_out(rig: Rig, joints: list[int]) -> str:
-    subject = f"these {len(joints)} joints"
+def _joint_choices(session: Session, joints: NDArray[np.intp]) -> list[pmui.Button]:
+    """Return buttons that lock joints that move a part of their own, and exclude the others."""
+    rig = session.state.rig
+    joints = joints[rig.skeleton.deform[joints]]
+    moves = np.zeros(len(joints), bool)
+    if has_weights(rig):
+        moves = moves_own_part(rig.weights[:, joints])
+    choices = (
+        ("Lock {} to file weights", "lock", lock, joints[moves].tolist()),
+        ("Exclude {} from binding", "link_off", leave_out, joints[~moves].tolist()),
+    )
+    return [
+        _button(label.format(_joints(rig, which)), icon, partial(act, session, which))
+        for label, icon, act, which in choices
+        if which
+    ]
+
+
+def _joints(rig: Rig, joints: list[int]) -> str:
     if len(joints) == 1:
-        subject = shown_name(rig.skeleton.names[joints[0]])
-    return f"Let {subject} carry no weight"
+        return shown_name(rig.skeleton.names[joints[0]])
+    return f"these {len(joints)} joints"
 
 
 def _repairs(session: Session) -> list[Any]:

@@ -13,7 +13,7 @@ from ..commands import correct
 from ..commands.session import Session
 from ..scenes.components import MOST, Component, chosen, listed, vertices_of
 from ..widgets.rows import Rows
-from .controls import GAP, caption, offer, section, unique_names
+from .controls import GAP, caption, folded, offer, unique_names
 
 WAYS = {
     "As computed": "",
@@ -21,8 +21,9 @@ WAYS = {
     "With the body it touches": "touching",
     "Separately": "itself",
 }
+FROM_FILE = {"As in the file": "file"}
 WATCHED = ["panel", "rig", "corrections", "part"]
-SHORT = {"glued": "glued", "touching": "follows", "itself": "by itself"}
+SHORT = {"glued": "glued", "touching": "follows", "itself": "by itself", "file": "as in the file"}
 
 
 def parts_of_mesh(session: Session) -> pmui.Column:
@@ -46,7 +47,7 @@ def parts_of_mesh(session: Session) -> pmui.Column:
         sizing_mode="stretch_width", searchable=True,
     )  # fmt: skip
     held: list[Component] = []
-    whole = section("Parts of the mesh", about, place, way, glue)
+    whole = folded("Parts of the mesh", about, place, way, glue, needed=state.param.part)
 
     def show() -> None:
         if state.panel != "weights":
@@ -68,7 +69,11 @@ def parts_of_mesh(session: Session) -> pmui.Column:
         )
         way.visible = 0 <= number < len(held)
         now = held[number].correction if way.visible else None
-        way.value = "" if now is None else now.how
+        has_weights = state.rig.weights is not None
+        way.param.update(
+            options={**WAYS, **(FROM_FILE if has_weights else {})},
+            value="" if now is None else now.how,
+        )
         glue.visible = now is not None and now.how == "glued"
         if now is not None and now.joint is not None:
             offer(glue, unique_names(names), names.index(now.joint))
@@ -122,4 +127,5 @@ def _follows(one: Component, names: tuple[str, ...]) -> str:
     joint = shown_name(names[one.joint])
     if one.correction is None:
         return f"{joint} {one.share:.0%}"
-    return f"{SHORT[one.correction.how]}: {joint}"
+    how = SHORT[one.correction.how]
+    return how if one.correction.how == "file" else f"{how}: {joint}"

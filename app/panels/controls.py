@@ -48,6 +48,35 @@ def section(title: str, *objects: Any, **params: Any) -> pmui.Column:
     return pmui.Column(heading, *objects, **params)
 
 
+def folded(title: str, *objects: Any, needed: Any = None, **params: Any) -> pmui.Column:
+    """Return a section that opens when its heading is pressed, or a parameter needs it."""
+    content = pmui.Column(*objects, margin=0, sizing_mode="stretch_width")
+    accordion = pmui.Accordion(
+        (title, content), margin=0, sizing_mode="stretch_width", elevation=0, sx=_FOLDED,
+        disable_gutters=True, title_variant="overline",
+    )  # fmt: skip
+
+    def opened(*events: Any) -> None:
+        value = getattr(needed.owner, needed.name)
+        if value is not None and value is not False:  # a part may be 0
+            accordion.active = [0]
+
+    if needed is not None:
+        needed.owner.param.watch(opened, needed.name)
+        opened()
+    return pmui.Column(accordion, margin=(2, 20), sizing_mode="stretch_width", **params)
+
+
+_FOLDED = {
+    "background": "none",
+    "&::before": {"display": "none"},
+    "& .MuiAccordionSummary-root": {"minHeight": 36, "p": 0},
+    "& .MuiAccordionSummary-content": {"my": "4px !important"},
+    "& .title": {"fontWeight": 600, "letterSpacing": "0.08em", "color": "text.secondary"},
+    "& .MuiAccordionDetails-root": {"p": "0 !important"},
+}
+
+
 def lead(text: Any) -> pmui.Typography:
     """Return the sentence that a panel begins with: what is seen there."""
     style = {"fontSize": "13px", "lineHeight": 1.45, "color": "text.primary", "display": "block"}
@@ -137,6 +166,11 @@ def slider(parameter: Any, label: str, whole: bool = False, **params: Any) -> An
     # Panel holds a change back for 50 ms in case another follows; what is seen must not wait.
     made._priority_changes = ["value"]
     return made
+
+
+def has_weights(rig: Any) -> bool:
+    """Whether a character has weights in its file."""
+    return rig is not None and rig.weights is not None
 
 
 def weightless(rig: Any, joint: int) -> bool:

@@ -12,7 +12,7 @@ from cutcell.editing.corrections import Corrections
 from ..commands import correct
 from ..commands.session import Session
 from ..widgets.open_file import OpenFile
-from .controls import caption, section, when
+from .controls import caption, folded, when
 
 NONE = "Nothing is corrected. What is goes into the exported file, and into files of their own."
 
@@ -40,7 +40,7 @@ def corrections(session: Session) -> pmui.Column:
         margin=(4, 8, 4, 0),
         sizing_mode="stretch_width",
     )
-    return section(
+    return folded(
         "Corrections",
         caption(when(told, state.param.corrections)),
         pmui.Row(buttons[0], opener, buttons[1], margin=0, sizing_mode="stretch_width"),

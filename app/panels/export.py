@@ -13,7 +13,7 @@ from cutcell.rig import Rig
 
 from ..commands import export as actions
 from ..commands.session import Session
-from .controls import GAP, caption, section, when
+from .controls import GAP, caption, folded, when
 
 
 def export(session: Session) -> pmui.Column:
@@ -42,7 +42,7 @@ def export(session: Session) -> pmui.Column:
         "Nodes and edges of the graph (CSV)": lambda: actions.export_graph(session, "zip", offer),
         "Nodes and edges of the graph (NPZ)": lambda: actions.export_graph(session, "npz", offer),
     }
-    return section(
+    return folded(
         "Export",
         bound,
         pmui.Row(

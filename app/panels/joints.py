@@ -19,7 +19,7 @@ from ..commands.session import Session
 from ..scenes.joints import joint_rows, shares_of
 from ..state import State
 from ..widgets.joint_tree import JointTree
-from .controls import GAP, as_text, caption, section, when, words
+from .controls import GAP, as_text, caption, folded, when, words
 from .moving import place
 from .structure import structure
 
@@ -73,7 +73,7 @@ def joints(session: Session) -> pmui.Column:
         label="Detect deforming joints", size="small", variant="text", margin=0, on_click=anew,
         description="From their names, and where they lie in the body",
     )  # fmt: skip
-    return section("Joints", counts, tree, guesser, *_chosen(session))
+    return folded("Joints", counts, tree, guesser, *_chosen(session))
 
 
 def _character(state: State) -> Any:

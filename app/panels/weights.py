@@ -7,13 +7,27 @@ from typing import Any
 import numpy as np
 import panel_material_ui as pmui
 
+from cutcell.editing.binding_warnings import SAME
 from cutcell.method import FALLOFFS
 
+from ..commands.correct import keep_file_parts
 from ..commands.session import Session
 from ..state import State
 from .brush import brush
 from .components import parts_of_mesh
-from .controls import GAP, caption, choice, follow, lead, section, slider, when
+from .controls import (
+    GAP,
+    caption,
+    choice,
+    folded,
+    follow,
+    has_weights,
+    lead,
+    section,
+    slider,
+    when,
+    words,
+)
 from .corrections import corrections
 from .joints import joints
 
@@ -27,6 +41,7 @@ DIFFERENCE = {
     "Difference from the file's": "difference",
     "Difference of the selected bone": "bone_difference",
 }
+SOURCE = {"fontSize": 13, "fontWeight": 600}
 FALLOFF_TITLES = {"rig": "Animation", "paper": "Paper"}
 
 
@@ -38,29 +53,55 @@ def weights(session: Session) -> pmui.Column:
     )
 
     def offered() -> tuple[dict[str, str], str]:
-        has_weights = state.rig is not None and state.rig.weights is not None
-        options = {**SHOWN, **(DIFFERENCE if has_weights else {})}
+        options = {**SHOWN, **(DIFFERENCE if has_weights(state.rig) else {})}
         return options, state.weights_shown if state.weights_shown in options.values() else "mix"
 
     follow(select, state, "weights_shown", offered, ["rig"])
-    facts = caption(told(state))
+    facts, source = caption(told(state)), words(exported(state), sx=SOURCE, margin=(8, 0, 0, 0))
 
     def tell() -> None:
-        facts.object = told(state)
+        facts.object, source.object = told(state), exported(state)
 
     # The colours go first.
     state.param.watch(lambda *events: session.tasks.after_a_pause(tell, "told"), ["binding", "rig"])
     return pmui.Column(
         lead("How strongly each bone moves the skin."),
-        section("", select, *_sides(state), facts, margin=(8, 20, 4, 20)),
+        section(
+            "", source, _from_file(session), select, *_sides(state), facts, margin=(0, 20, 4, 20)
+        ),
         brush(session),
         joints(session),
-        section("Falloff with distance", *_falloff(state)),
+        folded("Falloff", *_falloff(state)),
         parts_of_mesh(session),
         corrections(session),
         margin=0,
         sizing_mode="stretch_width",
     )
+
+
+def _from_file(session: Session) -> pmui.Button:
+    """Return the button that starts from the file's weights."""
+    rig, binding = session.state.param.rig, session.state.param.binding
+    return pmui.Button(
+        label="Start from the file's weights", icon="history", size="small", variant="text",
+        margin=0, on_click=lambda event: keep_file_parts(session),
+        visible=when(lambda rig, bound: has_weights(rig) and bound is not None, rig, binding),
+    )  # fmt: skip
+
+
+def exported(state: State) -> str:
+    """Return which weights an exported file contains."""
+    if state.binding is None:
+        return ""
+    if not has_weights(state.rig):
+        return "Export: computed weights."
+    differs = np.abs(state.binding.weights - state.rig.weights).max(axis=1, initial=0) > SAME
+    if not differs.any():
+        return "Export: the file's weights."
+    as_in_file = 1 - differs.mean()
+    if as_in_file < 0.005 or not state.corrections:
+        return "Export: recomputed weights."
+    return f"Export: recomputed weights, the file's at {as_in_file:.0%} of the vertices."
 
 
 def _sides(state: State) -> list[Any]:
@@ -70,22 +111,18 @@ def _sides(state: State) -> list[Any]:
         state.param.weights_of,
         names,
         visible=when(
-            lambda rig, shown: _has_own(rig) and shown not in DIFFERENCE.values(),
+            lambda rig, shown: has_weights(rig) and shown not in DIFFERENCE.values(),
             state.param.rig,
             state.param.weights_shown,
         ),
     )
     signed = when(
-        lambda rig, shown: _has_own(rig) and shown == "bone_difference",
+        lambda rig, shown: has_weights(rig) and shown == "bone_difference",
         state.param.rig,
         state.param.weights_shown,
     )
     truth = {"The file is right": "file", "Ours are right": "ours"}
     return [whose, choice(state.param.truth, truth, visible=signed)]
-
-
-def _has_own(rig: Any) -> bool:
-    return rig is not None and rig.weights is not None
 
 
 def _falloff(state: State) -> list[Any]:

@@ -12,6 +12,7 @@ from cutcell_viewers.palette import BODY, MARK, Color
 from cutcell_viewers.skin import skin_of_weights
 
 from ..state import State
+from ..state.check import EXPORT
 from .common import character
 from .memo import Memo
 
@@ -37,14 +38,17 @@ def check(state: State, memo: Memo) -> Description:
     swatches: tuple[tuple[Color, str], ...] = ((MARK, named(finding)),)
     placed = memo("finding pose", (rig, finding), lambda: finding_pose(rig, finding))
     if placed is not None:
-        skin = memo("file skin", (rig,), lambda: skin_of_weights(rig.weights))
+        is_export = state.finding.startswith(EXPORT)
+        weighted = state.export_diagnosis.rig if is_export else rig
+        skin = memo("finding skin", (weighted,), lambda: skin_of_weights(weighted.weights))
         actors["body"] = replace(actors["body"], skin=skin)
         actors.pop("vertex", None)  # it stays where it is at rest
         turned = rig.skeleton.names[finding.pose.joint]
         swatches += (
             (
                 BODY,
-                f"posed by the file's weights: {turned} turned by {abs(finding.pose.degrees):g}°",
+                f"posed by {'exported' if is_export else 'file'} weights: {turned} turned by "
+                f"{abs(finding.pose.degrees):g}°",
             ),
         )
     legend = Legend(finding.title, swatches=swatches)

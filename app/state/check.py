@@ -9,6 +9,9 @@ import param
 
 from cutcell.rig import Rig
 
+EXPORT = "export:"
+"""Before the code of a finding about the weights that an export contains."""
+
 
 @dataclass(frozen=True, eq=False)
 class Repair:
@@ -33,12 +36,17 @@ class DiagnosisChoices(param.Parameterized):
     """The findings, and which of them is looked at."""
 
     diagnosis: Any = param.Parameter(None, doc="The cutcell.Diagnosis, or None so far.")
-    finding: Any = param.String("", doc="Code of the finding that is looked at; else empty.")
+    export_diagnosis: Any = param.Parameter(
+        None, doc="The cutcell.Diagnosis of the weights that an export contains, or None so far."
+    )
+    finding: Any = param.String(
+        "", doc="Code of the selected finding, after `EXPORT` one of the export; else empty."
+    )
     repair: Any = param.Parameter(None, doc="A `Repair` of this character, or None.")
 
     @property
     def found(self) -> Any:
         """The finding that is looked at, or None."""
-        if self.diagnosis is None or self.finding not in self.diagnosis:
-            return None
-        return self.diagnosis[self.finding]
+        code = self.finding.removeprefix(EXPORT)
+        diagnosis = self.diagnosis if code == self.finding else self.export_diagnosis
+        return diagnosis[code] if diagnosis is not None and code in diagnosis else None

@@ -15,6 +15,7 @@ from cutcell_app.commands import arrival, correct, keys, loading, look, tour
 from cutcell_app.commands.binding import restore
 from cutcell_app.panels.components import parts_of_mesh
 from cutcell_app.panels.joints import joints
+from cutcell_app.panels.weights import exported
 from cutcell_app.scenes import resolve
 from cutcell_app.scenes.facts import vertex_facts
 from cutcell_app.scenes.warnings import warnings
@@ -151,6 +152,29 @@ def test_a_lock_that_overrules_a_part_is_warned_of(bound, loop):
     correct.correct(bound, replace(glued, joints={}))
     settled(bound, loop)
     assert not any("vertex 3 " in door.text for door in warnings(bound.state))
+
+
+def test_all_parts_start_from_the_files_weights(bound, loop):
+    assert "recomputed" in exported(bound.state)
+    correct.keep_file_parts(bound)
+    settled(bound, loop)
+    np.testing.assert_array_equal(bound.state.binding.weights, bound.state.rig.weights)
+    the_same_as_bind(bound)
+    assert "recomputed" not in exported(bound.state)
+    loading.show_rig(bound, arm_rig().with_weights(None))
+    loop.run_until(lambda: bound.state.binding is not None)
+    assert "file's" not in exported(bound.state)
+
+
+def test_single_vertices_get_the_files_weights(bound, loop):
+    which, before = np.array([3, 30]), bound.state.binding.weights
+    correct.keep_file_vertices(bound, which)
+    settled(bound, loop)
+    weights = bound.state.binding.weights
+    np.testing.assert_allclose(weights[which], bound.state.rig.weights[which], atol=1e-12)
+    others = np.delete(np.arange(len(weights)), which)
+    np.testing.assert_array_equal(weights[others], before[others])
+    the_same_as_bind(bound)
 
 
 def test_an_address_brings_them_back(bound, loop):

@@ -3,9 +3,12 @@
 from dataclasses import replace
 
 import numpy as np
+import panel_material_ui as pmui
 import pytest
 
 import cutcell
+from cutcell import Corrections, JointCorrection
+from cutcell.diagnosis import Diagnosis, Finding
 from cutcell.rig import TriangleMesh
 from cutcell_app.commands import loading
 from cutcell_app.commands.check import look_at, repair, take_back
@@ -15,6 +18,7 @@ from cutcell_app.panels.check import check, told
 from cutcell_app.scenes import resolve
 from cutcell_app.scenes.common import bounds_of
 from cutcell_app.state import State
+from cutcell_app.state.check import EXPORT
 from cutcell_viewers.camera import sees
 from cutcell_viewers.finding_scene import finding_marks
 from tests.app.test_bare import bare_arm
@@ -137,3 +141,36 @@ def test_joints_and_vertices_get_beads():
         low, high = bounds_of(State(rig=rig))
         assert (middle >= low - 0.1).all()
         assert (middle <= high + 0.1).all()
+
+
+def test_the_weights_of_the_export_are_checked(spoiled, loop):
+    state = spoiled.state
+    loop.run_until(lambda: state.export_diagnosis is not None)
+    assert state.export_diagnosis.findings == ()
+    assert codes(spoiled) == ["unweighted-vertices", "inverted-faces"]
+    weights = state.binding.weights.copy()
+    weights[:5] = 0
+    state.binding = replace(state.binding, weights=weights)
+    loop.run_until(lambda: state.export_diagnosis.findings)
+    look_at(spoiled, EXPORT + "unweighted-vertices")
+    assert state.found.vertices.tolist() == list(range(5))
+    look_at(spoiled, "unweighted-vertices")
+    assert state.found.vertices.tolist() == list(range(3))
+
+
+def test_joints_that_lead_a_part_are_locked_not_excluded(bound, loop):
+    loop.run_until(lambda: bound.state.diagnosis is not None)
+    rig = bound.state.rig
+    eye, control = 2, 1
+    weights = rig.weights.copy()
+    weights[:, control] = np.minimum(weights[:, control], 0.2)
+    weights[:, eye] = 0
+    weights[:2, [eye, control]] = [1, 0]
+    weights[:, 0] = 1 - weights[:, 1:].sum(axis=1)
+    bound.state.rig = rig.with_weights(weights)
+    finding = Finding("stray-weights", "warning", "", "", joints=np.array([control, eye]))
+    bound.state.param.update(diagnosis=Diagnosis(rig, (finding,)), finding=finding.code)
+    buttons = {button.label: button for button in check(bound).select(pmui.Button)}
+    next(b for label, b in buttons.items() if "Exclude elbow" in label)
+    next(b for label, b in buttons.items() if "Lock wrist" in label).clicks += 1
+    assert bound.state.corrections == Corrections(joints={"wrist": JointCorrection(locked=True)})
