@@ -15,6 +15,8 @@ export class Sheet {
     let root = element.getRootNode()
     while (root.host?.getRootNode().host) { root = root.host.getRootNode() }
     this.root = root
+    root.querySelector("main")?.setAttribute("aria-label", "Character")
+    root.querySelector("nav")?.setAttribute("aria-label", "Controls")
     this.observer.observe(root, {childList: true, subtree: true})
     root.addEventListener("transitionend", this.fitted, true)
     this.fit()

@@ -20,6 +20,7 @@ import {probe} from "./probe.js"
 import {Rendered} from "./rendered.js"
 import {loadVtk, Renderer} from "./renderer.js"
 import {Sheet} from "./sheet.js"
+import {skipLink} from "./skip_link.js"
 import {Clip} from "./skin.js"
 import {Transport} from "./transport.js"
 import {acceptDrops, Uploader} from "./upload.js"
@@ -326,6 +327,7 @@ export function render({model}) {
     console.info(`The server draws the 3D view: ${error.message}.`)
     begin(new PictureView(model, overlay), true)
   })
-  model.on("remove", () => view?.remove())
+  const link = skipLink(overlay.canvas)
+  model.on("remove", () => { view?.remove(); link.remove() })
   return overlay.root
 }

@@ -27,6 +27,7 @@ from ..state.pairs import OpenedAudit
 from ..widgets.inspector import inspector
 from ..widgets.modules import style
 from ..widgets.tour_card import tour_card
+from ..widgets.welcome import Welcome
 from .favicon import FAVICON
 from .session import begin
 from .sidebar import sidebar
@@ -72,7 +73,7 @@ def page(
     if opened is not None and not query:
         session.state.panel = "pairs"
     view: Any = session.view
-    result = layout(session)
+    result = layout(session, greeting=path is None and opened is None and not query)
     document.on_session_destroyed(functools.partial(_close, session))
 
     def otherwise() -> None:
@@ -107,8 +108,8 @@ def _told(fail: Callable[[Exception], None] | None, error: Exception) -> None:
         fail(error)
 
 
-def layout(session: Session) -> pmui.Page:
-    """Return the page of a session."""
+def layout(session: Session, greeting: bool = False) -> pmui.Page:
+    """Return the page of a session, with a welcome on a first visit if it is to greet."""
     view: Any = session.view
     tagline = words(
         "Skinning weights that follow the body, not the air",
@@ -116,6 +117,7 @@ def layout(session: Session) -> pmui.Page:
         margin=(2, 0, 0, 16),
     )
     main = pmui.Column(
+        *([Welcome(session, sizing_mode="stretch_width")] if greeting else []),
         pmui.Column(
             view,
             messages(session),

@@ -28,6 +28,12 @@ _SHEET = {
     },
 }
 
+FOCUS = {"outline": "2px solid #e05a00", "outlineOffset": "1px"}
+"""What has the focus of the keyboard looks like this everywhere; the style sheets say the same."""
+
+_NO_RIPPLE = {"defaultProps": {"disableFocusRipple": True}}
+"""Focus is an outline that stays, and no pulse."""
+
 _SHAPE = {
     "shape": {"borderRadius": 8},
     "typography": {
@@ -48,6 +54,17 @@ _SHAPE = {
                 },
             }
         },
+        "MuiButtonBase": {"styleOverrides": {"root": {"&.Mui-focusVisible": FOCUS}}},
+        **dict.fromkeys(
+            ("MuiButton", "MuiIconButton", "MuiToggleButton", "MuiSwitch", "MuiCheckbox"),
+            _NO_RIPPLE,
+        ),
+        "MuiAccordionSummary": {
+            "styleOverrides": {"root": {"&.Mui-focusVisible": {"backgroundColor": "transparent"}}}
+        },
+        "MuiSlider": {"styleOverrides": {"thumb": {"&.Mui-focusVisible": FOCUS}}},
+        # The page's name is its first heading.
+        "MuiTypography": {"defaultProps": {"variantMapping": {"h3": "h1", "h5": "div"}}},
         "MuiMenu": {"defaultProps": {"transitionDuration": {"enter": 160, "exit": 0}}},
     },
 }
