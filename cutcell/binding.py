@@ -32,6 +32,7 @@ from .rig.checks import check_positions
 from .rig.inputs import RigLike, as_rig
 from .runtime.memory import check_matrix
 from .runtime.progress import Progress, silent
+from .runtime.repr import short_repr
 from .runtime.threads import cancellable, submit
 from .weights.rig_falloff.surface_operators import SurfaceOperators
 from .weights.skinning_weights import skinning_weights
@@ -63,6 +64,8 @@ class Binding:
     distances: BoneDistances
     seconds: dict[str, float]
     warnings: tuple[str, ...]
+
+    __repr__ = short_repr
 
 
 def bind(

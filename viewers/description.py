@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cutcell.io.materials.face_colors import FaceColors
+from cutcell.runtime.repr import short_repr
 
 from .palette import BODY, Color
 from .skin import Skin
@@ -209,6 +210,8 @@ class Description:
     views: tuple[str, ...] = ()
     front: float | None = None
     images: NDArray[np.uint8] | None = None
+
+    __repr__ = short_repr
 
     @property
     def bounds(self) -> NDArray[np.float64]:

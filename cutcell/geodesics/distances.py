@@ -15,6 +15,7 @@ from ..method import ANIMATION, DistanceOptions, Method, MethodName, method_of
 from ..rig import Skeleton
 from ..rig.checks import check_integer, check_number, check_positions
 from ..runtime.progress import Progress, silent
+from ..runtime.repr import short_repr
 from .bones import Bones, Sources
 from .fallback import NOT_ALLOWED, REACHED, UNREACHED, UNUSED, straight_to_nearest
 from .solver import BoneDistanceSolver
@@ -52,6 +53,8 @@ class BoneDistances:
     sources: Sources
     fallback: NDArray[np.uint8]
     solver: BoneDistanceSolver
+
+    __repr__ = short_repr
 
     @property
     def graph(self) -> CutCellGraph:
