@@ -180,7 +180,8 @@ def show_rig(
     with history.restoring(session), batch_call_watchers(state):
         state.param.update(
             rig=rig, binding=None, bare_graph=None, field=None, turns={}, moving=False,
-            playing=False, repair=None, corrections=Corrections(), part=None,
+            playing=False, repair=None, corrections=Corrections(), part=None, brush=False,
+            joint_handle=False,
             own=rig,
             clip=first_clip(rig), message=None, joint=first_joint(rig), vertex=None,
         )  # fmt: skip

@@ -70,10 +70,10 @@ def parts_of_mesh(session: Session) -> pmui.Column:
         way.visible = 0 <= number < len(held)
         now = held[number].correction if way.visible else None
         has_weights = state.rig.weights is not None
-        way.param.update(
-            options={**WAYS, **(FROM_FILE if has_weights else {})},
-            value="" if now is None else now.how,
-        )
+        how = "" if now is None else now.how
+        # The largest part is the body itself.
+        offered = {t: w for t, w in WAYS.items() if w != "touching" or number or w == how}
+        way.param.update(options={**offered, **(FROM_FILE if has_weights else {})}, value=how)
         glue.visible = now is not None and now.how == "glued"
         if now is not None and now.joint is not None:
             offer(glue, unique_names(names), names.index(now.joint))

@@ -7,6 +7,7 @@ from typing import Any
 
 import panel_material_ui as pmui
 
+from cutcell.editing.corrections import Corrections
 from cutcell.io import keeps_document
 from cutcell.io.materials.transfer import has_materials
 from cutcell.rig import Rig
@@ -51,14 +52,18 @@ def export(session: Session) -> pmui.Column:
             margin=0,
             sizing_mode="stretch_width",
         ),
-        caption(when(_described, state.param.rig)),
+        caption(when(_described, state.param.rig, state.param.corrections, state.param.repair)),
     )
 
 
-def _described(rig: Rig | None) -> str:
-    """Say what the bound file holds."""
+def _described(rig: Rig | None, corrections: Corrections, repair: Any) -> str:
+    """Return what the exported file contains."""
     if rig is None or keeps_document(rig):
-        summary = "The GLB is as it was, but for the weights."
+        moved = any(one.position is not None for one in corrections.joints.values())
+        changed = ["weights"]
+        changed += ["skeleton"] if moved or corrections.structural else []
+        changed += ["mesh"] if repair is not None else []
+        summary = f"Only {' and '.join(changed)} of the GLB change."
     elif has_materials(rig):
         summary = "The GLB is a new one: mesh, skeleton, weights, motions and base colours."
     else:

@@ -71,7 +71,7 @@ def joints(session: Session) -> pmui.Column:
     counts = caption(when(_counted, state.param.rig))
     guesser = pmui.Button(
         label="Detect deforming joints", size="small", variant="text", margin=0, on_click=anew,
-        description="From their names, and where they lie in the body",
+        description="Detect deforming joints by name and position",
     )  # fmt: skip
     return folded("Joints", counts, tree, guesser, *_chosen(session))
 
@@ -100,7 +100,7 @@ def _chosen(session: Session) -> list[Any]:
         margin=GAP, sizing_mode="stretch_width", show_value=False, track=False, tooltips=False,
     )  # fmt: skip
     radius = pmui.TextInput(
-        label="Radius, in the file's units", value="", size="small", margin=(8, 0),
+        label="Radius (file units)", value="", size="small", margin=(8, 0),
         sizing_mode="stretch_width", placeholder="measured from the body",
     )  # fmt: skip
     reset = pmui.Button(

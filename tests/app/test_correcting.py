@@ -11,7 +11,7 @@ import cutcell
 from cutcell import Corrections, JointCorrection, PartCorrection
 from cutcell.rig import TriangleMesh
 from cutcell.rig.deform_joints import deform_joints
-from cutcell_app.commands import arrival, correct, keys, loading, look, tour
+from cutcell_app.commands import arrival, correct, keys, loading, look, moving, tour
 from cutcell_app.commands.binding import restore
 from cutcell_app.panels.components import parts_of_mesh
 from cutcell_app.panels.joints import joints
@@ -349,8 +349,12 @@ def test_parts_are_glued_and_seen_apart(session, loop):
         f"Part 1 · {first}",
         f"Part 2 · {len(vertices) - first}",
     ]
+    rows._handle_msg({"row": 0})
+    loop.run_for(0.05)
+    assert "touching" not in way.options.values(), "the body cannot follow itself"
     rows._handle_msg({"row": 1})
     loop.run_for(0.05)
+    assert "touching" in way.options.values()
     assert (rows.chosen, session.state.part, way.value) == (1, first, "")
     scene = resolve(session.state)
     assert len(scene.actors["part"].cells) == len(button.faces)
@@ -384,3 +388,19 @@ def test_a_step_of_the_tour_shows_what_it_speaks_of_uncorrected(session, loop):
     loop.run_until(lambda: not session.tasks.running)
     assert not session.state.corrections
     assert session.state.rig.skeleton.deform[3]
+
+
+def test_tools_are_put_down_for_another_character(bound):
+    bound.state.param.update(brush=True, joint_handle=True)
+    loading.show_rig(bound, arm_rig())
+    assert not bound.state.brush
+    assert not bound.state.joint_handle
+
+
+def test_a_coordinate_that_is_rounding_noise_is_shown_as_zero(bound):
+    section = joints(bound)
+    joint = bound.state.rig.skeleton.joints[2].tolist()
+    bound.state.joint = 2
+    moving.put(bound, [3.55e-15, *joint[1:]])
+    (x,) = (field for field in section.select(pmui.TextInput) if field.label == "X")
+    assert x.value == "0"
