@@ -56,7 +56,7 @@ EPILOG = """Examples:
 
 
 @for_people
-@with_method("resolution", "method", "connectivity", "winding_threshold", "orient", "leaf")
+@with_method()
 def render(
     rig: RigFile,
     out: Annotated[

@@ -15,9 +15,6 @@ from .binding import asked, swap
 from .look import look
 from .session import Session
 
-STANDARD = ("connectivity", "orient", "winding_threshold", "leaf")
-"""Choices that must be as at the start for the page's distances to tell what is wrong."""
-
 
 def watch(session: Session) -> None:
     """Keep the diagnosis up to the character and its graph."""
@@ -58,8 +55,8 @@ def examine(session: Session) -> None:
 
 
 def _is_standard(state: Any) -> bool:
-    first, now = method_of(type(state)(), GRAPH), method_of(state, GRAPH)
-    return all(first[name] == now[name] for name in STANDARD)
+    names = tuple(name for name in GRAPH if name != "resolution")
+    return method_of(type(state)(), names) == method_of(state, names)
 
 
 def look_at(session: Session, code: str) -> None:

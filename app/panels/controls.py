@@ -139,6 +139,13 @@ def slider(parameter: Any, label: str, whole: bool = False, **params: Any) -> An
     return made
 
 
+def switch(parameter: Any) -> pmui.Switch:
+    """Return a switch that follows a parameter, under the parameter's own label."""
+    return pmui.Switch.from_param(
+        parameter, label=parameter.label, size="small", margin=(3, 0), description=""
+    )
+
+
 def weightless(rig: Any, joint: int) -> bool:
     """Whether a joint is there that carries no weight."""
     return rig is not None and joint < len(rig.skeleton.deform) and not rig.skeleton.deform[joint]

@@ -9,7 +9,7 @@ import panel_material_ui as pmui
 from ..commands.session import Session
 from ..state import State
 from ..state.distance import MAX_MEASURES, MEASURES
-from .controls import GAP, caption, choice, lead, section, slider, weightless, when
+from .controls import GAP, caption, choice, lead, section, slider, switch, weightless, when
 from .cutting import cutting
 
 
@@ -122,10 +122,3 @@ def _wave(state: State) -> list[Any]:
         front,
         button,
     ]
-
-
-def switch(parameter: Any) -> pmui.Switch:
-    """Return a switch that follows a parameter, under the parameter's own label."""
-    return pmui.Switch.from_param(
-        parameter, label=parameter.label, size="small", margin=(3, 0), description=""
-    )

@@ -6,9 +6,7 @@ from typing import Any
 
 import param
 
-PANELS = ("graph", "distance", "weights", "pose", "compare", "check", "learn", "pairs")
-"""The ids of the panels, in the order in which they are offered; the last for an audit alone."""
-
+from .panels import PANELS
 
 CUTS = ("off", "x", "y", "z", "free")
 """What the body is cut across; a free plane has any direction."""
