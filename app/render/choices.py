@@ -57,7 +57,7 @@ class Choices:
         Side by side on the panel "compare": names in `cutcell.baselines.METHODS`, or "now".
     settings : mapping
         Other choices of the page, by the names that its address has for them, such as
-        `{"cut_axis": "z", "mesh_edges": True}`; `render_options.settings_of` makes them.
+        `{"cut_axis": "z", "mesh_edges": True}`; `render.options.settings_of` makes them.
     method : Method
         How the graph is built and distances are measured.
     finding : str, optional
