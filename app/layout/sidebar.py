@@ -10,7 +10,7 @@ from ..commands.session import Session
 from ..panels import BUILDERS
 from ..panels.bone import bone
 from ..panels.character import character
-from ..panels.controls import lead, when
+from ..panels.controls import column, lead, when
 from ..panels.export import export
 from ..panels.templates import skeleton_menu
 from ..state import PANELS
@@ -32,7 +32,7 @@ def sidebar(session: Session) -> list[Any]:
         session.state.param.opened,
     )
     chosen, exported = (
-        pmui.Column(*parts, margin=0, visible=alone, sizing_mode="stretch_width")
+        column(*parts, visible=alone)
         for parts in (
             (character(session), skeleton_menu(session), bone(session)),
             (export(session),),
@@ -56,7 +56,7 @@ def panels(session: Session) -> tuple[Tabs, pmui.Column]:
         sizing_mode="stretch_width",
     )
     missing = lead(NO_SKELETON)
-    place = pmui.Column(missing, margin=0, sizing_mode="stretch_width")
+    place = column(missing)
     built: dict[str, Any] = {}
 
     def shown(*events: Any) -> None:

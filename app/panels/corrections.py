@@ -12,7 +12,7 @@ from cutcell.editing.corrections import Corrections
 from ..commands import correct
 from ..commands.session import Session
 from ..widgets.open_file import OpenFile
-from .controls import caption, section, when
+from .controls import BESIDE, button, caption, row, section, when
 
 NONE = "Nothing is corrected. What is goes into the exported file, and into files of their own."
 
@@ -21,29 +21,22 @@ def corrections(session: Session) -> pmui.Column:
     """Return the section that saves corrections and opens them."""
     state = session.state
     none = when(lambda held: not held, state.param.corrections)
-    buttons = [
-        pmui.Button(
-            label=label,
-            size="small",
-            variant="outlined",
-            margin=(4, 8, 4, 0),
-            sizing_mode="stretch_width",
-            disabled=none,
-            on_click=lambda event, act=act: act(session),
-        )
-        for label, act in (("Save", correct.save), ("Clear all", correct.clear))
-    ]
+    style = {"margin": BESIDE, "disabled": none}
     opener = OpenFile(
         lambda text: correct.open_text(session, text),
         label="Open",
         accept=".json",
-        margin=(4, 8, 4, 0),
+        margin=BESIDE,
         sizing_mode="stretch_width",
     )
     return section(
         "Corrections",
         caption(when(told, state.param.corrections)),
-        pmui.Row(buttons[0], opener, buttons[1], margin=0, sizing_mode="stretch_width"),
+        row(
+            button("Save", lambda: correct.save(session), **style),
+            opener,
+            button("Clear all", lambda: correct.clear(session), **style),
+        ),
     )
 
 
