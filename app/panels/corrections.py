@@ -11,9 +11,9 @@ from cutcell.editing.corrections import Corrections
 
 from ..commands import correct
 from ..commands.session import Session
-from ..widgets.open_file import OpenFile
-from .controls import BESIDE, button, caption, row, section, when
+from .controls import BESIDE, CONTROL, button, caption, row, section, when
 
+MAX_FILE = 4 * 2**20
 NONE = "Nothing is corrected. What is goes into the exported file, and into files of their own."
 
 
@@ -22,13 +22,23 @@ def corrections(session: Session) -> pmui.Column:
     state = session.state
     none = when(lambda held: not held, state.param.corrections)
     style = {"margin": BESIDE, "disabled": none}
-    opener = OpenFile(
-        lambda text: correct.open_text(session, text),
+    opener = pmui.FileInput(
         label="Open",
+        uploaded_label="Open",
         accept=".json",
-        margin=BESIDE,
-        sizing_mode="stretch_width",
+        icon="folder_open",
+        max_file_size=MAX_FILE,
+        variant="outlined",
+        sx={"&:focus-within": {"outline": "2px solid", "outlineOffset": "1px"}},
+        **{**CONTROL, "margin": BESIDE},
     )
+
+    def opened(event: Any) -> None:
+        if event.new is not None:
+            opener.value = None  # the same file may be opened again
+            correct.open_text(session, event.new.decode(errors="replace"))
+
+    opener.param.watch(opened, "value")
     return section(
         "Corrections",
         caption(when(told, state.param.corrections)),

@@ -27,7 +27,7 @@ def test_every_module_and_style_is_used():
     modules = {path.stem: path.read_text() for path in FOLDER.glob("*.js")}
     rendered = {name for name, text in modules.items() if "export function render(" in text}
     assert rendered == {
-        "view", "file_drop", "inspector", "joint_tree", "methods", "open_file", "rows", "tabs",
+        "view", "file_drop", "inspector", "joint_tree", "methods", "rows", "tabs",
         "tour_card",
     }  # fmt: skip
     assert '/component_state.js"></script>' in head()  # it runs before any other
