@@ -25,7 +25,7 @@ def watch(session: Session) -> None:
 def _begin_anew(session: Session) -> None:
     state = session.state
     session.tasks.jobs("diagnosis").cancel()
-    session.diagnosed = None
+    session.binder.is_diagnosed = False
     state.param.update(diagnosis=None, finding="")
     if state.repair is not None and state.repair.after is not state.rig:
         state.repair = None
@@ -33,14 +33,14 @@ def _begin_anew(session: Session) -> None:
 
 def examine(session: Session) -> None:
     """Diagnose what stands there, unless its graph is known to be sound or not."""
-    state = session.state
-    distances = None if state.binding is None else state.binding.distances
-    if state.graph is None or asked(state) != session.built_for:
+    state, binder = session.state, session.binder
+    if state.graph is None or not binder.is_for(asked(state)):
         return  # what belongs to the choices is not there yet
-    if session.diagnosed is (distances or state.graph):
+    if binder.is_diagnosed:
         return
     rig, resolution = state.rig, state.resolution
-    session.diagnosed = distances or state.graph
+    binder.is_diagnosed = True
+    distances = None if state.binding is None else state.binding.distances
     cached = distances if _is_standard(state) else None
 
     def work(progress: Progress) -> Diagnosis:
