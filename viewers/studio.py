@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from types import TracebackType
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .camera import Camera, framing
-from .description import Actor, Description
+from .description import Description, in_view
 from .lettering import write_captions, write_legend
 from .palette import LIGHT, Theme
 from .scene import Scene
@@ -51,8 +50,7 @@ class Studio:
         """Make every view what a description says."""
         self._shown = description
         for view, scene in enumerate(self._scenes):
-            actors = {k: a for k, a in description.actors.items() if _stands_in(a, view)}
-            scene.show(replace(description, actors=actors))
+            scene.show(in_view(description, view))
 
     def camera(
         self,
@@ -109,7 +107,3 @@ class Studio:
         trace: TracebackType | None,
     ) -> None:
         self.close()
-
-
-def _stands_in(actor: Actor, view: int) -> bool:
-    return actor.view is None or actor.view == view

@@ -25,6 +25,7 @@ def act(session: Session, name: str) -> None:
         "undo": lambda: revisit(session, session.history.undo()),
         "redo": lambda: revisit(session, session.history.redo()),
         "reset": lambda: reset(session),
+        "rendered": lambda: state.param.update(rendered=not state.rendered),
         "play": lambda: play(state),
         "next": lambda: step(session, 1),
         "previous": lambda: step(session, -1),

@@ -19,6 +19,7 @@ from . import (
     moving,
     pairs,
     pose,
+    rendered,
 )
 from .session import Session
 
@@ -26,6 +27,6 @@ from .session import Session
 def follow(session: Session) -> None:
     """Let everything follow the state of a new session."""
     # In this order: what is seen comes before what is computed for it.
-    watched = (look, cutting, moving, brush, distance, pose, materials, compare, pairs)
+    watched = (look, cutting, moving, brush, distance, pose, materials, compare, pairs, rendered)
     for one in (*watched, binding, explain, history, keys, idle, check, arrival):
         one.watch(session)

@@ -49,6 +49,8 @@ const TOOLS = [
   ["undo", "Undo", '<path d="M9 14L4 9l5-5M4 9h10a6 6 0 0 1 0 12h-3"/>'],
   ["redo", "Redo", '<path d="M15 14l5-5-5-5M20 9H10a6 6 0 0 0 0 12h3"/>'],
   ["reset", "Reset all choices", '<path d="M4 4v5h5M4.6 9A8 8 0 1 1 4 13"/>'],
+  ["rendered", "Rendered by PyVista, with soft shadows, when the view rests",
+    '<circle cx="12" cy="12" r="8"/><path d="M12 4a8 8 0 0 1 0 16c3-4.500 3-11.500 0-16z" fill="currentColor"/>'],
   ["keys", "Help: mouse, touch and keys",
     '<path d="M9.2 9.3a2.9 2.9 0 1 1 4.4 2.5c-1 .6-1.6 1.2-1.6 2.3M12 17.6v.1"/>'],
 ]
@@ -124,6 +126,10 @@ export class Keys {
   able([undo, redo]) {
     this.tools.undo.disabled = !undo
     this.tools.redo.disabled = !redo
+  }
+
+  press(name, on) {
+    this.tools[name].setAttribute("aria-pressed", on)
   }
 
   toggle() {

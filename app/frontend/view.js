@@ -15,7 +15,9 @@ import {Names} from "./names.js"
 import {Orbit} from "./orbit.js"
 import {Overlay} from "./overlay.js"
 import {Pointer} from "./pointer.js"
+import {PictureView} from "./picture_view.js"
 import {probe} from "./probe.js"
+import {Rendered} from "./rendered.js"
 import {loadVtk, Renderer} from "./renderer.js"
 import {Sheet} from "./sheet.js"
 import {Clip} from "./skin.js"
@@ -79,6 +81,7 @@ class View {
     this.connection = new Connection(overlay)
     this.names = new Names(overlay.root)
     this.sheet = new Sheet(overlay.root)
+    this.rendered = new Rendered(overlay, model)
     this.messages = 0
     this.posed = 0
     this.insets = new Insets({
@@ -90,6 +93,7 @@ class View {
   receive(message) {
     const {renderer} = this
     if (message.download) { save(message.download) }
+    if (message.frame) { this.rendered.receive(message.frame) }
     if ("rests" in message) { this.answered?.(message.rests) }
     if (message.painted) { this.brush.painted(message.painted, renderer.actors.get("body")) }
     if (!message.id) { return }
@@ -104,6 +108,10 @@ class View {
     }
     if ("dark" in message) { localStorage.setItem("cutcell dark", message.dark ? "1" : "0") }
     if ("legend" in message) { this.overlay.showLegend(message.legend) }
+    if ("rendered" in message) {
+      this.rendered.turn(message.rendered)
+      this.keys.press("rendered", message.rendered)
+    }
     if ("cut" in message) {
       this.handles.put(message.cut)
       // While the plane is dragged the hand is ahead of the server.
@@ -208,6 +216,7 @@ class View {
   draw(resting = false) {
     if (this.gone || !this.overlay.canvas.clientWidth) { return }
     clearTimeout(this.calming)
+    this.rendered.hide()
     const moving = this.orbit.moving || Boolean(this.playing)
     this.renderer.look(this.orbit)
     const tiles = this.views?.length ? this.renderer.tiles : []
@@ -227,7 +236,14 @@ class View {
       this.insets.legend.put()
     }
     if (this.address) { setTimeout(() => this.putAddress()) }
+    if (!moving) { this.rendered.rest(() => this.frame) }
     if (this.renderer.rough && !moving) { this.calming = setTimeout(() => this.draw(true), CALM) }
+  }
+
+  // The camera and the tiles of what is seen.
+  get frame() {
+    const {orbit: {position, target}, renderer: {middle, tiles}} = this
+    return {position, focal_point: target, centre: middle, tiles}
   }
 
   // The address waits for the picture: to change it takes some browsers longer than to draw.
@@ -265,6 +281,7 @@ class View {
     cancelAnimationFrame(this.waiting)
     cancelAnimationFrame(this.ticking)
     this.animation.remove()
+    this.rendered.remove()
     this.renderer.remove()
   }
 }
@@ -290,22 +307,24 @@ function entries(map) {
 export function render({model}) {
   const overlay = new Overlay()
   let view = null
-  loadVtk(model.vtk_url).then((vtk) => {
-    const trial = document.createElement("canvas").getContext("webgl2")
-    if (!trial) { throw new Error("this browser offers no WebGL 2") }
-    trial.getExtension("WEBGL_lose_context")?.loseContext()
-    view = new View(model, vtk, overlay)
+  const begin = (made, pictures) => {
+    view = made
     model.on("msg:custom", (message) => view.receive(message))
-    window.__cutcell = Object.assign(view, probe(view))
     // What was chosen here before, else what the system prefers.
     const system = matchMedia("(prefers-color-scheme: dark)").matches ? "1" : null
     const dark = localStorage.getItem("cutcell dark") ?? system
     const calm = matchMedia("(prefers-reduced-motion: reduce)").matches
-    model.send_msg({type: "ready", width: window.innerWidth, dark, calm})
+    model.send_msg({type: "ready", width: window.innerWidth, dark, calm, pictures})
+  }
+  loadVtk(model.vtk_url).then((vtk) => {
+    const trial = document.createElement("canvas").getContext("webgl2")
+    if (!trial) { throw new Error("this browser offers no WebGL 2") }
+    trial.getExtension("WEBGL_lose_context")?.loseContext()
+    begin(new View(model, vtk, overlay), false)
+    window.__cutcell = Object.assign(view, probe(view))
   }).catch((error) => {
-    console.error(error)
-    model.send_msg({type: "cannot show"})  // all but the view goes on
-    overlay.fail(`The 3D view cannot be shown: ${error.message}.`)
+    console.info(`The server draws the 3D view: ${error.message}.`)
+    begin(new PictureView(model, overlay), true)
   })
   model.on("remove", () => view?.remove())
   return overlay.root

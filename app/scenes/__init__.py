@@ -38,6 +38,7 @@ def resolve(state: State, memo: Memo | None = None) -> Description:
     is_bare = state.bare and state.panel != "check"
     scene = SCENES["graph"] if is_bare else SCENES[state.panel]
     whole = scene(state, memo or Memo())
+    whole = replace(whole, actors={**whole.actors, **state.actors})
     if whole.legend is None or not (_coloured(whole.actors) and state.rig.attachments):
         return whole
     swatches = (*whole.legend.swatches, (ATTACHMENT, RIGID))

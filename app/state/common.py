@@ -39,6 +39,11 @@ class Common(param.Parameterized):
         default="open", objects=["open", "field", "winding"], doc="The same, of the graph."
     )
 
+    actors: Any = param.Dict({}, doc="Meshes that the server was started with: name to `Actor`.")
+    rendered: Any = param.Boolean(
+        False, doc="Whether PyVista draws the view on the server when it rests."
+    )
+
     tour: Any = param.Integer(-1, doc="Which step of the tour is told; -1 for none.")
 
     dark: Any = param.Boolean(False)
@@ -67,5 +72,5 @@ class Common(param.Parameterized):
 
 
 UNSEEN = frozenset({"name", "demo", "tour", "busy", "stage", "fraction", "message",
-                    "own", "tier"})  # fmt: skip
+                    "own", "tier", "rendered"})  # fmt: skip
 """What the scene does not depend on."""

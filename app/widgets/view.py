@@ -17,6 +17,9 @@ from ..files.receive import Receiver
 from .changes import changes
 from .modules import script
 
+ACTORS = frozenset({"actors", "images", "bones", "pose", "clip"})
+"""Parts of a scene that a browser needs only where it draws them itself."""
+
 
 class SceneView(JSComponent):
     """Shows a `Description`, and tells what a person does with it.
@@ -49,6 +52,7 @@ class SceneView(JSComponent):
         self.calm = False
         self._ready = False
         self._seen = False
+        self._pictures = False
         self._awaited: list[Callable[[], Any]] = []
         self._count = 0
         self._parts: dict[str, Any] = {}
@@ -62,7 +66,7 @@ class SceneView(JSComponent):
         self._listeners[kind] = act
 
     def when_seen(self, act: Callable[[], Any]) -> None:
-        """Do something once, as soon as a browser has the view, or says that it cannot show it."""
+        """Do something once, as soon as a browser has the view."""
         self._awaited.append(act)
         if self._seen:
             self._begin()
@@ -96,9 +100,12 @@ class SceneView(JSComponent):
         self._send_msg(message)
 
     def _send(self, message: dict[str, Any]) -> None:
-        if message:
-            self._count += 1
-            self._send_msg({"id": self._count, **message})
+        if not message:
+            return
+        if self._pictures:
+            message = {name: part for name, part in message.items() if name not in ACTORS}
+        self._count += 1
+        self._send_msg({"id": self._count, **message})
 
     def _handle_msg(self, data: dict[str, Any]) -> None:
         kind = data.get("type")
@@ -110,12 +117,11 @@ class SceneView(JSComponent):
             self.dark = {"1": True, "0": False}.get(str(data.get("dark")))
             self.calm = bool(data.get("calm", False))
             self.window_width = int(data.get("width", 0))
+            self._pictures = bool(data.get("pictures", False))
             self._sent.clear()
             first = {"lights": LIGHTS, **changes(Description(), self._wanted, self._sent)}
             self._send({**first, **self._parts})
             self._shown = self._wanted
-            self._begin()
-        elif kind == "cannot show":
             self._begin()
         elif kind in self._listeners:
             self._listeners[kind](data)
