@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from cutcell.runtime.display import printable, shown_name
 from cutcell_viewers.description import Actor, Apart, Description, Legend, Reading
+from cutcell_viewers.lighting import shading
 from cutcell_viewers.palette import colormap, to_hex
-from cutcell_viewers.scene import shading
 from cutcell_viewers.skin import Skin
 
 

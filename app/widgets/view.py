@@ -11,7 +11,7 @@ from panel.models.vtk import VTK_VERSION
 
 from cutcell_viewers.camera import Camera
 from cutcell_viewers.description import Description
-from cutcell_viewers.scene import LIGHTS
+from cutcell_viewers.lighting import LIGHTS
 
 from ..files.receive import Receiver
 from .changes import changes
