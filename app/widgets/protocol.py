@@ -1,0 +1,61 @@
+"""The messages between the 3D view in the browser and the server, each declared once."""
+
+from __future__ import annotations
+
+FROM_BROWSER = {
+    "ready": "The view is there: width, dark, calm, pictures.",
+    "camera": "position, focal_point, aspect, home.",
+    "time": "Time of the motion.",
+    "pick": "A joint is clicked.",
+    "pick-vertex": "A vertex is clicked, or none.",
+    "pick-node": "A node of the graph is clicked.",
+    "turn": "A ring is dragged: joint, axis, degrees, begin.",
+    "joint": "A joint is dragged: joint, position, done.",
+    "cut": "The plane is dragged: origin, normal.",
+    "brush": "A piece of a stroke: points, first, mode, done; or cancelled.",
+    "front": "The wavefront is halted.",
+    "play": "The motion is played or paused: on.",
+    "act": "A key is pressed: act.",
+    "visit": "The browser goes back or forward: query.",
+    "frame": "A picture is wanted: count, size, ratio, fine, camera, tiles.",
+    "rests?": "A test asks whether work goes on.",
+    "upload-begin": "files.",
+    "upload-piece": "index, data.",
+    "upload-end": "",
+    "upload-cancel": "unreadable.",
+}
+"""The type of each message, and its content."""
+
+TO_BROWSER = {
+    "id": "Number of the message.",
+    "actors": "Parts of actors that changed, by name.",
+    "remove": "Names of actors.",
+    "cut": "origin, normal; or none.",
+    "front": "The wavefront's distance.",
+    "images": "Images of materials.",
+    "legend": "title, table, swatches, low, high; or none.",
+    "views": "Captions of the views.",
+    "pose": "Matrices of the joints; or none.",
+    "lights": "Positions and intensities.",
+    "theme": "Colours of the overlay.",
+    "dark": "To be remembered.",
+    "camera": "The initial view, and the view now.",
+    "home": "Go to the initial view.",
+    "bones": "Segments, their joints and names.",
+    "gizmo": "The rings: joint, joints, centre, below; or none.",
+    "mover": "The joint's knob: joint, at, mirror; or none.",
+    "handles": "The plane's knobs: box; or none.",
+    "brush": "radius, mirror; or none.",
+    "clip": "A motion; or none.",
+    "playing": "Whether it runs.",
+    "animation": "A running wavefront.",
+    "address": "The page's address.",
+    "able": "Keys that do something.",
+    "rendered": "Whether PyVista draws the view that rests.",
+    "frame": "count, picture.",
+    "painted": "Colours that a stroke changed.",
+    "rests": "Whether nothing goes on.",
+    "upload": "What becomes of an upload.",
+    "download": "name, content.",
+}
+"""The parts of a message, and the content of each."""
