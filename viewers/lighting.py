@@ -1,7 +1,5 @@
 """Lights and shading, which PyVista and the browser share."""
 
-from __future__ import annotations
-
 from .description import Actor
 
 # A key light from the upper left and a soft fill from the right, both tied to the camera.

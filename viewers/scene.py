@@ -1,7 +1,5 @@
 """A description drawn by PyVista: the one scene that pictures are made from."""
 
-from __future__ import annotations
-
 import os
 import sys
 from collections.abc import Iterator

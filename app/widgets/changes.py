@@ -1,7 +1,5 @@
 """What a browser is told, so that one description of a scene becomes another."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

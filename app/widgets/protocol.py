@@ -1,7 +1,5 @@
 """The messages between the 3D view in the browser and the server, each declared once."""
 
-from __future__ import annotations
-
 FROM_BROWSER = {
     "ready": "The view is there: width, dark, calm, pictures.",
     "camera": "position, focal_point, aspect, home.",

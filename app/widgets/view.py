@@ -1,7 +1,5 @@
 """The 3D view of the page: a scene's description, streamed to vtk.js in the browser."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 
