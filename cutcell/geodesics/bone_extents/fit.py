@@ -40,11 +40,6 @@ close to its end."""
 MIN_CELLS = 2.0
 """Lattice cells: such a bone is at least this long, if the body is still near there. Shorter ones
 have hardly any direction."""
-UNDER_SKIN = 0.35
-"""A joint lies close under the skin if that is nearer than this part of the room around the
-joint."""
-MIN_ROOM = 1.5
-"""Lattice cells: with less room than this the part is not meaningful."""
 
 
 def fit_bones(
@@ -70,11 +65,9 @@ def fit_bones(
     bones.end[leaf] += onward * reach[:, None]
     bones = _share_with_leaves(bones, leaf, probe)
     length, on_axis = _leaf_lengths(bones, leaf, chains, reach, probe)
-    under_skin = (skeleton.parents[leaves] >= 0) & _close_under_skin(chains.joints[leaves], probe)
-    length[under_skin] = 0
     bones.end[leaf] = chains.joints[leaves] + onward * length[:, None]
     aimed = leaf.copy()
-    aimed[leaf] = ~on_axis & ~under_skin & chains.near[leaves]
+    aimed[leaf] = ~on_axis & chains.near[leaves]
     return bones, aimed
 
 
@@ -131,19 +124,6 @@ def _others(
         ends_here = np.abs(bones.end - place).max(axis=1) < SAME_PLACE
         other = (bones.joint != joint) & ~ends_here
         yield bones.start[other], end[other]
-
-
-def _close_under_skin(places: NDArray[np.float64], probe: BodyProbe) -> NDArray[np.bool_]:
-    """Find leaf joints (t, 3) that lie close under the skin of something large, among others.
-
-    Such are the joints of a face. Each moves the skin about it, not half a head: its bone is a
-    point.
-    """
-    room = probe.room(places)
-    distance = cdist(places, places)
-    nearby = ((distance > SAME_PLACE) & (distance < room[:, None])).any(axis=1)
-    close = probe.to_skin(places) < UNDER_SKIN * room
-    return nearby & close & (room > MIN_ROOM / probe.resolution)
 
 
 def aim_leaf_bones(

@@ -23,10 +23,6 @@ SEEN = 0.85
 """The part of a segment that must run inside for line of sight between its ends."""
 NEARER = 0.999
 """A bone is nearer than the ray's start if its distance is below this factor of the start's."""
-ALL_ROUND = np.array(
-    [*np.eye(3), *-np.eye(3), *(np.array(list(np.ndindex(2, 2, 2))) * 2 - 1) / np.sqrt(3)]
-)
-"""Directions to the faces and the corners of a cube."""
 
 
 class BodyProbe:
@@ -73,11 +69,6 @@ class BodyProbe:
     def depth(self, points: ArrayLike) -> NDArray[np.float64]:
         """Compute the distance of points (p, 3) to the nearest skin; zero outside."""
         return np.where(self.inside(points), self.to_skin(points), 0.0)
-
-    def room(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Compute the median over all directions of the exit distance of points (p, 3)."""
-        exits = [self.exit_distance(points, np.tile(d, (len(points), 1))) for d in ALL_ROUND]
-        return np.median(exits, axis=0)
 
     def exit_distance(
         self, start: NDArray[np.float64], direction: NDArray[np.float64]

@@ -178,17 +178,3 @@ def test_a_last_bone_ends_where_another_is_nearer():
     joints = [*on_axis(0.9, 0.8), *on_axis(0.3, 0.25, 0.2)]
     skeleton = Skeleton(joints, [-1, 0, -1, 2, 3])
     np.testing.assert_allclose(ends(graph, skeleton, 1), on_axis(0.55), atol=1 / 32)
-
-
-def test_joints_close_under_the_skin_among_others_are_points():
-    graph = build_graph(TriangleMesh(*meshes.ball(3)), 32, connectivity="any")
-    neck, head = [0.5, 0.5, 0.2], [0.5, 0.5, 0.5]
-    left, right, deep = [0.42, 0.1, 0.55], [0.58, 0.1, 0.55], [0.5, 0.4, 0.6]
-    skeleton = Skeleton([neck, head, left, right, deep], [-1, 0, 1, 1, 1])
-    bones, aimed = fit_bones(graph, skeleton, node_grid(graph))
-    point = (bones.start == bones.end).all(axis=1)
-    assert set(bones.joint[point]) == {2, 3}
-    assert not aimed[point].any()
-    lone = Skeleton([neck, head, left], [-1, 0, 1])
-    bones, _ = fit_bones(graph, lone, node_grid(graph))
-    assert not (bones.start == bones.end).all(axis=1).any()
