@@ -53,16 +53,28 @@ def test_a_tip_runs_on_and_is_aimed_at_its_skin():
     np.testing.assert_allclose(aimed, on_axis(0.77), atol=0.03)
 
 
-def test_side_branches_are_no_continuation():
+def test_a_fork_without_a_child_along_the_rest_axis_has_a_leaf_bone_besides():
     graph = build_graph(TriangleMesh(*meshes.ball(3)), 32, connectivity="any")
-    neck, head, left, right = [0.5, 0.5, 0.2], [0.5, 0.5, 0.5], [0.3, 0.5, 0.55], [0.7, 0.5, 0.55]
-    skeleton = Skeleton([neck, head, left, right], [-1, 0, 1, 1])
-    top = ends(graph, skeleton, 1)
-    assert len(top) == 1
-    np.testing.assert_allclose(top[0], [0.5, 0.5, 0.95], atol=1 / 32)
-    # With a crown that goes on, the branches are bones as well: so is a chest with arms.
-    skeleton = Skeleton([neck, head, left, right, [0.5, 0.5, 0.8]], [-1, 0, 1, 1, 1])
-    assert len(ends(graph, skeleton, 1)) == 3
+    low, mid, neck, head = ([0.5, 0.5, z] for z in (0.05, 0.1, 0.2, 0.5))
+    left, right, up = [0.3, 0.5, 0.55], [0.7, 0.5, 0.55], [0, 0, 1.0]
+    joints, parents = [low, mid, neck, head, left, right], [-1, 0, 1, 2, 3, 3]
+    head_bones = ends(graph, oriented(joints, parents, [up] * 6), 3)
+    np.testing.assert_allclose(head_bones, [left, right, [0.5, 0.5, 0.725]], atol=1 / 32)
+    # With a crown along the axis, or where no axis is known, there are the branches only.
+    joints, parents = [*joints, [0.5, 0.5, 0.8]], [*parents, 3]
+    assert len(ends(graph, oriented(joints, parents, [up] * 7), 3)) == 3
+    assert len(ends(graph, Skeleton(joints[:6], parents[:6]), 3)) == 2
+
+
+def test_far_branches_and_those_past_another_child_are_no_bones():
+    graph, x = limb(), [1.0, 0, 0]
+    joints = on_axis(0.02, 0.06, 0.1, 0.2, 0.6)
+    joints[4][1] = 0.12
+    parents = [-1, 0, 1, 2, 2]
+    assert len(ends(graph, oriented(joints, parents, [x] * 5), 2)) == 1
+    assert len(ends(graph, Skeleton(joints, parents), 2)) == 1
+    joints[4] = [0.25, 0.19, 0.1]
+    assert len(ends(graph, oriented(joints, parents, [x] * 5), 2)) == 2
 
 
 def test_a_foot_hung_on_the_root_continues_the_shin():
@@ -144,21 +156,6 @@ def test_a_last_bone_points_along_the_rest_axis():
     across = oriented(joints, [-1, 0, 1, 2], [x, x, x, up])
     np.testing.assert_allclose(ends(graph, across, 3), [[0.7, 0.1, 0.1 + 2 / 32]], atol=1 / 64)
     assert not fit_bones(graph, across, node_grid(graph))[1].any()
-
-
-def test_the_child_along_the_rest_axis_goes_on():
-    graph = build_graph(TriangleMesh(*meshes.ball(3)), 32, connectivity="any")
-    low, mid, neck, head, jaw, cheek = (
-        [0.5, 0.5, 0.1],
-        [0.5, 0.5, 0.2],
-        [0.5, 0.5, 0.3],
-        [0.5, 0.5, 0.5],
-        [0.6, 0.5, 0.6],  # within 60 degrees of the way from the neck
-        [0.4, 0.5, 0.6],
-    )
-    joints, parents, up = [low, mid, neck, head, jaw, cheek], [-1, 0, 1, 2, 3, 3], [0, 0, 1.0]
-    assert len(ends(graph, Skeleton(joints, parents), 3)) == 2
-    assert len(ends(graph, oriented(joints, parents, [up] * 6), 3)) == 1
 
 
 def test_a_last_bone_ends_where_another_is_nearer():
