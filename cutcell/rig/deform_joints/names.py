@@ -17,7 +17,16 @@ CONTROL_WORDS = _set(
     "dummy null camera mch tracker trajectory footsteps"
 )
 """Words of a joint that animators handle, and that moves other joints."""
-CONTROL_PARTS = ("control", "ctrl", "target", "orient", "polevector", "helper", "locator", "tracker")
+CONTROL_PARTS = (
+    "control",
+    "ctrl",
+    "target",
+    "orient",
+    "polevector",
+    "helper",
+    "locator",
+    "tracker",
+)
 """The same inside longer words, as in `LEGCONTROL`."""
 UNSURE = _set("ik fk weapon holster prop props item")
 """Words of a joint that either moves skin itself or only stands for another joint."""
