@@ -1,7 +1,5 @@
 """The brush: what it does to weights, how large and how strong it is."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -14,7 +12,19 @@ from ..commands.correct import keep_file_vertices
 from ..commands.moving import mirror_of
 from ..commands.session import Session
 from ..state.brush import MAX_RADIUS, selected
-from .controls import GAP, caption, choice, folded, has_weights, slider, when
+from .controls import (
+    BESIDE,
+    button,
+    caption,
+    choice,
+    column,
+    folded,
+    has_weights,
+    row,
+    slider,
+    switch,
+    when,
+)
 
 MODES = {"Add": "add", "Subtract": "subtract", "Replace": "replace", "Smooth": "smooth",
          "Select": "select"}  # fmt: skip
@@ -28,17 +38,13 @@ HOW = (
 def brush(session: Session) -> pmui.Column:
     """Return the section of the brush."""
     state = session.state
-    style: dict[str, Any] = {"size": "small", "margin": (3, 0), "description": ""}
-    switch, mirrored = (
-        pmui.Switch.from_param(parameter, label=parameter.label, **style)
-        for parameter in (state.param.brush, state.param.brush_mirrored)
-    )
+    mirrored = switch(state.param.brush_mirrored)
 
     def has_mirror(rig: Any, own: Any, corrections: Any) -> bool:
         return rig is not None and own is not None and mirror_of(session) is not None
 
     mirrored.visible = when(has_mirror, state.param.rig, state.param.own, state.param.corrections)
-    tools = pmui.Column(
+    tools = column(
         choice(state.param.brush_mode, MODES),
         caption(when(_told, state.param.rig, state.param.joint, state.param.brush_mode)),
         slider(
@@ -53,29 +59,16 @@ def brush(session: Session) -> pmui.Column:
             state.param.brush_value, "Weight to paint", step=0.05,
             visible=when(lambda mode: mode == "replace", state.param.brush_mode),
         ),
-        mirrored,
-        _selection(session),
-        caption(HOW),
-        visible=state.param.brush,
-        margin=0,
-        sizing_mode="stretch_width",
+        mirrored, _selection(session), caption(HOW), visible=state.param.brush,
     )  # fmt: skip
     has_binding = when(lambda binding: binding is not None, state.param.binding)
-    return folded("Brush", switch, tools, needed=state.param.brush, visible=has_binding)
+    painting = state.param.brush
+    return folded("Brush", switch(painting), tools, needed=painting, visible=has_binding)
 
 
 def _selection(session: Session) -> pmui.Column:
     """Return what tells of the vertices that strokes are limited to."""
     state = session.state
-    clear, invert = (
-        pmui.Button(
-            label=label, size="small", variant="outlined", margin=(4, margin, 4, 0),
-            sizing_mode="stretch_width", on_click=lambda event, act=act: act(session),
-        )
-        for label, act, margin in (
-            ("Clear", clear_selection, 8), ("Invert", invert_selection, 0),
-        )
-    )  # fmt: skip
 
     def told(selection: Any, rig: Any) -> str:
         chosen = selected(state)
@@ -86,18 +79,20 @@ def _selection(session: Session) -> pmui.Column:
         return f"Strokes stay on {which} of {len(chosen):,}, marked by dots."
 
     changing = state.param.brush_selection, state.param.rig
-    from_file = pmui.Button(
-        label="As in the file", icon="history", size="small", variant="outlined", margin=GAP,
-        sizing_mode="stretch_width", visible=when(has_weights, state.param.rig),
-        on_click=lambda event: keep_file_vertices(session, np.flatnonzero(selected(state))),
-    )  # fmt: skip
-    return pmui.Column(
+    from_file = button(
+        "As in the file",
+        lambda: keep_file_vertices(session, np.flatnonzero(selected(state))),
+        icon="history",
+        visible=when(has_weights, state.param.rig),
+    )
+    return column(
         caption(when(told, *changing)),
-        pmui.Row(clear, invert, margin=0, sizing_mode="stretch_width"),
+        row(
+            button("Clear", lambda: clear_selection(session), margin=BESIDE),
+            button("Invert", lambda: invert_selection(session)),
+        ),
         from_file,
         visible=when(lambda *which: selected(state) is not None, *changing),
-        margin=0,
-        sizing_mode="stretch_width",
     )
 
 

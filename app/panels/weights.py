@@ -1,7 +1,5 @@
 """Weights: how much each bone holds, and how it falls with distance."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -16,14 +14,16 @@ from ..state import State
 from .brush import brush
 from .components import parts_of_mesh
 from .controls import (
-    GAP,
+    button,
     caption,
     choice,
+    column,
     folded,
     follow,
     has_weights,
     lead,
     section,
+    select_box,
     slider,
     when,
     words,
@@ -48,9 +48,7 @@ FALLOFF_TITLES = {"rig": "Animation", "paper": "Paper"}
 def weights(session: Session) -> pmui.Column:
     """Return the controls of the panel Weights."""
     state = session.state
-    select = pmui.Select(
-        label="Colour by", options=SHOWN, size="small", margin=GAP, sizing_mode="stretch_width"
-    )
+    select = select_box("Colour by", SHOWN)
 
     def offered() -> tuple[dict[str, str], str]:
         options = {**SHOWN, **(DIFFERENCE if has_weights(state.rig) else {})}
@@ -64,7 +62,7 @@ def weights(session: Session) -> pmui.Column:
 
     # The colours go first.
     state.param.watch(lambda *events: session.tasks.after_a_pause(tell, "told"), ["binding", "rig"])
-    return pmui.Column(
+    return column(
         lead("How strongly each bone moves the skin."),
         section(
             "", source, _from_file(session), select, *_sides(state), facts, margin=(0, 20, 4, 20)
@@ -74,19 +72,19 @@ def weights(session: Session) -> pmui.Column:
         folded("Falloff", *_falloff(state)),
         parts_of_mesh(session),
         corrections(session),
-        margin=0,
-        sizing_mode="stretch_width",
     )
 
 
 def _from_file(session: Session) -> pmui.Button:
     """Return the button that starts from the file's weights."""
     rig, binding = session.state.param.rig, session.state.param.binding
-    return pmui.Button(
-        label="Start from the file's weights", icon="history", size="small", variant="text",
-        margin=0, on_click=lambda event: keep_file_parts(session),
+    return button(
+        "Start from the file's weights",
+        lambda: keep_file_parts(session),
+        icon="history",
+        variant="text",
         visible=when(lambda rig, bound: has_weights(rig) and bound is not None, rig, binding),
-    )  # fmt: skip
+    )
 
 
 def exported(state: State) -> str:

@@ -1,7 +1,5 @@
 """The line over the canvas on a first visit: what the page is for, and three ways in."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import param

@@ -1,7 +1,5 @@
 """Short representations of objects with large arrays, as notebooks and debuggers show them."""
 
-from __future__ import annotations
-
 from dataclasses import fields, is_dataclass
 from typing import Any
 
