@@ -81,7 +81,7 @@ def _selection(session: Session) -> pmui.Column:
     changing = state.param.brush_selection, state.param.rig
     from_file = button(
         "As in the file",
-        lambda: keep_file_vertices(session, np.flatnonzero(selected(state))),
+        lambda: keep_file_vertices(session, np.flatnonzero(state.brush_selection.chosen)),
         icon="history",
         visible=when(has_weights, state.param.rig),
     )
