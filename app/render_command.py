@@ -58,6 +58,7 @@ EPILOG = """Examples:
 @for_people
 @with_method("resolution", "method", "connectivity", "winding_threshold", "orient", "leaf")
 def render(
+    context: typer.Context,
     rig: RigFile,
     out: Annotated[
         Path,
@@ -249,7 +250,7 @@ def render(
             choices,
             binding=binding,
             textures=textures,
-            resolution=method.resolution,
+            resolution=method.resolution if _is_given(context, "resolution") else None,
             progress=progress,
         )
         order = scenes.order(
@@ -285,6 +286,11 @@ def _libraries() -> tuple[Any, Any, Any]:
             "install them by: pip install 'cutcell[app]'"
         ) from None
     return scenes, film, worker
+
+
+def _is_given(context: typer.Context, option: str) -> bool:
+    source = context.get_parameter_source(option)
+    return source is not None and source.name == "COMMANDLINE"
 
 
 def _size(text: str) -> tuple[int, int]:

@@ -17,17 +17,18 @@ from .character import to_scene
 from .description import Actor, Cut, Description, Reading
 from .distance_scene import distance_limits, shown_distance
 
-WIDTHS = (1.1, 1.9, 1.5)
-"""Pixels that mesh, interior and surface edges are wide from far."""
-THICK = (0.012, 0.04, 0.025)
-"""Their radii, in cells of the lattice."""
-DASH = 0.16
-"""Surface edges are dashed: the length of a dash and its gap, in cells."""
+THICK = (0.08, 0.07, 0.16)
+"""The radii of mesh, interior and surface edges, in the length of most edges of their kind."""
+DASH = 0.3
+"""Surface edges are dashed: the length of a dash and its gap, in the same unit."""
 NODES = {"mesh nodes": MESH, "interior nodes": INTERIOR, "surface nodes": SURFACE}
 """The names of the actors of nodes, and the kind that each shows."""
 FORMS: tuple[Literal["round", "square", "triangle"], ...] = ("round", "square", "triangle")
 """Of mesh, interior and surface nodes."""
-NODE_WIDTH, NODE_THICK = 4.0, 0.09
+NODE_THICK = (0.12, 0.09, 0.16)
+"""The radii of mesh nodes, in the length of most mesh edges, and of the others, in cells."""
+WIDTH, NODE_WIDTH = 1.5, 4.0
+"""A sixth of the pixels that lines and points are wide at most."""
 KINDS = ("mesh", "interior", "surface")
 """What kinds of nodes and edges are called."""
 
@@ -82,6 +83,7 @@ def graph_scene(
     """
     nodes = to_scene(rig, graph.lattice.to_file(graph.nodes)).astype(np.float32)
     cell = to_scene_length(rig, graph)
+    spacing = {kind: _usual_length(nodes, graph, kind) for kind in LAYERS.values()}
     own = None if colors is None else np.asarray(colors, np.uint8)
     actors = {}
     for (name, kind), color in zip(LAYERS.items(), theme.edges, strict=True):
@@ -100,9 +102,9 @@ def graph_scene(
             scalars=scalars,
             colormap=shades,
             limits=limits,
-            width=WIDTHS[kind],
-            thick=THICK[kind] * cell,
-            dash=DASH * cell if kind == SURFACE else 0.0,
+            width=WIDTH,
+            thick=THICK[kind] * spacing[kind],
+            dash=DASH * spacing[kind] if kind == SURFACE else 0.0,
             visible=name in layers,
             slab=slab if kind == INTERIOR else 0.0,
         )
@@ -115,12 +117,24 @@ def graph_scene(
             color=color,
             colors=None if own is None else own[which],
             width=NODE_WIDTH,
-            thick=NODE_THICK * cell,
+            thick=NODE_THICK[kind] * (spacing[kind] if kind == MESH else cell),
             form=FORMS[kind],
             reading=Reading(f"{KINDS[kind]} node ", which.astype(np.float32)),
             visible=False,
         )
     return Description(actors, cut=cut)
+
+
+def _usual_length(nodes: NDArray[np.float32], graph: CutCellGraph, kind: int) -> float:
+    ends = nodes[graph.edges[graph.edge_kind == kind]]
+    return float(np.median(np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1))) if len(ends) else 0.0
+
+
+def nearest_nodes(graph: CutCellGraph, other: CutCellGraph) -> NDArray[np.intp]:
+    """Return for each node of a graph the nearest node of another one, shape (N,)."""
+    tree = cKDTree(other.lattice.to_file(other.nodes[other.connected]))
+    near = tree.query(graph.lattice.to_file(graph.nodes))[1]
+    return np.flatnonzero(other.connected)[near]
 
 
 def to_scene_length(rig: Rig, graph: CutCellGraph) -> float:

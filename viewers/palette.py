@@ -90,7 +90,7 @@ class Theme:
 # from each other, from orange, and from what is around.
 LIGHT = Theme(
     "light", _rgb(250, 251, 253), _rgb(222, 228, 236), _rgb(31, 38, 50), _rgb(58, 150, 192),
-    _rgb(30, 85, 25),
+    _rgb(20, 98, 10),
 )  # fmt: skip
 DARK = Theme(
     "dark", _rgb(37, 43, 54), _rgb(17, 20, 26), _rgb(232, 236, 243), _rgb(90, 170, 230),

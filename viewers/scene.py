@@ -23,6 +23,7 @@ from .camera import VIEW_ANGLE, Camera, framing
 from .description import Actor, Cut, Description
 from .palette import BODY, LIGHT, Theme, colormap, to_bytes
 from .skin import moved, squared_apart, turned
+from .strokes import PAGE_HEIGHT, depths, see_strokes, shade_strokes, stroke_data
 from .textured import ALPHA_KNOWN, CUT_OUT, DITHERED, pieces, texture
 
 
@@ -34,9 +35,17 @@ class Scene:
     theme : Theme
     size : (int, int)
         Width and height of the pictures, in pixels.
+    pixel_ratio : float, optional
+        How many pixels of the picture are one pixel of the page, in which widths are given.
     """
 
-    def __init__(self, theme: Theme = LIGHT, size: tuple[int, int] = (1200, 900)) -> None:
+    def __init__(
+        self,
+        theme: Theme = LIGHT,
+        size: tuple[int, int] = (1200, 900),
+        pixel_ratio: float | None = None,
+    ) -> None:
+        self._pixel_ratio = pixel_ratio or size[1] / PAGE_HEIGHT
         self.plotter = pv.Plotter(off_screen=True, window_size=list(size), lighting="none")
         self.plotter.enable_anti_aliasing("msaa", multi_samples=8)
         self._overlay = _add_overlay(self.plotter)
@@ -46,6 +55,8 @@ class Scene:
             self.plotter.add_light(light)
             self._overlay.AddLight(light)
         self._names: dict[str, list[pv.Actor]] = {}
+        self._strokes: list[pv.Actor] = []
+        self._bounds = Description().bounds
         self._images: Any = None
         self._textures: dict[tuple[int, int], pv.Texture] = {}
 
@@ -59,6 +70,7 @@ class Scene:
         for drawn in self._names.values():
             for one in drawn:
                 self._renderer(one).RemoveActor(one)
+        self._strokes, self._bounds = [], description.bounds
         if description.images is not self._images:
             self._images, self._textures = description.images, {}
         self._names = {
@@ -72,6 +84,9 @@ class Scene:
         view = self.plotter.camera
         view.position, view.focal_point, view.up = camera.position, camera.focal_point, camera.up
         view.view_angle = VIEW_ANGLE
+        size = tuple(self.plotter.window_size)
+        for drawn in self._strokes:
+            see_strokes(drawn, size, depths(camera, self._bounds))
 
     def render_png(self, path: str | Path | None = None) -> NDArray[np.uint8]:
         """Draw the scene.
@@ -100,6 +115,15 @@ class Scene:
 
     def _parts(self, actor: Actor, description: Description) -> Iterator[pv.Actor]:
         """Return what an actor is drawn as: in materials, a part for each image."""
+        if actor.kind != "surface":
+            mapper = pv._vtk.vtkPolyDataMapper()
+            mapper.SetInputData(_dataset(actor, description.pose))
+            drawn = pv.Actor(mapper=mapper)
+            haze = tuple((np.add(self.theme.top, self.theme.bottom) / 2).tolist())
+            shade_strokes(drawn, actor, haze, self._pixel_ratio)
+            self._strokes.append(drawn)
+            yield drawn
+            return
         if actor.materials is None:
             yield pv.Actor(mapper=pv.DataSetMapper(_dataset(actor, description.pose)))
             return
@@ -131,8 +155,6 @@ LIGHTS = (((-0.5, 0.7, 1.0), 0.82), ((0.9, -0.1, 0.6), 0.34))
 AMBIENT, DIFFUSE = 0.16, 1.0
 SOFT_AMBIENT, SOFT_DIFFUSE = 0.36, 0.75
 """Of materials: images have shadows of their own, and would be dark where light is, too."""
-PICTURE_WIDTH = 1.5
-"""How many times as wide lines and points are in a picture, which has more pixels than a page."""
 
 
 def render_png(
@@ -182,34 +204,19 @@ def _posed(actor: Actor, pose: NDArray[np.float64] | None) -> tuple[NDArray, NDA
 
 
 def _dataset(actor: Actor, pose: NDArray[np.float64] | None) -> pv.PolyData:
-    (points, normals), cells = _posed(actor, pose), actor.cells
-    if actor.dash > 0 and actor.scalars is None and actor.colors is None:
-        points, cells = _dashes(points[cells], actor.dash)
-    data: Any = pv.PolyData()
-    data.points = points
-    cells = np.insert(cells, 0, cells.shape[1], axis=1).ravel()
-    setattr(data, {"surface": "faces", "lines": "lines", "points": "verts"}[actor.kind], cells)
+    points, normals = _posed(actor, pose)
+    every: Any = slice(None)
+    if actor.kind == "surface":
+        data: Any = pv.PolyData.from_regular_faces(points, actor.cells)
+    else:
+        data, every = stroke_data(actor, points)
     if normals is not None:
         data.point_data.active_normals = normals
     if actor.colors is not None:
-        data.point_data["colors"] = actor.colors
+        data.point_data["colors"] = actor.colors[every]
     elif actor.scalars is not None:
-        data.point_data["values"] = _values(actor, pose)
+        data.point_data["values"] = _values(actor, pose)[every]
     return data
-
-
-def _dashes(ends: NDArray, dash: float) -> tuple[NDArray[np.float32], NDArray[np.int32]]:
-    """Return the dashes of segments (m, 2, 3): a little more than half of each piece is drawn."""
-    start, along = ends[:, 0], ends[:, 1] - ends[:, 0]
-    length = np.linalg.norm(along, axis=1)
-    count = np.maximum(np.ceil(length / dash), 1).astype(int)
-    of = np.repeat(np.arange(len(ends)), count)
-    first = (np.arange(len(of)) - np.repeat(np.cumsum(count) - count, count)) * dash
-    part = np.stack([first, np.minimum(first + 0.55 * dash, length[of])], axis=1)
-    part /= np.maximum(length[of], 1e-300)[:, None]
-    points = start[of, None] + part[:, :, None] * along[of, None]
-    cells = np.arange(2 * len(of), dtype=np.int32).reshape(-1, 2)
-    return points.reshape(-1, 3).astype(np.float32), cells
 
 
 def _values(actor: Actor, pose: NDArray[np.float64] | None) -> Any:
@@ -221,21 +228,10 @@ def _values(actor: Actor, pose: NDArray[np.float64] | None) -> Any:
 
 def _paint(drawn: pv.Actor, actor: Actor, front: float | None = None) -> None:
     appearance = drawn.prop
-    appearance.color, appearance.opacity, appearance.line_width = (
-        actor.color,
-        actor.opacity,
-        actor.width,
-    )
-    appearance.ambient, appearance.diffuse = shading(actor)
-    appearance.lighting = actor.kind == "surface" and not actor.hull
-    appearance.point_size = actor.width * PICTURE_WIDTH
-    appearance.render_points_as_spheres = actor.kind == "points" and actor.form == "round"
-    if actor.kind == "lines":
-        # Not as tubes: VTK gets the depth of many wrong, and they vanish behind the body.
-        appearance.line_width = actor.width * PICTURE_WIDTH
-    if actor.kind == "points" and actor.form != "round":
-        shader = drawn.GetShaderProperty()
-        shader.AddFragmentShaderReplacement("//VTK::Color::Impl", True, _FORMS[actor.form], False)
+    appearance.color, appearance.opacity = actor.color, actor.opacity
+    strokes = actor.kind != "surface"
+    appearance.ambient, appearance.diffuse = (1.0, 0.0) if strokes else shading(actor)
+    appearance.lighting = not strokes and not actor.hull
     appearance.interpolation = "flat" if actor.normals is None else "phong"
     mapper = drawn.mapper
     by_color = actor.colors is not None or actor.materials is not None
@@ -247,7 +243,7 @@ def _paint(drawn: pv.Actor, actor: Actor, front: float | None = None) -> None:
     elif actor.scalars is not None:
         mapper.SetScalarModeToUsePointFieldData()
         mapper.SelectColorArray("values")
-        mapper.interpolate_before_map = True
+        mapper.SetInterpolateScalarsBeforeMapping(True)
         table = colormap(actor.colormap)
         if actor.film and front is not None:
             table = behind_front(table, actor.limits, front)
@@ -259,24 +255,6 @@ def _paint(drawn: pv.Actor, actor: Actor, front: float | None = None) -> None:
     if actor.behind:
         mapper.SetResolveCoincidentTopologyToPolygonOffset()
         mapper.SetRelativeCoincidentTopologyPolygonOffsetParameters(2, 30)
-    if actor.kind == "lines":
-        # Lines on a surface lie in it: pull them a little towards the eye.
-        mapper.SetResolveCoincidentTopologyToPolygonOffset()
-        mapper.SetRelativeCoincidentTopologyLineOffsetParameters(0, -4)
-
-
-_RIMMED = """//VTK::Color::Impl
-  vec2 across = vec2(2.0 * gl_PointCoord.x - 1.0, 1.0 - 2.0 * gl_PointCoord.y);
-  float rim = %s;
-  if (rim > %s) { discard; }
-  if (rim > %s) { ambientColor *= 0.72; diffuseColor *= 0.72; }
-"""
-_FORMS = {
-    "square": _RIMMED % ("max(abs(across.x), abs(across.y))", "0.9", "0.62"),
-    "triangle": _RIMMED
-    % ("max(-across.y * 1.25 - 0.1, abs(across.x) * 1.25 + across.y * 0.62)", "0.72", "0.5"),
-}
-"""How points that are no balls are painted: as on the page (scripts/stroke_shaders.js)."""
 
 
 def behind_front(

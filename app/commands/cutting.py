@@ -26,7 +26,7 @@ def show_handles(session: Session) -> None:
     state = session.state
     sliced = state.panel == "graph" and state.slicing
     is_shown = (
-        state.rig is not None and state.panel in CUT and state.cut_axis != "off" and not sliced
+        state.rig is not None and state.panel in CUT and state.cut_across != "off" and not sliced
     )
     handles = {"box": bounds_of(state).tolist()} if is_shown else None
     if session.view.told("handles") != handles:

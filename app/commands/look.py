@@ -21,13 +21,15 @@ def watch(session: Session) -> None:
     view.listen("pick", lambda message: pick(session, int(message["joint"])))
     view.listen("pick-vertex", lambda message: pick_vertex(session, int(message["vertex"])))
     view.listen("pick-node", lambda message: pick_node(session, int(message["node"])))
-    state.param.watch(lambda *events: pick_node(session, None), ["rig", "binding", "bare_graph"])
+    state.param.watch(
+        lambda *events: pick_node(session, None), ["rig", "binding", "bare_graph", "easy_graph"]
+    )
     show_theme(session)
 
 
 def pick_node(session: Session, node: int | None) -> None:
     """Choose a node of the graph to look at closely; None for no more."""
-    graph = session.state.graph
+    graph = session.state.shown_graph
     if node is not None and (graph is None or not 0 <= node < len(graph.nodes)):
         return
     session.state.node = node

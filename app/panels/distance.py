@@ -37,7 +37,7 @@ def distance(session: Session) -> pmui.Column:
 
 def _face(state: State) -> Any:
     faces = {"Distance": "field", "Winding number": "winding"}
-    has_cut = when(lambda axis: axis != "off", state.param.cut_axis)
+    has_cut = when(lambda axis: axis not in ("auto", "off"), state.param.cut_axis)
     return choice(state.param.cut_face, faces, visible=has_cut)
 
 

@@ -15,8 +15,21 @@ from ..commands.binding import bind
 from ..commands.session import Session
 from ..scenes.common import theme_of
 from ..state import LAYERS, State
+from ..state.graph import READABLE
 from .cutting import cutting
-from .parts import GAP, caption, choice, lead, section, slider, weightless, when, words
+from .parts import (
+    BUTTONS,
+    GAP,
+    caption,
+    choice,
+    follow,
+    lead,
+    section,
+    slider,
+    weightless,
+    when,
+    words,
+)
 
 KINDS = {"mesh_edges": MESH, "interior_edges": INTERIOR, "surface_edges": SURFACE}
 LEAF_TITLES = {"point": "Points", "extend": "Extended", "fit": "Fitted"}
@@ -33,6 +46,7 @@ def graph(session: Session) -> pmui.Column:
     state = session.state
     return pmui.Column(
         lead("The paths that distances are measured on: along the mesh and through the inside."),
+        section("Resolution", _shown(state)),
         section(
             "Layers", *[_layer(state, name) for name in LAYERS], _nodes(state), *_colors(state)
         ),
@@ -41,6 +55,19 @@ def graph(session: Session) -> pmui.Column:
         margin=0,
         sizing_mode="stretch_width",
     )
+
+
+def _shown(state: State) -> pmui.RadioButtonGroup:
+    """Return the choice between a graph that is easy to read and the one of the weights."""
+
+    def options() -> tuple[dict[str, int], int]:
+        other = state.graph_resolution or READABLE
+        return {f"R = {other}": other, f"Weights: R = {state.resolution}": 0}, (
+            state.graph_resolution
+        )
+
+    menu = pmui.RadioButtonGroup(**BUTTONS)
+    return follow(menu, state, "graph_resolution", options, ["resolution"])
 
 
 def _layer(state: State, name: str) -> pmui.Row:
@@ -89,9 +116,9 @@ def count(state: State, layer: str) -> str:
     """Return how many faces or edges a layer has, as text."""
     if layer == "body":
         return "" if state.rig is None else f"{len(state.rig.mesh.faces):,} faces"
-    if state.graph is None:
+    if state.shown_graph is None:
         return ""
-    return f"{np.count_nonzero(state.graph.edge_kind == KINDS[layer]):,}"
+    return f"{np.count_nonzero(state.shown_graph.edge_kind == KINDS[layer]):,}"
 
 
 def _colors(state: State) -> list[Any]:
@@ -156,7 +183,7 @@ def _cut(state: State) -> tuple[Any, Any]:
 
 
 def _built(state: State) -> tuple[Any, Any]:
-    return state.param.binding, state.param.bare_graph
+    return state.param.binding, state.param.bare_graph, state.param.easy_graph
 
 
 def _ends(value: int) -> dict[str, int]:
@@ -194,7 +221,7 @@ def _build(session: Session) -> list[Any]:
         sizing_mode="stretch_width",
         on_click=lambda event: bind(session),
         visible=when(
-            lambda rig, binding, bare, busy: rig is not None and not (binding or bare or busy),
+            lambda rig, binding, bare, _, busy: rig is not None and not (binding or bare or busy),
             state.param.rig,
             *_built(state),
             state.param.busy,

@@ -111,9 +111,9 @@ def plain(state: State, memo: Memo) -> Description:
 
 def cut_of(state: State) -> Cut | None:
     """Return the cutting plane, across the box of the body; none through bodies side by side."""
-    if state.cut_axis == "off" or (state.panel == "distance" and state.measures):
+    if state.cut_across == "off" or (state.panel == "distance" and state.measures):
         return None
-    across = cut_normal(state) if state.cut_axis == "free" else state.cut_axis
+    across = cut_normal(state) if state.cut_across == "free" else state.cut_across
     return cut_at(bounds_of(state), across, state.cut_position)
 
 
@@ -136,7 +136,7 @@ def cut_normal(state: State) -> NDArray[np.float64]:
 
 def cells_of(state: State, count: float) -> float:
     """Return the length of some cells of the lattice, in the scene's units."""
-    resolution = state.graph.lattice.resolution
+    resolution = state.graph_resolution or state.resolution
     return count * float(np.ptp(bounds_of(state), axis=0).max()) / resolution
 
 

@@ -120,7 +120,7 @@ def wants_field(state: State) -> bool:
         and (
             state.edge_colors == "distance"
             or (state.vertex is not None and state.path)
-            or (state.cut_axis != "off" and state.graph_face == "field")
+            or (state.cut_across != "off" and state.graph_face == "field")
         )
     )
     return is_needed and has_field(state)

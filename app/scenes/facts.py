@@ -110,7 +110,7 @@ def node_facts(state: State, memo: Memo) -> dict[str, Any] | None:
         kind of the edge, length in the file's units), "degree", "triangle" (its face and that
         face's corners, of a surface node) and "vertices" (of a mesh node).
     """
-    graph, node = state.graph, state.node
+    graph, node = state.shown_graph, state.node
     if state.panel != "graph" or graph is None or node is None or node >= len(graph.nodes):
         return None
     indptr, indices, lengths = graph.adjacency

@@ -49,7 +49,7 @@ class State(
         """Whether what stands there is small enough to be described at once."""
         if self.rig is None:
             return True
-        if self.cut_axis != "off" and self.panel in ("graph", "distance"):
+        if self.cut_across != "off" and self.panel in ("graph", "distance"):
             return False  # the face of a cut takes some tenths of a second
         mesh, graph, joints = self.rig.mesh, self.graph, len(self.rig.skeleton.joints)
         shown = len(mesh.vertices) + len(mesh.faces) + A_JOINT * joints

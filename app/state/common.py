@@ -10,8 +10,8 @@ PANELS = ("graph", "distance", "weights", "pose", "compare", "check", "learn", "
 """The ids of the panels, in the order in which they are offered; the last for an audit alone."""
 
 
-CUTS = ("off", "x", "y", "z", "free")
-"""What the body is cut across; a free plane has any direction."""
+CUTS = ("auto", "off", "x", "y", "z", "free")
+"""What the body is cut across; a free plane has any direction, and auto is z on the panel graph."""
 
 
 class Common(param.Parameterized):
@@ -28,7 +28,7 @@ class Common(param.Parameterized):
     vertex: Any = param.Integer(None, allow_None=True, doc="The clicked vertex, or None.")
     skeleton: Any = param.Boolean(True, label="Skeleton")
 
-    cut_axis: Any = param.Selector(default="off", objects=list(CUTS))
+    cut_axis: Any = param.Selector(default="auto", objects=list(CUTS))
     cut_position: Any = param.Number(0.5, bounds=(0, 1))
     cut_yaw: Any = param.Number(
         30.0, bounds=(-180, 180), doc="Where a free plane looks to, around the upright axis."
@@ -54,6 +54,12 @@ class Common(param.Parameterized):
     def bare(self) -> bool:
         """Whether what stands there is a mesh without a skeleton: it has a graph, and no more."""
         return self.rig is not None and not len(self.rig.skeleton.joints)
+
+    @property
+    def cut_across(self) -> str:
+        """What the body is cut across on this panel; "off" for nothing."""
+        auto = "z" if self.panel == "graph" else "off"
+        return auto if self.cut_axis == "auto" else str(self.cut_axis)
 
     @property
     def graph(self) -> Any:

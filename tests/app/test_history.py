@@ -210,7 +210,7 @@ def test_keys(session, loop):
     act("child")
     state.cut_axis = "x"
     act("undo")
-    assert state.cut_axis == "off"
+    assert state.cut_axis == "auto"
     act("redo")
     assert state.cut_axis == "x"
     act("play")
@@ -218,7 +218,7 @@ def test_keys(session, loop):
     act("play")
     assert not state.playing
     act("reset")
-    assert (state.cut_axis, state.turns, state.moving) == ("off", {}, False)
+    assert (state.cut_axis, state.turns, state.moving) == ("auto", {}, False)
     act("dance")
 
 

@@ -127,7 +127,7 @@ def test_nodes_have_their_forms_in_pictures():
             color=(1.0, 0.0, 0.0), width=60, form=form,
         )  # fmt: skip
         camera = Camera((0.0, 0.0, 4.0), (0.0, 0.0, 0.0))
-        picture = render_png(Description({"node": point}), size=(200, 200), camera=camera)
+        picture = render_png(Description({"node": point}), size=(800, 800), camera=camera)
         red = picture.astype(int)
         return (red[:, :, 0] - red[:, :, 1] > 60).sum(axis=1)
 
