@@ -26,10 +26,12 @@ from .render_flags import (
     Colors,
     Face,
     FindingCode,
+    FreeCamera,
     Keep,
     Layers,
     Measures,
     Near,
+    PageAddress,
     PathFrom,
     Plane,
     Slice,
@@ -67,15 +69,16 @@ def render(
         ),
     ],
     panel: Annotated[
-        str,
+        str | None,
         typer.Option(
             "--panel",
             "-p",
             metavar="PANEL",
-            help="As on the page: graph, distance, weights, pose, compare or check.",
+            help="As on the page: graph, distance, weights, pose, compare or check. Default:"
+            " weights.",
             rich_help_panel=WHAT,
         ),
-    ] = "weights",
+    ] = None,
     bone: Annotated[
         str | None,
         typer.Option(
@@ -122,6 +125,7 @@ def render(
         ),
     ] = "",
     networks: Networks = None,
+    address: PageAddress = None,
     colors: Colors = None,
     finding: FindingCode = None,
     cut: Plane = None,
@@ -167,6 +171,7 @@ def render(
         ),
     ] = None,
     near: Near = None,
+    camera: FreeCamera = None,
     size: Annotated[
         str | None,
         typer.Option(
@@ -206,17 +211,24 @@ def render(
     from cutcell.io import load
     from cutcell.io.files import naming
 
-    method = chosen_method(options)
+    page = scenes.read_address(address) if address else scenes.Address()
+    eye = scenes.read_camera(camera) if camera else page.camera
+    if camera and (view or near):
+        raise ParameterError("camera says where to look from: leave out view and near")
+    method = chosen_method(
+        {**options, **{n: v for n, v in page.method.items() if not _is_given(context, n)}}
+    )
     loaded = load(rig, skeleton=skeleton_file)
     offer_networks(networks, quiet)
     choices = scenes.Choices(
-        panel=panel,
-        bone=bone,
+        panel=panel or page.panel or "weights",
+        bone=bone or page.bone,
         shown=shown,
         turn=_turn(turn),
         error=error,
-        methods=[name.strip() for name in methods.split(",") if name.strip()],
-        settings=scenes.settings_of(
+        methods=[name.strip() for name in methods.split(",") if name.strip()] or page.methods,
+        settings=page.without([name for name in context.params if _is_given(context, name)])
+        | scenes.settings_of(
             colors=colors,
             layers=layers,
             color_by=color_by,
@@ -262,6 +274,7 @@ def render(
             turntable=turntable,
             legend=legend,
             near=near,
+            camera=eye,
         )
         worker.draw_apart(order, out, progress)
     if not quiet:

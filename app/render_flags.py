@@ -115,6 +115,25 @@ Measures = Annotated[
         rich_help_panel=INSIDE,
     ),
 ]
+PageAddress = Annotated[
+    str | None,
+    typer.Option(
+        "--address",
+        metavar="URL",
+        help="What a page shows whose address this is, seen from the same place; its character is"
+        " not opened. Other options come before it.",
+        rich_help_panel=WHAT,
+    ),
+]
+FreeCamera = Annotated[
+    str | None,
+    typer.Option(
+        "--camera",
+        metavar="X,Y,Z,X,Y,Z",
+        help="From where, and what is looked at, as a page's address has it.",
+        rich_help_panel="How it is seen",
+    ),
+]
 Near = Annotated[
     float | None,
     typer.Option(

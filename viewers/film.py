@@ -19,7 +19,7 @@ from cutcell.rig.clip import Clip
 from cutcell.runtime.progress import Progress, silent
 from cutcell.runtime.writing import check_place, write_all
 
-from .camera import Camera, around, sees
+from .camera import PAGE_HEIGHT, Camera, around, sees
 from .description import Description
 from .mp4 import find_ffmpeg, write_mp4
 from .palette import THEMES
@@ -56,6 +56,8 @@ class Order:
     motion : Clip, optional
         In the scene's space; see `pose_scene.clip_in_scene`.
     legend : bool
+    page_height : float
+        How high a page's canvas is that looks the same, in its pixels: widths of lines follow.
     """
 
     description: Description
@@ -66,6 +68,7 @@ class Order:
     turntable: bool = False
     motion: Clip | None = None
     legend: bool = True
+    page_height: float = PAGE_HEIGHT
 
 
 def draw(order: Order, path: str | Path, progress: Progress = silent) -> None:
@@ -92,7 +95,9 @@ def draw(order: Order, path: str | Path, progress: Progress = silent) -> None:
     progress("drawing", 0.0)
     # A film's frames have even sides: MP4 stores colours for two by two pixels at once.
     width, height = (side - side % 2 for side in order.size) if kind in FILMS else order.size
-    with Studio(order.description, THEMES[order.theme], (width, height), order.legend) as studio:
+    with Studio(
+        order.description, THEMES[order.theme], (width, height), order.legend, order.page_height
+    ) as studio:
         camera = _camera(order, studio)
         if kind in PICTURES:
             _write_picture(path, studio.draw(camera))

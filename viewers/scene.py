@@ -19,11 +19,11 @@ import pyvista as pv
 
 from cutcell.io.materials.face_colors import BLENDED
 
-from .camera import VIEW_ANGLE, Camera, framing
+from .camera import PAGE_HEIGHT, VIEW_ANGLE, Camera, framing
 from .description import Actor, Cut, Description
 from .palette import BODY, LIGHT, Theme, colormap, to_bytes
 from .skin import moved, squared_apart, turned
-from .strokes import PAGE_HEIGHT, depths, see_strokes, shade_strokes, stroke_data
+from .strokes import depths, see_strokes, shade_strokes, stroke_data
 from .textured import ALPHA_KNOWN, CUT_OUT, DITHERED, pieces, texture
 
 

@@ -11,9 +11,6 @@ from numpy.typing import NDArray
 from .camera import VIEW_ANGLE, Camera
 from .description import Actor
 
-PAGE_HEIGHT = 800.0
-"""Pixels that a page's canvas is high, where a picture is not of one that is known."""
-
 _VERTEX = """//VTK::Normal::Dec
 in vec3 otherMC;
 in vec2 cornerMC;

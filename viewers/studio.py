@@ -8,7 +8,7 @@ from types import TracebackType
 import numpy as np
 from numpy.typing import NDArray
 
-from .camera import Camera, framing
+from .camera import PAGE_HEIGHT, Camera, framing
 from .description import Actor, Description
 from .lettering import write_captions, write_legend
 from .palette import LIGHT, Theme
@@ -28,6 +28,8 @@ class Studio:
         Width and height of the pictures, in pixels.
     legend : bool
         Whether the legend is written on them.
+    page_height : float
+        How high a page's canvas is that looks the same, in its pixels.
 
     Examples
     --------
@@ -41,10 +43,12 @@ class Studio:
         theme: Theme = LIGHT,
         size: tuple[int, int] = (1600, 1200),
         legend: bool = True,
+        page_height: float = PAGE_HEIGHT,
     ) -> None:
         self.theme, self.size, self.legend = theme, size, legend
         self._tiles = tiles(max(len(description.views), 1), size, shape_of(description.bounds))
-        self._scenes = [Scene(theme, (width, height)) for _, _, width, height in self._tiles]
+        ratio = size[1] / page_height
+        self._scenes = [Scene(theme, tile[2:], ratio) for tile in self._tiles]
         self.show(description)
 
     def show(self, description: Description) -> None:

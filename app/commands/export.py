@@ -46,13 +46,16 @@ class Seen:
     memo: Memo
     camera: Camera | None
     aspect: float
+    height: float
     time: float
 
     @classmethod
     def now(cls, session: Session) -> Seen:
         """Return what a session's page shows."""
         view = session.view
-        return cls(session.state.still(), session.memo, view.camera, view.aspect, view.time)
+        return cls(
+            session.state.still(), session.memo, view.camera, view.aspect, view.height, view.time
+        )
 
     def posed(self) -> Description:
         """Return the scene, in the pose that a motion has come to."""
@@ -64,7 +67,8 @@ class Seen:
     def order(self, pixels: int, description: Description) -> Order:
         """Return what is to be drawn of a scene, from where it is looked at."""
         theme = "dark" if self.state.dark else "light"
-        return Order(description, theme, picture_size(pixels, self.aspect), self.camera)
+        size = picture_size(pixels, self.aspect)
+        return Order(description, theme, size, self.camera, page_height=self.height)
 
 
 def export_picture(session: Session, done: Done) -> None:

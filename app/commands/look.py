@@ -22,7 +22,8 @@ def watch(session: Session) -> None:
     view.listen("pick-vertex", lambda message: pick_vertex(session, int(message["vertex"])))
     view.listen("pick-node", lambda message: pick_node(session, int(message["node"])))
     state.param.watch(
-        lambda *events: pick_node(session, None), ["rig", "binding", "bare_graph", "easy_graph"]
+        lambda *events: pick_node(session, None),
+        ["rig", "binding", "bare_graph", "easy_graph", "graph_resolution"],
     )
     show_theme(session)
 

@@ -133,9 +133,6 @@ def state_of(rig: Rig, choices: Choices) -> State:
         winding_threshold=method.winding_threshold,
         orient=method.orient,
     )
-    apply(state, choices.settings)
-    if state.pose_colors == "materials" and not has_materials(rig):
-        raise ParameterError(f"the file of {rig.name} has no materials with colours of their own")
     if choices.turn is not None:
         axis, degrees = choices.turn
         k = TURN_AXES.index(check_choice("axis", axis, TURN_AXES))
@@ -151,6 +148,9 @@ def state_of(rig: Rig, choices: Choices) -> State:
     state.heat = choices.error
     state.compare_field = "error" if choices.error else "bone" if choices.bone else "all"
     state.methods = _methods(rig, choices.methods)
+    apply(state, choices.settings)
+    if state.pose_colors == "materials" and not has_materials(rig):
+        raise ParameterError(f"the file of {rig.name} has no materials with colours of their own")
     return state
 
 

@@ -28,6 +28,7 @@ def order(
     turntable: bool = False,
     legend: bool = True,
     near: float | None = None,
+    camera: Camera | None = None,
 ) -> Order:
     """Return what is to be drawn: a picture, or a film where it turns or moves.
 
@@ -46,6 +47,8 @@ def order(
     legend : bool
     near : float, optional
         How much is seen around the bone, in parts of the longest side.
+    camera : Camera, optional
+        Where to look from instead of all that, where neither `view` nor `near` is given.
 
     Raises
     ------
@@ -59,7 +62,10 @@ def order(
         motion = clip_in_scene(rig, clip)
     theme = "dark" if choices.dark else "light"
     aspect = size[0] / size[1]
-    camera = camera_on_marks(description, aspect, direction) if choices.finding else None
+    if view is not None or near is not None:
+        camera = None
+    if choices.finding and camera is None:
+        camera = camera_on_marks(description, aspect, direction)
     direction = direction or VIEWS["three-quarter"]
     if near is not None:
         camera = _near(

@@ -249,6 +249,7 @@ class View {
     this.model.send_msg({
       type: "camera", home: this.orbit.atHome, position: this.insets.position, focal_point: this.orbit.target,
       aspect: this.overlay.canvas.clientWidth / Math.max(this.overlay.canvas.clientHeight, 1),
+      height: this.overlay.canvas.clientHeight,
     })
   }
 

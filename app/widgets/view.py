@@ -9,7 +9,7 @@ import param
 from panel.custom import JSComponent
 from panel.models.vtk import VTK_VERSION
 
-from cutcell_viewers.camera import Camera
+from cutcell_viewers.camera import PAGE_HEIGHT, Camera
 from cutcell_viewers.description import Description
 from cutcell_viewers.scene import LIGHTS
 
@@ -44,7 +44,7 @@ class SceneView(JSComponent):
         self.camera: Camera | None = None
         self.at_home = True
         self.on_camera: Callable[[], None] = lambda: None
-        self.aspect = 4 / 3
+        self.aspect, self.height = 4 / 3, PAGE_HEIGHT
         self.time = 0.0
         self.calm = False
         self._ready = False
@@ -124,6 +124,7 @@ class SceneView(JSComponent):
         elif kind == "camera":
             self.camera = Camera(tuple(data["position"]), tuple(data["focal_point"]))
             self.aspect = min(max(float(data.get("aspect", self.aspect)), 0.3), 4.0)
+            self.height = min(max(float(data.get("height", self.height)), 100.0), 4000.0)
             self.at_home = bool(data.get("home", False))
             self.on_camera()
 

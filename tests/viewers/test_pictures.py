@@ -135,3 +135,21 @@ def test_nodes_have_their_forms_in_pictures():
     assert square.sum() > ball.sum() > triangle.sum() > 500
     rows = np.flatnonzero(triangle)
     assert triangle[rows[-1] - 3] > 2 * triangle[rows[0] + 3]  # it stands on its base
+
+
+def test_widths_are_the_same_part_of_a_picture_of_any_size():
+    ends = np.array([[-1, 0, 0], [1, 0, 0]], np.float32)
+    camera = Camera((0.0, 0.0, 4.0), (0.0, 0.0, 0.0))
+
+    def part(side, **width):
+        line = Actor("lines", ends, np.array([[0, 1]], np.int32), color=(1.0, 0.0, 0.0), **width)
+        picture = render_png(Description({"line": line}), size=(side, side), camera=camera)
+        column = picture[:, side // 2].astype(int)
+        return (column[:, 0] - column[:, 1] > 60).sum() / side
+
+    for width in ({"width": 20}, {"width": 4, "thick": 0.02}):
+        assert part(300, **width) == pytest.approx(part(1200, **width), abs=0.006)
+    # A radius of the scene: as thick as a surface of that size.
+    assert part(1200, width=4, thick=0.02) == pytest.approx(
+        0.04 / (8 * np.tan(np.radians(15))), abs=0.002
+    )
