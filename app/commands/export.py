@@ -54,7 +54,12 @@ class Seen:
         """Return what a session's page shows."""
         view = session.view
         return cls(
-            session.state.still(), session.memo, view.camera, view.aspect, view.height, view.time
+            session.state.still(),
+            session.memo,
+            view.camera,
+            view.aspect,
+            view.page_height,
+            view.time,
         )
 
     def posed(self) -> Description:

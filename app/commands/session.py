@@ -37,7 +37,7 @@ class View(Protocol):
     at_home: bool
     on_camera: Callable[[], None]
     aspect: float
-    height: float
+    page_height: float
     time: float
     calm: bool
 

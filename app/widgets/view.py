@@ -44,7 +44,7 @@ class SceneView(JSComponent):
         self.camera: Camera | None = None
         self.at_home = True
         self.on_camera: Callable[[], None] = lambda: None
-        self.aspect, self.height = 4 / 3, PAGE_HEIGHT
+        self.aspect, self.page_height = 4 / 3, PAGE_HEIGHT
         self.time = 0.0
         self.calm = False
         self._ready = False
@@ -124,7 +124,7 @@ class SceneView(JSComponent):
         elif kind == "camera":
             self.camera = Camera(tuple(data["position"]), tuple(data["focal_point"]))
             self.aspect = min(max(float(data.get("aspect", self.aspect)), 0.3), 4.0)
-            self.height = min(max(float(data.get("height", self.height)), 100.0), 4000.0)
+            self.page_height = min(max(float(data.get("height", self.page_height)), 100.0), 4000.0)
             self.at_home = bool(data.get("home", False))
             self.on_camera()
 
