@@ -23,6 +23,11 @@ float strokeReach(float w) {
 }
 """
 _AWAY = """
+  if (strokeDash == 0.0) {  // as near as its own front: what lies in a surface is seen
+    vec3 ahead = vec3(MCDCMatrix[0][3], MCDCMatrix[1][3], MCDCMatrix[2][3]);
+    vec4 front = MCDCMatrix * vec4(centre - wide * gl_Position.w / strokeScale * ahead, 1.0);
+    gl_Position.z = front.z / front.w * gl_Position.w;
+  }
   strokeAway = 0.35 * clamp((gl_Position.w - strokeDepths.x)
     / max(strokeDepths.y - strokeDepths.x, 1e-9), 0.0, 1.0);
   strokeGap = strokeDash * strokeScale / gl_Position.w > 3.0 * strokeUnit ? 0.55 : 2.0;
@@ -44,7 +49,7 @@ _LINE = (
   float wide = strokeReach(gl_Position.w);
   vec2 aside = (vec2(-way.y, way.x) * side + way * (2.0 * end - 1.0) * 0.3) * wide;
   gl_Position.xy += aside / strokeSize * 2.0 * gl_Position.w;
-  gl_Position.z -= (strokeDash > 0.0 ? 0.0 : 1e-4) * gl_Position.w;
+  vec3 centre = mix(a, b, t);
   strokeAlong = length(b - a) * t;
   strokeAcross = vec2(side, 0.0);"""
     + _AWAY
@@ -52,9 +57,9 @@ _LINE = (
 _POINT = (
     """
   gl_Position = MCDCMatrix * vertexMC;
-  gl_Position.xy += cornerMC * strokeReach(gl_Position.w) / strokeSize * 2.0
-    * gl_Position.w;
-  gl_Position.z -= 1e-3 * gl_Position.w;
+  float wide = strokeReach(gl_Position.w);
+  gl_Position.xy += cornerMC * wide / strokeSize * 2.0 * gl_Position.w;
+  vec3 centre = vertexMC.xyz;
   strokeAlong = 0.0;
   strokeAcross = cornerMC;"""
     + _AWAY

@@ -69,7 +69,7 @@ def graph(state: State, memo: Memo) -> Description:
         legend = replace(legend or Legend(_title(state)), swatches=swatches)
     for name, actor in actors.items():
         if actor.clipped:
-            slab = thick.get("interior" if name == "interior edges" else "rest", 0.0)
+            slab = thick.get("interior" if name.startswith("interior") else "rest", 0.0)
             actors[name] = replace(actor, slab=slab)
     return Description(actors, cut=cut, legend=legend)
 

@@ -27,6 +27,11 @@ const WIDE = `
     fade = thick > 0.0 ? clamp(spaced / thin, 0.5, 1.0) : 1.0;
     gap = dash * scale / w > 3.0 * unit ? 0.55 : 2.0;
     return thick > 0.0 ? clamp(spaced, thin, 6.0 * pixels) : 0.5 * pixels + thin;
+  }
+  // What lies in a surface is seen: it is as near as its own front.
+  void lift(vec3 place, float radius) {
+    vec4 front = seen * vec4(place - radius * gl_Position.w / scale * vec3(seen[0][3], seen[1][3], seen[2][3]), 1.0);
+    gl_Position.z = front.z / front.w * gl_Position.w;
   }`
 
 const COLOURED = (by) => by === "colors"
@@ -60,8 +65,8 @@ const LINE = (by) => `${HEAD(by)}
     float half_ = reach(here.w);
     vec2 shift = (vec2(-way.y, way.x) * side + way * (2.0 * end - 1.0) * 0.3) * half_;
     here.xy += shift / size * 2.0 * here.w;
-    here.z -= (dash > 0.0 ? 0.0 : 1e-4) * here.w;
     gl_Position = here;
+    if (dash == 0.0) { lift(mix(a, b, t), half_); }
     shown = mix(told(int(ends.x)), told(int(ends.y)), t);
     at = mix(a, b, t); along = length(b - a) * t; across = vec2(side, half_); away = hazy(here.w);
   }`
@@ -87,8 +92,9 @@ const POINT = (by) => `${HEAD(by)}
     gl_Position = seen * vec4(at, 1.0);
     float depth = gl_Position.w;
     away = hazy(depth);
-    gl_Position.xy += aside * reach(depth) / size * 2.0 * depth;
-    gl_Position.z -= 1e-3 * depth;
+    float half_ = reach(depth);
+    gl_Position.xy += aside * half_ / size * 2.0 * depth;
+    lift(at, half_);
     shown = told(ends); across = aside; along = 0.0;
   }`
 
