@@ -94,6 +94,8 @@ class Actor:
         Gives way where it coincides with another surface.
     closed : bool
         Whether the surface has an inside, which is not seen: its back need not be drawn.
+    edges : bool
+        Whether the edges of a surface's triangles are drawn on it.
     hull : bool
         Only faces that look away are drawn: an outline of what it encloses.
     clipped : bool
@@ -125,6 +127,7 @@ class Actor:
     overlay: bool = False
     behind: bool = False
     closed: bool = False
+    edges: bool = False
     hull: bool = False
     clipped: bool = True
     slab: float = 0.0

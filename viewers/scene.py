@@ -232,6 +232,7 @@ def _paint(drawn: pv.Actor, actor: Actor, front: float | None = None) -> None:
     strokes = actor.kind != "surface"
     appearance.ambient, appearance.diffuse = (1.0, 0.0) if strokes else shading(actor)
     appearance.lighting = not strokes and not actor.hull
+    appearance.show_edges, appearance.edge_opacity = actor.edges, 0.4
     appearance.interpolation = "flat" if actor.normals is None else "phong"
     mapper = drawn.mapper
     by_color = actor.colors is not None or actor.materials is not None

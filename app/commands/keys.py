@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
-from cutcell.editing.corrections import Corrections
+import numpy as np
 
-from ..scenes.common import first_joint
+from cutcell.editing.corrections import Corrections
+from cutcell_viewers.camera import FRONT
+
+from ..scenes.common import camera_on_bone, first_joint
 from ..state import State
 from ..state.corrections import applied, changes, news
 from ..state.url import defaults
 from . import brush, pairs
 from .loading import revisit
+from .look import look
 from .session import Session
+
+NEAR = 0.3
+"""How much is seen around a bone that is framed, at least, of the character's longest side."""
 
 
 def watch(session: Session) -> None:
@@ -28,6 +35,7 @@ def act(session: Session, name: str) -> None:
         "play": lambda: play(state),
         "next": lambda: step(session, 1),
         "previous": lambda: step(session, -1),
+        "frame": lambda: frame(session),
         "parent": lambda: to_parent(state),
         "child": lambda: to_child(state),
         "brush": lambda: brush.turn_over(session),
@@ -69,6 +77,14 @@ def step(session: Session, count: int) -> None:
         pairs.step(session, count)
     elif not state.bare:
         state.joint = (state.joint + count) % len(state.rig.skeleton.names)
+
+
+def frame(session: Session) -> None:
+    """Look at the chosen bone, from the side that one looks from; in the tour F is another key."""
+    state, eye = session.state, session.view.camera
+    if not state.bare and state.tour < 0:
+        direction = FRONT if eye is None else tuple(np.subtract(eye.position, eye.focal_point))
+        look(session, camera_on_bone(state, NEAR, session.view.aspect, direction))
 
 
 def to_parent(state: State) -> None:

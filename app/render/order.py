@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from cutcell.rig import Rig
 from cutcell.rig.checks import check_choice, check_number
-from cutcell_viewers.camera import Camera, framing
-from cutcell_viewers.character import drawn_segments
+from cutcell_viewers.camera import Camera
 from cutcell_viewers.description import Description
 from cutcell_viewers.film import Order
 from cutcell_viewers.finding_scene import camera_on_marks
 from cutcell_viewers.pose_scene import clip_in_scene
 
-from ..scenes.common import first_joint
-from .choices import VIEWS, Choices
-from .names import find_bone, find_clip
+from ..scenes.common import camera_on_bone
+from .choices import VIEWS, Choices, state_of
+from .names import find_clip
 
 
 def order(
@@ -68,24 +65,6 @@ def order(
         camera = camera_on_marks(description, aspect, direction)
     direction = direction or VIEWS["three-quarter"]
     if near is not None:
-        camera = _near(
-            rig, description, choices, check_number("near", near, 0.01, 1), aspect, direction
-        )
+        part = check_number("near", near, 0.01, 1)
+        camera = camera_on_bone(state_of(rig, choices), part, aspect, direction)
     return Order(description, theme, size, camera, direction, turntable, motion, legend)
-
-
-def _near(
-    rig: Rig,
-    description: Description,
-    choices: Choices,
-    part: float,
-    aspect: float,
-    direction: tuple[float, float, float],
-) -> Camera:
-    """Return a camera that looks at the middle of the chosen bone, at rest."""
-    start, end, of = drawn_segments(rig)
-    of_bone = of == (first_joint(rig) if choices.bone is None else find_bone(rig, choices.bone))
-    ends = np.concatenate([start[of_bone], end[of_bone]]) if of_bone.any() else description.bounds
-    half = part / 2 * float(np.ptp(description.bounds, axis=0).max())
-    middle = ends.mean(axis=0)
-    return framing(np.stack([middle - half, middle + half]), aspect, direction)

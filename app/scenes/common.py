@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from cutcell.rig import Rig
 from cutcell.runtime.display import shown_name
-from cutcell_viewers.camera import Camera
+from cutcell_viewers.camera import Camera, framing
 from cutcell_viewers.character import attachments, body, bones, drawn_segments, to_scene
 from cutcell_viewers.description import Actor, Cut, Description
 from cutcell_viewers.graph_scene import cut_at
@@ -22,6 +22,9 @@ from cutcell_viewers.skin import skin_of_weights
 
 from ..state import State
 from .memo import Memo
+
+FAINT = 0.25
+"""How opaque bones are that are not to hide what is behind them."""
 
 SEE_PATH = 0.42
 """How opaque the body is while a path inside it is to be seen."""
@@ -66,7 +69,7 @@ def character(
         mark["vertex"] = memo("vertex", of, lambda: vertex_mark(rig, state.vertex, weights))
     visibility = {name: look[name] for name in ("visible", "opacity", "clipped") if name in look}
     return {
-        "body": replace(plain, skin=skin, **look),
+        "body": replace(plain, skin=skin, edges=state.wireframe, **look),
         **{name: replace(actor, **visibility) for name, actor in hung.items()},
         **mark,
         **_skeleton(state, memo, bones_coloured),
@@ -91,7 +94,9 @@ def _skeleton(state: State, memo: Memo, coloured: bool) -> dict[str, Actor]:
         coloured,
         None if visible_bones is None else visible_bones.tobytes(),
     )
-    return memo("bones", inputs, make)
+    actors = memo("bones", inputs, make)
+    opacity = FAINT if state.faint_skeleton else 1.0
+    return {name: replace(actor, opacity=opacity) for name, actor in actors.items()}
 
 
 def _behind_cut(state: State, start: NDArray, end: NDArray, joint: NDArray) -> NDArray | None:
@@ -182,6 +187,19 @@ def theme_part(theme: Theme) -> dict[str, str]:
 def camera_part(camera: Camera) -> dict[str, Any]:
     """Return how a camera is told to the view."""
     return {"position": list(camera.position), "focal_point": list(camera.focal_point)}
+
+
+def camera_on_bone(
+    state: State, part: float, aspect: float, direction: tuple[float, float, float]
+) -> Camera:
+    """Return a camera on the chosen bone at rest that sees some part of the longest side."""
+    start, end, joint = drawn_segments(state.rig)
+    bounds = bounds_of(state)
+    of_bone = joint == state.joint
+    ends = np.concatenate([start[of_bone], end[of_bone]]) if of_bone.any() else bounds
+    half = part / 2 * float(np.ptp(bounds, axis=0).max())
+    middle = ends.mean(axis=0)
+    return framing(np.stack([middle - half, middle + half]), aspect, direction)
 
 
 def first_joint(rig: Rig) -> int:

@@ -160,7 +160,7 @@ export function colourShader(by, apart) {
         uniform vec3 colourRange;
         uniform float colourFront;
         void main()\n{`],
-      ["  ambientColor = ambientColorUniform;", `${looked}\n  ambientColor = shown;`],
+      ["  ambientColor = ambientColorUniform;", `${looked}\n  ambientColor = ambient < 0.9 ? shown : 0.45 * shown;`],
       ["  diffuseColor = diffuseColorUniform;", "  diffuseColor = shown;"],
     ],
   }

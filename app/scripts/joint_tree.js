@@ -6,6 +6,8 @@ import {stylesheet} from "./styles.js"
 
 const styled = await stylesheet("joint_tree.css")
 
+const TAIL = 7  // letters at the end of a name that are always seen
+
 const LOCK = '<svg viewBox="0 0 24 24" aria-hidden="true"><path d="M6 11h12v9H6zM8.5 11V8a3.5 3.5 0 0 1 7 0v3"/></svg>'
 
 function element(tag, className, text, parent) {
@@ -56,7 +58,9 @@ export function render({model}) {
     box.addEventListener("click", (e) => { e.stopPropagation(); carry(i) })
     const chip = element("span", row.control ? "chip control" : "chip", "", made)
     chip.style.setProperty("--own", row.color)
-    const name = element("span", "name", row.name, made)
+    const name = element("span", "name", "", made)
+    element("span", "start", row.name.slice(0, -TAIL), name)
+    element("span", "tail", row.name.slice(-TAIL), name)
     name.title = row.why ? `${row.name}: ${row.why}` : row.name
     if (row.locked) {
       const lock = element("span", "lock", "", made)

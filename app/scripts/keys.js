@@ -6,6 +6,7 @@ const KEYS = [
   ["Space", "play the motion, or halt it"],
   ["← →", "the bone before, the next bone"],
   ["↑ ↓", "towards the root, away from it"],
+  ["F", "look at the chosen bone"],
   ["Ctrl Z", "undo a choice"],
   ["Ctrl Shift Z", "redo"],
   ["PgDn PgUp", "the tour's next step, the one before"],
@@ -150,6 +151,8 @@ export class Keys {
       act = {z: e.shiftKey ? "redo" : "undo", y: "redo"}[name]
     } else if (e.key === "?") {
       act = "keys"
+    } else if (name === "f") {
+      act = "frame"
     } else if (e.key === " " && !over.some((part) => part.matches(PRESSED))) {
       act = "play"
     } else if (!e.shiftKey && !this.turnable()) {

@@ -120,7 +120,7 @@ export const MATERIAL_SHADER = {
       if (corner.z < -0.5) { texel = vec4(1.0); }
       if (texel.a * tint.a < least) { discard; }
       vec3 shown = tint.rgb * texel.rgb;
-      ambientColor = shown;`],
+      ambientColor = ambient < 0.9 ? shown : 0.45 * shown;  // edges have no other light`],
     ["  diffuseColor = diffuseColorUniform;", "  diffuseColor = shown;"],
   ],
 }

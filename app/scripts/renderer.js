@@ -233,6 +233,15 @@ export class Renderer {
     return [left + (1 + aside) / 2 * w, top + (1 - above) / 2 * h]
   }
 
+  // How far a pointer is from where its view's target is seen, in pixels of the whole canvas.
+  fromTarget({clientX, clientY}) {
+    const box = this.element.getBoundingClientRect()
+    const [x, y] = [clientX - box.left, clientY - box.top]
+    const [left, top, w, h] = this.tiles[this.viewAt(x, y)]
+    const [aside, above] = this.middle
+    return [x - left - (1 + aside) / 2 * w, y - top - (1 - above) / 2 * h].map((d) => d * box.height / h)
+  }
+
   // Which view a pixel of the canvas belongs to.
   viewAt(x, y) {
     const hit = ([left, top, width, height]) =>

@@ -41,6 +41,7 @@ class View {
       rested: () => this.rested(),
       clicked: (e) => this.pointer.clicked(e),
       hovered: (e) => this.pointer.hovered(e),
+      away: (e) => this.renderer.fromTarget(e),
       chosen: () => this.brush.part ? this.brush.dab(this.renderer.target) : this.pointer.chosen(),
     })
     this.pointer = new Pointer(this)

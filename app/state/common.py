@@ -27,6 +27,8 @@ class Common(param.Parameterized):
     joint: Any = param.Integer(0, doc="The chosen joint.")
     vertex: Any = param.Integer(None, allow_None=True, doc="The clicked vertex, or None.")
     skeleton: Any = param.Boolean(True, label="Skeleton")
+    faint_skeleton: Any = param.Boolean(False, doc="Whether bones are see-through.")
+    wireframe: Any = param.Boolean(False, doc="Whether edges of the mesh are drawn on the body.")
 
     cut_axis: Any = param.Selector(default="auto", objects=list(CUTS))
     cut_position: Any = param.Number(0.5, bounds=(0, 1))

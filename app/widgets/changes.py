@@ -140,6 +140,7 @@ def _settings(actor: Actor) -> dict[str, Any]:
         "behind": actor.behind,
         "closed": actor.closed and actor.opacity == 1,
         "hull": actor.hull,
+        "edges": actor.edges,
         "coloured": any(x is not None for x in (actor.colors, actor.scalars, actor.materials)),
     }
     place = {"overlay": actor.overlay, "view": actor.view}

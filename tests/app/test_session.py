@@ -13,9 +13,10 @@ import pytest
 import cutcell
 from cutcell.errors import MeshError
 from cutcell_app import scenes
-from cutcell_app.commands import binding, loading, look
+from cutcell_app.commands import binding, keys, loading, look
 from cutcell_app.layout.session import begin
 from cutcell_app.layout.status import stage_text, summary, warning
+from cutcell_viewers.character import drawn_segments
 from tests.viewers.arm import arm_rig
 
 
@@ -412,3 +413,21 @@ def test_an_error_that_nobody_looks_at_is_measured_no_longer(session, loop, monk
     assert not session.tasks.jobs("errors").running
     session.state.panel = "pose"
     assert session.tasks.jobs("errors").running
+
+
+def test_a_key_frames_the_chosen_bone(bound):
+    bound.state.joint = 0
+    keys.act(bound, "frame")
+    camera, (start, end, joint) = bound.view.camera, drawn_segments(bound.state.rig)
+    middle = np.concatenate([start[joint == 1], end[joint == 1]]).mean(axis=0)
+    bound.state.joint = 1
+    keys.act(bound, "frame")
+    np.testing.assert_allclose(bound.view.camera.focal_point, middle, atol=1e-9)
+    assert bound.view.camera != camera
+    away = np.subtract(bound.view.camera.position, middle)
+    before = np.subtract(camera.position, camera.focal_point)
+    np.testing.assert_allclose(away / np.linalg.norm(away), before / np.linalg.norm(before))
+    bound.state.tour = 0
+    bound.state.joint = 0
+    keys.act(bound, "frame")
+    np.testing.assert_allclose(bound.view.camera.focal_point, middle, atol=1e-9)

@@ -334,3 +334,12 @@ def test_any_angle_shows_the_lines_of_sight_of_a_vertex(state, binding):
     assert "lines of sight" in scene.legend.swatches[0][1]
     state.connectivity = 6
     assert "path" not in resolve(state).actors
+
+
+def test_a_wireframe_and_faint_bones_can_be_switched_on(state):
+    state.panel = "weights"
+    assert not resolve(state).actors["body"].edges
+    state.param.update(wireframe=True, faint_skeleton=True)
+    actors = resolve(state).actors
+    assert actors["body"].edges
+    assert 0 < actors["bones"].opacity < 0.5
