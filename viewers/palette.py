@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cache, lru_cache
+from functools import cache
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -179,33 +179,40 @@ def colormap(name: str) -> NDArray[np.uint8]:
     return colors
 
 
-def joint_colors(parents: ArrayLike) -> NDArray[np.float64]:
+def joint_colors(
+    parents: ArrayLike, touching: ArrayLike = (), idle: ArrayLike = ()
+) -> NDArray[np.float64]:
     """Return one colour a joint, far from its neighbours' to every kind of eye.
 
     Parameters
     ----------
     parents : array_like, shape (j,)
+    touching : array_like, shape (k, 2), optional
+        Pairs of joints whose skin touches.
+    idle : array_like, shape (m,), optional
+        Joints without skin: they take colours last.
 
     Returns
     -------
     array, shape (j, 3), float64
-        Red, green and blue from 0 to 1, each one of `JOINT_COLORS`. Parents, grandparents and
-        siblings of a joint have others.
+        Red, green and blue from 0 to 1, each one of `JOINT_COLORS`. No colour comes twice while
+        others are left. Parents, grandparents, siblings of a joint and joints whose skin touches
+        its own have others, as long as there are enough.
     """
-    return np.array(_joint_colors(tuple(np.asarray(parents).tolist())))
-
-
-@lru_cache(maxsize=16)
-def _joint_colors(told: tuple[int, ...]) -> NDArray[np.float64]:
-    parents = np.array(told, int)
-    differences = _differences()
-    used = np.zeros(len(differences))
-    chosen = np.zeros(len(parents), int)
-    for joint, parent in enumerate(parents):
-        siblings = np.flatnonzero(parents[:joint] == parent)[-(len(differences) - 3) :]
-        above = [parent, parents[parent]] if parent >= 0 else []
-        near = [k for k in (*above, *siblings) if 0 <= k < joint]
-        score = differences[:, chosen[near]].min(axis=1, initial=1.0) - EVENNESS * used
+    above, last = np.asarray(parents, int), np.asarray(idle, int)
+    pairs = np.asarray(touching, int).reshape(-1, 2)
+    apart = _differences()
+    used = np.zeros(len(apart), int)
+    chosen = np.full(len(above), -1)
+    for joint in [*np.setdiff1d(np.arange(len(above)), last), *last]:
+        parent = above[joint]
+        skin = chosen[np.r_[pairs[pairs[:, 0] == joint, 1], pairs[pairs[:, 1] == joint, 0]]]
+        kin = chosen[(above == parent) | (above == joint)][-(len(apart) - 3) :]
+        old = chosen[[parent, above[parent]]] if parent >= 0 else chosen[:0]
+        near = np.concatenate([skin, kin, old])
+        score = apart[:, near[near >= 0]].min(axis=1, initial=1.0) - EVENNESS * used
+        score[skin[skin >= 0]] -= 1
+        score[used > 0] -= 2 if (used == 0).any() else 0
         chosen[joint] = int(np.argmax(score))
         used[chosen[joint]] += 1
     return np.array(JOINT_COLORS)[chosen] / 255

@@ -11,7 +11,8 @@ from cutcell.rig import Rig
 
 from .character import attachments, body, bones
 from .description import Description, Legend, Reading
-from .palette import UNREACHED, joint_colors, to_bytes
+from .joint_colors import colors_of
+from .palette import UNREACHED, to_bytes
 
 MIXED = "Each bone's colour, mixed by weight"
 MOST = "Dominant bone"
@@ -55,7 +56,7 @@ def weights_scene(
             rig,
             joint if chosen is None else chosen,
             skeleton,
-            joint_colors(rig.skeleton.parents) if joint is None else None,
+            colors_of(rig) if joint is None else None,
         ),
     }
     return Description(actors, legend=legend)
@@ -83,7 +84,7 @@ def _mixed(rig: Rig, weights: NDArray) -> NDArray[np.float64]:
     # Many small weights mix to grey; a power lets the strongest show its colour.
     strong = np.square(np.square(weights.ravel()[weighted]))
     total = np.bincount(vertex, strong, count)[:, None]
-    channels = joint_colors(rig.skeleton.parents).T
+    channels = colors_of(rig).T
     mixed = [np.bincount(vertex, strong * channel[joint], count) for channel in channels]
     blended = np.stack(mixed, axis=1) / np.where(total > 0, total, 1)
     return np.where(total > 0, blended, UNREACHED)
@@ -92,7 +93,7 @@ def _mixed(rig: Rig, weights: NDArray) -> NDArray[np.float64]:
 def dominant_colors(rig: Rig, weights: ArrayLike) -> tuple[dict[str, Any], Legend]:
     """Colour each vertex by the joint that holds most of it; see `weight_colors`."""
     reading = _strongest(rig, weights)
-    colors = to_bytes(joint_colors(rig.skeleton.parents))
+    colors = to_bytes(colors_of(rig))
     assert reading.values is not None
     style = {"colors": colors[reading.values.astype(int)], "reading": reading}
     return style, Legend(MOST)

@@ -16,8 +16,9 @@ from cutcell_viewers.camera import Camera, framing
 from cutcell_viewers.character import attachments, body, bones, drawn_segments, to_scene
 from cutcell_viewers.description import Actor, Cut, Description
 from cutcell_viewers.graph_scene import cut_at
+from cutcell_viewers.joint_colors import colors_of
 from cutcell_viewers.marks import vertex_mark
-from cutcell_viewers.palette import THEMES, Theme, joint_colors, to_hex
+from cutcell_viewers.palette import THEMES, Theme, to_hex
 from cutcell_viewers.skin import skin_of_weights
 
 from ..state import State
@@ -84,7 +85,7 @@ def _skeleton(state: State, memo: Memo, coloured: bool) -> dict[str, Actor]:
     visible_bones = _behind_cut(state, *segments) if state.panel in CUT else None
 
     def make() -> dict[str, Actor]:
-        colors = joint_colors(rig.skeleton.parents) if coloured else None
+        colors = colors_of(rig) if coloured else None
         return bones(rig, state.joint, state.skeleton, colors, visible_bones)
 
     inputs = (

@@ -11,8 +11,8 @@ from cutcell.editing import Explanation, JointShare
 from cutcell.editing.explain import STEPS
 from cutcell_viewers.character import to_scene
 from cutcell_viewers.description import Actor
+from cutcell_viewers.joint_colors import colors_of
 from cutcell_viewers.marks import path_tube
-from cutcell_viewers.palette import joint_colors
 
 from ..state import State
 from .memo import Memo
@@ -79,7 +79,7 @@ def explained_paths(state: State, memo: Memo) -> dict[str, Actor]:
 
 def _tubes(state: State, found: Explanation) -> dict[str, Actor]:
     rig, tubes = state.rig, {}
-    colors = joint_colors(rig.skeleton.parents)
+    colors = colors_of(rig)
     for share in found.joints[:MAX_JOINTS]:
         if share.path and share.weight > 0:
             points = np.array([share.path[0].start, *(piece.end for piece in share.path)])

@@ -14,7 +14,8 @@ from cutcell.graph import MESH, CutCellGraph
 from cutcell.graph.winding import winding_number
 from cutcell.runtime.display import shown_name
 from cutcell_viewers.graph_scene import KINDS
-from cutcell_viewers.palette import joint_colors, to_hex
+from cutcell_viewers.joint_colors import colors_of
+from cutcell_viewers.palette import to_hex
 
 from ..state import State
 from .explain import explanation_facts
@@ -45,7 +46,7 @@ def vertex_facts(state: State, memo: Memo) -> dict[str, Any] | None:
     facts: dict[str, Any] = {"vertex": int(vertex), "computed": binding is not None}
     if binding is None:
         return facts
-    colors = memo("colors", (rig,), lambda: joint_colors(rig.skeleton.parents))
+    colors = memo("colors", (rig,), lambda: colors_of(rig))
 
     def bone(joint: int, **values: Any) -> dict[str, Any]:
         color = to_hex(tuple(colors[joint]))

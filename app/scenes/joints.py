@@ -11,7 +11,8 @@ from cutcell.editing.corrections import JointCorrection
 from cutcell.metrics import vertex_shares
 from cutcell.rig.deform_joints import DeformJoints
 from cutcell.runtime.display import shown_name
-from cutcell_viewers.palette import joint_colors, to_hex
+from cutcell_viewers.joint_colors import colors_of
+from cutcell_viewers.palette import to_hex
 
 from ..state import State
 from .memo import Memo
@@ -55,7 +56,7 @@ def joint_rows(state: State, memo: Memo, guess: DeformJoints | None) -> list[dic
     """
     rig = state.rig
     skeleton = rig.skeleton
-    colors = memo("colors", (rig,), lambda: joint_colors(skeleton.parents))
+    colors = memo("colors", (rig,), lambda: colors_of(rig))
     computed, own = shares_of(state, memo)
     rows = []
     for joint in in_order(skeleton):

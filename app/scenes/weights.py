@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cutcell_viewers.description import Actor, Description, Legend
+from cutcell_viewers.joint_colors import colors_of
 from cutcell_viewers.marks import vertex_dots
-from cutcell_viewers.palette import joint_colors
 from cutcell_viewers.weights_scene import (
     bone_difference_colors,
     count_colors,
@@ -104,7 +104,7 @@ def weights_look(
     coloured = shown in ("mix", "dominant")
     if coloured:
         bone = state.rig.skeleton.names[state.joint]
-        color = joint_colors(state.rig.skeleton.parents)[state.joint]
+        color = colors_of(state.rig)[state.joint]
         legend = replace(legend, swatches=((tuple(color.tolist()), bone),))
     if held is state.rig.weights and shown not in DIFFERENCES:
         legend = replace(legend, title=f"{FILES}: {legend.title}")
