@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -22,6 +23,7 @@ from cutcell.errors import MissingLibraryError, ParameterError
 
 from .render_flags import (
     WHAT,
+    Background,
     ColorBy,
     Colors,
     Face,
@@ -36,6 +38,7 @@ from .render_flags import (
     Plane,
     Slice,
     Sources,
+    Transparent,
     Wave,
 )
 
@@ -172,6 +175,8 @@ def render(
     ] = None,
     near: Near = None,
     camera: FreeCamera = None,
+    background: Background = "",
+    transparent: Transparent = False,
     size: Annotated[
         str | None,
         typer.Option(
@@ -207,6 +212,10 @@ def render(
     scenes, film, worker = _libraries()
     moves = turntable or (clip is not None and time is None)
     film.check_picture_file(out, moves=moves)
+    if transparent and background:
+        raise ParameterError("a transparent picture has no background: leave one of them out")
+    background = "transparent" if transparent else background
+    film.ground("light", background, out.suffix.lower())
     pixels = _size(size) if size else FILM_SIZE if moves else PICTURE_SIZE
     from cutcell.io import load
     from cutcell.io.files import naming
@@ -276,7 +285,7 @@ def render(
             near=near,
             camera=eye,
         )
-        worker.draw_apart(order, out, progress)
+        worker.draw_apart(replace(order, background=background), out, progress)
     if not quiet:
         print_warnings(
             [

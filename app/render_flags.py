@@ -134,6 +134,19 @@ FreeCamera = Annotated[
         rich_help_panel="How it is seen",
     ),
 ]
+Background = Annotated[
+    str,
+    typer.Option(
+        "--background",
+        metavar="COLOUR",
+        help="A ground of one colour, such as white or #f4f4f4.",
+        rich_help_panel="How it is seen",
+    ),
+]
+Transparent = Annotated[
+    bool,
+    typer.Option("--transparent", help="No ground: PNG.", rich_help_panel="How it is seen"),
+]
 Near = Annotated[
     float | None,
     typer.Option(

@@ -106,6 +106,13 @@ class Scene:
         plotter.render_window.Render()  # a screenshot alone shows what was drawn before
         return plotter.screenshot(None if path is None else str(path), return_img=True)
 
+    def render_clear(self) -> NDArray[np.uint8]:
+        """Draw the scene on a transparent ground, shape (height, width, 4), uint8."""
+        plotter: Any = self.plotter
+        plotter.renderer.ResetCameraClippingRange()
+        plotter.render_window.Render()
+        return plotter.screenshot(None, return_img=True, transparent_background=True)
+
     def close(self) -> None:
         """Free the window."""
         self.plotter.close()

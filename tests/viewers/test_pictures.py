@@ -7,13 +7,17 @@ import pytest
 from PIL import Image
 
 import cutcell
+from cutcell.errors import ParameterError
 from cutcell_viewers import palette
 from cutcell_viewers.camera import Camera, framing
 from cutcell_viewers.description import Actor, Description
 from cutcell_viewers.distance_scene import distance_scene
+from cutcell_viewers.film import ground
 from cutcell_viewers.graph_scene import cut_at, graph_scene
+from cutcell_viewers.palette import LIGHT
 from cutcell_viewers.pose_scene import joint_turns, pose_scene, turn
 from cutcell_viewers.scene import Scene, render_png
+from cutcell_viewers.studio import Studio
 from cutcell_viewers.weights_scene import weights_scene
 from tests.viewers.arm import arm_rig
 
@@ -153,3 +157,29 @@ def test_widths_are_the_same_part_of_a_picture_of_any_size():
     assert part(1200, width=4, thick=0.02) == pytest.approx(
         0.04 / (8 * np.tan(np.radians(15))), abs=0.002
     )
+
+
+def test_where_no_corner_is_free_the_legend_stands_below_the_figures(rig):
+    scene = weights_scene(rig, rig.weights)
+    near = Camera((0.5, 0.0, 0.6), (0.5, 0.0, 0.0))  # the body fills the picture
+    with Studio(scene, size=(300, 300)) as studio:
+        picture = studio.draw(near)
+    strip = np.abs(picture[-3, :].astype(int) - 255 * np.array(LIGHT.bottom)).max(axis=1)
+    assert (strip < 3).all()
+
+
+def test_a_ground_of_one_colour_or_none(rig):
+    scene = weights_scene(rig, rig.weights)
+    theme, clear = ground("light", "#102030")
+    assert not clear
+    with Studio(scene, theme, (200, 150)) as studio:
+        assert studio.draw(studio.camera())[0, 0].tolist() == [16, 32, 48]
+    theme, clear = ground("light", "transparent")
+    with Studio(scene, theme, (200, 150), transparent=clear) as studio:
+        picture = studio.draw(studio.camera())
+    assert picture.shape == (150, 200, 4)
+    assert picture[0, 0, 3] == 0
+    assert picture[:, :, 3].max() == 255
+    for background, kind in (("transparent", ".jpg"), ("kitchen", ".png")):
+        with pytest.raises(ParameterError):
+            ground("light", background, kind)
