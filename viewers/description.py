@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from typing import Literal
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +12,9 @@ from cutcell.io.materials.face_colors import FaceColors
 
 from .palette import BODY, Color
 from .skin import Skin
+
+if TYPE_CHECKING:
+    from pyvista import DataSet
 
 
 @dataclass(frozen=True, eq=False)
@@ -137,6 +140,28 @@ class Actor:
     reading: Reading | None = None
     film: bool = False
 
+    @classmethod
+    def from_polydata(cls, mesh: DataSet, scalars: str | None = None, **settings: Any) -> Actor:
+        """Return a PyVista mesh as an actor.
+
+        Parameters
+        ----------
+        mesh : pyvista.DataSet
+            Of anything but `pyvista.PolyData` the surface is taken.
+        scalars : str, optional
+            An array of its points or cells: colours if it holds bytes in three or four columns,
+            else values, of vectors their lengths.
+        **settings
+            Other parameters of an actor, such as `colormap` or `opacity`.
+
+        Returns
+        -------
+        Actor
+        """
+        from .polydata import actor_of
+
+        return actor_of(mesh, scalars, **settings)
+
 
 @dataclass(frozen=True)
 class Cut:
@@ -200,3 +225,9 @@ class Description:
             return np.array([[-1.0, -1, -1], [1, 1, 1]])
         low = np.min([p.min(axis=0) for p in points], axis=0)
         return np.stack([low, np.max([p.max(axis=0) for p in points], axis=0)]).astype(float)
+
+
+def in_view(description: Description, view: int) -> Description:
+    """Return a scene with the actors of one of its views alone."""
+    actors = {k: a for k, a in description.actors.items() if a.view in (None, view)}
+    return replace(description, actors=actors)

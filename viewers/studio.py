@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from types import TracebackType
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .camera import PAGE_HEIGHT, Camera, framing
-from .description import Actor, Description
+from .description import Description, in_view
 from .lettering import free_corner, legend_card, put_card, write_captions
 from .palette import LIGHT, Theme, to_bytes
 from .scene import Scene
@@ -63,15 +62,16 @@ class Studio:
             scene.close()
         count, shape = max(len(self._shown.views), 1), shape_of(self._shown.bounds)
         self._tiles = tiles(count, size, shape)
-        self._scenes = [Scene(self.theme, tile[2:], self._ratio) for tile in self._tiles]
+        self._scenes = [
+            Scene(self.theme, tile[2:], pixel_ratio=self._ratio) for tile in self._tiles
+        ]
         self.show(self._shown)
 
     def show(self, description: Description) -> None:
         """Make every view what a description says."""
         self._shown = description
         for view, scene in enumerate(self._scenes):
-            actors = {k: a for k, a in description.actors.items() if _stands_in(a, view)}
-            scene.show(replace(description, actors=actors))
+            scene.show(in_view(description, view))
 
     def camera(
         self,
@@ -160,7 +160,3 @@ def _ground(theme: Theme, height: int) -> NDArray[np.float32]:
     part = (np.arange(height, dtype=np.float32) + 0.5)[:, None, None] / height
     top, bottom = (255 * np.array(color, np.float32) for color in (theme.top, theme.bottom))
     return top + part * (bottom - top)
-
-
-def _stands_in(actor: Actor, view: int) -> bool:
-    return actor.view is None or actor.view == view

@@ -1,14 +1,12 @@
 """What an address says: which character it names, and what is chosen there."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 
 from cutcell_assets import DEMOS
 
+from ..jobs.messages import shown
 from ..state.url import defaults, from_query
-from ..work.messages import shown
 from . import tour
 from .history import restore
 from .loading import load_demo, load_files

@@ -1,7 +1,5 @@
 """Computes what is compared: one method after the other, none stopped by another's failure."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -22,11 +20,11 @@ from cutcell.metrics import (
 from cutcell.rig import Rig
 from cutcell.runtime.progress import Progress
 
+from ..jobs.jobs import COMPARING, WAITING
+from ..jobs.messages import shown, told
 from ..scenes.compare import found_of
 from ..state import State
 from ..state.compare import FEWEST_VIEWS, MAX_VIEWS, NOW, offered, standard
-from ..work.jobs import COMPARING, WAITING
-from ..work.messages import shown, told
 from .session import Session
 
 

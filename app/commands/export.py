@@ -22,11 +22,11 @@ from cutcell_viewers.worker import draw_apart
 from ..files.graph_numbers import save_graph
 from ..files.receive import safe_name
 from ..files.table_export import save_numbers
+from ..jobs.jobs import COMPUTING, DRAWING, Slots
+from ..jobs.processes import in_process
 from ..scenes import Memo, following, resolve
 from ..scenes.pose import SWING_DEGREES, clip_of
 from ..state import State
-from ..work.jobs import COMPUTING, DRAWING, Slots
-from ..work.processes import in_process
 from .session import Session
 
 Done = Callable[[str, bytes], None]

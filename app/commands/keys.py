@@ -1,14 +1,12 @@
 """What the keys do, and the buttons over the canvas."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from cutcell.editing.corrections import Corrections
 from cutcell_viewers.camera import FRONT
 
 from ..scenes.common import camera_on_bone, first_joint
-from ..state import State
+from ..state import PANELS, State
 from ..state.corrections import applied, changes, news
 from ..state.url import defaults
 from . import brush, pairs
@@ -32,6 +30,7 @@ def act(session: Session, name: str) -> None:
         "undo": lambda: revisit(session, session.history.undo()),
         "redo": lambda: revisit(session, session.history.redo()),
         "reset": lambda: reset(session),
+        "rendered": lambda: state.param.update(rendered=not state.rendered),
         "play": lambda: play(state),
         "next": lambda: step(session, 1),
         "previous": lambda: step(session, -1),
@@ -63,7 +62,7 @@ def play(state: State) -> None:
     """Play the motion, or halt it; on the panel where things move."""
     if state.bare:
         return
-    if not state.moving or state.panel not in ("pose", "compare"):
+    if not state.moving or not PANELS[state.panel].poses:
         panel = state.panel if state.panel == "compare" else "pose"
         state.param.update(panel=panel, moving=True, playing=True)
     else:

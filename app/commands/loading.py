@@ -1,7 +1,5 @@
 """How a character comes to stand on the page: a demo, or files."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -18,9 +16,9 @@ from cutcell_viewers.camera import Camera, framing
 from ..files.reading import demo_rig, main_file, read
 from ..files.receive import Receiver
 from ..files.upload_cache import Group
+from ..jobs.jobs import READING
 from ..scenes.common import bones_part, bounds_of, camera_part, first_joint
 from ..state.url import first_clip
-from ..work.jobs import READING
 from . import history
 from .binding import bind, restore
 from .compare import carry
@@ -242,7 +240,7 @@ def _correct(session: Session, said: str) -> None:
         state.param.update(**changed)
     except (CutcellError, ValueError) as error:
         state.corrections = Corrections()
-        session.notice = f"The corrections of this address were not taken: {error}"
+        session.binder.notice = f"The corrections of this address were not taken: {error}"
 
 
 def _arrive(session: Session, rig: Rig, arrival: dict[str, Any]) -> None:
@@ -253,7 +251,7 @@ def _arrive(session: Session, rig: Rig, arrival: dict[str, Any]) -> None:
     state.tour = arrival.get("tour", state.tour)
     if 0 <= arrival.get("vertex", -1) < len(rig.mesh.vertices):
         state.vertex = arrival["vertex"]
-    session.notice = arrival.get("told", "")
+    session.binder.notice = arrival.get("told", "")
 
 
 def _choose_joints(session: Session, arrival: dict[str, Any]) -> None:

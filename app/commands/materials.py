@@ -1,14 +1,12 @@
 """The materials of a character's file, once somebody wants to see them."""
 
-from __future__ import annotations
-
 from cutcell.errors import FileError
 from cutcell.io.materials.transfer import has_materials, read_materials
 from cutcell.rig import Rig
 from cutcell.runtime.progress import Progress
 from cutcell_viewers.materials import Textures, as_textures, decoded, none_decoded
 
-from ..work.processes import in_process
+from ..jobs.processes import in_process
 from .session import Session
 
 ENDED = "decoding its images came to a sudden end"

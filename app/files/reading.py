@@ -1,7 +1,5 @@
 """Files as characters: which of a group is opened, and how it is read."""
 
-from __future__ import annotations
-
 import functools
 from collections.abc import Callable
 from pathlib import Path
@@ -15,7 +13,7 @@ from cutcell.io.materials.transfer import has_materials
 from cutcell.rig import Rig
 from cutcell_assets import demo_path
 
-from ..work.processes import in_process
+from ..jobs.processes import in_process
 
 IMAGES = {
     ".png",

@@ -1,13 +1,11 @@
 """Files from the browser: received in pieces, straight to where they are kept."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 
 from cutcell.errors import CutcellError, FileError
 
-from ..work.messages import FULL
+from ..jobs.messages import FULL
 from .upload_cache import Group, UploadCache
 
 MAX_UPLOAD = 200 * 1024 * 1024

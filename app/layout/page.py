@@ -1,10 +1,8 @@
 """The layout of the page: a sidebar, one big canvas, a slim line of facts."""
 
-from __future__ import annotations
-
 import functools
 import weakref
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 from urllib.parse import urlencode
@@ -15,17 +13,18 @@ from panel.io.resources import LOCAL_DIST
 from tornado.ioloop import IOLoop
 
 from cutcell_assets import DEMOS
+from cutcell_viewers.description import Actor
 
 from ..commands import arrival, pairs
 from ..commands.loading import load_demo, load_files
 from ..commands.session import Session
-from ..panels.parts import words
+from ..jobs.jobs import Gate, on_its_thread
+from ..panels.controls import words
 from ..server.memory import let_go, tidy_soon
 from ..state.pairs import OpenedAudit
 from ..widgets.inspector import inspector
 from ..widgets.modules import style
 from ..widgets.tour_card import tour_card
-from ..work.jobs import Gate, on_its_thread
 from .favicon import FAVICON
 from .session import begin
 from .sidebar import sidebar
@@ -36,7 +35,11 @@ NARROW = 600
 """Windows that are less wide than this, in pixels, show the sidebar on demand only."""
 
 
-def page(path: Path | None = None, opened: OpenedAudit | None = None) -> pmui.Page:
+def page(
+    path: Path | None = None,
+    opened: OpenedAudit | None = None,
+    actors: Mapping[str, Actor] | None = None,
+) -> pmui.Page:
     """Return a new page, on which a character is about to stand.
 
     Parameters
@@ -45,6 +48,8 @@ def page(path: Path | None = None, opened: OpenedAudit | None = None) -> pmui.Pa
         The character to open; the first demo when left out.
     opened : OpenedAudit, optional
         An audit whose pairs are looked at.
+    actors : mapping of str to Actor, optional
+        Meshes to show with every character.
     """
     document: Any = pn.state.curdoc
     # Panel sets this as it writes a session's HTML; here that is written once for all of them.
@@ -52,6 +57,7 @@ def page(path: Path | None = None, opened: OpenedAudit | None = None) -> pmui.Pa
     gate = Gate(on_its_thread(document, IOLoop.current()))
     pn.state.onload(gate.open)
     session = begin(gate)
+    session.state.actors = dict(actors or {})
     if opened is not None:
         pairs.look_at(session, opened)
     # Panel keeps its settings per document for as long as the document lives: what they hold

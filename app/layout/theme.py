@@ -1,7 +1,5 @@
 """How the page looks: colours, type and spacing, in light and in dark."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from cutcell_viewers.palette import DARK, LIGHT, to_hex
@@ -87,6 +85,6 @@ PAGE_STYLE: dict[str, Any] = {
     "& .header .MuiToolbar-root": {"minHeight": "52px", "margin": 0},
     "& .MuiToolbar-root": {"minHeight": "52px"},
     "& .sidebar": {"backgroundImage": "none", "borderColor": "divider"},
-    # How high the sheet is that stands there now: scripts/sheet.js.
+    # How high the sheet is that stands there now: frontend/sheet.js.
     NARROW: {"& .main > .MuiBox-root": {"height": "calc(100dvh - var(--sheet, 0px)) !important"}},
 }

@@ -1,14 +1,12 @@
 """The choice of a cutting plane, and what moves and turns it."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import panel_material_ui as pmui
 
 from ..commands import cutting as actions
 from ..commands.session import Session
-from .parts import BUTTONS, GAP, caption, follow, slider, when
+from .controls import BUTTONS, button, caption, follow, slider, when
 
 AXES = {"Whole": "off", "Cut X": "x", "Cut Y": "y", "Cut Z": "z", "Free": "free"}
 
@@ -19,15 +17,7 @@ def cutting(session: Session) -> list[Any]:
     cut = when(lambda *_: state.cut_across != "off", state.param.cut_axis, state.param.panel)
     free = when(lambda axis: axis == "free", state.param.cut_axis)
     style = {"format": "0°", "step": 1, "visible": free}
-    facing = pmui.Button(
-        label="Face camera",
-        size="small",
-        variant="outlined",
-        margin=GAP,
-        sizing_mode="stretch_width",
-        on_click=lambda event: actions.face_the_eye(session),
-        visible=free,
-    )
+    facing = button("Face camera", lambda: actions.face_the_eye(session), visible=free)
     return [
         follow(
             pmui.RadioButtonGroup(**BUTTONS),

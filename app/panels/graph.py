@@ -1,7 +1,5 @@
 """The graph: how it is built, which of its layers are seen, and where it is cut."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -16,8 +14,7 @@ from ..commands.session import Session
 from ..scenes.common import theme_of
 from ..state import LAYERS, State
 from ..state.graph import READABLE
-from .cutting import cutting
-from .parts import (
+from .controls import (
     BUTTONS,
     GAP,
     caption,
@@ -30,6 +27,7 @@ from .parts import (
     when,
     words,
 )
+from .cutting import cutting
 
 KINDS = {"mesh_edges": MESH, "interior_edges": INTERIOR, "surface_edges": SURFACE}
 LEAF_TITLES = {"point": "Points", "extend": "Extended", "fit": "Fitted"}

@@ -1,7 +1,5 @@
 """What a page's address says, as choices of a picture."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from typing import Any
 from urllib.parse import urlsplit

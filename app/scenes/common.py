@@ -1,7 +1,5 @@
 """What the scenes of all panels have in common: body, bones, cut, theme."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 from typing import Any
@@ -21,7 +19,7 @@ from cutcell_viewers.marks import vertex_mark
 from cutcell_viewers.palette import THEMES, Theme, to_hex
 from cutcell_viewers.skin import skin_of_weights
 
-from ..state import State
+from ..state import PANELS, State
 from .memo import Memo
 
 FAINT = 0.25
@@ -32,13 +30,6 @@ SEE_PATH = 0.42
 
 SEE_THROUGH = 0.22
 """How opaque the body is while what lies inside is looked at."""
-
-
-POSED = ("pose", "compare")
-"""The panels on which the character moves; on all others it rests."""
-
-CUT = ("graph", "distance")
-"""The panels on which it can be cut."""
 
 
 def character(
@@ -60,7 +51,7 @@ def character(
     rig = state.rig
     plain = memo("body", (rig.mesh, rig.weights, rig.world), lambda: body(rig))
     skin = None
-    if state.panel in POSED and state.weights is not None:
+    if PANELS[state.panel].poses and state.weights is not None:
         skin = memo("skin", (rig, state.weights), lambda: skin_of_weights(state.weights))
     hung = memo("attachments", (rig.attachments, rig.world), lambda: attachments(rig))
     mark = {}
@@ -82,7 +73,7 @@ def _skeleton(state: State, memo: Memo, coloured: bool) -> dict[str, Actor]:
         return {}
     rig = state.rig
     segments = memo("segments", (rig,), lambda: drawn_segments(rig))
-    visible_bones = _behind_cut(state, *segments) if state.panel in CUT else None
+    visible_bones = _behind_cut(state, *segments) if PANELS[state.panel].cuts else None
 
     def make() -> dict[str, Actor]:
         colors = colors_of(rig) if coloured else None

@@ -1,14 +1,10 @@
 """What every panel shares: the character, the chosen bone and vertex, and how work goes on."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import param
 
-PANELS = ("graph", "distance", "weights", "pose", "compare", "check", "learn", "pairs")
-"""The ids of the panels, in the order in which they are offered; the last for an audit alone."""
-
+from .panels import PANELS
 
 CUTS = ("auto", "off", "x", "y", "z", "free")
 """What the body is cut across; a free plane has any direction, and auto is z on the panel graph."""
@@ -41,6 +37,11 @@ class Common(param.Parameterized):
     )
     graph_face: Any = param.Selector(
         default="open", objects=["open", "field", "winding"], doc="The same, of the graph."
+    )
+
+    actors: Any = param.Dict({}, doc="Meshes that the server was started with: name to `Actor`.")
+    rendered: Any = param.Boolean(
+        False, doc="Whether PyVista draws the view on the server when it rests."
     )
 
     tour: Any = param.Integer(-1, doc="Which step of the tour is told; -1 for none.")
@@ -77,5 +78,5 @@ class Common(param.Parameterized):
 
 
 UNSEEN = frozenset({"name", "demo", "tour", "busy", "stage", "fraction", "message",
-                    "own", "tier"})  # fmt: skip
+                    "own", "tier", "rendered"})  # fmt: skip
 """What the scene does not depend on."""

@@ -1,7 +1,5 @@
 """The 3D view of the page: a scene's description, streamed to vtk.js in the browser."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 
@@ -11,11 +9,14 @@ from panel.models.vtk import VTK_VERSION
 
 from cutcell_viewers.camera import PAGE_HEIGHT, Camera
 from cutcell_viewers.description import Description
-from cutcell_viewers.scene import LIGHTS
+from cutcell_viewers.lighting import LIGHTS
 
 from ..files.receive import Receiver
 from .changes import changes
 from .modules import script
+
+ACTORS = frozenset({"actors", "images", "bones", "pose", "clip"})
+"""Parts of a scene that a browser needs only where it draws them itself."""
 
 
 class SceneView(JSComponent):
@@ -49,6 +50,7 @@ class SceneView(JSComponent):
         self.calm = False
         self._ready = False
         self._seen = False
+        self._pictures = False
         self._awaited: list[Callable[[], Any]] = []
         self._count = 0
         self._parts: dict[str, Any] = {}
@@ -62,7 +64,7 @@ class SceneView(JSComponent):
         self._listeners[kind] = act
 
     def when_seen(self, act: Callable[[], Any]) -> None:
-        """Do something once, as soon as a browser has the view, or says that it cannot show it."""
+        """Do something once, as soon as a browser has the view."""
         self._awaited.append(act)
         if self._seen:
             self._begin()
@@ -96,9 +98,12 @@ class SceneView(JSComponent):
         self._send_msg(message)
 
     def _send(self, message: dict[str, Any]) -> None:
-        if message:
-            self._count += 1
-            self._send_msg({"id": self._count, **message})
+        if not message:
+            return
+        if self._pictures:
+            message = {name: part for name, part in message.items() if name not in ACTORS}
+        self._count += 1
+        self._send_msg({"id": self._count, **message})
 
     def _handle_msg(self, data: dict[str, Any]) -> None:
         kind = data.get("type")
@@ -110,12 +115,11 @@ class SceneView(JSComponent):
             self.dark = {"1": True, "0": False}.get(str(data.get("dark")))
             self.calm = bool(data.get("calm", False))
             self.window_width = int(data.get("width", 0))
+            self._pictures = bool(data.get("pictures", False))
             self._sent.clear()
             first = {"lights": LIGHTS, **changes(Description(), self._wanted, self._sent)}
             self._send({**first, **self._parts})
             self._shown = self._wanted
-            self._begin()
-        elif kind == "cannot show":
             self._begin()
         elif kind in self._listeners:
             self._listeners[kind](data)

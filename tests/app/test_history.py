@@ -10,13 +10,13 @@ from cutcell_app.commands import arrival, correct, keys, loading
 from cutcell_app.commands.arrival import GONE
 from cutcell_app.commands.check import repair
 from cutcell_app.commands.compare import choose
+from cutcell_app.jobs.jobs import Gate
 from cutcell_app.layout.session import begin
 from cutcell_app.scenes.common import first_joint
 from cutcell_app.state import State
 from cutcell_app.state.compare import standard
 from cutcell_app.state.history import TOGETHER, History
 from cutcell_app.state.url import first_clip, from_query, to_query
-from cutcell_app.work.jobs import Gate
 from cutcell_assets import demo_path
 from tests.viewers.arm import arm_rig
 

@@ -10,9 +10,9 @@ import pytest
 
 from cutcell.errors import FileError
 from cutcell.runtime.display import printable
-from cutcell_app.panels.parts import as_text, unique_names
+from cutcell_app.jobs.messages import sentence, told
+from cutcell_app.panels.controls import as_text, unique_names
 from cutcell_app.server.log import Printable
-from cutcell_app.work.messages import sentence, told
 
 
 @pytest.mark.parametrize(

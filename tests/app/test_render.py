@@ -1,6 +1,8 @@
 """`cutcell render`, and the page's scenes in a notebook."""
 
+import inspect
 import re
+from dataclasses import fields
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +16,8 @@ from cutcell.cli.app import app
 from cutcell.errors import FileError, ParameterError
 from cutcell_app.files.table_export import save_numbers
 from cutcell_app.render import VIEWS, Choices, check, describe, find_bone, find_clip, order
+from cutcell_app.render.options import READERS
+from cutcell_app.render_flags import CHOICES, PICTURE, SETTINGS
 from cutcell_assets import demo_path
 from cutcell_viewers.camera import Camera
 from tests.viewers.arm import arm_rig
@@ -360,3 +364,9 @@ def test_a_view_of_a_finding_is_seen_from_there(drawn, tmp_path):
         assert run(demo_path("biped_cape"), tmp_path / "a.png", *options).exit_code == 0
         away = np.subtract(drawn[-1].camera.position, drawn[-1].camera.focal_point)
         assert np.sign(away[2]) == np.sign(VIEWS[view][2])
+
+
+def test_each_flag_is_a_choice_a_setting_or_asked_for_of_the_picture():
+    assert CHOICES.keys() < {field.name for field in fields(Choices)}
+    assert SETTINGS.keys() == READERS.keys()
+    assert PICTURE.keys() <= inspect.signature(order).parameters.keys()

@@ -17,6 +17,7 @@ from cutcell_app.commands import binding, keys, loading, look
 from cutcell_app.layout.session import begin
 from cutcell_app.layout.status import stage_text, summary, warning
 from cutcell_viewers.character import drawn_segments
+from cutcell_viewers.description import Actor
 from tests.viewers.arm import arm_rig
 
 
@@ -431,3 +432,13 @@ def test_a_key_frames_the_chosen_bone(bound):
     bound.state.joint = 0
     keys.act(bound, "frame")
     np.testing.assert_allclose(bound.view.camera.focal_point, middle, atol=1e-9)
+
+
+def test_meshes_of_the_server_are_shown_with_every_character(bound):
+    points, cells = np.zeros((1, 3), np.float32), np.zeros((1, 1), np.int32)
+    sensor = Actor("points", points, cells)
+    bound.state.actors = {"sensor": sensor}
+    for panel in scenes.SCENES:
+        if panel != "pairs":
+            bound.state.panel = panel
+            assert scenes.resolve(bound.state, bound.memo).actors["sensor"] is sensor
