@@ -24,7 +24,7 @@ WHOLE = 0.995
 
 
 class Gap:
-    """Tells how far two weightings of a rig take each vertex from each other.
+    """Measures how far apart two sets of weights move each vertex.
 
     Parameters
     ----------
@@ -35,9 +35,9 @@ class Gap:
 
     def __init__(self, rig: Rig, weights: ArrayLike, reference: ArrayLike) -> None:
         self._points = to_scene(rig, rig.mesh.vertices).astype(np.float32)
-        # A vertex that nothing holds follows a joint of its own, which never moves.
-        ours, theirs = (_with_rest(np.asarray(w, np.float32)) for w in (weights, reference))
-        self._between = ours - theirs
+        # A vertex without weight follows an additional joint, which never moves.
+        weights_a, weights_b = (_with_rest(np.asarray(w, np.float32)) for w in (weights, reference))
+        self._between = weights_a - weights_b
         self._unit = squared_unit(rig)
 
     def squared(self, pose: ArrayLike) -> NDArray[np.float32]:
@@ -106,7 +106,7 @@ def error_legend(limits: tuple[float, float]) -> Legend:
 
 
 def error_limits(squared: ArrayLike) -> tuple[float, float]:
-    """Return a range that nearly all errors lie in; its end is a round number.
+    """Return a range that contains nearly all errors; its end is a round number.
 
     Round numbers stay the same while a joint turns a little: the colours can be compared.
     """

@@ -1,4 +1,4 @@
-"""What a diagnosis found, marked on the character: faces, vertices and joints."""
+"""Findings of a diagnosis, marked on the character: faces, vertices and joints."""
 
 from __future__ import annotations
 

@@ -76,7 +76,7 @@ class Scene:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The actors that stand in the scene."""
+        """The actors of the scene."""
         return tuple(self._names)
 
     def show(self, description: Description) -> None:
@@ -100,7 +100,7 @@ class Scene:
             if actor.visible and len(actor.cells)
         }
 
-    def look(self, camera: Camera) -> None:
+    def set_camera(self, camera: Camera) -> None:
         """Place the camera."""
         view = self.plotter.camera
         view.position, view.focal_point, view.up = camera.position, camera.focal_point, camera.up
@@ -198,7 +198,7 @@ def render_png(
     scene = Scene(theme, size)
     try:
         scene.show(description)
-        scene.look(camera or framing(description.bounds, size[0] / size[1]))
+        scene.set_camera(camera or framing(description.bounds, size[0] / size[1]))
         return scene.render_png(path)
     finally:
         scene.close()
@@ -210,9 +210,9 @@ def shading(actor: Actor) -> tuple[float, float]:
 
 
 def cut_planes(cut: Cut, slab: float) -> list[dict[str, tuple[float, ...]]]:
-    """Return the planes that keep what lies behind a cut, each as origin and normal.
+    """Return the planes that keep the far side of a cut, each as origin and normal.
 
-    What a plane keeps lies on the side that its normal points to.
+    A plane keeps the side that its normal points to.
     """
     origin, normal = np.array(cut.origin), np.array(cut.normal)
     planes = [{"origin": tuple(origin.tolist()), "normal": tuple((-normal).tolist())}]
@@ -311,7 +311,7 @@ def _paint(drawn: pv.Actor, actor: Actor, pixel_ratio: float, front: float | Non
         mapper.SetResolveCoincidentTopologyToPolygonOffset()
         mapper.SetRelativeCoincidentTopologyPolygonOffsetParameters(2, 30)
     if actor.kind == "lines":
-        # Lines on a surface lie in it: pull them a little towards the eye.
+        # Lines on a surface coincide with it: pull them a little towards the eye.
         mapper.SetResolveCoincidentTopologyToPolygonOffset()
         mapper.SetRelativeCoincidentTopologyLineOffsetParameters(0, -4)
 

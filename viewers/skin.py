@@ -50,7 +50,7 @@ def skin_of_weights(weights: ArrayLike) -> Skin:
 
 
 def rigid_skin(joints: ArrayLike) -> Skin:
-    """Return a skin in which every point hangs on one joint, given as (n,) indices."""
+    """Return a skin in which every point follows one joint, given as (n,) indices."""
     column = np.asarray(joints).astype(np.uint16)[:, None]
     return Skin(column, np.ones(column.shape, np.float32))
 

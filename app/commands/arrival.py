@@ -1,4 +1,4 @@
-"""What an address says: which character it names, and what is chosen there."""
+"""Reading of an address: its character, and the choices in it."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 
 from cutcell_assets import DEMOS
 
-from ..jobs.messages import shown
+from ..jobs.messages import visible_text
 from ..state.url import defaults, from_query
 from . import tour
 from .history import restore
@@ -34,7 +34,7 @@ def watch(session: Session) -> None:
     session.view.listen("visit", visit)
 
 
-def greet(session: Session, demo: str) -> None:
+def show_first_demo(session: Session, demo: str) -> None:
     """Show the first character as it moves, in the colours of its weights."""
 
     def chosen() -> None:
@@ -63,7 +63,7 @@ def choose(session: Session, query: str, first: str = "") -> None:
     state.param.update(**choices, demo=demo if demo in demo_ids else "")
 
 
-def arrive(session: Session, query: str, otherwise: Callable[[], None]) -> None:
+def arrive(session: Session, query: str, fallback: Callable[[], None]) -> None:
     """Show what an address says.
 
     Parameters
@@ -85,7 +85,7 @@ def arrive(session: Session, query: str, otherwise: Callable[[], None]) -> None:
         arrival["told"] = GONE
     elif problems:
         arrival["told"] = (
-            f"The address says what this page does not know ({shown(', '.join(problems))}); "
+            f"The address says what this page does not know ({visible_text(', '.join(problems))}); "
             "the rest of it was taken."
         )
     if tour.opens(arrival):
@@ -95,4 +95,4 @@ def arrive(session: Session, query: str, otherwise: Callable[[], None]) -> None:
     elif demo:
         load_demo(session, rig)
     else:
-        otherwise()
+        fallback()

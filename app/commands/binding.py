@@ -56,15 +56,15 @@ def bind(session: Session, message: tuple[str, str] | None = None) -> None:
         What is still to be read when it is done.
     """
     state = session.state
-    rig, method = state.rig, generous(state)
+    rig, method = state.rig, wide_options(state)
     if rig is None:
         return
     if state.bare:
         _build(session, message)
         return
-    request = session.bound_for = asked(state)
-    few, corrections = kept(state), state.corrections
-    work = binder(state, rig, corrections, _known_graph(session, rig, request))
+    request = session.bound_for = binding_request(state)
+    few, corrections = prune_options(state), state.corrections
+    work = binder(state, rig, corrections, _cached_graph(session, rig, request))
 
     def done(result: tuple[csr_array, Binding]) -> None:
         session.built_for, session.corrected = request, corrections
@@ -89,12 +89,12 @@ def binder(
 
     It returns the weights of many influences, and the binding with those that are kept.
     """
-    method, few = effective(generous(state)), kept(state)
+    method, few = effective(wide_options(state)), prune_options(state)
 
     def work(progress: Progress) -> tuple[csr_array, Binding]:
         reusable = {"graph": graph, "corrections": measured(corrections)}
         result = cutcell.bind(rig, **reusable, progress=progress, **method)
-        return csr_array(result.weights), pruned(result, few, rig, corrections)
+        return csr_array(result.weights), prune(result, few, rig, corrections)
 
     return work
 
@@ -102,7 +102,9 @@ def binder(
 def previewer(state: State) -> Callable[[Rig, Corrections], Binding]:
     """Return what tells about how the rig that is bound is bound with joints elsewhere."""
     rig, binding, before = state.rig, state.binding, measured(state.corrections)
-    method = cutcell.ANIMATION.with_options(**effective({**generous(state), **kept(state)}))
+    method = cutcell.ANIMATION.with_options(
+        **effective({**wide_options(state), **prune_options(state)})
+    )
     most = state.max_influences
     made: list[Preview] = []
 
@@ -121,17 +123,17 @@ def reach_of(falloff: Any) -> float:
     return replace(cutcell.ANIMATION, falloff=falloff).reach_needed
 
 
-def asked(state: State) -> dict[str, Any]:
+def binding_request(state: State) -> dict[str, Any]:
     """Return what distances are measured for."""
     return {**method_of(state, GRAPH), "corrections": measured(state.corrections)}
 
 
-def _known_graph(session: Session, rig: Rig, wanted: dict[str, Any]) -> Any:
+def _cached_graph(session: Session, rig: Rig, request: dict[str, Any]) -> Any:
     """Return the graph of the last binding, if this one's is the same: joints do not matter."""
     if session.graph is None:
         return None
     mesh, made, graph = session.graph
-    if mesh is rig.mesh and all(made[n] == wanted[n] for n in GRAPH if n != "leaf"):
+    if mesh is rig.mesh and all(made[n] == request[n] for n in GRAPH if n != "leaf"):
         return graph
     session.graph = None  # two of them need not be in memory
     return None
@@ -175,19 +177,19 @@ def restore(session: Session, choices: dict[str, Any]) -> None:
         history.restore(session, plain)
         with history.restoring(session):
             swap(session, rig, repair=choices["repair"], own=file_rig)
-    history.tell(session)
+    history.publish(session)
 
 
 def _build(session: Session, message: tuple[str, str] | None) -> None:
     """Build the graph of a mesh without a skeleton."""
     rig = session.state.rig
-    request = session.bound_for = asked(session.state)
+    request = session.bound_for = binding_request(session.state)
     chosen = {name: request[name] for name in GRAPH if name != "leaf"}
 
-    known = _known_graph(session, rig, request)
+    cached = _cached_graph(session, rig, request)
 
     def work(progress: Progress) -> Any:
-        return known or cutcell.build_graph(rig.mesh, progress=progress, **chosen)
+        return cached or cutcell.build_graph(rig.mesh, progress=progress, **chosen)
 
     def done(graph: Any) -> None:
         session.built_for, session.corrected = request, Corrections()
@@ -201,13 +203,14 @@ def _build(session: Session, message: tuple[str, str] | None) -> None:
     )
 
 
-def _go_back(session: Session, wanted: dict[str, Any]) -> None:
+def _go_back(session: Session, failed: dict[str, Any]) -> None:
     """Choose what the page holds instead of what nothing came of; at first, the defaults."""
     state = session.state
-    request, corrections = asked(State()), Corrections()
+    request, corrections = binding_request(State()), Corrections()
     if state.graph is not None:
         request, corrections = session.built_for, session.corrected
-    if asked(state) != wanted or (wanted == request and state.corrections == corrections):
+    is_same = failed == request and state.corrections == corrections
+    if is_same or binding_request(state) != failed:
         return
     session.bound_for = request
     _withdraw(session, {name: request[name] for name in GRAPH}, corrections)
@@ -224,7 +227,7 @@ def _withdraw(session: Session, choices: dict[str, Any], corrections: Correction
 
 def _rebind(session: Session) -> None:
     """Compute again if what is measured for is other than what was last computed for."""
-    if asked(session.state) != session.bound_for:
+    if binding_request(session.state) != session.bound_for:
         bind(session)
 
 
@@ -236,7 +239,7 @@ def _correct(session: Session) -> None:
     is_ready = state.bare_graph if state.bare else state.binding
     if is_ready is None and not session.tasks.jobs("main").running:
         session.bound_for = {}  # it was dropped with the joints that it was of
-    if asked(state) != session.bound_for:
+    if binding_request(state) != session.bound_for:
         session.tasks.after_a_pause(lambda: _rebind(session))
     elif not state.bare:
         weigh(session)
@@ -245,20 +248,20 @@ def _correct(session: Session) -> None:
 # Weights of the distances that are there
 
 
-def generous(state: State) -> dict[str, Any]:
+def wide_options(state: State) -> dict[str, Any]:
     """Return what to bind with, so that fewer influences can be kept later."""
     return {**method_of(state, (*GRAPH, *WEIGHTS)), "max_influences": MOST, "threshold": 0.0}
 
 
-def kept(state: State) -> dict[str, Any]:
+def prune_options(state: State) -> dict[str, Any]:
     """Return which of many influences are chosen."""
     return method_of(state, ("max_influences", "threshold"))
 
 
-def pruned(binding: Binding, kept: dict[str, Any], rig: Rig, corrections: Corrections) -> Binding:
+def prune(binding: Binding, options: dict[str, Any], rig: Rig, corrections: Corrections) -> Binding:
     """Return what was bound generously with the weights that are chosen and corrected."""
-    weights = keep_strongest(binding.distances, binding.weights, **kept)
-    most = kept["max_influences"]
+    weights = keep_strongest(binding.distances, binding.weights, **options)
+    most = options["max_influences"]
     return _reweighted(
         binding, finished(rig, binding.graph, weights, corrections, most), rig, corrections
     )
@@ -272,21 +275,24 @@ def _reweighted(binding: Binding, weights: NDArray, rig: Rig, corrections: Corre
 def weigh(session: Session) -> None:
     """Turn the distances that are there into weights again."""
     state = session.state
-    if state.binding is None or asked(state)["corrections"] != session.built_for["corrections"]:
+    if (
+        state.binding is None
+        or binding_request(state)["corrections"] != session.built_for["corrections"]
+    ):
         return  # they are about to be measured
-    distances, falloff, few = state.binding.distances, state.falloff, kept(state)
+    distances, falloff, few = state.binding.distances, state.falloff, prune_options(state)
     cached = session.falloffs.get(falloff)
     if session.reach < reach_of(falloff) or not _measured(
         distances, falloff, few["max_influences"]
     ):
         bind(session)
     elif falloff in QUICK:
-        _soon(session, partial(_weights, state.still(), **few))
+        _soon(session, partial(_weights, state.snapshot(), **few))
     elif cached is not None and cached[0] is distances:
         many = cached[1]
         _soon(session, lambda: keep_strongest(distances, many.toarray(), **few))
     else:
-        now = state.still()
+        now = state.snapshot()
 
         def work(progress: Progress) -> csr_array:
             progress("weights", 0.0)

@@ -43,10 +43,10 @@ def demo_rig(id: str) -> Rig:
     return cutcell.load(demo_path(id))
 
 
-def read(path: Path, wanted: Callable[[], object] = lambda: None) -> Rig:
-    """Load a character in a process of its own; see `apart.in_process`."""
+def read(path: Path, check: Callable[[], object] = lambda: None) -> Rig:
+    """Load a character in another process; see `jobs.processes.in_process`."""
     with naming(path):
-        return frozen(in_process(load_with_materials, path, wanted=wanted, ended=ENDED))
+        return frozen(in_process(load_with_materials, path, check=check, ended=ENDED))
 
 
 def load_with_materials(path: Path) -> Rig:

@@ -7,7 +7,7 @@ import {transformed} from "./skin.js"
 const RING_COLORS = ["#e5484d", "#30a46c", "#3e83f8"]
 const RING_RADIUS = 62
 const RING_STEPS = 64
-const TELL_EVERY = 70
+const SEND_EVERY = 70
 
 export class Gizmo {
   // `turned(pose)` hears of each pose while a ring is dragged; `tell` sends to the server.
@@ -102,7 +102,7 @@ export class Gizmo {
       paths.far.setAttribute("d", line((p) => !p.near))
       paths.halo.setAttribute("d", line((p) => p.near))
       paths.reach.setAttribute("d", whole)
-      // Each letter strives to a side of its own, so that no two stand in one place.
+      // Each letter moves to a different side, so that no two overlap.
       const [right, down] = [[-0.3, 1], [1, -0.2], [-0.6, -1]][k]
       const score = ({at: [x, y], near}) =>
         (near ? 1000 : 0) + right * (x - middle[0]) + down * (y - middle[1])
@@ -127,7 +127,7 @@ export class Gizmo {
     const [x, y] = [e.clientX - box.left, e.clientY - box.top]
     this.held = {
       axis, group, base, centre, turnAxis: axes[axis], joint: this.part.joint, start,
-      motion: this.motionAt(centre, axes, axis, x, y), degrees: 0, told: 0, target: e.target,
+      motion: this.motionAt(centre, axes, axis, x, y), degrees: 0, sentAt: 0, target: e.target,
       pointer: e.pointerId,
     }
     group.classList.add("held")
@@ -170,7 +170,7 @@ export class Gizmo {
       * (e.shiftKey ? 15 : 1)
     this.turned(this.poseAt(held.degrees))
     const now = performance.now()
-    if (now - held.told > TELL_EVERY) { this.say() }
+    if (now - held.sentAt > SEND_EVERY) { this.say() }
     this.label(e)
   }
 
@@ -201,7 +201,7 @@ export class Gizmo {
 
   say(begin = false) {
     const {held} = this
-    held.told = performance.now()
+    held.sentAt = performance.now()
     held.said = held.degrees
     const {joint, axis, degrees} = held
     this.tell({type: "turn", joint, axis, degrees, begin})

@@ -2,7 +2,7 @@
 
 import {plainList} from "./arrays.js"
 
-const TELL_EVERY = 33
+const SEND_EVERY = 33
 
 export class JointHandle {
   // `moved` hears that there is something to draw; `tell` sends to the server.
@@ -66,7 +66,7 @@ export class JointHandle {
     const pixel = this.renderer.pixel(this.seen[2])
     this.held = {
       joint: this.part.joint, from: this.part.at, x: e.clientX, y: e.clientY, pixel, pointer: e.pointerId,
-      ...across(this.renderer.camera.getDirectionOfProjection()), told: 0, far: false,
+      ...across(this.renderer.camera.getDirectionOfProjection()), sentAt: 0, far: false,
     }
     this.svg.classList.add("holding")
   }
@@ -82,13 +82,13 @@ export class JointHandle {
     this.moved()
     const now = performance.now()
     clearTimeout(held.later)
-    if (now - held.told > TELL_EVERY) { this.say() } else { held.later = setTimeout(() => this.say(), TELL_EVERY) }
+    if (now - held.sentAt > SEND_EVERY) { this.say() } else { held.later = setTimeout(() => this.say(), SEND_EVERY) }
   }
 
   say(done = false) {
     const {held} = this
     if (!held) { return }
-    held.told = performance.now()
+    held.sentAt = performance.now()
     this.tell({type: "joint", joint: held.joint, position: this.part.at, done})
   }
 

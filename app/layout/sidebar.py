@@ -10,7 +10,7 @@ from ..commands.session import Session
 from ..panels import PANELS
 from ..panels.bone import bone
 from ..panels.character import character
-from ..panels.controls import lead, when
+from ..panels.controls import intro, when
 from ..panels.export import export
 from ..panels.templates import skeleton_menu
 from ..widgets.tabs import Tabs
@@ -25,8 +25,8 @@ NO_SKELETON = (
 
 
 def sidebar(session: Session) -> list[Any]:
-    """Return what stands in the sidebar, from top to bottom."""
-    # What concerns one character has no place beside two others.
+    """Return the sidebar's contents, from top to bottom."""
+    # Controls of one character are hidden while two are compared.
     alone = when(
         lambda panel, opened: panel != "pairs" or opened is None,
         session.state.param.panel,
@@ -55,11 +55,11 @@ def panels(session: Session) -> tuple[Tabs, pmui.Column]:
         margin=(10, 20, 0, 20),
         sizing_mode="stretch_width",
     )
-    missing = lead(NO_SKELETON)
+    missing = intro(NO_SKELETON)
     place = pmui.Column(missing, margin=0, sizing_mode="stretch_width")
     built: dict[str, Any] = {}
 
-    def shown(*events: Any) -> None:
+    def update(*events: Any) -> None:
         tabs.value = state.panel
         missing.visible = state.bare and state.panel not in BARE
         for panel in PANELS:
@@ -73,7 +73,7 @@ def panels(session: Session) -> tuple[Tabs, pmui.Column]:
     def chosen(event: Any) -> None:
         state.panel = event.new
 
-    state.param.watch(shown, ["panel", "rig"])
+    state.param.watch(update, ["panel", "rig"])
     tabs.param.watch(chosen, "value")
-    shown()
+    update()
     return tabs, place

@@ -32,13 +32,13 @@ def brush(session: Session) -> pmui.Column:
         for parameter in (state.param.brush, state.param.brush_mirrored)
     )
 
-    def has_mirror(rig: Any, own: Any, corrections: Any) -> bool:
-        return rig is not None and own is not None and mirror_of(session) is not None
+    def has_mirror(rig: Any, original: Any, corrections: Any) -> bool:
+        return rig is not None and original is not None and mirror_of(session) is not None
 
     mirrored.visible = when(has_mirror, state.param.rig, state.param.own, state.param.corrections)
     tools = pmui.Column(
         choice(state.param.brush_mode, MODES),
-        caption(when(_told, state.param.rig, state.param.joint, state.param.brush_mode)),
+        caption(when(_summary, state.param.rig, state.param.joint, state.param.brush_mode)),
         slider(
             state.param.brush_radius, "Radius, of the character's longest side", step=0.005,
             end=MAX_RADIUS, format="0.0 %",
@@ -75,7 +75,7 @@ def _selection(session: Session) -> pmui.Column:
         )
     )  # fmt: skip
 
-    def told(selection: Any, rig: Any) -> str:
+    def summary(selection: Any, rig: Any) -> str:
         chosen = selected(state)
         if chosen is None:
             return ""
@@ -85,7 +85,7 @@ def _selection(session: Session) -> pmui.Column:
 
     changing = state.param.brush_selection, state.param.rig
     return pmui.Column(
-        caption(when(told, *changing)),
+        caption(when(summary, *changing)),
         pmui.Row(clear, invert, margin=0, sizing_mode="stretch_width"),
         visible=when(lambda *which: selected(state) is not None, *changing),
         margin=0,
@@ -93,7 +93,7 @@ def _selection(session: Session) -> pmui.Column:
     )
 
 
-def _told(rig: Any, joint: int, mode: str) -> str:
+def _summary(rig: Any, joint: int, mode: str) -> str:
     if mode == "smooth":
         return "Smooths all unlocked joints."
     if mode == "select":

@@ -46,7 +46,7 @@ def character(session: Session) -> pmui.Column:
     def now() -> str:
         return state.demo or f"~{session.uploads.key}"
 
-    def shown(*events: Any) -> None:
+    def update(*events: Any) -> None:
         listed = session.uploads.offered()
         choices = {} if now() == "~" and session.given is None else {OWN: "~"}
         if session.given is not None:
@@ -62,8 +62,8 @@ def character(session: Session) -> pmui.Column:
         lesson.object = as_text(" ".join([lessons.get(state.demo) or name, *problems]))
 
     select.param.watch(chosen, "value")
-    state.param.watch(shown, ["demo", "rig", "diagnosis"])
-    shown()
+    state.param.watch(update, ["demo", "rig", "diagnosis"])
+    update()
     drop = FileDrop(receiver(session), hint=HINT, sizing_mode="stretch_width", margin=GAP)
     return section("", select, lesson, drop, margin=(16, 20, 4, 20))
 

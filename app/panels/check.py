@@ -16,7 +16,7 @@ from ..commands.correct import leave_out
 from ..commands.export import export_repaired
 from ..commands.session import Session
 from ..state import State
-from .controls import GAP, caption, lead, section, when, words
+from .controls import GAP, caption, intro, section, text_line, when
 
 ICONS = {"error": "error", "warning": "warning", "note": "info"}
 MAX_DETAILS = 8
@@ -37,14 +37,14 @@ def check(session: Session) -> pmui.Column:
     state.param.watch(listed, ["diagnosis", "finding", "repair"])
     listed()
     return pmui.Column(
-        lead(when(lambda *_: told(state), state.param.diagnosis, state.param.rig)),
+        intro(when(lambda *_: summary(state), state.param.diagnosis, state.param.rig)),
         section("", place, margin=(6, 20, 4, 20)),
         margin=0,
         sizing_mode="stretch_width",
     )
 
 
-def told(state: State) -> str:
+def summary(state: State) -> str:
     """Say how much was found."""
     if state.rig is None:
         return ""
@@ -155,6 +155,6 @@ def _line(text: str, color: str = "text.secondary") -> pmui.Typography:
     if color == "text.secondary":
         return caption(text, margin=(0, 0, 4, 6))
     style = {"color": color, "lineHeight": 1.45, "display": "block", "letterSpacing": 0}
-    return words(
+    return text_line(
         text, variant="caption", sx=style, margin=(0, 0, 4, 6), sizing_mode="stretch_width"
     )

@@ -15,7 +15,7 @@ from ..scenes.compare import field_shown, found_of, title_of
 from ..state import State
 from ..state.compare import FEWEST_VIEWS, MAX_VIEWS, offered
 from ..widgets.methods import Methods
-from .controls import BUTTONS, GAP, caption, follow, lead, section, when
+from .controls import BUTTONS, GAP, caption, follow, intro, section, when
 
 FIELDS = {"Chosen bone": "bone", "All bones": "all"}
 ERROR = {"Error": "error"}
@@ -54,7 +54,7 @@ def compare(session: Session) -> pmui.Column:
     controls = (_field(state), _minus(state), table, stop, _motion(session))
     about_errors = caption(when(about, state.param.rig))
     return pmui.Column(
-        lead("Two to four methods side by side, under one camera."),
+        intro("Two to four methods side by side, under one camera."),
         section("", about_errors, *controls, margin=(4, 20, 4, 20)),
         margin=0,
         sizing_mode="stretch_width",

@@ -20,7 +20,7 @@ NONE = "Nothing is corrected. What is goes into the exported file, and into file
 def corrections(session: Session) -> pmui.Column:
     """Return the section that saves corrections and opens them."""
     state = session.state
-    none = when(lambda held: not held, state.param.corrections)
+    none = when(lambda corrections: not corrections, state.param.corrections)
     buttons = [
         pmui.Button(
             label=label,
@@ -42,15 +42,16 @@ def corrections(session: Session) -> pmui.Column:
     )
     return section(
         "Corrections",
-        caption(when(told, state.param.corrections)),
+        caption(when(summary, state.param.corrections)),
         pmui.Row(buttons[0], opener, buttons[1], margin=0, sizing_mode="stretch_width"),
     )
 
 
-def told(held: Corrections) -> str:
+def summary(corrections: Corrections) -> str:
     """Say how much is corrected."""
     numbers: list[tuple[Any, str]] = [
-        (held.joints, "joint"), (held.parts, "part"), (held.vertices, "vertex"),
+        (corrections.joints, "joint"), (corrections.parts, "part"),
+        (corrections.vertices, "vertex"),
     ]  # fmt: skip
     parts = [count(len(which), one) for which, one in numbers if which]
     if not parts:

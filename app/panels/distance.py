@@ -9,7 +9,7 @@ import panel_material_ui as pmui
 from ..commands.session import Session
 from ..state import State
 from ..state.distance import MAX_MEASURES, MEASURES
-from .controls import GAP, caption, choice, lead, section, slider, weightless, when
+from .controls import GAP, caption, choice, intro, section, slider, weightless, when
 from .cutting import cutting
 
 
@@ -25,11 +25,11 @@ def distance(session: Session) -> pmui.Column:
         ),
     )
     return pmui.Column(
-        lead("How far it is from the chosen bone, along the shortest path through the body."),
+        intro("How far it is from the chosen bone, along the shortest path through the body."),
         section("", idle, _one(session), margin=(8, 20, 4, 20)),
         section("Shown with it", *_more(state)),
         section("Wavefront", *_wave(state)),
-        section("Measures side by side", *_beside(state)),
+        section("Measures side by side", *_comparison(state)),
         margin=0,
         sizing_mode="stretch_width",
     )
@@ -54,7 +54,7 @@ def _switches(state: State) -> list[Any]:
     return [state.param[f"beside_{name}"] for name in MEASURES]
 
 
-def _beside(state: State) -> list[Any]:
+def _comparison(state: State) -> list[Any]:
     """Return a switch for each measure, of which four at most can be on, and their R."""
     switches = []
     for parameter in _switches(state):

@@ -12,7 +12,7 @@ from cutcell.runtime.display import shown_name
 from ..commands import pairs as actions
 from ..commands.session import Session
 from ..state import State
-from .controls import BUTTONS, GAP, caption, lead, section, when
+from .controls import BUTTONS, GAP, caption, intro, section, when
 
 NONE_OPEN = (
     "Here the near-duplicates of a data set stand side by side. Find them by cutcell dataset "
@@ -41,7 +41,7 @@ def pairs(session: Session) -> pmui.Column:
     """Return the controls of the panel Pairs."""
     state = session.state
     if state.opened is None:
-        return pmui.Column(lead(NONE_OPEN), margin=0, sizing_mode="stretch_width")
+        return pmui.Column(intro(NONE_OPEN), margin=0, sizing_mode="stretch_width")
     watched = (state.param.opened, state.param.pair, state.param.tier)
 
     def button(label: str, icon: str, count: int) -> pmui.Button:
@@ -63,7 +63,7 @@ def pairs(session: Session) -> pmui.Column:
         sizing_mode="stretch_width",
     )
     return pmui.Column(
-        lead(when(lambda *_: told(state), *watched)),
+        intro(when(lambda *_: summary(state), *watched)),
         section(
             "",
             _tiers(session),
@@ -74,7 +74,7 @@ def pairs(session: Session) -> pmui.Column:
         section("What they are", _verdict(session)),
         section(
             "What is kept",
-            caption(when(lambda *_: kept(state), *watched)),
+            caption(when(lambda *_: threshold_text(state), *watched)),
             caption(when(lambda opened: f"{opened.folder / 'audit.json'} lists it.", watched[0])),
         ),
         margin=0,
@@ -82,7 +82,7 @@ def pairs(session: Session) -> pmui.Column:
     )
 
 
-def told(state: State) -> str:
+def summary(state: State) -> str:
     """Say which pair is looked at, of how many."""
     count, stepped = len(state.opened.pairs), state.stepped
     if not count:
@@ -119,7 +119,7 @@ def facts(state: State) -> str:
     return ". ".join(sentences) + "."
 
 
-def kept(state: State) -> str:
+def threshold_text(state: State) -> str:
     """Say how many characters are kept, and whether those of the pair are."""
     audit, pair = state.opened.audit, state.chosen_pair
     counts = f"{len(audit.keep):,} of {len(audit.names):,} characters are kept."
@@ -143,16 +143,16 @@ def _tiers(session: Session) -> pmui.Select:
         label="Step through", options=TIERS, size="small", margin=GAP, sizing_mode="stretch_width"
     )
 
-    def shown(*events: Any) -> None:
+    def update(*events: Any) -> None:
         select.value = state.tier
 
     def chosen(event: Any) -> None:
         if event.new is not None and event.new != state.tier:
             actions.choose_tier(session, event.new)
 
-    state.param.watch(shown, "tier")
+    state.param.watch(update, "tier")
     select.param.watch(chosen, "value")
-    shown()
+    update()
     return select
 
 
@@ -160,7 +160,7 @@ def _verdict(session: Session) -> pmui.RadioButtonGroup:
     state = session.state
     row = pmui.RadioButtonGroup(options=VERDICTS, value="", **BUTTONS)
 
-    def shown(*events: Any) -> None:
+    def update(*events: Any) -> None:
         pair = state.chosen_pair
         row.value = "" if pair is None else state.opened.audit.verdict(pair)
 
@@ -168,7 +168,7 @@ def _verdict(session: Session) -> pmui.RadioButtonGroup:
         if event.new is not None:
             actions.overrule(session, event.new)
 
-    state.param.watch(shown, ["opened", "pair"])
+    state.param.watch(update, ["opened", "pair"])
     row.param.watch(chosen, "value")
-    shown()
+    update()
     return row

@@ -23,7 +23,7 @@ from .controls import (
     caption,
     choice,
     follow,
-    lead,
+    intro,
     offer,
     section,
     unique_names,
@@ -42,7 +42,7 @@ WORST = 8
 def pose(session: Session) -> pmui.Column:
     """Return the controls of the panel Pose."""
     return pmui.Column(
-        lead("How the skin follows when bones turn, by hand or in a motion."),
+        intro("How the skin follows when bones turn, by hand or in a motion."),
         _turning(session), _motion(session), _colours(session), brush(session),
         _comparison(session), margin=0, sizing_mode="stretch_width",
     )  # fmt: skip
@@ -100,12 +100,12 @@ def _angle(session: Session, axis: int) -> pmui.FloatSlider:
     def shown_angle() -> float:
         return float(state.turns.get(state.joint, (0, 0, 0))[axis])
 
-    def shown(*events: Any) -> None:
+    def update(*events: Any) -> None:
         slider.value = float(round(shown_angle()))
 
     slider.param.watch(turned, "value")
-    state.param.watch(shown, ["turns", "joint"])
-    shown()
+    state.param.watch(update, ["turns", "joint"])
+    update()
     return slider
 
 
@@ -217,7 +217,7 @@ WORST_TEXT = "The worst turns by 30°, mean over the vertices. Press one to see 
 
 
 def error_text(state: State, error: tuple[float, float] | None) -> str:
-    """Return the error of what is seen, in a sentence."""
+    """Return the text of the error of the visible pose."""
     if error is None:
         return 'Turn on "Error as colours" to measure the motion.' if not state.heat else ""
     if not state.posed:

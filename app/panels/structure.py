@@ -30,7 +30,7 @@ def structure(session: Session) -> pmui.Column:
     )
     cache: dict[str, list[str]] = {"names": []}
 
-    def shown(*events: Any) -> None:
+    def update(*events: Any) -> None:
         if state.rig is None or state.joint >= len(state.rig.skeleton.names):
             return
         skeleton = state.rig.skeleton
@@ -47,8 +47,8 @@ def structure(session: Session) -> pmui.Column:
             actions.hang_on(session, parent)
 
     on.param.watch(chosen, "value")
-    state.param.watch(shown, ["rig", "joint", "corrections"])
-    shown()
+    state.param.watch(update, ["rig", "joint", "corrections"])
+    update()
     return pmui.Column(
         on,
         pmui.Row(add, remove, margin=0, sizing_mode="stretch_width"),

@@ -28,7 +28,7 @@ def skeleton_menu(session: Session) -> pmui.Column:
     )  # fmt: skip
     hint = caption(HINT, visible=when(lambda rig: rig is not None and state.bare, state.param.rig))
 
-    def shown(*events: Any) -> None:
+    def update(*events: Any) -> None:
         now = chosen_template(state)
         options = [NONE, *TITLES, *([CHANGED] if now == CHANGED else [])]
         select.param.update(options=options, value=now)
@@ -43,8 +43,8 @@ def skeleton_menu(session: Session) -> pmui.Column:
 
     select.param.watch(chosen, "value")
     # Also where nothing came of it: the menu then says again what there is.
-    state.param.watch(shown, ["rig", "corrections", "message"])
-    shown()
+    state.param.watch(update, ["rig", "corrections", "message"])
+    update()
     of_bare = when(lambda own: own is not None and not len(own.skeleton.joints), state.param.own)
     return section("", select, hint, margin=(2, 20, 4, 20), visible=of_bare)
 

@@ -13,7 +13,7 @@ from ..commands.session import Session
 from ..state import State
 from .brush import brush
 from .components import parts_of_mesh
-from .controls import GAP, caption, choice, follow, lead, section, slider, when
+from .controls import GAP, caption, choice, follow, intro, section, slider, when
 from .corrections import corrections
 from .joints import joints
 
@@ -43,15 +43,17 @@ def weights(session: Session) -> pmui.Column:
         return options, state.weights_shown if state.weights_shown in options.values() else "mix"
 
     follow(select, state, "weights_shown", offered, ["rig"])
-    facts = caption(told(state))
+    facts = caption(summary(state))
 
-    def tell() -> None:
-        facts.object = told(state)
+    def update() -> None:
+        facts.object = summary(state)
 
     # The colours go first.
-    state.param.watch(lambda *events: session.tasks.after_a_pause(tell, "told"), ["binding", "rig"])
+    state.param.watch(
+        lambda *events: session.tasks.after_a_pause(update, "told"), ["binding", "rig"]
+    )
     return pmui.Column(
-        lead("How strongly each bone moves the skin."),
+        intro("How strongly each bone moves the skin."),
         section("", select, *_sides(state), facts, margin=(8, 20, 4, 20)),
         brush(session),
         joints(session),
@@ -70,13 +72,13 @@ def _sides(state: State) -> list[Any]:
         state.param.weights_of,
         names,
         visible=when(
-            lambda rig, shown: _has_own(rig) and shown not in DIFFERENCE.values(),
+            lambda rig, colors: _has_own(rig) and colors not in DIFFERENCE.values(),
             state.param.rig,
             state.param.weights_shown,
         ),
     )
     signed = when(
-        lambda rig, shown: _has_own(rig) and shown == "bone_difference",
+        lambda rig, colors: _has_own(rig) and colors == "bone_difference",
         state.param.rig,
         state.param.weights_shown,
     )
@@ -104,7 +106,7 @@ def _falloff(state: State) -> list[Any]:
     ]
 
 
-def told(state: State) -> str:
+def summary(state: State) -> str:
     """Return what there is to say of the weights in a line."""
     if state.binding is None:
         return ""

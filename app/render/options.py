@@ -1,4 +1,4 @@
-"""What `cutcell render` is told about the inside, as choices of the page."""
+"""Options of `cutcell render` for the inside, as choices of the page."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def settings_of(
     wave: float | None = None,
     measures: str | None = None,
 ) -> dict[str, Any]:
-    """Return the choices of the page that options stand for.
+    """Return the choices of the page for some options.
 
     Raises
     ------

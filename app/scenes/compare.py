@@ -143,15 +143,15 @@ def field_shown(state: State) -> str:
 
 
 def error_looks(
-    state: State, known: dict[str, Any]
+    state: State, cached: dict[str, Any]
 ) -> tuple[dict[str, dict[str, Any]], Legend | None]:
     """Return the colours of the deformation error, on one scale for all methods."""
-    errors = {name: errors_of(state, name) for name in known}
+    errors = {name: errors_of(state, name) for name in cached}
     measured = {name: one for name, one in errors.items() if one is not None}
     if not measured:
-        return {name: {} for name in known}, None
+        return {name: {} for name in cached}, None
     limits = max(error_limits(one.vertex) for one in measured.values())
-    styles: dict[str, dict[str, Any]] = {name: {} for name in known}
+    styles: dict[str, dict[str, Any]] = {name: {} for name in cached}
     for name, one in measured.items():
         values = one.vertex.astype(np.float32)
         styles[name] = {"scalars": values, "colormap": "error", "limits": limits}

@@ -86,7 +86,7 @@ def _attachments_in_materials(actors: dict[str, Actor], textures: Textures) -> d
 
 
 def _colours(
-    state: State, memo: Memo, held: Any, name: str
+    state: State, memo: Memo, weights: Any, name: str
 ) -> tuple[dict[str, Any], Legend | None, bool]:
     """Return the look of a body as it moves, by its materials or by the weights that are given.
 
@@ -95,9 +95,9 @@ def _colours(
     textures = textures_of(state)
     if textures is not None:
         return {"materials": textures.body}, None, False
-    if state.pose_colors == "plain" or held is None:
+    if state.pose_colors == "plain" or weights is None:
         return {}, None, False
-    return weights_look(state, memo, held, name)
+    return weights_look(state, memo, weights, name)
 
 
 def has_rival(state: State) -> bool:
@@ -199,7 +199,7 @@ def clip_of(state: State) -> Clip | None:
 
 
 def clip_part(state: State, clip: Clip | None) -> dict[str, Any] | None:
-    """Return a motion as the view is told it."""
+    """Return a motion as a message for the view."""
     if clip is None or not len(times := clip.times):
         return None
     most = max(MAX_NUMBERS // max(16 * clip.joints, 1), 2)

@@ -1,4 +1,4 @@
-"""The server's log, on a terminal that whoever visits must not be able to write to."""
+"""The server's log, on a terminal that visitors must not be able to write to."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a person can choose of the brush that paints weights."""
+"""Choices of the brush that paints weights."""
 
 from __future__ import annotations
 

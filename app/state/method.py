@@ -14,7 +14,7 @@ WEIGHTS = ("falloff", "alpha", "max_influences", "threshold")
 
 
 def default(name: str) -> Any:
-    """Return what `cutcell.bind` takes when it is not told."""
+    """Return the default of an option of `cutcell.bind`."""
     value = getattr(cutcell.ANIMATION, name)
     return cutcell.PAPER.alpha if name == "alpha" else value
 

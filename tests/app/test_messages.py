@@ -10,7 +10,7 @@ import pytest
 
 from cutcell.errors import FileError
 from cutcell.runtime.display import printable
-from cutcell_app.jobs.messages import sentence, told
+from cutcell_app.jobs.messages import error_text, sentence
 from cutcell_app.panels.controls import as_text, unique_names
 from cutcell_app.server.log import Printable
 
@@ -30,7 +30,7 @@ from cutcell_app.server.log import Printable
     ],
 )
 def test_errors_are_told_without_folders(error, expected):
-    message = told(error)
+    message = error_text(error)
     assert expected in message
     assert message.endswith(".")
     assert "/" not in message

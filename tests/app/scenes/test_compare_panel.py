@@ -9,7 +9,7 @@ import cutcell
 from cutcell.baselines import METHODS, BaselineBinding
 from cutcell.metrics import deformation_error, weight_l1
 from cutcell.runtime.progress import silent
-from cutcell_app.commands.compare import Compared, choose, measured, wanted
+from cutcell_app.commands.compare import Compared, choose, measured, next_method
 from cutcell_app.panels.compare import _field, about, rows_of
 from cutcell_app.scenes import Memo, resolve
 from cutcell_app.scenes.compare import WAITING, caption_of, field_shown, title_of
@@ -112,7 +112,7 @@ def test_results_of_another_character_are_never_shown(state):
     state.param.update(rig=other, binding=cutcell.bind(other, 16))
     assert caption_of(state, "euclidean").endswith("waiting")
     assert resolve(state).actors["body 2"].opacity == WAITING
-    assert wanted(state) == NOW
+    assert next_method(state) == NOW
     state.binding = None
     assert resolve(state).views == ()
 
