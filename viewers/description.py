@@ -25,7 +25,7 @@ class Apart:
     ----------
     skin : Skin
     unit : float
-        What a squared length of 1 in the scene is worth, in the unit of the values.
+        The value of a length of 1 in the scene.
     """
 
     skin: Skin
@@ -79,7 +79,7 @@ class Actor:
     skin : Skin, optional
         How the points follow the joints; without it they stand still.
     apart : Apart, optional
-        While there is a pose, the scalars are the squared distances between where `skin`
+        While there is a pose, the scalars are the distances between where `skin`
         and this one take each point.
     width : float
         Of lines and points, in pixels of the screen, from far.

@@ -23,7 +23,7 @@ from cutcell.io.materials.face_colors import BLENDED
 from .camera import VIEW_ANGLE, Camera, framing
 from .description import Actor, Cut, Description
 from .palette import BODY, LIGHT, Theme, colormap, to_bytes
-from .skin import moved, squared_apart, turned
+from .skin import distances_between, moved, turned
 from .textured import ALPHA_KNOWN, CUT_OUT, DITHERED, pieces, texture
 
 PICTURE_WIDTH = 1.5
@@ -266,8 +266,8 @@ def _dashes(ends: NDArray, dash: float) -> tuple[NDArray[np.float32], NDArray[np
 def _values(actor: Actor, pose: NDArray[np.float64] | None) -> Any:
     if pose is None or actor.apart is None or actor.skin is None:
         return actor.scalars
-    squared = squared_apart(actor.points, actor.skin, actor.apart.skin, pose)
-    return (actor.apart.unit * squared).astype(np.float32)
+    lengths = distances_between(actor.points, actor.skin, actor.apart.skin, pose)
+    return (actor.apart.unit * lengths).astype(np.float32)
 
 
 def _paint(drawn: pv.Actor, actor: Actor, pixel_ratio: float, front: float | None) -> None:

@@ -77,12 +77,12 @@ def moved(points: ArrayLike, skin: Skin, pose: ArrayLike) -> NDArray[np.float64]
     return result
 
 
-def squared_apart(
+def distances_between(
     points: ArrayLike, skin: Skin, other: Skin, pose: ArrayLike
 ) -> NDArray[np.float64]:
-    """Return how far two skins take each point from each other, squared, shape (n,)."""
+    """Return the distance between the positions of each point in two skins, shape (n,)."""
     between = moved(points, skin, pose) - moved(points, other, pose)
-    return (between * between).sum(axis=1)
+    return np.asarray(np.linalg.norm(between, axis=1))
 
 
 def turned(normals: ArrayLike, skin: Skin, pose: ArrayLike) -> NDArray[np.float64]:

@@ -15,8 +15,8 @@ from .loading import load_demo, load_files
 from .session import Session
 
 GONE = (
-    "The character of this address was uploaded, and the server no longer has it; here is "
-    "another. Drop the file again to go on with it."
+    "The uploaded character of this link is no longer on the server. Drop the file again to "
+    "continue."
 )
 
 
@@ -85,8 +85,7 @@ def arrive(session: Session, query: str, fallback: Callable[[], None]) -> None:
         arrival["told"] = GONE
     elif problems:
         arrival["told"] = (
-            f"The address says what this page does not know ({visible_text(', '.join(problems))}); "
-            "the rest of it was taken."
+            f"Unknown settings in the link were ignored: {visible_text(', '.join(problems))}."
         )
     if tour.opens(arrival):
         tour.go(session, arrival["tour"], frozenset({**choices, **arrival}))

@@ -173,22 +173,22 @@ def find_motion_error(session: Session) -> None:
 def motion_error(
     rig: Rig, clip: Clip, gap: Gap, progress: Progress = silent
 ) -> tuple[float, float, float]:
-    """Return how far two weightings are apart over a motion, in cm².
+    """Return the distances between two sets of weights over a motion, in mm.
 
     Returns
     -------
-    mean : float
+    rms : float
     greatest : float
     most : float
         What nearly all vertices stay below, in every frame.
     """
     times = clip.times
     frames = np.unique(np.linspace(0, len(times) - 1, FRAMES).round().astype(int))
-    mean = greatest = most = 0.0
+    squares = greatest = most = 0.0
     for done, frame in enumerate(frames[frames >= 0]):
         progress("error", done / len(frames))
-        squared = gap.squared(pose_at(rig, clip, times[frame]))
-        mean += float(squared.mean()) / len(frames)
-        greatest = max(greatest, float(squared.max()))
-        most = max(most, float(np.quantile(squared, WHOLE)))
-    return mean, greatest, most
+        lengths = gap.lengths(pose_at(rig, clip, times[frame]))
+        squares += float(np.square(lengths).mean()) / len(frames)
+        greatest = max(greatest, float(lengths.max()))
+        most = max(most, float(np.quantile(lengths, WHOLE)))
+    return float(np.sqrt(squares)), greatest, most

@@ -78,8 +78,8 @@ def main_file(paths: list[Path]) -> Path:
     names = ", ".join(path.name for path in paths)
     if not characters:
         raise FileError(
-            f"no character among the dropped files ({names}); drop a GLB, glTF, VRM, FBX, USD, "
-            "OBJ, PLY, STL, OFF or NPZ file, and the files that belong to it together with it"
+            f"no character among the dropped files ({names}); drop a GLB, FBX or another "
+            "supported file"
         )
     if len(characters) > 1:
         raise FileError(f"more than one character was dropped ({names}); drop one at a time")

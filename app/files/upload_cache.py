@@ -165,16 +165,15 @@ class UploadCache:
         used = self._make_room(size, MAX_OF_A_PAGE, owner)
         if used + size > MAX_OF_A_PAGE:
             raise FileError(
-                f"this page has sent {_mb(used)} that are still in use, and may send "
-                f"{_mb(MAX_OF_A_PAGE)}; reload it, or open the file by the cutcell command"
+                f"this page uses {_mb(used)} of uploads, of at most {_mb(MAX_OF_A_PAGE)}; reload "
+                "it, or open the file by the cutcell command"
             )
 
     def _check_all(self, size: int) -> None:
         used = self._make_room(size, MAX_BYTES)
         if used + size > MAX_BYTES:
             raise FileError(
-                f"the server holds {_mb(used)} of uploaded files that are in use, and takes "
-                f"{_mb(MAX_BYTES)}; try again when others have closed their pages"
+                f"{_mb(used)} of uploads are in use, of at most {_mb(MAX_BYTES)}; try again later"
             )
         if self.storage.free() - size < SPARE_BYTES:
             self._make_room(MAX_BYTES, MAX_BYTES)  # whatever nobody uses

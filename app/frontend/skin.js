@@ -136,7 +136,7 @@ export function skinVertex(sets, otherSets) {
     ${otherSets ? `vec4 a; vec4 b; vec4 c;
     otherBlend(a, b, c);
     vec3 gap = posed - vec3(dot(a, truePoint), dot(b, truePoint), dot(c, truePoint));
-    apart = apartUnit * dot(gap, gap);` : ""}`,
+    apart = apartUnit * length(gap);` : ""}`,
     swaps: [
       ["MCVCMatrix * vertexMC", "MCVCMatrix * posedMC"],
       ["MCPCMatrix * vertexMC", "MCPCMatrix * posedMC"],

@@ -14,7 +14,7 @@ ROOT = Path(__file__).resolve().parents[2]
 FULL = (errno.ENOSPC, getattr(errno, "EDQUOT", errno.ENOSPC))
 """What systems say of a disk that has no room, or none for this person."""
 
-KEPT = "The page keeps what it had"
+KEPT = "Nothing was changed"
 
 
 def error_text(error: BaseException) -> str:
@@ -29,16 +29,13 @@ def error_text(error: BaseException) -> str:
     if isinstance(error, CutcellError):
         return sentence(visible_text(str(error)))
     if isinstance(error, MemoryError):
-        return (
-            "There is not enough memory for this; a lower resolution or a smaller character needs "
-            f"less. {KEPT}."
-        )
+        return f"Not enough memory. {KEPT}. Try a lower resolution or a smaller character."
     if isinstance(error, OSError) and error.errno in FULL:
-        return f"The server's disk is full. {KEPT}; try again when there is room."
+        return f"The server's disk is full. {KEPT}. Try again later."
     reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
     return (
-        f"Unexpected error ({type(error).__name__}: {visible_text(reason)}). {KEPT}; "
-        "the details are in the server's log."
+        f"Unexpected error ({type(error).__name__}: {visible_text(reason)}). {KEPT}. "
+        "Details are in the server's log."
     )
 
 

@@ -18,9 +18,8 @@ from ..widgets.tabs import Tabs
 BARE = ("graph", "check", "learn")
 """The panels for a mesh without a skeleton."""
 NO_SKELETON = (
-    "This mesh has no skeleton, so it has no bones to measure from, to weigh or to move; its graph "
-    "can be seen. Choose a skeleton above, export it together with its armature, or drop it "
-    "together with a skeleton in a JSON file of the same name."
+    "This mesh has no skeleton. Choose a template above, or drop a file that has one. "
+    "The graph can still be explored."
 )
 
 

@@ -17,9 +17,8 @@ from .controls import caption, choice, section, slider, when
 MODES = {"Add": "add", "Subtract": "subtract", "Replace": "replace", "Smooth": "smooth",
          "Select": "select"}  # fmt: skip
 HOW = (
-    "Drag over the body to paint, beside it or with the right button to turn it, with the middle "
-    "button to move it; a finger beside it turns, two move. Shift while you paint smooths, Ctrl "
-    "takes away. Keys: B, [ ] for the size, { } for the strength, Esc."
+    "Drag on the body to paint, elsewhere to orbit. Shift smooths, Ctrl subtracts. "
+    "[ ] size, { } strength."
 )
 
 
@@ -40,7 +39,7 @@ def brush(session: Session) -> pmui.Column:
         choice(state.param.brush_mode, MODES),
         caption(when(_summary, state.param.rig, state.param.joint, state.param.brush_mode)),
         slider(
-            state.param.brush_radius, "Radius, of the character's longest side", step=0.005,
+            state.param.brush_radius, "Radius (% of size)", step=0.005,
             end=MAX_RADIUS, format="0.0 %",
         ),
         slider(
@@ -81,7 +80,7 @@ def _selection(session: Session) -> pmui.Column:
             return ""
         count = int(chosen.sum())
         which = "one vertex" if count == 1 else f"{count:,} vertices"
-        return f"Strokes stay on {which} of {len(chosen):,}, marked by dots."
+        return f"Strokes are limited to {which} of {len(chosen):,}, marked by dots."
 
     changing = state.param.brush_selection, state.param.rig
     return pmui.Column(
@@ -97,7 +96,7 @@ def _summary(rig: Any, joint: int, mode: str) -> str:
     if mode == "smooth":
         return "Smooths all unlocked joints."
     if mode == "select":
-        return "Selects what the other tools may paint; Ctrl takes away."
+        return "Select the vertices that other tools may paint. Ctrl subtracts."
     if rig is None or joint >= len(rig.skeleton.names):
         return ""
-    return f"Paints for {shown_name(rig.skeleton.names[joint])}, the chosen bone."
+    return f"Paints weights of {shown_name(rig.skeleton.names[joint])}, the selected bone."

@@ -17,7 +17,7 @@ from ..widgets.file_drop import FileDrop
 from .controls import GAP, as_text, caption, section, unique_names
 
 MAX_FAULTS = 2
-"""The panel Check tells of all."""
+"""The panel Check lists all."""
 OWN = "Your own"
 HINT = f"GLB, glTF, VRM, FBX, USD, OBJ, … · up to {MAX_UPLOAD // 2**20} MB"
 

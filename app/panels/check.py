@@ -49,10 +49,10 @@ def summary(state: State) -> str:
     if state.rig is None:
         return ""
     if state.diagnosis is None:
-        return "The mesh, the skeleton and the weights of the file are checked once it is bound."
+        return "The file is checked once weights are computed."
     if not state.diagnosis.findings:
-        return "Nothing is wrong with the mesh, the skeleton or the weights of the file."
-    return f"Found: {counted(state.diagnosis.counts)}. Choose one to see where it is."
+        return "No problems in the mesh, skeleton or weights."
+    return f"{counted(state.diagnosis.counts)}. Choose one to see it."
 
 
 def counted(counts: dict[str, int]) -> str:
@@ -104,7 +104,7 @@ def _entry(session: Session, finding: Finding) -> pmui.Column:
         if finding.code in OF_PARTS and not session.state.bare:
             vertex = int(finding.vertices[0])
             see = partial(session.state.param.update, panel="weights", part=vertex)
-            lines.append(_button("Choose what its parts follow", "category", see))
+            lines.append(_button("Choose how these parts are bound", "category", see))
     return pmui.Column(*lines, margin=(0, 0, 6, 0), sizing_mode="stretch_width")
 
 
@@ -112,7 +112,7 @@ def _left_out(rig: Rig, joints: list[int]) -> str:
     subject = f"these {len(joints)} joints"
     if len(joints) == 1:
         subject = shown_name(rig.skeleton.names[joints[0]])
-    return f"Let {subject} carry no weight"
+    return f"Exclude {subject}"
 
 
 def _repairs(session: Session) -> list[Any]:
@@ -125,13 +125,13 @@ def _repairs(session: Session) -> list[Any]:
         rows.append(_button(f"Repair all {len(able)}", "build", lambda: repair(session, codes)))
     if state.repair is None:
         return rows
-    now = "" if state.diagnosis is None else f", now {counted(state.diagnosis.counts)}"
+    now = "" if state.diagnosis is None else f" → {counted(state.diagnosis.counts)}"
     return [
         *rows,
-        _line(f"Repaired. Before: {counted(state.repair.counts)}{now}.", "text.primary"),
+        _line(f"Repaired: {counted(state.repair.counts)}{now}.", "text.primary"),
         *(_line(text) for text in state.repair.done),
         _button(
-            "Download it with its own weights",
+            "Download with original weights",
             "download",
             lambda: export_repaired(session, session.view.offer),
         ),

@@ -22,7 +22,7 @@ WAYS = {
     "Separately": "itself",
 }
 WATCHED = ["panel", "rig", "corrections", "part"]
-SHORT = {"glued": "glued", "touching": "follows", "itself": "by itself"}
+SHORT = {"glued": "rigid", "touching": "follows", "itself": "separate"}
 
 
 def parts_of_mesh(session: Session) -> pmui.Column:
@@ -43,7 +43,7 @@ def parts_of_mesh(session: Session) -> pmui.Column:
         sizing_mode="stretch_width",
     )  # fmt: skip
     glue = pmui.Select(
-        label="Glued to", options=[], size="small", margin=(12, 0, 4, 0),
+        label="Joint", options=[], size="small", margin=(12, 0, 4, 0),
         sizing_mode="stretch_width", searchable=True,
     )  # fmt: skip
     whole = section("Parts of the mesh", about, place, way, glue)

@@ -14,7 +14,7 @@ from ..commands.session import Session
 from ..widgets.open_file import OpenFile
 from .controls import caption, section, when
 
-NONE = "Nothing is corrected. What is goes into the exported file, and into files of their own."
+NONE = "No corrections yet. They are included in the export and can be saved as JSON."
 
 
 def corrections(session: Session) -> pmui.Column:
@@ -56,4 +56,4 @@ def summary(corrections: Corrections) -> str:
     parts = [count(len(which), one) for which, one in numbers if which]
     if not parts:
         return NONE
-    return f"Corrected: {', '.join(parts)}. They go into the exported file, too."
+    return f"Corrected: {', '.join(parts)}. Included in the export."

@@ -46,8 +46,8 @@ def export(session: Session) -> pmui.Column:
         "Export",
         bound,
         pmui.Row(
-            _menu("Picture, film", "movie", films, state.param.rig, (4, 8, 4, 0)),
-            _menu("Numbers", "table_chart", numbers, state.param.rig, GAP),
+            _menu("Image, video", "movie", films, state.param.rig, (4, 8, 4, 0)),
+            _menu("Data", "table_chart", numbers, state.param.rig, GAP),
             margin=0,
             sizing_mode="stretch_width",
         ),
@@ -58,11 +58,11 @@ def export(session: Session) -> pmui.Column:
 def _described(rig: Rig | None) -> str:
     """Say what the bound file holds."""
     if rig is None or keeps_document(rig):
-        summary = "The GLB is as it was, but for the weights."
+        summary = "The GLB keeps everything but the corrected data."
     elif has_materials(rig):
-        summary = "The GLB is a new one: mesh, skeleton, weights, motions and base colours."
+        summary = "A new GLB: mesh, skeleton, weights, clips and base colours."
     else:
-        summary = "The GLB is a new one: mesh, skeleton, weights and motions, without materials."
+        summary = "A new GLB: mesh, skeleton, weights and clips, no materials."
     return f"{summary} Images show the current view."
 
 

@@ -21,8 +21,8 @@ from .cutting import cutting
 KINDS = {"mesh_edges": MESH, "interior_edges": INTERIOR, "surface_edges": SURFACE}
 LEAF_TITLES = {"point": "Points", "extend": "Extended", "fit": "Fitted"}
 SEARCHED = (
-    "Interior edges only carry the search: a distance runs straight wherever there is line of "
-    "sight. Click the body to see the lines of sight to the chosen bone."
+    "Interior edges only carry the search: paths run straight along lines of sight. Click the "
+    "body to see them."
 )
 """What interior edges are where paths need not follow them."""
 AXES = {"X": "x", "Y": "y", "Z": "z"}

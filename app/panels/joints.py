@@ -71,7 +71,7 @@ def joints(session: Session) -> pmui.Column:
     counts = caption(when(_counted, state.param.rig))
     guesser = pmui.Button(
         label="Detect deforming joints", size="small", variant="text", margin=0, on_click=anew,
-        description="From their names, and where they lie in the body",
+        description="Detect deforming joints by name and position",
     )  # fmt: skip
     return section("Joints", counts, tree, guesser, *_chosen(session))
 
@@ -100,7 +100,7 @@ def _chosen(session: Session) -> list[Any]:
         margin=GAP, sizing_mode="stretch_width", show_value=False, track=False, tooltips=False,
     )  # fmt: skip
     radius = pmui.TextInput(
-        label="Radius, in the file's units", value="", size="small", margin=(8, 0),
+        label="Radius (file units)", value="", size="small", margin=(8, 0),
         sizing_mode="stretch_width", placeholder="measured from the body",
     )  # fmt: skip
     reset = pmui.Button(
@@ -200,7 +200,7 @@ def _weight_text(session: Session) -> str:
     computed, original = shares_of(state, session.memo)
     lines = []
     if computed is not None:
-        lines.append(f"Holds {_percent(computed[state.joint])} of the skin")
+        lines.append(f"Moves {_percent(computed[state.joint])} of the skin")
     if original is not None:
         lines.append(f"{_percent(original[state.joint])} in the file")
     text = ", ".join(lines)
@@ -216,5 +216,5 @@ def _counted(rig: Any) -> str:
         return ""
     chosen = rig.skeleton.deform
     if chosen.all():
-        return f"All {len(chosen)} joints may carry weight."
-    return f"{chosen.sum()} of {len(chosen)} joints may carry weight."
+        return f"All {len(chosen)} joints deform the mesh."
+    return f"{chosen.sum()} of {len(chosen)} joints deform the mesh."

@@ -15,8 +15,8 @@ from ..state import State
 from .controls import BUTTONS, GAP, caption, intro, section, when
 
 NONE_OPEN = (
-    "Here the near-duplicates of a data set stand side by side. Find them by cutcell dataset "
-    "audit FOLDER, and open what it found by cutcell app --pairs audit."
+    "Compare near-duplicates of a data set. Run cutcell dataset audit FOLDER, then cutcell app "
+    "--pairs audit."
 )
 TIERS = {
     "All": "all",
@@ -88,7 +88,7 @@ def summary(state: State) -> str:
     if not count:
         return "The audit found no near-duplicates."
     if not stepped:
-        return "There are none of these."
+        return "No such pairs."
     if state.pair not in stepped:
         return f"{len(stepped):,} of {count:,} pairs."
     of = f" of {count:,} in all" if len(stepped) < count else ""

@@ -24,7 +24,7 @@ def structure(session: Session) -> pmui.Column:
     add, remove = (
         pmui.Button(label=label, icon=icon, margin=margin, on_click=done, **style)
         for label, icon, margin, done in (
-            ("Add a joint", "add", (4, 4, 4, 0), lambda event: actions.add(session)),
+            ("Add joint", "add", (4, 4, 4, 0), lambda event: actions.add(session)),
             ("Remove joint", "remove", (4, 0, 4, 4), lambda event: actions.remove(session)),
         )
     )
@@ -52,7 +52,7 @@ def structure(session: Session) -> pmui.Column:
     return pmui.Column(
         on,
         pmui.Row(add, remove, margin=0, sizing_mode="stretch_width"),
-        caption("A new joint divides the bone; on a last joint, or a fork, it begins another one."),
+        caption("Splits the bone; on a leaf or fork it starts a new one."),
         margin=GAP,
         sizing_mode="stretch_width",
     )

@@ -16,7 +16,7 @@ from .controls import GAP, caption, section, when
 NONE = "None"
 CHANGED = "Your own"
 TITLES = {template.capitalize(): template for template in TEMPLATES}
-HINT = "The file has no skeleton. Choose one: it is fitted into the body, then drag its joints."
+HINT = "This mesh has no skeleton. Choose a template to fit, then drag its joints."
 
 
 def skeleton_menu(session: Session) -> pmui.Column:

@@ -67,7 +67,7 @@ def weights(session: Session) -> pmui.Column:
 
 def _sides(state: State) -> list[Any]:
     """Return the choices between what was computed and what the file says."""
-    names = {"Computed": "ours", "From file": "file"}
+    names = {"Recomputed": "ours", "Original": "file"}
     whose = choice(
         state.param.weights_of,
         names,
@@ -82,7 +82,7 @@ def _sides(state: State) -> list[Any]:
         state.param.rig,
         state.param.weights_shown,
     )
-    truth = {"The file is right": "file", "Ours are right": "ours"}
+    truth = {"Reference: file": "file", "Reference: computed": "ours"}
     return [whose, choice(state.param.truth, truth, visible=signed)]
 
 
@@ -118,5 +118,5 @@ def summary(state: State) -> str:
         # Of |a - b| = a + b - 2 min(a, b) the last is zero where ours is: nearly everywhere.
         both = np.minimum(weights.ravel()[positive], file_weights.ravel()[positive]).sum()
         difference = ((len(weights) + file_weights.sum()) / 2 - both) / max(len(weights), 1)
-        text += f"; they differ from the file's by {difference:.0%}"
+        text += f", {100 * difference:.0f} % different from the file"
     return text + "."

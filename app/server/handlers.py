@@ -254,8 +254,7 @@ class Misdirected(RequestHandler):
         requested = escape(self.request.host[:100])
         self.finish(
             PLAIN.format(
-                f"This server does not know itself as {requested}. Open {escape(links)}. To serve "
-                "under another name, behind a proxy for one, put it into the environment "
-                "variable BOKEH_ALLOW_WS_ORIGIN, with its port, and start again."
+                f"Unknown host name: {requested}. Open {escape(links)}. To serve under another "
+                "name, set BOKEH_ALLOW_WS_ORIGIN to it, with its port."
             )
         )

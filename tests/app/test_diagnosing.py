@@ -59,7 +59,7 @@ def texts(session):
 
 def test_what_is_bound_is_diagnosed(spoiled):
     assert codes(spoiled) == ["unweighted-vertices", "inverted-faces"]
-    assert summary(spoiled.state) == "Found: 1 error, 1 warning. Choose one to see where it is."
+    assert summary(spoiled.state) == "1 error, 1 warning. Choose one to see it."
     assert "Vertices without weight" in texts(spoiled)
     assert "Repair all 2" in texts(spoiled)
     assert faults(spoiled.state) == [f.message for f in spoiled.state.diagnosis.findings]
@@ -67,7 +67,7 @@ def test_what_is_bound_is_diagnosed(spoiled):
 
 def test_a_sound_character_is_said_to_be_sound(bound, loop):
     loop.run_until(lambda: bound.state.diagnosis is not None)
-    assert summary(bound.state).startswith("Nothing is wrong")
+    assert summary(bound.state).startswith("No problems")
     assert faults(bound.state) == []
 
 
@@ -96,7 +96,7 @@ def test_a_repair_is_bound_and_can_be_taken_back(spoiled, loop):
     repair(spoiled, ["unweighted-vertices"])
     loop.run_until(lambda: state.diagnosis is not None and not state.diagnosis.findings)
     assert len(state.repair.done) == 2
-    assert "Before: 1 error, 1 warning, now nothing" in texts(spoiled).replace("&#44;", ",")
+    assert "Repaired: 1 error, 1 warning → nothing" in texts(spoiled).replace("&#44;", ",")
     take_back(spoiled)
     loop.run_until(lambda: state.diagnosis is not None)
     assert state.rig is original

@@ -20,7 +20,7 @@ from cutcell_app.server.log import Printable
     [
         (FileError("/tmp/cutcell-a/b/rig.glb: the file is empty"), "rig.glb: the file is empty."),
         (FileError('joint "a\x1b[31m\nb" is bad'), 'Joint "a\\x1b[31m\\nb" is bad.'),
-        (MemoryError("Unable to allocate 44.0 GiB"), "There is not enough memory for this; a"),
+        (MemoryError("Unable to allocate 44.0 GiB"), "Not enough memory. "),
         (
             OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), "/tmp/cutcell-x/a.csv"),
             "The server's disk is full. ",

@@ -74,7 +74,7 @@ def test_one_steps_through_all_pairs_or_those_of_a_tier(looking, loop):
     assert state.stepped == twins
     assert state.pair in twins
     pairs.choose_tier(looking, "overruled")
-    assert summary(state) == "There are none of these."
+    assert summary(state) == "No such pairs."
     keys.act(looking, "previous")
     assert state.pair in twins
 
