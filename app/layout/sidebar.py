@@ -18,8 +18,8 @@ from ..widgets.tabs import Tabs
 BARE = ("graph", "check", "learn")
 """The panels for a mesh without a skeleton."""
 NO_SKELETON = (
-    "This mesh has no skeleton. Choose a template above, or drop a file that has one. "
-    "The graph can still be explored."
+    "This mesh has no skeleton. Choose a template above, or drop a file with one. "
+    "The graph can be explored."
 )
 
 

@@ -57,7 +57,7 @@ def to_query(
     Parameters
     ----------
     state : State
-    kept : str
+    upload_key : str
         The key of an uploaded character, where one stands there.
     camera : list of 6 float, optional
         Where the eye is and what it looks at; left out where it is as at the start.

@@ -338,7 +338,7 @@ def test_parts_are_glued_and_seen_apart(session, loop):
     glue.value = "wrist"
     loop.run_for(0.05)
     assert (session.state.binding.weights[first:, 2] == 1).all()
-    assert rows.rows[1][1] == "glued: wrist"
+    assert rows.rows[1][1] == "rigid: wrist"
     way.value = "itself"
     loop.run_until(lambda: not session.tasks.running)
     parts = {first: PartCorrection("itself")}

@@ -355,7 +355,7 @@ def test_a_selection_is_of_one_mesh(painter, loop):
     brush.select(painter, np.arange(len(state.rig.mesh.vertices)) < 5)
     assert selected(state).sum() == 5
     section = section_of_brush(painter)
-    assert any("Strokes stay on 5 vertices of" in text.object for text in texts(section))
+    assert any("Strokes are limited to 5 vertices of" in text.object for text in texts(section))
     loading.load_demo(painter, "octopus")
     loop.run_until(lambda: not painter.tasks.running)
     assert selected(state) is None
