@@ -1,7 +1,5 @@
 """The parts of a rig as actors: the body, its attachments, and its bones."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Findings of a diagnosis, marked on the character: faces, vertices and joints."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

@@ -1,7 +1,5 @@
 """Reading of an address: its character, and the choices in it."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

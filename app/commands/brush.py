@@ -1,7 +1,5 @@
 """Paint weights: strokes over the body in the view become weights of single vertices."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 
@@ -14,12 +12,11 @@ from cutcell.errors import CutcellError
 from cutcell_viewers.skin import skin_of_weights
 
 from ..scenes.weights import painted_colors
-from ..state import State
+from ..state import PANELS, State
 from ..state.brush import (
     MAX_RADIUS,
     MIN_RADIUS,
     MIN_STRENGTH,
-    PAINTED,
     Selection,
     selected,
 )
@@ -68,8 +65,8 @@ def put_down(session: Session) -> None:
 def turn_over(session: Session) -> None:
     """Switch the brush on where weights can be painted, else off."""
     state = session.state
-    if state.panel not in PAINTED:
-        state.panel = PAINTED[0]
+    if not PANELS[state.panel].paints:
+        state.panel = "weights"
     state.brush = not state.brush
 
 
@@ -88,7 +85,7 @@ def strengthen(session: Session, steps: int) -> None:
 def paints(state: State) -> bool:
     """Whether there are weights in sight that the brush can paint."""
     is_ready = state.rig is not None and not state.bare and state.binding is not None
-    return bool(state.brush and is_ready and state.panel in PAINTED and not state.playing)
+    return bool(state.brush and is_ready and PANELS[state.panel].paints and not state.playing)
 
 
 def radius_of(state: State) -> float:

@@ -1,7 +1,5 @@
 """Find what is wrong with the character once it is bound; look at a finding; repair."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from cutcell.diagnosis import Diagnosis, Repaired, diagnose
@@ -15,9 +13,6 @@ from .binding import binding_request, swap
 from .look import set_camera
 from .session import Session
 
-STANDARD = ("connectivity", "orient", "winding_threshold", "leaf")
-"""Choices that must be as at the start for the page's distances to tell what is wrong."""
-
 
 def watch(session: Session) -> None:
     """Keep the diagnosis up to the character and its graph."""
@@ -28,7 +23,7 @@ def watch(session: Session) -> None:
 def _begin_anew(session: Session) -> None:
     state = session.state
     session.tasks.jobs("diagnosis").cancel()
-    session.diagnosed = None
+    session.binder.is_diagnosed = False
     state.param.update(diagnosis=None, finding="")
     if state.repair is not None and state.repair.after is not state.rig:
         state.repair = None
@@ -36,14 +31,14 @@ def _begin_anew(session: Session) -> None:
 
 def examine(session: Session) -> None:
     """Diagnose what stands there, unless its graph is known to be sound or not."""
-    state = session.state
-    distances = None if state.binding is None else state.binding.distances
-    if state.graph is None or binding_request(state) != session.built_for:
-        return  # the graph of the present choices is not built yet
-    if session.diagnosed is (distances or state.graph):
+    state, binder = session.state, session.binder
+    if state.graph is None or not binder.is_for(asked(state)):
+        return  # what belongs to the choices is not there yet
+    if binder.is_diagnosed:
         return
     rig, resolution = state.rig, state.resolution
-    session.diagnosed = distances or state.graph
+    binder.is_diagnosed = True
+    distances = None if state.binding is None else state.binding.distances
     cached = distances if _is_standard(state) else None
 
     def work(progress: Progress) -> Diagnosis:
@@ -58,8 +53,8 @@ def examine(session: Session) -> None:
 
 
 def _is_standard(state: Any) -> bool:
-    first, now = method_of(type(state)(), GRAPH), method_of(state, GRAPH)
-    return all(first[name] == now[name] for name in STANDARD)
+    names = tuple(name for name in GRAPH if name != "resolution")
+    return method_of(type(state)(), names) == method_of(state, names)
 
 
 def look_at(session: Session, code: str) -> None:

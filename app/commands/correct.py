@@ -1,7 +1,5 @@
 """Correct the binding: joints, parts and single vertices; save the corrections, open others."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Mapping
 from dataclasses import replace
 from typing import Any
@@ -171,7 +169,7 @@ def leave_out(session: Session, joints: Collection[int]) -> None:
     if state.corrections != before:
         subject = names[0] if len(names) == 1 else f"{len(names)} joints"
         verb = "carries" if len(names) == 1 else "carry"
-        session.notice = f"{subject} {verb} no weight any more; undo takes it back."
+        session.binder.notice = f"{subject} {verb} no weight any more; undo takes it back."
 
 
 def clear(session: Session) -> None:

@@ -1,7 +1,5 @@
 """Undo and redo of choices, and the address of the present ones."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager

@@ -1,12 +1,10 @@
 """Actions of the keys and of the buttons over the canvas."""
 
-from __future__ import annotations
-
 from cutcell.editing.corrections import Corrections
 
 from ..scenes.common import first_joint
-from ..state import State
-from ..state.corrections import applied, changed_only, changes
+from ..state import PANELS, State
+from ..state.corrections import applied, changes, news
 from ..state.url import defaults
 from . import brush, pairs
 from .loading import revisit
@@ -56,7 +54,7 @@ def play(state: State) -> None:
     """Play the motion, or halt it; on the panel where things move."""
     if state.bare:
         return
-    if not state.moving or state.panel not in ("pose", "compare"):
+    if not state.moving or not PANELS[state.panel].poses:
         panel = state.panel if state.panel == "compare" else "pose"
         state.param.update(panel=panel, moving=True, playing=True)
     else:

@@ -1,7 +1,5 @@
 """How a character comes to stand on the page: a demo, or files."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -242,7 +240,7 @@ def _correct(session: Session, text: str) -> None:
         state.param.update(**changed)
     except (CutcellError, ValueError) as error:
         state.corrections = Corrections()
-        session.notice = f"The corrections of this address were not taken: {error}"
+        session.binder.notice = f"The corrections of this address were not taken: {error}"
 
 
 def _arrive(session: Session, rig: Rig, arrival: dict[str, Any]) -> None:
@@ -253,7 +251,7 @@ def _arrive(session: Session, rig: Rig, arrival: dict[str, Any]) -> None:
     state.tour = arrival.get("tour", state.tour)
     if 0 <= arrival.get("vertex", -1) < len(rig.mesh.vertices):
         state.vertex = arrival["vertex"]
-    session.notice = arrival.get("told", "")
+    session.binder.notice = arrival.get("told", "")
 
 
 def _choose_joints(session: Session, arrival: dict[str, Any]) -> None:

@@ -1,7 +1,5 @@
 """Move joints: by the handle in the view, by numbers, to the middle of the limb."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 
@@ -20,7 +18,7 @@ from cutcell_viewers.character import to_scene
 
 from ..scenes.common import bones_part
 from ..state.corrections import Dragged, applied
-from .binding import binder, binding_request, previewer
+from .binding import asked, binding_work, previewer
 from .correct import check_alone, correct
 from .session import Session
 
@@ -240,8 +238,8 @@ class Hand:
     def _show(self, corrections: Corrections) -> None:
         """Show about what the weights will be, and when the hand rests what they are."""
         state = self._session.state
-        if binding_request(state) != self._session.built_for:
-            return  # the last position is about to be bound
+        if not self._session.binder.is_for(asked(state)):
+            return  # what was let go before is about to be bound
         rig = applied(state.own, corrections)
         before = state.binding if state.dragged is None else state.dragged.binding
         self._begin(rig, corrections)
@@ -254,7 +252,7 @@ class Hand:
         if self._binds:  # the hand did not rest after all, and colours must not wait for that
             newest.cancel()
             self._binds = False
-        exact = binder(state, rig, corrections, state.binding.graph)
+        exact = binding_work(state, rig, corrections, state.binding.graph)
 
         def done(binding: Binding) -> None:
             if state.dragged is not None:

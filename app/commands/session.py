@@ -4,15 +4,12 @@ It does nothing by itself: commands, the functions of the modules beside this on
 change the state; `watchers.follow` lets others follow.
 """
 
-from __future__ import annotations
-
 import logging
 import shutil
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, Protocol
 
-from cutcell.editing.corrections import Corrections
 from cutcell.errors import CutcellError
 from cutcell.runtime.progress import Progress
 from cutcell_viewers.camera import Camera
@@ -25,6 +22,7 @@ from ..jobs.messages import error_text
 from ..jobs.tasks import Tasks
 from ..scenes import Memo
 from ..state import State
+from ..state.bound import Binder
 from ..state.history import History
 
 logger = logging.getLogger("cutcell.app")
@@ -87,25 +85,10 @@ class Session:
     before_tour : tuple or None
         The choices and the camera from before the tour.
     arrival : dict
-        Choices of the address for the character that is being loaded.
-    notice : str
-        The notice to show once that is bound; empty for none.
-    bound_for, built_for : dict
-        What was last computed for, and what is there: the graph's parameters, and the corrections
-        that distances depend on.
-    corrected : Corrections
-        Those that the weights that are there hold.
-    graph : tuple or None
-        The mesh, what was asked, and the graph of the last binding.
+        What an address says of the character that is on its way.
+    binder : Binder
     kept : CorrectionsFile
-        Corrections that are too long for the address.
-    reach : float
-        How many times as far as the nearest joint distances are known.
-    falloffs : dict
-        For each falloff that was worked out the distances, and the weights of many influences:
-        sparse, as most of an (n, j) matrix is zero, and a session has it as long as it lives.
-    diagnosed : BoneDistances, CutCellGraph or None
-        The distances, or of a mesh without a skeleton the graph, that the diagnosis is of.
+        What the address has no room for.
     """
 
     def __init__(self, view: View, schedule: Schedule) -> None:
@@ -121,15 +104,8 @@ class Session:
         self.returning = False
         self.before_tour: tuple[dict[str, Any], Camera | None] | None = None
         self.arrival: dict[str, Any] = {}
-        self.notice = ""
-        self.bound_for: dict[str, Any] = {}
-        self.built_for: dict[str, Any] = {}
-        self.corrected = Corrections()
-        self.graph: tuple[Any, dict[str, Any], Any] | None = None
-        self.reach = 0.0
+        self.binder = Binder()
         self.kept = CorrectionsFile(self.uploads)
-        self.falloffs: dict[str, tuple[Any, Any]] = {}
-        self.diagnosed: Any = None
         self._folder: Path | None = None
 
     def start(

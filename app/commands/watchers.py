@@ -1,7 +1,5 @@
 """Watchers of a page's state: each `watch(session)` runs a command on changes."""
 
-from __future__ import annotations
-
 from . import (
     arrival,
     binding,

@@ -1,7 +1,5 @@
 """Corrections that are too long for an address: stored among the uploads by a key."""
 
-from __future__ import annotations
-
 from cutcell.editing.corrections import Corrections
 from cutcell.errors import CutcellError
 

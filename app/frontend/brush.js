@@ -2,28 +2,20 @@
 // which answers with the colours of what they touched.
 
 import {plainList} from "./arrays.js"
-import {across, reflected} from "./joint_handle.js"
+import {line, make} from "./drag_handle.js"
+import {across, along, cross, dot, minus, reflected} from "./vectors.js"
 
 const SIDES = 48  // of the ring
 const NEAREST = 3  // pixels between two points of a stroke, at least
 const PER_RADIUS = 4  // points of a stroke in a radius
 const MOST = 60  // points from one event of the pointer
-const SVG = "http://www.w3.org/2000/svg"
 
 export class PaintBrush {
   // `bodyAt` tells what lies at a place of the canvas, `handOver` lets the camera have a pointer.
   constructor(overlay, renderer, {bodyAt, handOver, changed, tell}) {
     Object.assign(this, {overlay, renderer, bodyAt, handOver, changed, tell})
-    this.svg = document.createElementNS(SVG, "svg")
-    this.svg.setAttribute("class", "brush-ring")
-    this.svg.setAttribute("aria-hidden", "true")
-    this.rings = ["halo", "ring", "ring other"].map((name) => {
-      const path = document.createElementNS(SVG, "path")
-      path.setAttribute("class", name)
-      this.svg.append(path)
-      return path
-    })
-    overlay.root.append(this.svg)
+    this.svg = make("svg", "handle brush-ring", overlay.root, {"aria-hidden": "true"})
+    this.rings = ["halo", "ring", "ring other"].map((name) => make("path", name, this.svg))
     const on = (type, act) => overlay.canvas.addEventListener(type, (e) => act(e), {capture: true})
     on("pointerdown", (e) => this.take(e))
     on("pointermove", (e) => this.move(e))
@@ -173,8 +165,7 @@ export class PaintBrush {
     const ring = circle(aimed.at, aimed.normal, part.radius)
     const outline = (points) => {
       const pixels = points.map(this.renderer.projection())
-      if (pixels.some((pixel) => !pixel)) { return "" }
-      return `M${pixels.map(([x, y]) => `${x.toFixed(1)} ${y.toFixed(1)}`).join("L")}Z`
+      return pixels.every(Boolean) ? `${line(pixels)}Z` : ""
     }
     const [halo, own, other] = this.rings
     for (const path of [halo, own]) { path.setAttribute("d", outline(ring)) }
@@ -182,12 +173,12 @@ export class PaintBrush {
   }
 }
 
+const pointAt = (points, i) => [points[3 * i], points[3 * i + 1], points[3 * i + 2]]
+
 // The corners around a point of a triangle, and what each counts for.
 export function corners(triangles, points, triangle, at) {
   const ids = [0, 1, 2].map((c) => triangles[3 * triangle + c])
-  const [a, b, c] = ids.map((i) => [points[3 * i], points[3 * i + 1], points[3 * i + 2]])
-  const minus = (p, q) => p.map((x, k) => x - q[k])
-  const dot = (p, q) => p[0] * q[0] + p[1] * q[1] + p[2] * q[2]
+  const [a, b, c] = ids.map((i) => pointAt(points, i))
   const [u, v, w] = [minus(b, a), minus(c, a), minus(at, a)]
   const [uu, uv, vv, wu, wv] = [dot(u, u), dot(u, v), dot(v, v), dot(w, u), dot(w, v)]
   const area = uu * vv - uv * uv
@@ -199,12 +190,8 @@ export function corners(triangles, points, triangle, at) {
 }
 
 export function normalOf(triangles, points, triangle) {
-  const [a, b, c] = [0, 1, 2].map((k) => {
-    const i = 3 * triangles[3 * triangle + k]
-    return [points[i], points[i + 1], points[i + 2]]
-  })
-  const [u, v] = [b, c].map((p) => p.map((x, k) => x - a[k]))
-  const n = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
+  const [a, b, c] = [0, 1, 2].map((k) => pointAt(points, triangles[3 * triangle + k]))
+  const n = cross(minus(b, a), minus(c, a))
   const length = Math.hypot(...n)
   return length > 0 ? n.map((x) => x / length) : [0, 1, 0]
 }
@@ -215,7 +202,7 @@ export function circle(at, normal, radius) {
   const {right, up} = across(normal, Math.abs(normal[1]) > 0.9 ? [1, 0, 0] : [0, 1, 0])
   return Array.from({length: SIDES}, (_, i) => {
     const [c, s] = [Math.cos(2 * Math.PI * i / SIDES), Math.sin(2 * Math.PI * i / SIDES)]
-    return at.map((x, k) => x + radius * (c * right[k] + s * up[k]))
+    return along(at, [radius * c, right], [radius * s, up])
   })
 }
 

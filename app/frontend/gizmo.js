@@ -1,53 +1,42 @@
 // Three rings on the chosen joint: dragging one turns the joint about its own axis.
 
 import {plainList} from "./arrays.js"
-import {VIEW_ANGLE} from "./orbit.js"
+import {DragHandle, line, make} from "./drag_handle.js"
 import {transformed} from "./skin.js"
+import {along, dot, minus, rotated, unit} from "./vectors.js"
 
 const RING_COLORS = ["#e5484d", "#30a46c", "#3e83f8"]
 const RING_RADIUS = 62
 const RING_STEPS = 64
-const SEND_EVERY = 70
 
-export class Gizmo {
+export class Gizmo extends DragHandle {
   // `turned(pose)` hears of each pose while a ring is dragged; `tell` sends to the server.
-  constructor(overlay, renderer, {turned, tell, poseNow}) {
-    Object.assign(this, {overlay, renderer, turned, tell, poseNow})
-    this.svg = overlay.gizmo
+  constructor(overlay, renderer, hears) {
+    super("gizmo", 70, overlay, renderer, hears)
     this.part = null
     this.rings = RING_COLORS.map((color, axis) => this.makeRing(color, axis))
     this.show(null)
   }
 
   makeRing(color, axis) {
-    const make = (tag, className, parent) => {
-      const element = document.createElementNS("http://www.w3.org/2000/svg", tag)
-      element.setAttribute("class", className)
-      parent.append(element)
-      return element
-    }
     const group = make("g", `axis-${"xyz"[axis]}`, this.svg)
-    const paths = Object.fromEntries(["halo", "far", "near", "reach"].map((name) =>
-      [name, make("path", ["far", "near"].includes(name) ? `ring ${name}` : name, group)]))
-    for (const name of ["far", "near"]) { paths[name].setAttribute("stroke", color) }
-    const dot = make("circle", "", group)
-    dot.setAttribute("r", 9)
-    dot.setAttribute("fill", color)
+    const paths = {
+      halo: make("path", "halo", group),
+      far: make("path", "ring far", group, {stroke: color}),
+      near: make("path", "ring near", group, {stroke: color}),
+      reach: make("path", "reach", group),
+    }
+    const knob = make("circle", "", group, {r: 9, fill: color})
     const letter = make("text", "", group)
     letter.textContent = "XYZ"[axis]
-    const {reach} = paths
-    reach.addEventListener("pointerdown", (e) => this.take(e, axis, group))
-    reach.addEventListener("pointermove", (e) => this.drag(e))
-    for (const type of ["pointerup", "pointercancel"]) {
-      reach.addEventListener(type, (e) => this.release(e))
-    }
-    return {group, paths, dot, letter}
+    this.grip(paths.reach, axis)
+    return {group, paths, knob, letter}
   }
 
   // `part`: the joint, how many there are, where it is at rest, and which joints go along.
   show(part) {
     this.part = part && {...part, below: plainList(part.below), centre: plainList(part.centre)}
-    if (this.held && this.held.joint !== this.part?.joint) { this.release() }
+    if (this.held && this.held.joint !== this.part?.joint) { this.drop() }
     this.svg.style.display = part ? "" : "none"
   }
 
@@ -56,11 +45,7 @@ export class Gizmo {
     const {joint, centre} = this.part
     if (!pose) { return {centre, axes: [[1, 0, 0], [0, 1, 0], [0, 0, 1]]} }
     const m = pose.subarray(16 * joint, 16 * joint + 12)
-    const axes = [0, 1, 2].map((k) => {
-      const v = [m[k], m[4 + k], m[8 + k]]
-      const length = Math.hypot(...v) || 1
-      return v.map((x) => x / length)
-    })
+    const axes = [0, 1, 2].map((k) => unit([m[k], m[4 + k], m[8 + k]]))
     return {centre: transformed(centre, pose, joint), axes}
   }
 
@@ -70,141 +55,105 @@ export class Gizmo {
     const middle = this.renderer.project(centre)
     this.svg.style.visibility = middle ? "" : "hidden"
     if (!middle) { return }
-    const eye = this.renderer.camera.getPosition()
-    const toEye = eye.map((x, i) => x - centre[i])
-    const [, , , height] = this.renderer.tiles[0]
-    const world = RING_RADIUS * 2 * middle[2] * Math.tan(VIEW_ANGLE * Math.PI / 360) / height
-    this.rings.forEach(({paths, dot, letter}, k) => {
-      const [u, v] = [axes[(k + 1) % 3], axes[(k + 2) % 3]]
-      const points = []
-      for (let i = 0; i <= RING_STEPS; i++) {
-        const angle = 2 * Math.PI * i / RING_STEPS
-        const spoke = u.map((x, j) => Math.cos(angle) * x + Math.sin(angle) * v[j])
-        const at = this.renderer.project(centre.map((x, j) => x + world * spoke[j]))
-        if (!at) { continue }
-        points.push({at, near: spoke.reduce((sum, x, j) => sum + x * toEye[j], 0) >= -1e-6})
+    const toEye = minus(this.renderer.camera.getPosition(), centre)
+    this.rings.forEach(({paths, knob, letter}, k) => {
+      const points = this.around(centre, axes, k, middle[2]).map((point) =>
+        ({...point, near: dot(point.spoke, toEye) >= -1e-6}))
+      const arcs = (near) => {
+        const runs = []
+        points.slice(1).forEach((point, i) => {
+          if (points[i].near !== near) { return }
+          if (points[i - 1]?.near !== near) { runs.push([points[i].at]) }
+          runs.at(-1).push(point.at)
+        })
+        return runs.map(line).join("")
       }
-      const line = (keep) => {
-        let [out, pen] = ["", false]
-        for (let i = 0; i + 1 < points.length; i++) {
-          const drawn = keep(points[i])
-          if (drawn) {
-            const [[ax, ay], [bx, by]] = [points[i].at, points[i + 1].at]
-            out += (pen ? "" : `M${ax.toFixed(1)} ${ay.toFixed(1)}`)
-              + `L${bx.toFixed(1)} ${by.toFixed(1)}`
-          }
-          pen = drawn
-        }
-        return out
-      }
-      const whole = line(() => true)
-      paths.near.setAttribute("d", line((p) => p.near))
-      paths.far.setAttribute("d", line((p) => !p.near))
-      paths.halo.setAttribute("d", line((p) => p.near))
-      paths.reach.setAttribute("d", whole)
-      // Each letter moves to a different side, so that no two overlap.
+      paths.near.setAttribute("d", arcs(true))
+      paths.far.setAttribute("d", arcs(false))
+      paths.halo.setAttribute("d", arcs(true))
+      paths.reach.setAttribute("d", line(points.map(({at}) => at)))
+      // Each letter strives to a side of its own, so that no two stand in one place.
       const [right, down] = [[-0.3, 1], [1, -0.2], [-0.6, -1]][k]
       const score = ({at: [x, y], near}) =>
         (near ? 1000 : 0) + right * (x - middle[0]) + down * (y - middle[1])
       const mark = points.reduce((a, b) => score(b) > score(a) ? b : a)
-      dot.setAttribute("cx", mark.at[0])
-      dot.setAttribute("cy", mark.at[1])
+      knob.setAttribute("cx", mark.at[0])
+      knob.setAttribute("cy", mark.at[1])
       letter.setAttribute("x", mark.at[0])
       letter.setAttribute("y", mark.at[1])
     })
   }
 
-  take(e, axis, group) {
-    if (!this.part || this.held || e.button) { return }
-    e.preventDefault()
-    e.stopPropagation()
-    e.target.setPointerCapture(e.pointerId)
+  // Where the points of a ring are seen, and in which direction from the centre they lie.
+  around(centre, axes, axis, depth) {
+    const radius = RING_RADIUS * this.renderer.pixel(depth)
+    const [u, v] = [axes[(axis + 1) % 3], axes[(axis + 2) % 3]]
+    return Array.from({length: RING_STEPS + 1}, (_, i) => {
+      const angle = 2 * Math.PI * i / RING_STEPS
+      const spoke = along([0, 0, 0], [Math.cos(angle), u], [Math.sin(angle), v])
+      return {spoke, at: this.renderer.project(along(centre, [radius, spoke]))}
+    }).filter(({at}) => at)
+  }
+
+  begin(e, axis) {
+    if (!this.part) { return null }
     const now = this.poseNow()
     const base = now ? now.slice() : identities(this.part.joints)
     const {centre, axes} = this.frame(now)
     const box = this.overlay.canvas.getBoundingClientRect()
-    const start = [e.clientX, e.clientY]
-    const [x, y] = [e.clientX - box.left, e.clientY - box.top]
-    this.held = {
-      axis, group, base, centre, turnAxis: axes[axis], joint: this.part.joint, start,
-      motion: this.motionAt(centre, axes, axis, x, y), degrees: 0, sentAt: 0, target: e.target,
-      pointer: e.pointerId,
-    }
-    group.classList.add("held")
-    this.svg.classList.add("holding")
-    this.say(true)
+    const motion = this.motionAt(centre, axes, axis, e.clientX - box.left, e.clientY - box.top)
+    const {joint} = this.part
+    this.rings[axis].group.classList.add("held")
+    this.tell({type: "turn", joint, axis, degrees: 0, begin: true})
+    return {axis, base, centre, turnAxis: axes[axis], joint, motion, degrees: 0, said: 0}
   }
 
   // How far the ring's point under the pointer moves on the screen for one radian.
   motionAt(centre, axes, axis, x, y) {
-    const [u, v] = [axes[(axis + 1) % 3], axes[(axis + 2) % 3]]
-    const middle = this.renderer.project(centre)
-    const [, , , height] = this.renderer.tiles[0]
-    const world = RING_RADIUS * 2 * middle[2] * Math.tan(VIEW_ANGLE * Math.PI / 360) / height
-    const at = (angle) => this.renderer.project(centre.map((c, j) =>
-      c + world * (Math.cos(angle) * u[j] + Math.sin(angle) * v[j])))
-    let best = null
-    for (let i = 0; i < RING_STEPS; i++) {
-      const angle = 2 * Math.PI * i / RING_STEPS
-      const p = at(angle)
-      if (!p) { continue }
-      const away = Math.hypot(p[0] - x, p[1] - y)
-      if (!best || away < best.away - 0.5) { best = {away, angle} }
-    }
-    const [a, b] = [at(best.angle - 0.02), at(best.angle + 0.02)]
-    const motion = [(b[0] - a[0]) / 0.04, (b[1] - a[1]) / 0.04]
+    const points = this.around(centre, axes, axis, this.renderer.project(centre)[2])
+    const away = ({at}) => Math.hypot(at[0] - x, at[1] - y)
+    const best = points.reduce((a, b, i) => away(b) < away(points[a]) - 0.5 ? i : a, 0)
+    const [a, b] = [-1, 1].map((side) => points[(best + side + points.length - 1) % (points.length - 1)].at)
+    const radians = 4 * Math.PI / RING_STEPS
+    const motion = [(b[0] - a[0]) / radians, (b[1] - a[1]) / radians]
     const length = Math.hypot(...motion)
     // Where a ring is seen from its edge, its point hardly moves: let the hand do, still.
     const least = RING_RADIUS * 0.5
     return length < 1e-6 ? [least, 0] : motion.map((d) => d * Math.max(least, length) / length)
   }
 
-  drag(e) {
+  follow(dx, dy, e) {
     const {held} = this
-    if (!held || e.pointerId !== held.pointer) { return }
-    e.preventDefault()
-    const [dx, dy] = [e.clientX - held.start[0], e.clientY - held.start[1]]
     const [wx, wy] = held.motion
     const radians = (dx * wx + dy * wy) / (wx * wx + wy * wy)
     held.degrees = Math.round(radians * 180 / Math.PI * (e.shiftKey ? 1 / 15 : 1))
       * (e.shiftKey ? 15 : 1)
     this.turned(this.poseAt(held.degrees))
-    const now = performance.now()
-    if (now - held.sentAt > SEND_EVERY) { this.say() }
     this.label(e)
+    return true
   }
 
   // The pose when the ring is turned by some degrees from where it was taken hold of.
   poseAt(degrees) {
-    const {base, centre: p, turnAxis: [x, y, z]} = this.held
-    const [c, s] = [Math.cos(degrees * Math.PI / 180), Math.sin(degrees * Math.PI / 180)]
-    const t = 1 - c
-    const r = [
-      t * x * x + c, t * x * y - s * z, t * x * z + s * y,
-      t * x * y + s * z, t * y * y + c, t * y * z - s * x,
-      t * x * z - s * y, t * y * z + s * x, t * z * z + c,
-    ]
-    const shift = [0, 1, 2].map((i) =>
-      p[i] - r[3 * i] * p[0] - r[3 * i + 1] * p[1] - r[3 * i + 2] * p[2])
+    const {base, centre, turnAxis} = this.held
+    const turn = (v) => rotated(v, turnAxis, degrees * Math.PI / 180)
     const out = base.slice()
     for (const joint of this.part.below) {
-      const at = 16 * joint
-      for (let i = 0; i < 3; i++) {
-        for (let k = 0; k < 4; k++) {
-          out[at + 4 * i + k] = r[3 * i] * base[at + k] + r[3 * i + 1] * base[at + 4 + k]
-            + r[3 * i + 2] * base[at + 8 + k] + (k === 3 ? shift[i] : 0)
-        }
+      for (let k = 0; k < 4; k++) {
+        const rows = [0, 4, 8].map((row) => 16 * joint + row + k)
+        const column = rows.map((at) => base[at])
+        const turned = k < 3 ? turn(column) : along(centre, [1, turn(minus(column, centre))])
+        rows.forEach((at, i) => { out[at] = turned[i] })
       }
     }
     return out
   }
 
-  say(begin = false) {
-    const {held} = this
-    held.sentAt = performance.now()
-    held.said = held.degrees
-    const {joint, axis, degrees} = held
-    this.tell({type: "turn", joint, axis, degrees, begin})
+  say() {
+    const {joint, axis, degrees, said} = this.held
+    if (degrees === said) { return }
+    this.held.said = degrees
+    this.tell({type: "turn", joint, axis, degrees, begin: false})
   }
 
   label(e) {
@@ -216,21 +165,17 @@ export class Gizmo {
     angle.style.top = `${e.clientY - box.top}px`
   }
 
-  release() {
-    const {held} = this
-    if (!held) { return }
-    if (held.said !== held.degrees) { this.say() }
-    held.group.classList.remove("held")
-    this.svg.classList.remove("holding")
+  drop() {
+    super.drop()
     this.overlay.angle.hidden = true
-    this.held = null
+    for (const {group} of this.rings) { group.classList.remove("held") }
   }
 
   // Where a ring can be taken hold of, on the page: for tests.
   handle(axis) {
     const box = this.overlay.canvas.getBoundingClientRect()
-    const {dot} = this.rings[axis]
-    return [box.left + Number(dot.getAttribute("cx")), box.top + Number(dot.getAttribute("cy"))]
+    const {knob} = this.rings[axis]
+    return [box.left + Number(knob.getAttribute("cx")), box.top + Number(knob.getAttribute("cy"))]
   }
 }
 

@@ -1,43 +1,29 @@
 // The handle of a joint at rest: a knob that moves it along the screen, and its partner's, which moves too.
 
 import {plainList} from "./arrays.js"
+import {DragHandle, line, make} from "./drag_handle.js"
+import {across, along, reflected} from "./vectors.js"
 
-const SEND_EVERY = 33
-
-export class JointHandle {
+export class JointHandle extends DragHandle {
   // `moved` hears that there is something to draw; `tell` sends to the server.
-  constructor(overlay, renderer, {moved, tell}) {
-    Object.assign(this, {overlay, renderer, moved, tell})
-    const make = (tag, className, parent) => {
-      const element = document.createElementNS("http://www.w3.org/2000/svg", tag)
-      element.setAttribute("class", className)
-      parent.append(element)
-      return element
-    }
-    this.svg = make("svg", "joint-handle", overlay.root)
-    this.svg.setAttribute("aria-hidden", "true")  // the numbers do the same by keys
+  constructor(overlay, renderer, hears) {
+    super("joint-handle", 33, overlay, renderer, hears)
     this.tie = make("path", "tie", this.svg)
-    this.partner = make("circle", "partner", this.svg)
-    this.partner.setAttribute("r", 6)
+    this.partner = make("circle", "partner", this.svg, {r: 6})
     this.knob = make("g", "knob", this.svg)
-    const reach = make("circle", "reach", this.knob)
-    reach.setAttribute("r", 20)
+    const reach = make("circle", "reach", this.knob, {r: 20})
     make("title", "", reach).textContent = "Drag: move the joint"
-    make("path", "halo", this.knob).setAttribute("d", CROSS)
-    make("path", "arrows", this.knob).setAttribute("d", CROSS)
-    make("circle", "dot", this.knob).setAttribute("r", 6)
-    reach.addEventListener("pointerdown", (e) => this.take(e))
-    reach.addEventListener("pointermove", (e) => this.drag(e))
-    for (const type of ["pointerup", "pointercancel"]) { reach.addEventListener(type, (e) => this.release(e)) }
+    for (const name of ["halo", "arrows"]) { make("path", name, this.knob, {d: CROSS}) }
+    make("circle", "dot", this.knob, {r: 6})
+    this.grip(reach)
     this.show(null)
   }
 
   // `part`: the joint, where it is in the scene, and what its partner's place is of it: a normal and
   // a distance of the mirror's plane.
   show(part) {
-    if (this.held && part?.joint === this.held.joint) { return }  // the hand is ahead of the server
-    this.held = null
-    this.svg.classList.remove("holding")
+    if (this.held && part?.joint === this.part.joint) { return }  // the hand is ahead of the server
+    this.drop()
     this.part = part && {joint: part.joint, at: plainList(part.at), mirror: part.mirror && plainList(part.mirror)}
     this.svg.style.display = part ? "" : "none"
   }
@@ -52,54 +38,27 @@ export class JointHandle {
     const other = part.mirror && this.renderer.project(reflected(part.at, part.mirror))
     for (const element of [this.tie, this.partner]) { element.style.display = other ? "" : "none" }
     if (!other) { return }
-    const [ox, oy] = other.map((value) => value.toFixed(1))
-    this.partner.setAttribute("cx", ox)
-    this.partner.setAttribute("cy", oy)
-    this.tie.setAttribute("d", `M${x} ${y}L${ox} ${oy}`)
+    this.partner.setAttribute("cx", other[0].toFixed(1))
+    this.partner.setAttribute("cy", other[1].toFixed(1))
+    this.tie.setAttribute("d", line([this.seen, other]))
   }
 
-  take(e) {
-    if (!this.seen || e.button) { return }
-    e.preventDefault()
-    e.stopPropagation()
-    e.target.setPointerCapture(e.pointerId)
+  begin() {
+    if (!this.seen) { return null }
     const pixel = this.renderer.pixel(this.seen[2])
-    this.held = {
-      joint: this.part.joint, from: this.part.at, x: e.clientX, y: e.clientY, pixel, pointer: e.pointerId,
-      ...across(this.renderer.camera.getDirectionOfProjection()), sentAt: 0, far: false,
-    }
-    this.svg.classList.add("holding")
+    return {from: this.part.at, pixel, ...across(this.renderer.camera.getDirectionOfProjection())}
   }
 
-  drag(e) {
+  follow(dx, dy) {
     const {held} = this
-    if (!held || e.pointerId !== held.pointer) { return }
-    e.stopPropagation()
-    const [dx, dy] = [held.pixel * (e.clientX - held.x), -held.pixel * (e.clientY - held.y)]
-    held.far ||= Math.hypot(e.clientX - held.x, e.clientY - held.y) > 2  // a click moves nothing
-    if (!held.far) { return }
-    this.part.at = held.from.map((x, i) => x + dx * held.right[i] + dy * held.up[i])
+    if (!held.moved && Math.hypot(dx, dy) <= 2) { return false }  // a click moves nothing
+    this.part.at = along(held.from, [held.pixel * dx, held.right], [-held.pixel * dy, held.up])
     this.moved()
-    const now = performance.now()
-    clearTimeout(held.later)
-    if (now - held.sentAt > SEND_EVERY) { this.say() } else { held.later = setTimeout(() => this.say(), SEND_EVERY) }
+    return true
   }
 
-  say(done = false) {
-    const {held} = this
-    if (!held) { return }
-    held.sentAt = performance.now()
-    this.tell({type: "joint", joint: held.joint, position: this.part.at, done})
-  }
-
-  release(e) {
-    const {held} = this
-    if (!held) { return }
-    e.stopPropagation()
-    clearTimeout(held.later)
-    if (held.far) { this.say(true) }
-    this.held = null
-    this.svg.classList.remove("holding")
+  say(done) {
+    this.tell({type: "joint", joint: this.part.joint, position: this.part.at, done})
   }
 }
 
@@ -108,20 +67,3 @@ const CROSS = [[1, 0], [0, 1], [-1, 0], [0, -1]].map(([c, s]) => {
   const at = (x, y) => `${c * x - s * y} ${s * x + c * y}`
   return `M${at(9, 0)}L${at(17, 0)}M${at(13.5, -3.5)}L${at(17, 0)}L${at(13.5, 3.5)}`
 }).join("")
-
-// The directions to the right and up on the screen, of length 1.
-export function across(ahead, above = [0, 1, 0]) {
-  const cross = (a, b) => [0, 1, 2].map((k) => {
-    const [i, j] = [(k + 1) % 3, (k + 2) % 3]
-    return a[i] * b[j] - a[j] * b[i]
-  })
-  const unit = (v) => v.map((x) => x / Math.hypot(...v))
-  const right = unit(cross(ahead, above))
-  return {right, up: cross(right, unit(ahead))}
-}
-
-// A point on the other side of a plane: its normal, of length 1, and its distance from 0.
-export function reflected(point, [a, b, c, distance]) {
-  const away = point[0] * a + point[1] * b + point[2] * c - distance
-  return [point[0] - 2 * away * a, point[1] - 2 * away * b, point[2] - 2 * away * c]
-}

@@ -7,6 +7,7 @@ import {PoseTexture} from "./skin.js"
 import {Smooth} from "./smooth.js"
 import {Corners} from "./strokes.js"
 import {noCards, shapeOf, tiles} from "./tiles.js"
+import {across, along, minus, unit} from "./vectors.js"
 
 export function loadVtk(url) {
   window.__cutcellVtk ??= new Promise((resolve, reject) => {
@@ -266,20 +267,14 @@ export class Renderer {
   ray(x, y) {
     const [left, top, w, h] = this.tiles[this.viewAt(x, y)]
     const origin = this.camera.getPosition()
-    const unit = (v) => v.map((c) => c / Math.hypot(...v))
-    const cross = (a, b) => [0, 1, 2].map((k) => {
-      const [i, j] = [(k + 1) % 3, (k + 2) % 3]
-      return a[i] * b[j] - a[j] * b[i]
-    })
-    const ahead = unit(this.camera.getFocalPoint().map((c, i) => c - origin[i]))
-    const right = unit(cross(ahead, [0, 1, 0]))
-    const up = cross(right, ahead)
+    const ahead = unit(minus(this.camera.getFocalPoint(), origin))
+    const {right, up} = across(ahead)
     const slope = Math.tan(VIEW_ANGLE * Math.PI / 360)
     const [aside, above] = this.middle
     const [a, b] = [
       (2 * (x - left) / w - 1 - aside) * slope * w / h, (1 - 2 * (y - top) / h - above) * slope,
     ]
-    return {origin, direction: unit(ahead.map((c, i) => c + a * right[i] + b * up[i]))}
+    return {origin, direction: unit(along(ahead, [a, right], [b, up]))}
   }
 
   remove() {

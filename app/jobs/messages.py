@@ -1,7 +1,5 @@
 """Texts of errors: sentences without the server's folders."""
 
-from __future__ import annotations
-
 import errno
 import tempfile
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Status of the work: progress, counts and seconds, warnings, errors."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -13,8 +11,8 @@ from cutcell.rig import Rig
 from ..commands.binding import cancel
 from ..commands.check import go_to
 from ..commands.session import Session
-from ..jobs.messages import sentence, visible_text
-from ..panels.controls import text_line, when
+from ..jobs.messages import sentence, shown
+from ..panels.controls import column, row, when, words
 from ..scenes.warnings import Door, warnings
 from ..state import State
 from ..widgets.modules import style
@@ -83,13 +81,11 @@ def status_line(session: Session) -> pmui.Row:
         on_click=lambda event: cancel(session),
         margin=(4, 12),
     )
-    return pmui.Row(
+    return row(
         stage,
         bar,
         stop,
         counts,
-        sizing_mode="stretch_width",
-        margin=0,
         sx={
             "height": "38px",
             "overflow": "hidden",
@@ -130,9 +126,7 @@ def messages(session: Session) -> pmui.Column:
     state.param.watch(update, ["message", "binding", "bare_graph"])
     alert.param.watch(closed, "closed")
     doors = pmui.Row(margin=(6, 0, 0, 0), visible=False, sx=DOORS)
-    place = pmui.Column(
-        alert, doors, margin=0, sizing_mode="stretch_width", stylesheets=[style("messages_place")]
-    )
+    place = column(alert, doors, stylesheets=[style("messages_place")])
 
     def update_pair(*events: Any) -> None:
         place.css_classes = ["beside-tour"] if state.tour >= 0 else []

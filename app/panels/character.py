@@ -1,7 +1,5 @@
 """Choose a demo character, or drop a file."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import panel_material_ui as pmui
@@ -14,7 +12,7 @@ from ..commands.session import Session
 from ..files.receive import MAX_UPLOAD
 from ..state import State
 from ..widgets.file_drop import FileDrop
-from .controls import GAP, as_text, caption, section, unique_names
+from .controls import GAP, as_text, caption, section, select_box, unique_names
 
 MAX_FAULTS = 2
 """The panel Check lists all."""
@@ -26,14 +24,7 @@ def character(session: Session) -> pmui.Column:
     """Return the section that opens characters."""
     state = session.state
     demos = {demo.title: demo.id for demo in DEMOS if demo.path.exists()}
-    select = pmui.Select(
-        label="Character",
-        options=demos,
-        value=None,
-        size="small",
-        margin=GAP,
-        sizing_mode="stretch_width",
-    )
+    select = select_box("Character", demos, value=None)
     lesson = caption()
 
     def chosen(event: Any) -> None:

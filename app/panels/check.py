@@ -1,7 +1,5 @@
 """Diagnose: what is wrong with the character, where, and what to do about it."""
 
-from __future__ import annotations
-
 from functools import partial
 from typing import Any
 
@@ -16,7 +14,7 @@ from ..commands.correct import leave_out
 from ..commands.export import export_repaired
 from ..commands.session import Session
 from ..state import State
-from .controls import GAP, caption, intro, section, text_line, when
+from .controls import LINE, button, caption, column, lead, section, when, words
 
 ICONS = {"error": "error", "warning": "warning", "note": "info"}
 MAX_DETAILS = 8
@@ -29,18 +27,16 @@ LEFT_OUT = ("stray-weights", "joints-outside")
 def check(session: Session) -> pmui.Column:
     """Return the controls of the panel Diagnose."""
     state = session.state
-    place = pmui.Column(margin=0, sizing_mode="stretch_width")
+    place = column()
 
     def listed(*events: Any) -> None:
         place.objects = [*_repairs(session), *_findings(session)]
 
     state.param.watch(listed, ["diagnosis", "finding", "repair"])
     listed()
-    return pmui.Column(
-        intro(when(lambda *_: summary(state), state.param.diagnosis, state.param.rig)),
+    return column(
+        lead(when(lambda *_: told(state), state.param.diagnosis, state.param.rig)),
         section("", place, margin=(6, 20, 4, 20)),
-        margin=0,
-        sizing_mode="stretch_width",
     )
 
 
@@ -78,15 +74,11 @@ def _findings(session: Session) -> list[Any]:
 def _entry(session: Session, finding: Finding) -> pmui.Column:
     """Return a finding as a line; with advice and repair if it is looked at."""
     is_chosen = session.state.finding == finding.code
-    title = pmui.Button(
-        label=finding.title,
+    title = button(
+        finding.title,
+        lambda: look_at(session, finding.code),
         icon=ICONS[finding.severity],
-        variant="text",
-        size="small",
-        margin=0,
-        sizing_mode="stretch_width",
-        on_click=lambda event: look_at(session, finding.code),
-        sx={"justifyContent": "flex-start", "textAlign": "left", "color": "text.primary"},
+        **LINE,
     )
     lines = [title, _line(finding.message)]
     if is_chosen:
@@ -96,16 +88,16 @@ def _entry(session: Session, finding: Finding) -> pmui.Column:
         lines.append(_line(finding.advice, "text.primary"))
         if finding.repair:
             lines.append(_line(f"Repair: {finding.repair}.", "text.primary"))
-            lines.append(_button("Repair", "build", lambda: repair(session, [finding.code])))
+            lines.append(button("Repair", lambda: repair(session, [finding.code]), icon="build"))
         carrying = [j for j in finding.joints if session.state.rig.skeleton.deform[j]]
         if finding.code in LEFT_OUT and carrying:
             label = _left_out(session.state.rig, carrying)
-            lines.append(_button(label, "link_off", lambda: leave_out(session, carrying)))
+            lines.append(button(label, lambda: leave_out(session, carrying), icon="link_off"))
         if finding.code in OF_PARTS and not session.state.bare:
             vertex = int(finding.vertices[0])
             see = partial(session.state.param.update, panel="weights", part=vertex)
-            lines.append(_button("Choose how these parts are bound", "category", see))
-    return pmui.Column(*lines, margin=(0, 0, 6, 0), sizing_mode="stretch_width")
+            lines.append(button("Choose what its parts follow", see, icon="category"))
+    return column(*lines, margin=(0, 0, 6, 0))
 
 
 def _left_out(rig: Rig, joints: list[int]) -> str:
@@ -122,7 +114,7 @@ def _repairs(session: Session) -> list[Any]:
     able = [] if state.diagnosis is None else [f for f in state.diagnosis.findings if f.repair]
     if len(able) > 1:
         codes = [finding.code for finding in able]
-        rows.append(_button(f"Repair all {len(able)}", "build", lambda: repair(session, codes)))
+        rows.append(button(f"Repair all {len(able)}", lambda: repair(session, codes), icon="build"))
     if state.repair is None:
         return rows
     now = "" if state.diagnosis is None else f" → {counted(state.diagnosis.counts)}"
@@ -130,25 +122,13 @@ def _repairs(session: Session) -> list[Any]:
         *rows,
         _line(f"Repaired: {counted(state.repair.counts)}{now}.", "text.primary"),
         *(_line(text) for text in state.repair.done),
-        _button(
-            "Download with original weights",
-            "download",
+        button(
+            "Download it with its own weights",
             lambda: export_repaired(session, session.view.offer),
+            icon="download",
         ),
-        _button("Undo repair", "undo", lambda: take_back(session)),
+        button("Undo repair", lambda: take_back(session), icon="undo"),
     ]
-
-
-def _button(label: str, icon: str, act: Any) -> pmui.Button:
-    return pmui.Button(
-        label=label,
-        icon=icon,
-        size="small",
-        variant="outlined",
-        margin=GAP,
-        sizing_mode="stretch_width",
-        on_click=lambda event: act(),
-    )
 
 
 def _line(text: str, color: str = "text.secondary") -> pmui.Typography:

@@ -1,7 +1,5 @@
 """Parts of the mesh: each glued to a joint, following the body, or bound by itself."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import panel_material_ui as pmui
@@ -13,7 +11,7 @@ from ..commands import correct
 from ..commands.session import Session
 from ..scenes.components import MOST, Component, chosen, listed, vertices_of
 from ..widgets.rows import Rows
-from .controls import GAP, caption, offer, section, unique_names
+from .controls import GAP, caption, column, offer, section, select_box, unique_names
 
 WAYS = {
     "As computed": "",
@@ -37,15 +35,10 @@ def parts_of_mesh(session: Session) -> pmui.Column:
         margin=0,
         styles={"--bar": "var(--mui-palette-text-secondary, #667)"},
     )
-    place = pmui.Column(rows, margin=GAP, sizing_mode="stretch_width", max_height=200, scroll="y")
-    way = pmui.Select(
-        label="Bind this part", options=WAYS, value="", size="small", margin=(16, 0, 4, 0),
-        sizing_mode="stretch_width",
-    )  # fmt: skip
-    glue = pmui.Select(
-        label="Joint", options=[], size="small", margin=(12, 0, 4, 0),
-        sizing_mode="stretch_width", searchable=True,
-    )  # fmt: skip
+    place = column(rows, margin=GAP, max_height=200, scroll="y")
+    way = select_box("Bind this part", WAYS, value="", margin=(16, 0, 4, 0))
+    glue = select_box("Glued to", margin=(12, 0, 4, 0), searchable=True)
+    held: list[Component] = []
     whole = section("Parts of the mesh", about, place, way, glue)
 
     def show() -> None:

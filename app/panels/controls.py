@@ -1,7 +1,5 @@
 """Controls shared by the sections of the sidebar."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Sequence
 from typing import Any
@@ -12,8 +10,21 @@ import param
 
 from cutcell.runtime.display import printable, shown_name
 
+from ..commands import pose
+from ..commands.session import Session
+
 GAP = (4, 0)
 """Space above and below a widget, and beside it."""
+BESIDE = (4, 8, 4, 0)
+"""The same, with space for what comes beside it."""
+LINE: dict[str, Any] = {
+    "variant": "text",
+    "margin": 0,
+    "sx": {"justifyContent": "flex-start", "textAlign": "left", "color": "text.primary"},
+}
+"""How a button looks that is a line of a list."""
+FULL: dict[str, Any] = {"margin": 0, "sizing_mode": "stretch_width"}
+CONTROL: dict[str, Any] = {"size": "small", "margin": GAP, "sizing_mode": "stretch_width"}
 
 
 def as_text(text: str) -> str:
@@ -137,6 +148,62 @@ def slider(parameter: Any, label: str, whole: bool = False, **params: Any) -> An
     # Panel holds a change back for 50 ms in case another follows; what is seen must not wait.
     made._priority_changes = ["value"]
     return made
+
+
+def switch(parameter: Any, **params: Any) -> pmui.Switch:
+    """Return a switch that follows a parameter, under the parameter's own label."""
+    params = {"label": parameter.label, "size": "small", "margin": (3, 0), **params}
+    return pmui.Switch.from_param(parameter, description="", **params)
+
+
+def button(label: Any, act: Callable[[], Any], **params: Any) -> pmui.Button:
+    """Return a button, as wide as there is room."""
+    params = {**CONTROL, "variant": "outlined", **params}
+    return pmui.Button(label=label, on_click=lambda event: act(), **params)
+
+
+def play_button(running: Any, act: Callable[[], Any], noun: str = "", **params: Any) -> pmui.Button:
+    """Return a button that starts and pauses what a parameter says is running."""
+    label = when(lambda on: ("Pause" if on else "Play") + noun, running)
+    icon = when(lambda on: "pause" if on else "play_arrow", running)
+    return button(label, act, icon=icon, **params)
+
+
+def rest_button(session: Session) -> pmui.Button:
+    """Return the button that lets the character rest."""
+    state = session.state
+    at_rest = when(lambda *_: not state.posed, state.param.turns, state.param.moving)
+    return button("Rest pose", lambda: pose.rest(session), disabled=at_rest)
+
+
+def select_box(label: str, options: Any = (), **params: Any) -> Any:
+    """Return a menu of options."""
+    options = options if isinstance(options, dict) else list(options)
+    return pmui.Select(label=label, options=options, **{**CONTROL, **params})
+
+
+def text_box(label: str, **params: Any) -> Any:
+    """Return a field of text."""
+    return pmui.TextInput(label=label, value="", **{**CONTROL, "margin": (8, 0), **params})
+
+
+def column(*objects: Any, **params: Any) -> pmui.Column:
+    """Return objects below each other, without space around them."""
+    return pmui.Column(*objects, **{**FULL, **params})
+
+
+def row(*objects: Any, **params: Any) -> pmui.Row:
+    """Return objects beside each other, without space around them."""
+    return pmui.Row(*objects, **{**FULL, **params})
+
+
+def menu(label: str, icon: str, acts: dict[str, Callable[[], Any]], **params: Any) -> Any:
+    """Return a button that opens a menu, each item of which acts."""
+    items = [{"label": name} for name in acts]
+    params = {**CONTROL, "variant": "outlined", **params}
+    opened: Any = pmui.MenuButton(label=label, icon=icon, items=items, **params)
+    opened.on_click(lambda item: acts[item["label"]]())
+    return opened
 
 
 def weightless(rig: Any, joint: int) -> bool:

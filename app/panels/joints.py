@@ -1,7 +1,5 @@
 """The joints as a tree: which carry weight, keep the file's, and how far each reaches."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -19,10 +17,11 @@ from ..commands.session import Session
 from ..scenes.joints import joint_rows, shares_of
 from ..state import State
 from ..widgets.joint_tree import JointTree
-from .controls import GAP, as_text, caption, section, text_line, when
+from .controls import CONTROL, GAP, as_text, button, caption, section, text_box, when, words
 from .moving import place
 from .structure import structure
 
+_AS_COMPUTED = {"deform": None, "locked": False, "gain": 1.0, "radius": None}
 DOUBLINGS = 2.0
 """The slider goes from as many halvings of a joint's reach to as many doublings."""
 STEP = 0.1
@@ -90,23 +89,15 @@ def _chosen(session: Session) -> list[Any]:
     state = session.state
     heading = text_line("", sx={"fontWeight": 600, "fontSize": 13}, margin=(6, 0, 0, 0))
     holds = caption("", margin=0)
-    called = pmui.TextInput(
-        label="Name", value="", size="small", margin=(8, 0), sizing_mode="stretch_width"
-    )
+    called = text_box("Name")
     carries = _switch("Deforms the mesh")
     locked = _switch("Lock to file weights")
     gain = pmui.FloatSlider(
-        label="Reach", start=-DOUBLINGS, end=DOUBLINGS, step=STEP, value=0.0, size="small",
-        margin=GAP, sizing_mode="stretch_width", show_value=False, track=False, tooltips=False,
+        label="Reach", start=-DOUBLINGS, end=DOUBLINGS, step=STEP, value=0.0,
+        show_value=False, track=False, tooltips=False, **CONTROL,
     )  # fmt: skip
-    radius = pmui.TextInput(
-        label="Radius (file units)", value="", size="small", margin=(8, 0),
-        sizing_mode="stretch_width", placeholder="measured from the body",
-    )  # fmt: skip
-    reset = pmui.Button(
-        label="Reset", icon="undo", size="small", variant="outlined", margin=GAP,
-        sizing_mode="stretch_width",
-    )  # fmt: skip
+    radius = text_box("Radius, in the file's units", placeholder="measured from the body")
+    reset = button("Reset", lambda: changes(**_AS_COMPUTED, **_put_back(state)), icon="undo")
     showing = [False]
 
     def update() -> None:
@@ -151,9 +142,6 @@ def _chosen(session: Session) -> list[Any]:
     locked.param.watch(lambda event: changes(locked=event.new), "value")
     gain.param.watch(reached, "value")
     radius.param.watch(lambda event: changes(radius=_read(event.new)), "value")
-    reset.on_click(
-        lambda event: changes(deform=None, locked=False, gain=1.0, radius=None, **_put_back(state))
-    )
     state.param.watch(lambda *events: show(), ["rig", "joint", "corrections", "falloff"])
     state.param.watch(lambda event: session.tasks.after_a_pause(update, "held"), "binding")
     show()

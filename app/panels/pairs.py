@@ -1,7 +1,6 @@
 """The pairs of an audit: step through them, see them side by side, say what they are."""
 
-from __future__ import annotations
-
+from functools import partial
 from typing import Any
 
 import panel_material_ui as pmui
@@ -12,7 +11,19 @@ from cutcell.runtime.display import shown_name
 from ..commands import pairs as actions
 from ..commands.session import Session
 from ..state import State
-from .controls import BUTTONS, GAP, caption, intro, section, when
+from .controls import (
+    BESIDE,
+    BUTTONS,
+    GAP,
+    button,
+    caption,
+    column,
+    lead,
+    row,
+    section,
+    select_box,
+    when,
+)
 
 NONE_OPEN = (
     "Compare near-duplicates of a data set. Run cutcell dataset audit FOLDER, then cutcell app "
@@ -41,29 +52,18 @@ def pairs(session: Session) -> pmui.Column:
     """Return the controls of the panel Pairs."""
     state = session.state
     if state.opened is None:
-        return pmui.Column(intro(NONE_OPEN), margin=0, sizing_mode="stretch_width")
+        return column(lead(NONE_OPEN))
     watched = (state.param.opened, state.param.pair, state.param.tier)
 
-    def button(label: str, icon: str, count: int) -> pmui.Button:
-        return pmui.Button(
-            label=label,
-            icon=icon,
-            size="small",
-            variant="outlined",
-            margin=(4, 8 if count < 0 else 0, 4, 0),
-            sizing_mode="stretch_width",
-            on_click=lambda event: actions.step(session, count),
-            disabled=when(lambda *_: not _ahead(state, count), *watched),
-        )
+    def to(label: str, icon: str, count: int) -> Any:
+        ended = when(lambda *_: not _ahead(state, count), *watched)
+        margin = BESIDE if count < 0 else GAP
+        act = partial(actions.step, session, count)
+        return button(label, act, icon=icon, margin=margin, disabled=ended)
 
-    steps = pmui.Row(
-        button("Previous", "arrow_back", -1),
-        button("Next", "arrow_forward", 1),
-        margin=0,
-        sizing_mode="stretch_width",
-    )
-    return pmui.Column(
-        intro(when(lambda *_: summary(state), *watched)),
+    steps = row(to("Previous", "arrow_back", -1), to("Next", "arrow_forward", 1))
+    return column(
+        lead(when(lambda *_: told(state), *watched)),
         section(
             "",
             _tiers(session),
@@ -77,8 +77,6 @@ def pairs(session: Session) -> pmui.Column:
             caption(when(lambda *_: threshold_text(state), *watched)),
             caption(when(lambda opened: f"{opened.folder / 'audit.json'} lists it.", watched[0])),
         ),
-        margin=0,
-        sizing_mode="stretch_width",
     )
 
 
@@ -139,9 +137,7 @@ def _ahead(state: State, count: int) -> bool:
 
 def _tiers(session: Session) -> pmui.Select:
     state = session.state
-    select = pmui.Select(
-        label="Step through", options=TIERS, size="small", margin=GAP, sizing_mode="stretch_width"
-    )
+    select = select_box("Step through", TIERS)
 
     def update(*events: Any) -> None:
         select.value = state.tier

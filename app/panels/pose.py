@@ -1,7 +1,5 @@
 """Turn joints, play motions, and see where other weights would put the skin."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -23,13 +21,18 @@ from .controls import (
     as_text,
     caption,
     choice,
+    column,
     follow,
     intro,
     offer,
+    play_button,
+    rest_button,
     section,
+    select_box,
+    switch,
     unique_names,
     when,
-)
+)  # fmt: skip
 
 AXES = ("x", "y", "z")
 RING_COLORS = ("#e5484d", "#30a46c", "#3e83f8")
@@ -42,11 +45,14 @@ WORST = 8
 
 def pose(session: Session) -> pmui.Column:
     """Return the controls of the panel Pose."""
-    return pmui.Column(
-        intro("Pose bones by hand or play a motion."),
-        _turning(session), _motion(session), _colours(session), brush(session),
-        _comparison(session), margin=0, sizing_mode="stretch_width",
-    )  # fmt: skip
+    return column(
+        lead("How the skin follows when bones turn, by hand or in a motion."),
+        _turning(session),
+        _motion(session),
+        _colours(session),
+        brush(session),
+        _comparison(session),
+    )
 
 
 def _turning(session: Session) -> pmui.Column:
@@ -55,17 +61,8 @@ def _turning(session: Session) -> pmui.Column:
         when(_how_to_turn, state.param.rig, state.param.joint, state.param.brush),
         margin=0,
     )
-    rest = pmui.Button(
-        label="Rest pose",
-        variant="outlined",
-        size="small",
-        on_click=lambda event: actions.rest(session),
-        margin=GAP,
-        sizing_mode="stretch_width",
-        disabled=when(lambda *_: not state.posed, state.param.turns, state.param.moving),
-    )
     angles = [_angle(session, axis) for axis in range(3)]
-    return section("", about, *angles, rest, margin=(8, 20, 4, 20))
+    return section("", about, *angles, rest_button(session), margin=(8, 20, 4, 20))
 
 
 def _how_to_turn(rig: Any, joint: int, brush: bool) -> str:
@@ -112,9 +109,7 @@ def _angle(session: Session, axis: int) -> pmui.FloatSlider:
 
 def _motion(session: Session) -> pmui.Column:
     state = session.state
-    motion = pmui.Select(
-        label="Motion", options=[], size="small", margin=GAP, sizing_mode="stretch_width"
-    )
+    motion = select_box("Motion")
 
     def listed(*events: Any) -> None:
         clips = state.rig.clips if state.rig is not None else ()
@@ -131,14 +126,7 @@ def _motion(session: Session) -> pmui.Column:
     listed()
     axis = choice(state.param.axis, {"about X": "x", "about Y": "y", "about Z": "z"})
     axis.visible = when(lambda clip: clip < 0, state.param.clip)
-    play = pmui.Button(
-        label=when(lambda on: "Pause" if on else "Play", state.param.playing),
-        icon=when(lambda on: "pause" if on else "play_arrow", state.param.playing),
-        size="small",
-        on_click=lambda event: actions.play(session),
-        margin=GAP,
-        sizing_mode="stretch_width",
-    )
+    play = play_button(state.param.playing, lambda: actions.play(session), variant="contained")
     return section("", motion, axis, play, margin=(2, 20, 4, 20))
 
 
@@ -174,9 +162,7 @@ def notes_text(state: State) -> str:
 def _comparison(session: Session) -> pmui.Column:
     state = session.state
     views = {"Alone": "alone", "Ghost": "ghost", "Side by side": "beside"}
-    heat = pmui.Switch.from_param(
-        state.param.heat, label="Error as colours", size="small", margin=GAP, description=""
-    )
+    heat = switch(state.param.heat, label="Error as colours", margin=GAP)
     now = caption(
         when(
             lambda *_: error_text(state, error_of(state, session.memo)),

@@ -1,7 +1,5 @@
 """The skeleton of a mesh that its file has none for: which template is fitted into it."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import panel_material_ui as pmui
@@ -11,7 +9,7 @@ from cutcell.templates import TEMPLATES
 from ..commands import templates
 from ..commands.session import Session
 from ..state import State
-from .controls import GAP, caption, section, when
+from .controls import caption, section, select_box, when
 
 NONE = "None"
 CHANGED = "Your own"
@@ -22,10 +20,7 @@ HINT = "This mesh has no skeleton. Choose a template to fit, then drag its joint
 def skeleton_menu(session: Session) -> pmui.Column:
     """Return the section that gives a mesh without a skeleton one."""
     state = session.state
-    select = pmui.Select(
-        label="Skeleton", options=[NONE, *TITLES], value=NONE, size="small", margin=GAP,
-        sizing_mode="stretch_width",
-    )  # fmt: skip
+    select = select_box("Skeleton", [NONE, *TITLES], value=NONE)
     hint = caption(HINT, visible=when(lambda rig: rig is not None and state.bare, state.param.rig))
 
     def update(*events: Any) -> None:

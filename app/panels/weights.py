@@ -1,7 +1,5 @@
 """Weights: how much each bone holds, and how it falls with distance."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -13,7 +11,7 @@ from ..commands.session import Session
 from ..state import State
 from .brush import brush
 from .components import parts_of_mesh
-from .controls import GAP, caption, choice, follow, intro, section, slider, when
+from .controls import caption, choice, column, follow, lead, section, select_box, slider, when
 from .corrections import corrections
 from .joints import joints
 
@@ -33,9 +31,7 @@ FALLOFF_TITLES = {"rig": "Animation", "paper": "Paper"}
 def weights(session: Session) -> pmui.Column:
     """Return the controls of the panel Weights."""
     state = session.state
-    select = pmui.Select(
-        label="Colour by", options=SHOWN, size="small", margin=GAP, sizing_mode="stretch_width"
-    )
+    select = select_box("Colour by", SHOWN)
 
     def offered() -> tuple[dict[str, str], str]:
         has_weights = state.rig is not None and state.rig.weights is not None
@@ -49,19 +45,15 @@ def weights(session: Session) -> pmui.Column:
         facts.object = summary(state)
 
     # The colours go first.
-    state.param.watch(
-        lambda *events: session.tasks.after_a_pause(update, "told"), ["binding", "rig"]
-    )
-    return pmui.Column(
-        intro("How strongly each bone moves the skin."),
+    state.param.watch(lambda *events: session.tasks.after_a_pause(tell, "told"), ["binding", "rig"])
+    return column(
+        lead("How strongly each bone moves the skin."),
         section("", select, *_sides(state), facts, margin=(8, 20, 4, 20)),
         brush(session),
         joints(session),
         section("Falloff with distance", *_falloff(state)),
         parts_of_mesh(session),
         corrections(session),
-        margin=0,
-        sizing_mode="stretch_width",
     )
 
 

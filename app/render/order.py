@@ -1,7 +1,5 @@
 """Request for a picture of a scene: camera, size and motion."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from cutcell.rig import Rig

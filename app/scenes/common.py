@@ -1,7 +1,5 @@
 """Elements shared by the scenes of all panels: body, bones, cut, theme."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 from typing import Any
@@ -20,7 +18,7 @@ from cutcell_viewers.marks import vertex_mark
 from cutcell_viewers.palette import THEMES, Theme, joint_colors, to_hex
 from cutcell_viewers.skin import skin_of_weights
 
-from ..state import State
+from ..state import PANELS, State
 from .memo import Memo
 
 BODY_OPACITY_WITH_PATH = 0.42
@@ -28,13 +26,6 @@ BODY_OPACITY_WITH_PATH = 0.42
 
 GRAPH_BODY_OPACITY = 0.22
 """How opaque the body is while what lies inside is looked at."""
-
-
-POSED = ("pose", "compare")
-"""The panels on which the character moves; on all others it rests."""
-
-CUT = ("graph", "distance")
-"""The panels on which it can be cut."""
 
 
 def character(
@@ -56,7 +47,7 @@ def character(
     rig = state.rig
     plain = memo("body", (rig.mesh, rig.weights, rig.world), lambda: body(rig))
     skin = None
-    if state.panel in POSED and state.weights is not None:
+    if PANELS[state.panel].poses and state.weights is not None:
         skin = memo("skin", (rig, state.weights), lambda: skin_of_weights(state.weights))
     hung = memo("attachments", (rig.attachments, rig.world), lambda: attachments(rig))
     mark = {}
@@ -78,7 +69,7 @@ def _skeleton(state: State, memo: Memo, coloured: bool) -> dict[str, Actor]:
         return {}
     rig = state.rig
     segments = memo("segments", (rig,), lambda: drawn_segments(rig))
-    visible_bones = _behind_cut(state, *segments) if state.panel in CUT else None
+    visible_bones = _behind_cut(state, *segments) if PANELS[state.panel].cuts else None
 
     def make() -> dict[str, Actor]:
         colors = joint_colors(rig.skeleton.parents) if coloured else None

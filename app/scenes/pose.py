@@ -1,7 +1,5 @@
 """The character in a pose or a motion, and what the file's own weights make of the same."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 
@@ -16,8 +14,8 @@ from cutcell_viewers.palette import GHOST
 from cutcell_viewers.pose_scene import joint_turns, swing, turn
 from cutcell_viewers.skin import skin_of_weights
 
-from ..state import State
-from .common import POSED, character
+from ..state import PANELS, State
+from .common import character
 from .memo import Memo
 from .weights import selection_marks, weights_look, weights_seen
 
@@ -191,7 +189,7 @@ def angles_of(
 
 def clip_of(state: State) -> Clip | None:
     """Return the motion that is on: a clip of the rig, or a swing of the chosen joint."""
-    if not state.moving or state.rig is None or state.panel not in POSED:
+    if not state.moving or state.rig is None or not PANELS[state.panel].poses:
         return None
     if 0 <= state.clip < len(state.rig.clips):
         return state.rig.clips[state.clip]

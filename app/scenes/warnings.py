@@ -1,7 +1,5 @@
 """Warnings for a person, each with the finding of the check that locates it."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from cutcell.diagnosis.finding import TITLES

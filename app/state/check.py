@@ -1,7 +1,5 @@
 """State of the panel Check: findings, and repairs."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

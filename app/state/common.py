@@ -1,14 +1,10 @@
 """State that all panels share: the character, the chosen bone and vertex, and progress."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import param
 
-PANELS = ("graph", "distance", "weights", "pose", "compare", "check", "learn", "pairs")
-"""The ids of the panels, in the order in which they are offered; the last for an audit alone."""
-
+from .panels import PANELS
 
 CUTS = ("off", "x", "y", "z", "free")
 """What the body is cut across; a free plane has any direction."""

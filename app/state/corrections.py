@@ -1,7 +1,5 @@
 """Corrections of the binding, and their form in an address."""
 
-from __future__ import annotations
-
 import base64
 import binascii
 import zlib

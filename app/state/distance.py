@@ -1,7 +1,5 @@
 """Choices of the panel Distance."""
 
-from __future__ import annotations
-
 from typing import Any, Literal
 
 import param

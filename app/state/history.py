@@ -1,7 +1,5 @@
 """History of choices."""
 
-from __future__ import annotations
-
 from collections.abc import Collection
 from typing import Any
 

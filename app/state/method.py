@@ -1,15 +1,14 @@
 """The parameters of the method, with the defaults of `cutcell.bind`."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import cutcell
+from cutcell.method import GraphOptions, WeightOptions
 
-GRAPH = ("resolution", "connectivity", "winding_threshold", "orient", "leaf")
+GRAPH = ("resolution", *GraphOptions.__annotations__, "leaf")
 """What distances are measured again for."""
 
-WEIGHTS = ("falloff", "alpha", "max_influences", "threshold")
+WEIGHTS = tuple(WeightOptions.__annotations__)
 """What changes weights without measuring any distance again."""
 
 

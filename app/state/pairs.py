@@ -1,7 +1,5 @@
 """Choices of the panel Pairs: the pair of an audit."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property

@@ -1,7 +1,5 @@
 """Choices as plain values, for the address, undo and reloading."""
 
-from __future__ import annotations
-
 import re
 from typing import Any
 from urllib.parse import parse_qsl, quote, urlencode

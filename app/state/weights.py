@@ -1,7 +1,5 @@
 """Choices of the panel Weights."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import param

@@ -1,6 +1,6 @@
 import assert from "node:assert"
 import {test} from "node:test"
-import {rotated, spanned} from "../../../app/frontend/cut_handles.js"
+import {rotated, spanned} from "../../../app/frontend/vectors.js"
 
 const dot = (a, b) => a.reduce((sum, x, i) => sum + x * b[i], 0)
 const near = (a, b) => a.forEach((x, i) => assert.ok(Math.abs(x - b[i]) < 1e-12, `${a} is not ${b}`))
