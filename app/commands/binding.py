@@ -63,7 +63,7 @@ def bind(session: Session, message: tuple[str, str] | None = None) -> None:
     if state.bare:
         _build(session, message)
         return
-    request, few, corrections = asked(state), kept(state), state.corrections
+    request, few, corrections = binding_request(state), prune_options(state), state.corrections
     graph = session.binder.request(request, rig.mesh, OF_GRAPH)
     work = binding_work(state, rig, corrections, graph)
 
@@ -137,7 +137,7 @@ def cancel(session: Session) -> None:
         session.uploads.stay(session.uploads.key)
         state.param.update(busy=False, message=("info", "Cancelled. Nothing was changed."))
         if state.graph is not None:
-            _go_back(session, session.binder.wanted)
+            _go_back(session, session.binder.requested)
 
 
 def swap(session: Session, rig: Rig, **more: Any) -> None:
@@ -174,7 +174,7 @@ def restore(session: Session, choices: dict[str, Any]) -> None:
 def _build(session: Session, message: tuple[str, str] | None) -> None:
     """Build the graph of a mesh without a skeleton."""
     rig = session.state.rig
-    request = asked(session.state)
+    request = binding_request(session.state)
     chosen = {name: request[name] for name in OF_GRAPH}
     cached = session.binder.request(request, rig.mesh, OF_GRAPH)
 
@@ -191,10 +191,10 @@ def _build(session: Session, message: tuple[str, str] | None) -> None:
 def _go_back(session: Session, failed: dict[str, Any]) -> None:
     """Choose what the page holds instead of what nothing came of; at first, the defaults."""
     state, bound = session.state, session.binder.bound
-    request, corrections = asked(State()), Corrections()
+    request, corrections = binding_request(State()), Corrections()
     if state.graph is not None and bound is not None:
         request, corrections = bound.request, bound.corrections
-    if asked(state) != wanted or (wanted == request and state.corrections == corrections):
+    if binding_request(state) != failed or (failed == request and state.corrections == corrections):
         return
     session.binder.withdrawn(request)
     _withdraw(session, {name: request[name] for name in GRAPH}, corrections)
@@ -211,7 +211,7 @@ def _withdraw(session: Session, choices: dict[str, Any], corrections: Correction
 
 def _rebind(session: Session) -> None:
     """Compute again if what is measured for is other than what was last computed for."""
-    if asked(session.state) != session.binder.wanted:
+    if binding_request(session.state) != session.binder.requested:
         bind(session)
 
 
@@ -223,7 +223,7 @@ def _correct(session: Session) -> None:
     is_ready = state.bare_graph if state.bare else state.binding
     if is_ready is None and not session.tasks.jobs("main").running:
         session.binder.withdrawn()  # it was dropped with the joints that it was of
-    if asked(state) != session.binder.wanted:
+    if binding_request(state) != session.binder.requested:
         session.tasks.after_a_pause(lambda: _rebind(session))
     elif not state.bare:
         weigh(session)
@@ -261,9 +261,9 @@ def weigh(session: Session) -> None:
     state, bound = session.state, session.binder.bound
     if state.binding is None or bound is None:
         return
-    if asked(state)["corrections"] != bound.request["corrections"]:
+    if binding_request(state)["corrections"] != bound.request["corrections"]:
         return  # they are about to be measured
-    distances, falloff, few = state.binding.distances, state.falloff, kept(state)
+    distances, falloff, few = state.binding.distances, state.falloff, prune_options(state)
     cached = bound.falloffs.get(falloff)
     if bound.cutoff < reach_of(falloff) or not _measured(distances, falloff, few["max_influences"]):
         bind(session)

@@ -32,8 +32,8 @@ def _begin_anew(session: Session) -> None:
 def examine(session: Session) -> None:
     """Diagnose what stands there, unless its graph is known to be sound or not."""
     state, binder = session.state, session.binder
-    if state.graph is None or not binder.is_for(asked(state)):
-        return  # what belongs to the choices is not there yet
+    if state.graph is None or not binder.is_for(binding_request(state)):
+        return  # the graph of the present choices is not built yet
     if binder.is_diagnosed:
         return
     rig, resolution = state.rig, state.resolution

@@ -4,7 +4,7 @@ from cutcell.editing.corrections import Corrections
 
 from ..scenes.common import first_joint
 from ..state import PANELS, State
-from ..state.corrections import applied, changes, news
+from ..state.corrections import applied, changed_only, changes
 from ..state.url import defaults
 from . import brush, pairs
 from .loading import revisit

@@ -18,7 +18,7 @@ from cutcell_viewers.character import to_scene
 
 from ..scenes.common import bones_part
 from ..state.corrections import Dragged, applied
-from .binding import asked, binding_work, previewer
+from .binding import binding_request, binding_work, previewer
 from .correct import check_alone, correct
 from .session import Session
 
@@ -238,8 +238,8 @@ class Hand:
     def _show(self, corrections: Corrections) -> None:
         """Show about what the weights will be, and when the hand rests what they are."""
         state = self._session.state
-        if not self._session.binder.is_for(asked(state)):
-            return  # what was let go before is about to be bound
+        if not self._session.binder.is_for(binding_request(state)):
+            return  # the last position is about to be bound
         rig = applied(state.own, corrections)
         before = state.binding if state.dragged is None else state.dragged.binding
         self._begin(rig, corrections)

@@ -85,10 +85,10 @@ class Session:
     before_tour : tuple or None
         The choices and the camera from before the tour.
     arrival : dict
-        What an address says of the character that is on its way.
+        Choices of the address for the character that is being loaded.
     binder : Binder
     kept : CorrectionsFile
-        What the address has no room for.
+        Corrections that are too long for the address.
     """
 
     def __init__(self, view: View, schedule: Schedule) -> None:

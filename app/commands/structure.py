@@ -37,7 +37,7 @@ def hang_on(session: Session, parent: str) -> None:
         return
     hung = {joint: on}
     mirror, partner = mirror_of(session), moves_along(session)
-    # Where one side is an ancestor of the other, only one can be moved.
+    # Where one side is an ancestor of the other, the other stays.
     independent = partner is not None and not (on >= 0 and skeleton.subtree[partner][on])
     if mirror is not None and partner is not None and independent:
         across = int(mirror.joint[on]) if on >= 0 else -1

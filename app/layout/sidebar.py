@@ -8,7 +8,7 @@ from ..commands.session import Session
 from ..panels import BUILDERS
 from ..panels.bone import bone
 from ..panels.character import character
-from ..panels.controls import column, lead, when
+from ..panels.controls import column, intro, when
 from ..panels.export import export
 from ..panels.templates import skeleton_menu
 from ..state import PANELS
@@ -52,7 +52,7 @@ def panels(session: Session) -> tuple[Tabs, pmui.Column]:
         margin=(10, 20, 0, 20),
         sizing_mode="stretch_width",
     )
-    missing = lead(NO_SKELETON)
+    missing = intro(NO_SKELETON)
     place = column(missing)
     built: dict[str, Any] = {}
 

@@ -11,8 +11,8 @@ from cutcell.rig import Rig
 from ..commands.binding import cancel
 from ..commands.check import go_to
 from ..commands.session import Session
-from ..jobs.messages import sentence, shown
-from ..panels.controls import column, row, when, words
+from ..jobs.messages import sentence, visible_text
+from ..panels.controls import column, row, text_line, when
 from ..scenes.warnings import Door, warnings
 from ..state import State
 from ..widgets.modules import style

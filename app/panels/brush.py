@@ -64,7 +64,7 @@ def _selection(session: Session) -> pmui.Column:
 
     changing = state.param.brush_selection, state.param.rig
     return column(
-        caption(when(told, *changing)),
+        caption(when(summary, *changing)),
         row(
             button("Clear", lambda: clear_selection(session), margin=BESIDE),
             button("Invert", lambda: invert_selection(session)),

@@ -14,7 +14,7 @@ from ..commands.correct import leave_out
 from ..commands.export import export_repaired
 from ..commands.session import Session
 from ..state import State
-from .controls import LINE, button, caption, column, lead, section, when, words
+from .controls import LINE, button, caption, column, intro, section, text_line, when
 
 ICONS = {"error": "error", "warning": "warning", "note": "info"}
 MAX_DETAILS = 8
@@ -35,7 +35,7 @@ def check(session: Session) -> pmui.Column:
     state.param.watch(listed, ["diagnosis", "finding", "repair"])
     listed()
     return column(
-        lead(when(lambda *_: told(state), state.param.diagnosis, state.param.rig)),
+        intro(when(lambda *_: summary(state), state.param.diagnosis, state.param.rig)),
         section("", place, margin=(6, 20, 4, 20)),
     )
 
@@ -96,7 +96,7 @@ def _entry(session: Session, finding: Finding) -> pmui.Column:
         if finding.code in OF_PARTS and not session.state.bare:
             vertex = int(finding.vertices[0])
             see = partial(session.state.param.update, panel="weights", part=vertex)
-            lines.append(button("Choose what its parts follow", see, icon="category"))
+            lines.append(button("Choose how these parts are bound", see, icon="category"))
     return column(*lines, margin=(0, 0, 6, 0))
 
 
@@ -123,7 +123,7 @@ def _repairs(session: Session) -> list[Any]:
         _line(f"Repaired: {counted(state.repair.counts)}{now}.", "text.primary"),
         *(_line(text) for text in state.repair.done),
         button(
-            "Download it with its own weights",
+            "Download with original weights",
             lambda: export_repaired(session, session.view.offer),
             icon="download",
         ),

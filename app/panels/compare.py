@@ -20,7 +20,7 @@ from .controls import (
     caption,
     column,
     follow,
-    lead,
+    intro,
     play_button,
     rest_button,
     row,
@@ -62,7 +62,7 @@ def compare(session: Session) -> pmui.Column:
     controls = (_field(state), _minus(state), table, stop, motion)
     about_errors = caption(when(about, state.param.rig))
     return column(
-        lead("Two to four methods side by side, under one camera."),
+        intro("Two to four methods side by side, under one camera."),
         section("", about_errors, *controls, margin=(4, 20, 4, 20)),
     )
 

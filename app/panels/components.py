@@ -37,8 +37,7 @@ def parts_of_mesh(session: Session) -> pmui.Column:
     )
     place = column(rows, margin=GAP, max_height=200, scroll="y")
     way = select_box("Bind this part", WAYS, value="", margin=(16, 0, 4, 0))
-    glue = select_box("Glued to", margin=(12, 0, 4, 0), searchable=True)
-    held: list[Component] = []
+    glue = select_box("Joint", margin=(12, 0, 4, 0), searchable=True)
     whole = section("Parts of the mesh", about, place, way, glue)
 
     def show() -> None:

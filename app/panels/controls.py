@@ -157,7 +157,7 @@ def switch(parameter: Any, **params: Any) -> pmui.Switch:
 
 
 def button(label: Any, act: Callable[[], Any], **params: Any) -> pmui.Button:
-    """Return a button, as wide as there is room."""
+    """Return a button that fills the width."""
     params = {**CONTROL, "variant": "outlined", **params}
     return pmui.Button(label=label, on_click=lambda event: act(), **params)
 

@@ -12,7 +12,7 @@ from ..commands.session import Session
 from .controls import BESIDE, CONTROL, button, caption, row, section, when
 
 MAX_FILE = 4 * 2**20
-NONE = "Nothing is corrected. What is goes into the exported file, and into files of their own."
+NONE = "No corrections yet. They are included in the export and can be saved as JSON."
 
 
 def corrections(session: Session) -> pmui.Column:
@@ -39,7 +39,7 @@ def corrections(session: Session) -> pmui.Column:
     opener.param.watch(opened, "value")
     return section(
         "Corrections",
-        caption(when(told, state.param.corrections)),
+        caption(when(summary, state.param.corrections)),
         row(
             button("Save", lambda: correct.save(session), **style),
             opener,

@@ -11,7 +11,7 @@ from .controls import (
     caption,
     choice,
     column,
-    lead,
+    intro,
     play_button,
     section,
     slider,
@@ -26,15 +26,15 @@ def distance(session: Session) -> pmui.Column:
     """Return the controls of the panel Geodesics."""
     state = session.state
     idle = caption(
-        "This bone carries no weight, so no distance begins at it.",
+        "This bone does not deform the mesh, so it has no distance field.",
         visible=when(weightless, state.param.rig, state.param.joint),
     )
     return column(
-        lead("How far it is from the chosen bone, along the shortest path through the body."),
+        intro("Distance to the selected bone, along the shortest path through the body."),
         section("", idle, _one(session), margin=(8, 20, 4, 20)),
         section("Shown with it", *_more(state)),
         section("Wavefront", *_wave(state)),
-        section("Measures side by side", *_beside(state)),
+        section("Measures side by side", *_comparison(state)),
     )
 
 

@@ -42,8 +42,8 @@ def export(session: Session) -> pmui.Column:
         "Export",
         bound,
         row(
-            menu("Picture, film", "movie", films, margin=BESIDE, disabled=empty),
-            menu("Numbers", "table_chart", numbers, disabled=empty),
+            menu("Image, video", "movie", films, margin=BESIDE, disabled=empty),
+            menu("Data", "table_chart", numbers, disabled=empty),
         ),
         caption(when(_described, state.param.rig)),
     )

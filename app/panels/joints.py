@@ -17,7 +17,7 @@ from ..commands.session import Session
 from ..scenes.joints import joint_rows, shares_of
 from ..state import State
 from ..widgets.joint_tree import JointTree
-from .controls import CONTROL, GAP, as_text, button, caption, section, text_box, when, words
+from .controls import CONTROL, GAP, as_text, button, caption, section, text_box, text_line, when
 from .moving import place
 from .structure import structure
 
@@ -96,7 +96,7 @@ def _chosen(session: Session) -> list[Any]:
         label="Reach", start=-DOUBLINGS, end=DOUBLINGS, step=STEP, value=0.0,
         show_value=False, track=False, tooltips=False, **CONTROL,
     )  # fmt: skip
-    radius = text_box("Radius, in the file's units", placeholder="measured from the body")
+    radius = text_box("Radius (file units)", placeholder="measured from the body")
     reset = button("Reset", lambda: changes(**_AS_COMPUTED, **_put_back(state)), icon="undo")
     showing = [False]
 

@@ -18,7 +18,7 @@ from .controls import (
     button,
     caption,
     column,
-    lead,
+    intro,
     row,
     section,
     select_box,
@@ -52,7 +52,7 @@ def pairs(session: Session) -> pmui.Column:
     """Return the controls of the panel Pairs."""
     state = session.state
     if state.opened is None:
-        return column(lead(NONE_OPEN))
+        return column(intro(NONE_OPEN))
     watched = (state.param.opened, state.param.pair, state.param.tier)
 
     def to(label: str, icon: str, count: int) -> Any:
@@ -63,7 +63,7 @@ def pairs(session: Session) -> pmui.Column:
 
     steps = row(to("Previous", "arrow_back", -1), to("Next", "arrow_forward", 1))
     return column(
-        lead(when(lambda *_: told(state), *watched)),
+        intro(when(lambda *_: summary(state), *watched)),
         section(
             "",
             _tiers(session),

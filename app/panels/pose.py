@@ -46,7 +46,7 @@ WORST = 8
 def pose(session: Session) -> pmui.Column:
     """Return the controls of the panel Pose."""
     return column(
-        lead("How the skin follows when bones turn, by hand or in a motion."),
+        intro("Pose bones by hand or play a motion."),
         _turning(session),
         _motion(session),
         _colours(session),

@@ -11,7 +11,7 @@ from ..commands.session import Session
 from ..state import State
 from .brush import brush
 from .components import parts_of_mesh
-from .controls import caption, choice, column, follow, lead, section, select_box, slider, when
+from .controls import caption, choice, column, follow, intro, section, select_box, slider, when
 from .corrections import corrections
 from .joints import joints
 
@@ -45,9 +45,11 @@ def weights(session: Session) -> pmui.Column:
         facts.object = summary(state)
 
     # The colours go first.
-    state.param.watch(lambda *events: session.tasks.after_a_pause(tell, "told"), ["binding", "rig"])
+    state.param.watch(
+        lambda *events: session.tasks.after_a_pause(update, "told"), ["binding", "rig"]
+    )
     return column(
-        lead("How strongly each bone moves the skin."),
+        intro("How strongly each bone moves the skin."),
         section("", select, *_sides(state), facts, margin=(8, 20, 4, 20)),
         brush(session),
         joints(session),
