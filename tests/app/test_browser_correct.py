@@ -108,7 +108,7 @@ def test_joints_are_corrected_by_keys_kept_and_exported(visit, robot, tmp_path):
     path = tmp_path / "mine.json"
     path.write_text(json.dumps({"joints": {robot.skeleton.names[0]: {"gain": 2}}}))
     with visit.page.expect_file_chooser() as chooser:
-        visit.page.get_by_text("Open", exact=True).click()
+        visit.page.locator("label", has_text="Open").click()
     chooser.value.set_files(path)
     expect(tree.get_by_text("×2")).to_be_visible()
     visit.settle()
@@ -305,7 +305,7 @@ def test_weights_are_painted_on_a_posed_body_and_stay_so(visit, robot, tmp_path)
     path = tmp_path / "painted.json"
     held.save(path)
     with visit.page.expect_file_chooser() as chooser:
-        visit.page.get_by_text("Open", exact=True).click()
+        visit.page.locator("label", has_text="Open").click()
     chooser.value.set_files(path)
     visit.expect_text(f"Corrected: {len(held.vertices)} vert")
     visit.settle()
