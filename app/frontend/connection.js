@@ -1,4 +1,4 @@
-// When the server is gone: says so, tries again, and comes back with what the address holds.
+// When the server is gone: shows a message, reconnects, and restores the state from the address.
 
 import {element} from "./elements.js"
 import {stylesheet} from "./styles.js"

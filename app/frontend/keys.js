@@ -31,7 +31,7 @@ const BRUSH_KEYS = [
 const BRUSH_POINTER = [
   ["drag over the body", "paint", "drag over the body"],
   ["Shift drag", "smooth"],
-  ["Ctrl drag", "take away"],
+  ["Ctrl drag", "subtract"],
   ["drag beside it", "turn (or right-drag)", "drag beside it"],
   ["Shift right-drag", "move (or the middle button)", "two fingers"],
 ]
@@ -56,7 +56,7 @@ const TOOLS = [
     '<path d="M9.2 9.3a2.9 2.9 0 1 1 4.4 2.5c-1 .6-1.6 1.2-1.6 2.3M12 17.6v.1"/>'],
 ]
 
-// Elements that have a use of their own for keys.
+// Elements that handle keys themselves.
 const TYPED = "input, textarea, select, [contenteditable], [role=combobox], [role=listbox], "
   + "[role=option], [role=menu], [role=menuitem], [role=slider], [role=spinbutton], [role=tab], dialog"
 // Those that take letters, brackets and Escape; sliders and switches do not.

@@ -63,7 +63,7 @@ export class Overlay {
     }
   }
 
-  // What stands in each view, and the seams between them.
+  // The contents of each view, and the lines between views.
   showViews(captions, tiles) {
     if (!this.views) {
       this.views = element("div")

@@ -1,7 +1,7 @@
 // How lines and points are drawn on the card (strokes.js): as shaded strokes of two triangles each, or
 // plainly.
 
-const HAZE = 0.55  // how much of the background lies over what is farthest
+const HAZE = 0.55  // share of the background in the colour of the farthest points
 
 const PLACED = `
   uniform highp sampler2D places;
@@ -24,10 +24,10 @@ const WIDE = `
   float reach(float w) { return clamp(thick * scale / w, 0.5 * pixels, 6.0 * pixels); }`
 
 const COLOURED = (by) => by === "colors"
-  ? "uniform highp sampler2D points;\nvec3 told(int i) { return texelFetch(points, ivec2(i % 2048, i / 2048), 0).rgb; }"
+  ? "uniform highp sampler2D points;\nvec3 valueOf(int i) { return texelFetch(points, ivec2(i % 2048, i / 2048), 0).rgb; }"
   : by === "values"
-    ? "uniform highp sampler2D points;\nvec3 told(int i) { return vec3(texelFetch(points, ivec2(i % 2048, i / 2048), 0).r); }"
-    : "vec3 told(int i) { return vec3(0.0); }"
+    ? "uniform highp sampler2D points;\nvec3 valueOf(int i) { return vec3(texelFetch(points, ivec2(i % 2048, i / 2048), 0).r); }"
+    : "vec3 valueOf(int i) { return vec3(0.0); }"
 
 const HEAD = (by) => `#version 300 es
   precision highp float; precision highp int;
@@ -55,7 +55,7 @@ const LINE = (by) => `${HEAD(by)}
     vec2 shift = (vec2(-way.y, way.x) * side + way * (2.0 * end - 1.0) * 0.3) * half_;
     here.xy += shift / size * 2.0 * here.w;
     gl_Position = here;
-    shown = mix(told(int(ends.x)), told(int(ends.y)), t);
+    shown = mix(valueOf(int(ends.x)), valueOf(int(ends.y)), t);
     at = mix(a, b, t); along = length(b - a) * t; across = vec2(side, half_); away = hazy(here.w);
   }`
 
@@ -67,7 +67,7 @@ const PLAIN = (by) => `${HEAD(by)}
     int i = int(gl_VertexID % 2 == 0 ? ends.x : ends.y);
     at = place(i);
     gl_Position = seen * vec4(at, 1.0);
-    shown = told(i); away = hazy(gl_Position.w);
+    shown = valueOf(i); away = hazy(gl_Position.w);
   }`
 
 const POINT = (by) => `${HEAD(by)}
@@ -82,7 +82,7 @@ const POINT = (by) => `${HEAD(by)}
     away = hazy(depth);
     gl_Position.xy += aside * (reach(depth) + 0.5) / size * 2.0 * depth;
     gl_Position.z -= 2e-4 * depth;
-    shown = told(ends); across = aside; along = 0.0;
+    shown = valueOf(ends); across = aside; along = 0.0;
   }`
 
 const FORMS = {
