@@ -41,7 +41,7 @@ FRAMES = {".mp4": 30, ".gif": 20}
 
 @dataclass(frozen=True, eq=False)
 class Order:
-    """What is to be drawn: a picture, or a film where it turns or moves.
+    """The request: a picture, or a film where it turns or moves.
 
     Parameters
     ----------
@@ -166,7 +166,7 @@ def check_picture_file(path: Path, moves: bool = False) -> str:
 def palette_of(pixels: NDArray[np.uint8]) -> Image.Image:
     """Return 256 colours for pictures: half for what is frequent, half for all that is there.
 
-    A legend's colours are few pixels among a large background, and are what must be told apart.
+    A legend's colours are few pixels in a large background, and must stay distinguishable.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What is written on a picture: the legend in its corner, captions over its views."""
+"""Texts on a picture: the legend in its corner, captions over its views."""
 
 from functools import cache
 from math import ceil

@@ -20,7 +20,7 @@ INTERIOR = _rgb(255, 108, 12)
 SURFACE = _rgb(153, 203, 67)
 
 BODY = _rgb(201, 206, 214)
-# Told from BODY and UNREACHED in a legend, too.
+# Distinct from BODY and UNREACHED in a legend, too.
 ATTACHMENT = _rgb(108, 116, 132)
 BONE = _rgb(236, 239, 244)
 BONE_IDLE = _rgb(150, 158, 172)
@@ -30,12 +30,12 @@ GHOST = _rgb(64, 132, 255)
 UNREACHED = _rgb(148, 150, 160)
 
 
-# What a person marks: the clicked vertex, the way back from it.
+# Marks: the clicked vertex, the path from it.
 MARK = _rgb(232, 30, 99)
 # The paper's purple: nodes where distances begin.
 SOURCE = _rgb(146, 72, 190)
 
-# What is enough of a difference to people who see few colours, too: of all lively colours of
+# Enough of a difference for colour-blind people, too: of all saturated colours of
 # middle lightness each was chosen farthest from those before it, to every one of `EYES`.
 JOINT_COLORS = (
     (235, 167, 95), (62, 137, 247), (93, 232, 245), (225, 64, 116), (180, 143, 191),
@@ -199,16 +199,16 @@ def joint_colors(
     """
     above, last = np.asarray(parents, int), np.asarray(idle, int)
     pairs = np.asarray(touching, int).reshape(-1, 2)
-    apart = _differences()
-    used = np.zeros(len(apart), int)
+    differences = _differences()
+    used = np.zeros(len(differences), int)
     chosen = np.full(len(above), -1)
     for joint in [*np.setdiff1d(np.arange(len(above)), last), *last]:
         parent = above[joint]
         skin = chosen[np.r_[pairs[pairs[:, 0] == joint, 1], pairs[pairs[:, 1] == joint, 0]]]
-        kin = chosen[(above == parent) | (above == joint)][-(len(apart) - 3) :]
+        kin = chosen[(above == parent) | (above == joint)][-(len(differences) - 3) :]
         old = chosen[[parent, above[parent]]] if parent >= 0 else chosen[:0]
         near = np.concatenate([skin, kin, old])
-        score = apart[:, near[near >= 0]].min(axis=1, initial=1.0) - EVENNESS * used
+        score = differences[:, near[near >= 0]].min(axis=1, initial=1.0) - EVENNESS * used
         score[skin[skin >= 0]] -= 1
         score[used > 0] -= 2 if (used == 0).any() else 0
         chosen[joint] = int(np.argmax(score))
@@ -218,7 +218,7 @@ def joint_colors(
 
 @cache
 def _differences() -> NDArray[np.float64]:
-    """Return how far apart the joints' colours are, in OKLab, to the eye that sees it least."""
+    """Return the distance of colours in OKLab for the least sensitive colour vision."""
     return differences(np.array(JOINT_COLORS) / 255)
 
 

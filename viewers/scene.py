@@ -22,7 +22,7 @@ from .camera import PAGE_HEIGHT, VIEW_ANGLE, Camera, framing
 from .description import Actor, Cut, Description
 from .lighting import LIGHTS, shading
 from .palette import BODY, LIGHT, Theme, colormap, to_bytes
-from .skin import moved, squared_apart, turned
+from .skin import distances_between, moved, turned
 from .strokes import depths, see_strokes, shade_strokes, stroke_data
 from .textured import ALPHA_KNOWN, CUT_OUT, DITHERED, pieces, texture
 
@@ -76,7 +76,7 @@ class Scene:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The actors that stand in the scene."""
+        """The actors of the scene."""
         return tuple(self._names)
 
     def show(self, description: Description) -> None:
@@ -101,7 +101,7 @@ class Scene:
             if actor.visible and len(actor.cells)
         }
 
-    def look(self, camera: Camera) -> None:
+    def set_camera(self, camera: Camera) -> None:
         """Place the camera."""
         view = self.plotter.camera
         view.position, view.focal_point, view.up = camera.position, camera.focal_point, camera.up
@@ -207,16 +207,16 @@ def render_png(
     scene = Scene(theme, size)
     try:
         scene.show(description)
-        scene.look(camera or framing(description.bounds, size[0] / size[1]))
+        scene.set_camera(camera or framing(description.bounds, size[0] / size[1]))
         return scene.render_png(path)
     finally:
         scene.close()
 
 
 def cut_planes(cut: Cut, slab: float) -> list[dict[str, tuple[float, ...]]]:
-    """Return the planes that keep what lies behind a cut, each as origin and normal.
+    """Return the planes that keep the far side of a cut, each as origin and normal.
 
-    What a plane keeps lies on the side that its normal points to.
+    A plane keeps the side that its normal points to.
     """
     origin, normal = np.array(cut.origin), np.array(cut.normal)
     planes = [{"origin": tuple(origin.tolist()), "normal": tuple((-normal).tolist())}]
@@ -258,8 +258,8 @@ def _dataset(actor: Actor, pose: NDArray[np.float64] | None, plain: bool = False
 def _values(actor: Actor, pose: NDArray[np.float64] | None) -> Any:
     if pose is None or actor.apart is None or actor.skin is None:
         return actor.scalars
-    squared = squared_apart(actor.points, actor.skin, actor.apart.skin, pose)
-    return (actor.apart.unit * squared).astype(np.float32)
+    lengths = distances_between(actor.points, actor.skin, actor.apart.skin, pose)
+    return (actor.apart.unit * lengths).astype(np.float32)
 
 
 def _paint(drawn: pv.Actor, actor: Actor, pixel_ratio: float, front: float | None) -> None:

@@ -53,23 +53,23 @@ class Studio:
         self.theme, self.size, self.legend = theme, size, legend
         self._transparent, self._ratio = transparent, size[1] / page_height
         self._scenes: list[Scene] = []
-        self._shown = description
+        self._description = description
         self._divide(size)
 
     def _divide(self, size: tuple[int, int]) -> None:
         """Divide a part of the picture, from above, among the views."""
         for scene in self._scenes:
             scene.close()
-        count, shape = max(len(self._shown.views), 1), shape_of(self._shown.bounds)
+        count, shape = max(len(self._description.views), 1), shape_of(self._description.bounds)
         self._tiles = tiles(count, size, shape)
         self._scenes = [
             Scene(self.theme, tile[2:], pixel_ratio=self._ratio) for tile in self._tiles
         ]
-        self.show(self._shown)
+        self.show(self._description)
 
     def show(self, description: Description) -> None:
         """Make every view what a description says."""
-        self._shown = description
+        self._description = description
         for view, scene in enumerate(self._scenes):
             scene.show(in_view(description, view))
 
@@ -79,7 +79,7 @@ class Studio:
         bounds: NDArray[np.float64] | None = None,
     ) -> Camera:
         """Return a camera that sees all of each view, or of given bounds; see `framing`."""
-        bounds = self._shown.bounds if bounds is None else bounds
+        bounds = self._description.bounds if bounds is None else bounds
         return framing(bounds, self.shape, direction)
 
     def draw(self, camera: Camera) -> NDArray[np.uint8]:
@@ -93,8 +93,8 @@ class Studio:
         -------
         array, shape (height, width, 3 or 4), uint8
         """
-        picture, covered = self._drawn(camera)
-        legend = self._shown.legend if self.legend else None
+        picture, covered = self._draw_views(camera)
+        legend = self._description.legend if self.legend else None
         if legend is None:
             return picture
         card = legend_card(legend, self.theme, self.size)
@@ -102,17 +102,17 @@ class Studio:
         if place is None:
             # No corner is free: the legend gets a strip below the figures.
             self._divide((self.size[0], max(self.size[1] - round(1.25 * card.height), 16)))
-            picture, covered = self._drawn(camera)
+            picture, covered = self._draw_views(camera)
             place = free_corner(covered, card) or (0, self.size[1] - card.height)
         return put_card(picture, card, place)
 
-    def _drawn(self, camera: Camera) -> tuple[NDArray[np.uint8], NDArray[np.bool_]]:
+    def _draw_views(self, camera: Camera) -> tuple[NDArray[np.uint8], NDArray[np.bool_]]:
         """Return the picture without a legend, and where something is seen on it."""
         ground = (*to_bytes(self.theme.bottom), 0)[: 4 if self._transparent else 3]
         picture = np.full((self.size[1], self.size[0], len(ground)), ground, np.uint8)
         covered = np.zeros(picture.shape[:2], bool)
         for scene, (left, top, width, height) in zip(self._scenes, self._tiles, strict=True):
-            scene.look(camera)
+            scene.set_camera(camera)
             where = slice(top, top + height), slice(left, left + width)
             if self._transparent:
                 part = scene.render_clear()
@@ -122,9 +122,9 @@ class Studio:
                 differences = np.abs(part - _ground(self.theme, height))
                 covered[where] = differences.max(axis=2) > SAME
             picture[where] = part
-        if self._shown.views:
+        if self._description.views:
             plain = picture
-            picture = write_captions(picture, self._shown.views, self._tiles, self.theme)
+            picture = write_captions(picture, self._description.views, self._tiles, self.theme)
             covered |= (picture != plain).any(axis=2)
         return picture, covered
 
@@ -135,7 +135,7 @@ class Studio:
 
     @property
     def places(self) -> list[Tile]:
-        """Where each view lies in the picture."""
+        """The rectangle of each view in the picture."""
         return self._tiles
 
     def close(self) -> None:

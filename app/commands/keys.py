@@ -1,4 +1,4 @@
-"""What the keys do, and the buttons over the canvas."""
+"""Actions of the keys and of the buttons over the canvas."""
 
 import numpy as np
 
@@ -7,7 +7,7 @@ from cutcell_viewers.camera import FRONT
 
 from ..scenes.common import camera_on_bone, first_joint
 from ..state import PANELS, State
-from ..state.corrections import applied, changes, news
+from ..state.corrections import applied, changed_only, changes
 from ..state.url import defaults
 from . import brush, pairs
 from .loading import revisit
@@ -53,9 +53,9 @@ def reset(session: Session) -> None:
     state = session.state
     first = {**defaults(state), "moving": False, "playing": False}
     rig = applied(state.own, Corrections())
-    changed = {**changes(state, rig, Corrections()), **news(state, first)}
+    changed = {**changes(state, rig, Corrections()), **changed_only(state, first)}
     state.param.update(**{**changed, "joint": first_joint(rig)})
-    session.view.tell(home=True)
+    session.view.send(home=True)
 
 
 def play(state: State) -> None:
@@ -87,14 +87,14 @@ def frame(session: Session) -> None:
 
 
 def to_parent(state: State) -> None:
-    """Choose the joint that the chosen one hangs on."""
+    """Choose the parent of the chosen joint."""
     above = -1 if state.bare else int(state.rig.skeleton.parents[state.joint])
     if above >= 0:
         state.joint = above
 
 
 def to_child(state: State) -> None:
-    """Choose the first joint that hangs on the chosen one."""
+    """Choose the first child of the chosen joint."""
     below = [] if state.bare else state.rig.skeleton.children[state.joint]
     if len(below):
         state.joint = int(below[0])

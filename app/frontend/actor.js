@@ -262,7 +262,7 @@ export class Actor {
     if (behind) { mapper.setRelativeCoincidentTopologyPolygonOffsetParameters(2, 30) }
   }
 
-  // Stands in the view that it belongs to, or in every one.
+  // Belongs to one view, or to all of them.
   place() {
     this.leave()
     const own = typeof this.view === "number" ? this.renderer.views[this.view] : null

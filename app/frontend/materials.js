@@ -79,7 +79,7 @@ export class Materials {
   }
 }
 
-// What is added to vtk.js' shaders, which draw corners in the order of the triangles.
+// Additions to the shaders of vtk.js, which draw corners in the order of the triangles.
 export const MATERIAL_SHADER = {
   declared: `
     uniform highp sampler2D corners;

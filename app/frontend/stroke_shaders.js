@@ -1,7 +1,7 @@
 // How lines and points are drawn on the card (strokes.js): as shaded strokes of two triangles each, or
 // plainly. Pictures are drawn by the same rules (viewers/strokes.py).
 
-const HAZE = 0.35  // how much of the background lies over what is farthest
+const HAZE = 0.35  // share of the background in the colour of the farthest points
 
 const PLACED = `
   uniform highp sampler2D places;
@@ -35,10 +35,10 @@ const WIDE = `
   }`
 
 const COLOURED = (by) => by === "colors"
-  ? "uniform highp sampler2D points;\nvec3 told(int i) { return texelFetch(points, ivec2(i % 2048, i / 2048), 0).rgb; }"
+  ? "uniform highp sampler2D points;\nvec3 valueOf(int i) { return texelFetch(points, ivec2(i % 2048, i / 2048), 0).rgb; }"
   : by === "values"
-    ? "uniform highp sampler2D points;\nvec3 told(int i) { return vec3(texelFetch(points, ivec2(i % 2048, i / 2048), 0).r); }"
-    : "vec3 told(int i) { return vec3(0.0); }"
+    ? "uniform highp sampler2D points;\nvec3 valueOf(int i) { return vec3(texelFetch(points, ivec2(i % 2048, i / 2048), 0).r); }"
+    : "vec3 valueOf(int i) { return vec3(0.0); }"
 
 const HEAD = (by) => `#version 300 es
   precision highp float; precision highp int;
@@ -67,7 +67,7 @@ const LINE = (by) => `${HEAD(by)}
     here.xy += shift / size * 2.0 * here.w;
     gl_Position = here;
     if (dash == 0.0) { lift(mix(a, b, t), half_); }
-    shown = mix(told(int(ends.x)), told(int(ends.y)), t);
+    shown = mix(valueOf(int(ends.x)), valueOf(int(ends.y)), t);
     at = mix(a, b, t); along = length(b - a) * t; across = vec2(side, half_); away = hazy(here.w);
   }`
 
@@ -79,7 +79,7 @@ const PLAIN = (by) => `${HEAD(by)}
     int i = int(gl_VertexID % 2 == 0 ? ends.x : ends.y);
     at = place(i);
     gl_Position = seen * vec4(at, 1.0);
-    shown = told(i); away = hazy(gl_Position.w);
+    shown = valueOf(i); away = hazy(gl_Position.w);
   }`
 
 const POINT = (by) => `${HEAD(by)}
@@ -95,7 +95,7 @@ const POINT = (by) => `${HEAD(by)}
     float half_ = reach(depth);
     gl_Position.xy += aside * half_ / size * 2.0 * depth;
     lift(at, half_);
-    shown = told(ends); across = aside; along = 0.0;
+    shown = valueOf(ends); across = aside; along = 0.0;
   }`
 
 const FORMS = {

@@ -1,7 +1,7 @@
 // Lines and points whose width is fixed on the screen, or follows the scene: lines as shaded tubes,
 // points as balls, squares or triangles. The card fetches the ends of each from a texture, and makes
 // its two triangles itself: vtk.js knows lines of one pixel, and copies their corners. (Not by
-// instances: software that stands in for a card draws each of them by itself.)
+// instances: software renderers draw each of them separately.)
 
 import {Colours, PointTexture} from "./colour.js"
 import {strokeProgram} from "./stroke_shaders.js"

@@ -14,7 +14,7 @@ from ..commands.correct import leave_out
 from ..commands.export import export_repaired
 from ..commands.session import Session
 from ..state import State
-from .controls import LINE, button, caption, column, lead, section, when, words
+from .controls import LINE, button, caption, column, intro, section, text_line, when
 
 ICONS = {"error": "error", "warning": "warning", "note": "info"}
 MAX_DETAILS = 8
@@ -35,20 +35,20 @@ def check(session: Session) -> pmui.Column:
     state.param.watch(listed, ["diagnosis", "finding", "repair"])
     listed()
     return column(
-        lead(when(lambda *_: told(state), state.param.diagnosis, state.param.rig)),
+        intro(when(lambda *_: summary(state), state.param.diagnosis, state.param.rig)),
         section("", place, margin=(6, 20, 4, 20)),
     )
 
 
-def told(state: State) -> str:
+def summary(state: State) -> str:
     """Say how much was found."""
     if state.rig is None:
         return ""
     if state.diagnosis is None:
-        return "The mesh, the skeleton and the weights of the file are checked once it is bound."
+        return "The file is checked once weights are computed."
     if not state.diagnosis.findings:
-        return "Nothing is wrong with the mesh, the skeleton or the weights of the file."
-    return f"Found: {counted(state.diagnosis.counts)}. Choose one to see where it is."
+        return "No problems in the mesh, skeleton or weights."
+    return f"{counted(state.diagnosis.counts)}. Choose one to see it."
 
 
 def counted(counts: dict[str, int]) -> str:
@@ -96,7 +96,7 @@ def _entry(session: Session, finding: Finding) -> pmui.Column:
         if finding.code in OF_PARTS and not session.state.bare:
             vertex = int(finding.vertices[0])
             see = partial(session.state.param.update, panel="weights", part=vertex)
-            lines.append(button("Choose what its parts follow", see, icon="category"))
+            lines.append(button("Choose how these parts are bound", see, icon="category"))
     return column(*lines, margin=(0, 0, 6, 0))
 
 
@@ -104,7 +104,7 @@ def _left_out(rig: Rig, joints: list[int]) -> str:
     subject = f"these {len(joints)} joints"
     if len(joints) == 1:
         subject = shown_name(rig.skeleton.names[joints[0]])
-    return f"Let {subject} carry no weight"
+    return f"Exclude {subject}"
 
 
 def _repairs(session: Session) -> list[Any]:
@@ -117,13 +117,13 @@ def _repairs(session: Session) -> list[Any]:
         rows.append(button(f"Repair all {len(able)}", lambda: repair(session, codes), icon="build"))
     if state.repair is None:
         return rows
-    now = "" if state.diagnosis is None else f", now {counted(state.diagnosis.counts)}"
+    now = "" if state.diagnosis is None else f" → {counted(state.diagnosis.counts)}"
     return [
         *rows,
-        _line(f"Repaired. Before: {counted(state.repair.counts)}{now}.", "text.primary"),
+        _line(f"Repaired: {counted(state.repair.counts)}{now}.", "text.primary"),
         *(_line(text) for text in state.repair.done),
         button(
-            "Download it with its own weights",
+            "Download with original weights",
             lambda: export_repaired(session, session.view.offer),
             icon="download",
         ),
@@ -135,6 +135,6 @@ def _line(text: str, color: str = "text.secondary") -> pmui.Typography:
     if color == "text.secondary":
         return caption(text, margin=(0, 0, 4, 6))
     style = {"color": color, "lineHeight": 1.45, "display": "block", "letterSpacing": 0}
-    return words(
+    return text_line(
         text, variant="caption", sx=style, margin=(0, 0, 4, 6), sizing_mode="stretch_width"
     )

@@ -42,8 +42,8 @@ def export(session: Session) -> pmui.Column:
         "Export",
         bound,
         row(
-            menu("Picture, film", "movie", films, margin=BESIDE, disabled=empty),
-            menu("Numbers", "table_chart", numbers, disabled=empty),
+            menu("Image, video", "movie", films, margin=BESIDE, disabled=empty),
+            menu("Data", "table_chart", numbers, disabled=empty),
         ),
         caption(when(_described, state.param.rig)),
     )
@@ -52,9 +52,9 @@ def export(session: Session) -> pmui.Column:
 def _described(rig: Rig | None) -> str:
     """Say what the bound file holds."""
     if rig is None or keeps_document(rig):
-        summary = "The GLB is as it was, but for the weights."
+        summary = "The GLB keeps everything but the corrected data."
     elif has_materials(rig):
-        summary = "The GLB is a new one: mesh, skeleton, weights, motions and base colours."
+        summary = "A new GLB: mesh, skeleton, weights, clips and base colours."
     else:
-        summary = "The GLB is a new one: mesh, skeleton, weights and motions, without materials."
+        summary = "A new GLB: mesh, skeleton, weights and clips, no materials."
     return f"{summary} Images show the current view."

@@ -1,4 +1,4 @@
-"""What can be chosen of a scene, and the page's state in which it is."""
+"""Choices of a scene, and the page's state for them."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -37,7 +37,7 @@ TURN_AXES = ("x", "y", "z")
 
 @dataclass(frozen=True)
 class Choices:
-    """What to show of a rig; each field is a choice of the page.
+    """Choices for showing a rig, as on the page.
 
     Parameters
     ----------

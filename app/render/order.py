@@ -1,4 +1,4 @@
-"""What is to be drawn of a scene: from where, how large, and whether it moves."""
+"""Request for a picture of a scene: camera, size and motion."""
 
 from dataclasses import replace
 

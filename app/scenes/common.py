@@ -1,4 +1,4 @@
-"""What the scenes of all panels have in common: body, bones, cut, theme."""
+"""Elements shared by the scenes of all panels: body, bones, cut, theme."""
 
 import re
 from dataclasses import replace
@@ -25,17 +25,17 @@ from .memo import Memo
 FAINT = 0.25
 """How opaque bones are that are not to hide what is behind them."""
 
-SEE_PATH = 0.42
+BODY_OPACITY_WITH_PATH = 0.42
 """How opaque the body is while a path inside it is to be seen."""
 
-SEE_THROUGH = 0.22
+GRAPH_BODY_OPACITY = 0.22
 """How opaque the body is while what lies inside is looked at."""
 
 
 def character(
     state: State, memo: Memo, *, bones_coloured: bool = False, **look: Any
 ) -> dict[str, Actor]:
-    """Return the body, what hangs on it, the bones, and the mark of the chosen vertex.
+    """Return the body, its attachments, the bones, and the mark of the chosen vertex.
 
     Parameters
     ----------
@@ -45,7 +45,7 @@ def character(
     bones_coloured : bool
         Whether each bone has the colour that its weights are shown in.
     **look
-        Fields of the body's `Actor`; those that say how it is seen hold for what hangs on
+        Fields of the body's `Actor`; those of its appearance apply to attachments
         it as well.
     """
     rig = state.rig
@@ -169,7 +169,7 @@ def bones_part(state: State) -> dict[str, Any]:
 
 
 def theme_part(theme: Theme) -> dict[str, str]:
-    """Return how a theme is told to the view."""
+    """Return a theme as a message for the view."""
     card = "rgba(255,255,255,.72)" if theme.name == "light" else "rgba(24,28,36,.72)"
     top, bottom, ink = to_hex(theme.top), to_hex(theme.bottom), to_hex(theme.ink)
     paper = "#ffffff" if theme.name == "light" else "#1b2028"
@@ -177,7 +177,7 @@ def theme_part(theme: Theme) -> dict[str, str]:
 
 
 def camera_part(camera: Camera) -> dict[str, Any]:
-    """Return how a camera is told to the view."""
+    """Return a camera as a message for the view."""
     return {"position": list(camera.position), "focal_point": list(camera.focal_point)}
 
 

@@ -1,4 +1,4 @@
-"""What every panel shares: the character, the chosen bone and vertex, and how work goes on."""
+"""State that all panels share: the character, the chosen bone and vertex, and progress."""
 
 from typing import Any
 
@@ -71,7 +71,7 @@ class Common(param.Parameterized):
 
     @property
     def weights(self) -> Any:
-        """What the character is posed with: what was computed, else the file's own."""
+        """Weights that pose the character: the computed ones, else the file's."""
         if self.binding is not None:
             return self.binding.weights
         return None if self.rig is None else self.rig.weights

@@ -1,4 +1,4 @@
-"""What a person can choose on the panel Graph."""
+"""Choices of the panel Graph."""
 
 from typing import Any
 

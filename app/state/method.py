@@ -13,7 +13,7 @@ WEIGHTS = tuple(WeightOptions.__annotations__)
 
 
 def default(name: str) -> Any:
-    """Return what `cutcell.bind` takes when it is not told."""
+    """Return the default of an option of `cutcell.bind`."""
     value = getattr(cutcell.ANIMATION, name)
     return cutcell.PAPER.alpha if name == "alpha" else value
 

@@ -1,4 +1,4 @@
-"""What a person can choose on the panel Weights."""
+"""Choices of the panel Weights."""
 
 from typing import Any
 

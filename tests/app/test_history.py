@@ -229,13 +229,13 @@ def test_the_choice_of_joints_that_deform_can_be_undone(bound, loop):
     assert bound.state.binding.weights[:, 2].max() == 0
     keys.act(bound, "undo")
     assert bound.state.rig is before
-    assert bound.view.told("able") == [False, True]
+    assert bound.view.last_sent("able") == [False, True]
     loop.run_until(lambda: not bound.tasks.running)
     assert bound.state.binding.weights[:, 2].max() > 0
     keys.act(bound, "redo")
     loop.run_until(lambda: not bound.tasks.running)
     assert bound.state.binding.weights[:, 2].max() == 0
-    assert bound.view.told("able") == [True, False]
+    assert bound.view.last_sent("able") == [True, False]
 
 
 def test_a_repair_can_be_undone(session, loop):

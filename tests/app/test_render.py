@@ -104,7 +104,7 @@ def test_each_choice_of_the_command_reaches_the_picture(drawn, tmp_path):
     assert not last.description.actors["bones"].visible
     assert not last.legend
     assert last.direction == VIEWS["back"]
-    assert last.description.legend.high.endswith("cm²")
+    assert last.description.legend.high.endswith("mm")
 
 
 def test_what_is_seen_inside_reaches_the_picture(drawn, tmp_path):

@@ -299,7 +299,7 @@ def test_a_vertex_is_chosen_and_forgotten_with_its_character(bound, loop):
 
 def test_the_wave_is_told_once_and_not_frame_by_frame(bound, loop):
     told = []
-    bound.view.tell = lambda **parts: told.append(parts)
+    bound.view.send = lambda **parts: told.append(parts)
     bound.state.panel = "distance"
     loop.run_until(lambda: bound.state.field is not None)
     bound.state.param.update(wave=True, animating=True)
