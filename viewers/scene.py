@@ -107,9 +107,9 @@ class Scene:
         view.position, view.focal_point, view.up = camera.position, camera.focal_point, camera.up
         view.view_angle = VIEW_ANGLE
         view.SetWindowCenter(-camera.centre[0], -camera.centre[1])
-        size = tuple(self.plotter.window_size)
+        width, height = self.plotter.window_size
         for drawn in self._strokes:
-            see_strokes(drawn, size, depths(camera, self._bounds))
+            see_strokes(drawn, (width, height), depths(camera, self._bounds))
 
     def render_png(self, path: str | Path | None = None) -> NDArray[np.uint8]:
         """Draw the scene.

@@ -93,7 +93,9 @@ _CORNERS = {
 """Of the two triangles of each: which end and side of a line, or where around a point."""
 
 
-def stroke_data(actor: Actor, points: NDArray[np.float32]) -> tuple[pv.PolyData, NDArray[np.intp]]:
+def stroke_data(
+    actor: Actor, points: NDArray[np.float32]
+) -> tuple[pv.PolyData, NDArray[np.integer]]:
     """Return two triangles for each line or point, and which point each corner belongs to."""
     ends = np.asarray(actor.cells)
     corners = np.array(_CORNERS[actor.kind], np.float32)
@@ -102,7 +104,8 @@ def stroke_data(actor: Actor, points: NDArray[np.float32]) -> tuple[pv.PolyData,
     other = ends[:, ends.shape[1] - 1 - own].ravel()
     first = 4 * np.arange(len(ends))[:, None, None]
     faces = (first + np.array([[0, 1, 2], [2, 1, 3]])).reshape(-1, 3)
-    data = pv.PolyData.from_regular_faces(points[of], faces)
+    corners_of: Any = points[of]
+    data: Any = pv.PolyData.from_regular_faces(corners_of, faces)
     data.point_data["other"] = points[other]
     data.point_data["corner"] = np.tile(corners, (len(ends), 1))
     return data, of

@@ -11,7 +11,7 @@ from ..state.corrections import applied, changed_only, changes
 from ..state.url import defaults
 from . import brush, pairs
 from .loading import revisit
-from .look import look
+from .look import set_camera
 from .session import Session
 
 NEAR = 0.3
@@ -83,7 +83,7 @@ def frame(session: Session) -> None:
     state, eye = session.state, session.view.camera
     if not state.bare and state.tour < 0:
         direction = FRONT if eye is None else tuple(np.subtract(eye.position, eye.focal_point))
-        look(session, camera_on_bone(state, NEAR, session.view.aspect, direction))
+        set_camera(session, camera_on_bone(state, NEAR, session.view.aspect, direction))
 
 
 def to_parent(state: State) -> None:

@@ -180,7 +180,7 @@ def _cut(state: State) -> tuple[Any, Any]:
     return state.param.cut_axis, state.param.slicing
 
 
-def _built(state: State) -> tuple[Any, Any]:
+def _built(state: State) -> tuple[Any, ...]:
     return state.param.binding, state.param.bare_graph, state.param.easy_graph
 
 

@@ -153,8 +153,9 @@ def _field(state: State, memo: Memo) -> tuple[Any, dict[str, Any], Legend | None
         return None, {}, kinds_legend(state)
     legend = distance_legend(state.rig, state.joint, distance_limits(field))
     if shown is not state.graph:
+        of_weights = field
         nearest = memo("nearest", (shown, state.graph), lambda: nearest_nodes(shown, state.graph))
-        field = memo("field there", (field, nearest), lambda: field[nearest])
+        field = memo("field there", (field, nearest), lambda: of_weights[nearest])
     return field, {"kinds": (MESH, INTERIOR, SURFACE)}, legend
 
 
