@@ -1,5 +1,6 @@
 // What the keys do anywhere on the page, the buttons for it, and the card that lists them.
 
+import {button, element} from "./elements.js"
 import {stylesheet} from "./styles.js"
 
 const KEYS = [
@@ -76,29 +77,18 @@ export class Keys {
   }
 
   makeTools() {
-    const bar = document.createElement("div")
-    bar.className = "tools"
-    bar.setAttribute("role", "toolbar")
-    bar.setAttribute("aria-label", "Undo, reset, help")
-    this.tools = {}
-    for (const [name, title, icon] of TOOLS) {
-      const button = document.createElement("button")
-      button.type = "button"
-      button.title = title
-      button.setAttribute("aria-label", title)
-      button.innerHTML = `<svg viewBox="0 0 24 24" aria-hidden="true">${icon}</svg>`
-      button.addEventListener("click", () => name === "keys" ? this.toggle() : this.act(name))
-      this.tools[name] = button
-      bar.append(button)
-    }
+    this.tools = Object.fromEntries(TOOLS.map(([name, title, icon]) => {
+      const click = () => name === "keys" ? this.toggle() : this.act(name)
+      return [name, button({title, icon, aria: {label: title}, on: {click}})]
+    }))
+    const aria = {role: "toolbar", label: "Undo, reset, help"}
+    const bar = element("div", {className: "tools", aria}, ...Object.values(this.tools))
     this.able([false, false])
     return bar
   }
 
   makeCard() {
-    const card = document.createElement("dialog")
-    card.className = "keys"
-    card.setAttribute("aria-labelledby", "keys-title")
+    const card = element("dialog", {className: "keys", aria: {labelledby: "keys-title"}})
     const touch = matchMedia("(pointer: coarse)").matches
     const pointer = (ways) => ways.filter(([, , fingers]) => fingers || !touch)
       .map(([mouse, what, fingers]) =>
