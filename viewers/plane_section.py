@@ -228,8 +228,8 @@ def _are_edges(
     faces: NDArray[np.int64], pieces: NDArray[np.int64], count: int
 ) -> NDArray[np.bool_]:
     edges = np.sort(faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
-    edges = np.sort(pieces, axis=1)
-    return np.isin(edges @ [count, 1], edges @ [count, 1])
+    sides = np.sort(pieces, axis=1)
+    return np.isin(sides @ [count, 1], edges @ [count, 1])
 
 
 def _winding(

@@ -28,12 +28,12 @@ export function render({model}) {
   list.setAttribute("aria-label", "Joints")
   list.setAttribute("aria-describedby", "how")
   const head = element("div", "head")
-  element("span", "", "✓ carries weight", head)
+  element("span", "", "✓ deforms", head)
   element("span", "", "% of the skin", head)
   const how = element("div", "", "Enter chooses, Space lets a joint carry weight or not")
   Object.assign(how, {id: "how", hidden: true})
   root.append(styled(), head, list, how)
-  head.title = "Space or a click: carries weight or not; the arrows walk, open and close"
+  head.title = "Space or click: deforms or not. Arrows walk, open and close."
   let forest = new Forest([], new Set())
   let names = ""
   let cursor = -1

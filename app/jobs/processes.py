@@ -67,10 +67,10 @@ def in_process(
     ----------
     work : callable
         Of a module; what it is given and what it returns are copied.
-    *given
+    *args
         Its arguments.
-    wanted : callable
-        Asked again and again; raises `cutcell.Cancelled` for one, when the result is not wanted
+    check : callable
+        Called again and again; raises `cutcell.Cancelled` for one, when the result is not wanted
         any more: the process, and those that it has started, are ended then.
     ended : str
         What to say if the process comes to an end by itself.

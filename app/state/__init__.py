@@ -51,9 +51,9 @@ class State(
         if self.cut_across != "off" and PANELS[self.panel].cuts:
             return False  # the face of a cut takes some tenths of a second
         mesh, graph, joints = self.rig.mesh, self.graph, len(self.rig.skeleton.joints)
-        size = len(mesh.vertices) + len(mesh.faces) + A_JOINT * joints
-        size = 0 if graph is None else len(graph.nodes) + len(graph.edges)
-        return size <= QUICK_MESH and size <= QUICK_GRAPH
+        mesh_size = len(mesh.vertices) + len(mesh.faces) + A_JOINT * joints
+        graph_size = 0 if graph is None else len(graph.nodes) + len(graph.edges)
+        return mesh_size <= QUICK_MESH and graph_size <= QUICK_GRAPH
 
     def snapshot(self) -> Any:
         """Return all of it as it is now, for a thread that takes its time to look at it."""

@@ -112,14 +112,14 @@ def test_unexpected_errors_are_told_kindly_and_logged(bound, loop, monkeypatch, 
     monkeypatch.setattr(cutcell, "bind", broken)
     binding.bind(bound)
     loop.run_until(lambda: bound.state.message is not None)
-    assert "unexpected" in bound.state.message[1]
+    assert "Unexpected" in bound.state.message[1]
     assert "the sky fell" in caplog.text
 
 
 def test_what_goes_wrong_on_the_pages_own_thread_is_told_too(session, loop):
     session.tasks.later(lambda: [].pop())
     loop.run_until(lambda: session.state.message is not None)
-    assert "unexpected" in session.state.message[1]
+    assert "Unexpected" in session.state.message[1]
 
 
 def test_cancelling_keeps_what_was_there(bound, loop, monkeypatch):
@@ -380,7 +380,7 @@ def test_running_out_of_memory_is_a_sentence_and_the_page_goes_on(bound, loop, m
         patch.setattr(cutcell, "bind", too_much)
         bound.state.resolution = 24
         loop.run_until(lambda: bound.state.message is not None)
-    assert "not enough memory" in bound.state.message[1]
+    assert "Not enough memory" in bound.state.message[1]
     assert bound.state.binding is before
     bound.state.resolution = 20
     loop.run_until(lambda: bound.state.binding is not before)
