@@ -5,7 +5,7 @@ VENV := .venv
 PYTHON := $(VENV)/bin/python
 SETUP := pyproject.toml setup.py requirements.lock scripts/setup.sh
 
-SCRIPTS := app/scripts tests/app/scripts
+SCRIPTS := app/frontend tests/app/frontend
 
 # As many as there are cores; tests/dealing.py says which tests go together to one of them.
 WORKERS := --numprocesses logical --maxprocesses 4

@@ -1,7 +1,5 @@
 """The command `cutcell render`: a picture or a film of what the page shows."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 from typing import Annotated, Any
@@ -17,27 +15,12 @@ from cutcell.cli.options import (
     SkeletonFile,
     chosen_method,
     with_method,
+    with_options,
 )
 from cutcell.errors import MissingLibraryError, ParameterError
 
-from .render_flags import (
-    WHAT,
-    ColorBy,
-    Colors,
-    Face,
-    FindingCode,
-    Keep,
-    Layers,
-    Measures,
-    Near,
-    PathFrom,
-    Plane,
-    Slice,
-    Sources,
-    Wave,
-)
+from .render_flags import CHOICES, PICTURE, SETTINGS
 
-HOW = "How it is seen"
 PICTURE_SIZE = (1600, 1200)
 FILM_SIZE = (960, 720)
 LARGEST = 8192
@@ -56,7 +39,10 @@ EPILOG = """Examples:
 
 
 @for_people
-@with_method("resolution", "method", "connectivity", "winding_threshold", "orient", "leaf")
+@with_options("choices", CHOICES)
+@with_options("settings", SETTINGS)
+@with_options("picture", PICTURE)
+@with_method()
 def render(
     rig: RigFile,
     out: Annotated[
@@ -65,129 +51,12 @@ def render(
             metavar="OUT", help="A picture: .png or .jpg. What moves is a film: .mp4 or .gif."
         ),
     ],
-    panel: Annotated[
-        str,
-        typer.Option(
-            "--panel",
-            "-p",
-            metavar="PANEL",
-            help="As on the page: graph, distance, weights, pose, compare or check.",
-            rich_help_panel=WHAT,
-        ),
-    ] = "weights",
-    bone: Annotated[
-        str | None,
-        typer.Option(
-            "--bone",
-            "-b",
-            metavar="NAME",
-            help="Whose weights or distance. Weights of all bones are mixed if left out.",
-            rich_help_panel=WHAT,
-        ),
-    ] = None,
-    shown: Annotated[
-        str | None,
-        typer.Option(
-            "--show",
-            metavar="WHAT",
-            help="Of the weights: bone, mix, dominant, count, or difference to the file's own.",
-            rich_help_panel=WHAT,
-        ),
-    ] = None,
-    turn: Annotated[
-        str | None,
-        typer.Option(
-            "--turn",
-            metavar="AXIS=DEGREES",
-            help="Turn the bone, such as z=30, on the panels pose and compare.",
-            rich_help_panel=WHAT,
-        ),
-    ] = None,
-    error: Annotated[
-        bool,
-        typer.Option(
-            "--error",
-            help="Colour by the error against the file's own weights: pose, compare.",
-            rich_help_panel=WHAT,
-        ),
-    ] = False,
-    methods: Annotated[
-        str,
-        typer.Option(
-            "--methods",
-            metavar="A,B,...",
-            help="What stands side by side on the panel compare; now is what is set here.",
-            rich_help_panel=WHAT,
-        ),
-    ] = "",
-    networks: Networks = None,
-    colors: Colors = None,
-    finding: FindingCode = None,
-    cut: Plane = None,
-    face: Face = None,
-    keep: Keep = None,
-    layers: Layers = None,
-    color_by: ColorBy = None,
-    slices: Slice = None,
-    sources: Sources = False,
-    path: PathFrom = None,
-    wave: Wave = None,
-    measures: Measures = None,
-    clip: Annotated[
-        str | None,
-        typer.Option(
-            "--clip",
-            metavar="NAME",
-            help="Film one of the file's motions, by name or number.",
-            rich_help_panel=HOW,
-        ),
-    ] = None,
-    time: Annotated[
-        float | None,
-        typer.Option(
-            "--time",
-            metavar="SECONDS",
-            help="With --clip: a picture of that moment instead of a film.",
-            rich_help_panel=HOW,
-        ),
-    ] = None,
-    turntable: Annotated[
-        bool,
-        typer.Option("--turntable", help="Film it from all around.", rich_help_panel=HOW),
-    ] = False,
-    view: Annotated[
-        str | None,
-        typer.Option(
-            "--view",
-            metavar="VIEW",
-            help="From where: front, three-quarter, left, right, back or top. If left out: the side"
-            " that a finding is on, else three-quarter.",
-            rich_help_panel=HOW,
-        ),
-    ] = None,
-    near: Near = None,
-    size: Annotated[
-        str | None,
-        typer.Option(
-            "--size",
-            metavar="WxH",
-            help="In pixels; 1600x1200 for pictures, 960x720 for films if left out.",
-            rich_help_panel=HOW,
-        ),
-    ] = None,
-    dark: Annotated[
-        bool, typer.Option("--dark", help="On a dark ground.", rich_help_panel=HOW)
-    ] = False,
-    skeleton: Annotated[
-        bool,
-        typer.Option("--bones/--no-bones", help="Draw the skeleton, too.", rich_help_panel=HOW),
-    ] = True,
-    legend: Annotated[
-        bool,
-        typer.Option("--legend/--no-legend", help="Write the legend on it.", rich_help_panel=HOW),
-    ] = True,
     *,
+    choices: dict[str, Any],
+    settings: dict[str, Any],
+    picture: dict[str, Any],
     options: dict[str, Any],
+    networks: Networks = None,
     skeleton_file: SkeletonFile = None,
     quiet: Annotated[
         bool,
@@ -199,69 +68,36 @@ def render(
     Weights are computed first; nothing of the character's file is changed.
     """
     scenes, film, worker = _libraries()
-    moves = turntable or (clip is not None and time is None)
+    moves = picture["turntable"] or (choices["clip"] is not None and choices["time"] is None)
     film.check_picture_file(out, moves=moves)
-    pixels = _size(size) if size else FILM_SIZE if moves else PICTURE_SIZE
+    size = _size(picture.pop("size")) or (FILM_SIZE if moves else PICTURE_SIZE)
     from cutcell.io import load
     from cutcell.io.files import naming
 
     method = chosen_method(options)
     loaded = load(rig, skeleton=skeleton_file)
     offer_networks(networks, quiet)
-    choices = scenes.Choices(
-        panel=panel,
-        bone=bone,
-        shown=shown,
-        turn=_turn(turn),
-        error=error,
-        methods=[name.strip() for name in methods.split(",") if name.strip()],
-        settings=scenes.settings_of(
-            colors=colors,
-            layers=layers,
-            color_by=color_by,
-            cut=cut,
-            face=face,
-            keep=keep,
-            slices=slices,
-            sources=sources,
-            path=path,
-            wave=wave,
-            measures=measures,
-        ),
-        method=method,
-        finding=finding,
-        clip=clip,
-        time=time,
-        skeleton=skeleton,
-        dark=dark,
-    )
+    choices["turn"] = _turn(choices["turn"])
+    choices["methods"] = [name.strip() for name in choices["methods"].split(",") if name.strip()]
+    chosen = scenes.Choices(**choices, settings=scenes.settings_of(**settings), method=method)
     # A wrong name is refused before anything long begins.
     with naming(rig):
-        scenes.check(loaded, choices, view)
+        scenes.check(loaded, chosen, picture["view"])
     from cutcell.binding import bind
 
     no_skeleton = not len(loaded.skeleton.joints)
-    textures = scenes.textures_for(loaded, choices)
+    textures = scenes.textures_for(loaded, chosen)
     with progress_bars(quiet) as progress:
         binding = None if no_skeleton else bind(loaded, method=method, progress=progress)
         description = scenes.describe(
             loaded,
-            choices,
+            chosen,
             binding=binding,
             textures=textures,
             resolution=method.resolution,
             progress=progress,
         )
-        order = scenes.order(
-            loaded,
-            description,
-            choices,
-            size=pixels,
-            view=view,
-            turntable=turntable,
-            legend=legend,
-            near=near,
-        )
+        order = scenes.order(loaded, description, chosen, size=size, **picture)
         worker.draw_apart(order, out, progress)
     if not quiet:
         print_warnings(
@@ -271,7 +107,7 @@ def render(
                 *(textures.notes if textures else ()),
             ]
         )
-        print_line(f"{out}: {pixels[0]} x {pixels[1]} pixels, {_kilobytes(out)}")
+        print_line(f"{out}: {size[0]} x {size[1]} pixels, {_kilobytes(out)}")
 
 
 def _libraries() -> tuple[Any, Any, Any]:
@@ -287,7 +123,9 @@ def _libraries() -> tuple[Any, Any, Any]:
     return scenes, film, worker
 
 
-def _size(text: str) -> tuple[int, int]:
+def _size(text: str | None) -> tuple[int, int] | None:
+    if not text:
+        return None
     match = re.fullmatch(r"(\d{1,5})\s*[xX×]\s*(\d{1,5})", text.strip())
     sides = tuple(int(side) for side in match.groups()) if match else ()
     if not sides or not all(16 <= side <= LARGEST for side in sides):

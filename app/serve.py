@@ -1,12 +1,11 @@
 """The server of the page."""
 
-from __future__ import annotations
-
 import errno
 import signal
 import socket
 import sys
 import threading
+from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -19,15 +18,16 @@ from bokeh.util.browser import view
 from cutcell.cli.console import print_warnings
 from cutcell.dataset import load_audit
 from cutcell.weights.warm_up import is_compiled, warm_up
+from cutcell_viewers.description import Actor
 
 from .files.upload_cache import UPLOADS
+from .jobs.processes import get_ready
 from .layout.page import page
 from .server.handlers import guard
 from .server.log import log_to_terminal
 from .server.memory import settle
 from .state.pairs import OpenedAudit
 from .widgets.modules import STATIC, head
-from .work.processes import get_ready
 
 PORTS_TRIED = 20
 MAX_MESSAGE = 32 * 1024 * 1024
@@ -54,6 +54,7 @@ def serve(
     address: str = "localhost",
     show: bool = True,
     pairs: Path | None = None,
+    actors: Mapping[str, Actor] | None = None,
 ) -> None:
     """Serve the page until the process is stopped.
 
@@ -70,6 +71,9 @@ def serve(
         Whether to open a browser.
     pairs : path, optional
         The folder of an audit whose pairs are looked at.
+    actors : mapping of str to Actor, optional
+        Meshes to show with every character, in the scene's space, where y is up. Those of a
+        PyVista plotter are `cutcell_viewers.describe(plotter).actors`.
 
     Raises
     ------
@@ -94,11 +98,11 @@ def serve(
     sys.setswitchinterval(0.001)
     UPLOADS.sweep_by_the_clock()
     threading.Thread(target=get_ready, args=(UPLOADS.storage.make,), daemon=True).start()
-    server = begin(path, chosen, address, opened)
+    server = begin(path, chosen, address, opened, actors)
     if is_compiled():
         # While the browser starts. The first compile ever is left to the page, which tells of it.
         threading.Thread(target=_warm_up, args=(server,), daemon=True).start()
-    # It listens from here on; told sooner, the address could be asked for too soon.
+    # It listens from here on; printed earlier, the address might be requested too early.
     host = "localhost" if address in ("0.0.0.0", "::", *LOCAL) else in_brackets(address)
     url = f"http://{host}:{chosen}"
     print(f"The page is at {url} (stop with Ctrl+C)", flush=True)
@@ -115,6 +119,7 @@ def begin(
     port: int,
     address: str = "localhost",
     opened: OpenedAudit | None = None,
+    actors: Mapping[str, Actor] | None = None,
     **more: Any,
 ) -> Any:
     """Return a server of the page that listens, and whose loop is still to be started.
@@ -128,11 +133,13 @@ def begin(
         As in `serve`.
     opened : OpenedAudit, optional
         An audit whose pairs are looked at.
+    actors : mapping of str to Actor, optional
+        As in `serve`.
     **more
         For `panel.serve`.
     """
     server = pn.serve(
-        {"/": lambda: page(path, opened)},
+        {"/": lambda: page(path, opened, actors)},
         port=port,
         address="127.0.0.1" if address == "localhost" else address,
         websocket_max_message_size=MAX_MESSAGE,
@@ -156,7 +163,7 @@ def _warm_up(server: Any) -> None:
 
 
 def _settle(server: Any) -> None:
-    if not server.get_sessions("/"):  # what they hold shall be collected
+    if not server.get_sessions("/"):  # their memory shall be collected
         settle()
 
 
@@ -202,5 +209,5 @@ def _own_addresses() -> list[Any]:
 
 
 def in_brackets(address: str) -> str:
-    """Return an address as it stands in a URL: one of IPv6 in brackets, without its zone."""
+    """Return an address for a URL: IPv6 in brackets, without its zone."""
     return f"[{address.partition('%')[0]}]" if ":" in address else address

@@ -11,7 +11,7 @@ from fontTools import subset
 
 ROOT = Path(__file__).resolve().parents[1]
 SOURCE = "/usr/share/fonts/truetype/dejavu/DejaVuMathTeXGyre.ttf"
-TARGET = ROOT / "app" / "scripts" / "math.woff"
+TARGET = ROOT / "app" / "frontend" / "math.woff"
 PLAIN = "".join(map(chr, range(0x20, 0x7F)))
 GREEK = "αβγτπΩΣ" + "".join(map(chr, range(0x1D6FC, 0x1D71C)))
 ITALIC = "".join(map(chr, range(0x1D434, 0x1D468))) + "\u210e"

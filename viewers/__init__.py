@@ -16,11 +16,12 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from PIL.Image import Image
+    from pyvista import Plotter
 
     from .camera import Camera
     from .description import Description
 
-__all__ = ["plotter", "show"]
+__all__ = ["describe", "plotter", "show"]
 
 
 def show(
@@ -31,7 +32,7 @@ def show(
     camera: Camera | None = None,
     legend: bool = True,
 ) -> Image:
-    """Draw a scene; a notebook shows what comes back.
+    """Draw a scene; a notebook shows the returned object.
 
     Parameters
     ----------
@@ -51,7 +52,7 @@ def show(
     Raises
     ------
     MissingLibraryError
-        This machine has no OpenGL. Drawn in a process of its own, it does not end yours.
+        This machine has no OpenGL. Drawing in another process does not end yours.
     """
     from io import BytesIO
     from pathlib import Path
@@ -70,17 +71,22 @@ def show(
 
 
 def plotter(
-    description: Description, *, size: tuple[int, int] = (900, 675), dark: bool = False
-) -> Any:
-    """Return a scene as a PyVista plotter, to be gone on with or shown by its `show()`.
+    description: Description,
+    *,
+    size: tuple[int, int] = (900, 675),
+    dark: bool = False,
+    legend: bool = True,
+) -> Plotter:
+    """Return a scene as a PyVista plotter, to add to it or to call its `show()`.
 
     Parameters
     ----------
     description : Description
-        With a single view; its legend is left out.
+        With a single view.
     size : (int, int)
         Width and height in pixels.
     dark : bool
+    legend : bool
 
     Returns
     -------
@@ -89,12 +95,36 @@ def plotter(
     from .camera import framing
     from .opengl import require_opengl
     from .palette import DARK, LIGHT
+    from .polydata import add_legend
     from .scene import Scene
 
     require_opengl()
-    scene = Scene(DARK if dark else LIGHT, size)
+    scene = Scene(DARK if dark else LIGHT, size, layered=False)
     scene.show(description)
-    scene.look(framing(description.bounds, size[0] / size[1]))
+    scene.set_camera(framing(description.bounds, size[0] / size[1]))
     result: Any = scene.plotter
     result.set_background(scene.theme.bottom, top=scene.theme.top)
+    if legend and description.legend is not None:
+        add_legend(result, description.legend, scene.theme)
     return result
+
+
+def describe(plotter: Plotter) -> Description:
+    """Return what a PyVista plotter shows as a scene of this package.
+
+    Parameters
+    ----------
+    plotter : pyvista.Plotter
+        Its meshes keep their colours, colour maps, opacities and widths.
+
+    Returns
+    -------
+    Description
+
+    See Also
+    --------
+    cutcell_viewers.description.Actor.from_polydata : Turns one mesh into an actor.
+    """
+    from .polydata import describe
+
+    return describe(plotter)

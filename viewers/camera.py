@@ -1,7 +1,5 @@
 """Where the eye stands: what it sees, and from where it sees all of something."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,11 +10,16 @@ VIEW_ANGLE = 30.0
 
 @dataclass(frozen=True)
 class Camera:
-    """Where the eye is, what it looks at, and which way is up."""
+    """Where the eye is, what it looks at, and which way is up.
+
+    `centre` is where the focal point appears: to the right of the picture's middle and above it,
+    in halves of the picture.
+    """
 
     position: tuple[float, float, float]
     focal_point: tuple[float, float, float]
     up: tuple[float, float, float] = (0.0, 1.0, 0.0)
+    centre: tuple[float, float] = (0.0, 0.0)
 
 
 FRONT = (0.42, 0.16, 1.0)

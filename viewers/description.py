@@ -1,9 +1,9 @@
-"""What a scene is, in plain data: named actors, a pose, a cut. Nothing here draws."""
+"""Description of a scene as plain data: named actors, a pose, a cut. Nothing here draws."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from typing import Literal
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +12,9 @@ from cutcell.io.materials.face_colors import FaceColors
 
 from .palette import BODY, Color
 from .skin import Skin
+
+if TYPE_CHECKING:
+    from pyvista import DataSet
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,7 +25,7 @@ class Apart:
     ----------
     skin : Skin
     unit : float
-        What a squared length of 1 in the scene is worth, in the unit of the values.
+        The value of a length of 1 in the scene.
     """
 
     skin: Skin
@@ -31,19 +34,19 @@ class Apart:
 
 @dataclass(frozen=True, eq=False)
 class Reading:
-    """What is told of the place under the pointer.
+    """Value shown for the point under the pointer.
 
     Parameters
     ----------
     text : str
-        What the value is: told before it.
+        The label before the value.
     values : array, shape (n,) or (m,), float32, optional
         One for each point of a surface, or for each cell of lines; the actor's scalars when
         left out.
     names : tuple of str
         Where there are any, the value is an index into these.
     percent : bool
-        Whether the value is a part of a whole, and told in percent.
+        Whether the value is a share, shown in percent.
     """
 
     text: str = ""
@@ -76,7 +79,7 @@ class Actor:
     skin : Skin, optional
         How the points follow the joints; without it they stand still.
     apart : Apart, optional
-        While there is a pose, the scalars are the squared distances between where `skin`
+        While there is a pose, the scalars are the distances between where `skin`
         and this one take each point.
     width : float
         Of lines and points, in pixels of the screen, from far.
@@ -97,11 +100,11 @@ class Actor:
     hull : bool
         Only faces that look away are drawn: an outline of what it encloses.
     clipped : bool
-        Whether the scene's cut takes away what lies before it.
+        Whether the scene's cut clips it.
     slab : float
         Keep only what lies less than this far behind the cut; 0 keeps all.
     reading : Reading, optional
-        What is told where the pointer rests on it.
+        Value shown where the pointer rests on it.
     film : bool
         Whether only scalars up to the description's `front` are coloured.
     """
@@ -134,10 +137,32 @@ class Actor:
     reading: Reading | None = None
     film: bool = False
 
+    @classmethod
+    def from_polydata(cls, mesh: DataSet, scalars: str | None = None, **settings: Any) -> Actor:
+        """Return a PyVista mesh as an actor.
+
+        Parameters
+        ----------
+        mesh : pyvista.DataSet
+            Of anything but `pyvista.PolyData` the surface is taken.
+        scalars : str, optional
+            An array of its points or cells: colours if it holds bytes in three or four columns,
+            else values, of vectors their lengths.
+        **settings
+            Other parameters of an actor, such as `colormap` or `opacity`.
+
+        Returns
+        -------
+        Actor
+        """
+        from .polydata import actor_of
+
+        return actor_of(mesh, scalars, **settings)
+
 
 @dataclass(frozen=True)
 class Cut:
-    """A plane that takes away what lies on the side its normal points to."""
+    """A plane that clips the side its normal points to."""
 
     origin: tuple[float, float, float]
     normal: tuple[float, float, float]
@@ -147,7 +172,7 @@ class Cut:
 class Legend:
     """How to read the colours: the title, the map and the numbers at its two ends.
 
-    Instead of a map, or below it, there may be `swatches`: a colour and what it stands for.
+    Instead of a map, or below it, there may be `swatches`: a colour and its meaning.
     """
 
     title: str
@@ -174,7 +199,7 @@ class Description:
     front : float, optional
         Scalars above it are left grey on the actors that are part of the film.
     images : array, shape (k, s, s, 4), uint8, optional
-        What the actors' `materials` take their colours from; see `materials.Textures`.
+        Images of the actors' `materials`; see `materials.Textures`.
     """
 
     actors: dict[str, Actor] = field(default_factory=dict)
@@ -197,3 +222,9 @@ class Description:
             return np.array([[-1.0, -1, -1], [1, 1, 1]])
         low = np.min([p.min(axis=0) for p in points], axis=0)
         return np.stack([low, np.max([p.max(axis=0) for p in points], axis=0)]).astype(float)
+
+
+def in_view(description: Description, view: int) -> Description:
+    """Return a scene with the actors of one of its views alone."""
+    actors = {k: a for k, a in description.actors.items() if a.view in (None, view)}
+    return replace(description, actors=actors)

@@ -1,6 +1,4 @@
-"""What a diagnosis found, marked on the character: faces, vertices and joints."""
-
-from __future__ import annotations
+"""Findings of a diagnosis, marked on the character: faces, vertices and joints."""
 
 import numpy as np
 from numpy.typing import NDArray

@@ -1,7 +1,5 @@
 """A cut-cell graph in the paper's colours: mesh blue, interior orange, surface green."""
 
-from __future__ import annotations
-
 from typing import Any, Literal
 
 import numpy as np
@@ -68,7 +66,7 @@ def graph_scene(
     colors : array_like, shape (N, 3), uint8, optional
         A colour for every node: edges are then coloured by it, whatever their kind.
     cut : Cut, optional
-        Takes away what lies before it, so that the interior is seen.
+        Clips the near side, so that the interior is visible.
     slab : float
         With a cut, show interior edges only this far behind it, in the scene's units;
         0 shows all.
@@ -82,7 +80,7 @@ def graph_scene(
     """
     nodes = to_scene(rig, graph.lattice.to_file(graph.nodes)).astype(np.float32)
     cell = to_scene_length(rig, graph)
-    own = None if colors is None else np.asarray(colors, np.uint8)
+    point_colors = None if colors is None else np.asarray(colors, np.uint8)
     actors = {}
     for (name, kind), color in zip(LAYERS.items(), theme.edges, strict=True):
         edges = graph.edges[graph.edge_kind == kind]
@@ -96,7 +94,7 @@ def graph_scene(
             nodes[used],
             cells.reshape(-1, 2).astype(np.int32),
             color=color,
-            colors=None if own is None else own[used],
+            colors=None if point_colors is None else point_colors[used],
             scalars=scalars,
             colormap=shades,
             limits=limits,
@@ -113,7 +111,7 @@ def graph_scene(
             nodes[which],
             np.arange(len(which), dtype=np.int32)[:, None],
             color=color,
-            colors=None if own is None else own[which],
+            colors=None if point_colors is None else point_colors[which],
             width=NODE_WIDTH,
             thick=NODE_THICK * cell,
             form=FORMS[kind],
@@ -132,7 +130,7 @@ def to_scene_length(rig: Rig, graph: CutCellGraph) -> float:
 def component_colors(graph: CutCellGraph) -> tuple[NDArray[np.uint8], int]:
     """Return a colour for each node, by the connected component it is in, and their number.
 
-    The largest have colours of their own; there are more components than colours.
+    The largest have distinct colours; there are more components than colours.
 
     Returns
     -------

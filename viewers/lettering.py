@@ -1,6 +1,4 @@
-"""What is written on a picture: the legend in its corner, captions over its views."""
-
-from __future__ import annotations
+"""Texts on a picture: the legend in its corner, captions over its views."""
 
 from functools import cache
 from math import ceil

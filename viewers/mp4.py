@@ -1,6 +1,4 @@
-"""MP4 films, encoded by ffmpeg: a program of its own, as its encoders are under the GPL."""
-
-from __future__ import annotations
+"""MP4 films, encoded by ffmpeg: a separate program, as its encoders are under the GPL."""
 
 import re
 import shutil

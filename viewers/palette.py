@@ -1,7 +1,5 @@
 """Every colour that the scenes use, and the colour maps that values are shown with."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cache, lru_cache
 
@@ -22,7 +20,7 @@ INTERIOR = _rgb(255, 108, 12)
 SURFACE = _rgb(153, 203, 67)
 
 BODY = _rgb(201, 206, 214)
-# Told from BODY and UNREACHED in a legend, too.
+# Distinct from BODY and UNREACHED in a legend, too.
 ATTACHMENT = _rgb(108, 116, 132)
 BONE = _rgb(236, 239, 244)
 BONE_IDLE = _rgb(150, 158, 172)
@@ -32,12 +30,12 @@ GHOST = _rgb(64, 132, 255)
 UNREACHED = _rgb(148, 150, 160)
 
 
-# What a person marks: the clicked vertex, the way back from it.
+# Marks: the clicked vertex, the path from it.
 MARK = _rgb(232, 30, 99)
 # The paper's purple: nodes where distances begin.
 SOURCE = _rgb(146, 72, 190)
 
-# What is enough of a difference to people who see few colours, too: of all lively colours of
+# Enough of a difference for colour-blind people, too: of all saturated colours of
 # middle lightness each was chosen farthest from those before it, to every one of `EYES`.
 JOINT_COLORS = (
     (235, 167, 95), (62, 137, 247), (93, 232, 245), (225, 64, 116), (180, 143, 191),
@@ -180,7 +178,7 @@ def colormap(name: str) -> NDArray[np.uint8]:
 
 
 def joint_colors(parents: ArrayLike) -> NDArray[np.float64]:
-    """Return one colour a joint, far from its neighbours' to every kind of eye.
+    """Return one colour a joint, far from those of its neighbours for all kinds of colour vision.
 
     Parameters
     ----------
@@ -196,8 +194,8 @@ def joint_colors(parents: ArrayLike) -> NDArray[np.float64]:
 
 
 @lru_cache(maxsize=16)
-def _joint_colors(told: tuple[int, ...]) -> NDArray[np.float64]:
-    parents = np.array(told, int)
+def _joint_colors(parents_: tuple[int, ...]) -> NDArray[np.float64]:
+    parents = np.array(parents_, int)
     differences = _differences()
     used = np.zeros(len(differences))
     chosen = np.zeros(len(parents), int)
@@ -213,7 +211,7 @@ def _joint_colors(told: tuple[int, ...]) -> NDArray[np.float64]:
 
 @cache
 def _differences() -> NDArray[np.float64]:
-    """Return how far apart the joints' colours are, in OKLab, to the eye that sees it least."""
+    """Return the distance of colours in OKLab for the least sensitive colour vision."""
     return differences(np.array(JOINT_COLORS) / 255)
 
 

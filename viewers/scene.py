@@ -1,7 +1,5 @@
 """A description drawn by PyVista: the one scene that pictures are made from."""
 
-from __future__ import annotations
-
 import os
 import sys
 from collections.abc import Iterator
@@ -10,6 +8,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from PIL import Image
 
 if sys.platform == "linux" and not os.environ.get("DISPLAY"):
     # Without a screen VTK first tries one, and complains; this spares it the trial.
@@ -21,9 +20,13 @@ from cutcell.io.materials.face_colors import BLENDED
 
 from .camera import VIEW_ANGLE, Camera, framing
 from .description import Actor, Cut, Description
+from .lighting import LIGHTS, shading
 from .palette import BODY, LIGHT, Theme, colormap, to_bytes
-from .skin import moved, squared_apart, turned
+from .skin import distances_between, moved, turned
 from .textured import ALPHA_KNOWN, CUT_OUT, DITHERED, pieces, texture
+
+PICTURE_WIDTH = 1.5
+"""How many times as wide lines and points are in a picture, which has more pixels than a page."""
 
 
 class Scene:
@@ -34,24 +37,45 @@ class Scene:
     theme : Theme
     size : (int, int)
         Width and height of the pictures, in pixels.
+    fine : bool
+        Whether corners are darkened by ambient occlusion, which takes about a second without a
+        graphics card.
+    pixel_ratio : float
+        How many pixels of the picture are one pixel of the page, in which widths are given.
+    layered : bool
+        Whether overlays are a layer over the scene. PyVista's own windows and exports know one
+        layer: overlays are drawn nearer to the eye there.
     """
 
-    def __init__(self, theme: Theme = LIGHT, size: tuple[int, int] = (1200, 900)) -> None:
-        self.plotter = pv.Plotter(off_screen=True, window_size=list(size), lighting="none")
-        self.plotter.enable_anti_aliasing("msaa", multi_samples=8)
-        self._overlay = _add_overlay(self.plotter)
+    def __init__(
+        self,
+        theme: Theme = LIGHT,
+        size: tuple[int, int] = (1200, 900),
+        fine: bool = False,
+        pixel_ratio: float = PICTURE_WIDTH,
+        layered: bool = True,
+    ) -> None:
+        # Occlusion takes the place of multisampling: four times the pixels smooth edges.
+        self._scale = 2 if fine else 1
+        self._pixel_ratio = pixel_ratio * self._scale
+        window = [self._scale * side for side in size]
+        self.plotter = pv.Plotter(off_screen=True, window_size=window, lighting="none")
+        if not fine:
+            self.plotter.enable_anti_aliasing("msaa", multi_samples=8)
+        self._overlay = _add_overlay(self.plotter) if layered else self.plotter.renderer
         self.theme = theme
         for position, intensity in LIGHTS:
             light = pv.Light(position=position, light_type="camera light", intensity=intensity)
             self.plotter.add_light(light)
-            self._overlay.AddLight(light)
+            if layered:
+                self._overlay.AddLight(light)
         self._names: dict[str, list[pv.Actor]] = {}
         self._images: Any = None
         self._textures: dict[tuple[int, int], pv.Texture] = {}
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The actors that stand in the scene."""
+        """The actors of the scene."""
         return tuple(self._names)
 
     def show(self, description: Description) -> None:
@@ -59,6 +83,14 @@ class Scene:
         for drawn in self._names.values():
             for one in drawn:
                 self._renderer(one).RemoveActor(one)
+        # The pass of ambient occlusion leaves out what is translucent.
+        opaque = all(a.opacity == 1 for a in description.actors.values() if a.visible)
+        renderer: Any = self.plotter.renderer
+        if self._scale > 1 and opaque:
+            radius = OCCLUSION_RADIUS * float(np.ptp(description.bounds, axis=0).max())
+            renderer.enable_ssao(radius=radius, bias=radius / 20, kernel_size=32, blur=True)
+        else:
+            renderer.disable_ssao()
         if description.images is not self._images:
             self._images, self._textures = description.images, {}
         self._names = {
@@ -67,11 +99,12 @@ class Scene:
             if actor.visible and len(actor.cells)
         }
 
-    def look(self, camera: Camera) -> None:
+    def set_camera(self, camera: Camera) -> None:
         """Place the camera."""
         view = self.plotter.camera
         view.position, view.focal_point, view.up = camera.position, camera.focal_point, camera.up
         view.view_angle = VIEW_ANGLE
+        view.SetWindowCenter(-camera.centre[0], -camera.centre[1])
 
     def render_png(self, path: str | Path | None = None) -> NDArray[np.uint8]:
         """Draw the scene.
@@ -90,6 +123,17 @@ class Scene:
         plotter.renderer.ResetCameraClippingRange()
         plotter.render_window.Render()  # a screenshot alone shows what was drawn before
         return plotter.screenshot(None if path is None else str(path), return_img=True)
+
+    def render_clear(self) -> NDArray[np.uint8]:
+        """Draw the scene on a transparent ground, shape (height, width, 4), uint8."""
+        plotter: Any = self.plotter
+        plotter.renderer.ResetCameraClippingRange()
+        plotter.render_window.Render()
+        pixels = plotter.screenshot(None, return_img=True, transparent_background=True)
+        if self._scale == 1:
+            return pixels
+        height, width = pixels.shape[0] // self._scale, pixels.shape[1] // self._scale
+        return np.asarray(Image.fromarray(pixels).resize((width, height), Image.Resampling.BOX))
 
     def close(self) -> None:
         """Free the window."""
@@ -118,21 +162,22 @@ class Scene:
 
     def _add(self, drawn: pv.Actor, actor: Actor, description: Description) -> pv.Actor:
         mapper = drawn.mapper
-        _paint(drawn, actor, description.front)
+        _paint(drawn, actor, self._pixel_ratio, description.front)
         if actor.clipped and description.cut is not None:
             for plane in cut_planes(description.cut, actor.slab):
                 mapper.AddClippingPlane(pv._vtk.vtkPlane(**plane))
         (self._overlay if actor.overlay else self.plotter.renderer).AddActor(drawn)
+        if actor.overlay and self._overlay is self.plotter.renderer:
+            mapper.SetResolveCoincidentTopologyToPolygonOffset()
+            mapper.SetRelativeCoincidentTopologyPolygonOffsetParameters(0, OVERLAY_OFFSET)
+            mapper.SetRelativeCoincidentTopologyLineOffsetParameters(0, OVERLAY_OFFSET)
         return drawn
 
 
-# A key light from the upper left and a soft fill from the right, both tied to the camera.
-LIGHTS = (((-0.5, 0.7, 1.0), 0.82), ((0.9, -0.1, 0.6), 0.34))
-AMBIENT, DIFFUSE = 0.16, 1.0
-SOFT_AMBIENT, SOFT_DIFFUSE = 0.36, 0.75
-"""Of materials: images have shadows of their own, and would be dark where light is, too."""
-PICTURE_WIDTH = 1.5
-"""How many times as wide lines and points are in a picture, which has more pixels than a page."""
+OVERLAY_OFFSET = -26_000
+"""Of 65,536 steps of depth: how much nearer overlays are drawn where there is one layer."""
+OCCLUSION_RADIUS = 0.06
+"""How far away what darkens a corner may be, in the scene's longest side."""
 
 
 def render_png(
@@ -147,21 +192,16 @@ def render_png(
     scene = Scene(theme, size)
     try:
         scene.show(description)
-        scene.look(camera or framing(description.bounds, size[0] / size[1]))
+        scene.set_camera(camera or framing(description.bounds, size[0] / size[1]))
         return scene.render_png(path)
     finally:
         scene.close()
 
 
-def shading(actor: Actor) -> tuple[float, float]:
-    """Return how much of its colour an actor has without light, and how much by light."""
-    return (AMBIENT, DIFFUSE) if actor.materials is None else (SOFT_AMBIENT, SOFT_DIFFUSE)
-
-
 def cut_planes(cut: Cut, slab: float) -> list[dict[str, tuple[float, ...]]]:
-    """Return the planes that keep what lies behind a cut, each as origin and normal.
+    """Return the planes that keep the far side of a cut, each as origin and normal.
 
-    What a plane keeps lies on the side that its normal points to.
+    A plane keeps the side that its normal points to.
     """
     origin, normal = np.array(cut.origin), np.array(cut.normal)
     planes = [{"origin": tuple(origin.tolist()), "normal": tuple((-normal).tolist())}]
@@ -215,11 +255,11 @@ def _dashes(ends: NDArray, dash: float) -> tuple[NDArray[np.float32], NDArray[np
 def _values(actor: Actor, pose: NDArray[np.float64] | None) -> Any:
     if pose is None or actor.apart is None or actor.skin is None:
         return actor.scalars
-    squared = squared_apart(actor.points, actor.skin, actor.apart.skin, pose)
-    return (actor.apart.unit * squared).astype(np.float32)
+    lengths = distances_between(actor.points, actor.skin, actor.apart.skin, pose)
+    return (actor.apart.unit * lengths).astype(np.float32)
 
 
-def _paint(drawn: pv.Actor, actor: Actor, front: float | None = None) -> None:
+def _paint(drawn: pv.Actor, actor: Actor, pixel_ratio: float, front: float | None) -> None:
     appearance = drawn.prop
     appearance.color, appearance.opacity, appearance.line_width = (
         actor.color,
@@ -228,11 +268,11 @@ def _paint(drawn: pv.Actor, actor: Actor, front: float | None = None) -> None:
     )
     appearance.ambient, appearance.diffuse = shading(actor)
     appearance.lighting = actor.kind == "surface" and not actor.hull
-    appearance.point_size = actor.width * PICTURE_WIDTH
+    appearance.point_size = actor.width * pixel_ratio
     appearance.render_points_as_spheres = actor.kind == "points" and actor.form == "round"
     if actor.kind == "lines":
         # Not as tubes: VTK gets the depth of many wrong, and they vanish behind the body.
-        appearance.line_width = actor.width * PICTURE_WIDTH
+        appearance.line_width = actor.width * pixel_ratio
     if actor.kind == "points" and actor.form != "round":
         shader = drawn.GetShaderProperty()
         shader.AddFragmentShaderReplacement("//VTK::Color::Impl", True, _FORMS[actor.form], False)
@@ -260,7 +300,7 @@ def _paint(drawn: pv.Actor, actor: Actor, front: float | None = None) -> None:
         mapper.SetResolveCoincidentTopologyToPolygonOffset()
         mapper.SetRelativeCoincidentTopologyPolygonOffsetParameters(2, 30)
     if actor.kind == "lines":
-        # Lines on a surface lie in it: pull them a little towards the eye.
+        # Lines on a surface coincide with it: pull them a little towards the eye.
         mapper.SetResolveCoincidentTopologyToPolygonOffset()
         mapper.SetRelativeCoincidentTopologyLineOffsetParameters(0, -4)
 

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from types import TracebackType
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .camera import Camera, framing
-from .description import Actor, Description
+from .description import Description, in_view
 from .lettering import write_captions, write_legend
 from .palette import LIGHT, Theme
 from .scene import Scene
@@ -49,10 +48,9 @@ class Studio:
 
     def show(self, description: Description) -> None:
         """Make every view what a description says."""
-        self._shown = description
+        self._drawn = description
         for view, scene in enumerate(self._scenes):
-            actors = {k: a for k, a in description.actors.items() if _stands_in(a, view)}
-            scene.show(replace(description, actors=actors))
+            scene.show(in_view(description, view))
 
     def camera(
         self,
@@ -60,7 +58,7 @@ class Studio:
         bounds: NDArray[np.float64] | None = None,
     ) -> Camera:
         """Return a camera that sees all of each view, or of given bounds; see `framing`."""
-        bounds = self._shown.bounds if bounds is None else bounds
+        bounds = self._drawn.bounds if bounds is None else bounds
         return framing(bounds, self.shape, direction)
 
     def draw(self, camera: Camera) -> NDArray[np.uint8]:
@@ -76,12 +74,12 @@ class Studio:
         """
         picture = np.empty((self.size[1], self.size[0], 3), np.uint8)
         for scene, (left, top, width, height) in zip(self._scenes, self._tiles, strict=True):
-            scene.look(camera)
+            scene.set_camera(camera)
             picture[top : top + height, left : left + width] = scene.render_png()
-        if self._shown.views:
-            picture = write_captions(picture, self._shown.views, self._tiles, self.theme)
-        if self.legend and self._shown.legend is not None:
-            picture = write_legend(picture, self._shown.legend, self.theme)
+        if self._drawn.views:
+            picture = write_captions(picture, self._drawn.views, self._tiles, self.theme)
+        if self.legend and self._drawn.legend is not None:
+            picture = write_legend(picture, self._drawn.legend, self.theme)
         return picture
 
     @property
@@ -91,7 +89,7 @@ class Studio:
 
     @property
     def places(self) -> list[Tile]:
-        """Where each view lies in the picture."""
+        """The rectangle of each view in the picture."""
         return self._tiles
 
     def close(self) -> None:
@@ -109,7 +107,3 @@ class Studio:
         trace: TracebackType | None,
     ) -> None:
         self.close()
-
-
-def _stands_in(actor: Actor, view: int) -> bool:
-    return actor.view is None or actor.view == view

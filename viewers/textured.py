@@ -1,7 +1,5 @@
 """Surfaces in a file's materials, as VTK draws them: one piece for each image."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any
 
@@ -35,7 +33,7 @@ def pieces(
     Yields
     ------
     data : pyvista.PolyData
-        Corners, each with its tint ("colors"), and where it lies in the image.
+        Corners, each with its tint ("colors"), and its position in the image.
     kind : (int, int)
         The layer, -1 for none, and how the image goes on; see `FaceColors`.
     """

@@ -1,7 +1,5 @@
 """The character coloured by its weights: of one joint, or of all at once."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -24,7 +22,7 @@ def weights_scene(
     *,
     skeleton: bool = True,
     chosen: int | None = None,
-    **look: Any,
+    **style: Any,
 ) -> Description:
     """Return the scene of a weight matrix.
 
@@ -49,7 +47,7 @@ def weights_scene(
     """
     colors, legend = weight_colors(rig, weights, joint)
     actors = {
-        "body": body(rig, weights, **colors, **look),
+        "body": body(rig, weights, **colors, **style),
         **attachments(rig),
         **bones(
             rig,
@@ -75,7 +73,7 @@ def weight_colors(
 
 
 def _mixed(rig: Rig, weights: NDArray) -> NDArray[np.float64]:
-    """Mix the joints' colours by vertex; most weights are zero, and cost nothing."""
+    """Mix the colours of joints by vertex; most weights are zero, and cost nothing."""
     count, joints = weights.shape
     weighted = np.flatnonzero(weights > 0)
     vertex = weighted // joints

@@ -4,8 +4,6 @@ Weights follow the falloff at once, as the distances stay. A falloff that takes 
 out once for many influences; how many are kept is decided after.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
@@ -24,9 +22,10 @@ from cutcell.method import joints_needed
 from cutcell.rig import Rig
 from cutcell.runtime.progress import Progress
 from cutcell.weights import keep_strongest, skinning_weights
-from cutcell_app.work.preview import Preview
+from cutcell_app.jobs.preview import Preview
 
 from ..state import State
+from ..state.bound import Bound
 from ..state.corrections import applied, changes, measured, same_structure
 from ..state.method import GRAPH, WEIGHTS, effective, method_of
 from ..state.weights import MOST
@@ -34,6 +33,8 @@ from . import history
 from .correct import finished
 from .session import Session
 
+OF_GRAPH = tuple(name for name in GRAPH if name != "leaf")
+"""What the graph depends on."""
 QUICK = ("paper",)
 """Falloffs that are worked out again with every change, without a thread of their own."""
 
@@ -56,23 +57,24 @@ def bind(session: Session, message: tuple[str, str] | None = None) -> None:
         What is still to be read when it is done.
     """
     state = session.state
-    rig, method = state.rig, generous(state)
+    rig, method = state.rig, wide_options(state)
     if rig is None:
         return
     if state.bare:
         _build(session, message)
         return
-    request = session.bound_for = asked(state)
-    few, corrections = kept(state), state.corrections
-    work = binder(state, rig, corrections, _known_graph(session, rig, request))
+    request, few, corrections = binding_request(state), prune_options(state), state.corrections
+    graph = session.binder.request(request, rig.mesh, OF_GRAPH)
+    work = binding_work(state, rig, corrections, graph)
 
     def done(result: tuple[csr_array, Binding]) -> None:
-        session.built_for, session.corrected = request, corrections
-        session.reach = reach_of(method["falloff"])
         many, binding = result
-        session.graph = (rig.mesh, request, binding.graph)
-        session.falloffs = {method["falloff"]: (binding.distances, many)}
-        notice, session.notice = session.notice, ""
+        falloff = method["falloff"]
+        cached = {falloff: (binding.distances, many)}
+        cutoff = reach_of(falloff)
+        notice = session.binder.arrived(
+            Bound(rig.mesh, request, corrections, binding.graph, cutoff, cached)
+        )
         notice_shown = ("info", notice) if notice and message is None else message
         state.param.update(binding=binding, field=None, message=notice_shown)
         chosen = {**{name: method[name] for name in WEIGHTS}, **few}
@@ -82,19 +84,19 @@ def bind(session: Session, message: tuple[str, str] | None = None) -> None:
     session.start(work, done, failed=lambda: _go_back(session, request))
 
 
-def binder(
+def binding_work(
     state: State, rig: Rig, corrections: Corrections, graph: Any
 ) -> Callable[[Progress], tuple[csr_array, Binding]]:
     """Return what binds as is chosen now.
 
     It returns the weights of many influences, and the binding with those that are kept.
     """
-    method, few = effective(generous(state)), kept(state)
+    method, few = effective(wide_options(state)), prune_options(state)
 
     def work(progress: Progress) -> tuple[csr_array, Binding]:
         reusable = {"graph": graph, "corrections": measured(corrections)}
         result = cutcell.bind(rig, **reusable, progress=progress, **method)
-        return csr_array(result.weights), pruned(result, few, rig, corrections)
+        return csr_array(result.weights), prune(result, few, rig, corrections)
 
     return work
 
@@ -102,7 +104,9 @@ def binder(
 def previewer(state: State) -> Callable[[Rig, Corrections], Binding]:
     """Return what tells about how the rig that is bound is bound with joints elsewhere."""
     rig, binding, before = state.rig, state.binding, measured(state.corrections)
-    method = cutcell.ANIMATION.with_options(**effective({**generous(state), **kept(state)}))
+    method = cutcell.ANIMATION.with_options(
+        **effective({**wide_options(state), **prune_options(state)})
+    )
     most = state.max_influences
     made: list[Preview] = []
 
@@ -121,20 +125,9 @@ def reach_of(falloff: Any) -> float:
     return replace(cutcell.ANIMATION, falloff=falloff).reach_needed
 
 
-def asked(state: State) -> dict[str, Any]:
+def binding_request(state: State) -> dict[str, Any]:
     """Return what distances are measured for."""
     return {**method_of(state, GRAPH), "corrections": measured(state.corrections)}
-
-
-def _known_graph(session: Session, rig: Rig, wanted: dict[str, Any]) -> Any:
-    """Return the graph of the last binding, if this one's is the same: joints do not matter."""
-    if session.graph is None:
-        return None
-    mesh, made, graph = session.graph
-    if mesh is rig.mesh and all(made[n] == wanted[n] for n in GRAPH if n != "leaf"):
-        return graph
-    session.graph = None  # two of them need not be in memory
-    return None
 
 
 def cancel(session: Session) -> None:
@@ -144,7 +137,7 @@ def cancel(session: Session) -> None:
         session.uploads.stay(session.uploads.key)
         state.param.update(busy=False, message=("info", "Cancelled. Nothing was changed."))
         if state.graph is not None:
-            _go_back(session, session.bound_for)
+            _go_back(session, session.binder.requested)
 
 
 def swap(session: Session, rig: Rig, **more: Any) -> None:
@@ -175,41 +168,35 @@ def restore(session: Session, choices: dict[str, Any]) -> None:
         history.restore(session, plain)
         with history.restoring(session):
             swap(session, rig, repair=choices["repair"], own=file_rig)
-    history.tell(session)
+    history.publish(session)
 
 
 def _build(session: Session, message: tuple[str, str] | None) -> None:
     """Build the graph of a mesh without a skeleton."""
     rig = session.state.rig
-    request = session.bound_for = asked(session.state)
-    chosen = {name: request[name] for name in GRAPH if name != "leaf"}
-
-    known = _known_graph(session, rig, request)
+    request = binding_request(session.state)
+    chosen = {name: request[name] for name in OF_GRAPH}
+    cached = session.binder.request(request, rig.mesh, OF_GRAPH)
 
     def work(progress: Progress) -> Any:
-        return known or cutcell.build_graph(rig.mesh, progress=progress, **chosen)
+        return cached or cutcell.build_graph(rig.mesh, progress=progress, **chosen)
 
     def done(graph: Any) -> None:
-        session.built_for, session.corrected = request, Corrections()
-        session.graph = (rig.mesh, request, graph)
+        session.binder.arrived(Bound(rig.mesh, request, Corrections(), graph))
         session.state.param.update(bare_graph=graph, message=message)
 
-    session.start(
-        work,
-        done,
-        failed=lambda: _go_back(session, request),
-    )
+    session.start(work, done, failed=lambda: _go_back(session, request))
 
 
-def _go_back(session: Session, wanted: dict[str, Any]) -> None:
+def _go_back(session: Session, failed: dict[str, Any]) -> None:
     """Choose what the page holds instead of what nothing came of; at first, the defaults."""
-    state = session.state
-    request, corrections = asked(State()), Corrections()
-    if state.graph is not None:
-        request, corrections = session.built_for, session.corrected
-    if asked(state) != wanted or (wanted == request and state.corrections == corrections):
+    state, bound = session.state, session.binder.bound
+    request, corrections = binding_request(State()), Corrections()
+    if state.graph is not None and bound is not None:
+        request, corrections = bound.request, bound.corrections
+    if binding_request(state) != failed or (failed == request and state.corrections == corrections):
         return
-    session.bound_for = request
+    session.binder.withdrawn(request)
     _withdraw(session, {name: request[name] for name in GRAPH}, corrections)
     if state.graph is None:
         bind(session, state.message)
@@ -224,7 +211,7 @@ def _withdraw(session: Session, choices: dict[str, Any], corrections: Correction
 
 def _rebind(session: Session) -> None:
     """Compute again if what is measured for is other than what was last computed for."""
-    if asked(session.state) != session.bound_for:
+    if binding_request(session.state) != session.binder.requested:
         bind(session)
 
 
@@ -235,8 +222,8 @@ def _correct(session: Session) -> None:
         return
     is_ready = state.bare_graph if state.bare else state.binding
     if is_ready is None and not session.tasks.jobs("main").running:
-        session.bound_for = {}  # it was dropped with the joints that it was of
-    if asked(state) != session.bound_for:
+        session.binder.withdrawn()  # it was dropped with the joints that it was of
+    if binding_request(state) != session.binder.requested:
         session.tasks.after_a_pause(lambda: _rebind(session))
     elif not state.bare:
         weigh(session)
@@ -245,20 +232,20 @@ def _correct(session: Session) -> None:
 # Weights of the distances that are there
 
 
-def generous(state: State) -> dict[str, Any]:
+def wide_options(state: State) -> dict[str, Any]:
     """Return what to bind with, so that fewer influences can be kept later."""
     return {**method_of(state, (*GRAPH, *WEIGHTS)), "max_influences": MOST, "threshold": 0.0}
 
 
-def kept(state: State) -> dict[str, Any]:
+def prune_options(state: State) -> dict[str, Any]:
     """Return which of many influences are chosen."""
     return method_of(state, ("max_influences", "threshold"))
 
 
-def pruned(binding: Binding, kept: dict[str, Any], rig: Rig, corrections: Corrections) -> Binding:
+def prune(binding: Binding, options: dict[str, Any], rig: Rig, corrections: Corrections) -> Binding:
     """Return what was bound generously with the weights that are chosen and corrected."""
-    weights = keep_strongest(binding.distances, binding.weights, **kept)
-    most = kept["max_influences"]
+    weights = keep_strongest(binding.distances, binding.weights, **options)
+    most = options["max_influences"]
     return _reweighted(
         binding, finished(rig, binding.graph, weights, corrections, most), rig, corrections
     )
@@ -271,29 +258,29 @@ def _reweighted(binding: Binding, weights: NDArray, rig: Rig, corrections: Corre
 
 def weigh(session: Session) -> None:
     """Turn the distances that are there into weights again."""
-    state = session.state
-    if state.binding is None or asked(state)["corrections"] != session.built_for["corrections"]:
+    state, bound = session.state, session.binder.bound
+    if state.binding is None or bound is None:
+        return
+    if binding_request(state)["corrections"] != bound.request["corrections"]:
         return  # they are about to be measured
-    distances, falloff, few = state.binding.distances, state.falloff, kept(state)
-    cached = session.falloffs.get(falloff)
-    if session.reach < reach_of(falloff) or not _measured(
-        distances, falloff, few["max_influences"]
-    ):
+    distances, falloff, few = state.binding.distances, state.falloff, prune_options(state)
+    cached = bound.falloffs.get(falloff)
+    if bound.cutoff < reach_of(falloff) or not _measured(distances, falloff, few["max_influences"]):
         bind(session)
     elif falloff in QUICK:
-        _soon(session, partial(_weights, state.still(), **few))
+        _soon(session, partial(_weights, state.snapshot(), **few))
     elif cached is not None and cached[0] is distances:
         many = cached[1]
         _soon(session, lambda: keep_strongest(distances, many.toarray(), **few))
     else:
-        now = state.still()
+        now = state.snapshot()
 
         def work(progress: Progress) -> csr_array:
             progress("weights", 0.0)
             return csr_array(_weights(now, max_influences=MOST))
 
         def done(many: csr_array) -> None:
-            session.falloffs[falloff] = (distances, many)
+            bound.falloffs[falloff] = (distances, many)
             weigh(session)
 
         session.start(work, done)
@@ -330,13 +317,13 @@ def _soon(session: Session, make: Callable[[], NDArray]) -> None:
             return error
 
     def show(weights: NDArray | CutcellError) -> None:
-        now = state.binding
+        now, bound = state.binding, session.binder.bound
         if isinstance(weights, CutcellError):
             session.fail(weights)
-            if state.corrections == corrections != session.corrected:
-                _withdraw(session, {}, session.corrected)
+            if bound is not None and state.corrections == corrections != bound.corrections:
+                _withdraw(session, {}, bound.corrections)
         elif now is not None and now.distances is binding.distances:
-            session.corrected = corrections
+            session.binder.reweighted(corrections)
             state.binding = _reweighted(now, weights, rig, corrections)
 
     newest = session.tasks.newest("weights")

@@ -1,7 +1,5 @@
 """Paint weights: strokes over the body in the view become weights of single vertices."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 
@@ -14,12 +12,11 @@ from cutcell.errors import CutcellError
 from cutcell_viewers.skin import skin_of_weights
 
 from ..scenes.weights import painted_colors
-from ..state import State
+from ..state import PANELS, State
 from ..state.brush import (
     MAX_RADIUS,
     MIN_RADIUS,
     MIN_STRENGTH,
-    PAINTED,
     Selection,
     selected,
 )
@@ -53,9 +50,9 @@ def take_up(session: Session) -> None:
     state = session.state
     if not state.brush:
         return
-    shown = state.weights_shown if state.brush_mode in WITHOUT_JOINT else "bone"
+    colors_of = state.weights_shown if state.brush_mode in WITHOUT_JOINT else "bone"
     state.param.update(
-        joint_handle=False, weights_of="ours", weights_shown=shown, pose_colors="weights",
+        joint_handle=False, weights_of="ours", weights_shown=colors_of, pose_colors="weights",
         heat=False,
     )  # fmt: skip
 
@@ -66,10 +63,10 @@ def put_down(session: Session) -> None:
 
 
 def turn_over(session: Session) -> None:
-    """Take up the brush where weights are painted, or put it down."""
+    """Switch the brush on where weights can be painted, else off."""
     state = session.state
-    if state.panel not in PAINTED:
-        state.panel = PAINTED[0]
+    if not PANELS[state.panel].paints:
+        state.panel = "weights"
     state.brush = not state.brush
 
 
@@ -88,7 +85,7 @@ def strengthen(session: Session, steps: int) -> None:
 def paints(state: State) -> bool:
     """Whether there are weights in sight that the brush can paint."""
     is_ready = state.rig is not None and not state.bare and state.binding is not None
-    return bool(state.brush and is_ready and state.panel in PAINTED and not state.playing)
+    return bool(state.brush and is_ready and PANELS[state.panel].paints and not state.playing)
 
 
 def radius_of(state: State) -> float:
@@ -97,7 +94,7 @@ def radius_of(state: State) -> float:
 
 
 def tell_brush(session: Session) -> None:
-    """Tell the view how large the brush is, and where its mirror image is; None for no brush."""
+    """Send the brush's size and its mirror plane to the view; None for no brush."""
     state = session.state
     part: dict[str, Any] | None = None
     if paints(state):
@@ -109,8 +106,8 @@ def tell_brush(session: Session) -> None:
         alike = state.brush_mode in WITHOUT_JOINT
         if mirror is not None and (alike or mirror.joint[state.joint] >= 0):
             part["mirror"] = plane_in_scene(state.rig.world, mirror)
-    if session.view.told("brush") != part:
-        session.view.tell(brush=part)
+    if session.view.last_sent("brush") != part:
+        session.view.send(brush=part)
 
 
 def select(session: Session, chosen: NDArray[np.bool_]) -> None:
@@ -224,7 +221,7 @@ class Hand:
     def _show(self, vertices: NDArray, rows: NDArray) -> None:
         message: dict[str, Any]
         colors = painted_colors(self._session.state, vertices, rows)
-        message = {name: np.ascontiguousarray(some).ravel() for name, some in colors.items()}
+        message = {name: np.ascontiguousarray(values).ravel() for name, values in colors.items()}
         if self._session.state.panel == "pose" and len(vertices):
             skin = skin_of_weights(rows)
             influences = {"joints": skin.joints.ravel(), "weights": skin.weights.ravel()}

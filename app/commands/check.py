@@ -1,7 +1,5 @@
 """Find what is wrong with the character once it is bound; look at a finding; repair."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from cutcell.diagnosis import Diagnosis, Repaired, diagnose
@@ -11,12 +9,9 @@ from cutcell_viewers.finding_scene import camera_on
 from ..scenes.common import bounds_of
 from ..state.check import Repair
 from ..state.method import GRAPH, method_of
-from .binding import asked, swap
-from .look import look
+from .binding import binding_request, swap
+from .look import set_camera
 from .session import Session
-
-STANDARD = ("connectivity", "orient", "winding_threshold", "leaf")
-"""Choices that must be as at the start for the page's distances to tell what is wrong."""
 
 
 def watch(session: Session) -> None:
@@ -28,7 +23,7 @@ def watch(session: Session) -> None:
 def _begin_anew(session: Session) -> None:
     state = session.state
     session.tasks.jobs("diagnosis").cancel()
-    session.diagnosed = None
+    session.binder.is_diagnosed = False
     state.param.update(diagnosis=None, finding="")
     if state.repair is not None and state.repair.after is not state.rig:
         state.repair = None
@@ -36,14 +31,14 @@ def _begin_anew(session: Session) -> None:
 
 def examine(session: Session) -> None:
     """Diagnose what stands there, unless its graph is known to be sound or not."""
-    state = session.state
-    distances = None if state.binding is None else state.binding.distances
-    if state.graph is None or asked(state) != session.built_for:
-        return  # what belongs to the choices is not there yet
-    if session.diagnosed is (distances or state.graph):
+    state, binder = session.state, session.binder
+    if state.graph is None or not binder.is_for(binding_request(state)):
+        return  # the graph of the present choices is not built yet
+    if binder.is_diagnosed:
         return
     rig, resolution = state.rig, state.resolution
-    session.diagnosed = distances or state.graph
+    binder.is_diagnosed = True
+    distances = None if state.binding is None else state.binding.distances
     cached = distances if _is_standard(state) else None
 
     def work(progress: Progress) -> Diagnosis:
@@ -52,14 +47,14 @@ def examine(session: Session) -> None:
     def done(diagnosis: Diagnosis) -> None:
         state.diagnosis = diagnosis
         if state.panel == "check":
-            _look(session)
+            _show_finding(session)
 
     session.tasks.jobs("diagnosis").start(work, done, session.fail, lambda stage, fraction: None)
 
 
 def _is_standard(state: Any) -> bool:
-    first, now = method_of(type(state)(), GRAPH), method_of(state, GRAPH)
-    return all(first[name] == now[name] for name in STANDARD)
+    names = tuple(name for name in GRAPH if name != "resolution")
+    return method_of(type(state)(), names) == method_of(state, names)
 
 
 def look_at(session: Session, code: str) -> None:
@@ -68,23 +63,23 @@ def look_at(session: Session, code: str) -> None:
     if code == state.finding:
         code = ""
     state.finding = code
-    _look(session)
+    _show_finding(session)
 
 
 def go_to(session: Session, code: str) -> None:
-    """Go where a warning is told: to the panel that shows what a finding names, and its advice."""
+    """Open the panel that shows a finding and its advice."""
     state = session.state
     state.param.update(panel="check", finding=code)
-    _look(session)  # where the check is not done yet, it is looked at then
+    _show_finding(session)  # where the check is not done yet, it is looked at then
 
 
-def _look(session: Session) -> None:
+def _show_finding(session: Session) -> None:
     """Look at what the finding names that is looked at."""
     state = session.state
-    if state.found is not None:
-        camera = camera_on(state.rig, state.found, bounds_of(state), session.view.aspect)
+    if state.selected_finding is not None:
+        camera = camera_on(state.rig, state.selected_finding, bounds_of(state), session.view.aspect)
         if camera is not None:
-            look(session, camera)
+            set_camera(session, camera)
 
 
 def repair(session: Session, codes: list[str]) -> None:

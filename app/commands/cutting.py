@@ -1,7 +1,5 @@
 """Move and turn the cutting plane: by its handles in the view, or towards the eye."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -9,7 +7,8 @@ from numpy.typing import ArrayLike
 
 from cutcell_viewers.graph_scene import box_across
 
-from ..scenes.common import CUT, bounds_of, cut_of
+from ..scenes.common import bounds_of, cut_of
+from ..state import PANELS
 from .session import Session
 
 WATCHED = ["panel", "rig", "cut_axis", "slicing"]
@@ -22,15 +21,14 @@ def watch(session: Session) -> None:
 
 
 def show_handles(session: Session) -> None:
-    """Tell the view whether the plane can be dragged, and what box it crosses."""
+    """Send the view the box of the plane that can be dragged, or None."""
     state = session.state
     sliced = state.panel == "graph" and state.slicing
-    is_shown = (
-        state.rig is not None and state.panel in CUT and state.cut_axis != "off" and not sliced
-    )
+    is_cut = PANELS[state.panel].cuts and state.cut_axis != "off"
+    is_shown = state.rig is not None and is_cut and not sliced
     handles = {"box": bounds_of(state).tolist()} if is_shown else None
-    if session.view.told("handles") != handles:
-        session.view.tell(handles=handles)
+    if session.view.last_sent("handles") != handles:
+        session.view.send(handles=handles)
 
 
 def put(session: Session, origin: ArrayLike, normal: ArrayLike) -> None:

@@ -1,7 +1,5 @@
 """Compute a bone's whole field, and its distance by other measures, when they are to be seen."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from cutcell.runtime.progress import Progress
@@ -35,13 +33,13 @@ def halt_wave(session: Session, front: float | None) -> None:
 
 
 def run_wave(session: Session) -> None:
-    """Let the wavefront run in the browser, or halt it; told only when it is another one."""
+    """Play or pause the wavefront in the browser; sent only when it changed."""
     state = session.state
     end = farthest(state)
     runs = state.panel == "distance" and state.wave and state.animating and end is not None
     animation = {"end": end, "seconds": WAVE_SECONDS} if runs else None
-    if session.view.told("animation") != animation:
-        session.view.tell(animation=animation)
+    if session.view.last_sent("animation") != animation:
+        session.view.send(animation=animation)
 
 
 def find_field(session: Session) -> None:

@@ -1,12 +1,10 @@
-"""What the keys do, and the buttons over the canvas."""
-
-from __future__ import annotations
+"""Actions of the keys and of the buttons over the canvas."""
 
 from cutcell.editing.corrections import Corrections
 
 from ..scenes.common import first_joint
-from ..state import State
-from ..state.corrections import applied, changes, news
+from ..state import PANELS, State
+from ..state.corrections import applied, changed_only, changes
 from ..state.url import defaults
 from . import brush, pairs
 from .loading import revisit
@@ -25,6 +23,7 @@ def act(session: Session, name: str) -> None:
         "undo": lambda: revisit(session, session.history.undo()),
         "redo": lambda: revisit(session, session.history.redo()),
         "reset": lambda: reset(session),
+        "rendered": lambda: state.param.update(rendered=not state.rendered),
         "play": lambda: play(state),
         "next": lambda: step(session, 1),
         "previous": lambda: step(session, -1),
@@ -46,16 +45,16 @@ def reset(session: Session) -> None:
     state = session.state
     first = {**defaults(state), "moving": False, "playing": False}
     rig = applied(state.own, Corrections())
-    changed = {**changes(state, rig, Corrections()), **news(state, first)}
+    changed = {**changes(state, rig, Corrections()), **changed_only(state, first)}
     state.param.update(**{**changed, "joint": first_joint(rig)})
-    session.view.tell(home=True)
+    session.view.send(home=True)
 
 
 def play(state: State) -> None:
     """Play the motion, or halt it; on the panel where things move."""
     if state.bare:
         return
-    if not state.moving or state.panel not in ("pose", "compare"):
+    if not state.moving or not PANELS[state.panel].poses:
         panel = state.panel if state.panel == "compare" else "pose"
         state.param.update(panel=panel, moving=True, playing=True)
     else:
@@ -72,14 +71,14 @@ def step(session: Session, count: int) -> None:
 
 
 def to_parent(state: State) -> None:
-    """Choose the joint that the chosen one hangs on."""
+    """Choose the parent of the chosen joint."""
     above = -1 if state.bare else int(state.rig.skeleton.parents[state.joint])
     if above >= 0:
         state.joint = above
 
 
 def to_child(state: State) -> None:
-    """Choose the first joint that hangs on the chosen one."""
+    """Choose the first child of the chosen joint."""
     below = [] if state.bare else state.rig.skeleton.children[state.joint]
     if len(below):
         state.joint = int(below[0])

@@ -1,7 +1,5 @@
 """How a character comes to stand on the page: a demo, or files."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -18,14 +16,14 @@ from cutcell_viewers.camera import Camera, framing
 from ..files.reading import demo_rig, main_file, read
 from ..files.receive import Receiver
 from ..files.upload_cache import Group
+from ..jobs.jobs import READING
 from ..scenes.common import bones_part, bounds_of, camera_part, first_joint
 from ..state.url import first_clip
-from ..work.jobs import READING
 from . import history
 from .binding import bind, restore
 from .compare import carry
-from .correct import taken
-from .look import look
+from .correct import corrected_state
+from .look import set_camera
 from .session import Session
 
 
@@ -50,7 +48,7 @@ def load_demo(
     title = next(demo.title for demo in DEMOS if demo.id == id)
     _load(
         session,
-        lambda wanted: demo_rig(id),
+        lambda check: demo_rig(id),
         f"loading {title}",
         lambda: session.uploads.stay(""),
         f"demo {id}",
@@ -88,7 +86,7 @@ def load_files(
         return
     _load(
         session,
-        lambda wanted: read(path, wanted),
+        lambda check: read(path, check),
         f"loading {path.name}",
         lambda: uploads.stay(key, path.name),
         f"~{key}",
@@ -100,7 +98,7 @@ def load_files(
 
 def load_upload(session: Session, group: Group) -> None:
     """Show the character in files that a person dropped; they are kept for a while."""
-    session.arrival = {}  # what an address says is of another character
+    session.arrival = {}  # the address describes another character
     session.uploads.hold(group.key)
     load_files(session, group.paths, group.key)
 
@@ -193,10 +191,10 @@ def show_rig(
             state.panel = "graph"
     view.camera = framing(bounds_of(state), 1.2)
     view.at_home = True
-    view.tell(bones=bones_part(state), camera=camera_part(view.camera))
+    view.send(bones=bones_part(state), camera=camera_part(view.camera))
     if "camera" in arrival:
         eye, target = arrival["camera"][:3], arrival["camera"][3:]
-        look(session, Camera(tuple(eye), tuple(target)))
+        set_camera(session, Camera(tuple(eye), tuple(target)))
     history.begin(session, old)
     bind(session)
 
@@ -225,24 +223,24 @@ def _load(
     session.start(work, done, READING, failed)
 
 
-def _correct(session: Session, said: str) -> None:
+def _correct(session: Session, text: str) -> None:
     """Take the corrections that an address says, or that are chosen already, if they fit."""
     state, corrections = session.state, session.state.corrections
     try:
-        if said:
-            stored = session.kept.read(said)
+        if text:
+            stored = session.kept.read(text)
             if stored is None:
                 raise ParameterError("the server no longer has them")
             corrections = stored
-        changed = taken(session, corrections)
-        if "joint" in changed:  # what is chosen already is of the corrected skeleton
+        changed = corrected_state(session, corrections)
+        if "joint" in changed:  # the choices already refer to the corrected skeleton
             changed = {k: v for k, v in changed.items() if k not in ("joint", "turns")}
-            if said:
+            if text:
                 changed["joint"] = first_joint(changed["rig"])
         state.param.update(**changed)
     except (CutcellError, ValueError) as error:
         state.corrections = Corrections()
-        session.notice = f"The corrections of this address were not taken: {error}"
+        session.binder.notice = f"The corrections of this address were not taken: {error}"
 
 
 def _arrive(session: Session, rig: Rig, arrival: dict[str, Any]) -> None:
@@ -253,7 +251,7 @@ def _arrive(session: Session, rig: Rig, arrival: dict[str, Any]) -> None:
     state.tour = arrival.get("tour", state.tour)
     if 0 <= arrival.get("vertex", -1) < len(rig.mesh.vertices):
         state.vertex = arrival["vertex"]
-    session.notice = arrival.get("told", "")
+    session.binder.notice = arrival.get("told", "")
 
 
 def _choose_joints(session: Session, arrival: dict[str, Any]) -> None:

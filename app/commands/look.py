@@ -1,7 +1,5 @@
 """Choose a bone or a vertex, look from somewhere; the view shows the scene of the state."""
 
-from __future__ import annotations
-
 from cutcell_viewers.camera import Camera, framing
 
 from ..scenes import resolve
@@ -36,7 +34,7 @@ def pick_node(session: Session, node: int | None) -> None:
 
 
 def pick(session: Session, joint: int) -> None:
-    """Choose a joint; show its weights where the colours told of all joints."""
+    """Choose a joint; show its weights where the colours showed all joints."""
     state = session.state
     if state.rig is None or not 0 <= joint < len(state.rig.skeleton.joints):
         return
@@ -52,14 +50,14 @@ def pick_vertex(session: Session, vertex: int | None) -> None:
     state.param.update(vertex=vertex, node=None)
 
 
-def look(session: Session, camera: Camera | None) -> None:
+def set_camera(session: Session, camera: Camera | None) -> None:
     """Look from somewhere; None for the view that one begins with."""
     view = session.view
     home = camera_part(framing(bounds_of(session.state), 1.2))
     if camera is not None:
         view.camera, view.at_home = camera, False
         home["now"] = camera_part(camera)
-    view.tell(camera=home)
+    view.send(camera=home)
 
 
 def show(session: Session) -> None:
@@ -70,10 +68,10 @@ def show(session: Session) -> None:
         scene.cancel()
         view.present(resolve(state, memo))
     else:
-        now = state.still()
+        now = state.snapshot()
         scene.do(lambda progress: resolve(now, memo), view.present)
 
 
 def show_theme(session: Session) -> None:
     """Show the colours of the theme that is chosen."""
-    session.view.tell(theme=theme_part(theme_of(session.state)))
+    session.view.send(theme=theme_part(theme_of(session.state)))

@@ -1,14 +1,12 @@
 """The materials of a character's file, once somebody wants to see them."""
 
-from __future__ import annotations
-
 from cutcell.errors import FileError
 from cutcell.io.materials.transfer import has_materials, read_materials
 from cutcell.rig import Rig
 from cutcell.runtime.progress import Progress
 from cutcell_viewers.materials import Textures, as_textures, decoded, none_decoded
 
-from ..work.processes import in_process
+from ..jobs.processes import in_process
 from .session import Session
 
 ENDED = "decoding its images came to a sudden end"
@@ -41,17 +39,17 @@ def find(session: Session) -> None:
 
 
 def read(rig: Rig, progress: Progress) -> Textures | None:
-    """Return what shows a rig in its materials; images are decoded in a process of its own."""
+    """Return what shows a rig in its materials; images are decoded in another process."""
     materials = read_materials(rig)
     if materials is None:
         return None
     inputs = materials.images, materials.layers
 
-    def wanted() -> None:
+    def require_current() -> None:
         progress("materials", 0.0)
 
     try:
-        pixels, problems = in_process(decoded, *inputs, wanted=wanted, ended=ENDED)
+        pixels, problems = in_process(decoded, *inputs, check=require_current, ended=ENDED)
     except FileError as error:
         pixels, problems = none_decoded(materials.layers, str(error))
     return as_textures(rig, materials, pixels, problems)

@@ -1,10 +1,8 @@
-"""What one browser's page has: its state, its view, the work that goes on for it.
+"""Session of one page: its state, its view and its running tasks.
 
 It does nothing by itself: commands, the functions of the modules beside this one, are given it, and
 change the state; `watchers.follow` lets others follow.
 """
-
-from __future__ import annotations
 
 import logging
 import shutil
@@ -12,7 +10,6 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, Protocol
 
-from cutcell.editing.corrections import Corrections
 from cutcell.errors import CutcellError
 from cutcell.runtime.progress import Progress
 from cutcell_viewers.camera import Camera
@@ -20,18 +17,19 @@ from cutcell_viewers.description import Description
 
 from ..files.corrections_file import CorrectionsFile
 from ..files.upload_cache import UPLOADS, PageUploads
+from ..jobs.jobs import COMPUTING, Schedule, Slots
+from ..jobs.messages import error_text
+from ..jobs.tasks import Tasks
 from ..scenes import Memo
 from ..state import State
+from ..state.bound import Binder
 from ..state.history import History
-from ..work.jobs import COMPUTING, Schedule, Slots
-from ..work.messages import told
-from ..work.tasks import Tasks
 
 logger = logging.getLogger("cutcell.app")
 
 
 class View(Protocol):
-    """What commands need of the 3D view; `widgets.view.SceneView` is one."""
+    """Interface of the 3D view for commands; see `widgets.view.SceneView`."""
 
     camera: Camera | None
     at_home: bool
@@ -46,17 +44,17 @@ class View(Protocol):
     def present(self, description: Description) -> None:
         """Show a scene."""
 
-    def tell(self, **parts: Any) -> None:
+    def send(self, **parts: Any) -> None:
         """Send parts of the view that are no actors; they are kept for a browser that comes."""
 
-    def told(self, name: str) -> Any:
-        """Return what was last told of a part; None if nothing was."""
+    def last_sent(self, name: str) -> Any:
+        """Return the last value sent for a part; None if none was."""
 
     def offer(self, name: str, content: bytes) -> None:
         """Let the browser save a file."""
 
     def answer(self, **message: Any) -> None:
-        """Tell the browser what it asked for."""
+        """Answer a request of the browser."""
 
 
 class Session:
@@ -87,25 +85,10 @@ class Session:
     before_tour : tuple or None
         The choices and the camera from before the tour.
     arrival : dict
-        What an address says of the character that is on its way.
-    notice : str
-        What is to be told once that is bound; empty for nothing.
-    bound_for, built_for : dict
-        What was last computed for, and what is there: the graph's parameters, and the corrections
-        that distances depend on.
-    corrected : Corrections
-        Those that the weights that are there hold.
-    graph : tuple or None
-        The mesh, what was asked, and the graph of the last binding.
+        Choices of the address for the character that is being loaded.
+    binder : Binder
     kept : CorrectionsFile
-        What the address has no room for.
-    reach : float
-        How many times as far as the nearest joint distances are known.
-    falloffs : dict
-        For each falloff that was worked out the distances, and the weights of many influences:
-        sparse, as most of an (n, j) matrix is zero, and a session has it as long as it lives.
-    diagnosed : BoneDistances, CutCellGraph or None
-        The distances, or of a mesh without a skeleton the graph, that the diagnosis is of.
+        Corrections that are too long for the address.
     """
 
     def __init__(self, view: View, schedule: Schedule) -> None:
@@ -121,15 +104,8 @@ class Session:
         self.returning = False
         self.before_tour: tuple[dict[str, Any], Camera | None] | None = None
         self.arrival: dict[str, Any] = {}
-        self.notice = ""
-        self.bound_for: dict[str, Any] = {}
-        self.built_for: dict[str, Any] = {}
-        self.corrected = Corrections()
-        self.graph: tuple[Any, dict[str, Any], Any] | None = None
-        self.reach = 0.0
+        self.binder = Binder()
         self.kept = CorrectionsFile(self.uploads)
-        self.falloffs: dict[str, tuple[Any, Any]] = {}
-        self.diagnosed: Any = None
         self._folder: Path | None = None
 
     def start(
@@ -141,7 +117,7 @@ class Session:
     ) -> None:
         """Do some work that the page shows progress of; it stops what went on before.
 
-        What goes wrong is told, and then `failed` is called.
+        An error is reported, and then `failed` is called.
         """
         state, jobs = self.state, self.tasks.jobs("main")
 
@@ -161,10 +137,10 @@ class Session:
         jobs.start(work, finish, went_wrong, report, slots)
 
     def fail(self, error: Exception) -> None:
-        """Tell what went wrong; the page keeps what it had."""
+        """Show an error; the page is unchanged."""
         if not isinstance(error, CutcellError | MemoryError):
             logger.error("unexpected error", exc_info=error)
-        self.state.message = ("error", told(error))
+        self.state.message = ("error", error_text(error))
 
     @property
     def folder(self) -> Path:

@@ -1,6 +1,4 @@
-"""What follows the state of a page: each `watch(session)` makes some command act by itself."""
-
-from __future__ import annotations
+"""Watchers of a page's state: each `watch(session)` runs a command on changes."""
 
 from . import (
     arrival,
@@ -12,13 +10,14 @@ from . import (
     distance,
     explain,
     history,
+    idle,
     keys,
     look,
     materials,
     moving,
     pairs,
     pose,
-    rest,
+    rendered,
 )
 from .session import Session
 
@@ -26,6 +25,6 @@ from .session import Session
 def follow(session: Session) -> None:
     """Let everything follow the state of a new session."""
     # In this order: what is seen comes before what is computed for it.
-    watched = (look, cutting, moving, brush, distance, pose, materials, compare, pairs)
-    for one in (*watched, binding, explain, history, keys, rest, check, arrival):
+    watched = (look, cutting, moving, brush, distance, pose, materials, compare, pairs, rendered)
+    for one in (*watched, binding, explain, history, keys, idle, check, arrival):
         one.watch(session)

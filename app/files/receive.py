@@ -1,13 +1,11 @@
 """Files from the browser: received in pieces, straight to where they are kept."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 
 from cutcell.errors import CutcellError, FileError
 
-from ..work.messages import FULL
+from ..jobs.messages import FULL
 from .upload_cache import Group, UploadCache
 
 MAX_UPLOAD = 200 * 1024 * 1024
@@ -134,7 +132,7 @@ def _announced(files: list[dict[str, Any]]) -> tuple[list[str], list[int]]:
 
 
 def _problem(error: Exception) -> Exception:
-    """Return what a person is told of an error, as far as one can tell."""
+    """Return the text of an error for a person."""
     if isinstance(error, OSError):
         if error.errno in FULL:
             return FileError("the server's disk is full, and the file was not taken; try again")

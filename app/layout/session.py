@@ -1,16 +1,14 @@
 """A session of the page: its beginning and its end."""
 
-from __future__ import annotations
-
 from ..commands.loading import receiver
 from ..commands.session import Session
 from ..commands.watchers import follow
+from ..jobs.jobs import Schedule
 from ..widgets.view import SceneView
-from ..work.jobs import Schedule
 
 
 def begin(schedule: Schedule) -> Session:
-    """Return a new session with a view of its own, which everything follows.
+    """Return a new session with its view and watchers.
 
     Parameters
     ----------

@@ -1,39 +1,35 @@
 """The sidebar: character and bone, the tabs, the chosen panel's controls, export."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import panel_material_ui as pmui
 
 from ..commands.session import Session
-from ..panels import PANELS
+from ..panels import BUILDERS
 from ..panels.bone import bone
 from ..panels.character import character
+from ..panels.controls import column, intro, when
 from ..panels.export import export
-from ..panels.parts import lead, when
 from ..panels.templates import skeleton_menu
+from ..state import PANELS
 from ..widgets.tabs import Tabs
 
-BARE = ("graph", "check", "learn")
-"""The panels for a mesh without a skeleton."""
 NO_SKELETON = (
-    "This mesh has no skeleton, so it has no bones to measure from, to weigh or to move; its graph "
-    "can be seen. Choose a skeleton above, export it together with its armature, or drop it "
-    "together with a skeleton in a JSON file of the same name."
+    "This mesh has no skeleton. Choose a template above, or drop a file with one. "
+    "The graph can be explored."
 )
 
 
 def sidebar(session: Session) -> list[Any]:
-    """Return what stands in the sidebar, from top to bottom."""
-    # What concerns one character has no place beside two others.
+    """Return the sidebar's contents, from top to bottom."""
+    # Controls of one character are hidden while two are compared.
     alone = when(
         lambda panel, opened: panel != "pairs" or opened is None,
         session.state.param.panel,
         session.state.param.opened,
     )
     chosen, exported = (
-        pmui.Column(*parts, margin=0, visible=alone, sizing_mode="stretch_width")
+        column(*parts, visible=alone)
         for parts in (
             (character(session), skeleton_menu(session), bone(session)),
             (export(session),),
@@ -49,31 +45,32 @@ def panels(session: Session) -> tuple[Tabs, pmui.Column]:
     longer than all that is computed for it.
     """
     state = session.state
+    offered = [panel for panel in PANELS.values() if state.opened or not panel.needs_audit]
     tabs = Tabs(
         value=state.panel,
-        tabs=[(p.id, p.title, p.icon) for p in PANELS if p.id != "pairs" or state.opened],
+        tabs=[(panel.id, panel.title, panel.icon) for panel in offered],
         margin=(10, 20, 0, 20),
         sizing_mode="stretch_width",
     )
-    missing = lead(NO_SKELETON)
-    place = pmui.Column(missing, margin=0, sizing_mode="stretch_width")
+    missing = intro(NO_SKELETON)
+    place = column(missing)
     built: dict[str, Any] = {}
 
-    def shown(*events: Any) -> None:
+    def update(*events: Any) -> None:
         tabs.value = state.panel
-        missing.visible = state.bare and state.panel not in BARE
+        missing.visible = state.bare and not PANELS[state.panel].works_without_skeleton
         for panel in PANELS:
-            is_visible = panel.id == state.panel and not missing.visible
-            if panel.id in built:
-                built[panel.id].visible = is_visible
+            is_visible = panel == state.panel and not missing.visible
+            if panel in built:
+                built[panel].visible = is_visible
             elif is_visible:
-                built[panel.id] = panel.build(session)
-                place.append(built[panel.id])
+                built[panel] = BUILDERS[panel](session)
+                place.append(built[panel])
 
     def chosen(event: Any) -> None:
         state.panel = event.new
 
-    state.param.watch(shown, ["panel", "rig"])
+    state.param.watch(update, ["panel", "rig"])
     tabs.param.watch(chosen, "value")
-    shown()
+    update()
     return tabs, place

@@ -1,7 +1,5 @@
 """How the page looks: colours, type and spacing, in light and in dark."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from cutcell_viewers.palette import DARK, LIGHT, to_hex
@@ -11,7 +9,7 @@ SHEET = "46dvh"
 """How high the sidebar is in a narrow window: a sheet at the bottom, the canvas above it."""
 
 _SHEET = {
-    # What its sliders change stays seen, and can be turned meanwhile.
+    # The scene that its sliders change stays visible and can be turned.
     "pointerEvents": "none",
     "& .MuiBackdrop-root": {"display": "none"},
     "& .MuiDrawer-paper": {
@@ -41,7 +39,7 @@ _SHAPE = {
             "styleOverrides": {
                 # Dark paper is as dark over the canvas as beside it.
                 "paper": {"backgroundImage": "none"},
-                # What lies over the bar on top needs no room below it.
+                # Elements over the top bar need no space below it.
                 "modal": {
                     "& .MuiDrawer-paper > .MuiToolbar-root": {"display": "none"},
                     NARROW: _SHEET,
@@ -87,6 +85,6 @@ PAGE_STYLE: dict[str, Any] = {
     "& .header .MuiToolbar-root": {"minHeight": "52px", "margin": 0},
     "& .MuiToolbar-root": {"minHeight": "52px"},
     "& .sidebar": {"backgroundImage": "none", "borderColor": "divider"},
-    # How high the sheet is that stands there now: scripts/sheet.js.
+    # How high the sheet is that stands there now: frontend/sheet.js.
     NARROW: {"& .main > .MuiBox-root": {"height": "calc(100dvh - var(--sheet, 0px)) !important"}},
 }

@@ -1,99 +1,12 @@
 """The panels of the page, one file each: `NAME(session) -> Viewable` builds its controls."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
-from dataclasses import dataclass
+from importlib import import_module
 from typing import Any
 
 from ..commands.session import Session
-from .check import check
-from .compare import compare
-from .distance import distance
-from .graph import graph
-from .learn import learn
-from .pairs import pairs
-from .pose import pose
-from .weights import weights
+from ..state import PANELS
 
-__all__ = ["PANELS", "Panel"]
-
-
-@dataclass(frozen=True)
-class Panel:
-    """One of the panels that the page offers.
-
-    Parameters
-    ----------
-    id : str
-        Its name in the state and in the address.
-    title : str
-        What a person reads: one word.
-    icon : str
-        What an SVG of 24 by 24 units holds; it is drawn as lines, in the text's colour.
-    build : callable
-        Returns its controls, for a session.
-    """
-
-    id: str
-    title: str
-    icon: str
-    build: Callable[[Session], Any]
-
-
-PANELS = (
-    Panel(
-        "graph",
-        "Graph",
-        '<path d="M12 3l8 4.5v9L12 21l-8-4.5v-9z"/><path d="M4 7.5l8 4.5 8-4.5M12 12v9"/>',
-        graph,
-    ),
-    Panel(
-        "distance",
-        "Distance",
-        '<circle cx="5" cy="19" r="1.6"/><path d="M5 13a6 6 0 0 1 6 6M5 8.5A10.5 10.5 0 0 1 '
-        '15.5 19M5 4a15 15 0 0 1 15 15"/>',
-        distance,
-    ),
-    Panel(
-        "weights",
-        "Weights",
-        '<circle cx="12" cy="12" r="8.5"/><path d="M12 3.5v17M12 7.5h7M12 12h8.5M12 16.5h7"/>',
-        weights,
-    ),
-    Panel(
-        "pose",
-        "Pose",
-        '<circle cx="13" cy="4.5" r="2"/><path d="M13 7.5l-2 6 3.5 2.5 1 5M11 13.5L8 21M5 11.5l'
-        '3.5-3L13 8l3 3.5 3.5.5"/>',
-        pose,
-    ),
-    Panel(
-        "compare",
-        "Compare",
-        '<path d="M4 5h6v14H4zM14 5h6v14h-6zM12 2.5v19"/>',
-        compare,
-    ),
-    Panel(
-        "check",
-        "Check",
-        '<path d="M2.5 12.5h4l2.5-6 4 12 3-9 1.5 3h4"/>',
-        check,
-    ),
-    Panel(
-        "learn",
-        "Learn",
-        '<path d="M2.5 9.5L12 5l9.5 4.5L12 14z"/>'
-        '<path d="M6.5 11.5v5c3 2.6 8 2.6 11 0v-5M21.5 9.5v6"/>',
-        learn,
-    ),
-    Panel(
-        "pairs",
-        "Pairs",
-        '<circle cx="7.5" cy="6" r="2.2"/><path d="M7.5 9v6M4 12h7M7.5 15l-2.5 5M7.5 15l2.5 5"/>'
-        '<circle cx="16.5" cy="6" r="2.2"/><path d="M16.5 9v6M13 12h7M16.5 15l-2.5 5M16.5 15l2.5 '
-        '5"/>',
-        pairs,
-    ),
-)
-"""In the order in which they are offered; the ids are those of `state.PANELS`."""
+BUILDERS: dict[str, Callable[[Session], Any]] = {
+    panel: getattr(import_module(f".{panel}", __name__), panel) for panel in PANELS
+}

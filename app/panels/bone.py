@@ -1,26 +1,17 @@
 """Choose a bone."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import panel_material_ui as pmui
 
 from ..commands.session import Session
-from .parts import GAP, offer, section, unique_names, when
+from .controls import offer, row, section, select_box, unique_names, when
 
 
 def bone(session: Session) -> pmui.Column:
     """Return the section of the chosen bone."""
     state = session.state
-    select = pmui.Select(
-        label="Bone",
-        options=[],
-        size="small",
-        margin=GAP,
-        sizing_mode="stretch_width",
-        searchable=True,
-    )
+    select = select_box("Bone", searchable=True)
 
     def listed(*events: Any) -> None:
         names = () if state.rig is None else state.rig.skeleton.names
@@ -42,6 +33,6 @@ def bone(session: Session) -> pmui.Column:
         size="18px",
         margin=(4, 0, 0, 8),
     )
-    row = pmui.Row(select, toggle, margin=0, sizing_mode="stretch_width")
+    chooser = row(select, toggle)
     has_skeleton = when(lambda rig: not state.bare, state.param.rig)
-    return section("", row, margin=(2, 20, 4, 20), visible=has_skeleton)
+    return section("", chooser, margin=(2, 20, 4, 20), visible=has_skeleton)

@@ -1,7 +1,5 @@
 """The brush: what it does to weights, how large and how strong it is."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import panel_material_ui as pmui
@@ -12,35 +10,30 @@ from ..commands.brush import clear_selection, invert_selection
 from ..commands.moving import mirror_of
 from ..commands.session import Session
 from ..state.brush import MAX_RADIUS, selected
-from .parts import caption, choice, section, slider, when
+from .controls import BESIDE, button, caption, choice, column, row, section, slider, switch, when
 
 MODES = {"Add": "add", "Subtract": "subtract", "Replace": "replace", "Smooth": "smooth",
          "Select": "select"}  # fmt: skip
 HOW = (
-    "Drag over the body to paint, beside it or with the right button to turn it, with the middle "
-    "button to move it; a finger beside it turns, two move. Shift while you paint smooths, Ctrl "
-    "takes away. Keys: B, [ ] for the size, { } for the strength, Esc."
+    "Drag on the body to paint, elsewhere to orbit. Shift smooths, Ctrl subtracts. "
+    "[ ] size, { } strength."
 )
 
 
 def brush(session: Session) -> pmui.Column:
     """Return the section of the brush."""
     state = session.state
-    style: dict[str, Any] = {"size": "small", "margin": (3, 0), "description": ""}
-    switch, mirrored = (
-        pmui.Switch.from_param(parameter, label=parameter.label, **style)
-        for parameter in (state.param.brush, state.param.brush_mirrored)
-    )
+    mirrored = switch(state.param.brush_mirrored)
 
-    def has_mirror(rig: Any, own: Any, corrections: Any) -> bool:
-        return rig is not None and own is not None and mirror_of(session) is not None
+    def has_mirror(rig: Any, original: Any, corrections: Any) -> bool:
+        return rig is not None and original is not None and mirror_of(session) is not None
 
     mirrored.visible = when(has_mirror, state.param.rig, state.param.own, state.param.corrections)
-    tools = pmui.Column(
+    tools = column(
         choice(state.param.brush_mode, MODES),
-        caption(when(_told, state.param.rig, state.param.joint, state.param.brush_mode)),
+        caption(when(_summary, state.param.rig, state.param.joint, state.param.brush_mode)),
         slider(
-            state.param.brush_radius, "Radius, of the character's longest side", step=0.005,
+            state.param.brush_radius, "Radius (% of size)", step=0.005,
             end=MAX_RADIUS, format="0.0 %",
         ),
         slider(
@@ -51,53 +44,40 @@ def brush(session: Session) -> pmui.Column:
             state.param.brush_value, "Weight to paint", step=0.05,
             visible=when(lambda mode: mode == "replace", state.param.brush_mode),
         ),
-        mirrored,
-        _selection(session),
-        caption(HOW),
-        visible=state.param.brush,
-        margin=0,
-        sizing_mode="stretch_width",
+        mirrored, _selection(session), caption(HOW), visible=state.param.brush,
     )  # fmt: skip
     has_binding = when(lambda binding: binding is not None, state.param.binding)
-    return section("Brush", switch, tools, visible=has_binding)
+    return section("Brush", switch(state.param.brush), tools, visible=has_binding)
 
 
 def _selection(session: Session) -> pmui.Column:
     """Return what tells of the vertices that strokes are limited to."""
     state = session.state
-    clear, invert = (
-        pmui.Button(
-            label=label, size="small", variant="outlined", margin=(4, margin, 4, 0),
-            sizing_mode="stretch_width", on_click=lambda event, act=act: act(session),
-        )
-        for label, act, margin in (
-            ("Clear", clear_selection, 8), ("Invert", invert_selection, 0),
-        )
-    )  # fmt: skip
 
-    def told(selection: Any, rig: Any) -> str:
+    def summary(selection: Any, rig: Any) -> str:
         chosen = selected(state)
         if chosen is None:
             return ""
         count = int(chosen.sum())
         which = "one vertex" if count == 1 else f"{count:,} vertices"
-        return f"Strokes stay on {which} of {len(chosen):,}, marked by dots."
+        return f"Strokes are limited to {which} of {len(chosen):,}, marked by dots."
 
     changing = state.param.brush_selection, state.param.rig
-    return pmui.Column(
-        caption(when(told, *changing)),
-        pmui.Row(clear, invert, margin=0, sizing_mode="stretch_width"),
+    return column(
+        caption(when(summary, *changing)),
+        row(
+            button("Clear", lambda: clear_selection(session), margin=BESIDE),
+            button("Invert", lambda: invert_selection(session)),
+        ),
         visible=when(lambda *which: selected(state) is not None, *changing),
-        margin=0,
-        sizing_mode="stretch_width",
     )
 
 
-def _told(rig: Any, joint: int, mode: str) -> str:
+def _summary(rig: Any, joint: int, mode: str) -> str:
     if mode == "smooth":
         return "Smooths all unlocked joints."
     if mode == "select":
-        return "Selects what the other tools may paint; Ctrl takes away."
+        return "Select the vertices that other tools may paint. Ctrl subtracts."
     if rig is None or joint >= len(rig.skeleton.names):
         return ""
-    return f"Paints for {shown_name(rig.skeleton.names[joint])}, the chosen bone."
+    return f"Paints weights of {shown_name(rig.skeleton.names[joint])}, the selected bone."

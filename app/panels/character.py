@@ -1,7 +1,5 @@
 """Choose a demo character, or drop a file."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import panel_material_ui as pmui
@@ -14,10 +12,10 @@ from ..commands.session import Session
 from ..files.receive import MAX_UPLOAD
 from ..state import State
 from ..widgets.file_drop import FileDrop
-from .parts import GAP, as_text, caption, section, unique_names
+from .controls import GAP, as_text, caption, section, select_box, unique_names
 
 MAX_FAULTS = 2
-"""The panel Check tells of all."""
+"""The panel Check lists all."""
 OWN = "Your own"
 HINT = f"GLB, glTF, VRM, FBX, USD, OBJ, … · up to {MAX_UPLOAD // 2**20} MB"
 
@@ -26,14 +24,7 @@ def character(session: Session) -> pmui.Column:
     """Return the section that opens characters."""
     state = session.state
     demos = {demo.title: demo.id for demo in DEMOS if demo.path.exists()}
-    select = pmui.Select(
-        label="Character",
-        options=demos,
-        value=None,
-        size="small",
-        margin=GAP,
-        sizing_mode="stretch_width",
-    )
+    select = select_box("Character", demos, value=None)
     lesson = caption()
 
     def chosen(event: Any) -> None:
@@ -46,7 +37,7 @@ def character(session: Session) -> pmui.Column:
     def now() -> str:
         return state.demo or f"~{session.uploads.key}"
 
-    def shown(*events: Any) -> None:
+    def update(*events: Any) -> None:
         listed = session.uploads.offered()
         choices = {} if now() == "~" and session.given is None else {OWN: "~"}
         if session.given is not None:
@@ -62,8 +53,8 @@ def character(session: Session) -> pmui.Column:
         lesson.object = as_text(" ".join([lessons.get(state.demo) or name, *problems]))
 
     select.param.watch(chosen, "value")
-    state.param.watch(shown, ["demo", "rig", "diagnosis"])
-    shown()
+    state.param.watch(update, ["demo", "rig", "diagnosis"])
+    update()
     drop = FileDrop(receiver(session), hint=HINT, sizing_mode="stretch_width", margin=GAP)
     return section("", select, lesson, drop, margin=(16, 20, 4, 20))
 

@@ -1,7 +1,5 @@
 """Diagnose: what is wrong with the character, where, and what to do about it."""
 
-from __future__ import annotations
-
 from functools import partial
 from typing import Any
 
@@ -16,7 +14,7 @@ from ..commands.correct import leave_out
 from ..commands.export import export_repaired
 from ..commands.session import Session
 from ..state import State
-from .parts import GAP, caption, lead, section, when, words
+from .controls import LINE, button, caption, column, intro, section, text_line, when
 
 ICONS = {"error": "error", "warning": "warning", "note": "info"}
 MAX_DETAILS = 8
@@ -29,30 +27,28 @@ LEFT_OUT = ("stray-weights", "joints-outside")
 def check(session: Session) -> pmui.Column:
     """Return the controls of the panel Diagnose."""
     state = session.state
-    place = pmui.Column(margin=0, sizing_mode="stretch_width")
+    place = column()
 
     def listed(*events: Any) -> None:
         place.objects = [*_repairs(session), *_findings(session)]
 
     state.param.watch(listed, ["diagnosis", "finding", "repair"])
     listed()
-    return pmui.Column(
-        lead(when(lambda *_: told(state), state.param.diagnosis, state.param.rig)),
+    return column(
+        intro(when(lambda *_: summary(state), state.param.diagnosis, state.param.rig)),
         section("", place, margin=(6, 20, 4, 20)),
-        margin=0,
-        sizing_mode="stretch_width",
     )
 
 
-def told(state: State) -> str:
+def summary(state: State) -> str:
     """Say how much was found."""
     if state.rig is None:
         return ""
     if state.diagnosis is None:
-        return "The mesh, the skeleton and the weights of the file are checked once it is bound."
+        return "The file is checked once weights are computed."
     if not state.diagnosis.findings:
-        return "Nothing is wrong with the mesh, the skeleton or the weights of the file."
-    return f"Found: {counted(state.diagnosis.counts)}. Choose one to see where it is."
+        return "No problems in the mesh, skeleton or weights."
+    return f"{counted(state.diagnosis.counts)}. Choose one to see it."
 
 
 def counted(counts: dict[str, int]) -> str:
@@ -78,15 +74,11 @@ def _findings(session: Session) -> list[Any]:
 def _entry(session: Session, finding: Finding) -> pmui.Column:
     """Return a finding as a line; with advice and repair if it is looked at."""
     is_chosen = session.state.finding == finding.code
-    title = pmui.Button(
-        label=finding.title,
+    title = button(
+        finding.title,
+        lambda: look_at(session, finding.code),
         icon=ICONS[finding.severity],
-        variant="text",
-        size="small",
-        margin=0,
-        sizing_mode="stretch_width",
-        on_click=lambda event: look_at(session, finding.code),
-        sx={"justifyContent": "flex-start", "textAlign": "left", "color": "text.primary"},
+        **LINE,
     )
     lines = [title, _line(finding.message)]
     if is_chosen:
@@ -96,23 +88,23 @@ def _entry(session: Session, finding: Finding) -> pmui.Column:
         lines.append(_line(finding.advice, "text.primary"))
         if finding.repair:
             lines.append(_line(f"Repair: {finding.repair}.", "text.primary"))
-            lines.append(_button("Repair", "build", lambda: repair(session, [finding.code])))
+            lines.append(button("Repair", lambda: repair(session, [finding.code]), icon="build"))
         carrying = [j for j in finding.joints if session.state.rig.skeleton.deform[j]]
         if finding.code in LEFT_OUT and carrying:
             label = _left_out(session.state.rig, carrying)
-            lines.append(_button(label, "link_off", lambda: leave_out(session, carrying)))
+            lines.append(button(label, lambda: leave_out(session, carrying), icon="link_off"))
         if finding.code in OF_PARTS and not session.state.bare:
             vertex = int(finding.vertices[0])
             see = partial(session.state.param.update, panel="weights", part=vertex)
-            lines.append(_button("Choose what its parts follow", "category", see))
-    return pmui.Column(*lines, margin=(0, 0, 6, 0), sizing_mode="stretch_width")
+            lines.append(button("Choose how these parts are bound", see, icon="category"))
+    return column(*lines, margin=(0, 0, 6, 0))
 
 
 def _left_out(rig: Rig, joints: list[int]) -> str:
     subject = f"these {len(joints)} joints"
     if len(joints) == 1:
         subject = shown_name(rig.skeleton.names[joints[0]])
-    return f"Let {subject} carry no weight"
+    return f"Exclude {subject}"
 
 
 def _repairs(session: Session) -> list[Any]:
@@ -122,39 +114,27 @@ def _repairs(session: Session) -> list[Any]:
     able = [] if state.diagnosis is None else [f for f in state.diagnosis.findings if f.repair]
     if len(able) > 1:
         codes = [finding.code for finding in able]
-        rows.append(_button(f"Repair all {len(able)}", "build", lambda: repair(session, codes)))
+        rows.append(button(f"Repair all {len(able)}", lambda: repair(session, codes), icon="build"))
     if state.repair is None:
         return rows
-    now = "" if state.diagnosis is None else f", now {counted(state.diagnosis.counts)}"
+    now = "" if state.diagnosis is None else f" → {counted(state.diagnosis.counts)}"
     return [
         *rows,
-        _line(f"Repaired. Before: {counted(state.repair.counts)}{now}.", "text.primary"),
+        _line(f"Repaired: {counted(state.repair.counts)}{now}.", "text.primary"),
         *(_line(text) for text in state.repair.done),
-        _button(
-            "Download it with its own weights",
-            "download",
+        button(
+            "Download with original weights",
             lambda: export_repaired(session, session.view.offer),
+            icon="download",
         ),
-        _button("Undo repair", "undo", lambda: take_back(session)),
+        button("Undo repair", lambda: take_back(session), icon="undo"),
     ]
-
-
-def _button(label: str, icon: str, act: Any) -> pmui.Button:
-    return pmui.Button(
-        label=label,
-        icon=icon,
-        size="small",
-        variant="outlined",
-        margin=GAP,
-        sizing_mode="stretch_width",
-        on_click=lambda event: act(),
-    )
 
 
 def _line(text: str, color: str = "text.secondary") -> pmui.Typography:
     if color == "text.secondary":
         return caption(text, margin=(0, 0, 4, 6))
     style = {"color": color, "lineHeight": 1.45, "display": "block", "letterSpacing": 0}
-    return words(
+    return text_line(
         text, variant="caption", sx=style, margin=(0, 0, 4, 6), sizing_mode="stretch_width"
     )

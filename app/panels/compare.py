@@ -1,7 +1,5 @@
 """Methods side by side: which, what of them is seen, and how good they are."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import panel_material_ui as pmui
@@ -9,20 +7,34 @@ import panel_material_ui as pmui
 from cutcell.rig import Rig
 
 from ..commands import compare as actions
-from ..commands import pose as moving
+from ..commands import pose
 from ..commands.session import Session
 from ..scenes.compare import field_shown, found_of, title_of
 from ..state import State
 from ..state.compare import FEWEST_VIEWS, MAX_VIEWS, offered
 from ..widgets.methods import Methods
-from .parts import BUTTONS, GAP, caption, follow, lead, section, when
+from .controls import (
+    BESIDE,
+    BUTTONS,
+    button,
+    caption,
+    column,
+    follow,
+    intro,
+    play_button,
+    rest_button,
+    row,
+    section,
+    select_box,
+    when,
+)  # fmt: skip
 
-FIELDS = {"Chosen bone": "bone", "All bones": "all"}
+FIELDS = {"Selected bone": "bone", "All bones": "all"}
 ERROR = {"Error": "error"}
 COLUMNS = [
-    ("L1", "Weight error against the file's own: 0 the same, 2 nothing in common"),
-    ("cm²", "Deformation error against the file's own, the longest side scaled to 1 m"),
-    ("s", "Seconds it took"),
+    ("L1", "Weight error against the original weights: 0 same, 2 nothing in common"),
+    ("cm²", "Mean squared deformation error, the longest side scaled to 1 m"),
+    ("s", "Seconds"),
 ]
 WATCHED = ["methods", "compared", "comparing", "queued", "binding", "rig"]
 
@@ -42,30 +54,24 @@ def compare(session: Session) -> pmui.Column:
 
     state.param.watch(listed, WATCHED)
     listed()
-    stop = pmui.Button(
-        label="Stop computing",
-        size="small",
-        variant="outlined",
-        margin=GAP,
-        sizing_mode="stretch_width",
-        visible=when(bool, state.param.comparing),
-        on_click=lambda event: actions.cancel(session),
+    stop = button(
+        "Stop computing", lambda: actions.cancel(session), visible=when(bool, state.param.comparing)
     )
-    controls = (_field(state), _minus(state), table, stop, _motion(session))
+    play = play_button(state.param.playing, lambda: pose.play(session), margin=BESIDE)
+    motion = row(play, rest_button(session))
+    controls = (_field(state), _minus(state), table, stop, motion)
     about_errors = caption(when(about, state.param.rig))
-    return pmui.Column(
-        lead("Two to four methods side by side, under one camera."),
+    return column(
+        intro("Two to four methods side by side, under one camera."),
         section("", about_errors, *controls, margin=(4, 20, 4, 20)),
-        margin=0,
-        sizing_mode="stretch_width",
     )
 
 
 def about(rig: Rig | None) -> str:
     """Return what the columns of errors tell, and against what."""
     if rig is not None and rig.weights is None:
-        return "The file has no weights of its own to tell errors against."
-    return "L1 (weights) and cm² (motion) are errors against the file's own weights."
+        return "The file has no weights to compare with."
+    return "L1 (weights) and cm² (motion): the paper's errors against the original weights."
 
 
 def _field(state: State) -> pmui.RadioButtonGroup:
@@ -79,44 +85,18 @@ def _field(state: State) -> pmui.RadioButtonGroup:
 
 
 def _minus(state: State) -> pmui.Select:
-    select = pmui.Select(
-        label="Difference to", options={}, size="small", margin=(10, 0, 4, 0),
-        sizing_mode="stretch_width",
-        visible=when(
-            lambda *_: state.rig is None or field_shown(state) != "error",
-            state.param.compare_field,
-            state.param.rig,
-        ),
-    )  # fmt: skip
+    visible = when(
+        lambda *_: state.rig is None or field_shown(state) != "error",
+        state.param.compare_field,
+        state.param.rig,
+    )
+    select = select_box("Difference to", {}, margin=(10, 0, 4, 0), visible=visible)
 
     def offered() -> tuple[dict[str, str], str]:
         named = {title_of(name): name for name in state.methods}
         return {"None": "", **named}, state.minus
 
     return follow(select, state, "minus", offered, ["methods"])
-
-
-def _motion(session: Session) -> pmui.Row:
-    state = session.state
-    play = pmui.Button(
-        label=when(lambda on: "Pause" if on else "Play", state.param.playing),
-        icon=when(lambda on: "pause" if on else "play_arrow", state.param.playing),
-        size="small",
-        variant="outlined",
-        margin=(4, 8, 4, 0),
-        sizing_mode="stretch_width",
-        on_click=lambda event: moving.play(session),
-    )
-    rest = pmui.Button(
-        label="Rest pose",
-        size="small",
-        variant="outlined",
-        margin=GAP,
-        sizing_mode="stretch_width",
-        on_click=lambda event: moving.rest(session),
-        disabled=when(lambda *_: not state.posed, state.param.turns, state.param.moving),
-    )
-    return pmui.Row(play, rest, margin=0, sizing_mode="stretch_width")
 
 
 def rows_of(state: State) -> list[dict[str, Any]]:
@@ -161,12 +141,12 @@ def _note(state: State, name: str, one: Any, chosen: bool) -> tuple[str, str]:
     if one is not None and one.failed:
         return one.failed[:1].upper() + one.failed[1:], "failed"
     if one is not None and one.unweighted:
-        return f"{one.unweighted:.1%} without weight", "told"
+        return f"{one.unweighted:.1%} without weight", "note"
     if one is None and chosen:
         if state.comparing != name:
-            return "Waiting", "told"
+            return "Waiting", "note"
         if state.queued:
-            return "Waiting for what others compare", "told"
+            return "Waiting for other visitors", "note"
         return "Computing", "running"
     return "", ""
 

@@ -1,7 +1,5 @@
 """All corrections: how many there are; save them, open others, take all back."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import panel_material_ui as pmui
@@ -11,48 +9,52 @@ from cutcell.editing.corrections import Corrections
 
 from ..commands import correct
 from ..commands.session import Session
-from ..widgets.open_file import OpenFile
-from .parts import caption, section, when
+from .controls import BESIDE, CONTROL, button, caption, row, section, when
 
-NONE = "Nothing is corrected. What is goes into the exported file, and into files of their own."
+MAX_FILE = 4 * 2**20
+NONE = "No corrections yet. They are included in the export and can be saved as JSON."
 
 
 def corrections(session: Session) -> pmui.Column:
     """Return the section that saves corrections and opens them."""
     state = session.state
     none = when(lambda held: not held, state.param.corrections)
-    buttons = [
-        pmui.Button(
-            label=label,
-            size="small",
-            variant="outlined",
-            margin=(4, 8, 4, 0),
-            sizing_mode="stretch_width",
-            disabled=none,
-            on_click=lambda event, act=act: act(session),
-        )
-        for label, act in (("Save", correct.save), ("Clear all", correct.clear))
-    ]
-    opener = OpenFile(
-        lambda text: correct.open_text(session, text),
+    style = {"margin": BESIDE, "disabled": none}
+    opener = pmui.FileInput(
         label="Open",
+        uploaded_label="Open",
         accept=".json",
-        margin=(4, 8, 4, 0),
-        sizing_mode="stretch_width",
+        icon="folder_open",
+        max_file_size=MAX_FILE,
+        variant="outlined",
+        sx={"&:focus-within": {"outline": "2px solid", "outlineOffset": "1px"}},
+        **{**CONTROL, "margin": BESIDE},
     )
+
+    def opened(event: Any) -> None:
+        if event.new is not None:
+            opener.value = None  # the same file may be opened again
+            correct.open_text(session, event.new.decode(errors="replace"))
+
+    opener.param.watch(opened, "value")
     return section(
         "Corrections",
-        caption(when(told, state.param.corrections)),
-        pmui.Row(buttons[0], opener, buttons[1], margin=0, sizing_mode="stretch_width"),
+        caption(when(summary, state.param.corrections)),
+        row(
+            button("Save", lambda: correct.save(session), **style),
+            opener,
+            button("Clear all", lambda: correct.clear(session), **style),
+        ),
     )
 
 
-def told(held: Corrections) -> str:
+def summary(corrections: Corrections) -> str:
     """Say how much is corrected."""
     numbers: list[tuple[Any, str]] = [
-        (held.joints, "joint"), (held.parts, "part"), (held.vertices, "vertex"),
+        (corrections.joints, "joint"), (corrections.parts, "part"),
+        (corrections.vertices, "vertex"),
     ]  # fmt: skip
     parts = [count(len(which), one) for which, one in numbers if which]
     if not parts:
         return NONE
-    return f"Corrected: {', '.join(parts)}. They go into the exported file, too."
+    return f"Corrected: {', '.join(parts)}. Included in the export."

@@ -1,14 +1,10 @@
 """The choice of a cutting plane, and what moves and turns it."""
 
-from __future__ import annotations
-
 from typing import Any
-
-import panel_material_ui as pmui
 
 from ..commands import cutting as actions
 from ..commands.session import Session
-from .parts import GAP, caption, choice, slider, when
+from .controls import button, caption, choice, slider, when
 
 AXES = {"Whole": "off", "Cut X": "x", "Cut Y": "y", "Cut Z": "z", "Free": "free"}
 
@@ -19,15 +15,7 @@ def cutting(session: Session) -> list[Any]:
     cut = when(lambda axis: axis != "off", state.param.cut_axis)
     free = when(lambda axis: axis == "free", state.param.cut_axis)
     style = {"format": "0°", "step": 1, "visible": free}
-    facing = pmui.Button(
-        label="Face camera",
-        size="small",
-        variant="outlined",
-        margin=GAP,
-        sizing_mode="stretch_width",
-        on_click=lambda event: actions.face_the_eye(session),
-        visible=free,
-    )
+    facing = button("Face camera", lambda: actions.face_the_eye(session), visible=free)
     return [
         choice(state.param.cut_axis, AXES),
         slider(state.param.cut_position, "Position", step=0.005, visible=cut),

@@ -1,7 +1,5 @@
 """Geodesics: how far the chosen bone is, through the body."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import panel_material_ui as pmui
@@ -9,29 +7,34 @@ import panel_material_ui as pmui
 from ..commands.session import Session
 from ..state import State
 from ..state.distance import MAX_MEASURES, MEASURES
+from .controls import (
+    caption,
+    choice,
+    column,
+    intro,
+    play_button,
+    section,
+    slider,
+    switch,
+    weightless,
+    when,
+)  # fmt: skip
 from .cutting import cutting
-from .parts import GAP, caption, choice, lead, section, slider, weightless, when
 
 
 def distance(session: Session) -> pmui.Column:
     """Return the controls of the panel Geodesics."""
     state = session.state
     idle = caption(
-        "This bone carries no weight, so no distance begins at it.",
-        visible=when(
-            weightless,
-            state.param.rig,
-            state.param.joint,
-        ),
+        "This bone does not deform the mesh, so it has no distance field.",
+        visible=when(weightless, state.param.rig, state.param.joint),
     )
-    return pmui.Column(
-        lead("How far it is from the chosen bone, along the shortest path through the body."),
+    return column(
+        intro("Distance to the selected bone, along the shortest path through the body."),
         section("", idle, _one(session), margin=(8, 20, 4, 20)),
         section("Shown with it", *_more(state)),
         section("Wavefront", *_wave(state)),
-        section("Measures side by side", *_beside(state)),
-        margin=0,
-        sizing_mode="stretch_width",
+        section("Measures side by side", *_comparison(state)),
     )
 
 
@@ -44,28 +47,25 @@ def _face(state: State) -> Any:
 def _one(session: Session) -> pmui.Column:
     """Return what there is with one view only: a cut through the body."""
     state = session.state
-    return pmui.Column(
-        *cutting(session), _face(state), margin=0, sizing_mode="stretch_width",
+    return column(
+        *cutting(session),
+        _face(state),
         visible=when(lambda *chosen: not any(chosen), *_switches(state)),
-    )  # fmt: skip
+    )
 
 
 def _switches(state: State) -> list[Any]:
     return [state.param[f"beside_{name}"] for name in MEASURES]
 
 
-def _beside(state: State) -> list[Any]:
+def _comparison(state: State) -> list[Any]:
     """Return a switch for each measure, of which four at most can be on, and their R."""
-    switches = []
-    for parameter in _switches(state):
-        one = switch(parameter)
-        full = when(
-            lambda on, *chosen: not on and sum(chosen) >= MAX_MEASURES,
-            parameter,
-            *_switches(state),
-        )
-        one.disabled = full
-        switches.append(one)
+    all_on = _switches(state)
+
+    def full(on: bool, *chosen: bool) -> bool:
+        return not on and sum(chosen) >= MAX_MEASURES
+
+    switches = [switch(one, disabled=when(full, one, *all_on)) for one in all_on]
     any_chosen = when(lambda *chosen: any(chosen), *_switches(state))
     rate = choice(
         state.param.beside_resolution,
@@ -73,59 +73,40 @@ def _beside(state: State) -> list[Any]:
         visible=any_chosen,
     )
     hint = (
-        "Up to four, under one camera and on one scale; the last three go through the cut-cell "
-        "graph. Click the body: each draws its own path."
+        "Up to four, on one scale. The last three use the cut-cell graph. Click the body to draw "
+        "the paths."
     )
     return [caption(hint), *switches, rate]
 
 
 def _more(state: State) -> list[Any]:
     hint = caption(
-        "Click the body: the shortest path from there to the bone is drawn.",
+        "Click the body to draw the shortest path from there to the bone.",
         visible=when(
             lambda vertex, path: path and vertex is None, state.param.vertex, state.param.path
         ),
     )
     explain = caption(
-        "Points on the bone look for their nearest nodes of the graph. These sources begin "
-        "with their straight distance to the bone.",
+        "Graph nodes nearest to the bone. Each starts at its straight distance to the bone.",
         visible=state.param.starts,
     )
-    starts = pmui.Column(
-        switch(state.param.starts), explain, margin=0, sizing_mode="stretch_width",
+    starts = column(
+        switch(state.param.starts),
+        explain,
         visible=when(lambda *chosen: not any(chosen), *_switches(state)),
-    )  # fmt: skip
+    )
     return [switch(state.param.path), hint, starts]
 
 
 def _wave(state: State) -> list[Any]:
-    def play(event: Any) -> None:
+    def play() -> None:
         state.param.update(wave=True, animating=not state.animating)
 
-    button = pmui.Button(
-        label=when(lambda on: "Pause the wave" if on else "Play the wave", state.param.animating),
-        icon=when(lambda on: "pause" if on else "play_arrow", state.param.animating),
-        size="small",
-        variant="outlined",
-        on_click=play,
-        margin=GAP,
-        sizing_mode="stretch_width",
-    )
+    button = play_button(state.param.animating, play, " the wave")
     front = slider(
         state.param.front,
         "Progress",
         step=0.005,
         visible=when(lambda on, runs: on and not runs, state.param.wave, state.param.animating),
     )
-    return [
-        switch(state.param.wave),
-        front,
-        button,
-    ]
-
-
-def switch(parameter: Any) -> pmui.Switch:
-    """Return a switch that follows a parameter, under the parameter's own label."""
-    return pmui.Switch.from_param(
-        parameter, label=parameter.label, size="small", margin=(3, 0), description=""
-    )
+    return [switch(state.param.wave), front, button]

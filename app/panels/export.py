@@ -1,9 +1,6 @@
 """Export: the character with its new weights, pictures, films, numbers."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
-from typing import Any
 
 import panel_material_ui as pmui
 
@@ -13,20 +10,18 @@ from cutcell.rig import Rig
 
 from ..commands import export as actions
 from ..commands.session import Session
-from .parts import GAP, caption, section, when
+from .controls import BESIDE, button, caption, menu, row, section, when
 
 
 def export(session: Session) -> pmui.Column:
     """Return the section of the downloads."""
     state, offer = session.state, session.view.offer
-    bound = pmui.Button(
-        label="Export GLB",
+    bound = button(
+        "Export GLB",
+        lambda: actions.export_bound(session, offer),
         icon="download",
-        size="small",
-        margin=GAP,
-        sizing_mode="stretch_width",
-        on_click=lambda event: actions.export_bound(session, offer),
         disabled=when(lambda value: value is None, state.param.binding),
+        variant="contained",
     )
     films: dict[str, Callable[[], None]] = {
         "Picture (PNG)": lambda: actions.export_picture(session, offer),
@@ -42,14 +37,13 @@ def export(session: Session) -> pmui.Column:
         "Nodes and edges of the graph (CSV)": lambda: actions.export_graph(session, "zip", offer),
         "Nodes and edges of the graph (NPZ)": lambda: actions.export_graph(session, "npz", offer),
     }
+    empty = when(lambda rig: rig is None, state.param.rig)
     return section(
         "Export",
         bound,
-        pmui.Row(
-            _menu("Picture, film", "movie", films, state.param.rig, (4, 8, 4, 0)),
-            _menu("Numbers", "table_chart", numbers, state.param.rig, GAP),
-            margin=0,
-            sizing_mode="stretch_width",
+        row(
+            menu("Image, video", "movie", films, margin=BESIDE, disabled=empty),
+            menu("Data", "table_chart", numbers, disabled=empty),
         ),
         caption(when(_described, state.param.rig)),
     )
@@ -58,30 +52,9 @@ def export(session: Session) -> pmui.Column:
 def _described(rig: Rig | None) -> str:
     """Say what the bound file holds."""
     if rig is None or keeps_document(rig):
-        summary = "The GLB is as it was, but for the weights."
+        summary = "The GLB keeps everything but the corrected data."
     elif has_materials(rig):
-        summary = "The GLB is a new one: mesh, skeleton, weights, motions and base colours."
+        summary = "A new GLB: mesh, skeleton, weights, clips and base colours."
     else:
-        summary = "The GLB is a new one: mesh, skeleton, weights and motions, without materials."
+        summary = "A new GLB: mesh, skeleton, weights and clips, no materials."
     return f"{summary} Images show the current view."
-
-
-def _menu(
-    label: str, icon: str, choices: dict[str, Callable[[], None]], needed: Any, margin: Any
-) -> pmui.MenuButton:
-    menu = pmui.MenuButton(
-        label=label,
-        icon=icon,
-        items=[{"label": name} for name in choices],
-        size="small",
-        variant="outlined",
-        margin=margin,
-        sizing_mode="stretch_width",
-        disabled=when(lambda value: value is None, needed),
-    )
-
-    def chosen(item: Any) -> None:
-        choices[item["label"]]()
-
-    menu.on_click(chosen)
-    return menu

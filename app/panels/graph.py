@@ -1,7 +1,5 @@
 """The graph: how it is built, which of its layers are seen, and where it is cut."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -15,14 +13,14 @@ from ..commands.binding import bind
 from ..commands.session import Session
 from ..scenes.common import theme_of
 from ..state import LAYERS, State
+from .controls import GAP, caption, choice, intro, section, slider, text_line, weightless, when
 from .cutting import cutting
-from .parts import GAP, caption, choice, lead, section, slider, weightless, when, words
 
 KINDS = {"mesh_edges": MESH, "interior_edges": INTERIOR, "surface_edges": SURFACE}
 LEAF_TITLES = {"point": "Points", "extend": "Extended", "fit": "Fitted"}
 SEARCHED = (
-    "Interior edges only carry the search: a distance runs straight wherever there is line of "
-    "sight. Click the body to see the lines of sight to the chosen bone."
+    "Interior edges only carry the search: paths run straight along lines of sight. Click the "
+    "body to see them."
 )
 """What interior edges are where paths need not follow them."""
 AXES = {"X": "x", "Y": "y", "Z": "z"}
@@ -32,7 +30,7 @@ def graph(session: Session) -> pmui.Column:
     """Return the controls of the panel Graph."""
     state = session.state
     return pmui.Column(
-        lead("The paths that distances are measured on: along the mesh and through the inside."),
+        intro("The paths that distances are measured on: along the mesh and through the inside."),
         section(
             "Layers", *[_layer(state, name) for name in LAYERS], _nodes(state), *_colors(state)
         ),
@@ -51,7 +49,7 @@ def _layer(state: State, name: str) -> pmui.Row:
         margin=(1, 0),
         sx=when(lambda _: _switch_colors(state, name), state.param.dark) if name in KINDS else {},
     )
-    number = words(
+    number = text_line(
         when(lambda *_: count(state, name), *_built(state), state.param.rig),
         sx={
             "fontSize": "12px",
@@ -98,8 +96,8 @@ def _colors(state: State) -> list[Any]:
     idle = caption(
         "The chosen bone carries no weight, so no distance begins at it.",
         visible=when(
-            lambda shown, rig, joint, slicing: (
-                shown == "distance" and not slicing and weightless(rig, joint)
+            lambda update, rig, joint, slicing: (
+                update == "distance" and not slicing and weightless(rig, joint)
             ),
             state.param.edge_colors,
             state.param.rig,
@@ -179,12 +177,12 @@ def _build(session: Session) -> list[Any]:
     def chosen(event: Any) -> None:
         state.resolution = event.new
 
-    def shown(event: Any) -> None:
-        # The box may take the slider's ends along, and they must come back.
+    def update(event: Any) -> None:
+        # The box may move the slider's ends, which are reset here.
         resolution.param.update(value=event.new, **_ends(event.new))
 
     resolution.param.watch(chosen, "value_throttled")
-    state.param.watch(shown, "resolution")
+    state.param.watch(update, "resolution")
     threshold = slider(state.param.winding_threshold, "Winding threshold τ", step=0.01)
     again = pmui.Button(
         label="Recompute",

@@ -1,7 +1,5 @@
 """The joints as a tree: which carry weight, keep the file's, and how far each reaches."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -19,10 +17,11 @@ from ..commands.session import Session
 from ..scenes.joints import joint_rows, shares_of
 from ..state import State
 from ..widgets.joint_tree import JointTree
+from .controls import CONTROL, GAP, as_text, button, caption, section, text_box, text_line, when
 from .moving import place
-from .parts import GAP, as_text, caption, section, when, words
 from .structure import structure
 
+_AS_COMPUTED = {"deform": None, "locked": False, "gain": 1.0, "radius": None}
 DOUBLINGS = 2.0
 """The slider goes from as many halvings of a joint's reach to as many doublings."""
 STEP = 0.1
@@ -71,7 +70,7 @@ def joints(session: Session) -> pmui.Column:
     counts = caption(when(_counted, state.param.rig))
     guesser = pmui.Button(
         label="Detect deforming joints", size="small", variant="text", margin=0, on_click=anew,
-        description="From their names, and where they lie in the body",
+        description="Detect deforming joints by name and position",
     )  # fmt: skip
     return section("Joints", counts, tree, guesser, *_chosen(session))
 
@@ -88,29 +87,21 @@ def _choose(state: State, joint: int) -> None:
 def _chosen(session: Session) -> list[Any]:
     """Return what can be corrected of the chosen joint."""
     state = session.state
-    heading = words("", sx={"fontWeight": 600, "fontSize": 13}, margin=(6, 0, 0, 0))
+    heading = text_line("", sx={"fontWeight": 600, "fontSize": 13}, margin=(6, 0, 0, 0))
     holds = caption("", margin=0)
-    called = pmui.TextInput(
-        label="Name", value="", size="small", margin=(8, 0), sizing_mode="stretch_width"
-    )
+    called = text_box("Name")
     carries = _switch("Deforms the mesh")
     locked = _switch("Lock to file weights")
     gain = pmui.FloatSlider(
-        label="Reach", start=-DOUBLINGS, end=DOUBLINGS, step=STEP, value=0.0, size="small",
-        margin=GAP, sizing_mode="stretch_width", show_value=False, track=False, tooltips=False,
+        label="Reach", start=-DOUBLINGS, end=DOUBLINGS, step=STEP, value=0.0,
+        show_value=False, track=False, tooltips=False, **CONTROL,
     )  # fmt: skip
-    radius = pmui.TextInput(
-        label="Radius, in the file's units", value="", size="small", margin=(8, 0),
-        sizing_mode="stretch_width", placeholder="measured from the body",
-    )  # fmt: skip
-    reset = pmui.Button(
-        label="Reset", icon="undo", size="small", variant="outlined", margin=GAP,
-        sizing_mode="stretch_width",
-    )  # fmt: skip
+    radius = text_box("Radius (file units)", placeholder="measured from the body")
+    reset = button("Reset", lambda: changes(**_AS_COMPUTED, **_put_back(state)), icon="undo")
     showing = [False]
 
-    def tell() -> None:
-        holds.object = as_text(_held(session))
+    def update() -> None:
+        holds.object = as_text(_weight_text(session))
 
     def show() -> None:
         rig = state.rig
@@ -119,7 +110,7 @@ def _chosen(session: Session) -> list[Any]:
         name = rig.skeleton.names[state.joint]
         one = state.corrections.joints.get(name, JointCorrection())
         heading.object = as_text(shown_name(name))
-        tell()
+        update()
         showing[0] = True
         try:
             called.value = name
@@ -134,9 +125,9 @@ def _chosen(session: Session) -> list[Any]:
         finally:
             showing[0] = False
 
-    def changes(**wanted: Any) -> None:
+    def changes(**values: Any) -> None:
         if not showing[0] and state.rig is not None:
-            correct.correct_joint(session, state.joint, **wanted)
+            correct.correct_joint(session, state.joint, **values)
 
     def reached(event: Any) -> None:
         changes(gain=round(float(2.0**event.new), 3))
@@ -151,11 +142,8 @@ def _chosen(session: Session) -> list[Any]:
     locked.param.watch(lambda event: changes(locked=event.new), "value")
     gain.param.watch(reached, "value")
     radius.param.watch(lambda event: changes(radius=_read(event.new)), "value")
-    reset.on_click(
-        lambda event: changes(deform=None, locked=False, gain=1.0, radius=None, **_put_back(state))
-    )
     state.param.watch(lambda *events: show(), ["rig", "joint", "corrections", "falloff"])
-    state.param.watch(lambda event: session.tasks.after_a_pause(tell, "held"), "binding")
+    state.param.watch(lambda event: session.tasks.after_a_pause(update, "held"), "binding")
     show()
     controls = [heading, holds, called, structure(session), carries, locked, gain, radius]
     return [*controls, *place(session), reset]
@@ -194,15 +182,15 @@ def _doublings(gain: float) -> float:
     return float(np.clip(round(float(np.log2(gain)), 1), -DOUBLINGS, DOUBLINGS))
 
 
-def _held(session: Session) -> str:
+def _weight_text(session: Session) -> str:
     """Say how much of the skin the chosen joint holds."""
     state = session.state
-    computed, own = shares_of(state, session.memo)
+    computed, original = shares_of(state, session.memo)
     lines = []
     if computed is not None:
-        lines.append(f"Holds {_percent(computed[state.joint])} of the skin")
-    if own is not None:
-        lines.append(f"{_percent(own[state.joint])} in the file")
+        lines.append(f"Moves {_percent(computed[state.joint])} of the skin")
+    if original is not None:
+        lines.append(f"{_percent(original[state.joint])} in the file")
     text = ", ".join(lines)
     return text[:1].upper() + text[1:] + "." if text else ""
 
@@ -216,5 +204,5 @@ def _counted(rig: Any) -> str:
         return ""
     chosen = rig.skeleton.deform
     if chosen.all():
-        return f"All {len(chosen)} joints may carry weight."
-    return f"{chosen.sum()} of {len(chosen)} joints may carry weight."
+        return f"All {len(chosen)} joints deform the mesh."
+    return f"{chosen.sum()} of {len(chosen)} joints deform the mesh."

@@ -1,7 +1,5 @@
 """Learn: the list of the tour's steps."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import panel_material_ui as pmui
@@ -9,7 +7,7 @@ import panel_material_ui as pmui
 from ..commands.session import Session
 from ..commands.tour import go
 from ..state.tour import TOUR
-from .parts import GAP, caption, lead, section, when
+from .controls import GAP, LINE, button, caption, column, intro, section, when
 
 
 def learn(session: Session) -> pmui.Column:
@@ -29,21 +27,15 @@ def learn(session: Session) -> pmui.Column:
     )
     hint = "Each step sets the scene. Look around and change anything."
     steps = [_entry(session, index) for index in range(len(TOUR))]
-    return pmui.Column(
-        lead(f"How skin follows bones, in {len(TOUR)} short steps."),
+    return column(
+        intro(f"How skin follows bones, in {len(TOUR)} short steps."),
         section("", caption(hint), start, *steps, margin=(4, 20, 4, 20)),
-        margin=0,
-        sizing_mode="stretch_width",
     )
 
 
 def _entry(session: Session, index: int) -> pmui.Button:
-    return pmui.Button(
-        label=f"{index + 1}. {TOUR[index].title}",
-        variant="text",
-        size="small",
-        margin=0,
-        sizing_mode="stretch_width",
-        on_click=lambda event: go(session, index),
-        sx={"justifyContent": "flex-start", "textAlign": "left", "color": "text.primary"},
+    return button(
+        f"{index + 1}. {TOUR[index].title}",
+        lambda: go(session, index),
+        **LINE,
     )

@@ -1,10 +1,7 @@
 """Where the chosen joint stands: its handle, numbers, the middle of the limb."""
 
-from __future__ import annotations
-
 from typing import Any
 
-import panel_material_ui as pmui
 from panel.io import hold
 
 from cutcell.editing.corrections import JointCorrection
@@ -14,7 +11,7 @@ from cutcell.rig.checks import shown
 from ..commands import moving
 from ..commands.session import Session
 from ..state import State
-from .parts import caption
+from .controls import BESIDE, button, caption, row, switch, text_box
 
 NUMBER = "%.6g"
 
@@ -22,27 +19,13 @@ NUMBER = "%.6g"
 def place(session: Session) -> list[Any]:
     """Return what moves the chosen joint."""
     state = session.state
-    style: dict[str, Any] = {"size": "small", "margin": (3, 0), "description": ""}
-    handle, mirrored = (
-        pmui.Switch.from_param(parameter, label=parameter.label, **style)
-        for parameter in (state.param.joint_handle, state.param.mirrored)
-    )
+    mirrored = switch(state.param.mirrored)
+    narrow = {"& input": {"paddingX": "8px"}}
     fields = [
-        pmui.TextInput(
-            label=axis.upper(), value="", size="small", margin=(8, 6 * (axis != "z"), 4, 0),
-            sizing_mode="stretch_width", sx={"& input": {"paddingX": "8px"}},
-        )
-        for axis in "xyz"
-    ]  # fmt: skip
-    centre, back = (
-        pmui.Button(
-            label=label, size="small", variant="outlined", margin=(4, margin, 4, 0),
-            sizing_mode="stretch_width", on_click=lambda event, act=act: act(session),
-        )
-        for label, act, margin in (
-            ("Centre in limb", moving.centre, 8), ("Reset position", moving.put_back, 0),
-        )
-    )  # fmt: skip
+        text_box(axis.upper(), margin=(8, 6 * (axis != "z"), 4, 0), sx=narrow) for axis in "xyz"
+    ]
+    centre = button("Centre in limb", lambda: moving.centre(session), margin=BESIDE)
+    back = button("Reset position", lambda: moving.put_back(session))
     showing = [False]
 
     def show() -> None:
@@ -79,11 +62,11 @@ def place(session: Session) -> list[Any]:
     state.param.watch(lambda *events: show(), ["rig", "joint", "corrections", "dragged"])
     show()
     return [
-        caption("Where it stands, in the file's units", margin=(8, 0, 0, 0)),
-        pmui.Row(*fields, margin=0, sizing_mode="stretch_width"),
-        handle,
+        caption("Position (file units)", margin=(8, 0, 0, 0)),
+        row(*fields),
+        switch(state.param.joint_handle),
         mirrored,
-        pmui.Row(centre, back, margin=0, sizing_mode="stretch_width"),
+        row(centre, back),
     ]
 
 

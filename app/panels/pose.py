@@ -1,9 +1,8 @@
 """Turn joints, play motions, and see where other weights would put the skin."""
 
-from __future__ import annotations
-
 from typing import Any
 
+import numpy as np
 import panel_material_ui as pmui
 from bokeh.models import PrintfTickFormatter
 
@@ -16,19 +15,24 @@ from ..scenes.pose import error_of, has_rival
 from ..state import State
 from ..widgets.rows import Rows
 from .brush import brush
-from .parts import (
+from .controls import (
     BUTTONS,
     GAP,
     as_text,
     caption,
     choice,
+    column,
     follow,
-    lead,
+    intro,
     offer,
+    play_button,
+    rest_button,
     section,
+    select_box,
+    switch,
     unique_names,
     when,
-)
+)  # fmt: skip
 
 AXES = ("x", "y", "z")
 RING_COLORS = ("#e5484d", "#30a46c", "#3e83f8")
@@ -41,11 +45,14 @@ WORST = 8
 
 def pose(session: Session) -> pmui.Column:
     """Return the controls of the panel Pose."""
-    return pmui.Column(
-        lead("How the skin follows when bones turn, by hand or in a motion."),
-        _turning(session), _motion(session), _colours(session), brush(session),
-        _comparison(session), margin=0, sizing_mode="stretch_width",
-    )  # fmt: skip
+    return column(
+        intro("Pose bones by hand or play a motion."),
+        _turning(session),
+        _motion(session),
+        _colours(session),
+        brush(session),
+        _comparison(session),
+    )
 
 
 def _turning(session: Session) -> pmui.Column:
@@ -54,17 +61,8 @@ def _turning(session: Session) -> pmui.Column:
         when(_how_to_turn, state.param.rig, state.param.joint, state.param.brush),
         margin=0,
     )
-    rest = pmui.Button(
-        label="Rest pose",
-        variant="outlined",
-        size="small",
-        on_click=lambda event: actions.rest(session),
-        margin=GAP,
-        sizing_mode="stretch_width",
-        disabled=when(lambda *_: not state.posed, state.param.turns, state.param.moving),
-    )
     angles = [_angle(session, axis) for axis in range(3)]
-    return section("", about, *angles, rest, margin=(8, 20, 4, 20))
+    return section("", about, *angles, rest_button(session), margin=(8, 20, 4, 20))
 
 
 def _how_to_turn(rig: Any, joint: int, brush: bool) -> str:
@@ -72,8 +70,8 @@ def _how_to_turn(rig: Any, joint: int, brush: bool) -> str:
         return ""
     name = shown_name(rig.skeleton.names[joint])
     if brush:
-        return f"Turn {name}: drag the sliders; the brush takes its rings away."
-    return f"Turn {name}: drag its rings, or the sliders."
+        return f"Use the sliders to rotate {name}. The rings are hidden while painting."
+    return f"Drag the rings or the sliders to rotate {name}."
 
 
 def _angle(session: Session, axis: int) -> pmui.FloatSlider:
@@ -100,20 +98,18 @@ def _angle(session: Session, axis: int) -> pmui.FloatSlider:
     def shown_angle() -> float:
         return float(state.turns.get(state.joint, (0, 0, 0))[axis])
 
-    def shown(*events: Any) -> None:
+    def update(*events: Any) -> None:
         slider.value = float(round(shown_angle()))
 
     slider.param.watch(turned, "value")
-    state.param.watch(shown, ["turns", "joint"])
-    shown()
+    state.param.watch(update, ["turns", "joint"])
+    update()
     return slider
 
 
 def _motion(session: Session) -> pmui.Column:
     state = session.state
-    motion = pmui.Select(
-        label="Motion", options=[], size="small", margin=GAP, sizing_mode="stretch_width"
-    )
+    motion = select_box("Motion")
 
     def listed(*events: Any) -> None:
         clips = state.rig.clips if state.rig is not None else ()
@@ -130,14 +126,7 @@ def _motion(session: Session) -> pmui.Column:
     listed()
     axis = choice(state.param.axis, {"about X": "x", "about Y": "y", "about Z": "z"})
     axis.visible = when(lambda clip: clip < 0, state.param.clip)
-    play = pmui.Button(
-        label=when(lambda on: "Pause" if on else "Play", state.param.playing),
-        icon=when(lambda on: "pause" if on else "play_arrow", state.param.playing),
-        size="small",
-        on_click=lambda event: actions.play(session),
-        margin=GAP,
-        sizing_mode="stretch_width",
-    )
+    play = play_button(state.param.playing, lambda: actions.play(session), variant="contained")
     return section("", motion, axis, play, margin=(2, 20, 4, 20))
 
 
@@ -173,9 +162,7 @@ def notes_text(state: State) -> str:
 def _comparison(session: Session) -> pmui.Column:
     state = session.state
     views = {"Alone": "alone", "Ghost": "ghost", "Side by side": "beside"}
-    heat = pmui.Switch.from_param(
-        state.param.heat, label="Error as colours", size="small", margin=GAP, description=""
-    )
+    heat = switch(state.param.heat, label="Error as colours", margin=GAP)
     now = caption(
         when(
             lambda *_: error_text(state, error_of(state, session.memo)),
@@ -188,7 +175,7 @@ def _comparison(session: Session) -> pmui.Column:
     )
     worst = Rows(
         lambda row: actions.show_turn(session, *_turn_of(state, row)),
-        label="The worst turns",
+        label="Largest errors",
         sizing_mode="stretch_width",
         margin=(0, -8),
     )
@@ -207,24 +194,24 @@ def _comparison(session: Session) -> pmui.Column:
         state.param.binding,
     )
     return section(
-        "Against the file's weights",
+        "Compare with original weights",
         choice(state.param.rival, views), heat, now, heading, worst,
         visible=with_rival,
     )  # fmt: skip
 
 
-WORST_TEXT = "The worst turns by 30°, mean over the vertices. Press one to see it:"
+WORST_TEXT = "Largest errors for 30° rotations (root mean square). Click to show."
 
 
 def error_text(state: State, error: tuple[float, float] | None) -> str:
-    """Return the error of what is seen, in a sentence."""
+    """Return the text of the error of the visible pose."""
     if error is None:
         return 'Turn on "Error as colours" to measure the motion.' if not state.heat else ""
     if not state.posed:
-        return "At rest there is no error. Distances are squared, the longest side scaled to 1 m."
-    mean, greatest = error
-    over = "over the motion" if state.moving else "in this pose"
-    return f"Mean {mean:.3g} cm² {over}, greatest {greatest:.3g} cm² (longest side 1 m)."
+        return "No error in the rest pose. Lengths are for a longest side of 1 m."
+    rms, largest = error
+    where = "over the motion" if state.moving else "in this pose"
+    return f"RMS {rms:.3g} mm {where}, at most {largest:.3g} mm (longest side 1 m)."
 
 
 def worst_rows(state: State) -> list[tuple[str, str, float]]:
@@ -232,7 +219,11 @@ def worst_rows(state: State) -> list[tuple[str, str, float]]:
     turns = _worst(state)
     top = turns[0].mean if turns else 1.0
     return [
-        (f"{shown_name(one.name)} about {one.axis.upper()}", f"{one.mean:.3g} cm²", one.mean / top)
+        (
+            f"{shown_name(one.name)} about {one.axis.upper()}",
+            f"{10 * np.sqrt(one.mean):.3g} mm",
+            float(np.sqrt(one.mean / top)),
+        )
         for one in turns
     ]
 

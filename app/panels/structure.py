@@ -1,14 +1,12 @@
 """Joints that are added, removed and hung on others."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import panel_material_ui as pmui
 
 from ..commands import structure as actions
 from ..commands.session import Session
-from .parts import GAP, caption, unique_names
+from .controls import GAP, button, caption, column, row, select_box, unique_names
 
 NOTHING = "None (root)"
 
@@ -16,21 +14,14 @@ NOTHING = "None (root)"
 def structure(session: Session) -> pmui.Column:
     """Return what changes which joints there are."""
     state = session.state
-    on = pmui.Select(
-        label="Parent", options=[NOTHING], value=NOTHING, size="small", margin=(8, 0),
-        sizing_mode="stretch_width",
-    )  # fmt: skip
-    style: dict[str, Any] = {"size": "small", "variant": "outlined", "sizing_mode": "stretch_width"}
-    add, remove = (
-        pmui.Button(label=label, icon=icon, margin=margin, on_click=done, **style)
-        for label, icon, margin, done in (
-            ("Add a joint", "add", (4, 4, 4, 0), lambda event: actions.add(session)),
-            ("Remove joint", "remove", (4, 0, 4, 4), lambda event: actions.remove(session)),
-        )
+    on = select_box("Parent", [NOTHING], value=NOTHING, margin=(8, 0))
+    add = button("Add joint", lambda: actions.add(session), icon="add", margin=(4, 4, 4, 0))
+    remove = button(
+        "Remove joint", lambda: actions.remove(session), icon="remove", margin=(4, 0, 4, 4)
     )
     cache: dict[str, list[str]] = {"names": []}
 
-    def shown(*events: Any) -> None:
+    def update(*events: Any) -> None:
         if state.rig is None or state.joint >= len(state.rig.skeleton.names):
             return
         skeleton = state.rig.skeleton
@@ -47,12 +38,11 @@ def structure(session: Session) -> pmui.Column:
             actions.hang_on(session, parent)
 
     on.param.watch(chosen, "value")
-    state.param.watch(shown, ["rig", "joint", "corrections"])
-    shown()
-    return pmui.Column(
+    state.param.watch(update, ["rig", "joint", "corrections"])
+    update()
+    return column(
         on,
-        pmui.Row(add, remove, margin=0, sizing_mode="stretch_width"),
-        caption("A new joint divides the bone; on a last joint, or a fork, it begins another one."),
+        row(add, remove),
+        caption("Splits the bone; on a leaf or fork it starts a new one."),
         margin=GAP,
-        sizing_mode="stretch_width",
     )

@@ -1,7 +1,5 @@
 """Weights: how much each bone holds, and how it falls with distance."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -13,9 +11,9 @@ from ..commands.session import Session
 from ..state import State
 from .brush import brush
 from .components import parts_of_mesh
+from .controls import caption, choice, column, follow, intro, section, select_box, slider, when
 from .corrections import corrections
 from .joints import joints
-from .parts import GAP, caption, choice, follow, lead, section, slider, when
 
 SHOWN = {
     "All bones": "mix",
@@ -33,9 +31,7 @@ FALLOFF_TITLES = {"rig": "Animation", "paper": "Paper"}
 def weights(session: Session) -> pmui.Column:
     """Return the controls of the panel Weights."""
     state = session.state
-    select = pmui.Select(
-        label="Colour by", options=SHOWN, size="small", margin=GAP, sizing_mode="stretch_width"
-    )
+    select = select_box("Colour by", SHOWN)
 
     def offered() -> tuple[dict[str, str], str]:
         has_weights = state.rig is not None and state.rig.weights is not None
@@ -43,44 +39,44 @@ def weights(session: Session) -> pmui.Column:
         return options, state.weights_shown if state.weights_shown in options.values() else "mix"
 
     follow(select, state, "weights_shown", offered, ["rig"])
-    facts = caption(told(state))
+    facts = caption(summary(state))
 
-    def tell() -> None:
-        facts.object = told(state)
+    def update() -> None:
+        facts.object = summary(state)
 
     # The colours go first.
-    state.param.watch(lambda *events: session.tasks.after_a_pause(tell, "told"), ["binding", "rig"])
-    return pmui.Column(
-        lead("How strongly each bone moves the skin."),
+    state.param.watch(
+        lambda *events: session.tasks.after_a_pause(update, "told"), ["binding", "rig"]
+    )
+    return column(
+        intro("How strongly each bone moves the skin."),
         section("", select, *_sides(state), facts, margin=(8, 20, 4, 20)),
         brush(session),
         joints(session),
         section("Falloff with distance", *_falloff(state)),
         parts_of_mesh(session),
         corrections(session),
-        margin=0,
-        sizing_mode="stretch_width",
     )
 
 
 def _sides(state: State) -> list[Any]:
     """Return the choices between what was computed and what the file says."""
-    names = {"Computed": "ours", "From file": "file"}
+    names = {"Recomputed": "ours", "Original": "file"}
     whose = choice(
         state.param.weights_of,
         names,
         visible=when(
-            lambda rig, shown: _has_own(rig) and shown not in DIFFERENCE.values(),
+            lambda rig, colors: _has_own(rig) and colors not in DIFFERENCE.values(),
             state.param.rig,
             state.param.weights_shown,
         ),
     )
     signed = when(
-        lambda rig, shown: _has_own(rig) and shown == "bone_difference",
+        lambda rig, colors: _has_own(rig) and colors == "bone_difference",
         state.param.rig,
         state.param.weights_shown,
     )
-    truth = {"The file is right": "file", "Ours are right": "ours"}
+    truth = {"Reference: file": "file", "Reference: computed": "ours"}
     return [whose, choice(state.param.truth, truth, visible=signed)]
 
 
@@ -104,7 +100,7 @@ def _falloff(state: State) -> list[Any]:
     ]
 
 
-def told(state: State) -> str:
+def summary(state: State) -> str:
     """Return what there is to say of the weights in a line."""
     if state.binding is None:
         return ""
@@ -116,5 +112,5 @@ def told(state: State) -> str:
         # Of |a - b| = a + b - 2 min(a, b) the last is zero where ours is: nearly everywhere.
         both = np.minimum(weights.ravel()[positive], file_weights.ravel()[positive]).sum()
         difference = ((len(weights) + file_weights.sum()) / 2 - both) / max(len(weights), 1)
-        text += f"; they differ from the file's by {difference:.0%}"
+        text += f", {100 * difference:.0f} % different from the file"
     return text + "."

@@ -1,13 +1,13 @@
 """The page's scenes without the page: for `cutcell render`, and for notebooks."""
 
-from .choices import PANELS, VIEWS, Choices, check
+from .choices import RENDERED, VIEWS, Choices, check
 from .names import find_bone, find_clip
 from .options import settings_of
 from .order import order
 from .scene import describe, textures_for
 
 __all__ = [
-    "PANELS",
+    "RENDERED",
     "VIEWS",
     "Choices",
     "check",

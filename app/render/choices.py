@@ -1,6 +1,4 @@
-"""What can be chosen of a scene, and the page's state in which it is."""
-
-from __future__ import annotations
+"""Choices of a scene, and the page's state for them."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -14,13 +12,14 @@ from cutcell.rig import Rig
 from cutcell.rig.checks import check_choice
 
 from ..scenes.common import first_joint
-from ..state import State
+from ..state import PANELS, State
 from ..state.compare import NOW, standard
+from ..state.method import GRAPH, method_of
 from ..state.weights import SHOWN
 from .names import find_bone, find_clip
 from .options import apply
 
-PANELS = ("graph", "distance", "weights", "pose", "compare", "check")
+RENDERED = tuple(panel.id for panel in PANELS.values() if panel.is_rendered)
 """The panels whose scenes can be rendered."""
 
 VIEWS = {
@@ -38,12 +37,12 @@ TURN_AXES = ("x", "y", "z")
 
 @dataclass(frozen=True)
 class Choices:
-    """What to show of a rig; each field is a choice of the page.
+    """Choices for showing a rig, as on the page.
 
     Parameters
     ----------
     panel : str
-        One of `PANELS`.
+        One of `RENDERED`.
     bone : str, optional
         Whose weights, distance or graph field, or which bone turns.
     shown : str, optional
@@ -56,7 +55,7 @@ class Choices:
         Side by side on the panel "compare": names in `cutcell.baselines.METHODS`, or "now".
     settings : mapping
         Other choices of the page, by the names that its address has for them, such as
-        `{"cut_axis": "z", "mesh_edges": True}`; `render_options.settings_of` makes them.
+        `{"cut_axis": "z", "mesh_edges": True}`; `render.options.settings_of` makes them.
     method : Method
         How the graph is built and distances are measured.
     finding : str, optional
@@ -118,7 +117,7 @@ def state_of(rig: Rig, choices: Choices) -> State:
     ParameterError
         See `check`.
     """
-    panel = check_choice("panel", choices.panel, PANELS)
+    panel = check_choice("panel", choices.panel, RENDERED)
     if panel != "graph":
         rig.skeleton.require_joints()
     state = State(rig=rig, panel=panel, dark=choices.dark, skeleton=choices.skeleton)
@@ -127,12 +126,7 @@ def state_of(rig: Rig, choices: Choices) -> State:
         state.weights_shown = "bone"
     if choices.shown is not None:
         state.weights_shown = check_choice("shown", choices.shown, SHOWN)
-    method = choices.method
-    state.param.update(
-        connectivity=method.connectivity,
-        winding_threshold=method.winding_threshold,
-        orient=method.orient,
-    )
+    state.param.update(**method_of(choices.method, GRAPH))
     apply(state, choices.settings)
     if state.pose_colors == "materials" and not has_materials(rig):
         raise ParameterError(f"the file of {rig.name} has no materials with colours of their own")

@@ -1,9 +1,7 @@
-"""What `cutcell render` is told about the inside, as choices of the page."""
-
-from __future__ import annotations
+"""Options of `cutcell render` for the inside, as choices of the page."""
 
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import param
@@ -27,21 +25,8 @@ FACES = {"open": "open", "distance": "field", "winding": "winding"}
 AXES = ("x", "y", "z")
 
 
-def settings_of(
-    *,
-    colors: str | None = None,
-    layers: str | None = None,
-    color_by: str | None = None,
-    cut: str | None = None,
-    face: str | None = None,
-    keep: str | None = None,
-    slices: str | None = None,
-    sources: bool = False,
-    path: int | None = None,
-    wave: float | None = None,
-    measures: str | None = None,
-) -> dict[str, Any]:
-    """Return the choices of the page that options stand for.
+def settings_of(**options: Any) -> dict[str, Any]:
+    """Return the choices of the page for options, by their names in `READERS`.
 
     Raises
     ------
@@ -49,38 +34,9 @@ def settings_of(
         One of them cannot be read; the sentence shows how it is written.
     """
     choices: dict[str, Any] = {}
-    if colors is not None:
-        choices["pose_colors"] = colors
-    if layers is not None:
-        names = [name.strip() for name in layers.split(",") if name.strip()]
-        for name in names:
-            check_choice("layer", name, LAYERS)
-        choices |= {choice: name in names for name, choice in LAYERS.items()}
-    if color_by is not None:
-        choices["edge_colors"] = color_by
-    if cut is not None:
-        choices |= _cut(cut)
-    if face is not None:
-        face_state = FACES[check_choice("face", face, FACES)]
-        choices |= {
-            "graph_face": face_state,
-            **({} if face_state == "open" else {"cut_face": face_state}),
-        }
-    if keep is not None:
-        choices |= _keep(keep)
-    if slices is not None:
-        choices |= _slice(slices)
-    if sources:
-        choices["starts"] = True
-    if path is not None:
-        choices |= {"vertex": path, "path": True}
-    if wave is not None:
-        choices |= {"wave": True, "front": wave}
-    if measures is not None:
-        for name in [name.strip() for name in measures.split(",")]:
-            choices[f"beside_{check_choice('measure', name, MEASURES)}"] = True
-        if sum(one.startswith("beside_") for one in choices) > MAX_MEASURES:
-            raise ParameterError(f"at most {MAX_MEASURES} measures stand side by side")
+    for name, value in options.items():
+        if value is not None and value is not False:
+            choices |= READERS[name](value)
     return choices
 
 
@@ -112,6 +68,27 @@ def _refusal(name: str, value: Any, parameter: Any) -> str:
         low, high = parameter.bounds
         return f"{name} must be a number from {low} to {high}, not {value}"
     return f'{name} cannot be "{value}"'
+
+
+def _names(text: str) -> list[str]:
+    return [name.strip() for name in text.split(",") if name.strip()]
+
+
+def _layers(text: str) -> dict[str, Any]:
+    names = [check_choice("layer", name, LAYERS) for name in _names(text)]
+    return {choice: name in names for name, choice in LAYERS.items()}
+
+
+def _face(text: str) -> dict[str, Any]:
+    face = FACES[check_choice("face", text, FACES)]
+    return {"graph_face": face, **({} if face == "open" else {"cut_face": face})}
+
+
+def _measures(text: str) -> dict[str, Any]:
+    names = [check_choice("measure", name, MEASURES) for name in _names(text)]
+    if len(set(names)) > MAX_MEASURES:
+        raise ParameterError(f"at most {MAX_MEASURES} measures stand side by side")
+    return {f"beside_{name}": True for name in names}
 
 
 def _cut(text: str) -> dict[str, Any]:
@@ -155,3 +132,19 @@ def _part(name: str, text: str, whole: str) -> float:
     if not 0 <= value <= 1:
         raise ParameterError(f'{name} must tell a number from 0 to 1 after the =, not "{whole}"')
     return value
+
+
+READERS: dict[str, Callable[[Any], dict[str, Any]]] = {
+    "colors": lambda text: {"pose_colors": text},
+    "cut": _cut,
+    "face": _face,
+    "keep": _keep,
+    "layers": _layers,
+    "color_by": lambda text: {"edge_colors": text},
+    "slice": _slice,
+    "sources": lambda shown: {"starts": True},
+    "path": lambda vertex: {"vertex": vertex, "path": True},
+    "wave": lambda part: {"wave": True, "front": part},
+    "measures": _measures,
+}
+"""What turns each option into choices of the page."""

@@ -1,6 +1,4 @@
-"""What is to be drawn of a scene: from where, how large, and whether it moves."""
-
-from __future__ import annotations
+"""Request for a picture of a scene: camera, size and motion."""
 
 import numpy as np
 

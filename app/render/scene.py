@@ -1,7 +1,5 @@
 """The scene that the page shows for some choices."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 
@@ -79,7 +77,7 @@ def describe(
     if state.panel == "check":
         state.diagnosis = diagnose(rig, resolution, progress=progress)
         state.finding = choices.finding or ""
-        if state.finding and state.found is None:
+        if state.finding and state.selected_finding is None:
             codes = ", ".join(one.code for one in state.diagnosis.findings) or "none at all"
             raise ParameterError(f'{rig.name} has no finding "{state.finding}"; there are {codes}')
     if wants_field(state):

@@ -1,36 +1,20 @@
 """From the state to what is seen: pure functions, one a panel, tested without a browser."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
+from importlib import import_module
 
 from cutcell_viewers.description import Actor, Description, Legend
 from cutcell_viewers.palette import ATTACHMENT, MARK, SOURCE
 from cutcell_viewers.skin import skin_of_weights
 
-from ..state import State
-from .check import check
-from .common import POSED, plain
-from .compare import compare
-from .distance import distance
-from .graph import graph
+from ..state import PANELS, State
 from .memo import Memo
-from .pairs import pairs
-from .pose import pose
-from .weights import weights
 
 __all__ = ["SCENES", "Memo", "following", "resolve"]
 
 SCENES: dict[str, Callable[[State, Memo], Description]] = {
-    "graph": graph,
-    "distance": distance,
-    "weights": weights,
-    "pose": pose,
-    "compare": compare,
-    "check": check,
-    "learn": weights,
-    "pairs": pairs,
+    panel: getattr(import_module(f".{panel}", __name__), panel) for panel in PANELS
 }
 """The scene of each panel, for a state with a rig."""
 
@@ -39,19 +23,20 @@ RIGID = "parts fixed to one bone"
 
 
 def resolve(state: State, memo: Memo | None = None) -> Description:
-    """Return the scene that a state stands for.
+    """Return the scene of a state.
 
     Parameters
     ----------
     state : State
     memo : Memo, optional
-        Speeds up a series of calls; changes nothing in what comes out.
+        Speeds up a series of calls; does not change the result.
     """
     if state.rig is None:
         return Description()
     is_bare = state.bare and state.panel != "check"
-    scene = SCENES["graph"] if is_bare else SCENES.get(state.panel, plain)
+    scene = SCENES["graph"] if is_bare else SCENES[state.panel]
     whole = scene(state, memo or Memo())
+    whole = replace(whole, actors={**whole.actors, **state.actors})
     if whole.legend is None or not (_coloured(whole.actors) and state.rig.attachments):
         return whole
     swatches = (*whole.legend.swatches, (ATTACHMENT, RIGID))
@@ -59,7 +44,7 @@ def resolve(state: State, memo: Memo | None = None) -> Description:
 
 
 def following(state: State, memo: Memo | None = None) -> Description:
-    """Return the scene that a state stands for as it goes through a motion.
+    """Return the scene of a state during a motion.
 
     The body follows the joints on every panel, by the weights that are held; what cannot follow
     would be left behind, and is left out. Nothing is then inside for which the body would have to
@@ -79,7 +64,7 @@ def following(state: State, memo: Memo | None = None) -> Description:
         skin = skin_of_weights(state.weights)
         actors |= {name: replace(actors[name], skin=skin) for name in bodies}
     actors = {name: actor for name, actor in actors.items() if actor.skin is not None}
-    if state.panel not in POSED:
+    if not PANELS[state.panel].poses:
         for name in actors:
             if name.startswith(("body", "attachment")):
                 actors[name] = replace(actors[name], visible=True, opacity=1.0)

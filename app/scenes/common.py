@@ -1,6 +1,4 @@
-"""What the scenes of all panels have in common: body, bones, cut, theme."""
-
-from __future__ import annotations
+"""Elements shared by the scenes of all panels: body, bones, cut, theme."""
 
 import re
 from dataclasses import replace
@@ -20,27 +18,20 @@ from cutcell_viewers.marks import vertex_mark
 from cutcell_viewers.palette import THEMES, Theme, joint_colors, to_hex
 from cutcell_viewers.skin import skin_of_weights
 
-from ..state import State
+from ..state import PANELS, State
 from .memo import Memo
 
-SEE_PATH = 0.42
+BODY_OPACITY_WITH_PATH = 0.42
 """How opaque the body is while a path inside it is to be seen."""
 
-SEE_THROUGH = 0.22
+GRAPH_BODY_OPACITY = 0.22
 """How opaque the body is while what lies inside is looked at."""
-
-
-POSED = ("pose", "compare")
-"""The panels on which the character moves; on all others it rests."""
-
-CUT = ("graph", "distance")
-"""The panels on which it can be cut."""
 
 
 def character(
     state: State, memo: Memo, *, bones_coloured: bool = False, **look: Any
 ) -> dict[str, Actor]:
-    """Return the body, what hangs on it, the bones, and the mark of the chosen vertex.
+    """Return the body, its attachments, the bones, and the mark of the chosen vertex.
 
     Parameters
     ----------
@@ -50,13 +41,13 @@ def character(
     bones_coloured : bool
         Whether each bone has the colour that its weights are shown in.
     **look
-        Fields of the body's `Actor`; those that say how it is seen hold for what hangs on
+        Fields of the body's `Actor`; those of its appearance apply to attachments
         it as well.
     """
     rig = state.rig
     plain = memo("body", (rig.mesh, rig.weights, rig.world), lambda: body(rig))
     skin = None
-    if state.panel in POSED and state.weights is not None:
+    if PANELS[state.panel].poses and state.weights is not None:
         skin = memo("skin", (rig, state.weights), lambda: skin_of_weights(state.weights))
     hung = memo("attachments", (rig.attachments, rig.world), lambda: attachments(rig))
     mark = {}
@@ -78,7 +69,7 @@ def _skeleton(state: State, memo: Memo, coloured: bool) -> dict[str, Actor]:
         return {}
     rig = state.rig
     segments = memo("segments", (rig,), lambda: drawn_segments(rig))
-    visible_bones = _behind_cut(state, *segments) if state.panel in CUT else None
+    visible_bones = _behind_cut(state, *segments) if PANELS[state.panel].cuts else None
 
     def make() -> dict[str, Actor]:
         colors = joint_colors(rig.skeleton.parents) if coloured else None
@@ -172,7 +163,7 @@ def bones_part(state: State) -> dict[str, Any]:
 
 
 def theme_part(theme: Theme) -> dict[str, str]:
-    """Return how a theme is told to the view."""
+    """Return a theme as a message for the view."""
     card = "rgba(255,255,255,.72)" if theme.name == "light" else "rgba(24,28,36,.72)"
     top, bottom, ink = to_hex(theme.top), to_hex(theme.bottom), to_hex(theme.ink)
     paper = "#ffffff" if theme.name == "light" else "#1b2028"
@@ -180,7 +171,7 @@ def theme_part(theme: Theme) -> dict[str, str]:
 
 
 def camera_part(camera: Camera) -> dict[str, Any]:
-    """Return how a camera is told to the view."""
+    """Return a camera as a message for the view."""
     return {"position": list(camera.position), "focal_point": list(camera.focal_point)}
 
 

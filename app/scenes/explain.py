@@ -1,7 +1,5 @@
 """How the chosen vertex comes to its weights: for the card, and the paths in the scene."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 
@@ -25,9 +23,9 @@ def explanation_of(state: State) -> Explanation | None:
     """Return what explains the chosen vertex, if that is asked for and there."""
     if not state.explain or state.explanation is None:
         return None
-    binding, found = state.explanation
-    current = binding is state.binding and found.vertex == state.vertex
-    return found if current else None
+    binding, explanation = state.explanation
+    current = binding is state.binding and explanation.vertex == state.vertex
+    return explanation if current else None
 
 
 def explanation_facts(state: State) -> dict[int, dict[str, Any]]:
@@ -77,10 +75,10 @@ def explained_paths(state: State, memo: Memo) -> dict[str, Actor]:
     )
 
 
-def _tubes(state: State, found: Explanation) -> dict[str, Actor]:
+def _tubes(state: State, explanation: Explanation) -> dict[str, Actor]:
     rig, tubes = state.rig, {}
     colors = joint_colors(rig.skeleton.parents)
-    for share in found.joints[:MAX_JOINTS]:
+    for share in explanation.joints[:MAX_JOINTS]:
         if share.path and share.weight > 0:
             points = np.array([share.path[0].start, *(piece.end for piece in share.path)])
             tube = path_tube(rig, to_scene(rig, points))

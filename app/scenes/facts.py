@@ -1,6 +1,4 @@
-"""What there is to know of one vertex: a pure function of the state."""
-
-from __future__ import annotations
+"""Facts about one vertex: a pure function of the state."""
 
 from typing import Any
 
@@ -35,7 +33,7 @@ def vertex_facts(state: State, memo: Memo) -> dict[str, Any] | None:
     dict or None
         "vertex", "computed"; once it is bound also "weights" and "distances" (a list of bones
         each, the most important first), "component", "reached", "reason"; and "artist",
-        whether the file has weights of its own; "explain", whether it is asked why, and "why", the
+        whether the file has weights; "explain", whether it is asked why, and "why", the
         answer for each joint, once it is there (see `explanation_facts`); "overruled", whether
         a person gave it its weights, and "offered", joints that it may be given weight of.
     """
@@ -142,7 +140,7 @@ def _winding(state: State, position: NDArray[np.float64]) -> float:
 
 
 def components(graph: CutCellGraph) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """Return the part of the mesh that each vertex hangs together with, and the parts' sizes.
+    """Return each vertex's connected component, and the components and sizes.
 
     Returns
     -------

@@ -1,7 +1,5 @@
 """The graph inside the character, or one slice of the lattice that it comes from."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 
@@ -15,12 +13,12 @@ from cutcell_viewers.palette import MARK
 from cutcell_viewers.slice_scene import file_axis, slice_place, slice_scene
 
 from ..state import LAYERS, State
-from .common import SEE_THROUGH, cells_of, character, cut_of, theme_of
+from .common import GRAPH_BODY_OPACITY, cells_of, character, cut_of, theme_of
 from .distance import field_of, path_of
 from .memo import Memo
 from .section import field_section, winding_section
 
-SEE_FACE = 0.82
+FACE_OPACITY = 0.82
 """How opaque the face of a cut is: the edges behind it are to be seen."""
 FACE_CELLS = 3
 """How many cells behind a cut are its face."""
@@ -102,7 +100,7 @@ def _face(
         legend = replace(distance_legend(state.rig, state.joint, limits), swatches=swatches)
     else:
         return {}, legend
-    return {**face, "inside": replace(face["inside"], opacity=SEE_FACE)}, legend
+    return {**face, "inside": replace(face["inside"], opacity=FACE_OPACITY)}, legend
 
 
 def sight_of(state: State, memo: Memo) -> Any:
@@ -135,7 +133,7 @@ def _field(state: State, memo: Memo) -> tuple[Any, dict[str, Any], Legend | None
 
 
 def kinds_legend(state: State) -> Legend | None:
-    """Return what the colours of the layers of edges that are seen stand for."""
+    """Return the legend of the visible layers of edges."""
     colored = zip(theme_of(state).edges, KINDS.items(), strict=True)
     layers = tuple((color, text) for color, (name, text) in colored if getattr(state, name))
     return Legend("The graph's edges", swatches=layers) if layers else None
@@ -145,7 +143,7 @@ def body_opacity(state: State) -> float:
     """Return how opaque the body is: see-through where the graph would else be hidden."""
     whole = state.cut_axis == "off"
     looks_inside = whole and (state.interior_edges or state.surface_edges)
-    return SEE_THROUGH if looks_inside and state.graph is not None else 1.0
+    return GRAPH_BODY_OPACITY if looks_inside and state.graph is not None else 1.0
 
 
 def slab_of(state: State) -> dict[str, float]:

@@ -1,7 +1,5 @@
 """One joint's distance by several measures, each with its paths, to compare the graph with."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from itertools import product
@@ -159,7 +157,7 @@ def _search(
 ) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
     """Return how far each node is, and the node before it: none at a source, which is negative.
 
-    All sources hang on one node more, at the distances at which they start.
+    An additional node is joined to all sources, at their initial distances.
     """
     least = 1e-12  # a sparse matrix has no link of length zero
     a = np.concatenate([links[:, 0], np.full(len(sources), count)])

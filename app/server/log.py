@@ -1,6 +1,4 @@
-"""The server's log, on a terminal that whoever visits must not be able to write to."""
-
-from __future__ import annotations
+"""The server's log, on a terminal that visitors must not be able to write to."""
 
 import logging
 

@@ -1,6 +1,4 @@
-"""What a person can choose of the brush that paints weights."""
-
-from __future__ import annotations
+"""Choices of the brush that paints weights."""
 
 from dataclasses import dataclass
 from typing import Any, get_args
@@ -15,8 +13,6 @@ from cutcell.rig import TriangleMesh
 MIN_RADIUS, MAX_RADIUS = 0.005, 0.5
 """Of the character's longest side."""
 MIN_STRENGTH = 0.05
-PAINTED = ("weights", "pose")
-"""The panels on which weights are painted: at rest, and posed."""
 
 
 @dataclass(frozen=True, eq=False)

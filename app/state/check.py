@@ -1,6 +1,4 @@
-"""What the panel Check shows: what is wrong with the character, and what was repaired."""
-
-from __future__ import annotations
+"""State of the panel Check: findings, and repairs."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -12,7 +10,7 @@ from cutcell.rig import Rig
 
 @dataclass(frozen=True, eq=False)
 class Repair:
-    """What was repaired of the character that stands there.
+    """Repairs of the current character.
 
     Parameters
     ----------
@@ -37,7 +35,7 @@ class DiagnosisChoices(param.Parameterized):
     repair: Any = param.Parameter(None, doc="A `Repair` of this character, or None.")
 
     @property
-    def found(self) -> Any:
+    def selected_finding(self) -> Any:
         """The finding that is looked at, or None."""
         if self.diagnosis is None or self.finding not in self.diagnosis:
             return None

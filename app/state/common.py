@@ -1,14 +1,10 @@
-"""What every panel shares: the character, the chosen bone and vertex, and how work goes on."""
-
-from __future__ import annotations
+"""State that all panels share: the character, the chosen bone and vertex, and progress."""
 
 from typing import Any
 
 import param
 
-PANELS = ("graph", "distance", "weights", "pose", "compare", "check", "learn", "pairs")
-"""The ids of the panels, in the order in which they are offered; the last for an audit alone."""
-
+from .panels import PANELS
 
 CUTS = ("off", "x", "y", "z", "free")
 """What the body is cut across; a free plane has any direction."""
@@ -41,6 +37,11 @@ class Common(param.Parameterized):
         default="open", objects=["open", "field", "winding"], doc="The same, of the graph."
     )
 
+    actors: Any = param.Dict({}, doc="Meshes that the server was started with: name to `Actor`.")
+    rendered: Any = param.Boolean(
+        False, doc="Whether PyVista draws the view on the server when it rests."
+    )
+
     tour: Any = param.Integer(-1, doc="Which step of the tour is told; -1 for none.")
 
     dark: Any = param.Boolean(False)
@@ -62,12 +63,12 @@ class Common(param.Parameterized):
 
     @property
     def weights(self) -> Any:
-        """What the character is posed with: what was computed, else the file's own."""
+        """Weights that pose the character: the computed ones, else the file's."""
         if self.binding is not None:
             return self.binding.weights
         return None if self.rig is None else self.rig.weights
 
 
 UNSEEN = frozenset({"name", "demo", "tour", "busy", "stage", "fraction", "message",
-                    "own", "tier"})  # fmt: skip
+                    "own", "tier", "rendered"})  # fmt: skip
 """What the scene does not depend on."""

@@ -1,6 +1,4 @@
-"""What a person can choose on the panel Compare."""
-
-from __future__ import annotations
+"""Choices of the panel Compare."""
 
 from typing import Any
 

@@ -1,6 +1,4 @@
-"""What a person can choose on the panel Geodesics."""
-
-from __future__ import annotations
+"""Choices of the panel Distance."""
 
 from typing import Any, Literal
 

@@ -1,6 +1,4 @@
-"""What a person can choose on the panel Graph."""
-
-from __future__ import annotations
+"""Choices of the panel Graph."""
 
 from typing import Any
 

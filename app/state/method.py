@@ -1,20 +1,19 @@
 """The parameters of the method, with the defaults of `cutcell.bind`."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import cutcell
+from cutcell.method import GraphOptions, WeightOptions
 
-GRAPH = ("resolution", "connectivity", "winding_threshold", "orient", "leaf")
+GRAPH = ("resolution", *GraphOptions.__annotations__, "leaf")
 """What distances are measured again for."""
 
-WEIGHTS = ("falloff", "alpha", "max_influences", "threshold")
+WEIGHTS = tuple(WeightOptions.__annotations__)
 """What changes weights without measuring any distance again."""
 
 
 def default(name: str) -> Any:
-    """Return what `cutcell.bind` takes when it is not told."""
+    """Return the default of an option of `cutcell.bind`."""
     value = getattr(cutcell.ANIMATION, name)
     return cutcell.PAPER.alpha if name == "alpha" else value
 

@@ -1,6 +1,4 @@
-"""What a person can choose on the panel Pose."""
-
-from __future__ import annotations
+"""Choices of the panel Pose."""
 
 from typing import TYPE_CHECKING, Any
 

@@ -1,6 +1,4 @@
-"""What a person can choose on the panel Weights."""
-
-from __future__ import annotations
+"""Choices of the panel Weights."""
 
 from typing import Any
 

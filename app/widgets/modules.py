@@ -1,14 +1,12 @@
-"""The browser's half of the page: the modules and styles of `scripts/`, and where they are served.
+"""The browser's half of the page: the modules and styles of `frontend/`, and where they are served.
 
 Their address tells what they hold, so that no browser takes an older version for them.
 """
 
-from __future__ import annotations
-
 import hashlib
 from pathlib import Path
 
-FOLDER = Path(__file__).parents[1] / "scripts"
+FOLDER = Path(__file__).parents[1] / "frontend"
 
 
 def _version() -> str:
@@ -26,7 +24,7 @@ STATIC = {ADDRESS: str(FOLDER)}
 
 
 def script(name: str) -> str:
-    """Return a module for Panel that is rendered by one of `scripts/`."""
+    """Return a module for Panel that is rendered by one of `frontend/`."""
     # Panel evaluates it from a blob, from where no path leads to the other modules.
     return f"""
 export async function render(given) {{
@@ -44,5 +42,5 @@ def head() -> str:
 
 
 def style(name: str) -> str:
-    """Return the rules of one of the .css files of `scripts/`."""
+    """Return the rules of one of the .css files of `frontend/`."""
     return (FOLDER / f"{name}.css").read_text(encoding="utf-8")

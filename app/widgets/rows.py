@@ -1,7 +1,5 @@
 """A short list of things that can be chosen, each with a number and a bar."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 
@@ -12,7 +10,7 @@ from .modules import script
 
 
 class Rows(JSComponent):
-    """Rows in order, longest bar first as a rule; a click on one is told.
+    """Rows in order, usually longest bar first; a click on one calls a function.
 
     Parameters
     ----------

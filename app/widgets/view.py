@@ -1,7 +1,5 @@
 """The 3D view of the page: a scene's description, streamed to vtk.js in the browser."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 
@@ -11,11 +9,14 @@ from panel.models.vtk import VTK_VERSION
 
 from cutcell_viewers.camera import Camera
 from cutcell_viewers.description import Description
-from cutcell_viewers.scene import LIGHTS
+from cutcell_viewers.lighting import LIGHTS
 
 from ..files.receive import Receiver
 from .changes import changes
 from .modules import script
+
+ACTORS = frozenset({"actors", "images", "bones", "pose", "clip"})
+"""Parts of a scene that a browser needs only where it draws them itself."""
 
 
 class SceneView(JSComponent):
@@ -48,13 +49,14 @@ class SceneView(JSComponent):
         self.time = 0.0
         self.calm = False
         self._ready = False
-        self._seen = False
+        self._is_visible = False
+        self._pictures = False
         self._awaited: list[Callable[[], Any]] = []
         self._count = 0
         self._parts: dict[str, Any] = {}
-        self._shown = Description()
-        self._wanted = Description()
-        self._sent: set[str] = set()
+        self._sent = Description()
+        self._next = Description()
+        self._sent_arrays: set[str] = set()
         self._listeners: dict[str, Callable[[dict[str, Any]], Any]] = {}
 
     def listen(self, kind: str, act: Callable[[dict[str, Any]], Any]) -> None:
@@ -62,19 +64,19 @@ class SceneView(JSComponent):
         self._listeners[kind] = act
 
     def when_seen(self, act: Callable[[], Any]) -> None:
-        """Do something once, as soon as a browser has the view, or says that it cannot show it."""
+        """Do something once, as soon as a browser has the view."""
         self._awaited.append(act)
-        if self._seen:
+        if self._is_visible:
             self._begin()
 
     def present(self, description: Description) -> None:
         """Make the view what a description says."""
-        self._wanted = description
+        self._next = description
         if self._ready:
-            self._send(changes(self._shown, description, self._sent))
-            self._shown = description
+            self._send(changes(self._sent, description, self._sent_arrays))
+            self._sent = description
 
-    def tell(self, **parts: Any) -> None:
+    def send(self, **parts: Any) -> None:
         """Send the parts of the view that are no actors: see `scenes.common`.
 
         The last value of each is kept, for a browser that comes later.
@@ -83,8 +85,8 @@ class SceneView(JSComponent):
         if self._ready:
             self._send(parts)
 
-    def told(self, name: str) -> Any:
-        """Return what was last told of a part of the view; None if nothing was."""
+    def last_sent(self, name: str) -> Any:
+        """Return the last value sent for a part of the view; None if none was."""
         return self._parts.get(name)
 
     def offer(self, name: str, content: bytes) -> None:
@@ -92,13 +94,16 @@ class SceneView(JSComponent):
         self._send_msg({"download": {"name": name, "content": content}})
 
     def answer(self, **message: Any) -> None:
-        """Tell the browser what it asked for; it is not told again to one that comes later."""
+        """Answer a request of the browser; the answer is not sent again to a new one."""
         self._send_msg(message)
 
     def _send(self, message: dict[str, Any]) -> None:
-        if message:
-            self._count += 1
-            self._send_msg({"id": self._count, **message})
+        if not message:
+            return
+        if self._pictures:
+            message = {name: part for name, part in message.items() if name not in ACTORS}
+        self._count += 1
+        self._send_msg({"id": self._count, **message})
 
     def _handle_msg(self, data: dict[str, Any]) -> None:
         kind = data.get("type")
@@ -110,12 +115,11 @@ class SceneView(JSComponent):
             self.dark = {"1": True, "0": False}.get(str(data.get("dark")))
             self.calm = bool(data.get("calm", False))
             self.window_width = int(data.get("width", 0))
-            self._sent.clear()
-            first = {"lights": LIGHTS, **changes(Description(), self._wanted, self._sent)}
+            self._pictures = bool(data.get("pictures", False))
+            self._sent_arrays.clear()
+            first = {"lights": LIGHTS, **changes(Description(), self._next, self._sent_arrays)}
             self._send({**first, **self._parts})
-            self._shown = self._wanted
-            self._begin()
-        elif kind == "cannot show":
+            self._sent = self._next
             self._begin()
         elif kind in self._listeners:
             self._listeners[kind](data)
@@ -128,7 +132,7 @@ class SceneView(JSComponent):
             self.on_camera()
 
     def _begin(self) -> None:
-        self._seen = True
+        self._is_visible = True
         awaited, self._awaited = self._awaited, []
         for act in awaited:
             act()

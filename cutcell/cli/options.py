@@ -121,14 +121,15 @@ METHOD_OPTIONS: dict[str, tuple[Any, Any, str, str, str]] = {
 """Type, default, flags, placeholder and help of each option of `Method`, by its field."""
 
 
-def _method_option(name: str) -> Any:
-    kind, default, flags, metavar, text = METHOD_OPTIONS[name]
+def _annotated(
+    kind: Any, default: Any, flags: str, metavar: str, text: str, section: str = METHOD
+) -> Any:
     option = typer.Option(
         *flags.split(),
         metavar=metavar or None,
         help=text,
-        show_default=default is not None,
-        rich_help_panel=METHOD,
+        show_default=default is not None and default != "",
+        rich_help_panel=section,
     )
     return Annotated[kind, option]
 
@@ -137,31 +138,38 @@ if TYPE_CHECKING:
     Resolution = int
     MethodChoice = str
 else:
-    Resolution, MethodChoice = _method_option("resolution"), _method_option("method")
+    Resolution = _annotated(*METHOD_OPTIONS["resolution"])
+    MethodChoice = _annotated(*METHOD_OPTIONS["method"])
 
 
-def with_method(*names: str) -> Callable[[Callable[..., None]], Callable[..., None]]:
-    """Replace a command's parameter `options` by options of the method; all when none is named."""
-    chosen = names or tuple(METHOD_OPTIONS)
+def with_options(
+    name: str, table: Mapping[str, tuple[Any, ...]]
+) -> Callable[[Callable[..., None]], Callable[..., None]]:
+    """Replace a command's parameter of a name by options, which it gets as a dictionary."""
 
     def decorate(command: Callable[..., None]) -> Callable[..., None]:
         @wraps(command)
         def run(**values: Any) -> None:
-            command(options={name: values.pop(name) for name in chosen}, **values)
+            command(**{name: {key: values.pop(key) for key in table}}, **values)
 
         parameters: list[inspect.Parameter] = []
         for parameter in inspect.signature(command, eval_str=True).parameters.values():
-            if parameter.name != "options":
+            if parameter.name != name:
                 parameters.append(parameter)
                 continue
-            for name in chosen:
-                kind, default = _method_option(name), METHOD_OPTIONS[name][1]
-                parameters.append(parameter.replace(name=name, default=default, annotation=kind))
+            for key, row in table.items():
+                kind = _annotated(*row)
+                parameters.append(parameter.replace(name=key, default=row[1], annotation=kind))
         run.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
         run.__annotations__ = {}
         return run
 
     return decorate
+
+
+def with_method(*names: str) -> Callable[[Callable[..., None]], Callable[..., None]]:
+    """Replace a command's parameter `options` by options of the method; all when none is named."""
+    return with_options("options", {name: METHOD_OPTIONS[name] for name in names or METHOD_OPTIONS})
 
 
 Deform = Annotated[

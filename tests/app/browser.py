@@ -309,7 +309,7 @@ class Visit:
 
     def drop(self, *paths: Path) -> None:
         """Give files to the page."""
-        self.page.locator("input[type=file]").set_input_files([str(path) for path in paths])
+        self.page.locator("input[type=file]").first.set_input_files([str(path) for path in paths])
 
     def open(self, path: Path, *beside: Path) -> None:
         """Give a file of a character to the page, with others; wait until its weights are there."""

@@ -8,11 +8,11 @@ from cutcell.rig import Rig, Skeleton
 from cutcell_app.commands import keys, loading, look
 from cutcell_app.layout.sidebar import NO_SKELETON, panels
 from cutcell_app.layout.status import messages, summary
-from cutcell_app.panels import PANELS
 from cutcell_app.panels.bone import bone
 from cutcell_app.panels.export import export
 from cutcell_app.render import Choices, describe
 from cutcell_app.scenes import resolve
+from cutcell_app.state import PANELS
 from cutcell_app.state.url import to_query
 from tests.viewers.arm import arm_rig
 
@@ -30,7 +30,7 @@ def bare(session, loop):
     loop.run_until(lambda: session.state.binding is not None)
     session.built = [panels(session), bone(session), export(session), messages(session)]
     for panel in PANELS:
-        session.state.panel = panel.id
+        session.state.panel = panel
     loading.show_rig(session, bare_arm())
     loop.run_until(lambda: session.state.bare_graph is not None)
     loop.run_until(lambda: not session.tasks.running)
@@ -51,7 +51,7 @@ def test_the_panel_graph_opens_and_shows_it(bare):
     assert "bone" not in to_query(state)
 
 
-@pytest.mark.parametrize("panel", [panel.id for panel in PANELS])
+@pytest.mark.parametrize("panel", PANELS)
 def test_every_panel_can_be_looked_at(bare, loop, panel):
     bare.state.panel = panel
     loop.run_for(0.1)

@@ -8,9 +8,9 @@ from cutcell.baselines import METHODS, BaselineBinding
 from cutcell.isolated.run import _WANTED
 from cutcell.runtime.progress import silent
 from cutcell_app.commands import compare, loading
+from cutcell_app.jobs.jobs import COMPARING, Job
 from cutcell_app.layout.session import begin
 from cutcell_app.panels.compare import rows_of
-from cutcell_app.work.jobs import COMPARING, Job
 from tests.viewers.arm import arm_rig
 
 
@@ -70,7 +70,7 @@ def test_who_waits_is_told_so_and_can_leave(sessions, loop):
     try:
         session.state.param.update(panel="compare", methods=["now", "euclidean"])
         loop.run_until(lambda: session.state.queued)
-        assert note(session, "now") == "Waiting for what others compare"
+        assert note(session, "now") == "Waiting for other visitors"
     finally:
         for job in others:
             COMPARING.give_back(job)

@@ -20,10 +20,10 @@ from cutcell_app.commands.export import (
     export_picture,
     export_turntable,
 )
+from cutcell_app.jobs import jobs
+from cutcell_app.jobs.jobs import Jobs
 from cutcell_app.panels.export import _described
 from cutcell_app.state import PANELS
-from cutcell_app.work import jobs
-from cutcell_app.work.jobs import Jobs
 from tests.cutcell.io.gltf.gltf_builder import COLUMN
 from tests.cutcell.io.gltf.test_vrm import VRM1, avatar
 

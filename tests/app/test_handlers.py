@@ -181,7 +181,9 @@ def test_nothing_is_computed_before_a_browser_has_the_view(here, begun, monkeypa
 
 def test_a_browser_that_cannot_show_the_view_gets_all_else(here, begun, monkeypatch):
     tell = Visitor.tell
-    monkeypatch.setattr(Visitor, "tell", lambda self, **message: tell(self, type="cannot show"))
+    monkeypatch.setattr(
+        Visitor, "tell", lambda self, **message: tell(self, type="ready", pictures=True)
+    )
     visitor = Visitor(here.address, "?rig=robot")
     wait_until(lambda: begun and begun[-1].state.binding is not None, 120)
     visitor.close()

@@ -10,13 +10,13 @@ from cutcell_app.commands import arrival, correct, keys, loading
 from cutcell_app.commands.arrival import GONE
 from cutcell_app.commands.check import repair
 from cutcell_app.commands.compare import choose
+from cutcell_app.jobs.jobs import Gate
 from cutcell_app.layout.session import begin
 from cutcell_app.scenes.common import first_joint
 from cutcell_app.state import State
 from cutcell_app.state.compare import standard
 from cutcell_app.state.history import TOGETHER, History
 from cutcell_app.state.url import first_clip, from_query, to_query
-from cutcell_app.work.jobs import Gate
 from cutcell_assets import demo_path
 from tests.viewers.arm import arm_rig
 
@@ -229,13 +229,13 @@ def test_the_choice_of_joints_that_deform_can_be_undone(bound, loop):
     assert bound.state.binding.weights[:, 2].max() == 0
     keys.act(bound, "undo")
     assert bound.state.rig is before
-    assert bound.view.told("able") == [False, True]
+    assert bound.view.last_sent("able") == [False, True]
     loop.run_until(lambda: not bound.tasks.running)
     assert bound.state.binding.weights[:, 2].max() > 0
     keys.act(bound, "redo")
     loop.run_until(lambda: not bound.tasks.running)
     assert bound.state.binding.weights[:, 2].max() == 0
-    assert bound.view.told("able") == [True, False]
+    assert bound.view.last_sent("able") == [True, False]
 
 
 def test_a_repair_can_be_undone(session, loop):

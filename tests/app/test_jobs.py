@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from cutcell_app.work.jobs import MAX_UNRESPONSIVE, PATIENCE, Gate, Jobs, Newest, on_its_thread
+from cutcell_app.jobs.jobs import MAX_UNRESPONSIVE, PATIENCE, Gate, Jobs, Newest, on_its_thread
 
 
 @pytest.fixture

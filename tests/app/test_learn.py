@@ -76,7 +76,7 @@ def test_a_link_of_a_person_on_the_tour_brings_back_what_they_made_of_it(session
     go(session, 9)
     loop.run_until(lambda: session.state.binding is not None)
     session.state.param.update(connectivity="any", panel="learn")
-    query = session.view.told("address")
+    query = session.view.last_sent("address")
     again = begin(loop)
     arrival.arrive(again, query, lambda: None)
     loop.run_until(lambda: again.state.binding is not None)

@@ -3,8 +3,8 @@
 import panel_material_ui as pmui
 
 from cutcell_app.panels.bone import bone
+from cutcell_app.panels.controls import offer, unique_names
 from cutcell_app.panels.graph import graph
-from cutcell_app.panels.parts import offer, unique_names
 from cutcell_app.scenes import resolve
 from cutcell_viewers.graph_scene import LAYERS
 from cutcell_viewers.palette import to_hex

@@ -6,8 +6,8 @@ import trimesh
 
 import cutcell
 from cutcell import Corrections, Rig, Skeleton, TriangleMesh
-from cutcell_app.work.moved_distances import MovedDistances
-from cutcell_app.work.preview import Preview
+from cutcell_app.jobs.moved_distances import MovedDistances
+from cutcell_app.jobs.preview import Preview
 
 
 @pytest.fixture(scope="module")

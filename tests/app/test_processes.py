@@ -17,7 +17,7 @@ from cutcell.errors import Cancelled, CutcellError, FileError, MeshError
 from cutcell_app.files import reading
 from cutcell_app.files.reading import read
 from cutcell_app.files.storage import NEW_SECONDS, Storage
-from cutcell_app.work.processes import in_process
+from cutcell_app.jobs.processes import in_process
 from cutcell_assets import demo_path
 from tests.conftest import ROOT
 
@@ -34,7 +34,7 @@ class OddError(Exception):
 SERVER = """
 import subprocess, sys
 from cutcell_app.files.storage import NEW_SECONDS, Storage
-from cutcell_app.work.processes import in_process
+from cutcell_app.jobs.processes import in_process
 in_process(subprocess.call, ["sh", "-c", 'echo $PPID $$ > "$0"; sleep 600', sys.argv[1]])
 """
 
@@ -43,7 +43,7 @@ KILLED_SERVER = """
 import os, signal
 from cutcell_app.files.storage import Storage
 from cutcell_app.files.storage import NEW_SECONDS, Storage
-from cutcell_app.work.processes import get_ready, in_process
+from cutcell_app.jobs.processes import get_ready, in_process
 get_ready(Storage().make)
 in_process(divmod, 7, 2)
 os.kill(os.getpid(), signal.SIGKILL)
@@ -133,7 +133,7 @@ def test_what_is_not_wanted_ends_with_all_that_it_started(tmp_path):
             raise Cancelled
 
     with pytest.raises(Cancelled):
-        in_process(starts_another, path, wanted=wanted)
+        in_process(starts_another, path, check=wanted)
     for pid in map(int, path.read_text().split()):
         wait_until(lambda pid=pid: gone(pid))
 

@@ -1,6 +1,8 @@
 """`cutcell render`, and the page's scenes in a notebook."""
 
+import inspect
 import re
+from dataclasses import fields
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +16,8 @@ from cutcell.cli.app import app
 from cutcell.errors import FileError, ParameterError
 from cutcell_app.files.table_export import save_numbers
 from cutcell_app.render import VIEWS, Choices, check, describe, find_bone, find_clip, order
+from cutcell_app.render.options import READERS
+from cutcell_app.render_flags import CHOICES, PICTURE, SETTINGS
 from cutcell_assets import demo_path
 from tests.viewers.arm import arm_rig
 from tests.viewers.textures import wall
@@ -99,7 +103,7 @@ def test_each_choice_of_the_command_reaches_the_picture(drawn, tmp_path):
     assert not last.description.actors["bones"].visible
     assert not last.legend
     assert last.direction == VIEWS["back"]
-    assert last.description.legend.high.endswith("cm²")
+    assert last.description.legend.high.endswith("mm")
 
 
 def test_what_is_seen_inside_reaches_the_picture(drawn, tmp_path):
@@ -308,3 +312,9 @@ def test_numbers_that_cannot_be_saved_are_told(rig, tmp_path, name, tables, erro
     tables = {k: np.zeros(2) if v is None else rig.weights for k, v in tables.items()}
     with pytest.raises(error, match=words):
         save_numbers(tmp_path / name, rig, **tables)
+
+
+def test_each_flag_is_a_choice_a_setting_or_asked_for_of_the_picture():
+    assert CHOICES.keys() < {field.name for field in fields(Choices)}
+    assert SETTINGS.keys() == READERS.keys()
+    assert PICTURE.keys() <= inspect.signature(order).parameters.keys()

@@ -16,6 +16,7 @@ from cutcell_app import scenes
 from cutcell_app.commands import binding, loading, look
 from cutcell_app.layout.session import begin
 from cutcell_app.layout.status import stage_text, summary, warning
+from cutcell_viewers.description import Actor
 from tests.viewers.arm import arm_rig
 
 
@@ -297,7 +298,7 @@ def test_a_vertex_is_chosen_and_forgotten_with_its_character(bound, loop):
 
 def test_the_wave_is_told_once_and_not_frame_by_frame(bound, loop):
     told = []
-    bound.view.tell = lambda **parts: told.append(parts)
+    bound.view.send = lambda **parts: told.append(parts)
     bound.state.panel = "distance"
     loop.run_until(lambda: bound.state.field is not None)
     bound.state.param.update(wave=True, animating=True)
@@ -412,3 +413,13 @@ def test_an_error_that_nobody_looks_at_is_measured_no_longer(session, loop, monk
     assert not session.tasks.jobs("errors").running
     session.state.panel = "pose"
     assert session.tasks.jobs("errors").running
+
+
+def test_meshes_of_the_server_are_shown_with_every_character(bound):
+    points, cells = np.zeros((1, 3), np.float32), np.zeros((1, 1), np.int32)
+    sensor = Actor("points", points, cells)
+    bound.state.actors = {"sensor": sensor}
+    for panel in scenes.SCENES:
+        if panel != "pairs":
+            bound.state.panel = panel
+            assert scenes.resolve(bound.state, bound.memo).actors["sensor"] is sensor

@@ -112,7 +112,7 @@ def test_a_scene_can_be_changed_in_place(rig, scenes):
         assert set(scene.names) == {"body", "bones", "bone outlines", "attachment 0"}
         scene.show(scenes["graph"])
         assert set(scene.names) == {"mesh edges", "interior edges", "surface edges"}
-        scene.look(framing(scenes["graph"].bounds))
+        scene.set_camera(framing(scenes["graph"].bounds))
         changed = scene.render_png()
     finally:
         scene.close()

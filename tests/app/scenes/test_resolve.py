@@ -7,7 +7,7 @@ import pytest
 
 import cutcell
 from cutcell_app.scenes import RIGID, Memo, following, resolve
-from cutcell_app.scenes.common import SEE_THROUGH, bones_part, cells_of, first_joint
+from cutcell_app.scenes.common import GRAPH_BODY_OPACITY, bones_part, cells_of, first_joint
 from cutcell_app.scenes.distance import field_of, wants_field
 from cutcell_app.scenes.pose import clip_of, clip_part, pose_of
 from cutcell_app.state import LAYERS, PANELS, State
@@ -191,7 +191,7 @@ def test_the_body_is_see_through_only_where_it_would_hide_the_graph(state):
     state.param.update(panel="graph", interior_edges=False)
     assert opacity() == 1
     state.interior_edges = True
-    assert opacity() == SEE_THROUGH
+    assert opacity() == GRAPH_BODY_OPACITY
     state.cut_axis = "x"
     assert opacity() == 1
     state.param.update(cut_axis="off", panel="weights")

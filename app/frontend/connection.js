@@ -1,0 +1,43 @@
+// When the server is gone: shows a message, reconnects, and restores the state from the address.
+
+import {element} from "./elements.js"
+import {stylesheet} from "./styles.js"
+
+const styled = await stylesheet("connection.css")
+
+const RETRY_MS = 2000
+
+export class Connection {
+  constructor(overlay) {
+    this.overlay = overlay
+    this.note = element("div", {className: "card lost", hidden: true, aria: {role: "alert"}})
+    overlay.root.append(styled(), this.note)
+    const documents = window.Bokeh?.documents || []
+    this.document = documents[documents.length - 1]
+    this.lost = () => this.retry()
+    this.document?.on_event("connection_lost", this.lost)
+  }
+
+  async retry() {
+    if (this.trying || this.gone) { return }
+    this.trying = true
+    this.note.hidden = false
+    this.overlay.root.classList.add("without-server")  // its tools could do nothing
+    this.note.textContent = "The connection to the server is lost. Trying again\u00a0…"
+    while (!this.gone) {
+      await new Promise((done) => setTimeout(done, RETRY_MS))
+      try {
+        const answer = await fetch(location.pathname, {method: "HEAD", cache: "no-store"})
+        if (answer.status < 500) { break }
+      } catch { /* not there yet: try again */ }
+    }
+    if (this.gone) { return }
+    this.note.textContent = "The server is there again. Coming back\u00a0…"
+    location.reload()
+  }
+
+  remove() {
+    this.gone = true
+    this.document?.remove_on_event?.("connection_lost", this.lost)
+  }
+}

@@ -1,0 +1,206 @@
+// How much of the canvas the cards over it leave free, and how far away the eye must be for the
+// character to be seen whole in it.
+
+import {Fit} from "./fit.js"
+import {LegendPlace} from "./legend_place.js"
+import {noCards} from "./tiles.js"
+
+const SLIM = 700  // a canvas less wide than this has no space beside its cards
+const NARROW_VIEW = 330  // a view less wide than this has none beside the tools
+const UNDER_TOOLS = 56
+const NARROW_FEET = 600  // in a view less wide than this the legend would cover feet
+const LARGE = 300  // a card this wide has a part of the canvas for itself, whatever its width
+const GAP = 6
+
+export class Insets {
+  constructor({overlay, renderer, orbit, changed, rested}) {
+    Object.assign(this, {overlay, renderer, orbit, changed, rested})
+    this.legend = new LegendPlace(overlay, renderer, () => this.cards)
+    this.fitting = new Fit(renderer)
+    this.factor = 1  // how many times as far away as without cards
+    this.observer = new ResizeObserver(() => this.make())
+    for (const part of [overlay.canvas, overlay.legend, overlay.transport]) { this.observer.observe(part) }
+  }
+
+  // Panel puts elements beside the canvas into wrappers next to the canvas's wrapper.
+  get cards() {
+    const own = this.overlay.root.getRootNode().host?.parentNode
+    const beside = [...own?.parentNode?.children || []].filter((one) => one !== own)
+    return beside.map((wrapper) => wrapper.firstElementChild).filter(Boolean)
+  }
+
+  // Sees what is free, and fits the character into it.
+  make() {
+    const box = this.overlay.canvas.getBoundingClientRect()
+    if (!box.height) { return }
+    if (this.awaited && this.fitting.rests().length) {
+      this.frame(this.awaited)
+      this.rested()
+      return
+    }
+    const {cards} = this
+    for (const card of cards) { this.observer.observe(card) }
+    if (!this.differs(box, cards)) { return }
+    const insets = this.free(box, cards)
+    const seen = JSON.stringify([insets, box.width, box.height, this.renderer.views.length])
+    if (seen === this.seen) { return }
+    this.seen = seen
+    this.renderer.insets = insets
+    this.overlay.showBone(null)  // something else is now where the pointer rests
+    const fitted = this.fit(insets)
+    // A few pixels change nothing.
+    if (this.fitted && Math.abs(fitted / this.fitted - 1) > 0.03) {
+      this.orbit.scale(fitted / this.fitted)
+      this.fits(fitted)
+      this.rested()  // pictures are drawn from where this camera is
+    }
+    this.changed()
+  }
+
+  // Whether anything that decides what is free has changed: to look at all points of the
+  // character takes longer than to draw what a message brought.
+  differs(box, cards) {
+    const rests = this.fitting.rests()
+    const places = [...cards, ...this.edges].map((part) => part.getBoundingClientRect())
+    const now = JSON.stringify([box, places, this.legend.shift, this.orbit.home, this.renderer.views.length])
+    const same = now === this.placed && rests.length === this.rests.length
+      && rests.every((rest, i) => rest === this.rests[i])
+    Object.assign(this, {placed: now, rests})
+    return !same
+  }
+
+  // What always stands over the canvas.
+  get edges() {
+    const {legend, transport, hint, root} = this.overlay
+    return [legend, transport, hint, root.querySelector(".tools")]
+  }
+
+  // What cards take, from each edge.
+  free(box, cards) {
+    const several = this.renderer.views.length > 1
+    const insets = noCards(several)
+    const slim = box.width < SLIM
+    if (slim || (several && this.renderer.tilesIn(insets)[0][2] < NARROW_VIEW)) { insets.top = UNDER_TOOLS }
+    const {legend, transport} = this.overlay
+    const take = (edge, pixels, of = insets) => { of[edge] = Math.max(of[edge], pixels + GAP) }
+    const beside = {left: 0, right: 0}
+    const {edges} = this
+    for (const card of cards) {
+      const {left, right, top, bottom, width, height} = card.getBoundingClientRect()
+      if (!width || !height) { continue }
+      if (width > 0.6 * box.width || width > 2.5 * height) {
+        const below = top + bottom > box.top + box.bottom
+        if (below) { take("bottom", box.bottom - top) }
+        else if (slim || several) { take("top", bottom - box.top) }
+        else { edges.push(card) }
+      } else {
+        const of = slim || several || width > LARGE ? insets : beside
+        const after = left + right > box.left + box.right
+        if (after) { take("right", box.right - left, of) } else { take("left", right - box.left, of) }
+      }
+    }
+    if (!slim && !several) { return this.clear(insets, box, beside, edges) }
+    const narrow = several && this.renderer.tilesIn(insets)[0][2] < NARROW_FEET
+    // There they always need space, whatever is behind them and however it is turned.
+    for (const part of slim || narrow ? [legend, transport] : []) {
+      if (!part.hidden) { take("bottom", box.bottom - this.boxOf(part).top) }
+    }
+    return insets
+  }
+
+  // The legend is treated as in its corner, wherever it is now.
+  boxOf(part) {
+    return part === this.overlay.legend && !part.hidden ? this.legend.home : part.getBoundingClientRect()
+  }
+
+  // A wide canvas has space around one character, which then moves no more than it must.
+  clear(insets, box, beside, edges) {
+    let cleared = this.stepAside(insets, beside)
+    for (let times = 0; times < 2; times++) {  // where it goes something else may be
+      cleared = this.stepAside(this.rise(cleared, box, edges), beside)
+    }
+    return cleared
+  }
+
+  stepAside(insets, beside) {
+    const {clientWidth: width} = this.renderer.element
+    const [left, right] = ["left", "right"].map((edge) => Math.max(insets[edge], beside[edge]))
+    let half = GAP
+    this.eachPixel(insets, (aside) => { half = Math.max(half, Math.abs(aside) + GAP) })
+    if (left + 2 * half + right > width) { return {...insets, left, right} }
+    const middle = (insets.left + width - insets.right) / 2
+    const shift = 2 * (Math.min(Math.max(middle, left + half), width - right - half) - middle)
+    return {...insets, left: insets.left + Math.max(shift, 0), right: insets.right + Math.max(-shift, 0)}
+  }
+
+  // Cards at an edge need space only where the character would be behind them.
+  rise(insets, box, edges) {
+    const x = (box.width + insets.left - insets.right) / 2
+    const y = (box.height + insets.top - insets.bottom) / 2
+    const parts = edges.map((part) => this.boxOf(part)).filter(({width}) => width)
+      .map(({left, right, top, bottom}) => ({
+        left: left - box.left - GAP - x, right: right - box.left + GAP - x,
+        ...top + bottom < box.top + box.bottom
+          ? {edge: "top", sign: -1, above: y, pixels: bottom - box.top + GAP}
+          : {edge: "bottom", sign: 1, above: box.height - y, pixels: box.bottom - top + GAP},
+      }))
+    const risen = {...insets}
+    this.eachPixel(insets, (aside, up) => {
+      for (const {left, right, edge, sign, above, pixels} of parts) {
+        if (above + sign * up < pixels && aside > left && aside < right && pixels > risen[edge]) {
+          risen[edge] = pixels
+        }
+      }
+    })
+    return risen
+  }
+
+  // Positions of the character's points on the screen at first.
+  eachPixel(insets, see) {
+    this.fitting.eachPixel(this.direction, this.orbit.home.target, this.fit(insets), see)
+  }
+
+  // Where one looks from at the beginning.
+  get direction() {
+    const {yaw, pitch} = this.orbit.home
+    return [Math.cos(pitch) * Math.sin(yaw), Math.sin(pitch), Math.cos(pitch) * Math.cos(yaw)]
+  }
+
+  // How far away the view that one begins with must be.
+  fit(insets) {
+    return this.fitting.distance(this.direction, this.orbit.home.target, insets)
+  }
+
+  fits(fitted) {
+    this.fitted = fitted
+    this.factor = fitted / this.fit(noCards(this.renderer.views.length > 1))
+  }
+
+  // Begins to look from where the server says, from as far as this window needs; or, for now, from
+  // somewhere else. Reported cameras ignore cards.
+  frame(camera) {
+    const {position, focal_point: target, now} = camera
+    this.awaited = this.fitting.rests().length ? null : camera  // what is to be fitted comes later
+    this.orbit.setHome(position, target)
+    this.fitted = null
+    this.make()
+    const distance = this.fit(this.renderer.insets)
+    this.orbit.setHome(this.direction.map((x, i) => target[i] + distance * x), target)
+    this.fits(distance)
+    if (now) {
+      this.orbit.look(now.position, now.focal_point)
+      this.orbit.distance *= this.factor
+    }
+    this.orbit.moving = false
+  }
+
+  // Where the eye would be without cards.
+  get position() {
+    const {position, target} = this.orbit
+    return position.map((x, i) => target[i] + (x - target[i]) / this.factor)
+  }
+
+  remove() {
+    this.observer.disconnect()
+  }
+}

@@ -1,0 +1,40 @@
+// The table of methods: which are seen, and how good they are.
+
+import {element} from "./elements.js"
+import {stylesheet} from "./styles.js"
+
+const styled = await stylesheet("methods.css")
+
+export function render({model}) {
+  const table = element("table", {aria: {label: model.label}})
+  const fill = () => {
+    const held = table.querySelector("input:focus")?.name
+    const columns = [["Method", ""], ...model.columns].map(([text, title]) =>
+      element("th", {scope: "col", title}, text))
+    const head = element("thead", {}, element("tr", {}, ...columns))
+    const body = element("tbody")
+    for (const {id, title, values, best, note, state, chosen, fixed} of model.rows) {
+      const change = () => model.send_msg({id, on: box.checked})
+      const box = element("input", {
+        type: "checkbox", name: id, checked: chosen, disabled: fixed, on: {change},
+      })
+      const label = element("label", {}, box, title)
+      if (fixed) { label.title = chosen ? "Two stay at least" : "Four at most: take one away first" }
+      const cells = values.map((value, i) => element("td", {className: best[i] ? "best" : ""}, value))
+      body.append(element(
+        "tr", {className: chosen ? "chosen" : "idle"}, element("td", {}, label), ...cells))
+      if (note) {
+        const words = element("td", {colSpan: 1 + values.length, id: `note-${id}`}, note)
+        box.setAttribute("aria-describedby", words.id)
+        if (state === "running") { words.prepend(element("i", {className: "ring"})) }
+        body.append(element("tr", {className: `note ${state}`}, words))
+      }
+    }
+    table.replaceChildren(head, body)
+    if (held) { table.querySelector(`input[name="${CSS.escape(held)}"]`)?.focus() }
+  }
+  model.on("rows", fill)
+  model.on("columns", fill)
+  fill()
+  return element("div", {}, styled(), table)
+}

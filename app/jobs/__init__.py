@@ -1,0 +1,1 @@
+"""Work off the page's thread: in threads, in processes; and texts of errors."""

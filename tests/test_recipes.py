@@ -1,0 +1,89 @@
+"""The recipes of CONTRIBUTING.md, followed in a copy of the packages."""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from cutcell_app.panels import BUILDERS
+from cutcell_app.scenes import SCENES
+from cutcell_app.state import PANELS
+from tests.test_layers import ROOT
+
+PANEL = """
+from cutcell_app.layout.session import begin
+from cutcell_app.panels import BUILDERS
+from cutcell_app.scenes import resolve
+from tests.viewers.arm import arm_rig
+session = begin(lambda act: act())
+session.state.param.update(panel="size", rig=arm_rig())
+assert BUILDERS["size"](session).objects[1].value is True
+assert "body" in resolve(session.state).actors
+"""
+OPTION = """
+import cutcell
+from cutcell.cli.options import METHOD_OPTIONS
+from cutcell_app.layout.session import begin
+from cutcell_app.panels import BUILDERS
+from cutcell_app.state.method import GRAPH
+session = begin(lambda act: act())
+BUILDERS["graph"](session)
+assert cutcell.Method(strict=True).strict and "strict" in METHOD_OPTIONS and "strict" in GRAPH
+assert session.state.strict is False
+"""
+
+
+def files_of(recipe: str) -> dict[str, list[str]]:
+    """Return the lines of a recipe by the files that they belong to."""
+    text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    block = re.search(rf"^## {recipe}$.*?^```diff\n(.*?)^```$", text, re.M | re.S)
+    assert block is not None
+    parts = re.split(r"^# (\S+)\n", block[1], flags=re.M)[1:]
+    return {path: lines.splitlines() for path, lines in zip(parts[::2], parts[1::2], strict=True)}
+
+
+def follow(lines: list[str], path: Path) -> None:
+    """Insert what is marked by a plus after the lines without one, which must be in the file."""
+    content = path.read_text(encoding="utf-8").splitlines() if path.exists() else []
+    at = 0
+    for line in lines:
+        if line.startswith("+"):
+            content.insert(at, line[1:])
+        else:
+            at = content.index(line[1:], at)
+        at += 1
+    path.write_text("\n".join(content) + "\n", encoding="utf-8")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("recipe", "most", "check"),
+    [("Adding a panel", 5, PANEL), ("Adding an option of the method", 4, OPTION)],
+    ids=["panel", "option"],
+)
+def test_a_recipe_is_enough(recipe, most, check, tmp_path):
+    files = files_of(recipe)
+    assert len(files) <= most
+    names = {"app": "cutcell_app", "cutcell": "cutcell"}
+    for folder, name in names.items():
+        shutil.copytree(ROOT / folder, tmp_path / name, ignore=shutil.ignore_patterns("__py*"))
+    for path, lines in files.items():
+        folder, _, below = path.partition("/")
+        follow(lines, tmp_path / names[folder] / below)
+    places = os.pathsep.join(map(str, (tmp_path, ROOT)))
+    done = subprocess.run(
+        [sys.executable, "-c", check],
+        env={**os.environ, "PYTHONPATH": places},
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stderr
+
+
+def test_every_panel_has_a_scene_and_controls():
+    assert list(SCENES) == list(BUILDERS) == list(PANELS)
