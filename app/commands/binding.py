@@ -264,7 +264,8 @@ def weigh(session: Session) -> None:
     if binding_request(state)["corrections"] != bound.request["corrections"]:
         return  # they are about to be measured
     distances, falloff, few = state.binding.distances, state.falloff, prune_options(state)
-    cached = bound.falloffs.get(falloff)
+    key = falloff if state.refine == "none" else f"{falloff} {state.refine}"
+    cached = bound.falloffs.get(key)
     if bound.cutoff < reach_of(falloff) or not _measured(distances, falloff, few["max_influences"]):
         bind(session)
     elif falloff in QUICK:
@@ -280,7 +281,7 @@ def weigh(session: Session) -> None:
             return csr_array(_weights(now, max_influences=MOST))
 
         def done(many: csr_array) -> None:
-            bound.falloffs[falloff] = (distances, many)
+            bound.falloffs[key] = (distances, many)
             weigh(session)
 
         session.start(work, done)
@@ -291,7 +292,7 @@ def _weights(state: Any, **few: Any) -> NDArray:
     rig, distances = state.rig, state.binding.distances
     return skinning_weights(
         distances,
-        **effective({"falloff": state.falloff, "alpha": state.alpha}),
+        **effective({name: getattr(state, name) for name in ("falloff", "refine", "alpha")}),
         allowed=rig.allowed,
         adjustments=adjustments_of(rig, distances.graph, measured(state.corrections)),
         **few,

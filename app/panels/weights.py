@@ -95,6 +95,11 @@ def _falloff(state: State) -> list[Any]:
     return [
         *([choice(state.param.falloff, kernels)] if len(kernels) > 1 else []),
         alpha,
+        choice(
+            state.param.refine,
+            {"Rules": "none", "Rules and learned": "learned"},
+            visible=when(lambda falloff: falloff == "rig", state.param.falloff),
+        ),
         slider(state.param.max_influences, "Max influences", whole=True),
         slider(state.param.threshold, "Ignore weights below", step=0.005, end=0.3),
     ]

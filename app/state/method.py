@@ -19,8 +19,9 @@ def default(name: str) -> Any:
 
 
 def effective(options: dict[str, Any]) -> dict[str, Any]:
-    """Leave out what the falloff does not ask for, which the core refuses: alpha is the paper's."""
-    return {n: v for n, v in options.items() if n != "alpha" or options["falloff"] == "paper"}
+    """Leave out what the falloff does not use, which the core refuses."""
+    unused = "refine" if options["falloff"] == "paper" else "alpha"
+    return {name: value for name, value in options.items() if name != unused}
 
 
 def method_of(state: Any, names: tuple[str, ...] = (*GRAPH, *WEIGHTS)) -> dict[str, Any]:
