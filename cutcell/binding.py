@@ -109,7 +109,8 @@ def bind(
         before them "compile" the very first time on a machine, and after a change of the code.
     **options
         Single options on top of the method, see `Method`: `connectivity`, `winding_threshold`,
-        `orient`, `samples`, `leaf`, `falloff`, `alpha`, `max_influences`, `threshold`.
+        `orient`, `samples`, `leaf`, `falloff`, `refine`, `alpha`,
+        `max_influences`, `threshold`.
 
     Returns
     -------

@@ -11,8 +11,8 @@ from cutcell_viewers.finding_scene import camera_on
 from ..scenes.common import bounds_of
 from ..state.check import Repair
 from ..state.method import GRAPH, method_of
-from .binding import asked, swap
-from .look import look
+from .binding import binding_request, swap
+from .look import set_camera
 from .session import Session
 
 
@@ -39,8 +39,8 @@ def _begin_anew(session: Session) -> None:
 def examine(session: Session) -> None:
     """Diagnose what stands there, unless its graph is known to be sound or not."""
     state, binder = session.state, session.binder
-    if state.graph is None or not binder.is_for(asked(state)):
-        return  # what belongs to the choices is not there yet
+    if state.graph is None or not binder.is_for(binding_request(state)):
+        return  # the graph of the present choices is not built yet
     if binder.is_diagnosed:
         return
     rig, resolution = state.rig, state.resolution
@@ -54,7 +54,7 @@ def examine(session: Session) -> None:
     def done(diagnosis: Diagnosis) -> None:
         state.diagnosis = diagnosis
         if state.panel == "check":
-            _look(session)
+            _show_finding(session)
 
     session.tasks.jobs("diagnosis").start(work, done, session.fail, lambda stage, fraction: None)
 
@@ -90,23 +90,23 @@ def look_at(session: Session, code: str) -> None:
     if code == state.finding:
         code = ""
     state.finding = code
-    _look(session)
+    _show_finding(session)
 
 
 def go_to(session: Session, code: str) -> None:
-    """Go where a warning is told: to the panel that shows what a finding names, and its advice."""
+    """Open the panel that shows a finding and its advice."""
     state = session.state
     state.param.update(panel="check", finding=code)
-    _look(session)  # where the check is not done yet, it is looked at then
+    _show_finding(session)  # where the check is not done yet, it is looked at then
 
 
-def _look(session: Session) -> None:
+def _show_finding(session: Session) -> None:
     """Look at what the finding names that is looked at."""
     state = session.state
-    if state.found is not None:
-        camera = camera_on(state.rig, state.found, bounds_of(state), session.view.aspect)
+    if state.selected_finding is not None:
+        camera = camera_on(state.rig, state.selected_finding, bounds_of(state), session.view.aspect)
         if camera is not None:
-            look(session, camera)
+            set_camera(session, camera)
 
 
 def repair(session: Session, codes: list[str]) -> None:

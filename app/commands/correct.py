@@ -28,18 +28,18 @@ from .session import Session
 
 
 def correct(session: Session, corrections: Corrections) -> None:
-    """Take corrections in place of those that there are; what cannot be is told, and not taken."""
+    """Replace the corrections; report and refuse those that are impossible."""
     state, corrections = session.state, tidy(corrections)
     if corrections == state.corrections:
         return
     try:
-        state.param.update(**taken(session, corrections))
+        state.param.update(**corrected_state(session, corrections))
     except CutcellError as error:
         session.fail(error)
-        state.param.trigger("corrections")  # what offered them shows again what there is
+        state.param.trigger("corrections")  # reset the controls
 
 
-def taken(session: Session, corrections: Corrections) -> dict[str, Any]:
+def corrected_state(session: Session, corrections: Corrections) -> dict[str, Any]:
     """Return what of the state changes with corrections of the character that stands there.
 
     Raises
@@ -53,16 +53,16 @@ def taken(session: Session, corrections: Corrections) -> dict[str, Any]:
     return changes(state, rig, corrections)
 
 
-def correct_joint(session: Session, joint: int, **wanted: Any) -> None:
+def correct_joint(session: Session, joint: int, **changed: Any) -> None:
     """Change some of what is corrected of a joint; see `JointCorrection`."""
     state = session.state
     name = state.rig.skeleton.names[joint]
-    if "deform" in wanted and wanted["deform"] == bool(state.own_skeleton.deform[joint]):
-        wanted["deform"] = None
+    if "deform" in changed and changed["deform"] == bool(state.own_skeleton.deform[joint]):
+        changed["deform"] = None
     corrected = state.corrections.joints
     try:
         check_alone(state.rig.skeleton, joint)
-        one = replace(corrected.get(name, JointCorrection()), **wanted)
+        one = replace(corrected.get(name, JointCorrection()), **changed)
     except CutcellError as error:
         session.fail(error)
         state.param.trigger("corrections")
@@ -143,15 +143,15 @@ def overrule(session: Session, vertex: int, weights: Mapping[int, float] | None)
     state = session.state
     node = state.binding.graph.vertex_node
     together = np.flatnonzero(node == node[vertex])
-    given = None
+    overrides = None
     if weights is not None:
-        given = {state.rig.skeleton.names[joint]: w for joint, w in weights.items() if w}
+        overrides = {state.rig.skeleton.names[joint]: w for joint, w in weights.items() if w}
         if state.rig.allowed is not None:
             stored = state.rig.allowed[together][:, [j for j, w in weights.items() if w]]
             together = together[stored.all(axis=1) | (together == vertex)]
     corrected = {v: row for v, row in state.corrections.vertices.items() if v not in together}
-    if given is not None:
-        corrected.update(dict.fromkeys(together.tolist(), given))
+    if overrides is not None:
+        corrected.update(dict.fromkeys(together.tolist(), overrides))
     try:
         corrections = replace(state.corrections, vertices=corrected)
     except CutcellError as error:

@@ -9,7 +9,7 @@ SHEET = "46dvh"
 """How high the sidebar is in a narrow window: a sheet at the bottom, the canvas above it."""
 
 _SHEET = {
-    # What its sliders change stays seen, and can be turned meanwhile.
+    # The scene that its sliders change stays visible and can be turned.
     "pointerEvents": "none",
     "& .MuiBackdrop-root": {"display": "none"},
     "& .MuiDrawer-paper": {
@@ -45,7 +45,7 @@ _SHAPE = {
             "styleOverrides": {
                 # Dark paper is as dark over the canvas as beside it.
                 "paper": {"backgroundImage": "none"},
-                # What lies over the bar on top needs no room below it.
+                # Elements over the top bar need no space below it.
                 "modal": {
                     "& .MuiDrawer-paper > .MuiToolbar-root": {"display": "none"},
                     NARROW: _SHEET,

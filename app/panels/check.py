@@ -18,7 +18,7 @@ from ..commands.export import export_repaired
 from ..commands.session import Session
 from ..state import State
 from ..state.check import EXPORT
-from .controls import LINE, button, caption, column, has_weights, lead, section, when, words
+from .controls import LINE, button, caption, column, has_weights, intro, section, text_line, when
 
 ICONS = {"error": "error", "warning": "warning", "note": "info"}
 MAX_DETAILS = 8
@@ -39,20 +39,20 @@ def check(session: Session) -> pmui.Column:
     state.param.watch(listed, ["diagnosis", "export_diagnosis", "finding", "repair"])
     listed()
     return column(
-        lead(when(lambda *_: told(state), state.param.diagnosis, state.param.rig)),
+        intro(when(lambda *_: summary(state), state.param.diagnosis, state.param.rig)),
         section("", place, margin=(6, 20, 4, 20)),
     )
 
 
-def told(state: State) -> str:
+def summary(state: State) -> str:
     """Say how much was found."""
     if state.rig is None:
         return ""
     if state.diagnosis is None:
-        return "The mesh, the skeleton and the weights of the file are checked once it is bound."
+        return "The file is checked once weights are computed."
     if not state.diagnosis.findings:
-        return "Nothing is wrong with the mesh, the skeleton or the weights of the file."
-    return f"Found: {counted(state.diagnosis.counts)}. Choose one to see where it is."
+        return "No problems in the mesh, skeleton or weights."
+    return f"{counted(state.diagnosis.counts)}. Choose one to see it."
 
 
 def counted(counts: dict[str, int]) -> str:
@@ -117,7 +117,7 @@ def _entry(session: Session, finding: Finding, prefix: str = "") -> pmui.Column:
         if finding.code in OF_PARTS and not session.state.bare:
             vertex = int(finding.vertices[0])
             see = partial(session.state.param.update, panel="weights", part=vertex)
-            lines.append(button("Choose what its parts follow", see, icon="category"))
+            lines.append(button("Choose how these parts are bound", see, icon="category"))
     return column(*lines, margin=(0, 0, 6, 0))
 
 
@@ -155,13 +155,13 @@ def _repairs(session: Session) -> list[Any]:
         rows.append(button(f"Repair all {len(able)}", lambda: repair(session, codes), icon="build"))
     if state.repair is None:
         return rows
-    now = "" if state.diagnosis is None else f", now {counted(state.diagnosis.counts)}"
+    now = "" if state.diagnosis is None else f" → {counted(state.diagnosis.counts)}"
     return [
         *rows,
-        _line(f"Repaired. Before: {counted(state.repair.counts)}{now}.", "text.primary"),
+        _line(f"Repaired: {counted(state.repair.counts)}{now}.", "text.primary"),
         *(_line(text) for text in state.repair.done),
         button(
-            "Download it with its own weights",
+            "Download with original weights",
             lambda: export_repaired(session, session.view.offer),
             icon="download",
         ),
@@ -173,6 +173,6 @@ def _line(text: str, color: str = "text.secondary") -> pmui.Typography:
     if color == "text.secondary":
         return caption(text, margin=(0, 0, 4, 6))
     style = {"color": color, "lineHeight": 1.45, "display": "block", "letterSpacing": 0}
-    return words(
+    return text_line(
         text, variant="caption", sx=style, margin=(0, 0, 4, 6), sizing_mode="stretch_width"
     )

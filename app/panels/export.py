@@ -43,8 +43,8 @@ def export(session: Session) -> pmui.Column:
         "Export",
         bound,
         row(
-            menu("Picture, film", "movie", films, margin=BESIDE, disabled=empty),
-            menu("Numbers", "table_chart", numbers, disabled=empty),
+            menu("Image, video", "movie", films, margin=BESIDE, disabled=empty),
+            menu("Data", "table_chart", numbers, disabled=empty),
         ),
         caption(when(_described, state.param.rig, state.param.corrections, state.param.repair)),
     )
@@ -59,7 +59,7 @@ def _described(rig: Rig | None, corrections: Corrections, repair: object) -> str
         changed += ["mesh"] if repair is not None else []
         summary = f"Only {' and '.join(changed)} of the GLB change."
     elif has_materials(rig):
-        summary = "The GLB is a new one: mesh, skeleton, weights, motions and base colours."
+        summary = "A new GLB: mesh, skeleton, weights, clips and base colours."
     else:
-        summary = "The GLB is a new one: mesh, skeleton, weights and motions, without materials."
+        summary = "A new GLB: mesh, skeleton, weights and clips, no materials."
     return f"{summary} Images show the current view."

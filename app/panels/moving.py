@@ -66,7 +66,7 @@ def place(session: Session) -> list[Any]:
     state.param.watch(lambda *events: show(), ["rig", "joint", "corrections", "dragged"])
     show()
     return [
-        caption("Where it stands, in the file's units", margin=(8, 0, 0, 0)),
+        caption("Position (file units)", margin=(8, 0, 0, 0)),
         row(*fields),
         switch(state.param.joint_handle),
         mirrored,

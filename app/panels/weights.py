@@ -21,12 +21,12 @@ from .controls import (
     folded,
     follow,
     has_weights,
-    lead,
+    intro,
     section,
     select_box,
     slider,
+    text_line,
     when,
-    words,
 )
 from .corrections import corrections
 from .joints import joints
@@ -55,15 +55,18 @@ def weights(session: Session) -> pmui.Column:
         return options, state.weights_shown if state.weights_shown in options.values() else "mix"
 
     follow(select, state, "weights_shown", offered, ["rig"])
-    facts, source = caption(told(state)), words(exported(state), sx=SOURCE, margin=(8, 0, 0, 0))
+    facts = caption(summary(state))
+    source = text_line(exported(state), sx=SOURCE, margin=(8, 0, 0, 0))
 
-    def tell() -> None:
-        facts.object, source.object = told(state), exported(state)
+    def update() -> None:
+        facts.object, source.object = summary(state), exported(state)
 
     # The colours go first.
-    state.param.watch(lambda *events: session.tasks.after_a_pause(tell, "told"), ["binding", "rig"])
+    state.param.watch(
+        lambda *events: session.tasks.after_a_pause(update, "told"), ["binding", "rig"]
+    )
     return column(
-        lead("How strongly each bone moves the skin."),
+        intro("How strongly each bone moves the skin."),
         section(
             "", source, _from_file(session), select, *_sides(state), facts, margin=(0, 20, 4, 20)
         ),
@@ -104,22 +107,22 @@ def exported(state: State) -> str:
 
 def _sides(state: State) -> list[Any]:
     """Return the choices between what was computed and what the file says."""
-    names = {"Computed": "ours", "From file": "file"}
+    names = {"Recomputed": "ours", "Original": "file"}
     whose = choice(
         state.param.weights_of,
         names,
         visible=when(
-            lambda rig, shown: has_weights(rig) and shown not in DIFFERENCE.values(),
+            lambda rig, colors: has_weights(rig) and colors not in DIFFERENCE.values(),
             state.param.rig,
             state.param.weights_shown,
         ),
     )
     signed = when(
-        lambda rig, shown: has_weights(rig) and shown == "bone_difference",
+        lambda rig, colors: has_weights(rig) and colors == "bone_difference",
         state.param.rig,
         state.param.weights_shown,
     )
-    truth = {"The file is right": "file", "Ours are right": "ours"}
+    truth = {"Reference: file": "file", "Reference: computed": "ours"}
     return [whose, choice(state.param.truth, truth, visible=signed)]
 
 
@@ -134,12 +137,17 @@ def _falloff(state: State) -> list[Any]:
     return [
         *([choice(state.param.falloff, kernels)] if len(kernels) > 1 else []),
         alpha,
+        choice(
+            state.param.refine,
+            {"Rules": "none", "Rules and learned": "learned"},
+            visible=when(lambda falloff: falloff == "rig", state.param.falloff),
+        ),
         slider(state.param.max_influences, "Max influences", whole=True),
         slider(state.param.threshold, "Ignore weights below", step=0.005, end=0.3),
     ]
 
 
-def told(state: State) -> str:
+def summary(state: State) -> str:
     """Return what there is to say of the weights in a line."""
     if state.binding is None:
         return ""
@@ -151,5 +159,5 @@ def told(state: State) -> str:
         # Of |a - b| = a + b - 2 min(a, b) the last is zero where ours is: nearly everywhere.
         both = np.minimum(weights.ravel()[positive], file_weights.ravel()[positive]).sum()
         difference = ((len(weights) + file_weights.sum()) / 2 - both) / max(len(weights), 1)
-        text += f"; they differ from the file's by {difference:.0%}"
+        text += f", {100 * difference:.0f} % different from the file"
     return text + "."

@@ -14,7 +14,7 @@ from ..state.check import EXPORT
 from .common import character
 from .memo import Memo
 
-SEE_FINDING = 0.5
+BODY_OPACITY_OF_FINDINGS = 0.5
 """How opaque the body is while a finding is marked: it may be behind or inside."""
 
 
@@ -26,13 +26,13 @@ def named(finding: Finding) -> str:
 
 def check(state: State, memo: Memo) -> Description:
     """Return the scene of the panel Diagnose; plain while no finding is looked at."""
-    rig, finding = state.rig, state.found
+    rig, finding = state.rig, state.selected_finding
     if finding is None:
         return Description(character(state, memo))
     marks = memo("finding", (rig, finding), lambda: finding_marks(rig, finding))
     if not marks:
         return Description(character(state, memo))
-    actors = character(state, memo, opacity=SEE_FINDING, behind=True)
+    actors = character(state, memo, opacity=BODY_OPACITY_OF_FINDINGS, behind=True)
     swatches: tuple[tuple[Color, str], ...] = ((MARK, named(finding)),)
     placed = memo("finding pose", (rig, finding), lambda: finding_pose(rig, finding))
     if placed is not None:

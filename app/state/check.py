@@ -1,4 +1,4 @@
-"""What the panel Check shows: what is wrong with the character, and what was repaired."""
+"""State of the panel Check: findings, and repairs."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -13,7 +13,7 @@ EXPORT = "export:"
 
 @dataclass(frozen=True, eq=False)
 class Repair:
-    """What was repaired of the character that stands there.
+    """Repairs of the current character.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ class DiagnosisChoices(param.Parameterized):
     repair: Any = param.Parameter(None, doc="A `Repair` of this character, or None.")
 
     @property
-    def found(self) -> Any:
+    def selected_finding(self) -> Any:
         """The finding that is looked at, or None."""
         code = self.finding.removeprefix(EXPORT)
         diagnosis = self.diagnosis if code == self.finding else self.export_diagnosis

@@ -39,6 +39,7 @@ from .locks import lock_joints
 
 STEPS = {
     "falloff": "shares by distance",
+    "learned": "corrected by the model",
     "spread": "spread over skin",
     "rigid": "rigid components",
     "tail": "tail subtracted",

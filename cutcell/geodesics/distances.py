@@ -44,6 +44,8 @@ class BoneDistances:
         `geodesics.FALLBACK_REASONS`. These have straight distances to a few bones.
     solver : BoneDistanceSolver
         What computed them, for more distances along the same graph.
+    skeleton : Skeleton or None
+        What the bones are of; None where bones were given.
     """
 
     at_welded: NDArray[np.float64]
@@ -53,6 +55,7 @@ class BoneDistances:
     sources: Sources
     fallback: NDArray[np.uint8]
     solver: BoneDistanceSolver
+    skeleton: Skeleton | None = None
 
     __repr__ = short_repr
 
@@ -252,9 +255,9 @@ def bone_distances(
         joint[np.ix_(np.unique(bones.joint), lost)] = _least(straight, bones)
     shared = nearest_joints, bones, sources
     if allowed is None:
-        return BoneDistances(joint, None, *shared, fallback[graph.vertex_node], solver)
+        return BoneDistances(joint, None, *shared, fallback[graph.vertex_node], solver, skeleton)
     first = np.unique(node, return_index=True)[1]
-    return BoneDistances(joint[:, first], joint, *shared, fallback, solver)
+    return BoneDistances(joint[:, first], joint, *shared, fallback, solver, skeleton)
 
 
 def distances_from(graph: CutCellGraph, bones: Bones, samples: int, joints: int) -> BoneDistances:

@@ -182,7 +182,7 @@ def test_a_part_is_glued_to_a_joint(visit, robot, tmp_path):
     expect(ring).to_have_attribute("aria-current", "true")
     assert changed(whole, visit.look()) > 0.02
     visit.choose("Bind this part", "Rigid, to one joint")
-    expect(ring).to_contain_text("glued: ")
+    expect(ring).to_contain_text("rigid: ")
     visit.settle()
     assert faults(visit) == []
     (first, part), *_ = corrected(visit).parts.items()
@@ -329,7 +329,7 @@ def test_the_soldier_is_mended_in_two_clicks_and_stays_so(visit, tmp_path):
     visit.close_card()
 
     visit.button("Stray weights").click()
-    visit.button("Let Root carry no weight").click()
+    visit.button("Exclude Root").click()
     visit.expect_text("Root carries no weight any more")
     visit.settle()
     expect(visit.button("Stray weights")).to_have_count(0)

@@ -180,7 +180,7 @@ def test_single_vertices_get_the_files_weights(bound, loop):
 def test_an_address_brings_them_back(bound, loop):
     correct.correct(bound, ALL)
     settled(bound, loop)
-    said = from_query(bound.view.told("address"), bound.state)[1]["corrections"]
+    said = from_query(bound.view.last_sent("address"), bound.state)[1]["corrections"]
     assert from_text(said) == ALL
     bound.arrival = {"corrections": said}
     loading.show_rig(bound, arm_rig())
@@ -204,7 +204,7 @@ def test_what_an_address_has_no_room_for_is_kept_by_the_server(bound, loop):
     )  # fmt: skip
     correct.correct(bound, many)
     settled(bound, loop)
-    said = from_query(bound.view.told("address"), bound.state)[1]["corrections"]
+    said = from_query(bound.view.last_sent("address"), bound.state)[1]["corrections"]
     assert said.startswith("~")
     assert len(to_text(many)) > MAX_IN_ADDRESS > len(said)
     correct.clear(bound)
@@ -366,7 +366,7 @@ def test_parts_are_glued_and_seen_apart(session, loop):
     glue.value = "wrist"
     loop.run_for(0.05)
     assert (session.state.binding.weights[first:, 2] == 1).all()
-    assert rows.rows[1][1] == "glued: wrist"
+    assert rows.rows[1][1] == "rigid: wrist"
     way.value = "itself"
     loop.run_until(lambda: not session.tasks.running)
     parts = {first: PartCorrection("itself")}

@@ -14,7 +14,7 @@ from cutcell_app.commands import loading
 from cutcell_app.commands.check import look_at, repair, take_back
 from cutcell_app.commands.export import export_repaired
 from cutcell_app.panels.character import faults
-from cutcell_app.panels.check import check, told
+from cutcell_app.panels.check import check, summary
 from cutcell_app.scenes import resolve
 from cutcell_app.scenes.common import bounds_of
 from cutcell_app.state import State
@@ -63,7 +63,7 @@ def texts(session):
 
 def test_what_is_bound_is_diagnosed(spoiled):
     assert codes(spoiled) == ["unweighted-vertices", "inverted-faces"]
-    assert told(spoiled.state) == "Found: 1 error, 1 warning. Choose one to see where it is."
+    assert summary(spoiled.state) == "1 error, 1 warning. Choose one to see it."
     assert "Vertices without weight" in texts(spoiled)
     assert "Repair all 2" in texts(spoiled)
     assert faults(spoiled.state) == [f.message for f in spoiled.state.diagnosis.findings]
@@ -71,7 +71,7 @@ def test_what_is_bound_is_diagnosed(spoiled):
 
 def test_a_sound_character_is_said_to_be_sound(bound, loop):
     loop.run_until(lambda: bound.state.diagnosis is not None)
-    assert told(bound.state).startswith("Nothing is wrong")
+    assert summary(bound.state).startswith("No problems")
     assert faults(bound.state) == []
 
 
@@ -87,7 +87,7 @@ def test_a_finding_is_marked_and_gone_to(spoiled):
     assert "Binding already treats them as flipped" in texts(spoiled)
     assert sees(spoiled.view.camera, marked.points, spoiled.view.aspect)
     look_at(spoiled, "inverted-faces")
-    assert spoiled.state.found is None
+    assert spoiled.state.selected_finding is None
 
 
 def test_a_repair_is_bound_and_can_be_taken_back(spoiled, loop):
@@ -100,7 +100,7 @@ def test_a_repair_is_bound_and_can_be_taken_back(spoiled, loop):
     repair(spoiled, ["unweighted-vertices"])
     loop.run_until(lambda: state.diagnosis is not None and not state.diagnosis.findings)
     assert len(state.repair.done) == 2
-    assert "Before: 1 error, 1 warning, now nothing" in texts(spoiled).replace("&#44;", ",")
+    assert "Repaired: 1 error, 1 warning → nothing" in texts(spoiled).replace("&#44;", ",")
     take_back(spoiled)
     loop.run_until(lambda: state.diagnosis is not None)
     assert state.rig is original
