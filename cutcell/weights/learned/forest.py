@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -52,7 +53,8 @@ class Forest:
 
     def save(self, path: Path) -> None:
         """Write the arrays, compressed."""
-        np.savez_compressed(path, **{name: np.asarray(a) for name, a in vars(self).items()})
+        arrays: dict[str, Any] = vars(self)
+        np.savez_compressed(path, **arrays)
 
     @classmethod
     def load(cls, path: Path) -> Forest:
