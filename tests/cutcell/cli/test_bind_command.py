@@ -41,6 +41,7 @@ def test_options_reach_the_library(run, bar, tmp_path):
     document = json.loads(result.stdout)
     assert document["parameters"] == {
         **options,
+        "refine": "none",
         "orient": False,
         "symmetric": False,
         "locked": [],
