@@ -125,7 +125,7 @@ def report(out: Path | None = None, groups: int | None = None) -> None:
             {k: f"{s.l1:.3f} {s.deformation:.2f}" for k, s in result[3].items()},
             flush=True,
         )
-    text = "\n\n".join(f"### {table.title}\n\n{table.markdown()}" for table in tables(results))
+    text = "\n\n".join(table.markdown() for table in tables(results))
     print(text)
     if out:
         fill(out, {"left out": text})

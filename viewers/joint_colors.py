@@ -20,6 +20,9 @@ def colors_of(rig: Rig) -> NDArray[np.float64]:
 
     The file's weights say whose skin touches, so that colours stay while new weights change.
     """
+    given: NDArray[np.float64] | None = getattr(rig, "colors", None)
+    if given is not None:  # a few vertices of a rig are drawn in the colours of all
+        return given
     parents, weights, deform = rig.skeleton.parents, rig.weights, rig.skeleton.deform
     tree = parents.tobytes(), deform.tobytes() if weights is None else b""
     cached = _of_mesh.get(rig.mesh)

@@ -62,7 +62,11 @@ def examine(session: Session) -> None:
 def examine_export(session: Session) -> None:
     """Check the weights that an export contains, while the panel shows the findings."""
     state = session.state
-    if state.panel != "check" or state.binding is None or not session.binder.is_for(asked(state)):
+    if (
+        state.panel != "check"
+        or state.binding is None
+        or not session.binder.is_for(binding_request(state))
+    ):
         return
     rig, resolution = state.rig.with_weights(state.binding.weights), state.resolution
     last = state.export_diagnosis

@@ -133,6 +133,7 @@ def painted_colors(state: State, vertices: NDArray, rows: NDArray) -> dict[str, 
         rig=SimpleNamespace(
             skeleton=state.rig.skeleton,
             weights=None if file_weights is None else file_weights[vertices],
+            colors=colors_of(state.rig),
         ),
         weights=rows,
         joint=state.joint,

@@ -153,9 +153,9 @@ def test_the_weights_of_the_export_are_checked(spoiled, loop):
     state.binding = replace(state.binding, weights=weights)
     loop.run_until(lambda: state.export_diagnosis.findings)
     look_at(spoiled, EXPORT + "unweighted-vertices")
-    assert state.found.vertices.tolist() == list(range(5))
+    assert state.selected_finding.vertices.tolist() == list(range(5))
     look_at(spoiled, "unweighted-vertices")
-    assert state.found.vertices.tolist() == list(range(3))
+    assert state.selected_finding.vertices.tolist() == list(range(3))
 
 
 def test_joints_that_lead_a_part_are_locked_not_excluded(bound, loop):

@@ -285,9 +285,10 @@ def test_the_other_side_is_painted_where_there_is_one(session, loop):
     state.param.update(joint=names.index("forearm.L"), brush=True, brush_radius=0.05)
     part = session.view.last_sent("brush")
     assert np.linalg.norm(part["mirror"][:3]) == pytest.approx(1)
-    vertex = int(np.abs(state.weights[:, state.joint] - 0.5).argmin())
+    mesh, joint = state.rig.mesh, state.rig.skeleton.joints[state.joint]
+    distance = np.linalg.norm(mesh.vertices - joint, axis=1)
+    vertex = int(np.where(state.weights[:, state.joint] < 0.5, distance, np.inf).argmin())
     point = [vertex, vertex, vertex, 1, 0, 0]
-    state.brush_mode = "subtract"
     session.view._listeners["brush"]({"points": point, "first": True, "done": True})
     loop.run_until(lambda: not session.tasks.running)
     x = state.rig.mesh.vertices[list(state.corrections.vertices), 0]

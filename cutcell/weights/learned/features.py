@@ -61,7 +61,7 @@ def pair_features(division: Division, spread: NDArray[np.float64], skeleton: Ske
         [
             division.radius,
             children,
-            skeleton.depth / np.maximum(skeleton.depth.max(), 1),
+            skeleton.depth / max(1, int(skeleton.depth.max())),
             areas @ weights,
             [word_code(name) for name in skeleton.names],
         ]

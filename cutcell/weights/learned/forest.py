@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import expit
 
 from ...runtime.compiled import compiled
 from ...runtime.threads import in_threads, parts
@@ -49,11 +50,11 @@ class Forest:
             _evaluate(*tree, self.baseline, features[part], logit[part])
 
         in_threads(evaluate, parts(len(features)))
-        return 1 / (1 + np.exp(-logit))
+        return np.asarray(expit(logit))
 
     def save(self, path: Path) -> None:
         """Write the arrays, compressed."""
-        arrays: dict[str, Any] = {name: np.asarray(a) for name, a in vars(self).items()}
+        arrays: dict[str, Any] = vars(self)
         np.savez_compressed(path, **arrays)
 
     @classmethod

@@ -13,7 +13,7 @@ from .surface_operators import SurfaceOperators
 PENALTY = 2.0
 """Added to the factor 1 of a bone's distance, for the surface of a component that the bone is
 outside of while it is inside another one."""
-RIGID = 0.88, 0.9
+RIGID = 0.9, 0.92
 """A component is rigid if one joint is the strongest on the second part of its area; less and less
 rigid down to the first."""
 
