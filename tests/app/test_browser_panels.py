@@ -57,7 +57,7 @@ def test_the_graphs_layers_are_counted_and_coloured(visit, robot):
     visit.expect_text("Depth below the surface")
     depth = visit.look()
     assert changed(kinds, depth) > 0.005
-    visit.button("Distance").click()
+    visit.button("Distance").first.click()
     visit.expect_text("Distance from")
     assert changed(depth, visit.look()) > 0.005
 
