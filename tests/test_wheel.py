@@ -73,6 +73,20 @@ def test_it_has_the_licences_of_all_that_it_contains(installed):
     assert {path.name for path in licenses.iterdir()} == {"LICENSE", "NOTICE"}
 
 
+def test_its_description_has_no_link_into_a_checkout(installed):
+    text = next(installed.glob("cutcell-*.dist-info/METADATA")).read_text(encoding="utf-8")
+    links = re.findall(r"\]\(([^)]+)\)|(?:src|srcset)=\"([^\"]+)", text)
+    assert len(links) > 10
+    assert [link for pair in links for link in pair if link and link[0] != "#"
+            and not link.startswith("https://")] == []  # fmt: skip
+
+
+def test_all_its_packages_are_typed(installed):
+    packages = [path.parent for path in installed.glob("cutcell*/__init__.py")]
+    assert len(packages) == 4
+    assert [path.name for path in packages if not (path / "py.typed").exists()] == []
+
+
 def test_copyleft_is_installed_by_extras_of_its_own():
     settings = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     extras = settings["optional-dependencies"]
@@ -80,7 +94,9 @@ def test_copyleft_is_installed_by_extras_of_its_own():
     for name, wanted in {"": settings["dependencies"], **extras}.items():
         packages = {re.match(r"[\w-]+", one)[0] for one in wanted}
         assert packages & COPYLEFT == allowed.get(name, set()), name
-        assert name == "test" or "cutcell" not in packages
+        others = {extra for one in wanted for extra in re.findall(r"cutcell\[(.+)\]", one)}
+        within = {part for extra in others for part in extra.split(",")}
+        assert name == "test" or not within & {"copyleft", "films", "test"}
 
 
 def test_it_binds_and_draws(installed, folder):
