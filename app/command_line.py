@@ -3,8 +3,6 @@
 Panel and PyVista are imported once a command runs, so that `--help` answers at once.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Annotated, Any
 

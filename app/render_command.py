@@ -1,7 +1,5 @@
 """The command `cutcell render`: a picture or a film of what the page shows."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 from typing import Annotated, Any

@@ -1,7 +1,5 @@
 """The options of `cutcell render`: type, default, flags, placeholder, help and section of each."""
 
-from __future__ import annotations
-
 from typing import Any
 
 WHAT = "What is seen"

@@ -1,7 +1,5 @@
 """Where the eye stands: what it sees, and from where it sees all of something."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The parts of a rig as actors: the body, what hangs on it, and its bones."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

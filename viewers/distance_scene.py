@@ -1,7 +1,5 @@
 """The character coloured by the distance to one joint's bones, with iso-lines."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Where two sets of weights put the skin apart: in a pose, or in any turn of a joint."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from io import BytesIO
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,7 +24,9 @@ from .description import Description
 from .mp4 import find_ffmpeg, write_mp4
 from .palette import THEMES
 from .skin import moved
-from .studio import Studio
+
+if TYPE_CHECKING:
+    from .studio import Studio
 
 PICTURES = (".png", ".jpg", ".jpeg")
 FILMS = (".mp4", ".gif")
@@ -92,6 +94,8 @@ def draw(order: Order, path: str | Path, progress: Progress = silent) -> None:
     progress("drawing", 0.0)
     # A film's frames have even sides: MP4 stores colours for two by two pixels at once.
     width, height = (side - side % 2 for side in order.size) if kind in FILMS else order.size
+    from .studio import Studio  # a server orders pictures, and loads no VTK for that
+
     with Studio(order.description, THEMES[order.theme], (width, height), order.legend) as studio:
         camera = _camera(order, studio)
         if kind in PICTURES:

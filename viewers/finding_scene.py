@@ -1,7 +1,5 @@
 """What a diagnosis found, marked on the character: faces, vertices and joints."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

@@ -1,7 +1,5 @@
 """A cut-cell graph in the paper's colours: mesh blue, interior orange, surface green."""
 
-from __future__ import annotations
-
 from typing import Any, Literal
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What is written on a picture: the legend in its corner, captions over its views."""
 
-from __future__ import annotations
-
 from functools import cache
 from math import ceil
 from pathlib import Path

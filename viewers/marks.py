@@ -1,7 +1,5 @@
 """Marks on a character: a ball at a vertex, a tube along a path."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 

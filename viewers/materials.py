@@ -1,7 +1,5 @@
 """The images of a file's materials, all of one size: what a graphics card takes as layers."""
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """MP4 films, encoded by ffmpeg: a program of its own, as its encoders are under the GPL."""
 
-from __future__ import annotations
-
 import re
 import shutil
 import subprocess

@@ -1,7 +1,5 @@
 """Whether this machine can draw pictures."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from functools import cache

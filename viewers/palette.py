@@ -1,7 +1,5 @@
 """Every colour that the scenes use, and the colour maps that values are shown with."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cache, lru_cache
 

@@ -1,7 +1,5 @@
 """Where a plane meets the mesh itself: the outline, exactly, and what lies inside it."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

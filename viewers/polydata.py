@@ -1,7 +1,5 @@
 """PyVista's meshes and plotters as descriptions, and legends of descriptions in a plotter."""
 
-from __future__ import annotations
-
 from typing import Any, Literal
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The character in a pose."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A description drawn by PyVista: the one scene that pictures are made from."""
 
-from __future__ import annotations
-
 import os
 import sys
 from collections.abc import Iterator
@@ -22,6 +20,7 @@ from cutcell.io.materials.face_colors import BLENDED
 
 from .camera import VIEW_ANGLE, Camera, framing
 from .description import Actor, Cut, Description
+from .lighting import LIGHTS, shading
 from .palette import BODY, LIGHT, Theme, colormap, to_bytes
 from .skin import moved, squared_apart, turned
 from .textured import ALPHA_KNOWN, CUT_OUT, DITHERED, pieces, texture
@@ -175,11 +174,6 @@ class Scene:
         return drawn
 
 
-# A key light from the upper left and a soft fill from the right, both tied to the camera.
-LIGHTS = (((-0.5, 0.7, 1.0), 0.82), ((0.9, -0.1, 0.6), 0.34))
-AMBIENT, DIFFUSE = 0.16, 1.0
-SOFT_AMBIENT, SOFT_DIFFUSE = 0.36, 0.75
-"""Of materials: images have shadows of their own, and would be dark where light is, too."""
 OVERLAY_OFFSET = -26_000
 """Of 65,536 steps of depth: how much nearer overlays are drawn where there is one layer."""
 OCCLUSION_RADIUS = 0.06
@@ -202,11 +196,6 @@ def render_png(
         return scene.render_png(path)
     finally:
         scene.close()
-
-
-def shading(actor: Actor) -> tuple[float, float]:
-    """Return how much of its colour an actor has without light, and how much by light."""
-    return (AMBIENT, DIFFUSE) if actor.materials is None else (SOFT_AMBIENT, SOFT_DIFFUSE)
 
 
 def cut_planes(cut: Cut, slab: float) -> list[dict[str, tuple[float, ...]]]:

@@ -1,7 +1,5 @@
 """The face of a cut body: the mesh's own section, with a field or the winding number on it."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -3,8 +3,6 @@
 The page's view does the same sums in the browser, from the same arrays.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

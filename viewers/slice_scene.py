@@ -1,7 +1,5 @@
 """One slice of the lattice with its rays (paper section 3.1, figure "ray segments")."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

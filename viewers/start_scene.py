@@ -1,7 +1,5 @@
 """Where distances begin (paper section 3.2, figure "distance initialisation")."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from cutcell.geodesics import BoneDistances, bone_samples

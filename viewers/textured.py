@@ -1,7 +1,5 @@
 """Surfaces in a file's materials, as VTK draws them: one piece for each image."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any
 

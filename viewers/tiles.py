@@ -1,7 +1,5 @@
 """How views that stand side by side share a picture."""
 
-from __future__ import annotations
-
 from math import ceil
 
 import numpy as np

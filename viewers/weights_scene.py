@@ -1,7 +1,5 @@
 """The character coloured by its weights: of one joint, or of all at once."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -4,8 +4,6 @@ Without OpenGL VTK ends its process, windows belong to one thread, and what is d
 long: none of this shall harm whoever wants a picture.
 """
 
-from __future__ import annotations
-
 import json
 import pickle
 import subprocess

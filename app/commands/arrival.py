@@ -1,7 +1,5 @@
 """What an address says: which character it names, and what is chosen there."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

@@ -4,8 +4,6 @@ Weights follow the falloff at once, as the distances stay. A falloff that takes 
 out once for many influences; how many are kept is decided after.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial

@@ -1,7 +1,5 @@
 """Paint weights: strokes over the body in the view become weights of single vertices."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 

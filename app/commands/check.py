@@ -1,7 +1,5 @@
 """Find what is wrong with the character once it is bound; look at a finding; repair."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from cutcell.diagnosis import Diagnosis, Repaired, diagnose

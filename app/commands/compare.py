@@ -1,7 +1,5 @@
 """Computes what is compared: one method after the other, none stopped by another's failure."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any

@@ -1,7 +1,5 @@
 """Correct the binding: joints, parts and single vertices; save the corrections, open others."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Mapping
 from dataclasses import replace
 from typing import Any

@@ -1,7 +1,5 @@
 """Move and turn the cutting plane: by its handles in the view, or towards the eye."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Compute a bone's whole field, and its distance by other measures, when they are to be seen."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from cutcell.runtime.progress import Progress

@@ -1,7 +1,5 @@
 """Explain the weights of the chosen vertex, where that is asked for."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import cutcell

@@ -1,7 +1,5 @@
 """What was chosen before, and what the address says of what is chosen now."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager

@@ -1,7 +1,5 @@
 """Answers whether any work is still running: for tests, before they look."""
 
-from __future__ import annotations
-
 import threading
 from typing import Any
 

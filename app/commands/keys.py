@@ -1,7 +1,5 @@
 """What the keys do, and the buttons over the canvas."""
 
-from __future__ import annotations
-
 from cutcell.editing.corrections import Corrections
 
 from ..scenes.common import first_joint

@@ -1,7 +1,5 @@
 """How a character comes to stand on the page: a demo, or files."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any

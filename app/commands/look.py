@@ -1,7 +1,5 @@
 """Choose a bone or a vertex, look from somewhere; the view shows the scene of the state."""
 
-from __future__ import annotations
-
 from cutcell_viewers.camera import Camera, framing
 
 from ..scenes import resolve

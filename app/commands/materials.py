@@ -1,7 +1,5 @@
 """The materials of a character's file, once somebody wants to see them."""
 
-from __future__ import annotations
-
 from cutcell.errors import FileError
 from cutcell.io.materials.transfer import has_materials, read_materials
 from cutcell.rig import Rig

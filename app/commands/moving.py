@@ -1,7 +1,5 @@
 """Move joints: by the handle in the view, by numbers, to the middle of the limb."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 

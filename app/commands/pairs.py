@@ -1,7 +1,5 @@
 """Step through the pairs of an audit, and overrule them."""
 
-from __future__ import annotations
-
 import tempfile
 from dataclasses import replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Motions, turning by hand, and how far the two weightings are apart."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

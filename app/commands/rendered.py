@@ -1,7 +1,5 @@
 """Rendered: the canvas as PyVista draws it on the server, once the view rests."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -4,8 +4,6 @@ It does nothing by itself: commands, the functions of the modules beside this on
 change the state; `watchers.follow` lets others follow.
 """
 
-from __future__ import annotations
-
 import logging
 import shutil
 from collections.abc import Callable

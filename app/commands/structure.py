@@ -1,7 +1,5 @@
 """Add joints to the skeleton, remove them, hang them on others."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Collection
 from dataclasses import replace
 from typing import Any

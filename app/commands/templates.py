@@ -1,7 +1,5 @@
 """Give a mesh that has no skeleton one: a template is fitted into it."""
 
-from __future__ import annotations
-
 from collections.abc import Collection
 
 import numpy as np

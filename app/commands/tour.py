@@ -1,7 +1,5 @@
 """Go to a step of the tour: set the scene so that its point is seen."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

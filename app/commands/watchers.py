@@ -1,7 +1,5 @@
 """What follows the state of a page: each `watch(session)` makes some command act by itself."""
 
-from __future__ import annotations
-
 from . import (
     arrival,
     binding,

@@ -1,7 +1,5 @@
 """Corrections that no address has room for: kept among the uploads, by a key that it has."""
 
-from __future__ import annotations
-
 from cutcell.editing.corrections import Corrections
 from cutcell.errors import CutcellError
 

@@ -1,7 +1,5 @@
 """A graph's nodes and edges as numbers: two tables in a ZIP, or arrays in an NPZ."""
 
-from __future__ import annotations
-
 import csv
 import io
 import zipfile

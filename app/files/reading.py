@@ -1,7 +1,5 @@
 """Files as characters: which of a group is opened, and how it is read."""
 
-from __future__ import annotations
-
 import functools
 from collections.abc import Callable
 from pathlib import Path

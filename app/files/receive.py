@@ -1,7 +1,5 @@
 """Files from the browser: received in pieces, straight to where they are kept."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

@@ -3,8 +3,6 @@
 A server that was killed leaves its folder behind. The next one, and any that runs, removes it.
 """
 
-from __future__ import annotations
-
 import os
 import shutil
 import sys

@@ -1,7 +1,5 @@
 """Weights and distances as plain numbers, for spreadsheets and scripts."""
 
-from __future__ import annotations
-
 import csv
 from io import BytesIO, StringIO
 from pathlib import Path

@@ -4,8 +4,6 @@ All of them together have a quota, and so have those of one page. What nobody us
 way for what is sent.
 """
 
-from __future__ import annotations
-
 import atexit
 import secrets
 import shutil

@@ -1,7 +1,5 @@
 """What people are told when something goes wrong: sentences, without the server's folders."""
 
-from __future__ import annotations
-
 import errno
 import tempfile
 from pathlib import Path

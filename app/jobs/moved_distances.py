@@ -1,7 +1,5 @@
 """Distances while joints are on the move: only of the bones that changed."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Weights while joints are on the move: a moment before they are exact."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

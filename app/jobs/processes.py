@@ -4,8 +4,6 @@ A reader of files need not look whether it is still wanted, may hold Python's lo
 likes, and may crash: no page waits for it, and none is harmed.
 """
 
-from __future__ import annotations
-
 import multiprocessing
 import os
 import pickle

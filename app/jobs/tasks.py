@@ -1,7 +1,5 @@
 """All work of one page: jobs by name, and what runs on the page's own thread."""
 
-from __future__ import annotations
-
 import threading
 from collections.abc import Callable
 from typing import Any

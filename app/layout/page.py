@@ -1,7 +1,5 @@
 """The layout of the page: a sidebar, one big canvas, a slim line of facts."""
 
-from __future__ import annotations
-
 import functools
 import weakref
 from collections.abc import Callable, Mapping

@@ -1,7 +1,5 @@
 """A session of the page: its beginning and its end."""
 
-from __future__ import annotations
-
 from ..commands.loading import receiver
 from ..commands.session import Session
 from ..commands.watchers import follow

@@ -1,7 +1,5 @@
 """The sidebar: character and bone, the tabs, the chosen panel's controls, export."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import panel_material_ui as pmui

@@ -1,7 +1,5 @@
 """What is told about the work: progress, counts and seconds, warnings, errors."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """How the page looks: colours, type and spacing, in light and in dark."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from cutcell_viewers.palette import DARK, LIGHT, to_hex

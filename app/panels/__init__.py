@@ -1,7 +1,5 @@
 """The panels of the page, one file each: `NAME(session) -> Viewable` builds its controls."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from importlib import import_module
 from typing import Any

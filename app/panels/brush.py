@@ -1,7 +1,5 @@
 """The brush: what it does to weights, how large and how strong it is."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import panel_material_ui as pmui

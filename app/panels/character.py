@@ -1,7 +1,5 @@
 """Choose a demo character, or drop a file."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import panel_material_ui as pmui

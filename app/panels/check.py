@@ -1,7 +1,5 @@
 """Diagnose: what is wrong with the character, where, and what to do about it."""
 
-from __future__ import annotations
-
 from functools import partial
 from typing import Any
 

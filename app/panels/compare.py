@@ -1,7 +1,5 @@
 """Methods side by side: which, what of them is seen, and how good they are."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import panel_material_ui as pmui

@@ -1,7 +1,5 @@
 """Parts of the mesh: each glued to a joint, following the body, or bound by itself."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import panel_material_ui as pmui

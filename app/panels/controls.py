@@ -1,7 +1,5 @@
 """What the sections of the sidebar have in common."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Sequence
 from typing import Any

@@ -1,7 +1,5 @@
 """All corrections: how many there are; save them, open others, take all back."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import panel_material_ui as pmui

@@ -1,7 +1,5 @@
 """The choice of a cutting plane, and what moves and turns it."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from ..commands import cutting as actions

@@ -1,7 +1,5 @@
 """Geodesics: how far the chosen bone is, through the body."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import panel_material_ui as pmui

@@ -1,7 +1,5 @@
 """Export: the character with its new weights, pictures, films, numbers."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import panel_material_ui as pmui

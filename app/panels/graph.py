@@ -1,7 +1,5 @@
 """The graph: how it is built, which of its layers are seen, and where it is cut."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

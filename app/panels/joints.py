@@ -1,7 +1,5 @@
 """The joints as a tree: which carry weight, keep the file's, and how far each reaches."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import partial
 from typing import Any

@@ -1,7 +1,5 @@
 """Learn: the list of the tour's steps."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import panel_material_ui as pmui

@@ -1,7 +1,5 @@
 """Where the chosen joint stands: its handle, numbers, the middle of the limb."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from panel.io import hold

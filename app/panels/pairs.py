@@ -1,7 +1,5 @@
 """The pairs of an audit: step through them, see them side by side, say what they are."""
 
-from __future__ import annotations
-
 from functools import partial
 from typing import Any
 

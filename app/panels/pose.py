@@ -1,7 +1,5 @@
 """Turn joints, play motions, and see where other weights would put the skin."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import panel_material_ui as pmui

@@ -1,7 +1,5 @@
 """Joints that are added, removed and hung on others."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import panel_material_ui as pmui

@@ -1,7 +1,5 @@
 """The skeleton of a mesh that its file has none for: which template is fitted into it."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import panel_material_ui as pmui

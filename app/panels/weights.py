@@ -1,7 +1,5 @@
 """Weights: how much each bone holds, and how it falls with distance."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

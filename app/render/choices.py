@@ -1,7 +1,5 @@
 """What can be chosen of a scene, and the page's state in which it is."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any

@@ -1,7 +1,5 @@
 """Bones and clips by their names, as people write them."""
 
-from __future__ import annotations
-
 from difflib import get_close_matches
 
 from cutcell.errors import ParameterError

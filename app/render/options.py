@@ -1,7 +1,5 @@
 """What `cutcell render` is told about the inside, as choices of the page."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Mapping
 from typing import Any

@@ -1,7 +1,5 @@
 """What is to be drawn of a scene: from where, how large, and whether it moves."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from cutcell.rig import Rig

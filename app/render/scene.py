@@ -1,7 +1,5 @@
 """The scene that the page shows for some choices."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 

@@ -1,7 +1,5 @@
 """From the state to what is seen: pure functions, one a panel, tested without a browser."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from importlib import import_module

@@ -1,7 +1,5 @@
 """The character with what a finding names marked on it."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 from cutcell.diagnosis import Finding

@@ -1,7 +1,5 @@
 """What the scenes of all panels have in common: body, bones, cut, theme."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 from typing import Any

@@ -1,7 +1,5 @@
 """Two to four methods side by side, under one camera, in the same colours."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import partial
 from typing import Any

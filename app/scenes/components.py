@@ -1,7 +1,5 @@
 """The connected components of the mesh: what each follows, and the one that is looked at."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The distance from the chosen bone: the field, where it begins, and the shortest path to it."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 

@@ -1,7 +1,5 @@
 """How the chosen vertex comes to its weights: for the card, and the paths in the scene."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 

@@ -1,7 +1,5 @@
 """What there is to know of one vertex: a pure function of the state."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

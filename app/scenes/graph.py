@@ -1,7 +1,5 @@
 """The graph inside the character, or one slice of the lattice that it comes from."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The joints of the character as a tree: colours, shares of the skin, corrections."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """One joint's distance by several measures, each with its paths, to compare the graph with."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from itertools import product

@@ -1,7 +1,5 @@
 """One bone's distance by several measures side by side, in the same colours, waves in step."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial

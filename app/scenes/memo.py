@@ -1,7 +1,5 @@
 """The last result of each costly step."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The two characters of a pair side by side, each as large as the box that the camera sees."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The character in a pose or a motion, and what the file's own weights make of the same."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 

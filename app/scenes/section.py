@@ -1,7 +1,5 @@
 """The face of the cut: the mesh's own section, with a distance or the winding number on it."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 

@@ -1,7 +1,5 @@
 """What a person is warned of, and which finding of the check tells where it is."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from cutcell.diagnosis.finding import TITLES

@@ -1,7 +1,5 @@
 """The server's log, on a terminal that whoever visits must not be able to write to."""
 
-from __future__ import annotations
-
 import logging
 
 from cutcell.runtime.display import printable

@@ -1,7 +1,5 @@
 """Memory that ended sessions and finished work held, given back to the system soon after."""
 
-from __future__ import annotations
-
 import ctypes
 import gc
 import sys

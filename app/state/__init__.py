@@ -3,8 +3,6 @@
 One object a browser session, made of one class a panel. It knows no widget and no layout.
 """
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 from typing import Any
 

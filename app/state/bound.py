@@ -1,7 +1,5 @@
 """What is bound, and what is being bound: the life of a binding."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any

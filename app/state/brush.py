@@ -1,7 +1,5 @@
 """What a person can choose of the brush that paints weights."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any, get_args
 

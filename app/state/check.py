@@ -1,7 +1,5 @@
 """What the panel Check shows: what is wrong with the character, and what was repaired."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

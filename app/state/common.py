@@ -1,7 +1,5 @@
 """What every panel shares: the character, the chosen bone and vertex, and how work goes on."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import param

@@ -1,7 +1,5 @@
 """What a person can choose on the panel Compare."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import param

@@ -1,7 +1,5 @@
 """What a person corrects of the binding, and its form in an address."""
 
-from __future__ import annotations
-
 import base64
 import binascii
 import zlib

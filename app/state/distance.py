@@ -1,7 +1,5 @@
 """What a person can choose on the panel Geodesics."""
 
-from __future__ import annotations
-
 from typing import Any, Literal
 
 import param

@@ -1,7 +1,5 @@
 """What was chosen before, and before that."""
 
-from __future__ import annotations
-
 from collections.abc import Collection
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The parameters of the method, with the defaults of `cutcell.bind`."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import cutcell

@@ -1,7 +1,5 @@
 """What a person can choose on the panel Pairs: which pair of an audit is looked at."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property

@@ -1,7 +1,5 @@
 """The panels of the page: what each is called, and what can be done on it."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 

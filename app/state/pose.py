@@ -1,7 +1,5 @@
 """What a person can choose on the panel Pose."""
 
-from __future__ import annotations
-
 from typing import TYPE_CHECKING, Any
 
 import param

@@ -1,7 +1,5 @@
 """The guided tour: the text of each step, and the scene that it sets."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from typing import Any
 

@@ -1,7 +1,5 @@
 """What a person chose, as plain values: for the address, for undo, for coming back."""
 
-from __future__ import annotations
-
 import re
 from typing import Any
 from urllib.parse import parse_qsl, quote, urlencode

@@ -1,7 +1,5 @@
 """What a person can choose on the panel Weights."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import param

@@ -1,7 +1,5 @@
 """What a browser is told, so that one description of a scene becomes another."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -9,8 +7,8 @@ from numpy.typing import NDArray
 
 from cutcell.runtime.display import printable, shown_name
 from cutcell_viewers.description import Actor, Apart, Description, Legend, Reading
+from cutcell_viewers.lighting import shading
 from cutcell_viewers.palette import colormap, to_hex
-from cutcell_viewers.scene import shading
 from cutcell_viewers.skin import Skin
 
 

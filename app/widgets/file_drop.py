@@ -1,7 +1,5 @@
 """A place in the sidebar to drop files on."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import param

@@ -1,7 +1,5 @@
 """The card over the canvas that tells all about the clicked vertex."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import param

@@ -1,7 +1,5 @@
 """The joints of the character as a tree, with what of the skin each holds."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

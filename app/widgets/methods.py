@@ -1,7 +1,5 @@
 """The table of methods: which are seen, and how good they are."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

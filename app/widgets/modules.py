@@ -3,8 +3,6 @@
 Their address tells what they hold, so that no browser takes an older version for them.
 """
 
-from __future__ import annotations
-
 import hashlib
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """A short list of things that can be chosen, each with a number and a bar."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The strip of tabs that chooses a panel."""
 
-from __future__ import annotations
-
 import param
 from panel.custom import JSComponent
 

@@ -1,7 +1,5 @@
 """The card of the tour, over the canvas: text, formula, dots, back and next."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import param

@@ -1,7 +1,5 @@
 """The 3D view of the page: a scene's description, streamed to vtk.js in the browser."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 
@@ -11,7 +9,7 @@ from panel.models.vtk import VTK_VERSION
 
 from cutcell_viewers.camera import Camera
 from cutcell_viewers.description import Description
-from cutcell_viewers.scene import LIGHTS
+from cutcell_viewers.lighting import LIGHTS
 
 from ..files.receive import Receiver
 from .changes import changes

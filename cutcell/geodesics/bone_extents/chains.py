@@ -21,9 +21,11 @@ from .rest_axis import rest_directions
 SAME_PLACE = 1e-6
 """Of the longest side: joints at most this far apart coincide."""
 ONWARD = 0.5
-"""Cosine: a child within 60 degrees of its parent's bone continues it; others branch off."""
-ALONG_AXIS = 0.9
-"""Cosine: if the rest axis gives the direction, a child within 25 degrees continues the bone."""
+"""Cosine: a child within 60 degrees of the rest axis continues the bone; others branch off."""
+SIDE_BRANCH = 3.0
+"""A branch this many times as far away as the child that continues the bone is no bone."""
+PASSES = 0.1
+"""A bone to a child that passes another child nearer than this part of its length is none."""
 IN_BODY = 0.5
 """Part of a bone that must run through the body for it to be one."""
 BACKWARD = (-0.2, -0.5)
@@ -90,7 +92,7 @@ def find_chains(skeleton: Skeleton, joints: NDArray[np.float64], probe: BodyProb
         skeleton = replace(skeleton, parents=parents)
     direction, length = _directions(skeleton, joints, near, same, probe)
     rest = rest_directions(skeleton, joints)
-    ends = _ends(skeleton, joints, near, same, direction, rest)
+    ends = _ends(skeleton, joints, near, same, rest)
     inferred = _inferred_bones(skeleton, joints, direction, length, ends, probe)
     return Chains(joints, near, direction, rest, length, ends, inferred)
 
@@ -147,16 +149,11 @@ def _ends(
     joints: NDArray[np.float64],
     near: NDArray[np.bool_],
     same: NDArray[np.bool_],
-    direction: NDArray[np.float64],
     rest: NDArray[np.float64] | None,
 ) -> tuple[list[int], ...]:
-    """List where the bones of each joint end.
+    """List where the bones of each joint end; the joint itself stands for a leaf bone.
 
-    Bones run to the joint's children, unless there are several and none continues the bone before:
-    then the children are side branches, like the ears of a head, and the joint's own bone is not in
-    the file. A child continues the bone if it lies along the joint's rest axis or, if that is
-    unknown or far from the direction of the bone before, along the latter. A joint outside the body
-    has no bone.
+    Bones run to the joint's children, see `_branches`. A joint outside the body has no bone.
     """
     ends: tuple[list[int], ...] = tuple([] for _ in joints)
     child, parent = np.arange(len(joints)), skeleton.parents
@@ -165,15 +162,34 @@ def _ends(
     for k in np.flatnonzero(leads).tolist():
         ends[parent[k]].append(k)
     for j, children in enumerate(ends):
-        if len(children) > 1 and direction[j].any():
-            away = joints[children] - joints[j]
-            away /= np.linalg.norm(away, axis=1, keepdims=True)
-            along, least = direction[j], ONWARD
-            if rest is not None and rest[j] @ along >= ONWARD:
-                along, least = rest[j], ALONG_AXIS
-            if (away @ along).max() < least:
-                children.clear()
+        if len(children) > 1:
+            axis = None if rest is None else rest[j]
+            children[:] = _branches(j, children, joints, axis)
     return ends
+
+
+def _branches(
+    joint: int, children: list[int], joints: NDArray[np.float64], axis: NDArray[np.float64] | None
+) -> list[int]:
+    """List to which of several children a joint's bones run.
+
+    Where the rest axis is known and no child lies along it, as between the ears of a head, the
+    joint has a leaf bone besides: the list then ends with the joint itself.
+    """
+    away = joints[children] - joints[joint]
+    length = np.linalg.norm(away, axis=1)
+    along = away @ away.T / length[:, None] ** 2
+    beside = np.linalg.norm(away - along[:, :, None] * away[:, None], axis=2)
+    between = (along > PASSES) & (along < 1 - PASSES)
+    is_bone = ~(between & (beside < PASSES * length[:, None])).any(axis=1)
+    leaf = []
+    if axis is not None:
+        cosine = away @ axis / length
+        if cosine.max() < ONWARD:
+            leaf = [joint]
+        else:
+            is_bone &= length <= SIDE_BRANCH * length[cosine.argmax()]
+    return np.array(children)[is_bone].tolist() + leaf
 
 
 def _inferred_bones(

@@ -11,7 +11,6 @@ from collections.abc import Iterator
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.distance import cdist
 
 from ...geometry.vectors import length, triangle_normal
 from ...graph import CutCellGraph
@@ -22,10 +21,6 @@ from ..nearest import NodeGrid
 from .chains import SAME_PLACE, Chains, find_chains
 from .probe import BodyProbe
 
-NO_ROOM = 2.0
-"""Depths of the body: a leaf bone shorter than this is given part of the bone that leads to it."""
-GIVEN = 2.0
-"""Depths of the body that it is given, at most."""
 REGION_LEAVES = 3
 """Leaf bones that skin is assigned to, its nearest. In the middle between left and right there are
 two."""
@@ -40,11 +35,6 @@ close to its end."""
 MIN_CELLS = 2.0
 """Lattice cells: such a bone is at least this long, if the body is still near there. Shorter ones
 have hardly any direction."""
-UNDER_SKIN = 0.35
-"""A joint lies close under the skin if that is nearer than this part of the room around the
-joint."""
-MIN_ROOM = 1.5
-"""Lattice cells: with less room than this the part is not meaningful."""
 
 
 def fit_bones(
@@ -68,33 +58,11 @@ def fit_bones(
     onward = chains.onward[leaves]
     reach = probe.exit_distance(chains.joints[leaves], onward)
     bones.end[leaf] += onward * reach[:, None]
-    bones = _share_with_leaves(bones, leaf, probe)
     length, on_axis = _leaf_lengths(bones, leaf, chains, reach, probe)
-    under_skin = (skeleton.parents[leaves] >= 0) & _close_under_skin(chains.joints[leaves], probe)
-    length[under_skin] = 0
     bones.end[leaf] = chains.joints[leaves] + onward * length[:, None]
     aimed = leaf.copy()
-    aimed[leaf] = ~on_axis & ~under_skin & chains.near[leaves]
+    aimed[leaf] = ~on_axis & chains.near[leaves]
     return bones, aimed
-
-
-def _share_with_leaves(bones: Bones, leaf: NDArray[np.bool_], probe: BodyProbe) -> Bones:
-    """Shorten bones that end at a leaf bone too short to fit, such as a foot on the ground.
-
-    The leaf bone's joint lies at the very end of the body. If the bone before it reached as far,
-    no skin would be nearest to the leaf bone.
-    """
-    end = bones.end.copy()
-    room = np.linalg.norm(bones.end - bones.start, axis=1)
-    continues = leaf & (cdist(bones.end, bones.start) < SAME_PLACE)
-    before = np.flatnonzero(~leaf & continues.any(axis=1))
-    depth = probe.depth((bones.start[before] + bones.end[before]) / 2)
-    extent, left = room[before], np.where(continues[before], room, 0.0).max(axis=1, initial=0.0)
-    short = left < np.minimum(extent, NO_ROOM * depth)
-    cut = np.minimum((extent - left) / 2, GIVEN * depth)
-    share = np.divide(cut, extent, out=np.zeros_like(extent), where=short)
-    end[before] += (bones.start - bones.end)[before] * share[:, None]
-    return Bones(bones.start, end, bones.joint)
 
 
 def _leaf_lengths(
@@ -131,19 +99,6 @@ def _others(
         ends_here = np.abs(bones.end - place).max(axis=1) < SAME_PLACE
         other = (bones.joint != joint) & ~ends_here
         yield bones.start[other], end[other]
-
-
-def _close_under_skin(places: NDArray[np.float64], probe: BodyProbe) -> NDArray[np.bool_]:
-    """Find leaf joints (t, 3) that lie close under the skin of something large, among others.
-
-    Such are the joints of a face. Each moves the skin about it, not half a head: its bone is a
-    point.
-    """
-    room = probe.room(places)
-    distance = cdist(places, places)
-    nearby = ((distance > SAME_PLACE) & (distance < room[:, None])).any(axis=1)
-    close = probe.to_skin(places) < UNDER_SKIN * room
-    return nearby & close & (room > MIN_ROOM / probe.resolution)
 
 
 def aim_leaf_bones(

@@ -1,4 +1,4 @@
-"""Point and ray queries on the body: inside, depth, thickness, exit."""
+"""Point and ray queries on the body: inside, part inside, exit."""
 
 from __future__ import annotations
 
@@ -23,10 +23,6 @@ SEEN = 0.85
 """The part of a segment that must run inside for line of sight between its ends."""
 NEARER = 0.999
 """A bone is nearer than the ray's start if its distance is below this factor of the start's."""
-ALL_ROUND = np.array(
-    [*np.eye(3), *-np.eye(3), *(np.array(list(np.ndindex(2, 2, 2))) * 2 - 1) / np.sqrt(3)]
-)
-"""Directions to the faces and the corners of a cube."""
 
 
 class BodyProbe:
@@ -63,21 +59,6 @@ class BodyProbe:
         start, end = np.broadcast_arrays(np.asarray(start, float), np.asarray(end, float))
         points = start[..., None, :] + ALONG[:, None] * (end - start)[..., None, :]
         return (self.inside if strictly else self.near)(points).mean(axis=-1)
-
-    def to_skin(self, points: ArrayLike) -> NDArray[np.float64]:
-        """Compute the distance of points (p, 3) to the nearest skin."""
-        points, graph = np.asarray(points, np.float64), self._graph
-        skin = graph.nodes[: graph.first_point], graph.nodes[graph.first_surface :]
-        return np.minimum(*(_to_nearest(points, nodes) for nodes in skin))
-
-    def depth(self, points: ArrayLike) -> NDArray[np.float64]:
-        """Compute the distance of points (p, 3) to the nearest skin; zero outside."""
-        return np.where(self.inside(points), self.to_skin(points), 0.0)
-
-    def room(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Compute the median over all directions of the exit distance of points (p, 3)."""
-        exits = [self.exit_distance(points, np.tile(d, (len(points), 1))) for d in ALL_ROUND]
-        return np.median(exits, axis=0)
 
     def exit_distance(
         self, start: NDArray[np.float64], direction: NDArray[np.float64]
@@ -160,17 +141,3 @@ def _distance_to_others(point, direction, limit, start, end, step, resolution, t
             if inside >= SEEN * len(ALONG):
                 return k * step
     return limit
-
-
-@compiled
-def _to_nearest(points, others):
-    result = np.empty(len(points))
-    for p in range(len(points)):
-        least = np.inf
-        for o in range(len(others)):
-            x = points[p, 0] - others[o, 0]
-            y = points[p, 1] - others[o, 1]
-            z = points[p, 2] - others[o, 2]
-            least = min(least, x * x + y * y + z * z)
-        result[p] = np.sqrt(least)
-    return result

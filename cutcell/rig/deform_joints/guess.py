@@ -12,7 +12,15 @@ from ..mesh import TriangleMesh
 from ..rig import FAR_OUTSIDE
 from ..skeleton import Skeleton
 from .body import SPACING, Body
-from .names import is_control, is_end_marker, is_fingertip, is_root, is_socket, may_be_control
+from .names import (
+    is_control,
+    is_end_marker,
+    is_fingertip,
+    is_marked_deforming,
+    is_root,
+    is_socket,
+    may_be_control,
+)
 
 OUTSIDE = 0.04
 """Of the longest side: a joint that is farther from the body moves none of it."""
@@ -103,7 +111,11 @@ class _Guess:
 
     def by_name(self) -> None:
         """Rule out what is called an end marker, a socket, or a control of another joint."""
+        marked = [is_marked_deforming(name) for name in self.names]
         for j in self.leaves_first:
+            if any(marked) and not marked[j]:
+                self._rule_out(j, "others are marked DEF")
+                continue
             is_marker = is_end_marker(self.names[j]) or is_fingertip(self.names[j])
             if is_marker and not len(self._bones_below(j)):
                 self._rule_out(j, "end marker, by its name")

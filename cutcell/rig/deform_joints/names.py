@@ -17,9 +17,18 @@ CONTROL_WORDS = _set(
     "dummy null camera mch tracker trajectory footsteps"
 )
 """Words of a joint that animators handle, and that moves other joints."""
-CONTROL_PARTS = ("control", "ctrl", "target", "orient", "polevector", "helper", "locator")
+CONTROL_PARTS = (
+    "control",
+    "ctrl",
+    "target",
+    "orient",
+    "polevector",
+    "helper",
+    "locator",
+    "tracker",
+)
 """The same inside longer words, as in `LEGCONTROL`."""
-UNSURE = _set("ik weapon holster prop props item")
+UNSURE = _set("ik fk weapon holster prop props item")
 """Words of a joint that either moves skin itself or only stands for another joint."""
 SOCKET_PARTS = ("socket", "slot", "attach")
 """Words of a joint that things are hung on, which are meshes of their own."""
@@ -66,6 +75,11 @@ def is_control(name: str) -> bool:
 def may_be_control(name: str) -> bool:
     """Return whether a name is that of a control or of a bone: a foot moved by IK is either."""
     return not UNSURE.isdisjoint(words(name))
+
+
+def is_marked_deforming(name: str) -> bool:
+    """Return whether a name is that of a bone that deforms by Rigify's convention, `DEF-spine`."""
+    return words(name)[:1] == ["def"]
 
 
 def is_socket(name: str) -> bool:

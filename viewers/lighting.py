@@ -1,0 +1,14 @@
+"""Lights and shading, which PyVista and the browser share."""
+
+from .description import Actor
+
+# A key light from the upper left and a soft fill from the right, both tied to the camera.
+LIGHTS = (((-0.5, 0.7, 1.0), 0.82), ((0.9, -0.1, 0.6), 0.34))
+AMBIENT, DIFFUSE = 0.16, 1.0
+SOFT_AMBIENT, SOFT_DIFFUSE = 0.36, 0.75
+"""Of materials: images have shadows of their own, and would be dark where light is, too."""
+
+
+def shading(actor: Actor) -> tuple[float, float]:
+    """Return how much of its colour an actor has without light, and how much by light."""
+    return (AMBIENT, DIFFUSE) if actor.materials is None else (SOFT_AMBIENT, SOFT_DIFFUSE)
