@@ -23,7 +23,7 @@ extensions = [
     "sphinx_gallery.gen_gallery",
 ]
 source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
-exclude_patterns = ["pictures/README.md"]
+exclude_patterns = ["README.md"]  # the list of documents in the checkout
 myst_enable_extensions = ["dollarmath", "colon_fence"]
 myst_heading_anchors = 4
 
@@ -55,3 +55,14 @@ html_show_sphinx = False
 html_copy_source = False
 copybutton_prompt_text = r">>> |\$ "
 copybutton_prompt_is_regexp = True
+
+CHECKOUT = "https://github.com/cutcell/cutcell/blob/main/"
+
+
+def setup(app):
+    """Let links to files outside this folder lead into the repository."""
+
+    def outside(app, name, source):
+        source[0] = source[0].replace("](../", f"]({CHECKOUT}")
+
+    app.connect("source-read", outside)
