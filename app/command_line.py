@@ -63,7 +63,7 @@ def open_page(
     if rig is not None:
         from cutcell.io import load
 
-        load(rig)  # a wrong file is told here, not by an empty page
+        load(rig)  # report an invalid file here, not on an empty page
     offer_networks(networks)
     try:
         serve(rig, port=port, address=address, show=show, pairs=pairs)

@@ -19,8 +19,18 @@ from cutcell.cli.options import (
 )
 from cutcell.errors import MissingLibraryError, ParameterError
 
-from .render_flags import CHOICES, PICTURE, SETTINGS
+from .render_flags import CHOICES, PICTURE, SETTINGS, WHAT
 
+PageAddress = Annotated[
+    str | None,
+    typer.Option(
+        "--address",
+        metavar="URL",
+        help="Draw what a page of this address shows, from its camera. Other options come first."
+        " The page's character is not opened.",
+        rich_help_panel=WHAT,
+    ),
+]
 PICTURE_SIZE = (1600, 1200)
 FILM_SIZE = (960, 720)
 LARGEST = 8192
@@ -44,6 +54,7 @@ EPILOG = """Examples:
 @with_options("picture", PICTURE)
 @with_method()
 def render(
+    context: typer.Context,
     rig: RigFile,
     out: Annotated[
         Path,
@@ -57,6 +68,7 @@ def render(
     picture: dict[str, Any],
     options: dict[str, Any],
     networks: Networks = None,
+    address: PageAddress = None,
     skeleton_file: SkeletonFile = None,
     quiet: Annotated[
         bool,
@@ -70,16 +82,27 @@ def render(
     scenes, film, worker = _libraries()
     moves = picture["turntable"] or (choices["clip"] is not None and choices["time"] is None)
     film.check_picture_file(out, moves=moves)
+    scenes.check_picture(**picture, kind=out.suffix.lower())
     size = _size(picture.pop("size")) or (FILM_SIZE if moves else PICTURE_SIZE)
     from cutcell.io import load
     from cutcell.io.files import naming
 
-    method = chosen_method(options)
+    page = scenes.read_address(address) if address else scenes.Address()
+    given = [name for name in context.params if _is_given(context, name)]
+    method = chosen_method(
+        {**options, **{name: v for name, v in page.method.items() if name not in given}}
+    )
     loaded = load(rig, skeleton=skeleton_file)
     offer_networks(networks, quiet)
     choices["turn"] = _turn(choices["turn"])
-    choices["methods"] = [name.strip() for name in choices["methods"].split(",") if name.strip()]
-    chosen = scenes.Choices(**choices, settings=scenes.settings_of(**settings), method=method)
+    names = [name.strip() for name in choices["methods"].split(",") if name.strip()]
+    choices |= {
+        "panel": choices["panel"] or page.panel or "weights",
+        "bone": choices["bone"] or page.bone,
+        "methods": names or page.methods,
+    }
+    shown = page.without(given) | scenes.settings_of(**settings)
+    chosen = scenes.Choices(**choices, settings=shown, method=method)
     # A wrong name is refused before anything long begins.
     with naming(rig):
         scenes.check(loaded, chosen, picture["view"])
@@ -94,10 +117,10 @@ def render(
             chosen,
             binding=binding,
             textures=textures,
-            resolution=method.resolution,
+            resolution=method.resolution if "resolution" in given else None,
             progress=progress,
         )
-        order = scenes.order(loaded, description, chosen, size=size, **picture)
+        order = scenes.order(loaded, description, chosen, size=size, eye=page.camera, **picture)
         worker.draw_apart(order, out, progress)
     if not quiet:
         print_warnings(
@@ -121,6 +144,11 @@ def _libraries() -> tuple[Any, Any, Any]:
             "install them by: pip install 'cutcell[app]'"
         ) from None
     return scenes, film, worker
+
+
+def _is_given(context: typer.Context, option: str) -> bool:
+    source = context.get_parameter_source(option)
+    return source is not None and source.name == "COMMANDLINE"
 
 
 def _size(text: str | None) -> tuple[int, int] | None:

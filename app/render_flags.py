@@ -10,8 +10,8 @@ Flags = dict[str, tuple[Any, Any, str, str, str, str]]
 
 CHOICES: Flags = {
     "panel": (
-        str, "weights", "--panel -p", "PANEL",
-        "As on the page: graph, distance, weights, pose, compare or check.", WHAT,
+        str | None, None, "--panel -p", "PANEL",
+        "As on the page: graph, distance, weights, pose, compare or check. Default: weights.", WHAT,
     ),
     "bone": (
         str | None, None, "--bone -b", "NAME",
@@ -113,6 +113,15 @@ PICTURE: Flags = {
         str | None, None, "--size", "WxH",
         "In pixels; 1600x1200 for pictures, 960x720 for films if left out.", HOW,
     ),
+    "camera": (
+        str | None, None, "--camera", "X,Y,Z,X,Y,Z",
+        "From where, and what is looked at, as in the address of a page.", HOW,
+    ),
+    "background": (
+        str, "", "--background", "COLOUR",
+        "Background of one colour, such as white or #f4f4f4.", HOW,
+    ),
+    "transparent": (bool, False, "--transparent", "", "No background: PNG.", HOW),
     "legend": (bool, True, "--legend/--no-legend", "", "Write the legend on it.", HOW),
 }  # fmt: skip
 """What `render.order` is given."""

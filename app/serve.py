@@ -102,7 +102,7 @@ def serve(
     if is_compiled():
         # While the browser starts. The first compile ever is left to the page, which tells of it.
         threading.Thread(target=_warm_up, args=(server,), daemon=True).start()
-    # It listens from here on; told sooner, the address could be asked for too soon.
+    # It listens from here on; printed earlier, the address might be requested too early.
     host = "localhost" if address in ("0.0.0.0", "::", *LOCAL) else in_brackets(address)
     url = f"http://{host}:{chosen}"
     print(f"The page is at {url} (stop with Ctrl+C)", flush=True)
@@ -163,7 +163,7 @@ def _warm_up(server: Any) -> None:
 
 
 def _settle(server: Any) -> None:
-    if not server.get_sessions("/"):  # what they hold shall be collected
+    if not server.get_sessions("/"):  # their memory shall be collected
         settle()
 
 
@@ -209,5 +209,5 @@ def _own_addresses() -> list[Any]:
 
 
 def in_brackets(address: str) -> str:
-    """Return an address as it stands in a URL: one of IPv6 in brackets, without its zone."""
+    """Return an address for a URL: IPv6 in brackets, without its zone."""
     return f"[{address.partition('%')[0]}]" if ":" in address else address

@@ -121,14 +121,14 @@ def cutcell_subject(material: Material) -> Subject:
 
         def play(playing: bool) -> None:
             state = State(rig=material.rig)
-            view.tell(clip=clip_part(state, material.clip) if playing else None, playing=playing)
+            view.send(clip=clip_part(state, material.clip) if playing else None, playing=playing)
 
         subject.color = lambda turn: put(scalars=material.fields[turn % CHANGES])
         subject.move = lambda turn: put(points=material.points[turn % CHANGES])
         subject.pose = lambda turn: present(pose=material.poses[turn % CHANGES])
         subject.show_graph = lambda on: present(actors=_with_graph(current, on).actors)
         subject.play = play
-        view.tell(camera=camera_part(framing(material.scene.bounds, SIZE[0] / SIZE[1])))
+        view.send(camera=camera_part(framing(material.scene.bounds, SIZE[0] / SIZE[1])))
         view.present(current)
         return view
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from .editing.binding_warnings import binding_warnings
 from .editing.correct import (
     adjustments_of,
-    apply_vertex_overrides,
+    apply_overrides,
     corrected_parts,
     corrected_rig,
     joints_measured,
@@ -32,6 +32,7 @@ from .rig.checks import check_positions
 from .rig.inputs import RigLike, as_rig
 from .runtime.memory import check_matrix
 from .runtime.progress import Progress, silent
+from .runtime.repr import short_repr
 from .runtime.threads import cancellable, submit
 from .weights.rig_falloff.surface_operators import SurfaceOperators
 from .weights.skinning_weights import skinning_weights
@@ -63,6 +64,8 @@ class Binding:
     distances: BoneDistances
     seconds: dict[str, float]
     warnings: tuple[str, ...]
+
+    __repr__ = short_repr
 
 
 def bind(
@@ -106,7 +109,8 @@ def bind(
         before them "compile" the very first time on a machine, and after a change of the code.
     **options
         Single options on top of the method, see `Method`: `connectivity`, `winding_threshold`,
-        `orient`, `samples`, `leaf`, `falloff`, `alpha`, `max_influences`, `threshold`.
+        `orient`, `samples`, `leaf`, `falloff`, `refine`, `alpha`,
+        `max_influences`, `threshold`.
 
     Returns
     -------
@@ -188,7 +192,7 @@ def _bind(
         )
         weights = corrected_parts(rig, graph, weights, corrections)
         weights = refine_weights(rig, weights, method=method, **refinement)
-        weights = apply_vertex_overrides(rig, weights, corrections)
+        weights = apply_overrides(rig, graph, weights, corrections, refinement["locked"])
         progress("weights", 1.0)
     warnings = binding_warnings(rig, distances, weights, corrections, refinement["locked"])
     return Binding(weights, graph, distances, seconds, warnings)

@@ -12,11 +12,13 @@ from .rig.checks import check_choice, check_flag, check_integer, check_number
 Connectivity = Literal[6, 26, "any"]
 Leaf = Literal["point", "extend", "fit"]
 Falloff = Literal["rig", "paper"]
+Refine = Literal["none", "learned"]
 MethodName = Literal["animation", "paper"]
 
 CONNECTIVITIES: tuple[Connectivity, ...] = get_args(Connectivity)
 LEAVES: tuple[Leaf, ...] = get_args(Leaf)
 FALLOFFS: tuple[Falloff, ...] = get_args(Falloff)
+REFINES: tuple[Refine, ...] = get_args(Refine)
 
 MIN_RESOLUTION = 2
 MAX_RESOLUTION = 1024
@@ -53,6 +55,7 @@ class WeightOptions(TypedDict, total=False):
     """Options of a `Method` that `skinning_weights` follows."""
 
     falloff: Falloff
+    refine: Refine
     alpha: float | None
     max_influences: int | None
     threshold: float
@@ -78,6 +81,16 @@ def _checked_alpha(alpha: Any, falloff: Falloff) -> float | None:
             "leave it out, or choose falloff='paper'"
         )
     return None
+
+
+def _checked_refine(refine: Any, falloff: Falloff) -> Refine:
+    refine = check_choice("refine", refine, REFINES)
+    if refine != "none" and falloff != "rig":
+        raise ParameterError(
+            f"refine={refine!r} has no effect with falloff={falloff!r}; "
+            "leave it out, or choose falloff='rig'"
+        )
+    return refine
 
 
 @dataclass(frozen=True)
@@ -110,6 +123,9 @@ class Method:
         the falloff is made for: "fit" for "rig", "point" for "paper".
     falloff : {"rig", "paper"}
         How weight falls with distance. "rig": made to animate with. "paper": equation 1.
+    refine : {"none", "learned"}
+        "learned": a small model that learned from rigs of many makers corrects the shares of the
+        falloff "rig" before they diffuse (docs/learned_weights.md).
     alpha : float, optional
         Smoothness of the paper's falloff, 0 to 1, 0.5 when left out; the other has none.
     max_influences : int, optional
@@ -135,6 +151,7 @@ class Method:
     samples: int = 5
     leaf: Leaf = None  # type: ignore[assignment]
     falloff: Falloff = "rig"
+    refine: Refine = "none"
     alpha: float | None = None
     max_influences: int | None = 4
     threshold: float = 0.0
@@ -150,6 +167,7 @@ class Method:
             "samples": check_integer("samples", self.samples, 1, MAX_SAMPLES),
             "leaf": check_choice("leaf", leaf, LEAVES),
             "falloff": falloff,
+            "refine": _checked_refine(self.refine, falloff),
             "alpha": _checked_alpha(self.alpha, falloff),
             "threshold": check_number("threshold", self.threshold, 0, 1),
         }
@@ -163,8 +181,8 @@ class Method:
     def with_options(self, **options: Any) -> Method:
         """Return this method with other options.
 
-        Where `falloff` changes, `leaf` and `alpha` become what the new one is made for unless
-        they are given, too.
+        Where `falloff` changes, `leaf`, `refine` and `alpha` become what the new one is made for
+        unless they are given, too.
 
         Parameters
         ----------
@@ -185,7 +203,7 @@ class Method:
                 instead = f"did you mean {close[0]!r}?" if close else f"it has {', '.join(known)}"
                 raise TypeError(f"a method has no option {name!r}; {instead}")
         if options.get("falloff", self.falloff) != self.falloff:
-            options = {"leaf": None, "alpha": None, **options}
+            options = {"leaf": None, "refine": "none", "alpha": None, **options}
         return replace(self, **options)
 
     @property

@@ -165,7 +165,7 @@ def comparisons(visit: Visit) -> None:
     """Take a picture of each panel that holds other weights against ours."""
     visit.page.keyboard.press("Escape")
     visit.panel("Pose")
-    worst = visit.page.get_by_role("list", name="The worst turns").get_by_role("button")
+    worst = visit.page.get_by_role("list", name="Largest errors").get_by_role("button")
     worst.first.click()
     visit.button("Side by side").click()
     take(visit, "pose")

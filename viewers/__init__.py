@@ -32,7 +32,7 @@ def show(
     camera: Camera | None = None,
     legend: bool = True,
 ) -> Image:
-    """Draw a scene; a notebook shows what comes back.
+    """Draw a scene; a notebook shows the returned object.
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ def show(
     Raises
     ------
     MissingLibraryError
-        This machine has no OpenGL. Drawn in a process of its own, it does not end yours.
+        This machine has no OpenGL. Drawing in another process does not end yours.
     """
     from io import BytesIO
     from pathlib import Path
@@ -101,7 +101,7 @@ def plotter(
     require_opengl()
     scene = Scene(DARK if dark else LIGHT, size, layered=False)
     scene.show(description)
-    scene.look(framing(description.bounds, size[0] / size[1]))
+    scene.set_camera(framing(description.bounds, size[0] / size[1]))
     result: Any = scene.plotter
     result.set_background(scene.theme.bottom, top=scene.theme.top)
     if legend and description.legend is not None:

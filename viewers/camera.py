@@ -6,6 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 VIEW_ANGLE = 30.0
+PAGE_HEIGHT = 800.0
+"""Pixels that a page's canvas is high, where a picture is not of one that is known."""
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""The parts of a rig as actors: the body, what hangs on it, and its bones."""
+"""The parts of a rig as actors: the body, its attachments, and its bones."""
 
 from typing import Any
 
@@ -33,7 +33,7 @@ def pose_in_scene(rig: Rig, transforms: ArrayLike) -> NDArray[np.float64]:
     return rig.world @ np.asarray(transforms, float) @ np.linalg.inv(rig.world)
 
 
-def body(rig: Rig, weights: ArrayLike | None = None, **look: Any) -> Actor:
+def body(rig: Rig, weights: ArrayLike | None = None, **style: Any) -> Actor:
     """Return the rig's mesh as an actor.
 
     Parameters
@@ -46,17 +46,17 @@ def body(rig: Rig, weights: ArrayLike | None = None, **look: Any) -> Actor:
     """
     weights = rig.weights if weights is None else weights
     skin = None if weights is None else skin_of_weights(weights)
-    return _surface(rig, rig.mesh, skin, **{"color": BODY, **look})
+    return _surface(rig, rig.mesh, skin, **{"color": BODY, **style})
 
 
-def attachments(rig: Rig, **look: Any) -> dict[str, Actor]:
+def attachments(rig: Rig, **style: Any) -> dict[str, Actor]:
     """Return what hangs rigidly on joints, one actor each."""
     return {
         f"attachment {i}": _surface(
             rig,
             one.mesh,
             rigid_skin(np.full(len(one.mesh.vertices), one.joint)),
-            **{"color": ATTACHMENT, **look},
+            **{"color": ATTACHMENT, **style},
         )
         for i, one in enumerate(rig.attachments)
     }
@@ -78,7 +78,7 @@ def bones(
         The joint whose bones are highlighted.
     visible : bool
     colors : array_like, shape (j, 3), optional
-        The colour of the bones of each joint that may carry weight; the chosen one is then told
+        The colour of the bones of each deforming joint; the chosen one then differs
         by its outline.
     shown : array_like, shape (b,), bool, optional
         Which of the bones of `drawn_segments` there are; all when left out.
@@ -192,7 +192,7 @@ def _octahedra(
     return np.stack([start - more, *around, end + 2 * more], axis=1)
 
 
-def _surface(rig: Rig, mesh: TriangleMesh, skin: Skin | None, **look: Any) -> Actor:
+def _surface(rig: Rig, mesh: TriangleMesh, skin: Skin | None, **style: Any) -> Actor:
     points = to_scene(rig, mesh.vertices)
     # A mirrored space turns faces inside out; for looking, turn them back.
     faces = mesh.faces if np.linalg.det(rig.world[:3, :3]) > 0 else mesh.faces[:, ::-1]
@@ -203,14 +203,14 @@ def _surface(rig: Rig, mesh: TriangleMesh, skin: Skin | None, **look: Any) -> Ac
         normals=smooth_normals(points, faces).astype(np.float32),
         skin=skin,
         closed=is_closed(points, faces),
-        **look,
+        **style,
     )
 
 
 def is_closed(points: NDArray[np.float64], faces: NDArray) -> bool:
     """Whether faces enclose what is behind them: no border, and every part faces outwards.
 
-    Vertices at the same place count as one.
+    Vertices at the same place are one.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What a scene is, in plain data: named actors, a pose, a cut. Nothing here draws."""
+"""Description of a scene as plain data: named actors, a pose, a cut. Nothing here draws."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cutcell.io.materials.face_colors import FaceColors
+from cutcell.runtime.repr import short_repr
 
 from .palette import BODY, Color
 from .skin import Skin
@@ -25,7 +26,7 @@ class Apart:
     ----------
     skin : Skin
     unit : float
-        What a squared length of 1 in the scene is worth, in the unit of the values.
+        The value of a length of 1 in the scene.
     """
 
     skin: Skin
@@ -34,19 +35,19 @@ class Apart:
 
 @dataclass(frozen=True, eq=False)
 class Reading:
-    """What is told of the place under the pointer.
+    """Value shown for the point under the pointer.
 
     Parameters
     ----------
     text : str
-        What the value is: told before it.
+        The label before the value.
     values : array, shape (n,) or (m,), float32, optional
         One for each point of a surface, or for each cell of lines; the actor's scalars when
         left out.
     names : tuple of str
         Where there are any, the value is an index into these.
     percent : bool
-        Whether the value is a part of a whole, and told in percent.
+        Whether the value is a share, shown in percent.
     """
 
     text: str = ""
@@ -79,7 +80,7 @@ class Actor:
     skin : Skin, optional
         How the points follow the joints; without it they stand still.
     apart : Apart, optional
-        While there is a pose, the scalars are the squared distances between where `skin`
+        While there is a pose, the scalars are the distances between where `skin`
         and this one take each point.
     width : float
         Of lines and points, in pixels of the screen, from far.
@@ -97,14 +98,16 @@ class Actor:
         Gives way where it coincides with another surface.
     closed : bool
         Whether the surface has an inside, which is not seen: its back need not be drawn.
+    edges : bool
+        Whether the edges of a surface's triangles are drawn on it.
     hull : bool
         Only faces that look away are drawn: an outline of what it encloses.
     clipped : bool
-        Whether the scene's cut takes away what lies before it.
+        Whether the scene's cut clips it.
     slab : float
         Keep only what lies less than this far behind the cut; 0 keeps all.
     reading : Reading, optional
-        What is told where the pointer rests on it.
+        Value shown where the pointer rests on it.
     film : bool
         Whether only scalars up to the description's `front` are coloured.
     """
@@ -128,6 +131,7 @@ class Actor:
     overlay: bool = False
     behind: bool = False
     closed: bool = False
+    edges: bool = False
     hull: bool = False
     clipped: bool = True
     slab: float = 0.0
@@ -162,7 +166,7 @@ class Actor:
 
 @dataclass(frozen=True)
 class Cut:
-    """A plane that takes away what lies on the side its normal points to."""
+    """A plane that clips the side its normal points to."""
 
     origin: tuple[float, float, float]
     normal: tuple[float, float, float]
@@ -172,7 +176,7 @@ class Cut:
 class Legend:
     """How to read the colours: the title, the map and the numbers at its two ends.
 
-    Instead of a map, or below it, there may be `swatches`: a colour and what it stands for.
+    Instead of a map, or below it, there may be `swatches`: a colour and its meaning.
     """
 
     title: str
@@ -199,7 +203,7 @@ class Description:
     front : float, optional
         Scalars above it are left grey on the actors that are part of the film.
     images : array, shape (k, s, s, 4), uint8, optional
-        What the actors' `materials` take their colours from; see `materials.Textures`.
+        Images of the actors' `materials`; see `materials.Textures`.
     """
 
     actors: dict[str, Actor] = field(default_factory=dict)
@@ -209,6 +213,8 @@ class Description:
     views: tuple[str, ...] = ()
     front: float | None = None
     images: NDArray[np.uint8] | None = None
+
+    __repr__ = short_repr
 
     @property
     def bounds(self) -> NDArray[np.float64]:

@@ -20,7 +20,7 @@ def distance_scene(
     *,
     weights: ArrayLike | None = None,
     skeleton: bool = True,
-    **look: Any,
+    **style: Any,
 ) -> Description:
     """Return the scene of one joint's distance field on the mesh.
 
@@ -44,7 +44,7 @@ def distance_scene(
     """
     colors, legend = distance_colors(rig, distance, joint)
     actors = {
-        "body": body(rig, weights, **colors, **look),
+        "body": body(rig, weights, **colors, **style),
         **attachments(rig),
         **bones(rig, joint, skeleton),
     }
@@ -56,7 +56,7 @@ def distance_colors(
 ) -> tuple[dict[str, Any], Legend]:
     """Return the fields of the body's `Actor` that colour it, and how to read them.
 
-    What is not reached is grey. The limits are those of the distances when left out.
+    Unreached points are grey. The limits default to those of the distances.
     """
     limits = limits or distance_limits(distance)
     style, unreached = distance_look(distance, limits)

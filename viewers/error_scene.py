@@ -6,7 +6,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from cutcell.metrics import DeformationError, deformation_error
-from cutcell.metrics.deformation import CM2
 from cutcell.rig import Rig, Skeleton, TriangleMesh
 from cutcell.runtime.progress import Progress, silent
 
@@ -14,15 +13,15 @@ from .character import attachments, body, bones, pose_in_scene, to_scene
 from .description import Apart, Description, Legend
 from .skin import skin_of_weights
 
-FLOOR = 0.1
-"""The end of the scale is this many cm² at least: what is less would not be seen."""
+FLOOR = 3.0
+"""The end of the scale is this many millimetres at least: less would not be visible."""
 
 WHOLE = 0.995
 """The scale holds this part of the vertices: a single one would leave all others grey."""
 
 
 class Gap:
-    """Tells how far two weightings of a rig take each vertex from each other.
+    """Measures how far apart two sets of weights move each vertex.
 
     Parameters
     ----------
@@ -33,13 +32,13 @@ class Gap:
 
     def __init__(self, rig: Rig, weights: ArrayLike, reference: ArrayLike) -> None:
         self._points = to_scene(rig, rig.mesh.vertices).astype(np.float32)
-        # A vertex that nothing holds follows a joint of its own, which never moves.
-        ours, theirs = (_with_rest(np.asarray(w, np.float32)) for w in (weights, reference))
-        self._between = ours - theirs
-        self._unit = squared_unit(rig)
+        # A vertex without weight follows an additional joint, which never moves.
+        weights_a, weights_b = (_with_rest(np.asarray(w, np.float32)) for w in (weights, reference))
+        self._between = weights_a - weights_b
+        self._unit = millimetres(rig)
 
-    def squared(self, pose: ArrayLike) -> NDArray[np.float32]:
-        """Return the squared distances in cm², the longest side 1 m, shape (n,).
+    def lengths(self, pose: ArrayLike) -> NDArray[np.float32]:
+        """Return the distances in mm on a character whose longest side is 1 m, shape (n,).
 
         Parameters
         ----------
@@ -50,7 +49,7 @@ class Gap:
         matrices = np.vstack([matrices, np.eye(3, 4, dtype=np.float32).ravel()])
         blended = (self._between @ matrices).reshape(-1, 3, 4)
         displacement = (blended[:, :, :3] @ self._points[:, :, None])[:, :, 0] + blended[:, :, 3]
-        return np.asarray(self._unit * (displacement * displacement).sum(axis=1), np.float32)
+        return np.asarray(self._unit * np.linalg.norm(displacement, axis=1), np.float32)
 
 
 def error_scene(
@@ -81,8 +80,8 @@ def error_scene(
         With the actors "body", "bones" and the attachments.
     """
     pose = pose_in_scene(rig, transforms)
-    limits = error_limits(Gap(rig, weights, reference).squared(pose))
-    apart = Apart(skin_of_weights(reference), squared_unit(rig))
+    limits = error_limits(Gap(rig, weights, reference).lengths(pose))
+    apart = Apart(skin_of_weights(reference), millimetres(rig))
     style = error_look(len(rig.mesh.vertices), apart, limits)
     actors = {
         "body": body(rig, weights, **style),
@@ -100,24 +99,24 @@ def error_look(count: int, apart: Apart, limits: tuple[float, float]) -> dict[st
 
 def error_legend(limits: tuple[float, float]) -> Legend:
     """Return the legend of the error."""
-    return Legend("Error against the file's weights", "error", "0", f"{limits[1]:g} cm²")
+    return Legend("Error against the file's weights", "error", "0", f"{limits[1]:g} mm")
 
 
-def error_limits(squared: ArrayLike) -> tuple[float, float]:
-    """Return a range that nearly all errors lie in; its end is a round number.
+def error_limits(lengths: ArrayLike) -> tuple[float, float]:
+    """Return a range that contains nearly all errors; its end is a round number.
 
     Round numbers stay the same while a joint turns a little: the colours can be compared.
     """
-    top = max(float(np.quantile(np.asarray(squared), WHOLE)), FLOOR)
+    top = max(float(np.quantile(np.asarray(lengths), WHOLE)), FLOOR)
     power = 10.0 ** np.floor(np.log10(top))
     step = next(step for step in (1, 1.5, 2, 3, 5, 7, 10) if step * power >= top * (1 - 1e-9))
     return (0.0, float(step * power))
 
 
-def squared_unit(rig: Rig) -> float:
-    """Return what a squared length of 1 in the scene is worth in cm², the longest side 1 m."""
+def millimetres(rig: Rig) -> float:
+    """Return the mm of a length of 1 in the scene, where the longest side is 1 m."""
     used = to_scene(rig, rig.mesh.vertices[np.unique(rig.mesh.faces)])
-    return CM2 / float(np.ptp(used, axis=0).max()) ** 2
+    return 1000 / float(np.ptp(used, axis=0).max())
 
 
 def scene_error(

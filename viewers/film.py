@@ -11,18 +11,18 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image
+from PIL import Image, ImageColor
 
-from cutcell.errors import FileError
+from cutcell.errors import FileError, ParameterError
 from cutcell.pose import pose_at
 from cutcell.rig.clip import Clip
 from cutcell.runtime.progress import Progress, silent
 from cutcell.runtime.writing import check_place, write_all
 
-from .camera import Camera, around, sees
+from .camera import PAGE_HEIGHT, Camera, around, sees
 from .description import Description
 from .mp4 import find_ffmpeg, write_mp4
-from .palette import THEMES
+from .palette import THEMES, Theme
 from .skin import moved
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ FRAMES = {".mp4": 30, ".gif": 20}
 
 @dataclass(frozen=True, eq=False)
 class Order:
-    """What is to be drawn: a picture, or a film where it turns or moves.
+    """The request: a picture, or a film where it turns or moves.
 
     Parameters
     ----------
@@ -58,6 +58,10 @@ class Order:
     motion : Clip, optional
         In the scene's space; see `pose_scene.clip_in_scene`.
     legend : bool
+    page_height : float
+        How high a page's canvas is that looks the same, in its pixels: widths of lines follow.
+    background : str
+        A colour instead of the theme's ground, as style sheets write it; or "transparent", in PNG.
     """
 
     description: Description
@@ -68,6 +72,8 @@ class Order:
     turntable: bool = False
     motion: Clip | None = None
     legend: bool = True
+    page_height: float = PAGE_HEIGHT
+    background: str = ""
 
 
 def draw(order: Order, path: str | Path, progress: Progress = silent) -> None:
@@ -96,7 +102,9 @@ def draw(order: Order, path: str | Path, progress: Progress = silent) -> None:
     width, height = (side - side % 2 for side in order.size) if kind in FILMS else order.size
     from .studio import Studio  # a server orders pictures, and loads no VTK for that
 
-    with Studio(order.description, THEMES[order.theme], (width, height), order.legend) as studio:
+    theme, clear = ground(order.theme, order.background, kind)
+    look = order.legend, order.page_height, clear
+    with Studio(order.description, theme, (width, height), *look) as studio:
         camera = _camera(order, studio)
         if kind in PICTURES:
             _write_picture(path, studio.draw(camera))
@@ -104,6 +112,29 @@ def draw(order: Order, path: str | Path, progress: Progress = silent) -> None:
             write = write_mp4 if kind == ".mp4" else _write_gif
             write(path, _frames(order, studio, camera, FRAMES[kind], progress), FRAMES[kind])
     progress("drawing", 1.0)
+
+
+def ground(name: str, background: str, kind: str = ".png") -> tuple[Theme, bool]:
+    """Return a theme with a ground of one colour, and whether there is none.
+
+    Raises
+    ------
+    ParameterError
+        The colour cannot be read, or a file of that kind cannot be transparent.
+    """
+    theme, clear = THEMES[name], background == "transparent"
+    if clear and kind != ".png":
+        raise ParameterError(f"only PNG pictures can be transparent, not {kind}")
+    if not background or clear:
+        return theme, clear
+    try:
+        red, green, blue, *_ = ImageColor.getrgb(background)
+    except ValueError:
+        raise ParameterError(
+            f'background must be a colour, such as white or #f4f4f4, not "{background}"'
+        ) from None
+    plain = (red / 255, green / 255, blue / 255)
+    return replace(theme, top=plain, bottom=plain), False
 
 
 def check_picture_file(path: Path, moves: bool = False) -> str:
@@ -135,7 +166,7 @@ def check_picture_file(path: Path, moves: bool = False) -> str:
 def palette_of(pixels: NDArray[np.uint8]) -> Image.Image:
     """Return 256 colours for pictures: half for what is frequent, half for all that is there.
 
-    A legend's colours are few pixels among a large background, and are what must be told apart.
+    A legend's colours are few pixels in a large background, and must stay distinguishable.
 
     Parameters
     ----------

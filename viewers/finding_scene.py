@@ -1,4 +1,4 @@
-"""What a diagnosis found, marked on the character: faces, vertices and joints."""
+"""Findings of a diagnosis, marked on the character: faces, vertices and joints."""
 
 import numpy as np
 from numpy.typing import NDArray

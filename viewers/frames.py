@@ -162,7 +162,7 @@ def _draw(frame: Frame, studios: dict[Any, list[Scene]]) -> bytes:
     picture = Image.new("RGBA", frame.size)
     for view, (scene, tile) in enumerate(zip(studios[key], frame.tiles, strict=True)):
         scene.show(in_view(frame.description, view))
-        scene.look(frame.camera)
+        scene.set_camera(frame.camera)
         picture.paste(Image.fromarray(scene.render_clear(), "RGBA"), tile[:2])
     written = BytesIO()
     picture.save(written, "png", compress_level=1)

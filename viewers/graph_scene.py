@@ -15,17 +15,18 @@ from .character import to_scene
 from .description import Actor, Cut, Description, Reading
 from .distance_scene import distance_limits, shown_distance
 
-WIDTHS = (1.1, 1.9, 1.5)
-"""Pixels that mesh, interior and surface edges are wide from far."""
-THICK = (0.012, 0.04, 0.025)
-"""Their radii, in cells of the lattice."""
-DASH = 0.16
-"""Surface edges are dashed: the length of a dash and its gap, in cells."""
+THICK = (0.08, 0.07, 0.16)
+"""The radii of mesh, interior and surface edges, in the length of most edges of their kind."""
+DASH = 0.3
+"""Surface edges are dashed: the length of a dash and its gap, in the same unit."""
 NODES = {"mesh nodes": MESH, "interior nodes": INTERIOR, "surface nodes": SURFACE}
 """The names of the actors of nodes, and the kind that each shows."""
 FORMS: tuple[Literal["round", "square", "triangle"], ...] = ("round", "square", "triangle")
 """Of mesh, interior and surface nodes."""
-NODE_WIDTH, NODE_THICK = 4.0, 0.09
+NODE_THICK = (0.12, 0.09, 0.16)
+"""The radii of mesh nodes, in the length of most mesh edges, and of the others, in cells."""
+WIDTH, NODE_WIDTH = 1.5, 4.0
+"""A sixth of the pixels that lines and points are wide at most."""
 KINDS = ("mesh", "interior", "surface")
 """What kinds of nodes and edges are called."""
 
@@ -66,7 +67,7 @@ def graph_scene(
     colors : array_like, shape (N, 3), uint8, optional
         A colour for every node: edges are then coloured by it, whatever their kind.
     cut : Cut, optional
-        Takes away what lies before it, so that the interior is seen.
+        Clips the near side, so that the interior is visible.
     slab : float
         With a cut, show interior edges only this far behind it, in the scene's units;
         0 shows all.
@@ -80,7 +81,8 @@ def graph_scene(
     """
     nodes = to_scene(rig, graph.lattice.to_file(graph.nodes)).astype(np.float32)
     cell = to_scene_length(rig, graph)
-    own = None if colors is None else np.asarray(colors, np.uint8)
+    spacing = {kind: _usual_length(nodes, graph, kind) for kind in LAYERS.values()}
+    point_colors = None if colors is None else np.asarray(colors, np.uint8)
     actors = {}
     for (name, kind), color in zip(LAYERS.items(), theme.edges, strict=True):
         edges = graph.edges[graph.edge_kind == kind]
@@ -94,13 +96,13 @@ def graph_scene(
             nodes[used],
             cells.reshape(-1, 2).astype(np.int32),
             color=color,
-            colors=None if own is None else own[used],
+            colors=None if point_colors is None else point_colors[used],
             scalars=scalars,
             colormap=shades,
             limits=limits,
-            width=WIDTHS[kind],
-            thick=THICK[kind] * cell,
-            dash=DASH * cell if kind == SURFACE else 0.0,
+            width=WIDTH,
+            thick=THICK[kind] * spacing[kind],
+            dash=DASH * spacing[kind] if kind == SURFACE else 0.0,
             visible=name in layers,
             slab=slab if kind == INTERIOR else 0.0,
         )
@@ -111,14 +113,26 @@ def graph_scene(
             nodes[which],
             np.arange(len(which), dtype=np.int32)[:, None],
             color=color,
-            colors=None if own is None else own[which],
+            colors=None if point_colors is None else point_colors[which],
             width=NODE_WIDTH,
-            thick=NODE_THICK * cell,
+            thick=NODE_THICK[kind] * (spacing[kind] if kind == MESH else cell),
             form=FORMS[kind],
             reading=Reading(f"{KINDS[kind]} node ", which.astype(np.float32)),
             visible=False,
         )
     return Description(actors, cut=cut)
+
+
+def _usual_length(nodes: NDArray[np.float32], graph: CutCellGraph, kind: int) -> float:
+    ends = nodes[graph.edges[graph.edge_kind == kind]]
+    return float(np.median(np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1))) if len(ends) else 0.0
+
+
+def nearest_nodes(graph: CutCellGraph, other: CutCellGraph) -> NDArray[np.intp]:
+    """Return for each node of a graph the nearest node of another one, shape (N,)."""
+    tree = cKDTree(other.lattice.to_file(other.nodes[other.connected]))
+    near = tree.query(graph.lattice.to_file(graph.nodes))[1]
+    return np.flatnonzero(other.connected)[near]
 
 
 def to_scene_length(rig: Rig, graph: CutCellGraph) -> float:
@@ -130,7 +144,7 @@ def to_scene_length(rig: Rig, graph: CutCellGraph) -> float:
 def component_colors(graph: CutCellGraph) -> tuple[NDArray[np.uint8], int]:
     """Return a colour for each node, by the connected component it is in, and their number.
 
-    The largest have colours of their own; there are more components than colours.
+    The largest have distinct colours; there are more components than colours.
 
     Returns
     -------

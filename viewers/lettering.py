@@ -1,4 +1,4 @@
-"""What is written on a picture: the legend in its corner, captions over its views."""
+"""Texts on a picture: the legend in its corner, captions over its views."""
 
 from functools import cache
 from math import ceil
@@ -20,38 +20,26 @@ MOST = 200
 LINE = {"light": (31, 38, 50, 40), "dark": (232, 236, 243, 40)}
 
 
-def write_legend(picture: NDArray[np.uint8], legend: Legend, theme: Theme) -> NDArray[np.uint8]:
-    """Write a legend into the lower left corner of a picture.
-
-    Parameters
-    ----------
-    picture : array, shape (height, width, 3), uint8
-    legend : Legend
-    theme : Theme
-
-    Returns
-    -------
-    array, shape (height, width, 3), uint8
-        A new one; all sizes follow the picture's.
-    """
-    unit = _unit(picture)
+def legend_card(legend: Legend, theme: Theme, size: tuple[int, int]) -> Image.Image:
+    """Return a legend as a card for a picture of some width and height, whose sizes it follows."""
+    unit = _unit(size)
     title, ends = _font(1.25 * unit), _font(1.1 * unit)
     pad, bar = round(1.1 * unit), round(0.75 * unit)
-    widest = picture.shape[1] - 4 * pad
     least = ends.getlength(f"{legend.low}     {legend.high}")
     indent = 2 * bar + round(0.6 * unit)
     swatches = [(color, printable(text, MOST)) for color, text in legend.swatches]
     least = max([least, *(indent + ends.getlength(text) for _, text in swatches)])
-    width = ceil(min(max(18 * unit, title.getlength(printable(legend.title, MOST)), least), widest))
+    wanted = max(18 * unit, title.getlength(printable(legend.title, MOST)), least)
+    width = ceil(min(wanted, size[0] - 4 * pad))
     name = _shortened(printable(legend.title, MOST), title, width)
     scale = bar + round(0.6 * unit) + _height(ends) if legend.colormap else 0
     row = _height(ends) + round(0.4 * unit)
     height = _height(title) + round(0.7 * unit) + scale + row * len(swatches)
-    left, top = 2 * pad, picture.shape[0] - height - 3 * pad
-    image, draw = _open(picture)
-    box = (left - pad, top - pad, left + width + pad, top + height + pad)
+    image = Image.new("RGBA", (width + 2 * pad, height + 2 * pad))
+    draw = ImageDraw.Draw(image)
+    box = (0, 0, image.width - 1, image.height - 1)
     draw.rounded_rectangle(box, round(0.7 * unit), fill=CARD[theme.name])
-    ink = _ink(theme.ink)
+    ink, left, top = _ink(theme.ink), pad, pad
     draw.text((left, top), name, font=title, fill=ink)
     top += _height(title) + round(0.7 * unit)
     if legend.colormap:
@@ -69,14 +57,43 @@ def write_legend(picture: NDArray[np.uint8], legend: Legend, theme: Theme) -> ND
         draw.rounded_rectangle(patch, bar // 3, fill=_ink(color))
         draw.text((left + indent, middle), text, font=ends, fill=ink, anchor="lm")
         top += row
-    return np.asarray(image)
+    return image
+
+
+def free_corner(covered: NDArray[np.bool_], card: Image.Image) -> tuple[int, int] | None:
+    """Return where a card covers nothing, in a corner of a picture; None where it always does.
+
+    Parameters
+    ----------
+    covered : array, shape (height, width), bool
+        Where something is seen.
+    card : Image
+    """
+    height, width = covered.shape
+    gap = round(1.1 * _unit((width, height)))
+    left, right = gap, width - card.width - gap
+    top, bottom = gap, height - card.height - gap
+    for x, y in ((left, bottom), (right, bottom), (left, top), (right, top)):
+        if not covered[max(y, 0) : y + card.height, max(x, 0) : x + card.width].any():
+            return x, y
+    return None
+
+
+def put_card(
+    picture: NDArray[np.uint8], card: Image.Image, place: tuple[int, int]
+) -> NDArray[np.uint8]:
+    """Return a picture with a card on it."""
+    mode = "RGBA" if picture.shape[2] == 4 else "RGB"
+    image = Image.fromarray(np.ascontiguousarray(picture)).convert("RGBA")
+    image.alpha_composite(card, (max(place[0], 0), max(place[1], 0)))
+    return np.asarray(image.convert(mode))
 
 
 def write_captions(
     picture: NDArray[np.uint8], captions: tuple[str, ...], places: list[Tile], theme: Theme
 ) -> NDArray[np.uint8]:
     """Write each view's caption at its upper edge, and draw a line between the views."""
-    unit = _unit(picture)
+    unit = _unit(picture.shape[1::-1])
     font, pad = _font(1.25 * unit), round(0.7 * unit)
     image, draw = _open(picture)
     for text, (left, top, width, height) in zip(captions, places, strict=True):
@@ -94,12 +111,13 @@ def write_captions(
 
 
 def _open(picture: NDArray[np.uint8]) -> tuple[Image.Image, ImageDraw.ImageDraw]:
-    image = Image.fromarray(np.ascontiguousarray(picture), "RGB")
+    image = Image.fromarray(np.ascontiguousarray(picture))
     return image, ImageDraw.Draw(image, "RGBA")
 
 
-def _unit(picture: NDArray[np.uint8]) -> float:
-    return max(min(picture.shape[0], picture.shape[1] * 1.2) / 75, 8.0)
+def _unit(size: tuple[int, ...]) -> float:
+    width, height = size
+    return max(min(height, width * 1.2) / 65, 5.0)
 
 
 def _ink(color: Color) -> tuple[int, int, int]:

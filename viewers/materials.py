@@ -78,8 +78,8 @@ def decoded(
     side = _side(opened, len(used_layers))
     pixels = np.full((len(used_layers), side, side, 4), OPAQUE, np.uint8)
     for k, layer in enumerate(used_layers):
-        found = opened[layer.image]
-        problem = found if isinstance(found, str) else _fill(pixels[k], images[layer.image], layer)
+        image = opened[layer.image]
+        problem = image if isinstance(image, str) else _fill(pixels[k], images[layer.image], layer)
         if problem:
             problems[k] = problem
     return pixels, problems

@@ -1,4 +1,4 @@
-"""MP4 films, encoded by ffmpeg: a program of its own, as its encoders are under the GPL."""
+"""MP4 films, encoded by ffmpeg: a separate program, as its encoders are under the GPL."""
 
 import re
 import shutil

@@ -1,7 +1,7 @@
 """Every colour that the scenes use, and the colour maps that values are shown with."""
 
 from dataclasses import dataclass
-from functools import cache, lru_cache
+from functools import cache
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -20,7 +20,7 @@ INTERIOR = _rgb(255, 108, 12)
 SURFACE = _rgb(153, 203, 67)
 
 BODY = _rgb(201, 206, 214)
-# Told from BODY and UNREACHED in a legend, too.
+# Distinct from BODY and UNREACHED in a legend, too.
 ATTACHMENT = _rgb(108, 116, 132)
 BONE = _rgb(236, 239, 244)
 BONE_IDLE = _rgb(150, 158, 172)
@@ -30,12 +30,12 @@ GHOST = _rgb(64, 132, 255)
 UNREACHED = _rgb(148, 150, 160)
 
 
-# What a person marks: the clicked vertex, the way back from it.
+# Marks: the clicked vertex, the path from it.
 MARK = _rgb(232, 30, 99)
 # The paper's purple: nodes where distances begin.
 SOURCE = _rgb(146, 72, 190)
 
-# What is enough of a difference to people who see few colours, too: of all lively colours of
+# Enough of a difference for colour-blind people, too: of all saturated colours of
 # middle lightness each was chosen farthest from those before it, to every one of `EYES`.
 JOINT_COLORS = (
     (235, 167, 95), (62, 137, 247), (93, 232, 245), (225, 64, 116), (180, 143, 191),
@@ -88,7 +88,7 @@ class Theme:
 # from each other, from orange, and from what is around.
 LIGHT = Theme(
     "light", _rgb(250, 251, 253), _rgb(222, 228, 236), _rgb(31, 38, 50), _rgb(58, 150, 192),
-    _rgb(30, 85, 25),
+    _rgb(20, 98, 10),
 )  # fmt: skip
 DARK = Theme(
     "dark", _rgb(37, 43, 54), _rgb(17, 20, 26), _rgb(232, 236, 243), _rgb(90, 170, 230),
@@ -177,33 +177,40 @@ def colormap(name: str) -> NDArray[np.uint8]:
     return colors
 
 
-def joint_colors(parents: ArrayLike) -> NDArray[np.float64]:
+def joint_colors(
+    parents: ArrayLike, touching: ArrayLike = (), idle: ArrayLike = ()
+) -> NDArray[np.float64]:
     """Return one colour a joint, far from its neighbours' to every kind of eye.
 
     Parameters
     ----------
     parents : array_like, shape (j,)
+    touching : array_like, shape (k, 2), optional
+        Pairs of joints whose skin touches.
+    idle : array_like, shape (m,), optional
+        Joints without skin: they take colours last.
 
     Returns
     -------
     array, shape (j, 3), float64
-        Red, green and blue from 0 to 1, each one of `JOINT_COLORS`. Parents, grandparents and
-        siblings of a joint have others.
+        Red, green and blue from 0 to 1, each one of `JOINT_COLORS`. No colour comes twice while
+        others are left. Parents, grandparents, siblings of a joint and joints whose skin touches
+        its own have others, as long as there are enough.
     """
-    return np.array(_joint_colors(tuple(np.asarray(parents).tolist())))
-
-
-@lru_cache(maxsize=16)
-def _joint_colors(told: tuple[int, ...]) -> NDArray[np.float64]:
-    parents = np.array(told, int)
+    above, last = np.asarray(parents, int), np.asarray(idle, int)
+    pairs = np.asarray(touching, int).reshape(-1, 2)
     differences = _differences()
-    used = np.zeros(len(differences))
-    chosen = np.zeros(len(parents), int)
-    for joint, parent in enumerate(parents):
-        siblings = np.flatnonzero(parents[:joint] == parent)[-(len(differences) - 3) :]
-        above = [parent, parents[parent]] if parent >= 0 else []
-        near = [k for k in (*above, *siblings) if 0 <= k < joint]
-        score = differences[:, chosen[near]].min(axis=1, initial=1.0) - EVENNESS * used
+    used = np.zeros(len(differences), int)
+    chosen = np.full(len(above), -1)
+    for joint in [*np.setdiff1d(np.arange(len(above)), last), *last]:
+        parent = above[joint]
+        skin = chosen[np.r_[pairs[pairs[:, 0] == joint, 1], pairs[pairs[:, 1] == joint, 0]]]
+        kin = chosen[(above == parent) | (above == joint)][-(len(differences) - 3) :]
+        old = chosen[[parent, above[parent]]] if parent >= 0 else chosen[:0]
+        near = np.concatenate([skin, kin, old])
+        score = differences[:, near[near >= 0]].min(axis=1, initial=1.0) - EVENNESS * used
+        score[skin[skin >= 0]] -= 1
+        score[used > 0] -= 2 if (used == 0).any() else 0
         chosen[joint] = int(np.argmax(score))
         used[chosen[joint]] += 1
     return np.array(JOINT_COLORS)[chosen] / 255
@@ -211,7 +218,7 @@ def _joint_colors(told: tuple[int, ...]) -> NDArray[np.float64]:
 
 @cache
 def _differences() -> NDArray[np.float64]:
-    """Return how far apart the joints' colours are, in OKLab, to the eye that sees it least."""
+    """Return the distance of colours in OKLab for the least sensitive colour vision."""
     return differences(np.array(JOINT_COLORS) / 255)
 
 

@@ -56,7 +56,7 @@ def plane_section(rig: Rig, mesh: TriangleMesh, cut: Cut, resolution: int) -> Pl
     Parameters
     ----------
     rig : Rig
-        Says how its space lies in the scene.
+        Transformation of its space into the scene.
     mesh : TriangleMesh
         The rig's, or that with its inverted faces flipped.
     cut : Cut
@@ -228,8 +228,8 @@ def _are_edges(
     faces: NDArray[np.int64], pieces: NDArray[np.int64], count: int
 ) -> NDArray[np.bool_]:
     edges = np.sort(faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
-    wanted = np.sort(pieces, axis=1)
-    return np.isin(wanted @ [count, 1], edges @ [count, 1])
+    sides = np.sort(pieces, axis=1)
+    return np.isin(sides @ [count, 1], edges @ [count, 1])
 
 
 def _winding(

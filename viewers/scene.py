@@ -18,15 +18,13 @@ import pyvista as pv
 
 from cutcell.io.materials.face_colors import BLENDED
 
-from .camera import VIEW_ANGLE, Camera, framing
+from .camera import PAGE_HEIGHT, VIEW_ANGLE, Camera, framing
 from .description import Actor, Cut, Description
 from .lighting import LIGHTS, shading
 from .palette import BODY, LIGHT, Theme, colormap, to_bytes
-from .skin import moved, squared_apart, turned
+from .skin import distances_between, moved, turned
+from .strokes import depths, see_strokes, shade_strokes, stroke_data
 from .textured import ALPHA_KNOWN, CUT_OUT, DITHERED, pieces, texture
-
-PICTURE_WIDTH = 1.5
-"""How many times as wide lines and points are in a picture, which has more pixels than a page."""
 
 
 class Scene:
@@ -40,11 +38,11 @@ class Scene:
     fine : bool
         Whether corners are darkened by ambient occlusion, which takes about a second without a
         graphics card.
-    pixel_ratio : float
+    pixel_ratio : float, optional
         How many pixels of the picture are one pixel of the page, in which widths are given.
     layered : bool
         Whether overlays are a layer over the scene. PyVista's own windows and exports know one
-        layer: overlays are drawn nearer to the eye there.
+        layer: overlays are drawn nearer to the eye there, and lines and points plainly.
     """
 
     def __init__(
@@ -52,17 +50,18 @@ class Scene:
         theme: Theme = LIGHT,
         size: tuple[int, int] = (1200, 900),
         fine: bool = False,
-        pixel_ratio: float = PICTURE_WIDTH,
+        pixel_ratio: float | None = None,
         layered: bool = True,
     ) -> None:
         # Occlusion takes the place of multisampling: four times the pixels smooth edges.
         self._scale = 2 if fine else 1
-        self._pixel_ratio = pixel_ratio * self._scale
+        self._pixel_ratio = (pixel_ratio or size[1] / PAGE_HEIGHT) * self._scale
         window = [self._scale * side for side in size]
         self.plotter = pv.Plotter(off_screen=True, window_size=window, lighting="none")
         if not fine:
             self.plotter.enable_anti_aliasing("msaa", multi_samples=8)
         self._overlay = _add_overlay(self.plotter) if layered else self.plotter.renderer
+        self._layered = layered
         self.theme = theme
         for position, intensity in LIGHTS:
             light = pv.Light(position=position, light_type="camera light", intensity=intensity)
@@ -70,12 +69,14 @@ class Scene:
             if layered:
                 self._overlay.AddLight(light)
         self._names: dict[str, list[pv.Actor]] = {}
+        self._strokes: list[pv.Actor] = []
+        self._bounds = Description().bounds
         self._images: Any = None
         self._textures: dict[tuple[int, int], pv.Texture] = {}
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The actors that stand in the scene."""
+        """The actors of the scene."""
         return tuple(self._names)
 
     def show(self, description: Description) -> None:
@@ -83,6 +84,7 @@ class Scene:
         for drawn in self._names.values():
             for one in drawn:
                 self._renderer(one).RemoveActor(one)
+        self._strokes, self._bounds = [], description.bounds
         # The pass of ambient occlusion leaves out what is translucent.
         opaque = all(a.opacity == 1 for a in description.actors.values() if a.visible)
         renderer: Any = self.plotter.renderer
@@ -99,12 +101,15 @@ class Scene:
             if actor.visible and len(actor.cells)
         }
 
-    def look(self, camera: Camera) -> None:
+    def set_camera(self, camera: Camera) -> None:
         """Place the camera."""
         view = self.plotter.camera
         view.position, view.focal_point, view.up = camera.position, camera.focal_point, camera.up
         view.view_angle = VIEW_ANGLE
         view.SetWindowCenter(-camera.centre[0], -camera.centre[1])
+        width, height = self.plotter.window_size
+        for drawn in self._strokes:
+            see_strokes(drawn, (width, height), depths(camera, self._bounds))
 
     def render_png(self, path: str | Path | None = None) -> NDArray[np.uint8]:
         """Draw the scene.
@@ -144,8 +149,18 @@ class Scene:
 
     def _parts(self, actor: Actor, description: Description) -> Iterator[pv.Actor]:
         """Return what an actor is drawn as: in materials, a part for each image."""
+        if actor.kind != "surface" and self._layered:
+            mapper = pv._vtk.vtkPolyDataMapper()
+            mapper.SetInputData(_dataset(actor, description.pose))
+            drawn = pv.Actor(mapper=mapper)
+            haze = tuple((np.add(self.theme.top, self.theme.bottom) / 2).tolist())
+            shade_strokes(drawn, actor, haze, self._pixel_ratio)
+            self._strokes.append(drawn)
+            yield drawn
+            return
         if actor.materials is None:
-            yield pv.Actor(mapper=pv.DataSetMapper(_dataset(actor, description.pose)))
+            data = _dataset(actor, description.pose, plain=True)
+            yield pv.Actor(mapper=pv.DataSetMapper(data))
             return
         points, normals = _posed(actor, description.pose)
         for data, kind in pieces(points, normals, actor.cells, actor.materials):
@@ -192,16 +207,16 @@ def render_png(
     scene = Scene(theme, size)
     try:
         scene.show(description)
-        scene.look(camera or framing(description.bounds, size[0] / size[1]))
+        scene.set_camera(camera or framing(description.bounds, size[0] / size[1]))
         return scene.render_png(path)
     finally:
         scene.close()
 
 
 def cut_planes(cut: Cut, slab: float) -> list[dict[str, tuple[float, ...]]]:
-    """Return the planes that keep what lies behind a cut, each as origin and normal.
+    """Return the planes that keep the far side of a cut, each as origin and normal.
 
-    What a plane keeps lies on the side that its normal points to.
+    A plane keeps the side that its normal points to.
     """
     origin, normal = np.array(cut.origin), np.array(cut.normal)
     planes = [{"origin": tuple(origin.tolist()), "normal": tuple((-normal).tolist())}]
@@ -221,61 +236,40 @@ def _posed(actor: Actor, pose: NDArray[np.float64] | None) -> tuple[NDArray, NDA
     return points, normals
 
 
-def _dataset(actor: Actor, pose: NDArray[np.float64] | None) -> pv.PolyData:
-    (points, normals), cells = _posed(actor, pose), actor.cells
-    if actor.dash > 0 and actor.scalars is None and actor.colors is None:
-        points, cells = _dashes(points[cells], actor.dash)
-    data: Any = pv.PolyData()
-    data.points = points
-    cells = np.insert(cells, 0, cells.shape[1], axis=1).ravel()
-    setattr(data, {"surface": "faces", "lines": "lines", "points": "verts"}[actor.kind], cells)
+def _dataset(actor: Actor, pose: NDArray[np.float64] | None, plain: bool = False) -> pv.PolyData:
+    points, normals = _posed(actor, pose)
+    every: Any = slice(None)
+    if plain:
+        data: Any = pv.PolyData()
+        data.points = points
+        cells = np.insert(actor.cells, 0, actor.cells.shape[1], axis=1).ravel()
+        setattr(data, {"surface": "faces", "lines": "lines", "points": "verts"}[actor.kind], cells)
+    else:
+        data, every = stroke_data(actor, points)
     if normals is not None:
         data.point_data.active_normals = normals
     if actor.colors is not None:
-        data.point_data["colors"] = actor.colors
+        data.point_data["colors"] = actor.colors[every]
     elif actor.scalars is not None:
-        data.point_data["values"] = _values(actor, pose)
+        data.point_data["values"] = _values(actor, pose)[every]
     return data
-
-
-def _dashes(ends: NDArray, dash: float) -> tuple[NDArray[np.float32], NDArray[np.int32]]:
-    """Return the dashes of segments (m, 2, 3): a little more than half of each piece is drawn."""
-    start, along = ends[:, 0], ends[:, 1] - ends[:, 0]
-    length = np.linalg.norm(along, axis=1)
-    count = np.maximum(np.ceil(length / dash), 1).astype(int)
-    of = np.repeat(np.arange(len(ends)), count)
-    first = (np.arange(len(of)) - np.repeat(np.cumsum(count) - count, count)) * dash
-    part = np.stack([first, np.minimum(first + 0.55 * dash, length[of])], axis=1)
-    part /= np.maximum(length[of], 1e-300)[:, None]
-    points = start[of, None] + part[:, :, None] * along[of, None]
-    cells = np.arange(2 * len(of), dtype=np.int32).reshape(-1, 2)
-    return points.reshape(-1, 3).astype(np.float32), cells
 
 
 def _values(actor: Actor, pose: NDArray[np.float64] | None) -> Any:
     if pose is None or actor.apart is None or actor.skin is None:
         return actor.scalars
-    squared = squared_apart(actor.points, actor.skin, actor.apart.skin, pose)
-    return (actor.apart.unit * squared).astype(np.float32)
+    lengths = distances_between(actor.points, actor.skin, actor.apart.skin, pose)
+    return (actor.apart.unit * lengths).astype(np.float32)
 
 
 def _paint(drawn: pv.Actor, actor: Actor, pixel_ratio: float, front: float | None) -> None:
     appearance = drawn.prop
-    appearance.color, appearance.opacity, appearance.line_width = (
-        actor.color,
-        actor.opacity,
-        actor.width,
-    )
-    appearance.ambient, appearance.diffuse = shading(actor)
-    appearance.lighting = actor.kind == "surface" and not actor.hull
-    appearance.point_size = actor.width * pixel_ratio
-    appearance.render_points_as_spheres = actor.kind == "points" and actor.form == "round"
-    if actor.kind == "lines":
-        # Not as tubes: VTK gets the depth of many wrong, and they vanish behind the body.
-        appearance.line_width = actor.width * pixel_ratio
-    if actor.kind == "points" and actor.form != "round":
-        shader = drawn.GetShaderProperty()
-        shader.AddFragmentShaderReplacement("//VTK::Color::Impl", True, _FORMS[actor.form], False)
+    appearance.color, appearance.opacity = actor.color, actor.opacity
+    strokes = actor.kind != "surface"
+    appearance.ambient, appearance.diffuse = (1.0, 0.0) if strokes else shading(actor)
+    appearance.lighting = not strokes and not actor.hull
+    appearance.show_edges, appearance.edge_opacity = actor.edges, 0.4
+    appearance.line_width = appearance.point_size = actor.width * pixel_ratio
     appearance.interpolation = "flat" if actor.normals is None else "phong"
     mapper = drawn.mapper
     by_color = actor.colors is not None or actor.materials is not None
@@ -287,7 +281,7 @@ def _paint(drawn: pv.Actor, actor: Actor, pixel_ratio: float, front: float | Non
     elif actor.scalars is not None:
         mapper.SetScalarModeToUsePointFieldData()
         mapper.SelectColorArray("values")
-        mapper.interpolate_before_map = True
+        mapper.SetInterpolateScalarsBeforeMapping(True)
         table = colormap(actor.colormap)
         if actor.film and front is not None:
             table = behind_front(table, actor.limits, front)
@@ -299,24 +293,6 @@ def _paint(drawn: pv.Actor, actor: Actor, pixel_ratio: float, front: float | Non
     if actor.behind:
         mapper.SetResolveCoincidentTopologyToPolygonOffset()
         mapper.SetRelativeCoincidentTopologyPolygonOffsetParameters(2, 30)
-    if actor.kind == "lines":
-        # Lines on a surface lie in it: pull them a little towards the eye.
-        mapper.SetResolveCoincidentTopologyToPolygonOffset()
-        mapper.SetRelativeCoincidentTopologyLineOffsetParameters(0, -4)
-
-
-_RIMMED = """//VTK::Color::Impl
-  vec2 across = vec2(2.0 * gl_PointCoord.x - 1.0, 1.0 - 2.0 * gl_PointCoord.y);
-  float rim = %s;
-  if (rim > %s) { discard; }
-  if (rim > %s) { ambientColor *= 0.72; diffuseColor *= 0.72; }
-"""
-_FORMS = {
-    "square": _RIMMED % ("max(abs(across.x), abs(across.y))", "0.9", "0.62"),
-    "triangle": _RIMMED
-    % ("max(-across.y * 1.25 - 0.1, abs(across.x) * 1.25 + across.y * 0.62)", "0.72", "0.5"),
-}
-"""How points that are no balls are painted: as on the page (scripts/stroke_shaders.js)."""
 
 
 def behind_front(

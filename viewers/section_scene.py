@@ -26,7 +26,7 @@ BEFORE = 1e-3
 
 
 def body_section(rig: Rig, graph: CutCellGraph, cut: Cut) -> PlaneSection:
-    """Return the section of a rig's mesh, with the faces turned as the graph has them."""
+    """Return the section of a rig's mesh, with faces oriented as in the graph."""
     faces = np.where(graph.inverted[:, None], rig.mesh.faces[:, ::-1], rig.mesh.faces)
     resolution = int(np.clip(1.5 * graph.lattice.resolution, COARSEST, FINEST))
     return plane_section(rig, TriangleMesh(rig.mesh.vertices, faces), cut, resolution)
@@ -56,7 +56,7 @@ def field_face(
     limits : (float, float)
         Of the colours.
     text : str
-        What is told before the value under the pointer.
+        The label before the value under the pointer.
     """
     points, faces, _ = part_above(section, threshold)
     values = values_at(graph, graph.lattice.to_unit(from_scene(rig, points)), field)
@@ -142,9 +142,9 @@ def values_at(
     return np.where(np.isfinite(value[:, 0]), np.maximum(crossings, 0.0), np.inf)
 
 
-def _face(points: NDArray, faces: NDArray, **look: Any) -> Actor:
+def _face(points: NDArray, faces: NDArray, **style: Any) -> Actor:
     return Actor(
-        "surface", points.astype(np.float32), faces.astype(np.int32), clipped=False, **look
+        "surface", points.astype(np.float32), faces.astype(np.int32), clipped=False, **style
     )
 
 

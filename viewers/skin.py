@@ -48,7 +48,7 @@ def skin_of_weights(weights: ArrayLike) -> Skin:
 
 
 def rigid_skin(joints: ArrayLike) -> Skin:
-    """Return a skin in which every point hangs on one joint, given as (n,) indices."""
+    """Return a skin in which every point follows one joint, given as (n,) indices."""
     column = np.asarray(joints).astype(np.uint16)[:, None]
     return Skin(column, np.ones(column.shape, np.float32))
 
@@ -75,12 +75,12 @@ def moved(points: ArrayLike, skin: Skin, pose: ArrayLike) -> NDArray[np.float64]
     return result
 
 
-def squared_apart(
+def distances_between(
     points: ArrayLike, skin: Skin, other: Skin, pose: ArrayLike
 ) -> NDArray[np.float64]:
-    """Return how far two skins take each point from each other, squared, shape (n,)."""
+    """Return the distance between the positions of each point in two skins, shape (n,)."""
     between = moved(points, skin, pose) - moved(points, other, pose)
-    return (between * between).sum(axis=1)
+    return np.asarray(np.linalg.norm(between, axis=1))
 
 
 def turned(normals: ArrayLike, skin: Skin, pose: ArrayLike) -> NDArray[np.float64]:

@@ -20,7 +20,7 @@ ALIKE = 0.005
 """Winding numbers that differ by less are told as one."""
 
 
-def slice_scene(rig: Rig, found: RaySlice, theme: Theme) -> tuple[dict[str, Actor], Legend]:
+def slice_scene(rig: Rig, rays: RaySlice, theme: Theme) -> tuple[dict[str, Actor], Legend]:
     """Return a slice's rays as actors, and how to read them.
 
     Parameters
@@ -37,14 +37,14 @@ def slice_scene(rig: Rig, found: RaySlice, theme: Theme) -> tuple[dict[str, Acto
         "slice points" (of the lattice, inside) and "slice outline" (of the mesh).
     legend : Legend
     """
-    lattice = found.lattice
+    lattice = rays.lattice
     cell = lattice.size / lattice.resolution * float(np.linalg.norm(rig.world[:3, 0]))
 
     def placed(points: NDArray) -> NDArray[np.float64]:
         return to_scene(rig, lattice.to_file(points))
 
-    low, high, winding, kept = _joined(found, _reach(rig, found))
-    size = cell * np.where(kept, KEPT, DROPPED)
+    low, high, winding, is_inside = _joined(rays, _reach(rig, rays))
+    size = cell * np.where(is_inside, KEPT, DROPPED)
     points, faces, of = rods(placed(low), placed(high), size)
     number = winding[of].astype(np.float32)
     actors = {
@@ -56,15 +56,15 @@ def slice_scene(rig: Rig, found: RaySlice, theme: Theme) -> tuple[dict[str, Acto
             reading=Reading("winding number ", number),
         )
     }
-    tips = found.high[found.kept]
+    tips = rays.high[rays.kept]
     inside = tips[_on_lattice(tips, lattice.resolution)]
     for name, at, color in (
         ("slice points", inside, INTERIOR),
-        ("slice crossings", found.crossing, SURFACE),
+        ("slice crossings", rays.crossing, SURFACE),
     ):
         points, faces = beads(placed(at), BEAD * cell)
         actors[name] = _solid(points, faces, color=color)
-    outline = _outline(rig, found)
+    outline = _outline(rig, rays)
     actors["slice outline"] = Actor(
         "lines",
         placed(outline.reshape(-1, 3)).astype(np.float32),
@@ -91,7 +91,7 @@ def slice_place(rig: Rig, axis: str, position: float, resolution: int) -> tuple[
     axis : {"x", "y", "z"}
         Of the scene: the slice's normal.
     position : float
-        From 0 to 1 across the faces' box.
+        From 0 to 1 across the box of the faces.
     resolution : int
 
     Returns
@@ -101,7 +101,7 @@ def slice_place(rig: Rig, axis: str, position: float, resolution: int) -> tuple[
     index : int
         The slice, from 0 to R - 1.
     cut : Cut
-        The plane of the slice, which takes away what lies before it.
+        The plane of the slice, which clips the near side.
     """
     from cutcell.graph import Lattice
 
@@ -126,26 +126,26 @@ def file_axis(rig: Rig, axis: str) -> tuple[int, int]:
     return nearest, 1 if row[nearest] > 0 else -1
 
 
-def _reach(rig: Rig, found: RaySlice) -> NDArray[np.float64]:
+def _reach(rig: Rig, rays: RaySlice) -> NDArray[np.float64]:
     """Return the corners of the body's box with some space around, in the unit cube."""
-    margin = MARGIN / found.lattice.resolution
-    return found.lattice.to_unit(rig.mesh.bounds) + np.array([[-margin], [margin]])
+    margin = MARGIN / rays.lattice.resolution
+    return rays.lattice.to_unit(rig.mesh.bounds) + np.array([[-margin], [margin]])
 
 
 def _joined(
-    found: RaySlice, box: NDArray[np.float64]
+    rays: RaySlice, box: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], NDArray[np.bool_]]:
     """Join neighbouring segments that are alike, and leave out what is far from the body."""
-    middle = (found.low + found.high) / 2
+    middle = (rays.low + rays.high) / 2
     near = ((middle >= box[0]) & (middle <= box[1])).all(axis=1)
-    low, high, winding, kept = (
-        values[near] for values in (found.low, found.high, found.winding, found.kept)
+    low, high, winding, is_inside = (
+        values[near] for values in (rays.low, rays.high, rays.winding, rays.kept)
     )
     follows = (np.abs(low[1:] - high[:-1]) < 1e-12).all(axis=1)
-    alike = (kept[1:] == kept[:-1]) & (np.abs(winding[1:] - winding[:-1]) < ALIKE)
+    alike = (is_inside[1:] == is_inside[:-1]) & (np.abs(winding[1:] - winding[:-1]) < ALIKE)
     first = np.flatnonzero(np.concatenate([[True], ~(follows & alike)]))
     last = np.append(first[1:], len(low)) - 1
-    return low[first], high[last], winding[first], kept[first]
+    return low[first], high[last], winding[first], is_inside[first]
 
 
 def _on_lattice(points: NDArray[np.float64], resolution: int) -> NDArray[np.bool_]:
@@ -153,11 +153,11 @@ def _on_lattice(points: NDArray[np.float64], resolution: int) -> NDArray[np.bool
     return np.asarray((np.abs(cells - cells.round()) < 1e-9).all(axis=1))
 
 
-def _outline(rig: Rig, found: RaySlice) -> NDArray[np.float64]:
+def _outline(rig: Rig, rays: RaySlice) -> NDArray[np.float64]:
     """Return where the slice's plane meets the triangles, shape (s, 2, 3), in the unit cube."""
-    level = found.low[0]
-    normal = int(np.argmin(np.ptp(found.low, axis=0) + np.ptp(found.high, axis=0)))
-    corners = found.lattice.to_unit(rig.mesh.vertices)[rig.mesh.faces]
+    level = rays.low[0]
+    normal = int(np.argmin(np.ptp(rays.low, axis=0) + np.ptp(rays.high, axis=0)))
+    corners = rays.lattice.to_unit(rig.mesh.vertices)[rig.mesh.faces]
     height = corners[:, :, normal] - level[normal]
     above = height > 0
     met = above.any(axis=1) & ~above.all(axis=1)
@@ -174,11 +174,11 @@ def _outline(rig: Rig, found: RaySlice) -> NDArray[np.float64]:
     return three[found_ends].reshape(-1, 2, 3)
 
 
-def _solid(points: NDArray, faces: NDArray, **look: object) -> Actor:
+def _solid(points: NDArray, faces: NDArray, **style: object) -> Actor:
     return Actor(
         "surface",
         points.astype(np.float32),
         faces.astype(np.int32),
         clipped=False,
-        **look,  # type: ignore[arg-type]
+        **style,  # type: ignore[arg-type]
     )

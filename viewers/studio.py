@@ -7,12 +7,15 @@ from types import TracebackType
 import numpy as np
 from numpy.typing import NDArray
 
-from .camera import Camera, framing
+from .camera import PAGE_HEIGHT, Camera, framing
 from .description import Description, in_view
-from .lettering import write_captions, write_legend
-from .palette import LIGHT, Theme
+from .lettering import free_corner, legend_card, put_card, write_captions
+from .palette import LIGHT, Theme, to_bytes
 from .scene import Scene
 from .tiles import Tile, shape_of, tiles
+
+SAME = 4
+"""How far a colour may be from the ground's and still be taken for it, of 255."""
 
 
 class Studio:
@@ -27,6 +30,10 @@ class Studio:
         Width and height of the pictures, in pixels.
     legend : bool
         Whether the legend is written on them.
+    page_height : float
+        How high a page's canvas is that looks the same, in its pixels.
+    transparent : bool
+        Whether pictures have no ground, but a fourth channel.
 
     Examples
     --------
@@ -40,15 +47,29 @@ class Studio:
         theme: Theme = LIGHT,
         size: tuple[int, int] = (1600, 1200),
         legend: bool = True,
+        page_height: float = PAGE_HEIGHT,
+        transparent: bool = False,
     ) -> None:
         self.theme, self.size, self.legend = theme, size, legend
-        self._tiles = tiles(max(len(description.views), 1), size, shape_of(description.bounds))
-        self._scenes = [Scene(theme, (width, height)) for _, _, width, height in self._tiles]
-        self.show(description)
+        self._transparent, self._ratio = transparent, size[1] / page_height
+        self._scenes: list[Scene] = []
+        self._description = description
+        self._divide(size)
+
+    def _divide(self, size: tuple[int, int]) -> None:
+        """Divide a part of the picture, from above, among the views."""
+        for scene in self._scenes:
+            scene.close()
+        count, shape = max(len(self._description.views), 1), shape_of(self._description.bounds)
+        self._tiles = tiles(count, size, shape)
+        self._scenes = [
+            Scene(self.theme, tile[2:], pixel_ratio=self._ratio) for tile in self._tiles
+        ]
+        self.show(self._description)
 
     def show(self, description: Description) -> None:
         """Make every view what a description says."""
-        self._shown = description
+        self._description = description
         for view, scene in enumerate(self._scenes):
             scene.show(in_view(description, view))
 
@@ -58,7 +79,7 @@ class Studio:
         bounds: NDArray[np.float64] | None = None,
     ) -> Camera:
         """Return a camera that sees all of each view, or of given bounds; see `framing`."""
-        bounds = self._shown.bounds if bounds is None else bounds
+        bounds = self._description.bounds if bounds is None else bounds
         return framing(bounds, self.shape, direction)
 
     def draw(self, camera: Camera) -> NDArray[np.uint8]:
@@ -70,17 +91,42 @@ class Studio:
 
         Returns
         -------
-        array, shape (height, width, 3), uint8
+        array, shape (height, width, 3 or 4), uint8
         """
-        picture = np.empty((self.size[1], self.size[0], 3), np.uint8)
+        picture, covered = self._draw_views(camera)
+        legend = self._description.legend if self.legend else None
+        if legend is None:
+            return picture
+        card = legend_card(legend, self.theme, self.size)
+        place = free_corner(covered, card)
+        if place is None:
+            # No corner is free: the legend gets a strip below the figures.
+            self._divide((self.size[0], max(self.size[1] - round(1.25 * card.height), 16)))
+            picture, covered = self._draw_views(camera)
+            place = free_corner(covered, card) or (0, self.size[1] - card.height)
+        return put_card(picture, card, place)
+
+    def _draw_views(self, camera: Camera) -> tuple[NDArray[np.uint8], NDArray[np.bool_]]:
+        """Return the picture without a legend, and where something is seen on it."""
+        ground = (*to_bytes(self.theme.bottom), 0)[: 4 if self._transparent else 3]
+        picture = np.full((self.size[1], self.size[0], len(ground)), ground, np.uint8)
+        covered = np.zeros(picture.shape[:2], bool)
         for scene, (left, top, width, height) in zip(self._scenes, self._tiles, strict=True):
-            scene.look(camera)
-            picture[top : top + height, left : left + width] = scene.render_png()
-        if self._shown.views:
-            picture = write_captions(picture, self._shown.views, self._tiles, self.theme)
-        if self.legend and self._shown.legend is not None:
-            picture = write_legend(picture, self._shown.legend, self.theme)
-        return picture
+            scene.set_camera(camera)
+            where = slice(top, top + height), slice(left, left + width)
+            if self._transparent:
+                part = scene.render_clear()
+                covered[where] = part[:, :, 3] > 0
+            else:
+                part = scene.render_png()
+                differences = np.abs(part - _ground(self.theme, height))
+                covered[where] = differences.max(axis=2) > SAME
+            picture[where] = part
+        if self._description.views:
+            plain = picture
+            picture = write_captions(picture, self._description.views, self._tiles, self.theme)
+            covered |= (picture != plain).any(axis=2)
+        return picture, covered
 
     @property
     def shape(self) -> float:
@@ -89,7 +135,7 @@ class Studio:
 
     @property
     def places(self) -> list[Tile]:
-        """Where each view lies in the picture."""
+        """The rectangle of each view in the picture."""
         return self._tiles
 
     def close(self) -> None:
@@ -107,3 +153,10 @@ class Studio:
         trace: TracebackType | None,
     ) -> None:
         self.close()
+
+
+def _ground(theme: Theme, height: int) -> NDArray[np.float32]:
+    """Return the colours of each row of an empty picture, shape (height, 1, 3)."""
+    part = (np.arange(height, dtype=np.float32) + 0.5)[:, None, None] / height
+    top, bottom = (255 * np.array(color, np.float32) for color in (theme.top, theme.bottom))
+    return top + part * (bottom - top)

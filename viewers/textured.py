@@ -33,7 +33,7 @@ def pieces(
     Yields
     ------
     data : pyvista.PolyData
-        Corners, each with its tint ("colors"), and where it lies in the image.
+        Corners, each with its tint ("colors"), and its position in the image.
     kind : (int, int)
         The layer, -1 for none, and how the image goes on; see `FaceColors`.
     """

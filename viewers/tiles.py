@@ -12,7 +12,7 @@ Tile = tuple[int, int, int, int]
 
 
 def tiles(count: int, size: tuple[int, int], shape: float = 0.75) -> list[Tile]:
-    """Divide a picture among views, so that what stands in each is seen as large as can be.
+    """Divide a picture among views, so that their contents are as large as possible.
 
     Parameters
     ----------
@@ -30,10 +30,10 @@ def tiles(count: int, size: tuple[int, int], shape: float = 0.75) -> list[Tile]:
     """
     width, height = size
 
-    def seen(columns: int) -> float:
+    def scale_of(columns: int) -> float:
         return min(width / columns / shape, height / ceil(count / columns))
 
-    columns = max(range(1, max(count, 1) + 1), key=seen)
+    columns = max(range(1, max(count, 1) + 1), key=scale_of)
     rows = ceil(count / columns)
     places = []
     for k in range(count):

@@ -9,7 +9,8 @@ from cutcell.rig import Rig
 
 from .character import attachments, body, bones
 from .description import Description, Legend, Reading
-from .palette import UNREACHED, joint_colors, to_bytes
+from .joint_colors import colors_of
+from .palette import UNREACHED, to_bytes
 
 MIXED = "Each bone's colour, mixed by weight"
 MOST = "Dominant bone"
@@ -22,7 +23,7 @@ def weights_scene(
     *,
     skeleton: bool = True,
     chosen: int | None = None,
-    **look: Any,
+    **style: Any,
 ) -> Description:
     """Return the scene of a weight matrix.
 
@@ -47,13 +48,13 @@ def weights_scene(
     """
     colors, legend = weight_colors(rig, weights, joint)
     actors = {
-        "body": body(rig, weights, **colors, **look),
+        "body": body(rig, weights, **colors, **style),
         **attachments(rig),
         **bones(
             rig,
             joint if chosen is None else chosen,
             skeleton,
-            joint_colors(rig.skeleton.parents) if joint is None else None,
+            colors_of(rig) if joint is None else None,
         ),
     }
     return Description(actors, legend=legend)
@@ -73,7 +74,7 @@ def weight_colors(
 
 
 def _mixed(rig: Rig, weights: NDArray) -> NDArray[np.float64]:
-    """Mix the joints' colours by vertex; most weights are zero, and cost nothing."""
+    """Mix the colours of joints by vertex; most weights are zero, and cost nothing."""
     count, joints = weights.shape
     weighted = np.flatnonzero(weights > 0)
     vertex = weighted // joints
@@ -81,7 +82,7 @@ def _mixed(rig: Rig, weights: NDArray) -> NDArray[np.float64]:
     # Many small weights mix to grey; a power lets the strongest show its colour.
     strong = np.square(np.square(weights.ravel()[weighted]))
     total = np.bincount(vertex, strong, count)[:, None]
-    channels = joint_colors(rig.skeleton.parents).T
+    channels = colors_of(rig).T
     mixed = [np.bincount(vertex, strong * channel[joint], count) for channel in channels]
     blended = np.stack(mixed, axis=1) / np.where(total > 0, total, 1)
     return np.where(total > 0, blended, UNREACHED)
@@ -90,7 +91,7 @@ def _mixed(rig: Rig, weights: NDArray) -> NDArray[np.float64]:
 def dominant_colors(rig: Rig, weights: ArrayLike) -> tuple[dict[str, Any], Legend]:
     """Colour each vertex by the joint that holds most of it; see `weight_colors`."""
     reading = _strongest(rig, weights)
-    colors = to_bytes(joint_colors(rig.skeleton.parents))
+    colors = to_bytes(colors_of(rig))
     assert reading.values is not None
     style = {"colors": colors[reading.values.astype(int)], "reading": reading}
     return style, Legend(MOST)

@@ -1,7 +1,7 @@
-"""Draws in a process of its own: `python -m cutcell_viewers.worker ORDER OUT`.
+"""Draws in another process: `python -m cutcell_viewers.worker ORDER OUT`.
 
 Without OpenGL VTK ends its process, windows belong to one thread, and what is drawn takes
-long: none of this shall harm whoever wants a picture.
+long: none of this shall harm the caller.
 """
 
 import json
@@ -35,7 +35,7 @@ def draw_apart(order: Order, path: str | Path, progress: Progress = silent) -> N
     order : Order
     path : str or Path
     progress : callable
-        Told the stage and the part that is done; where it raises, the other process is
+        Called with the stage and the completed part; where it raises, the other process is
         stopped and no file is left.
 
     Raises
@@ -101,14 +101,14 @@ def _watch(process: subprocess.Popen[str], progress: Progress) -> str:
 def main(order: str, out: str) -> None:
     """Draw an order that was stored in a file; tell progress and errors line by line."""
 
-    def tell(**line: object) -> None:
+    def report(**line: object) -> None:
         print(json.dumps(line), flush=True)
 
     try:
-        wanted = pickle.loads(Path(order).read_bytes())
-        draw(wanted, out, lambda stage, fraction: tell(stage=stage, fraction=fraction))
+        order_ = pickle.loads(Path(order).read_bytes())
+        draw(order_, out, lambda stage, fraction: report(stage=stage, fraction=fraction))
     except CutcellError as error:
-        tell(error=type(error).__name__, message=str(error))
+        report(error=type(error).__name__, message=str(error))
 
 
 if __name__ == "__main__":

@@ -1,1 +1,1 @@
-"""What happens on the page: functions that are given a session, and change its state."""
+"""Commands of the page: functions that take a session and change its state."""

@@ -1,11 +1,11 @@
-"""What an address says: which character it names, and what is chosen there."""
+"""Reading of an address: its character, and the choices in it."""
 
 from collections.abc import Callable
 from typing import Any
 
 from cutcell_assets import DEMOS
 
-from ..jobs.messages import shown
+from ..jobs.messages import visible_text
 from ..state.url import defaults, from_query
 from . import tour
 from .history import restore
@@ -13,8 +13,8 @@ from .loading import load_demo, load_files
 from .session import Session
 
 GONE = (
-    "The character of this address was uploaded, and the server no longer has it; here is "
-    "another. Drop the file again to go on with it."
+    "The uploaded character of this link is no longer on the server. Drop the file again to "
+    "continue."
 )
 
 
@@ -32,7 +32,7 @@ def watch(session: Session) -> None:
     session.view.listen("visit", visit)
 
 
-def greet(session: Session, demo: str) -> None:
+def show_first_demo(session: Session, demo: str) -> None:
     """Show the first character as it moves, in the colours of its weights."""
 
     def chosen() -> None:
@@ -61,7 +61,7 @@ def choose(session: Session, query: str, first: str = "") -> None:
     state.param.update(**choices, demo=demo if demo in demo_ids else "")
 
 
-def arrive(session: Session, query: str, otherwise: Callable[[], None]) -> None:
+def arrive(session: Session, query: str, fallback: Callable[[], None]) -> None:
     """Show what an address says.
 
     Parameters
@@ -83,8 +83,7 @@ def arrive(session: Session, query: str, otherwise: Callable[[], None]) -> None:
         arrival["told"] = GONE
     elif problems:
         arrival["told"] = (
-            f"The address says what this page does not know ({shown(', '.join(problems))}); "
-            "the rest of it was taken."
+            f"Unknown settings in the link were ignored: {visible_text(', '.join(problems))}."
         )
     if tour.opens(arrival):
         tour.go(session, arrival["tour"], frozenset({**choices, **arrival}))
@@ -93,4 +92,4 @@ def arrive(session: Session, query: str, otherwise: Callable[[], None]) -> None:
     elif demo:
         load_demo(session, rig)
     else:
-        otherwise()
+        fallback()

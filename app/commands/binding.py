@@ -57,13 +57,13 @@ def bind(session: Session, message: tuple[str, str] | None = None) -> None:
         What is still to be read when it is done.
     """
     state = session.state
-    rig, method = state.rig, generous(state)
+    rig, method = state.rig, wide_options(state)
     if rig is None:
         return
     if state.bare:
         _build(session, message)
         return
-    request, few, corrections = asked(state), kept(state), state.corrections
+    request, few, corrections = binding_request(state), prune_options(state), state.corrections
     graph = session.binder.request(request, rig.mesh, OF_GRAPH)
     work = binding_work(state, rig, corrections, graph)
 
@@ -91,12 +91,12 @@ def binding_work(
 
     It returns the weights of many influences, and the binding with those that are kept.
     """
-    method, few = effective(generous(state)), kept(state)
+    method, few = effective(wide_options(state)), prune_options(state)
 
     def work(progress: Progress) -> tuple[csr_array, Binding]:
         reusable = {"graph": graph, "corrections": measured(corrections)}
         result = cutcell.bind(rig, **reusable, progress=progress, **method)
-        return csr_array(result.weights), pruned(result, few, rig, corrections)
+        return csr_array(result.weights), prune(result, few, rig, corrections)
 
     return work
 
@@ -104,7 +104,9 @@ def binding_work(
 def previewer(state: State) -> Callable[[Rig, Corrections], Binding]:
     """Return what tells about how the rig that is bound is bound with joints elsewhere."""
     rig, binding, before = state.rig, state.binding, measured(state.corrections)
-    method = cutcell.ANIMATION.with_options(**effective({**generous(state), **kept(state)}))
+    method = cutcell.ANIMATION.with_options(
+        **effective({**wide_options(state), **prune_options(state)})
+    )
     most = state.max_influences
     made: list[Preview] = []
 
@@ -123,7 +125,7 @@ def reach_of(falloff: Any) -> float:
     return replace(cutcell.ANIMATION, falloff=falloff).reach_needed
 
 
-def asked(state: State) -> dict[str, Any]:
+def binding_request(state: State) -> dict[str, Any]:
     """Return what distances are measured for."""
     return {**method_of(state, GRAPH), "corrections": measured(state.corrections)}
 
@@ -135,7 +137,7 @@ def cancel(session: Session) -> None:
         session.uploads.stay(session.uploads.key)
         state.param.update(busy=False, message=("info", "Cancelled. Nothing was changed."))
         if state.graph is not None:
-            _go_back(session, session.binder.wanted)
+            _go_back(session, session.binder.requested)
 
 
 def swap(session: Session, rig: Rig, **more: Any) -> None:
@@ -166,13 +168,13 @@ def restore(session: Session, choices: dict[str, Any]) -> None:
         history.restore(session, plain)
         with history.restoring(session):
             swap(session, rig, repair=choices["repair"], own=file_rig)
-    history.tell(session)
+    history.publish(session)
 
 
 def _build(session: Session, message: tuple[str, str] | None) -> None:
     """Build the graph of a mesh without a skeleton."""
     rig = session.state.rig
-    request = asked(session.state)
+    request = binding_request(session.state)
     chosen = {name: request[name] for name in OF_GRAPH}
     cached = session.binder.request(request, rig.mesh, OF_GRAPH)
 
@@ -186,13 +188,13 @@ def _build(session: Session, message: tuple[str, str] | None) -> None:
     session.start(work, done, failed=lambda: _go_back(session, request))
 
 
-def _go_back(session: Session, wanted: dict[str, Any]) -> None:
+def _go_back(session: Session, failed: dict[str, Any]) -> None:
     """Choose what the page holds instead of what nothing came of; at first, the defaults."""
     state, bound = session.state, session.binder.bound
-    request, corrections = asked(State()), Corrections()
+    request, corrections = binding_request(State()), Corrections()
     if state.graph is not None and bound is not None:
         request, corrections = bound.request, bound.corrections
-    if asked(state) != wanted or (wanted == request and state.corrections == corrections):
+    if binding_request(state) != failed or (failed == request and state.corrections == corrections):
         return
     session.binder.withdrawn(request)
     _withdraw(session, {name: request[name] for name in GRAPH}, corrections)
@@ -209,7 +211,7 @@ def _withdraw(session: Session, choices: dict[str, Any], corrections: Correction
 
 def _rebind(session: Session) -> None:
     """Compute again if what is measured for is other than what was last computed for."""
-    if asked(session.state) != session.binder.wanted:
+    if binding_request(session.state) != session.binder.requested:
         bind(session)
 
 
@@ -221,7 +223,7 @@ def _correct(session: Session) -> None:
     is_ready = state.bare_graph if state.bare else state.binding
     if is_ready is None and not session.tasks.jobs("main").running:
         session.binder.withdrawn()  # it was dropped with the joints that it was of
-    if asked(state) != session.binder.wanted:
+    if binding_request(state) != session.binder.requested:
         session.tasks.after_a_pause(lambda: _rebind(session))
     elif not state.bare:
         weigh(session)
@@ -230,20 +232,20 @@ def _correct(session: Session) -> None:
 # Weights of the distances that are there
 
 
-def generous(state: State) -> dict[str, Any]:
+def wide_options(state: State) -> dict[str, Any]:
     """Return what to bind with, so that fewer influences can be kept later."""
     return {**method_of(state, (*GRAPH, *WEIGHTS)), "max_influences": MOST, "threshold": 0.0}
 
 
-def kept(state: State) -> dict[str, Any]:
+def prune_options(state: State) -> dict[str, Any]:
     """Return which of many influences are chosen."""
     return method_of(state, ("max_influences", "threshold"))
 
 
-def pruned(binding: Binding, kept: dict[str, Any], rig: Rig, corrections: Corrections) -> Binding:
+def prune(binding: Binding, options: dict[str, Any], rig: Rig, corrections: Corrections) -> Binding:
     """Return what was bound generously with the weights that are chosen and corrected."""
-    weights = keep_strongest(binding.distances, binding.weights, **kept)
-    most = kept["max_influences"]
+    weights = keep_strongest(binding.distances, binding.weights, **options)
+    most = options["max_influences"]
     return _reweighted(
         binding, finished(rig, binding.graph, weights, corrections, most), rig, corrections
     )
@@ -259,26 +261,27 @@ def weigh(session: Session) -> None:
     state, bound = session.state, session.binder.bound
     if state.binding is None or bound is None:
         return
-    if asked(state)["corrections"] != bound.request["corrections"]:
+    if binding_request(state)["corrections"] != bound.request["corrections"]:
         return  # they are about to be measured
-    distances, falloff, few = state.binding.distances, state.falloff, kept(state)
-    cached = bound.falloffs.get(falloff)
+    distances, falloff, few = state.binding.distances, state.falloff, prune_options(state)
+    key = falloff if state.refine == "none" else f"{falloff} {state.refine}"
+    cached = bound.falloffs.get(key)
     if bound.cutoff < reach_of(falloff) or not _measured(distances, falloff, few["max_influences"]):
         bind(session)
     elif falloff in QUICK:
-        _soon(session, partial(_weights, state.still(), **few))
+        _soon(session, partial(_weights, state.snapshot(), **few))
     elif cached is not None and cached[0] is distances:
         many = cached[1]
         _soon(session, lambda: keep_strongest(distances, many.toarray(), **few))
     else:
-        now = state.still()
+        now = state.snapshot()
 
         def work(progress: Progress) -> csr_array:
             progress("weights", 0.0)
             return csr_array(_weights(now, max_influences=MOST))
 
         def done(many: csr_array) -> None:
-            bound.falloffs[falloff] = (distances, many)
+            bound.falloffs[key] = (distances, many)
             weigh(session)
 
         session.start(work, done)
@@ -289,7 +292,7 @@ def _weights(state: Any, **few: Any) -> NDArray:
     rig, distances = state.rig, state.binding.distances
     return skinning_weights(
         distances,
-        **effective({"falloff": state.falloff, "alpha": state.alpha}),
+        **effective({name: getattr(state, name) for name in ("falloff", "refine", "alpha")}),
         allowed=rig.allowed,
         adjustments=adjustments_of(rig, distances.graph, measured(state.corrections)),
         **few,

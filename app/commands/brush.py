@@ -50,9 +50,9 @@ def take_up(session: Session) -> None:
     state = session.state
     if not state.brush:
         return
-    shown = state.weights_shown if state.brush_mode in WITHOUT_JOINT else "bone"
+    colors_of = state.weights_shown if state.brush_mode in WITHOUT_JOINT else "bone"
     state.param.update(
-        joint_handle=False, weights_of="ours", weights_shown=shown, pose_colors="weights",
+        joint_handle=False, weights_of="ours", weights_shown=colors_of, pose_colors="weights",
         heat=False,
     )  # fmt: skip
 
@@ -63,7 +63,7 @@ def put_down(session: Session) -> None:
 
 
 def turn_over(session: Session) -> None:
-    """Take up the brush where weights are painted, or put it down."""
+    """Switch the brush on where weights can be painted, else off."""
     state = session.state
     if not PANELS[state.panel].paints:
         state.panel = "weights"
@@ -94,7 +94,7 @@ def radius_of(state: State) -> float:
 
 
 def tell_brush(session: Session) -> None:
-    """Tell the view how large the brush is, and where its mirror image is; None for no brush."""
+    """Send the brush's size and its mirror plane to the view; None for no brush."""
     state = session.state
     part: dict[str, Any] | None = None
     if paints(state):
@@ -106,8 +106,8 @@ def tell_brush(session: Session) -> None:
         alike = state.brush_mode in WITHOUT_JOINT
         if mirror is not None and (alike or mirror.joint[state.joint] >= 0):
             part["mirror"] = plane_in_scene(state.rig.world, mirror)
-    if session.view.told("brush") != part:
-        session.view.tell(brush=part)
+    if session.view.last_sent("brush") != part:
+        session.view.send(brush=part)
 
 
 def select(session: Session, chosen: NDArray[np.bool_]) -> None:
@@ -221,7 +221,7 @@ class Hand:
     def _show(self, vertices: NDArray, rows: NDArray) -> None:
         message: dict[str, Any]
         colors = painted_colors(self._session.state, vertices, rows)
-        message = {name: np.ascontiguousarray(some).ravel() for name, some in colors.items()}
+        message = {name: np.ascontiguousarray(values).ravel() for name, values in colors.items()}
         if self._session.state.panel == "pose" and len(vertices):
             skin = skin_of_weights(rows)
             influences = {"joints": skin.joints.ravel(), "weights": skin.weights.ravel()}

@@ -2,6 +2,8 @@
 
 from typing import Any
 
+import numpy as np
+
 from cutcell.diagnosis import Diagnosis, Repaired, diagnose
 from cutcell.runtime.progress import Progress
 from cutcell_viewers.finding_scene import camera_on
@@ -9,8 +11,8 @@ from cutcell_viewers.finding_scene import camera_on
 from ..scenes.common import bounds_of
 from ..state.check import Repair
 from ..state.method import GRAPH, method_of
-from .binding import asked, swap
-from .look import look
+from .binding import binding_request, swap
+from .look import set_camera
 from .session import Session
 
 
@@ -18,13 +20,18 @@ def watch(session: Session) -> None:
     """Keep the diagnosis up to the character and its graph."""
     session.state.param.watch(lambda *events: _begin_anew(session), "rig")
     session.state.param.watch(lambda *events: examine(session), ["rig", "binding", "bare_graph"])
+    session.state.param.watch(
+        lambda *events: session.tasks.after_a_pause(lambda: examine_export(session), "export"),
+        ["panel", "binding"],
+    )
 
 
 def _begin_anew(session: Session) -> None:
     state = session.state
     session.tasks.jobs("diagnosis").cancel()
+    session.tasks.jobs("export check").cancel()
     session.binder.is_diagnosed = False
-    state.param.update(diagnosis=None, finding="")
+    state.param.update(diagnosis=None, export_diagnosis=None, finding="")
     if state.repair is not None and state.repair.after is not state.rig:
         state.repair = None
 
@@ -32,8 +39,8 @@ def _begin_anew(session: Session) -> None:
 def examine(session: Session) -> None:
     """Diagnose what stands there, unless its graph is known to be sound or not."""
     state, binder = session.state, session.binder
-    if state.graph is None or not binder.is_for(asked(state)):
-        return  # what belongs to the choices is not there yet
+    if state.graph is None or not binder.is_for(binding_request(state)):
+        return  # the graph of the present choices is not built yet
     if binder.is_diagnosed:
         return
     rig, resolution = state.rig, state.resolution
@@ -47,9 +54,33 @@ def examine(session: Session) -> None:
     def done(diagnosis: Diagnosis) -> None:
         state.diagnosis = diagnosis
         if state.panel == "check":
-            _look(session)
+            _show_finding(session)
 
     session.tasks.jobs("diagnosis").start(work, done, session.fail, lambda stage, fraction: None)
+
+
+def examine_export(session: Session) -> None:
+    """Check the weights that an export contains, while the panel shows the findings."""
+    state = session.state
+    if (
+        state.panel != "check"
+        or state.binding is None
+        or not session.binder.is_for(binding_request(state))
+    ):
+        return
+    rig, resolution = state.rig.with_weights(state.binding.weights), state.resolution
+    last = state.export_diagnosis
+    if last is not None and np.array_equal(last.rig.weights, rig.weights):
+        return
+    distances = state.binding.distances if _is_standard(state) else None
+
+    def work(progress: Progress) -> Diagnosis:
+        return diagnose(rig, resolution, distances=distances, only_weights=True, progress=progress)
+
+    def done(diagnosis: Diagnosis) -> None:
+        state.export_diagnosis = diagnosis
+
+    session.tasks.jobs("export check").start(work, done, session.fail, lambda stage, fraction: None)
 
 
 def _is_standard(state: Any) -> bool:
@@ -63,23 +94,23 @@ def look_at(session: Session, code: str) -> None:
     if code == state.finding:
         code = ""
     state.finding = code
-    _look(session)
+    _show_finding(session)
 
 
 def go_to(session: Session, code: str) -> None:
-    """Go where a warning is told: to the panel that shows what a finding names, and its advice."""
+    """Open the panel that shows a finding and its advice."""
     state = session.state
     state.param.update(panel="check", finding=code)
-    _look(session)  # where the check is not done yet, it is looked at then
+    _show_finding(session)  # where the check is not done yet, it is looked at then
 
 
-def _look(session: Session) -> None:
+def _show_finding(session: Session) -> None:
     """Look at what the finding names that is looked at."""
     state = session.state
-    if state.found is not None:
-        camera = camera_on(state.rig, state.found, bounds_of(state), session.view.aspect)
+    if state.selected_finding is not None:
+        camera = camera_on(state.rig, state.selected_finding, bounds_of(state), session.view.aspect)
         if camera is not None:
-            look(session, camera)
+            set_camera(session, camera)
 
 
 def repair(session: Session, codes: list[str]) -> None:

@@ -21,7 +21,7 @@ from cutcell.rig import Rig
 from cutcell.runtime.progress import Progress
 
 from ..jobs.jobs import COMPARING, WAITING
-from ..jobs.messages import shown, told
+from ..jobs.messages import error_text, visible_text
 from ..scenes.compare import found_of
 from ..state import State
 from ..state.compare import FEWEST_VIEWS, MAX_VIEWS, NOW, offered, standard
@@ -30,7 +30,7 @@ from .session import Session
 
 @dataclass(frozen=True, eq=False)
 class Compared:
-    """What one method makes of the rig.
+    """Result of one method for the rig.
 
     Parameters
     ----------
@@ -38,7 +38,7 @@ class Compared:
     weights : array, shape (n, j), or None
         None where it failed.
     failed : str
-        Why, in a sentence.
+        The reason.
     seconds : float
     l1, deformation : float or None
         Against the file's own weights: the paper's weight error, and its squared distance
@@ -79,7 +79,7 @@ def choose(session: Session, name: str, chosen: bool) -> None:
         state.param.update(methods=names, minus=minus)
 
 
-def wanted(state: State) -> str | None:
+def next_method(state: State) -> str | None:
     """Return the next method to be computed, or None."""
     for name in state.methods:
         if found_of(state, name) is None:
@@ -92,7 +92,7 @@ def find(session: Session) -> None:
     state, jobs = session.state, session.tasks.jobs("compare")
     if state.panel != "compare" or state.binding is None or jobs.running:
         return
-    name = wanted(state)
+    name = next_method(state)
     if name is None:
         state.comparing = ""
         return
@@ -108,7 +108,7 @@ def find(session: Session) -> None:
 
     def failed(error: Exception) -> None:
         session.fail(error)
-        done(Compared(rig, None, told(error)))
+        done(Compared(rig, None, error_text(error)))
 
     def report(stage: str, fraction: float) -> None:
         state.queued = stage == WAITING
@@ -140,9 +140,11 @@ def measured(rig: Rig, name: str, binding: Any, resolution: int, progress: Progr
                 options = known_options(method, resolution=resolution, progress=progress)
                 result = method(rig, **options)
         except CutcellError as error:
-            return Compared(rig, None, shown(str(error)))
+            return Compared(rig, None, visible_text(str(error)))
         if result.weights is None:
-            return Compared(rig, None, shown(result.failed), float(sum(result.seconds.values())))
+            return Compared(
+                rig, None, visible_text(result.failed), float(sum(result.seconds.values()))
+            )
         weights, seconds, source = result.weights, result.seconds, None
     progress(name, 0.9)
     share = vertex_shares(rig.mesh)

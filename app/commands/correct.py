@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cutcell.editing.correct import (
-    apply_vertex_overrides,
+    apply_overrides,
     corrected_parts,
     corrected_rig,
     locked_by,
@@ -20,6 +20,7 @@ from cutcell.graph import CutCellGraph
 from cutcell.rig import Rig, Skeleton
 from cutcell.rig.deform_joints import DeformJoints, deform_joints
 from cutcell.runtime.display import shown_name
+from cutcell.weights.rig_falloff.surface_operators import SurfaceOperators
 
 from ..files.receive import safe_name
 from ..state.corrections import changes, renamed, tidy
@@ -27,18 +28,18 @@ from .session import Session
 
 
 def correct(session: Session, corrections: Corrections) -> None:
-    """Take corrections in place of those that there are; what cannot be is told, and not taken."""
+    """Replace the corrections; report and refuse those that are impossible."""
     state, corrections = session.state, tidy(corrections)
     if corrections == state.corrections:
         return
     try:
-        state.param.update(**taken(session, corrections))
+        state.param.update(**corrected_state(session, corrections))
     except CutcellError as error:
         session.fail(error)
-        state.param.trigger("corrections")  # what offered them shows again what there is
+        state.param.trigger("corrections")  # reset the controls
 
 
-def taken(session: Session, corrections: Corrections) -> dict[str, Any]:
+def corrected_state(session: Session, corrections: Corrections) -> dict[str, Any]:
     """Return what of the state changes with corrections of the character that stands there.
 
     Raises
@@ -52,16 +53,16 @@ def taken(session: Session, corrections: Corrections) -> dict[str, Any]:
     return changes(state, rig, corrections)
 
 
-def correct_joint(session: Session, joint: int, **wanted: Any) -> None:
+def correct_joint(session: Session, joint: int, **changed: Any) -> None:
     """Change some of what is corrected of a joint; see `JointCorrection`."""
     state = session.state
     name = state.rig.skeleton.names[joint]
-    if "deform" in wanted and wanted["deform"] == bool(state.own_skeleton.deform[joint]):
-        wanted["deform"] = None
+    if "deform" in changed and changed["deform"] == bool(state.own_skeleton.deform[joint]):
+        changed["deform"] = None
     corrected = state.corrections.joints
     try:
         check_alone(state.rig.skeleton, joint)
-        one = replace(corrected.get(name, JointCorrection()), **wanted)
+        one = replace(corrected.get(name, JointCorrection()), **changed)
     except CutcellError as error:
         session.fail(error)
         state.param.trigger("corrections")
@@ -142,21 +143,62 @@ def overrule(session: Session, vertex: int, weights: Mapping[int, float] | None)
     state = session.state
     node = state.binding.graph.vertex_node
     together = np.flatnonzero(node == node[vertex])
-    given = None
+    overrides = None
     if weights is not None:
-        given = {state.rig.skeleton.names[joint]: w for joint, w in weights.items() if w}
+        overrides = {state.rig.skeleton.names[joint]: w for joint, w in weights.items() if w}
         if state.rig.allowed is not None:
             stored = state.rig.allowed[together][:, [j for j, w in weights.items() if w]]
             together = together[stored.all(axis=1) | (together == vertex)]
     corrected = {v: row for v, row in state.corrections.vertices.items() if v not in together}
-    if given is not None:
-        corrected.update(dict.fromkeys(together.tolist(), given))
+    if overrides is not None:
+        corrected.update(dict.fromkeys(together.tolist(), overrides))
     try:
         corrections = replace(state.corrections, vertices=corrected)
     except CutcellError as error:
         session.fail(error)
         return
     correct(session, corrections)
+
+
+def keep_file_parts(session: Session) -> None:
+    """Give every part of the mesh the file's weights, to correct these."""
+    graph = session.state.binding.graph
+    component = SurfaceOperators.of(graph).component[graph.vertex_node]
+    first = np.unique(component, return_index=True)[1]
+    parts = dict.fromkeys(first.tolist(), PartCorrection("file"))
+    correct(session, replace(session.state.corrections, parts=parts))
+
+
+def keep_file_vertices(session: Session, vertices: NDArray[np.intp]) -> None:
+    """Give some vertices the file's weights; those without weights there stay as they are."""
+    state = session.state
+    names, weights = state.rig.skeleton.names, state.rig.weights[vertices]
+    rows: dict[int, dict[str, float]] = {}
+    try:
+        for joint in np.flatnonzero(weights.any(axis=0)):
+            check_alone(state.rig.skeleton, int(joint))
+        for row, joint in zip(*np.nonzero(weights), strict=True):
+            rows.setdefault(int(vertices[row]), {})[names[joint]] = float(weights[row, joint])
+        corrections = replace(state.corrections, vertices={**state.corrections.vertices, **rows})
+    except CutcellError as error:
+        session.fail(error)
+        return
+    correct(session, corrections)
+
+
+def lock(session: Session, joints: Collection[int]) -> None:
+    """Lock joints to the file's weights."""
+    state = session.state
+    corrected = dict(state.corrections.joints)
+    try:
+        for joint in joints:
+            check_alone(state.rig.skeleton, joint)
+            name = state.rig.skeleton.names[joint]
+            corrected[name] = replace(corrected.get(name, JointCorrection()), locked=True)
+    except CutcellError as error:
+        session.fail(error)
+        return
+    correct(session, replace(state.corrections, joints=corrected))
 
 
 def leave_out(session: Session, joints: Collection[int]) -> None:
@@ -205,6 +247,7 @@ def finished(
     if not corrections:
         return weights
     weights = corrected_parts(rig, graph, weights, corrections)
-    weights = lock_joints(rig, weights, locked_by(corrections), max_influences)
-    done: NDArray[np.float64] = apply_vertex_overrides(rig, weights, corrections)
+    locked = locked_by(corrections)
+    weights = lock_joints(rig, weights, locked, max_influences)
+    done: NDArray[np.float64] = apply_overrides(rig, graph, weights, corrections, locked)
     return done

@@ -21,14 +21,14 @@ def watch(session: Session) -> None:
 
 
 def show_handles(session: Session) -> None:
-    """Tell the view whether the plane can be dragged, and what box it crosses."""
+    """Send the view the box of the plane that can be dragged, or None."""
     state = session.state
     sliced = state.panel == "graph" and state.slicing
-    is_cut = PANELS[state.panel].cuts and state.cut_axis != "off"
+    is_cut = PANELS[state.panel].cuts and state.cut_across != "off"
     is_shown = state.rig is not None and is_cut and not sliced
     handles = {"box": bounds_of(state).tolist()} if is_shown else None
-    if session.view.told("handles") != handles:
-        session.view.tell(handles=handles)
+    if session.view.last_sent("handles") != handles:
+        session.view.send(handles=handles)
 
 
 def put(session: Session, origin: ArrayLike, normal: ArrayLike) -> None:

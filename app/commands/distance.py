@@ -5,6 +5,7 @@ from typing import Any
 from cutcell.runtime.progress import Progress
 
 from ..scenes.distance import farthest, field_of, has_field, wants_field
+from ..scenes.graph import build_shown
 from ..scenes.measures import measured_of, measuring
 from ..state.distance import MEASURES
 from .session import Session
@@ -12,6 +13,8 @@ from .session import Session
 WAVE_SECONDS = 6.0
 SHOWN = ["panel", "binding", "joint", "edge_colors", "vertex", "cut_axis", "graph_face"]
 """What a field's being wanted depends on."""
+BUILT = ["graph_resolution", "resolution", "connectivity", "winding_threshold", "orient"]
+"""What the graph that is shown depends on, besides the mesh."""
 BESIDE = [*(f"beside_{name}" for name in MEASURES), "beside_resolution"]
 
 
@@ -20,11 +23,28 @@ def watch(session: Session) -> None:
     session.state.param.watch(lambda *events: find_field(session), [*SHOWN, *BESIDE])
     measured = ["panel", "binding", "joint", *BESIDE]
     session.state.param.watch(lambda *events: find_measured(session), measured)
+    session.state.param.watch(lambda *events: find_graph(session), [*BUILT, "panel", "rig"])
     session.view.listen("front", lambda message: halt_wave(session, message["front"]))
     session.state.param.watch(
         lambda *events: run_wave(session),
         ["panel", "wave", "animating", "field", "measured", "joint", "rig", *BESIDE],
     )
+
+
+def find_graph(session: Session) -> None:
+    """Build the graph that the panel Graph shows, where it is another one than that of weights."""
+    state, jobs = session.state, session.tasks.jobs("shown graph")
+    inputs = state.graph_inputs
+    if (state.panel != "graph" and not state.bare) or not inputs or state.shown_graph is not None:
+        return
+
+    def done(graph: Any) -> None:
+        state.easy_graph = (inputs, graph)
+
+    def report(stage: str, fraction: float) -> None:
+        """Report nothing: it takes a moment."""
+
+    jobs.start(lambda progress: build_shown(inputs, progress), done, session.fail, report)
 
 
 def halt_wave(session: Session, front: float | None) -> None:
@@ -33,13 +53,13 @@ def halt_wave(session: Session, front: float | None) -> None:
 
 
 def run_wave(session: Session) -> None:
-    """Let the wavefront run in the browser, or halt it; told only when it is another one."""
+    """Play or pause the wavefront in the browser; sent only when it changed."""
     state = session.state
     end = farthest(state)
     runs = state.panel == "distance" and state.wave and state.animating and end is not None
     animation = {"end": end, "seconds": WAVE_SECONDS} if runs else None
-    if session.view.told("animation") != animation:
-        session.view.tell(animation=animation)
+    if session.view.last_sent("animation") != animation:
+        session.view.send(animation=animation)
 
 
 def find_field(session: Session) -> None:

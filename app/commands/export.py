@@ -40,19 +40,27 @@ ENDED = "writing it came to a sudden end; there may be too little memory"
 
 @dataclass(frozen=True)
 class Seen:
-    """What a page shows at one moment, for a thread that draws it later."""
+    """Snapshot of the page, for a thread that draws it later."""
 
     state: Any
     memo: Memo
     camera: Camera | None
     aspect: float
+    height: float
     time: float
 
     @classmethod
     def now(cls, session: Session) -> Seen:
         """Return what a session's page shows."""
         view = session.view
-        return cls(session.state.still(), session.memo, view.camera, view.aspect, view.time)
+        return cls(
+            session.state.snapshot(),
+            session.memo,
+            view.camera,
+            view.aspect,
+            view.page_height,
+            view.time,
+        )
 
     def posed(self) -> Description:
         """Return the scene, in the pose that a motion has come to."""
@@ -64,19 +72,25 @@ class Seen:
     def order(self, pixels: int, description: Description) -> Order:
         """Return what is to be drawn of a scene, from where it is looked at."""
         theme = "dark" if self.state.dark else "light"
-        return Order(description, theme, picture_size(pixels, self.aspect), self.camera)
+        size = picture_size(pixels, self.aspect)
+        return Order(description, theme, size, self.camera, page_height=self.height)
 
 
 def export_picture(session: Session, done: Done) -> None:
     """Draw what is seen, large and with its legend, and hand over the PNG."""
-    _draw(session, "png", done, lambda seen: seen.order(PICTURE_PIXELS, seen.posed()))
+    _draw(
+        session,
+        "png",
+        done,
+        lambda view_state: view_state.order(PICTURE_PIXELS, view_state.posed()),
+    )
 
 
 def export_turntable(session: Session, ending: str, done: Done) -> None:
     """Film what is seen while the camera goes around it once; "mp4" or "gif"."""
 
-    def order(seen: Seen) -> Order:
-        return replace(seen.order(FILM_PIXELS, seen.posed()), turntable=True)
+    def order(view_state: Seen) -> Order:
+        return replace(view_state.order(FILM_PIXELS, view_state.posed()), turntable=True)
 
     _draw(session, ending, done, order)
 
@@ -87,9 +101,12 @@ def export_motion(session: Session, ending: str, done: Done) -> None:
         session.state.message = ("info", "There are no weights to move the skin by yet.")
         return
 
-    def order(seen: Seen) -> Order:
-        motion = clip_in_scene(seen.state.rig, chosen_clip(seen.state))
-        return replace(seen.order(FILM_PIXELS, following(seen.state, seen.memo)), motion=motion)
+    def order(view_state: Seen) -> Order:
+        motion = clip_in_scene(view_state.state.rig, chosen_clip(view_state.state))
+        return replace(
+            view_state.order(FILM_PIXELS, following(view_state.state, view_state.memo)),
+            motion=motion,
+        )
 
     _draw(session, ending, done, order)
 
@@ -110,7 +127,7 @@ def export_numbers(session: Session, what: str, ending: str, done: Done) -> None
         if what != "weights":
             tables["distances"] = binding.distances.all_joints(progress).T
         check = partial(progress, "writing the numbers", 0.0)
-        in_process(partial(save_numbers, path, named, **tables), wanted=check, ended=ENDED)
+        in_process(partial(save_numbers, path, named, **tables), check=check, ended=ENDED)
 
     _hand_over(session, name, write, done)
 
@@ -139,7 +156,7 @@ def export_bound(session: Session, done: Done) -> None:
 
     def write(path: Path, progress: Progress) -> None:
         check = partial(progress, "writing the file", 0.0)
-        in_process(cutcell.save, path, rig, wanted=check, ended=ENDED)
+        in_process(cutcell.save, path, rig, check=check, ended=ENDED)
 
     _hand_over(session, f"{_stem(session)}-bound{binary_ending(rig)}", write, done)
 
@@ -150,7 +167,7 @@ def export_repaired(session: Session, done: Done) -> None:
 
     def write(path: Path, progress: Progress) -> None:
         check = partial(progress, "writing the file", 0.0)
-        in_process(cutcell.save, path, rig, wanted=check, ended=ENDED)
+        in_process(cutcell.save, path, rig, check=check, ended=ENDED)
 
     _hand_over(session, f"{_stem(session)}-repaired{binary_ending(rig)}", write, done)
 
@@ -163,7 +180,7 @@ def chosen_clip(state: State) -> Clip:
 
 
 def picture_size(pixels: int, aspect: float) -> tuple[int, int]:
-    """Return width and height, even numbers, of about so many pixels in a given shape."""
+    """Return width and height, even numbers, for a number of pixels and an aspect."""
     height = (pixels / aspect) ** 0.5
     return 2 * round(height * aspect / 2), 2 * round(height / 2)
 
@@ -191,7 +208,7 @@ def _hand_over(
     place = session.folder
 
     def work(progress: Progress) -> bytes:
-        # One of its own: what was stopped may still write.
+        # A separate one: a stopped task may still write to its file.
         with TemporaryDirectory(dir=place, ignore_cleanup_errors=True) as folder:
             path = Path(folder, name)
             write(path, progress)

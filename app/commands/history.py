@@ -1,4 +1,4 @@
-"""What was chosen before, and what the address says of what is chosen now."""
+"""Undo and redo of choices, and the address of the present ones."""
 
 import time
 from collections.abc import Iterator
@@ -7,9 +7,9 @@ from typing import Any
 
 from cutcell.errors import CutcellError
 
-from ..state.corrections import news
+from ..state.corrections import changed_only
 from ..state.history import History
-from ..state.url import NOTED, simple, taken, to_query
+from ..state.url import NOTED, simple, snapshot, to_query
 from .session import Session
 
 RESULT = ("rig", "own", "repair")
@@ -20,8 +20,8 @@ def watch(session: Session) -> None:
     """Keep the address and the history up to what is chosen."""
     state = session.state
     state.param.watch(lambda *events: _chosen(session), [*simple(state), *NOTED, *RESULT])
-    state.param.watch(lambda *events: tell(session), ["tour", "vertex"])
-    session.view.on_camera = lambda: tell(session)
+    state.param.watch(lambda *events: publish(session), ["tour", "vertex"])
+    session.view.on_camera = lambda: publish(session)
 
 
 def begin(session: Session, before: str) -> None:
@@ -36,12 +36,12 @@ def begin(session: Session, before: str) -> None:
     now = _now(session)
     if session.returning:
         session.returning = False
-        session.history.here(now)
+        session.history.replace_current(now)
     elif before and session.character:
         session.history.turn(now, RESULT)
     else:
         session.history = History(now)
-    tell(session)
+    publish(session)
 
 
 def plain(choices: dict[str, Any]) -> dict[str, Any]:
@@ -55,13 +55,13 @@ def withdraw(session: Session, choices: dict[str, Any]) -> None:
     """Choose something again in place of what cannot be; nobody goes back to that."""
     restore(session, choices)
     session.history.withdraw(_now(session))
-    tell(session)
+    publish(session)
 
 
 def restore(session: Session, choices: dict[str, Any]) -> None:
     """Choose something without noting it."""
     with restoring(session):
-        session.state.param.update(**news(session.state, choices))
+        session.state.param.update(**changed_only(session.state, choices))
 
 
 @contextmanager
@@ -74,16 +74,16 @@ def restoring(session: Session) -> Iterator[None]:
         session.restoring = False
 
 
-def tell(session: Session) -> None:
-    """Tell the view what the address says now, and whether one can go back, if that is new."""
+def publish(session: Session) -> None:
+    """Send the address, and whether undo and redo are possible, to the view if changed."""
     if session.state.rig is None:
         return
     message = {
         "address": "?" + query(session),
         "able": [session.history.can_undo, session.history.can_redo],
     }
-    if {name: session.view.told(name) for name in message} != message:
-        session.view.tell(**message)
+    if {name: session.view.last_sent(name) for name in message} != message:
+        session.view.send(**message)
 
 
 def query(session: Session) -> str:
@@ -92,7 +92,7 @@ def query(session: Session) -> str:
     if view.camera is not None and not view.at_home:
         camera = [*view.camera.position, *view.camera.focal_point]
     try:
-        corrections = session.kept.said(session.state.corrections)
+        corrections = session.kept.text_of(session.state.corrections)
     except (CutcellError, OSError) as error:
         session.fail(error)
         corrections = ""
@@ -102,10 +102,10 @@ def query(session: Session) -> str:
 def _chosen(session: Session) -> None:
     if session.state.rig is not None and not session.restoring:
         session.history.note(_now(session), time.monotonic())
-        tell(session)
+        publish(session)
 
 
 def _now(session: Session) -> dict[str, Any]:
     state = session.state
     result = {name: getattr(state, name) for name in RESULT}
-    return {**taken(state), **result, "character": session.character}
+    return {**snapshot(state), **result, "character": session.character}

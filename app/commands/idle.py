@@ -12,7 +12,7 @@ AFTER = 0.06
 def watch(session: Session) -> None:
     """Answer when asked."""
 
-    def asked(message: dict[str, Any]) -> None:
+    def schedule(message: dict[str, Any]) -> None:
         timer = threading.Timer(AFTER, lambda: session.tasks.later(answer))
         timer.daemon = True
         timer.start()
@@ -20,4 +20,4 @@ def watch(session: Session) -> None:
     def answer() -> None:
         session.view.answer(rests=not session.tasks.running)
 
-    session.view.listen("rests?", asked)
+    session.view.listen("rests?", schedule)

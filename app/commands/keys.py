@@ -1,14 +1,21 @@
-"""What the keys do, and the buttons over the canvas."""
+"""Actions of the keys and of the buttons over the canvas."""
+
+import numpy as np
 
 from cutcell.editing.corrections import Corrections
+from cutcell_viewers.camera import FRONT
 
-from ..scenes.common import first_joint
+from ..scenes.common import camera_on_bone, first_joint
 from ..state import PANELS, State
-from ..state.corrections import applied, changes, news
+from ..state.corrections import applied, changed_only, changes
 from ..state.url import defaults
 from . import brush, pairs
 from .loading import revisit
+from .look import set_camera
 from .session import Session
+
+NEAR = 0.3
+"""How much is seen around a bone that is framed, at least, of the character's longest side."""
 
 
 def watch(session: Session) -> None:
@@ -27,6 +34,7 @@ def act(session: Session, name: str) -> None:
         "play": lambda: play(state),
         "next": lambda: step(session, 1),
         "previous": lambda: step(session, -1),
+        "frame": lambda: frame(session),
         "parent": lambda: to_parent(state),
         "child": lambda: to_child(state),
         "brush": lambda: brush.turn_over(session),
@@ -45,9 +53,9 @@ def reset(session: Session) -> None:
     state = session.state
     first = {**defaults(state), "moving": False, "playing": False}
     rig = applied(state.own, Corrections())
-    changed = {**changes(state, rig, Corrections()), **news(state, first)}
+    changed = {**changes(state, rig, Corrections()), **changed_only(state, first)}
     state.param.update(**{**changed, "joint": first_joint(rig)})
-    session.view.tell(home=True)
+    session.view.send(home=True)
 
 
 def play(state: State) -> None:
@@ -70,15 +78,23 @@ def step(session: Session, count: int) -> None:
         state.joint = (state.joint + count) % len(state.rig.skeleton.names)
 
 
+def frame(session: Session) -> None:
+    """Look at the chosen bone, from the side that one looks from; in the tour F is another key."""
+    state, eye = session.state, session.view.camera
+    if not state.bare and state.tour < 0:
+        direction = FRONT if eye is None else tuple(np.subtract(eye.position, eye.focal_point))
+        set_camera(session, camera_on_bone(state, NEAR, session.view.aspect, direction))
+
+
 def to_parent(state: State) -> None:
-    """Choose the joint that the chosen one hangs on."""
+    """Choose the parent of the chosen joint."""
     above = -1 if state.bare else int(state.rig.skeleton.parents[state.joint])
     if above >= 0:
         state.joint = above
 
 
 def to_child(state: State) -> None:
-    """Choose the first joint that hangs on the chosen one."""
+    """Choose the first child of the chosen joint."""
     below = [] if state.bare else state.rig.skeleton.children[state.joint]
     if len(below):
         state.joint = int(below[0])

@@ -22,8 +22,8 @@ from ..state.url import first_clip
 from . import history
 from .binding import bind, restore
 from .compare import carry
-from .correct import taken
-from .look import look
+from .correct import corrected_state
+from .look import set_camera
 from .session import Session
 
 
@@ -48,7 +48,7 @@ def load_demo(
     title = next(demo.title for demo in DEMOS if demo.id == id)
     _load(
         session,
-        lambda wanted: demo_rig(id),
+        lambda check: demo_rig(id),
         f"loading {title}",
         lambda: session.uploads.stay(""),
         f"demo {id}",
@@ -86,7 +86,7 @@ def load_files(
         return
     _load(
         session,
-        lambda wanted: read(path, wanted),
+        lambda check: read(path, check),
         f"loading {path.name}",
         lambda: uploads.stay(key, path.name),
         f"~{key}",
@@ -98,7 +98,7 @@ def load_files(
 
 def load_upload(session: Session, group: Group) -> None:
     """Show the character in files that a person dropped; they are kept for a while."""
-    session.arrival = {}  # what an address says is of another character
+    session.arrival = {}  # the address describes another character
     session.uploads.hold(group.key)
     load_files(session, group.paths, group.key)
 
@@ -178,7 +178,8 @@ def show_rig(
     with history.restoring(session), batch_call_watchers(state):
         state.param.update(
             rig=rig, binding=None, bare_graph=None, field=None, turns={}, moving=False,
-            playing=False, repair=None, corrections=Corrections(), part=None,
+            playing=False, repair=None, corrections=Corrections(), part=None, brush=False,
+            joint_handle=False,
             own=rig,
             clip=first_clip(rig), message=None, joint=first_joint(rig), vertex=None,
         )  # fmt: skip
@@ -191,10 +192,10 @@ def show_rig(
             state.panel = "graph"
     view.camera = framing(bounds_of(state), 1.2)
     view.at_home = True
-    view.tell(bones=bones_part(state), camera=camera_part(view.camera))
+    view.send(bones=bones_part(state), camera=camera_part(view.camera))
     if "camera" in arrival:
         eye, target = arrival["camera"][:3], arrival["camera"][3:]
-        look(session, Camera(tuple(eye), tuple(target)))
+        set_camera(session, Camera(tuple(eye), tuple(target)))
     history.begin(session, old)
     bind(session)
 
@@ -223,19 +224,19 @@ def _load(
     session.start(work, done, READING, failed)
 
 
-def _correct(session: Session, said: str) -> None:
+def _correct(session: Session, text: str) -> None:
     """Take the corrections that an address says, or that are chosen already, if they fit."""
     state, corrections = session.state, session.state.corrections
     try:
-        if said:
-            stored = session.kept.read(said)
+        if text:
+            stored = session.kept.read(text)
             if stored is None:
                 raise ParameterError("the server no longer has them")
             corrections = stored
-        changed = taken(session, corrections)
-        if "joint" in changed:  # what is chosen already is of the corrected skeleton
+        changed = corrected_state(session, corrections)
+        if "joint" in changed:  # the choices already refer to the corrected skeleton
             changed = {k: v for k, v in changed.items() if k not in ("joint", "turns")}
-            if said:
+            if text:
                 changed["joint"] = first_joint(changed["rig"])
         state.param.update(**changed)
     except (CutcellError, ValueError) as error:

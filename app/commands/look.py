@@ -19,13 +19,16 @@ def watch(session: Session) -> None:
     view.listen("pick", lambda message: pick(session, int(message["joint"])))
     view.listen("pick-vertex", lambda message: pick_vertex(session, int(message["vertex"])))
     view.listen("pick-node", lambda message: pick_node(session, int(message["node"])))
-    state.param.watch(lambda *events: pick_node(session, None), ["rig", "binding", "bare_graph"])
+    state.param.watch(
+        lambda *events: pick_node(session, None),
+        ["rig", "binding", "bare_graph", "easy_graph", "graph_resolution"],
+    )
     show_theme(session)
 
 
 def pick_node(session: Session, node: int | None) -> None:
     """Choose a node of the graph to look at closely; None for no more."""
-    graph = session.state.graph
+    graph = session.state.shown_graph
     if node is not None and (graph is None or not 0 <= node < len(graph.nodes)):
         return
     session.state.node = node
@@ -34,7 +37,7 @@ def pick_node(session: Session, node: int | None) -> None:
 
 
 def pick(session: Session, joint: int) -> None:
-    """Choose a joint; show its weights where the colours told of all joints."""
+    """Choose a joint; show its weights where the colours showed all joints."""
     state = session.state
     if state.rig is None or not 0 <= joint < len(state.rig.skeleton.joints):
         return
@@ -50,14 +53,14 @@ def pick_vertex(session: Session, vertex: int | None) -> None:
     state.param.update(vertex=vertex, node=None)
 
 
-def look(session: Session, camera: Camera | None) -> None:
+def set_camera(session: Session, camera: Camera | None) -> None:
     """Look from somewhere; None for the view that one begins with."""
     view = session.view
     home = camera_part(framing(bounds_of(session.state), 1.2))
     if camera is not None:
         view.camera, view.at_home = camera, False
         home["now"] = camera_part(camera)
-    view.tell(camera=home)
+    view.send(camera=home)
 
 
 def show(session: Session) -> None:
@@ -68,10 +71,10 @@ def show(session: Session) -> None:
         scene.cancel()
         view.present(resolve(state, memo))
     else:
-        now = state.still()
+        now = state.snapshot()
         scene.do(lambda progress: resolve(now, memo), view.present)
 
 
 def show_theme(session: Session) -> None:
     """Show the colours of the theme that is chosen."""
-    session.view.tell(theme=theme_part(theme_of(session.state)))
+    session.view.send(theme=theme_part(theme_of(session.state)))

@@ -39,17 +39,17 @@ def find(session: Session) -> None:
 
 
 def read(rig: Rig, progress: Progress) -> Textures | None:
-    """Return what shows a rig in its materials; images are decoded in a process of its own."""
+    """Return what shows a rig in its materials; images are decoded in another process."""
     materials = read_materials(rig)
     if materials is None:
         return None
     inputs = materials.images, materials.layers
 
-    def wanted() -> None:
+    def require_current() -> None:
         progress("materials", 0.0)
 
     try:
-        pixels, problems = in_process(decoded, *inputs, wanted=wanted, ended=ENDED)
+        pixels, problems = in_process(decoded, *inputs, check=require_current, ended=ENDED)
     except FileError as error:
         pixels, problems = none_decoded(materials.layers, str(error))
     return as_textures(rig, materials, pixels, problems)

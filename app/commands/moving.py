@@ -18,7 +18,7 @@ from cutcell_viewers.character import to_scene
 
 from ..scenes.common import bones_part
 from ..state.corrections import Dragged, applied
-from .binding import asked, binding_work, previewer
+from .binding import binding_request, binding_work, previewer
 from .correct import check_alone, correct
 from .session import Session
 
@@ -32,25 +32,25 @@ def watch(session: Session) -> None:
     follow = session.state.param.watch
     hand = Hand(session)
     session.view.listen("joint", hand.move)
-    follow(lambda *events: hand.let_go(), ["rig", "binding", "panel"])
+    follow(lambda *events: hand.release(), ["rig", "binding", "panel"])
     follow(lambda *events: tell_bones(session), "rig")
     follow(lambda *events: show_handle(session), SEEN)
 
 
 def tell_bones(session: Session) -> None:
-    """Tell the view where bones are to be clicked."""
+    """Send the positions of clickable bones to the view."""
     state = session.state
     if state.rig is None:
         return
-    # Compared by what lies in it: the rig is another one for many reasons.
-    sent, bones = session.view.told("bones"), bones_part(state)
+    # Compared by value: a new rig often has the same bones.
+    sent, bones = session.view.last_sent("bones"), bones_part(state)
     same = sent is not None and sent["names"] == bones["names"]
     if not same or not np.array_equal(sent["start"], bones["start"]):
-        session.view.tell(bones=bones)
+        session.view.send(bones=bones)
 
 
 def show_handle(session: Session) -> None:
-    """Tell the view where the chosen joint can be dragged, and where its mirror is."""
+    """Send the move handle of the chosen joint and its mirror plane to the view."""
     state = session.state
     part = None
     if state.joint_handle and state.panel == "weights" and state.rig is not None and state.binding:
@@ -59,8 +59,8 @@ def show_handle(session: Session) -> None:
         mirror, partner = mirror_of(session), moves_along(session)
         if mirror is not None and partner is not None:
             part["mirror"] = plane_in_scene(state.rig.world, mirror)
-    if session.view.told("mover") != part:
-        session.view.tell(mover=part)
+    if session.view.last_sent("mover") != part:
+        session.view.send(mover=part)
 
 
 def plane_in_scene(world: NDArray[np.float64], mirror: Mirror) -> list[float]:
@@ -72,7 +72,7 @@ def plane_in_scene(world: NDArray[np.float64], mirror: Mirror) -> list[float]:
 
 
 def mirror_of(session: Session) -> Mirror | None:
-    """Return who is whose mirror image among the joints as the file has them; None if nobody is."""
+    """Return each joint's mirror image in the file; None if no joint has one."""
     state = session.state
 
     def find() -> Mirror | None:
@@ -105,7 +105,7 @@ def put(session: Session, place: ArrayLike) -> None:
         corrections = moved(session, place)
     except CutcellError as error:
         session.fail(error)
-        session.state.param.trigger("corrections")  # what was written gives way to what there is
+        session.state.param.trigger("corrections")  # reset the text to the position
         return
     correct(session, corrections)
 
@@ -205,16 +205,18 @@ class Hand:
         try:
             corrections = moved(session, place)
         except CutcellError as error:
-            self.let_go()
+            self.release()
             session.fail(error)
-            session.view.tell(mover=session.view.told("mover"))  # back from where it was dragged
+            session.view.send(
+                mover=session.view.last_sent("mover")
+            )  # back from where it was dragged
             return
         if message.get("done"):
             self._take(corrections)
         else:
             self._show(corrections)
 
-    def let_go(self) -> None:
+    def release(self) -> None:
         """Show again what the corrections tell."""
         if not self._holds and self._session.state.dragged is not None:
             self._session.tasks.newest("moving").cancel()
@@ -225,19 +227,19 @@ class Hand:
         if state.dragged is not None:
             rig = applied(state.own, corrections)
             state.dragged = replace(state.dragged, rig=rig)
-        before, self._holds = state.corrections, True  # what is seen stays until it is bound
+        before, self._holds = state.corrections, True  # keep the preview until it is bound
         try:
             correct(self._session, corrections)
         finally:
             self._holds = False
         if state.corrections == before:
-            self.let_go()
+            self.release()
 
     def _show(self, corrections: Corrections) -> None:
         """Show about what the weights will be, and when the hand rests what they are."""
         state = self._session.state
-        if not self._session.binder.is_for(asked(state)):
-            return  # what was let go before is about to be bound
+        if not self._session.binder.is_for(binding_request(state)):
+            return  # the last position is about to be bound
         rig = applied(state.own, corrections)
         before = state.binding if state.dragged is None else state.dragged.binding
         self._begin(rig, corrections)

@@ -52,15 +52,15 @@ def tell_motion(session: Session) -> None:
     inputs = (state.rig, clip is None, state.motion)
     try:
         part = session.memo("clip", inputs, lambda: clip_part(state, clip))
-    except CutcellError as error:  # what the file holds cannot be played
+    except CutcellError as error:  # the clip cannot be played
         part = None
         session.fail(error)
-    session.view.tell(clip=part, playing=state.playing and part is not None)
+    session.view.send(clip=part, playing=state.playing and part is not None)
 
 
 def tell_gizmo(session: Session) -> None:
     """Send where the rings are that turn the chosen joint."""
-    session.view.tell(gizmo=gizmo_part(session.state))
+    session.view.send(gizmo=gizmo_part(session.state))
 
 
 class Hand:
@@ -73,10 +73,10 @@ class Hand:
 
     def __init__(self, session: Session) -> None:
         self._state = session.state
-        self._held = (0.0, 0.0, 0.0)
+        self._last_turn = (0.0, 0.0, 0.0)
 
     def turn(self, data: dict[str, Any]) -> None:
-        """Turn a joint about one of its own axes.
+        """Turn a joint about one of its local axes.
 
         Parameters
         ----------
@@ -89,9 +89,9 @@ class Hand:
             return
         now = state.turns.get(joint, (0.0, 0.0, 0.0))
         if data.get("begin"):
-            self._held = now
+            self._last_turn = now
         axis = "xyz"[int(data["axis"])]
-        rotation = rotation_of(self._held) @ turn(axis, float(data["degrees"]))
+        rotation = rotation_of(self._last_turn) @ turn(axis, float(data["degrees"]))
         turns = {**state.turns, joint: angles_of(rotation, now)}
         state.param.update(turns=turns, moving=False, playing=False)
 
@@ -153,8 +153,8 @@ def find_motion_error(session: Session) -> None:
     if state.panel != "pose" or clip is None or not state.heat or not has_rival(state):
         session.tasks.jobs("motion error").cancel()
         return
-    found = state.motion_error
-    if found is not None and found[0] is binding and found[1] == motion:
+    error = state.motion_error
+    if error is not None and error[0] is binding and error[1] == motion:
         return
     gap = gap_of(state, session.memo)
 
@@ -171,22 +171,22 @@ def find_motion_error(session: Session) -> None:
 def motion_error(
     rig: Rig, clip: Clip, gap: Gap, progress: Progress = silent
 ) -> tuple[float, float, float]:
-    """Return how far two weightings are apart over a motion, in cm².
+    """Return the distances between two sets of weights over a motion, in mm.
 
     Returns
     -------
-    mean : float
+    rms : float
     greatest : float
     most : float
         What nearly all vertices stay below, in every frame.
     """
     times = clip.times
     frames = np.unique(np.linspace(0, len(times) - 1, FRAMES).round().astype(int))
-    mean = greatest = most = 0.0
+    squares = greatest = most = 0.0
     for done, frame in enumerate(frames[frames >= 0]):
         progress("error", done / len(frames))
-        squared = gap.squared(pose_at(rig, clip, times[frame]))
-        mean += float(squared.mean()) / len(frames)
-        greatest = max(greatest, float(squared.max()))
-        most = max(most, float(np.quantile(squared, WHOLE)))
-    return mean, greatest, most
+        lengths = gap.lengths(pose_at(rig, clip, times[frame]))
+        squares += float(np.square(lengths).mean()) / len(frames)
+        greatest = max(greatest, float(lengths.max()))
+        most = max(most, float(np.quantile(lengths, WHOLE)))
+    return float(np.sqrt(squares)), greatest, most

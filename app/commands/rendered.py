@@ -20,7 +20,7 @@ MAX_TILES = 16
 def watch(session: Session) -> None:
     """Draw a frame when the browser asks for one; say when the switch is turned."""
     state, view = session.state, session.view
-    state.param.watch(lambda *events: view.tell(rendered=state.rendered), "rendered")
+    state.param.watch(lambda *events: view.send(rendered=state.rendered), "rendered")
     view.listen("frame", lambda message: draw(session, message))
 
 

@@ -1,4 +1,4 @@
-"""What one browser's page has: its state, its view, the work that goes on for it.
+"""Session of one page: its state, its view and its running tasks.
 
 It does nothing by itself: commands, the functions of the modules beside this one, are given it, and
 change the state; `watchers.follow` lets others follow.
@@ -18,7 +18,7 @@ from cutcell_viewers.description import Description
 from ..files.corrections_file import CorrectionsFile
 from ..files.upload_cache import UPLOADS, PageUploads
 from ..jobs.jobs import COMPUTING, Schedule, Slots
-from ..jobs.messages import told
+from ..jobs.messages import error_text
 from ..jobs.tasks import Tasks
 from ..scenes import Memo
 from ..state import State
@@ -29,12 +29,13 @@ logger = logging.getLogger("cutcell.app")
 
 
 class View(Protocol):
-    """What commands need of the 3D view; `widgets.view.SceneView` is one."""
+    """Interface of the 3D view for commands; see `widgets.view.SceneView`."""
 
     camera: Camera | None
     at_home: bool
     on_camera: Callable[[], None]
     aspect: float
+    page_height: float
     time: float
     calm: bool
 
@@ -44,17 +45,17 @@ class View(Protocol):
     def present(self, description: Description) -> None:
         """Show a scene."""
 
-    def tell(self, **parts: Any) -> None:
+    def send(self, **parts: Any) -> None:
         """Send parts of the view that are no actors; they are kept for a browser that comes."""
 
-    def told(self, name: str) -> Any:
-        """Return what was last told of a part; None if nothing was."""
+    def last_sent(self, name: str) -> Any:
+        """Return the last value sent for a part; None if none was."""
 
     def offer(self, name: str, content: bytes) -> None:
         """Let the browser save a file."""
 
     def answer(self, **message: Any) -> None:
-        """Tell the browser what it asked for."""
+        """Answer a request of the browser."""
 
 
 class Session:
@@ -85,10 +86,10 @@ class Session:
     before_tour : tuple or None
         The choices and the camera from before the tour.
     arrival : dict
-        What an address says of the character that is on its way.
+        Choices of the address for the character that is being loaded.
     binder : Binder
     kept : CorrectionsFile
-        What the address has no room for.
+        Corrections that are too long for the address.
     """
 
     def __init__(self, view: View, schedule: Schedule) -> None:
@@ -117,7 +118,7 @@ class Session:
     ) -> None:
         """Do some work that the page shows progress of; it stops what went on before.
 
-        What goes wrong is told, and then `failed` is called.
+        An error is reported, and then `failed` is called.
         """
         state, jobs = self.state, self.tasks.jobs("main")
 
@@ -137,10 +138,10 @@ class Session:
         jobs.start(work, finish, went_wrong, report, slots)
 
     def fail(self, error: Exception) -> None:
-        """Tell what went wrong; the page keeps what it had."""
+        """Show an error; the page is unchanged."""
         if not isinstance(error, CutcellError | MemoryError):
             logger.error("unexpected error", exc_info=error)
-        self.state.message = ("error", told(error))
+        self.state.message = ("error", error_text(error))
 
     @property
     def folder(self) -> Path:

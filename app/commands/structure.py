@@ -10,7 +10,7 @@ from cutcell.editing.corrections import Corrections, JointCorrection, PartCorrec
 from cutcell.errors import CutcellError, ParameterError
 from cutcell.rig import Rig
 
-from .correct import check_alone, correct, taken
+from .correct import check_alone, correct, corrected_state
 from .moving import mirror_of, moves_along, rounded
 from .session import Session
 
@@ -24,7 +24,7 @@ def add(session: Session) -> None:
 
 
 def remove(session: Session) -> None:
-    """Remove the chosen joint; what hung on it hangs on its parent, which is chosen then."""
+    """Remove the chosen joint; its children move to its parent, which is chosen then."""
     _change(session, without)
 
 
@@ -37,7 +37,7 @@ def hang_on(session: Session, parent: str) -> None:
         return
     hung = {joint: on}
     mirror, partner = mirror_of(session), moves_along(session)
-    # Where one side hangs on the other, the other cannot hang on it.
+    # Where one side is an ancestor of the other, the other stays.
     independent = partner is not None and not (on >= 0 and skeleton.subtree[partner][on])
     if mirror is not None and partner is not None and independent:
         across = int(mirror.joint[on]) if on >= 0 else -1
@@ -57,7 +57,7 @@ def hang_on(session: Session, parent: str) -> None:
 
 
 def may_hang_on(rig: Rig, joint: int) -> list[str]:
-    """List the joints that one may hang on: all that do not hang on it."""
+    """List the possible parents of a joint: all but itself and its descendants."""
     below = rig.skeleton.subtree[joint]
     return [name for name, is_below in zip(rig.skeleton.names, below, strict=True) if not is_below]
 
@@ -65,7 +65,7 @@ def may_hang_on(rig: Rig, joint: int) -> list[str]:
 def with_child(rig: Rig, corrections: Corrections, name: str) -> tuple[Corrections, str]:
     """Return corrections with a joint more, and its name.
 
-    On a joint with a single child it divides the bone, and the child hangs on it.
+    On a joint with a single child it splits the bone and becomes the child's parent.
     """
     skeleton = rig.skeleton
     joint = skeleton.names.index(name)
@@ -149,10 +149,10 @@ def _change(
             check_alone(state.rig.skeleton, joint)
             corrections, leads_to = change(state.rig, corrections, names[joint])
             chosen.append(leads_to)
-        changed = taken(session, corrections)
+        changed = corrected_state(session, corrections)
     except CutcellError as error:
         session.fail(error)
         return
-    found = changed["rig"].skeleton.names
-    changed["joint"] = found.index(chosen[0]) if chosen[0] in found else 0
+    names = changed["rig"].skeleton.names
+    changed["joint"] = names.index(chosen[0]) if chosen[0] in names else 0
     state.param.update(**changed)  # at once: it is one step to undo

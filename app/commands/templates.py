@@ -10,7 +10,7 @@ from cutcell.runtime.progress import Progress
 from cutcell.templates import Template, fit_skeleton, names_of
 
 from ..scenes.common import first_joint
-from .correct import taken
+from .correct import corrected_state
 from .moving import rounded
 from .session import Session
 
@@ -26,7 +26,7 @@ def fit(session: Session, template: Template) -> None:
 
     def done(skeleton: Skeleton) -> None:
         corrections = Corrections(added(state.own, skeleton))
-        changed = taken(session, corrections)
+        changed = corrected_state(session, corrections)
         state.param.update(
             **{
                 **changed,
@@ -41,20 +41,20 @@ def fit(session: Session, template: Template) -> None:
 
 def take_out(session: Session) -> None:
     """Leave the mesh without a skeleton again."""
-    changed = taken(session, Corrections())
+    changed = corrected_state(session, Corrections())
     session.state.param.update(**{**changed, "panel": "graph"})
 
 
 def is_template(names: Collection[str], template: Template) -> bool:
     """Whether joints have just the names that a template gives them."""
-    return set(names) in [set(some) for some in names_of(template)]
+    return set(names) in [set(group) for group in names_of(template)]
 
 
-def added(own: Rig, skeleton: Skeleton) -> dict[str, JointCorrection]:
+def added(base: Rig, skeleton: Skeleton) -> dict[str, JointCorrection]:
     """Return a skeleton as the joints that are added to a mesh."""
     names = skeleton.names
     above = [names[parent] if parent >= 0 else "" for parent in skeleton.parents]
-    places = rounded(own, skeleton.joints)
+    places = rounded(base, skeleton.joints)
     return {
         name: JointCorrection(added=True, position=tuple(place), parent=parent)
         for name, place, parent in zip(names, np.asarray(places).tolist(), above, strict=True)

@@ -9,15 +9,15 @@ from cutcell_viewers.camera import Camera, framing
 from cutcell_viewers.character import to_scene
 
 from ..scenes.common import bounds_of
-from ..state.corrections import applied, changes, news
+from ..state.corrections import applied, changed_only, changes
 from ..state.tour import TOUR, Look
 from ..state.url import defaults
 from .loading import load_demo, revisit
-from .look import look as look_from
+from .look import set_camera
 from .session import Session
 
 
-def go(session: Session, index: int, said: frozenset[str] = frozenset()) -> None:
+def go(session: Session, index: int, url_values: frozenset[str] = frozenset()) -> None:
     """Show a step of the tour; -1 leaves it, and brings back what the page showed before.
 
     Parameters
@@ -37,14 +37,14 @@ def go(session: Session, index: int, said: frozenset[str] = frozenset()) -> None
     aspect = TOUR[index].look
     state.tour = index
     if _stands(state, aspect.demo):
-        show(session, aspect, said)
+        show(session, aspect, url_values)
         aim(session, aspect)
     else:
         load_demo(
             session,
             aspect.demo,
-            lambda: show(session, aspect, said),
-            lambda: None if "camera" in said else aim(session, aspect),
+            lambda: show(session, aspect, url_values),
+            lambda: None if "camera" in url_values else aim(session, aspect),
         )
 
 
@@ -56,17 +56,17 @@ def leave(session: Session) -> None:
         session.before_tour = None
         revisit(session, choices)
         if choices["character"] == session.character:
-            look_from(session, camera)
+            set_camera(session, camera)
 
 
 def offer(session: Session, index: int) -> None:
-    """Choose what a button on the step's card stands for."""
+    """Apply the choices of a button on the step's card."""
     state = session.state
     if 0 <= state.tour < len(TOUR) and 0 <= index < len(TOUR[state.tour].offers):
         state.param.update(**TOUR[state.tour].offers[index].choices)
 
 
-def taken(state: Any) -> list[bool]:
+def pressed_offers(state: Any) -> list[bool]:
     """Return for each button on the step's card whether what it chooses is chosen."""
     if not 0 <= state.tour < len(TOUR):
         return []
@@ -91,32 +91,32 @@ def demo_of(arrival: dict[str, Any]) -> str:
     return str(TOUR[arrival["tour"]].look.demo)
 
 
-def show(session: Session, look: Look, said: frozenset[str] = frozenset()) -> None:
+def show(session: Session, scene_: Look, url_values: frozenset[str] = frozenset()) -> None:
     """Choose what a step asks for, but for what an address said; its character is there."""
     state = session.state
     names = list(state.rig.skeleton.names)
     scene = {
         **defaults(state),
-        "panel": look.panel,
-        "joint": names.index(look.bone),
-        "turns": {names.index(name): angles for name, angles in look.turns.items()},
-        "vertex": clicked(state.rig, look),
+        "panel": scene_.panel,
+        "joint": names.index(scene_.bone),
+        "turns": {names.index(name): angles for name, angles in scene_.turns.items()},
+        "vertex": clicked(state.rig, scene_),
         "moving": False,
         "playing": False,
         "animating": False,
-        **look.choices,
+        **scene_.choices,
     }
-    given_choices = said - {"panel"} if state.panel == "learn" else said
+    given_choices = url_values - {"panel"} if state.panel == "learn" else url_values
     if "corrections" not in given_choices:
         rig = applied(state.own, scene["corrections"])
         scene = {**changes(state, rig, scene["corrections"]), **scene, "rig": rig}
     chosen = {name: value for name, value in scene.items() if name not in given_choices}
-    state.param.update(**news(state, chosen))
+    state.param.update(**changed_only(state, chosen))
 
 
-def aim(session: Session, look: Look) -> None:
+def aim(session: Session, scene_: Look) -> None:
     """Look from where a step does."""
-    look_from(session, camera_of(session, look))
+    set_camera(session, camera_of(session, scene_))
 
 
 def points_out(state: Any) -> bool:
@@ -127,25 +127,25 @@ def points_out(state: Any) -> bool:
     return state.demo == aspect.demo and state.vertex == clicked(state.rig, aspect)
 
 
-def clicked(rig: Rig, look: Look) -> int | None:
+def clicked(rig: Rig, scene_: Look) -> int | None:
     """Return the vertex that a step clicks, or None."""
-    if not look.clicked or rig.weights is None:
+    if not scene_.clicked or rig.weights is None:
         return None
     names = rig.skeleton.names
-    away = np.linalg.norm(rig.mesh.vertices - rig.skeleton.joints[names.index(look.bone)], axis=1)
-    away[rig.weights.argmax(axis=1) != names.index(look.clicked)] = np.inf
+    away = np.linalg.norm(rig.mesh.vertices - rig.skeleton.joints[names.index(scene_.bone)], axis=1)
+    away[rig.weights.argmax(axis=1) != names.index(scene_.clicked)] = np.inf
     return int(away.argmin())
 
 
-def camera_of(session: Session, look: Look) -> Camera:
+def camera_of(session: Session, scene_: Look) -> Camera:
     """Return where a step looks from."""
     rig = session.state.rig
-    around, above = np.radians(look.angles)
+    around, above = np.radians(scene_.angles)
     whole = framing(bounds_of(session.state), 1.0)
     target = np.array(whole.focal_point)
-    distance = float(np.linalg.norm(np.array(whole.position) - target)) * look.near
-    if look.focus:
-        joint = rig.skeleton.joints[rig.skeleton.names.index(look.focus)]
+    distance = float(np.linalg.norm(np.array(whole.position) - target)) * scene_.near
+    if scene_.focus:
+        joint = rig.skeleton.joints[rig.skeleton.names.index(scene_.focus)]
         target = to_scene(rig, joint[None])[0]
     direction = np.array(
         [np.cos(above) * np.sin(around), np.sin(above), np.cos(above) * np.cos(around)]
@@ -155,6 +155,6 @@ def camera_of(session: Session, look: Look) -> Camera:
 
 
 def _stands(state: Any, demo: str) -> bool:
-    """Whether a demo character is there, and not just on its way."""
+    """Whether a demo character is loaded, and not just requested."""
     is_loaded = state.rig is not None and state.rig.name == demo
     return bool(state.demo == demo and is_loaded)

@@ -1,4 +1,4 @@
-"""What follows the state of a page: each `watch(session)` makes some command act by itself."""
+"""Watchers of a page's state: each `watch(session)` runs a command on changes."""
 
 from . import (
     arrival,

@@ -1,4 +1,4 @@
-"""Corrections that no address has room for: kept among the uploads, by a key that it has."""
+"""Corrections that are too long for an address: stored among the uploads by a key."""
 
 from cutcell.editing.corrections import Corrections
 from cutcell.errors import CutcellError
@@ -22,27 +22,27 @@ class CorrectionsFile:
     def __init__(self, uploads: PageUploads) -> None:
         self._uploads = uploads
         self._group: Group | None = None
-        self._taken = ""
-        self._said: tuple[Corrections, str] = (Corrections(), "")
+        self._key = ""
+        self._last_text: tuple[Corrections, str] = (Corrections(), "")
 
-    def said(self, corrections: Corrections) -> str:
+    def text_of(self, corrections: Corrections) -> str:
         """Return what an address says of corrections: all of them, or a key; "" for none.
 
         Raises
         ------
         FileError
-            They are too long, and the server has no room for them.
+            They are too long, and the server's storage is full.
         OSError
             They cannot be written.
         """
-        if corrections is not self._said[0]:
+        if corrections is not self._last_text[0]:
             few = len(corrections.vertices) <= MAX_VERTICES
             text = to_text(corrections) if corrections and few else ""
             if not few or len(text) > MAX_IN_ADDRESS:
-                self._said = (corrections, "")  # should it fail, then once
-                text = self._kept(corrections)
-            self._said = (corrections, text)
-        return self._said[1]
+                self._last_text = (corrections, "")  # should it fail, then once
+                text = self._store(corrections)
+            self._last_text = (corrections, text)
+        return self._last_text[1]
 
     def read(self, text: str) -> Corrections | None:
         """Return what an address says; None where the server no longer has it.
@@ -58,12 +58,12 @@ class CorrectionsFile:
         if paths is None:
             return None
         self._leave()
-        self._taken = text[1:]
+        self._key = text[1:]
         try:
             loaded = Corrections.load(paths[0])
         except CutcellError as error:
             raise ValueError(str(error)) from None
-        self._said = (loaded, text)
+        self._last_text = (loaded, text)
         return loaded
 
     def close(self) -> None:
@@ -74,11 +74,11 @@ class CorrectionsFile:
             self._group = None
 
     def _leave(self) -> None:
-        if self._taken:
-            self._uploads.cache.leave(self._taken)
-            self._taken = ""
+        if self._key:
+            self._uploads.cache.leave(self._key)
+            self._key = ""
 
-    def _kept(self, corrections: Corrections) -> str:
+    def _store(self, corrections: Corrections) -> str:
         content = corrections.to_json(indent=None).encode()
         old, self._group = self._group, None
         if old is not None:

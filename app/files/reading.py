@@ -41,10 +41,10 @@ def demo_rig(id: str) -> Rig:
     return cutcell.load(demo_path(id))
 
 
-def read(path: Path, wanted: Callable[[], object] = lambda: None) -> Rig:
-    """Load a character in a process of its own; see `apart.in_process`."""
+def read(path: Path, check: Callable[[], object] = lambda: None) -> Rig:
+    """Load a character in another process; see `jobs.processes.in_process`."""
     with naming(path):
-        return frozen(in_process(load_with_materials, path, wanted=wanted, ended=ENDED))
+        return frozen(in_process(load_with_materials, path, check=check, ended=ENDED))
 
 
 def load_with_materials(path: Path) -> Rig:
@@ -76,8 +76,8 @@ def main_file(paths: list[Path]) -> Path:
     names = ", ".join(path.name for path in paths)
     if not characters:
         raise FileError(
-            f"no character among the dropped files ({names}); drop a GLB, glTF, VRM, FBX, USD, "
-            "OBJ, PLY, STL, OFF or NPZ file, and the files that belong to it together with it"
+            f"no character among the dropped files ({names}); drop a GLB, FBX or another "
+            "supported file"
         )
     if len(characters) > 1:
         raise FileError(f"more than one character was dropped ({names}); drop one at a time")

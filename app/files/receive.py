@@ -132,7 +132,7 @@ def _announced(files: list[dict[str, Any]]) -> tuple[list[str], list[int]]:
 
 
 def _problem(error: Exception) -> Exception:
-    """Return what a person is told of an error, as far as one can tell."""
+    """Return the text of an error for a person."""
     if isinstance(error, OSError):
         if error.errno in FULL:
             return FileError("the server's disk is full, and the file was not taken; try again")

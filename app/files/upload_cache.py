@@ -1,4 +1,4 @@
-"""Uploaded files: kept while a page uses them, and some time longer, for whoever comes back.
+"""Uploaded files: stored while a page uses them, and some time longer for returning visitors.
 
 All of them together have a quota, and so have those of one page. What nobody uses any more makes
 way for what is sent.
@@ -77,7 +77,7 @@ class UploadCache:
         self._groups: dict[str, Group] = {}
 
     def begin(self, size: int, owner: object) -> Group:
-        """Make room for a group of files, and a folder; it is in use.
+        """Free storage for a group of files, and make its folder; it is in use.
 
         Raises
         ------
@@ -163,16 +163,15 @@ class UploadCache:
         used = self._make_room(size, MAX_OF_A_PAGE, owner)
         if used + size > MAX_OF_A_PAGE:
             raise FileError(
-                f"this page has sent {_mb(used)} that are still in use, and may send "
-                f"{_mb(MAX_OF_A_PAGE)}; reload it, or open the file by the cutcell command"
+                f"this page uses {_mb(used)} of uploads, of at most {_mb(MAX_OF_A_PAGE)}; reload "
+                "it, or open the file by the cutcell command"
             )
 
     def _check_all(self, size: int) -> None:
         used = self._make_room(size, MAX_BYTES)
         if used + size > MAX_BYTES:
             raise FileError(
-                f"the server holds {_mb(used)} of uploaded files that are in use, and takes "
-                f"{_mb(MAX_BYTES)}; try again when others have closed their pages"
+                f"{_mb(used)} of uploads are in use, of at most {_mb(MAX_BYTES)}; try again later"
             )
         if self.storage.free() - size < SPARE_BYTES:
             self._make_room(MAX_BYTES, MAX_BYTES)  # whatever nobody uses
@@ -225,16 +224,16 @@ class PageUploads:
         self.cache = cache
         self.key = ""
         self.listed: dict[str, str] = {}
-        self._held: set[str] = set()
+        self._in_use: set[str] = set()
         self._closing: list[Callable[[], None]] = []
 
     def hold(self, key: str) -> None:
         """Note files that are in use already."""
-        self._held.add(key)
+        self._in_use.add(key)
 
     def take(self, key: str) -> list[Path] | None:
         """Use a group of files; None where it is not kept any more."""
-        if key in self._held:
+        if key in self._in_use:
             self.cache.leave(key)
         paths = self.cache.take(key)
         if paths is not None:
@@ -250,13 +249,13 @@ class PageUploads:
         if key and name and key not in self.listed:
             self.listed[key] = name
             self.cache.list(key)
-        for other in self._held - {key}:
+        for other in self._in_use - {key}:
             self.leave(other)
 
     def leave(self, key: str) -> None:
         """Use files no longer, unless their character stands there."""
-        if key in self._held and key != self.key:
-            self._held.remove(key)
+        if key in self._in_use and key != self.key:
+            self._in_use.remove(key)
             self.cache.leave(key)
 
     def offered(self) -> dict[str, str]:

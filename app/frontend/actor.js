@@ -239,7 +239,7 @@ export class Actor {
     this.colours.front = this.animation ? front ?? ALL : ALL
   }
 
-  paint({color, opacity, width, thick, dash, form, ambient, diffuse, coloured, behind, closed, hull}) {
+  paint({color, opacity, width, thick, dash, form, ambient, diffuse, coloured, behind, closed, hull, edges}) {
     this.closed = closed
     this.hull = hull
     this.coloured = coloured
@@ -255,12 +255,14 @@ export class Actor {
     look.setAmbient(ambient)
     look.setDiffuse(diffuse)
     look.setLighting(!hull)
+    look.setEdgeVisibility(edges)
+    look.setEdgeColor(0.1, 0.12, 0.16)
     look.setFrontfaceCulling(hull)
     if (!this.restNormals) { look.setInterpolationToFlat() }
     if (behind) { mapper.setRelativeCoincidentTopologyPolygonOffsetParameters(2, 30) }
   }
 
-  // Stands in the view that it belongs to, or in every one.
+  // Belongs to one view, or to all of them.
   place() {
     this.leave()
     const own = typeof this.view === "number" ? this.renderer.views[this.view] : null

@@ -1,4 +1,4 @@
-// The brush that paints weights: a ring on the surface, and strokes that are told to the server,
+// The brush that paints weights: a ring on the surface, and strokes that are sent to the server,
 // which answers with the colours of what they touched.
 
 import {plainList} from "./arrays.js"
@@ -116,7 +116,7 @@ export class PaintBrush {
     this.stroke.points.push(...corners(actor.triangles, actor.posed(), triangle, at))
   }
 
-  // One message is under way at a time: a slow server gets longer pieces of the stroke, not more.
+  // One message at a time: a slow server gets longer pieces of the stroke, not more of them.
   say() {
     const {stroke} = this
     if (stroke?.points.length && !this.awaited) { this.send(false) }

@@ -1,4 +1,4 @@
-// Colours of an actor's points on the graphics card: a value or a colour of each point stands in
+// Colours of an actor's points on the graphics card: a value or a colour of each point is in
 // a texture. New ones are an upload of just these numbers; no buffer is built again.
 
 const TABLE_UNIT = 13  // vtk.js takes the first units
@@ -135,7 +135,7 @@ export function pointIds(count) {
   return Float32Array.from({length: count}, (_, i) => i)
 }
 
-// What is added to vtk.js' shaders. `apart`: the values are worked out from the pose, see skin.js.
+// Additions to the shaders of vtk.js. `apart`: values are computed from the pose, see skin.js.
 export function colourShader(by, apart) {
   if (!by) { return {declared: "", main: "", fragment: []} }
   const fetched = "texelFetch(points, ivec2(place % width, place / width), 0)"
@@ -160,7 +160,7 @@ export function colourShader(by, apart) {
         uniform vec3 colourRange;
         uniform float colourFront;
         void main()\n{`],
-      ["  ambientColor = ambientColorUniform;", `${looked}\n  ambientColor = shown;`],
+      ["  ambientColor = ambientColorUniform;", `${looked}\n  ambientColor = ambient < 0.9 ? shown : 0.45 * shown;`],
       ["  diffuseColor = diffuseColorUniform;", "  diffuseColor = shown;"],
     ],
   }

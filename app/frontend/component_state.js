@@ -2,7 +2,7 @@
 // drawn it. If a newer one came meanwhile, the old one takes its place: in the browser, and for a
 // choice also on the server. With this, they tell only what they themselves set.
 
-// As they stand in Panel's `react_component.ts`.
+// Copied from Panel's `react_component.ts`.
 const ECHO = "targetModel.setv({ [resolvedProp]: value })"
 const STATE = "return [value, setValue]"
 

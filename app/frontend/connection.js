@@ -1,5 +1,6 @@
-// When the server is gone: says so, tries again, and comes back with what the address holds.
+// When the server is gone: shows a message, reconnects, and restores the state from the address.
 
+import {element} from "./elements.js"
 import {stylesheet} from "./styles.js"
 
 const styled = await stylesheet("connection.css")
@@ -9,10 +10,7 @@ const RETRY_MS = 2000
 export class Connection {
   constructor(overlay) {
     this.overlay = overlay
-    this.note = document.createElement("div")
-    this.note.className = "card lost"
-    this.note.setAttribute("role", "alert")
-    this.note.hidden = true
+    this.note = element("div", {className: "card lost", hidden: true, aria: {role: "alert"}})
     overlay.root.append(styled(), this.note)
     const documents = window.Bokeh?.documents || []
     this.document = documents[documents.length - 1]

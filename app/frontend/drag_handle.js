@@ -39,7 +39,7 @@ export class DragHandle {
     e.preventDefault()
     e.stopPropagation()
     e.target.setPointerCapture(e.pointerId)
-    this.held = {...held, pointer: e.pointerId, x: e.clientX, y: e.clientY, told: 0}
+    this.held = {...held, pointer: e.pointerId, x: e.clientX, y: e.clientY, sentAt: 0}
     this.svg.classList.add("holding")
   }
 
@@ -50,8 +50,8 @@ export class DragHandle {
     if (!this.follow(e.clientX - held.x, e.clientY - held.y, e)) { return }
     held.moved = true
     clearTimeout(held.later)
-    const tell = () => { held.told = performance.now(); this.say(false) }
-    const wait = held.told + this.every - performance.now()
+    const tell = () => { held.sentAt = performance.now(); this.say(false) }
+    const wait = held.sentAt + this.every - performance.now()
     if (wait > 0) { held.later = setTimeout(tell, wait) } else { tell() }
   }
 

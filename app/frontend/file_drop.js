@@ -1,27 +1,20 @@
 // A place in the sidebar to drop files on, or to choose them with a click.
 
+import {button, element} from "./elements.js"
 import {stylesheet} from "./styles.js"
 import {acceptDrops, Uploader} from "./upload.js"
 
 const styled = await stylesheet("file_drop.css")
 
 export function render({model}) {
-  const label = document.createElement("label")
-  const text = document.createElement("span")
-  text.textContent = model.label
-  const small = document.createElement("small")
-  small.textContent = model.hint
-  const input = document.createElement("input")
-  input.type = "file"
-  input.multiple = true
-  input.setAttribute("aria-label", model.label)
-  const bar = document.createElement("i")
-  label.append(text, small, input, bar)
-  const cancel = document.createElement("button")
-  cancel.type = "button"
-  cancel.textContent = "Cancel"
-  cancel.hidden = true
-  cancel.addEventListener("click", () => uploader.cancel())
+  const text = element("span", {}, model.label)
+  const input = element("input", {
+    type: "file", multiple: true, aria: {label: model.label},
+    on: {change: () => uploader.send(input.files)},
+  })
+  const bar = element("i")
+  const label = element("label", {}, text, element("small", {}, model.hint), input, bar)
+  const cancel = button({hidden: true, on: {click: () => uploader.cancel()}}, "Cancel")
   const uploader = new Uploader(model, {
     started: (files) => { text.textContent = `Sending ${files.map((f) => f.name).join(", ")}`
       cancel.hidden = false },
@@ -29,9 +22,6 @@ export function render({model}) {
     ended: () => { bar.style.width = "0"; input.value = ""; text.textContent = model.label
       cancel.hidden = true },
   })
-  input.addEventListener("change", () => uploader.send(input.files))
   acceptDrops(label, (over) => label.classList.toggle("over", over), (f) => uploader.send(f))
-  const root = document.createElement("div")
-  root.append(styled(), label, cancel)
-  return root
+  return element("div", {}, styled(), label, cancel)
 }

@@ -72,7 +72,7 @@ export class Gizmo extends DragHandle {
       paths.far.setAttribute("d", arcs(false))
       paths.halo.setAttribute("d", arcs(true))
       paths.reach.setAttribute("d", line(points.map(({at}) => at)))
-      // Each letter strives to a side of its own, so that no two stand in one place.
+      // Each letter moves to a different side, so that no two overlap.
       const [right, down] = [[-0.3, 1], [1, -0.2], [-0.6, -1]][k]
       const score = ({at: [x, y], near}) =>
         (near ? 1000 : 0) + right * (x - middle[0]) + down * (y - middle[1])

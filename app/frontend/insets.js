@@ -5,7 +5,7 @@ import {Fit} from "./fit.js"
 import {LegendPlace} from "./legend_place.js"
 import {noCards} from "./tiles.js"
 
-const SLIM = 700  // a canvas less wide than this has no room beside its cards
+const SLIM = 700  // a canvas less wide than this has no space beside its cards
 const NARROW_VIEW = 330  // a view less wide than this has none beside the tools
 const UNDER_TOOLS = 56
 const NARROW_FEET = 600  // in a view less wide than this the legend would cover feet
@@ -22,7 +22,7 @@ export class Insets {
     for (const part of [overlay.canvas, overlay.legend, overlay.transport]) { this.observer.observe(part) }
   }
 
-  // Panel puts what stands beside the canvas in the same place into wrappers beside its own.
+  // Panel puts elements beside the canvas into wrappers next to the canvas's wrapper.
   get cards() {
     const own = this.overlay.root.getRootNode().host?.parentNode
     const beside = [...own?.parentNode?.children || []].filter((one) => one !== own)
@@ -101,19 +101,19 @@ export class Insets {
     }
     if (!slim && !several) { return this.clear(insets, box, beside, edges) }
     const narrow = several && this.renderer.tilesIn(insets)[0][2] < NARROW_FEET
-    // There they take room whatever stands behind them, and whichever way it is turned.
+    // There they always need space, whatever is behind them and however it is turned.
     for (const part of slim || narrow ? [legend, transport] : []) {
       if (!part.hidden) { take("bottom", box.bottom - this.boxOf(part).top) }
     }
     return insets
   }
 
-  // The legend counts as in its own corner, wherever it stands now.
+  // The legend is treated as in its corner, wherever it is now.
   boxOf(part) {
     return part === this.overlay.legend && !part.hidden ? this.legend.home : part.getBoundingClientRect()
   }
 
-  // A wide canvas has room around one character, which then makes no more room than it must.
+  // A wide canvas has space around one character, which then moves no more than it must.
   clear(insets, box, beside, edges) {
     let cleared = this.stepAside(insets, beside)
     for (let times = 0; times < 2; times++) {  // where it goes something else may be
@@ -133,7 +133,7 @@ export class Insets {
     return {...insets, left: insets.left + Math.max(shift, 0), right: insets.right + Math.max(-shift, 0)}
   }
 
-  // What is at an edge takes room only where the character would be behind it.
+  // Cards at an edge need space only where the character would be behind them.
   rise(insets, box, edges) {
     const x = (box.width + insets.left - insets.right) / 2
     const y = (box.height + insets.top - insets.bottom) / 2
@@ -155,7 +155,7 @@ export class Insets {
     return risen
   }
 
-  // Where the points of the character are seen by whoever begins to look.
+  // Positions of the character's points on the screen at first.
   eachPixel(insets, see) {
     this.fitting.eachPixel(this.direction, this.orbit.home.target, this.fit(insets), see)
   }
@@ -177,7 +177,7 @@ export class Insets {
   }
 
   // Begins to look from where the server says, from as far as this window needs; or, for now, from
-  // somewhere else. What is told of cameras knows no cards.
+  // somewhere else. Reported cameras ignore cards.
   frame(camera) {
     const {position, focal_point: target, now} = camera
     this.awaited = this.fitting.rests().length ? null : camera  // what is to be fitted comes later

@@ -25,7 +25,7 @@ function row(model, {joint, name}, bars, value, spoken) {
   made.setAttribute("aria-label", spoken)
   const track = element("span", "bars")
   track.append(...bars)
-  // What many names begin with ("mixamorig:") tells none of them apart, and there is little room.
+  // A common prefix ("mixamorig:") distinguishes no names, and space is short.
   const short = name.replace(/^.*[:|](?=.)/, "")
   made.append(element("span", "name", short), track, element("span", "value", value))
   made.addEventListener("click", () => model.send_msg({type: "bone", joint}))
@@ -91,7 +91,7 @@ function pathBar(path) {
   return bar
 }
 
-// From distance to weight, a step a line; what a step takes away is pale.
+// From distance to weight, one step a line; the part that a step removes is pale.
 function waterfall({color, steps, file}) {
   const list = element("dl", "steps")
   let before = null
@@ -122,9 +122,9 @@ function explained(bone, first) {
   summary.append(dot, element("span", "name", bone.name), element("span", "value", bone.steps.at(-1)[1].toFixed(2)))
   root.append(summary)
   if (bone.path.length) {
-    const told = new Map()
-    for (const [kind, length] of bone.path) { told.set(kind, (told.get(kind) || 0) + length) }
-    const parts = [...told].map(([kind, length]) => `${PIECES[kind]} ${LENGTH(length)}`)
+    const lengths = new Map()
+    for (const [kind, length] of bone.path) { lengths.set(kind, (lengths.get(kind) || 0) + length) }
+    const parts = [...lengths].map(([kind, length]) => `${PIECES[kind]} ${LENGTH(length)}`)
     root.append(pathBar(bone.path), element("div", "quiet", parts.join(" · ")))
   } else {
     root.append(element("div", "quiet", "No path leads there through the body."))
@@ -174,7 +174,7 @@ function overruling(model, facts) {
   return form
 }
 
-// What a person has typed into a card and not yet sent, by the fields' names.
+// Text typed into a card and not yet sent, by field.
 function typedNumbers(card) {
   const inputs = [...card?.querySelectorAll("input") ?? []]
   const edited = inputs.filter((input) => input.value !== input.defaultValue)

@@ -6,6 +6,8 @@ import {stylesheet} from "./styles.js"
 
 const styled = await stylesheet("joint_tree.css")
 
+const TAIL = 7  // letters at the end of a name that are always seen
+
 const LOCK = '<svg viewBox="0 0 24 24" aria-hidden="true"><path d="M6 11h12v9H6zM8.5 11V8a3.5 3.5 0 0 1 7 0v3"/></svg>'
 
 function element(tag, className, text, parent) {
@@ -26,12 +28,12 @@ export function render({model}) {
   list.setAttribute("aria-label", "Joints")
   list.setAttribute("aria-describedby", "how")
   const head = element("div", "head")
-  element("span", "", "✓ carries weight", head)
+  element("span", "", "✓ deforms", head)
   element("span", "", "% of the skin", head)
   const how = element("div", "", "Enter chooses, Space lets a joint carry weight or not")
   Object.assign(how, {id: "how", hidden: true})
   root.append(styled(), head, list, how)
-  head.title = "Space or a click: carries weight or not; the arrows walk, open and close"
+  head.title = "Space or click: deforms or not. Arrows walk, open and close."
   let forest = new Forest([], new Set())
   let names = ""
   let cursor = -1
@@ -56,7 +58,9 @@ export function render({model}) {
     box.addEventListener("click", (e) => { e.stopPropagation(); carry(i) })
     const chip = element("span", row.control ? "chip control" : "chip", "", made)
     chip.style.setProperty("--own", row.color)
-    const name = element("span", "name", row.name, made)
+    const name = element("span", "name", "", made)
+    element("span", "start", row.name.slice(0, -TAIL), name)
+    element("span", "tail", row.name.slice(-TAIL), name)
     name.title = row.why ? `${row.name}: ${row.why}` : row.name
     if (row.locked) {
       const lock = element("span", "lock", "", made)

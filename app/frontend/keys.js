@@ -1,11 +1,13 @@
 // What the keys do anywhere on the page, the buttons for it, and the card that lists them.
 
+import {button, element} from "./elements.js"
 import {stylesheet} from "./styles.js"
 
 const KEYS = [
   ["Space", "play the motion, or halt it"],
   ["← →", "the bone before, the next bone"],
   ["↑ ↓", "towards the root, away from it"],
+  ["F", "look at the chosen bone"],
   ["Ctrl Z", "undo a choice"],
   ["Ctrl Shift Z", "redo"],
   ["PgDn PgUp", "the tour's next step, the one before"],
@@ -30,7 +32,7 @@ const BRUSH_KEYS = [
 const BRUSH_POINTER = [
   ["drag over the body", "paint", "drag over the body"],
   ["Shift drag", "smooth"],
-  ["Ctrl drag", "take away"],
+  ["Ctrl drag", "subtract"],
   ["drag beside it", "turn (or right-drag)", "drag beside it"],
   ["Shift right-drag", "move (or the middle button)", "two fingers"],
 ]
@@ -55,7 +57,7 @@ const TOOLS = [
     '<path d="M9.2 9.3a2.9 2.9 0 1 1 4.4 2.5c-1 .6-1.6 1.2-1.6 2.3M12 17.6v.1"/>'],
 ]
 
-// Elements that have a use of their own for keys.
+// Elements that handle keys themselves.
 const TYPED = "input, textarea, select, [contenteditable], [role=combobox], [role=listbox], "
   + "[role=option], [role=menu], [role=menuitem], [role=slider], [role=spinbutton], [role=tab], dialog"
 // Those that take letters, brackets and Escape; sliders and switches do not.
@@ -76,29 +78,18 @@ export class Keys {
   }
 
   makeTools() {
-    const bar = document.createElement("div")
-    bar.className = "tools"
-    bar.setAttribute("role", "toolbar")
-    bar.setAttribute("aria-label", "Undo, reset, help")
-    this.tools = {}
-    for (const [name, title, icon] of TOOLS) {
-      const button = document.createElement("button")
-      button.type = "button"
-      button.title = title
-      button.setAttribute("aria-label", title)
-      button.innerHTML = `<svg viewBox="0 0 24 24" aria-hidden="true">${icon}</svg>`
-      button.addEventListener("click", () => name === "keys" ? this.toggle() : this.act(name))
-      this.tools[name] = button
-      bar.append(button)
-    }
+    this.tools = Object.fromEntries(TOOLS.map(([name, title, icon]) => {
+      const click = () => name === "keys" ? this.toggle() : this.act(name)
+      return [name, button({title, icon, aria: {label: title}, on: {click}})]
+    }))
+    const aria = {role: "toolbar", label: "Undo, reset, help"}
+    const bar = element("div", {className: "tools", aria}, ...Object.values(this.tools))
     this.able([false, false])
     return bar
   }
 
   makeCard() {
-    const card = document.createElement("dialog")
-    card.className = "keys"
-    card.setAttribute("aria-labelledby", "keys-title")
+    const card = element("dialog", {className: "keys", aria: {labelledby: "keys-title"}})
     const touch = matchMedia("(pointer: coarse)").matches
     const pointer = (ways) => ways.filter(([, , fingers]) => fingers || !touch)
       .map(([mouse, what, fingers]) =>
@@ -156,6 +147,8 @@ export class Keys {
       act = {z: e.shiftKey ? "redo" : "undo", y: "redo"}[name]
     } else if (e.key === "?") {
       act = "keys"
+    } else if (name === "f") {
+      act = "frame"
     } else if (e.key === " " && !over.some((part) => part.matches(PRESSED))) {
       act = "play"
     } else if (!e.shiftKey && !this.turnable()) {

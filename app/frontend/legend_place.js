@@ -52,7 +52,7 @@ export class LegendPlace {
   }
 }
 
-// The places of a card that is as far from each edge as from those of its own corner; its own first.
+// Positions of a card, as far from each edge as in its corner; its corner comes first.
 export function corners({left, right, top, bottom}, box) {
   const [aside, below] = [left - box.left, box.bottom - bottom]
   const across = box.right - aside - right

@@ -79,7 +79,7 @@ export class Materials {
   }
 }
 
-// What is added to vtk.js' shaders, which draw corners in the order of the triangles.
+// Additions to the shaders of vtk.js, which draw corners in the order of the triangles.
 export const MATERIAL_SHADER = {
   declared: `
     uniform highp sampler2D corners;
@@ -120,7 +120,7 @@ export const MATERIAL_SHADER = {
       if (corner.z < -0.5) { texel = vec4(1.0); }
       if (texel.a * tint.a < least) { discard; }
       vec3 shown = tint.rgb * texel.rgb;
-      ambientColor = shown;`],
+      ambientColor = ambient < 0.9 ? shown : 0.45 * shown;  // edges have no other light`],
     ["  diffuseColor = diffuseColorUniform;", "  diffuseColor = shown;"],
   ],
 }

@@ -1,48 +1,33 @@
 // The table of methods: which are seen, and how good they are.
 
+import {element} from "./elements.js"
 import {stylesheet} from "./styles.js"
 
 const styled = await stylesheet("methods.css")
 
 export function render({model}) {
-  const table = document.createElement("table")
-  table.setAttribute("aria-label", model.label)
-  const cell = (row, tag, text, title) => {
-    const made = row.appendChild(document.createElement(tag))
-    made.textContent = text
-    if (title) { made.title = title }
-    return made
-  }
+  const table = element("table", {aria: {label: model.label}})
   const fill = () => {
     const held = table.querySelector("input:focus")?.name
-    const head = document.createElement("thead")
-    const top = head.appendChild(document.createElement("tr"))
-    cell(top, "th", "Method").scope = "col"
-    for (const [text, title] of model.columns) { cell(top, "th", text, title).scope = "col" }
-    const body = document.createElement("tbody")
+    const columns = [["Method", ""], ...model.columns].map(([text, title]) =>
+      element("th", {scope: "col", title}, text))
+    const head = element("thead", {}, element("tr", {}, ...columns))
+    const body = element("tbody")
     for (const {id, title, values, best, note, state, chosen, fixed} of model.rows) {
-      const row = body.appendChild(document.createElement("tr"))
-      row.className = chosen ? "chosen" : "idle"
-      const first = cell(row, "td", "")
-      const label = first.appendChild(document.createElement("label"))
-      const box = label.appendChild(document.createElement("input"))
-      Object.assign(box, {type: "checkbox", name: id, checked: chosen, disabled: fixed})
-      label.append(title)
-      if (fixed) { label.title = chosen ? "Two stay at least" : "Four at most: take one away first" }
-      box.addEventListener("change", () => model.send_msg({id, on: box.checked}))
-      values.forEach((value, i) => {
-        cell(row, "td", value).className = best[i] ? "best" : ""
+      const change = () => model.send_msg({id, on: box.checked})
+      const box = element("input", {
+        type: "checkbox", name: id, checked: chosen, disabled: fixed, on: {change},
       })
+      const label = element("label", {}, box, title)
+      if (fixed) { label.title = chosen ? "Two stay at least" : "Four at most: take one away first" }
+      const cells = values.map((value, i) => element("td", {className: best[i] ? "best" : ""}, value))
+      body.append(element(
+        "tr", {className: chosen ? "chosen" : "idle"}, element("td", {}, label), ...cells))
       if (note) {
-        const below = body.appendChild(document.createElement("tr"))
-        below.className = `note ${state}`
-        const words = cell(below, "td", note)
-        words.colSpan = 1 + values.length
-        words.id = `note-${id}`
+        const words = element("td", {colSpan: 1 + values.length, id: `note-${id}`}, note)
         box.setAttribute("aria-describedby", words.id)
-        if (state === "running") {
-          words.prepend(Object.assign(document.createElement("i"), {className: "ring"}))
-        }
+        if (state === "running") { words.prepend(element("i", {className: "ring"})) }
+        body.append(element("tr", {className: `note ${state}`}, words))
       }
     }
     table.replaceChildren(head, body)
@@ -51,7 +36,5 @@ export function render({model}) {
   model.on("rows", fill)
   model.on("columns", fill)
   fill()
-  const root = document.createElement("div")
-  root.append(styled(), table)
-  return root
+  return element("div", {}, styled(), table)
 }

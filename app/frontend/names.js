@@ -18,7 +18,7 @@ const UNNAMED = [
   // The library calls what a list offers items of a menu, and so the list must be one.
   [".MuiMenu-list[role=listbox]", (part) => part.setAttribute("role", "menu")],
   ["[role=combobox][aria-haspopup=listbox]", (part) => part.setAttribute("aria-haspopup", "menu")],
-  // The page's name is its first heading; what only keeps room for a heading is none.
+  // The page's name is its first heading; empty headings are not headings.
   [".header .title:not([aria-level])", (part) => {
     part.setAttribute("role", "heading")
     part.setAttribute("aria-level", "1")
@@ -34,7 +34,7 @@ export class Names {
   constructor(element) {
     this.seen = new WeakSet()
     this.observers = []
-    // The page is the outermost element with a tree of its own.
+    // The page is the outermost element with a shadow tree.
     let root = element.getRootNode()
     while (root.host && root.host.getRootNode().host) { root = root.host.getRootNode() }
     this.watch(root.host ? root : document.body)

@@ -6,8 +6,9 @@ const MAX_PITCH = 1.5
 const STEP = 24  // pixels that a key moves the view
 
 export class Orbit {
-  constructor(element, {changed, rested, clicked, hovered, chosen}) {
+  constructor(element, {changed, rested, clicked, hovered, chosen, away = () => [0, 0]}) {
     this.element = element
+    this.away = away  // of a pointer, from where the target is seen
     this.changed = changed
     this.rested = rested
     this.chosen = chosen
@@ -41,7 +42,7 @@ export class Orbit {
     on("dblclick", () => { this.reset(); this.move(); this.rest() })
     on("wheel", (e) => {
       e.preventDefault()
-      this.zoom(Math.exp(Math.sign(e.deltaY) * Math.min(Math.abs(e.deltaY), 120) * 0.0012))
+      this.zoom(Math.exp(Math.sign(e.deltaY) * Math.min(Math.abs(e.deltaY), 120) * 0.0012), this.away(e))
       this.rest(180)
     })
     on("keydown", (e) => this.key(e))
@@ -97,7 +98,8 @@ export class Orbit {
       const [other] = [...this.pointers].filter(([id]) => id !== e.pointerId).map(([, p]) => p)
       const before = Math.hypot(last[0] - other[0], last[1] - other[1])
       const after = Math.hypot(e.clientX - other[0], e.clientY - other[1])
-      if (before > 0 && after > 0) { this.zoom(before / after) }
+      const middle = {clientX: (e.clientX + other[0]) / 2, clientY: (e.clientY + other[1]) / 2}
+      if (before > 0 && after > 0) { this.zoom(before / after, this.away(middle)) }
       this.pan(dx / 2, dy / 2)
     } else if (e.shiftKey || (this.painting ? e.buttons & 4 : e.ctrlKey || (e.buttons & 6))) {
       this.pan(dx, dy)
@@ -123,9 +125,13 @@ export class Orbit {
     this.move()
   }
 
-  zoom(factor) {
+  // What lies at the target's depth, some pixels away from it, stays where it is seen.
+  zoom(factor, [dx, dy] = [0, 0]) {
     const {distance} = this.home
-    this.distance = Math.max(distance * 0.04, Math.min(distance * 6, this.distance * factor))
+    const after = Math.max(distance * 0.04, Math.min(distance * 6, this.distance * factor))
+    const part = 1 - after / this.distance
+    this.pan(-part * dx, -part * dy)
+    this.distance = after
     this.move()
   }
 

@@ -1,6 +1,7 @@
 // What is written over the canvas: the legend, the name of a bone, and hints.
 
 import {plain} from "./arrays.js"
+import {button, element} from "./elements.js"
 import {stylesheet} from "./styles.js"
 
 const styled = await stylesheet("overlay.css")
@@ -8,11 +9,9 @@ const styled = await stylesheet("overlay.css")
 export class Overlay {
   constructor() {
     const make = (tag, className, parent, hidden = true) => {
-      const element = document.createElement(tag)
-      element.className = className
-      element.hidden = hidden
-      parent?.append(element)
-      return element
+      const made = element(tag, {className, hidden})
+      parent?.append(made)
+      return made
     }
     this.root = make("div", "viewport", null, false)
       this.root.append(styled())
@@ -52,40 +51,28 @@ export class Overlay {
     this.legend.hidden = !legend
     if (!legend) { return }
     const {title, low, high, swatches} = legend
-    this.legend.replaceChildren()
-    const add = (tag, text) => {
-      const element = document.createElement(tag)
-      element.textContent = text
-      this.legend.append(element)
-      return element
-    }
-    add("b", title)
+    this.legend.replaceChildren(element("b", {}, title))
     if (legend.table) {
-      this.legend.append(colorBar(plain(legend.table)))
-      const ends = add("span", "")
-      for (const text of [low, high]) {
-        const end = document.createElement("i")
-        end.textContent = text
-        ends.append(end)
-      }
+      const ends = [low, high].map((text) => element("i", {}, text))
+      this.legend.append(colorBar(plain(legend.table)), element("span", {}, ...ends))
     }
     for (const [color, text] of swatches || []) {
-      add("p", text).style.setProperty("--swatch", color)
+      const swatch = element("p", {}, text)
+      swatch.style.setProperty("--swatch", color)
+      this.legend.append(swatch)
     }
   }
 
-  // What stands in each view, and the seams between them.
+  // The contents of each view, and the lines between views.
   showViews(captions, tiles) {
     if (!this.views) {
-      this.views = document.createElement("div")
+      this.views = element("div")
       this.root.append(this.views)
     }
     const put = (className, text, style) => {
-      const element = document.createElement("div")
-      element.className = className
-      if (text) { element.appendChild(document.createElement("span")).textContent = text }
-      Object.assign(element.style, style)
-      this.views.append(element)
+      const made = element("div", {className}, ...text ? [element("span", {}, text)] : [])
+      Object.assign(made.style, style)
+      this.views.append(made)
     }
     this.views.replaceChildren()
     this.root.classList.toggle("several", captions.length > 1)  // feet stand where the hint is
@@ -125,13 +112,7 @@ export class Overlay {
   say(text, stop) {
     this.drop.hidden = !text
     this.drop.textContent = text || ""
-    if (text && stop) {
-      const button = document.createElement("button")
-      button.type = "button"
-      button.textContent = "Cancel"
-      button.addEventListener("click", stop)
-      this.drop.append(button)
-    }
+    if (text && stop) { this.drop.append(button({on: {click: stop}}, "Cancel")) }
   }
 
   fail(message) {
@@ -143,8 +124,7 @@ export class Overlay {
 
 // A gradient, not a canvas: that would wait for the graphics card, which has a picture to draw.
 function colorBar(table) {
-  const bar = document.createElement("div")
-  bar.className = "bar"
+  const bar = element("div", {className: "bar"})
   const stops = Array.from({length: table.length / 3}, (_, i) => `rgb(${table.subarray(3 * i, 3 * i + 3).join(" ")})`)
   bar.style.background = `linear-gradient(to right, ${stops.join(", ")})`
   return bar

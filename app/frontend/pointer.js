@@ -1,7 +1,7 @@
-// What lies under the pointer: told while it rests there, chosen with a click.
+// The object under the pointer: described on hover, chosen with a click.
 
 import {pickBone, REACH, TOUCH} from "./pick.js"
-import {hitLine, hitPoint, hitSurface, told} from "./surface.js"
+import {hitLine, hitPoint, hitSurface, valueAt} from "./surface.js"
 
 export class Pointer {
   constructor(view) {
@@ -82,7 +82,7 @@ export class Pointer {
     const [x, y] = this.place(e)
     const node = this.nodeAt(x, y)
     if (node) {
-      this.view.overlay.showBone(told(node.actor, node.point), x, y)
+      this.view.overlay.showBone(valueAt(node.actor, node.point), x, y)
       return
     }
     const found = this.view.brush.part ? null : this.under(x, y)
@@ -96,14 +96,14 @@ export class Pointer {
 
   surfaceReading(x, y) {
     const hit = this.bodyAt(x, y, (name, actor) => actor.reading)
-    return hit && told(hit.actor, hit.point)
+    return hit && valueAt(hit.actor, hit.point)
   }
 
   lineReading(x, y) {
     for (const actor of this.view.renderer.actors.values()) {
       if (actor.kind !== "lines" || !actor.reading) { continue }
       const cell = hitLine(this.view.renderer, actor, x, y, TOUCH)
-      if (cell !== null) { return told(actor, cell) }
+      if (cell !== null) { return valueAt(actor, cell) }
     }
     return null
   }

@@ -31,7 +31,7 @@ export function probe(view) {
       return [left + x, top + y]
     },
 
-    // Whether the server has nothing under way, once it has done what it was asked before.
+    // Whether the server is idle, once it has finished earlier requests.
     serverRests() {
       return new Promise((done) => {
         view.answered = done

@@ -21,7 +21,7 @@ export function loadVtk(url) {
   return window.__cutcellVtk
 }
 
-// Of a view that stands beside others: above there is its caption, in two lines if it is narrow.
+// One view of several has its caption on top, in two lines if it is narrow.
 const CAPTIONED = {left: 0, right: 0, top: 46, bottom: 16}
 const NARROW_CAPTIONED = {...CAPTIONED, top: 60}
 const NARROW_CAPTION = 260
@@ -30,7 +30,7 @@ export class Renderer {
   constructor(vtk, element) {
     this.vtk = vtk
     this.element = element
-    // Lines that lie in a surface win over it. A switch of all of vtk.js, so set it at once.
+    // Lines in a surface are drawn over it. This is a global switch of vtk.js, so set it once.
     vtk.Rendering.Core.vtkMapper.setResolveCoincidentTopologyToPolygonOffset()
     const {vtkRenderWindow, vtkCamera} = vtk.Rendering.Core
     this.window = vtkRenderWindow.newInstance()
@@ -78,7 +78,7 @@ export class Renderer {
     for (const actor of this.actors.values()) { actor.place() }
   }
 
-  // Where each view lies, in the canvas' own pixels.
+  // The rectangle of each view, in pixels of the canvas.
   get tiles() {
     return this.tilesIn(this.insets)
   }
@@ -232,6 +232,15 @@ export class Renderer {
     const [left, top, w, h] = this.tiles[0]
     const [aside, above] = this.middle
     return [left + (1 + aside) / 2 * w, top + (1 - above) / 2 * h]
+  }
+
+  // How far a pointer is from where its view's target is seen, in pixels of the whole canvas.
+  fromTarget({clientX, clientY}) {
+    const box = this.element.getBoundingClientRect()
+    const [x, y] = [clientX - box.left, clientY - box.top]
+    const [left, top, w, h] = this.tiles[this.viewAt(x, y)]
+    const [aside, above] = this.middle
+    return [x - left - (1 + aside) / 2 * w, y - top - (1 - above) / 2 * h].map((d) => d * box.height / h)
   }
 
   // Which view a pixel of the canvas belongs to.

@@ -1,4 +1,4 @@
-// vtk.js' own shaders, changed where an actor needs it: joints move its points (skin.js), and
+// The shaders of vtk.js, changed where an actor needs it: joints move its points (skin.js), and
 // textures colour them (colour.js, materials.js).
 
 import {colourShader} from "./colour.js"

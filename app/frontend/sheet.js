@@ -1,4 +1,4 @@
-// In a narrow window the sidebar is a sheet at the bottom; the page above it is so much shorter.
+// In a narrow window the sidebar is a sheet at the bottom; the page above it is shorter by its height.
 
 const NARROW = "(max-width: 599.95px)"
 const HEIGHT = "46dvh"  // as layout/theme.py has it
@@ -10,11 +10,13 @@ export class Sheet {
     this.beginning = requestAnimationFrame(() => this.begin(element))
   }
 
-  // The page is the outermost element with a tree of its own.
+  // The page is the outermost element with a shadow tree.
   begin(element) {
     let root = element.getRootNode()
     while (root.host?.getRootNode().host) { root = root.host.getRootNode() }
     this.root = root
+    root.querySelector("main")?.setAttribute("aria-label", "Character")
+    root.querySelector("nav")?.setAttribute("aria-label", "Controls")
     this.observer.observe(root, {childList: true, subtree: true})
     root.addEventListener("transitionend", this.fitted, true)
     this.fit()
@@ -25,7 +27,7 @@ export class Sheet {
     const open = sheet && matchMedia(NARROW).matches && getComputedStyle(sheet).visibility !== "hidden"
     document.documentElement.style.setProperty("--sheet", open ? HEIGHT : "0px")
     if (!open) { return }
-    // The layer that holds it lies over all of the window.
+    // Its layer covers the whole window.
     for (let part = sheet.parentElement; part; part = part.parentElement) {
       part.style.pointerEvents = "none"
       if (part.matches("[data-pmui-layer]")) { break }

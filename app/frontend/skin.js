@@ -45,7 +45,7 @@ export class PoseTexture {
     this.gl.activeTexture(this.gl.TEXTURE0)
     program.setUniformi("poses", POSE_UNIT)
     program.setUniformf("poseOn", this.on && this.rows ? 1 : 0)
-    // vtk.js shifts and scales points that are far from 1: poses are told of the true ones.
+    // vtk.js shifts and scales points that are far from 1, while poses need the true ones.
     const m = buffer.getCoordShiftAndScaleEnabled() ? buffer.getInverseShiftAndScaleMatrix() : null
     program.setUniform3fArray("trueScale", m ? [m[0], m[5], m[10]] : [1, 1, 1])
     program.setUniform3fArray("trueShift", m ? [m[12], m[13], m[14]] : [0, 0, 0])
@@ -91,7 +91,7 @@ export function skinArrays(name, {joints, weights, count}) {
   return arrays
 }
 
-// What is added to vtk.js' vertex shader. `otherSets`: of a second skin; how far it takes a point
+// Additions to the vertex shader of vtk.js. `otherSets`: of a second skin; how far it takes a point
 // from where the first one does is the point's value.
 export function skinVertex(sets, otherSets) {
   if (!sets) { return {declared: "", main: "", swaps: []} }
@@ -136,7 +136,7 @@ export function skinVertex(sets, otherSets) {
     ${otherSets ? `vec4 a; vec4 b; vec4 c;
     otherBlend(a, b, c);
     vec3 gap = posed - vec3(dot(a, truePoint), dot(b, truePoint), dot(c, truePoint));
-    apart = apartUnit * dot(gap, gap);` : ""}`,
+    apart = apartUnit * length(gap);` : ""}`,
     swaps: [
       ["MCVCMatrix * vertexMC", "MCVCMatrix * posedMC"],
       ["MCPCMatrix * vertexMC", "MCPCMatrix * posedMC"],
@@ -188,7 +188,7 @@ export class Clip {
     return this.times[this.times.length - 1] || 1
   }
 
-  // It starts again whenever it has ended; the end is a moment of its own, as `pose_at` has it.
+  // It repeats; its end is a separate moment, as in `pose_at`.
   moment(time) {
     return time >= 0 && time <= this.duration ? time : time % this.duration
   }

@@ -63,7 +63,7 @@ export class Smooth {
     if (scissored) { gl.enable(gl.SCISSOR_TEST) }
   }
 
-  // How long the card is at it, told by a fence: the calls themselves return at once.
+  // Time on the GPU, measured by a fence: the calls themselves return at once.
   time(kind) {
     if (this.asking) { return }
     const {gl} = this

@@ -1,7 +1,7 @@
 // How lines and points are drawn on the card (strokes.js): as shaded strokes of two triangles each, or
-// plainly.
+// plainly. Pictures are drawn by the same rules (viewers/strokes.py).
 
-const HAZE = 0.55  // how much of the background lies over what is farthest
+const HAZE = 0.35  // share of the background in the colour of the farthest points
 
 const PLACED = `
   uniform highp sampler2D places;
@@ -18,16 +18,27 @@ const PLACED = `
 // Of the four corners of each, bit 0 tells along and bit 1 aside.
 const WIDE = `
   uniform vec2 size;
-  uniform float pixels, thick, scale;
+  uniform float pixels, unit, thick, scale, dash;
+  out float fade, gap;
   int which() { return gl_VertexID / 4 * every; }
   int corner() { return gl_VertexID % 4; }
-  float reach(float w) { return clamp(thick * scale / w, 0.5 * pixels, 6.0 * pixels); }`
+  float reach(float w) {
+    float spaced = thick * scale / w, thin = 0.5 * unit;
+    fade = thick > 0.0 ? clamp(spaced / thin, 0.5, 1.0) : 1.0;
+    gap = dash * scale / w > 3.0 * unit ? 0.55 : 2.0;
+    return thick > 0.0 ? clamp(spaced, thin, 6.0 * pixels) : 0.5 * pixels + thin;
+  }
+  // What lies in a surface is seen: it is as near as its own front.
+  void lift(vec3 place, float radius) {
+    vec4 front = seen * vec4(place - radius * gl_Position.w / scale * vec3(seen[0][3], seen[1][3], seen[2][3]), 1.0);
+    gl_Position.z = front.z / front.w * gl_Position.w;
+  }`
 
 const COLOURED = (by) => by === "colors"
-  ? "uniform highp sampler2D points;\nvec3 told(int i) { return texelFetch(points, ivec2(i % 2048, i / 2048), 0).rgb; }"
+  ? "uniform highp sampler2D points;\nvec3 valueOf(int i) { return texelFetch(points, ivec2(i % 2048, i / 2048), 0).rgb; }"
   : by === "values"
-    ? "uniform highp sampler2D points;\nvec3 told(int i) { return vec3(texelFetch(points, ivec2(i % 2048, i / 2048), 0).r); }"
-    : "vec3 told(int i) { return vec3(0.0); }"
+    ? "uniform highp sampler2D points;\nvec3 valueOf(int i) { return vec3(texelFetch(points, ivec2(i % 2048, i / 2048), 0).r); }"
+    : "vec3 valueOf(int i) { return vec3(0.0); }"
 
 const HEAD = (by) => `#version 300 es
   precision highp float; precision highp int;
@@ -51,11 +62,12 @@ const LINE = (by) => `${HEAD(by)}
     vec2 run = (stop.xy / stop.w - start.xy / start.w) * size * 0.5;
     float far = length(run);
     vec2 way = far > 1e-4 ? run / far : vec2(1.0, 0.0);
-    float half_ = reach(here.w) + 0.5;
+    float half_ = reach(here.w);
     vec2 shift = (vec2(-way.y, way.x) * side + way * (2.0 * end - 1.0) * 0.3) * half_;
     here.xy += shift / size * 2.0 * here.w;
     gl_Position = here;
-    shown = mix(told(int(ends.x)), told(int(ends.y)), t);
+    if (dash == 0.0) { lift(mix(a, b, t), half_); }
+    shown = mix(valueOf(int(ends.x)), valueOf(int(ends.y)), t);
     at = mix(a, b, t); along = length(b - a) * t; across = vec2(side, half_); away = hazy(here.w);
   }`
 
@@ -67,7 +79,7 @@ const PLAIN = (by) => `${HEAD(by)}
     int i = int(gl_VertexID % 2 == 0 ? ends.x : ends.y);
     at = place(i);
     gl_Position = seen * vec4(at, 1.0);
-    shown = told(i); away = hazy(gl_Position.w);
+    shown = valueOf(i); away = hazy(gl_Position.w);
   }`
 
 const POINT = (by) => `${HEAD(by)}
@@ -80,9 +92,10 @@ const POINT = (by) => `${HEAD(by)}
     gl_Position = seen * vec4(at, 1.0);
     float depth = gl_Position.w;
     away = hazy(depth);
-    gl_Position.xy += aside * (reach(depth) + 0.5) / size * 2.0 * depth;
-    gl_Position.z -= 2e-4 * depth;
-    shown = told(ends); across = aside; along = 0.0;
+    float half_ = reach(depth);
+    gl_Position.xy += aside * half_ / size * 2.0 * depth;
+    lift(at, half_);
+    shown = valueOf(ends); across = aside; along = 0.0;
   }`
 
 const FORMS = {
@@ -95,7 +108,7 @@ const FORMS = {
 // How light a stroke is where. What throws nothing away is seldom drawn where something hides it.
 const LIGHT = {
   plain: () => "const float light = 0.7;",
-  lines: ({dashed}) => `${dashed ? "if (fract(along / dash) > 0.55) { discard; }" : ""}
+  lines: ({dashed}) => `${dashed ? "if (fract(along / dash) > gap) { discard; }" : ""}
     float rim = abs(across.x);
     float light = sqrt(max(1.0 - rim * rim, 0.0));`,
   points: ({form}) => FORMS[form],
@@ -114,7 +127,7 @@ const FRAGMENT = (kind, {by, opened, ...how}) => `#version 300 es
   uniform float opacity, dash, colourFront;
   uniform highp sampler2D colourTable;
   in vec3 shown, at; in float away;
-  ${kind === "plain" ? "" : "in vec2 across; in float along;"}
+  ${kind === "plain" ? "const float fade = 1.0;" : "in vec2 across; in float along, fade, gap;"}
   out vec4 painted;
   void main() {
     ${opened ? OPENED : ""}
@@ -122,7 +135,7 @@ const FRAGMENT = (kind, {by, opened, ...how}) => `#version 300 es
     vec3 own = ${by === "colors" ? "shown" : by === "values" ? `shown.x > colourFront ? vec3(0.79, 0.81, 0.84)
       : texture(colourTable, vec2((clamp((shown.x - colourRange.x) / colourRange.y, 0.0, 1.0)
         * (colourRange.z - 1.0) + 0.5) / colourRange.z, 0.5)).rgb` : "color"};
-    painted = vec4(mix(own * (0.62 + 0.38 * light), haze, away), opacity);
+    painted = vec4(mix(haze, mix(own * (0.62 + 0.38 * light), haze, away), fade), opacity);
   }`
 
 const VERTEX = {lines: LINE, plain: PLAIN, points: POINT}

@@ -1,7 +1,7 @@
-// Lines and points of a fixed width on the screen, thicker from near: lines as shaded tubes,
+// Lines and points whose width is fixed on the screen, or follows the scene: lines as shaded tubes,
 // points as balls, squares or triangles. The card fetches the ends of each from a texture, and makes
 // its two triangles itself: vtk.js knows lines of one pixel, and copies their corners. (Not by
-// instances: software that stands in for a card draws each of them by itself.)
+// instances: software renderers draw each of them separately.)
 
 import {Colours, PointTexture} from "./colour.js"
 import {strokeProgram} from "./stroke_shaders.js"
@@ -80,6 +80,7 @@ export class Strokes {
     const ratio = renderer.size[0] / Math.max(renderer.element.clientWidth, 1)
     gl.uniform2f(program.at("size"), wide, high)
     gl.uniform1f(program.at("pixels"), width * ratio)
+    gl.uniform1f(program.at("unit"), ratio)
     gl.uniform1f(program.at("thick"), thick)
     gl.uniform1f(program.at("scale"), high / (2 * Math.tan(camera.getViewAngle() * Math.PI / 360)))
     gl.uniform1f(program.at("opacity"), opacity)

@@ -54,7 +54,7 @@ export function hitPoint(renderer, actor, x, y, reach = 7) {
   return best
 }
 
-export function told(actor, index) {
+export function valueAt(actor, index) {
   const {text, values, names, percent} = actor.reading
   const value = (values || actor.values)?.[index]
   if (value === undefined || Number.isNaN(value)) { return null }

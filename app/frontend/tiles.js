@@ -2,7 +2,7 @@
 
 const FRONT = [0.42, 0.16, 1]  // where one looks from at first, as in viewers/camera.py
 
-// Views that stand side by side fill the canvas, and have captions of their own.
+// Views side by side fill the canvas, and each has a caption.
 export function noCards(several) {
   return several ? {left: 0, right: 0, top: 0, bottom: 0} : {left: 0, right: 0, top: 20, bottom: 20}
 }
@@ -18,7 +18,7 @@ export function shapeOf(bounds) {
   return Math.min(Math.max(seen(right) / seen(up), 0.4), 2.5)
 }
 
-// Divides a canvas among views so that what stands in each, below its caption, is seen as large as
+// Divides a canvas among views so that the contents of each, below its caption, are as large as
 // can be.
 export function tiles(count, width, height, shape, captions = 0) {
   let [best, columns] = [0, 1]

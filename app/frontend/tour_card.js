@@ -1,5 +1,6 @@
 // The tour's card: one step at a time; the formula as MathML, which browsers draw and read out.
 
+import {button, element} from "./elements.js"
 import {stylesheet} from "./styles.js"
 
 const styled = await stylesheet("tour_card.css")
@@ -11,54 +12,26 @@ face.load().then(() => document.fonts.add(face)).catch(() => {})
 function loadKatex(url) {
   window.__cutcellKatex ??= new Promise((resolve) => {
     if (window.katex) { resolve(window.katex); return }
-    const script = document.createElement("script")
-    script.src = new URL(url, document.baseURI).href
-    script.addEventListener("load", () => resolve(window.katex))
-    script.addEventListener("error", () => resolve(null))
-    document.head.append(script)
+    const on = {load: () => resolve(window.katex), error: () => resolve(null)}
+    document.head.append(element("script", {src: new URL(url, document.baseURI).href, on}))
   })
   return window.__cutcellKatex
 }
 
 export function render({model}) {
-  const make = (tag, className, text) => {
-    const element = document.createElement(tag)
-    if (className) { element.className = className }
-    if (text !== undefined) { element.textContent = text }
-    return element
-  }
-  const card = make("article")
-  card.setAttribute("aria-label", "Tour")
-  const count = make("span")
-  const close = make("button", "close", "Leave")
-  const head = make("header")
-  head.append(count, close)
-  const title = make("h2")
-  title.tabIndex = -1
-  const body = make("div")
-  body.setAttribute("aria-live", "polite")
-  const back = make("button", "go", "Back")
-  const next = make("button", "go next", "Next")
-  const dots = make("div", "dots")
-  dots.setAttribute("role", "group")
-  dots.setAttribute("aria-label", "Steps")
-  const foot = make("footer")
-  foot.append(back, dots, next)
-  card.append(head, title, body, foot)
-
   const ask = (step) => model.send_msg({type: "step", step})
-  model.steps.forEach((step, i) => {
-    const dot = make("button")
-    dot.append(make("i"))
-    dot.setAttribute("aria-label", `Step ${i + 1}: ${step.title}`)
-    dot.title = step.title
-    dot.addEventListener("click", () => ask(i))
-    dots.append(dot)
-  })
-  back.addEventListener("click", () => ask(model.step - 1))
-  next.addEventListener("click", () => ask(model.step + 1 < model.steps.length ? model.step + 1 : -1))
-  close.addEventListener("click", () => ask(-1))
-  for (const button of card.querySelectorAll("button")) { button.type = "button" }
+  const to = (className, text, step) => button({className, on: {click: () => ask(step())}}, text)
+  const count = element("span")
+  const title = element("h2", {tabIndex: -1})
+  const body = element("div", {aria: {live: "polite"}})
+  const back = to("go", "Back", () => model.step - 1)
+  const next = to("go next", "Next", () => model.step + 1 < model.steps.length ? model.step + 1 : -1)
+  const dots = element("div", {className: "dots", aria: {role: "group", label: "Steps"}},
+    ...model.steps.map(({title}, i) => button(
+      {title, aria: {label: `Step ${i + 1}: ${title}`}, on: {click: () => ask(i)}}, element("i"))))
+  const card = element("article", {aria: {label: "Tour"}},
+    element("header", {}, count, to("close", "Leave", () => -1)), title, body,
+    element("footer", {}, back, dots, next))
 
   // The button that starts the tour is gone then; a page that opens on a step keeps its focus.
   let shown = false
@@ -70,18 +43,14 @@ export function render({model}) {
     if (!step) { return }
     count.textContent = `Step ${model.step + 1} of ${model.steps.length}`
     title.textContent = step.title
-    body.replaceChildren(...step.text.split("\n\n").map((text) => make("p", "", text)))
-    const formula = make("div", "formula")
-    const offers = make("div", "offers")
-    offers.setAttribute("role", "group")
-    offers.setAttribute("aria-label", "Try it")
-    step.offers.forEach((label, index) => {
-      const offer = make("button", "offer", label)
-      offer.type = "button"
-      offer.addEventListener("click", () => model.send_msg({type: "offer", index}))
-      offers.append(offer)
-    })
-    body.append(formula, make("p", "look", step.task), ...step.offers.length ? [offers] : [])
+    body.replaceChildren(...step.text.split("\n\n").map((text) => element("p", {}, text)))
+    const formula = element("div", {className: "formula"})
+    const offers = step.offers.map((label, index) => button(
+      {className: "offer", on: {click: () => model.send_msg({type: "offer", index})}}, label))
+    body.append(formula, element("p", {className: "look"}, step.task))
+    if (offers.length) {
+      body.append(element("div", {className: "offers", aria: {role: "group", label: "Try it"}}, ...offers))
+    }
     press()
     back.disabled = model.step === 0
     next.textContent = model.step + 1 < model.steps.length ? "Next" : "Done"
@@ -115,8 +84,7 @@ export function render({model}) {
   model.on("step", show)
   model.on("taken", press)
   show()
-  const root = make("div")
+  const root = element("div", {}, styled(), card)
   root.style.cssText = "display: flex; width: 100%; min-width: 0; min-height: 0"
-  root.append(styled(), card)
   return root
 }

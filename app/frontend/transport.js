@@ -1,5 +1,7 @@
 // The bar under a motion: play and halt it, move through it, change its speed.
 
+import {button, element} from "./elements.js"
+
 const SPEEDS = [0.25, 0.5, 1, 2]
 const PLAY_ICON = '<svg viewBox="0 0 24 24" aria-hidden="true"><path d="M8 5v14l11-7z"/></svg>'
 const PAUSE_ICON =
@@ -11,21 +13,17 @@ export class Transport {
     this.overlay = overlay
     this.place = overlay.transport
     this.speed = 1
-    const make = (tag) => this.place.appendChild(document.createElement(tag))
-    this.button = make("button")
-    this.button.type = "button"
-    this.button.addEventListener("click", () => play(!this.playing))
-    this.track = make("input")
-    Object.assign(this.track, {type: "range", min: 0, step: 0.001})
-    this.track.setAttribute("aria-label", "Time in the motion")
-    this.track.addEventListener("input", () => seek(Number(this.track.value)))
-    this.clock = make("output")
-    this.rate = make("button")
-    this.rate.type = "button"
-    this.rate.addEventListener("click", () => {
+    this.button = button({on: {click: () => play(!this.playing)}})
+    this.track = element("input", {
+      type: "range", min: 0, step: 0.001, aria: {label: "Time in the motion"},
+      on: {input: () => seek(Number(this.track.value))},
+    })
+    this.clock = element("output")
+    this.rate = button({on: {click: () => {
       this.speed = SPEEDS[(SPEEDS.indexOf(this.speed) + 1) % SPEEDS.length]
       this.label()
-    })
+    }}})
+    this.place.append(this.button, this.track, this.clock, this.rate)
     this.label()
     this.show(null, false)
   }

@@ -19,7 +19,7 @@ export class Uploader {
     })
   }
 
-  // Stops after the piece that is on its way; the server forgets what it has.
+  // Stops after the current piece; the server discards the pieces that it has.
   cancel() {
     this.stopped = true
   }

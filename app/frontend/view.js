@@ -1,4 +1,4 @@
-// The page's 3D view. The server says what stands in the scene; turning it, picking bones
+// The page's 3D view. The server describes the scene; turning it, picking bones
 // and playing motions happen here.
 
 import {Actor} from "./actor.js"
@@ -20,6 +20,7 @@ import {probe} from "./probe.js"
 import {Rendered} from "./rendered.js"
 import {loadVtk, Renderer} from "./renderer.js"
 import {Sheet} from "./sheet.js"
+import {skipLink} from "./skip_link.js"
 import {Clip} from "./skin.js"
 import {Transport} from "./transport.js"
 import {acceptDrops, Uploader} from "./upload.js"
@@ -43,6 +44,7 @@ class View {
       rested: () => this.rested(),
       clicked: (e) => this.pointer.clicked(e),
       hovered: (e) => this.pointer.hovered(e),
+      away: (e) => this.renderer.fromTarget(e),
       chosen: () => this.brush.part ? this.brush.dab(this.renderer.target) : this.pointer.chosen(),
     })
     this.pointer = new Pointer(this)
@@ -197,7 +199,7 @@ class View {
       this.applyPose()
       this.draw()
       this.tick()
-      if (now - (this.toldAt || 0) > 300) { this.toldAt = now; this.tellTime() }
+      if (now - (this.hasAddressAt || 0) > 300) { this.hasAddressAt = now; this.tellTime() }
     })
   }
 
@@ -249,12 +251,12 @@ class View {
   // The address waits for the picture: to change it takes some browsers longer than to draw.
   putAddress() {
     if (this.address) {
-      // Another character is a page of its own: the browser's Back leads to the one before.
+      // Another character is a new page: the browser's Back leads to the one before.
       const rig = (query) => new URLSearchParams(query).get("rig")
-      const other = this.told && rig(location.search) !== rig(this.address)
+      const other = this.hasAddress && rig(location.search) !== rig(this.address)
       const put = other ? "pushState" : "replaceState"
       history[put](history.state, "", location.pathname + this.address)
-      this.told = true
+      this.hasAddress = true
     }
     this.address = null
   }
@@ -265,6 +267,7 @@ class View {
     this.model.send_msg({
       type: "camera", home: this.orbit.atHome, position: this.insets.position, focal_point: this.orbit.target,
       aspect: this.overlay.canvas.clientWidth / Math.max(this.overlay.canvas.clientHeight, 1),
+      height: this.overlay.canvas.clientHeight,
     })
   }
 
@@ -326,6 +329,7 @@ export function render({model}) {
     console.info(`The server draws the 3D view: ${error.message}.`)
     begin(new PictureView(model, overlay), true)
   })
-  model.on("remove", () => view?.remove())
+  const link = skipLink(overlay.canvas)
+  model.on("remove", () => { view?.remove(); link.remove() })
   return overlay.root
 }

@@ -1,1 +1,1 @@
-"""Work off the page's own thread: in threads, in processes; and how errors are told."""
+"""Work off the page's thread: in threads, in processes; and texts of errors."""

@@ -34,26 +34,26 @@ class Slots:
     def __init__(self, places: int = 1) -> None:
         self._places = places
         self._change = threading.Condition()
-        self._held: set[Job] = set()
+        self._running: set[Job] = set()
 
     def take(self, job: Job, seconds: float) -> bool:
         """Take a slot; False where none became free within some seconds."""
         with self._change:
             free = self._change.wait_for(self._free, seconds)
             if free:
-                self._held.add(job)
+                self._running.add(job)
             return free
 
     def give_back(self, job: Job) -> None:
         """Free the slot of a job."""
         with self._change:
-            self._held.discard(job)
+            self._running.discard(job)
             self._change.notify_all()
 
     def _free(self) -> bool:
         now = time.monotonic()
-        unresponsive = sum(now - job.stopped > PATIENCE for job in self._held)
-        return len(self._held) - min(unresponsive, MAX_UNRESPONSIVE) < self._places
+        unresponsive = sum(now - job.stopped > PATIENCE for job in self._running)
+        return len(self._running) - min(unresponsive, MAX_UNRESPONSIVE) < self._places
 
 
 COMPUTING = Slots()
@@ -103,7 +103,7 @@ def on_its_thread(document: Any, loop: Any) -> Schedule:
 class Gate:
     """Holds scheduled actions back until a page is there to show what they do.
 
-    What is changed while a browser is still loading may arrive in the wrong order.
+    Changes while a browser is still loading may arrive in the wrong order.
 
     Parameters
     ----------
@@ -148,7 +148,7 @@ class Job:
         self.cancelled.set()
 
     def progress(self, stage: str, fraction: float) -> None:
-        """Tell the page, or stop the work when it is no longer wanted."""
+        """Report to the page, or stop the work when it was cancelled."""
         if self.cancelled.is_set():
             raise Cancelled
         now = time.monotonic()
@@ -231,7 +231,7 @@ class Jobs:
 class Newest:
     """Work that begins again while it goes on: one at a time, and then only what was asked last.
 
-    What a slider asks for as it is dragged would else pile up, since it does not look whether it
+    Requests of a dragged slider would otherwise pile up, since running work does not check if it
     is still wanted.
 
     Parameters

@@ -1,4 +1,4 @@
-"""What people are told when something goes wrong: sentences, without the server's folders."""
+"""Texts of errors: sentences without the server's folders."""
 
 import errno
 import tempfile
@@ -12,35 +12,32 @@ ROOT = Path(__file__).resolve().parents[2]
 FULL = (errno.ENOSPC, getattr(errno, "EDQUOT", errno.ENOSPC))
 """What systems say of a disk that has no room, or none for this person."""
 
-KEPT = "The page keeps what it had"
+KEPT = "Nothing was changed"
 
 
-def told(error: BaseException) -> str:
-    """Return what went wrong in a sentence.
+def error_text(error: BaseException) -> str:
+    """Return the text of an error.
 
     Parameters
     ----------
     error : exception
-        One that a file or a parameter can cause says it itself; of others it is told what a
-        person can make of them.
+        A `CutcellError` describes itself; other errors get a text that
+        says how to proceed.
     """
     if isinstance(error, CutcellError):
-        return sentence(shown(str(error)))
+        return sentence(visible_text(str(error)))
     if isinstance(error, MemoryError):
-        return (
-            "There is not enough memory for this; a lower resolution or a smaller character needs "
-            f"less. {KEPT}."
-        )
+        return f"Not enough memory. {KEPT}. Try a lower resolution or a smaller character."
     if isinstance(error, OSError) and error.errno in FULL:
-        return f"The server's disk is full. {KEPT}; try again when there is room."
+        return f"The server's disk is full. {KEPT}. Try again later."
     reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
     return (
-        f"Something unexpected went wrong ({type(error).__name__}: {shown(reason)}). {KEPT}; the "
-        "details are in the server's log."
+        f"Unexpected error ({type(error).__name__}: {visible_text(reason)}). {KEPT}. "
+        "Details are in the server's log."
     )
 
 
-def shown(text: str) -> str:
+def visible_text(text: str) -> str:
     """Return a message as a page shows it."""
     folders = (Path(tempfile.gettempdir()), Path.cwd(), Path.home(), ROOT)
     return printable(without_folders(text, folders), 600)

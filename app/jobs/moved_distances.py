@@ -18,7 +18,7 @@ class MovedDistances:
 
     With connectivity 6 and 26 they are those of `bone_distances`, but for leaf bones, which are
     carried along as they are and not aimed again, and for vertices that no path reaches, which keep
-    what they had. With any angle, paths end where the distance of the nearest joint was `within`
+    their distances. With any angle, paths end where the distance of the nearest joint was `within`
     times smaller; a vertex that a joint left keeps to the others that it had, where there may be
     one that is nearer now, and one that comes must be nearer than one that was there.
 
@@ -32,19 +32,21 @@ class MovedDistances:
         As of `bone_distances`.
     """
 
-    def __init__(self, known: BoneDistances, method: Method, within: float) -> None:
-        self._known, self._method, self._within = known, method, within
-        self._nearest_distance = known.solver.nearest_distance(known.bones, known.sources)
-        self._farthest = np.where(np.isinf(known.at_welded), 0, known.at_welded).max(axis=0)
-        self._reached = np.zeros(known.graph.first_point, np.bool_)
-        self._reached[known.graph.vertex_node] = known.fallback == REACHED
+    def __init__(self, distances: BoneDistances, method: Method, within: float) -> None:
+        self._distances, self._method, self._within = distances, method, within
+        self._nearest_distance = distances.solver.nearest_distance(
+            distances.bones, distances.sources
+        )
+        self._farthest = np.where(np.isinf(distances.at_welded), 0, distances.at_welded).max(axis=0)
+        self._reached = np.zeros(distances.graph.first_point, np.bool_)
+        self._reached[distances.graph.vertex_node] = distances.fallback == REACHED
 
     def measure(self, skeleton: Skeleton) -> BoneDistances:
         """Return the distances with the joints where they are in a skeleton.
 
         Joints that may carry weight are the same ones as before.
         """
-        distances, method = self._known, self._method
+        distances, method = self._distances, self._method
         bones = _carried(distances, skeleton, method)
         if bones is None:  # some continue others now that did not
             return bone_distances(
@@ -75,7 +77,7 @@ class MovedDistances:
 
     def _merged(self, joints: NDArray[np.intp], fresh: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return the distances of all joints, from what was known and what was measured of some."""
-        distances, merged = self._known, self._known.at_welded.copy()
+        distances, merged = self._distances, self._distances.at_welded.copy()
         before = merged[joints]
         after = np.where(self._reached, fresh, before)
         if distances.nearest_joints is not None:
@@ -91,10 +93,10 @@ class MovedDistances:
         return merged
 
 
-def _carried(known: BoneDistances, skeleton: Skeleton, method: Method) -> Bones | None:
+def _carried(distances: BoneDistances, skeleton: Skeleton, method: Method) -> Bones | None:
     """Return the bones with leaf bones as long as they were; None if there are others than were."""
-    old = known.bones
-    bones, aimed = known.solver.bones(skeleton, method.leaf)
+    old = distances.bones
+    bones, aimed = distances.solver.bones(skeleton, method.leaf)
     if not np.array_equal(bones.joint, old.joint):
         return None
     carried = old.end + bones.start - old.start

@@ -1,4 +1,4 @@
-"""Work in a process of its own, which is ended when nobody wants the result any more.
+"""Work in another process, which is ended when the result is no longer wanted.
 
 A reader of files need not look whether it is still wanted, may hold Python's lock for as long as it
 likes, and may crash: no page waits for it, and none is harmed.
@@ -27,7 +27,7 @@ LONGEST_FOLDER = 80
 """Bytes of a folder's path to which the name of a socket can be added."""
 
 # A server of processes is started once, with what they need; each then takes some milliseconds.
-# What this process began with is imported by each, too: for commands, `cutcell.cli.app`.
+# Each also imports the main module of this process: for commands, `cutcell.cli.app`.
 _METHOD = "forkserver" if "forkserver" in multiprocessing.get_all_start_methods() else "spawn"
 _CONTEXT: Any = multiprocessing.get_context(_METHOD)
 if _METHOD == "forkserver":
@@ -57,20 +57,20 @@ def get_ready(make_folder: Callable[[], Path]) -> None:
 
 def in_process(
     work: Callable[..., Result],
-    *given: Any,
-    wanted: Callable[[], object] = lambda: None,
+    *args: Any,
+    check: Callable[[], object] = lambda: None,
     ended: str = "it came to a sudden end",
 ) -> Result:
-    """Call a function in a process of its own; return its result.
+    """Call a function in another process; return its result.
 
     Parameters
     ----------
     work : callable
         Of a module; what it is given and what it returns are copied.
-    *given
+    *args
         Its arguments.
-    wanted : callable
-        Asked again and again; raises `cutcell.Cancelled` for one, when the result is not wanted
+    check : callable
+        Called again and again; raises `cutcell.Cancelled` for one, when the result is not wanted
         any more: the process, and those that it has started, are ended then.
     ended : str
         What to say if the process comes to an end by itself.
@@ -82,14 +82,14 @@ def in_process(
     Exception
         Whatever `work` or `wanted` raises.
     """
-    receiver, there = _CONTEXT.Pipe(duplex=False)
-    process = _CONTEXT.Process(target=_run, args=(there, work, given), daemon=True)
+    receiver, sender = _CONTEXT.Pipe(duplex=False)
+    process = _CONTEXT.Process(target=_run, args=(sender, work, args), daemon=True)
     with receiver:
         try:
             process.start()
-            there.close()
+            sender.close()
             while not receiver.poll(ASK_EVERY):
-                wanted()
+                check()
             good, outcome = pickle.loads(receiver.recv_bytes())
         except (EOFError, ConnectionError):
             raise FileError(f"{ended} ({_ending(process)})") from None
@@ -100,7 +100,7 @@ def in_process(
     return outcome  # type: ignore[no-any-return]
 
 
-def _run(pipe: Connection, work: Callable[..., Any], given: tuple[Any, ...]) -> None:
+def _run(pipe: Connection, work: Callable[..., Any], args: tuple[Any, ...]) -> None:
     """Do the work, in the other process, and send what comes of it."""
     if hasattr(os, "setsid"):
         os.setsid()  # so that it can be ended together with what it starts
@@ -109,14 +109,14 @@ def _run(pipe: Connection, work: Callable[..., Any], given: tuple[Any, ...]) -> 
         Path("/proc/self/oom_score_adj").write_text("1000")
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:
-        outcome = pickle.dumps((True, work(*given)), 5)
+        outcome = pickle.dumps((True, work(*args)), 5)
     except Exception as error:
         outcome = _packed(error)
     pipe.send_bytes(outcome)
 
 
 def _end_with_parent() -> None:
-    """End, with all that was started, when whoever waits for the result was killed."""
+    """End this process and its children when the waiting process was killed."""
     parent = multiprocessing.parent_process()
     if parent is not None:
         wait([parent.sentinel])

@@ -31,7 +31,7 @@ class Tasks:
         self._closed = False
 
     def later(self, action: Callable[[], Any]) -> None:
-        """Run an action on the page's own thread; what goes wrong in it is told."""
+        """Run an action on the page's thread; its errors are reported."""
 
         def guarded() -> None:
             try:

@@ -19,12 +19,13 @@ from ..commands import arrival, pairs
 from ..commands.loading import load_demo, load_files
 from ..commands.session import Session
 from ..jobs.jobs import Gate, on_its_thread
-from ..panels.controls import words
-from ..server.memory import let_go, tidy_soon
+from ..panels.controls import text_line
+from ..server.memory import collect_later, detach_from_panel
 from ..state.pairs import OpenedAudit
 from ..widgets.inspector import inspector
 from ..widgets.modules import style
 from ..widgets.tour_card import tour_card
+from ..widgets.welcome import Welcome
 from .favicon import FAVICON
 from .session import begin
 from .sidebar import sidebar
@@ -63,32 +64,32 @@ def page(
     # Panel keeps its settings per document for as long as the document lives: what they hold
     # must not in turn hold the document.
     fail = weakref.WeakMethod(session.fail)
-    pn.config.exception_handler = lambda error: _told(fail(), error)
-    query = asked()
+    pn.config.exception_handler = lambda error: _report(fail(), error)
+    query = request_query()
     first = "" if path is not None else next(demo.id for demo in DEMOS if demo.path.exists())
     arrival.choose(session, query, first)
     if opened is not None and not query:
         session.state.panel = "pairs"
     view: Any = session.view
-    result = layout(session)
+    result = layout(session, greeting=path is None and opened is None and not query)
     document.on_session_destroyed(functools.partial(_close, session))
 
-    def otherwise() -> None:
+    def fallback() -> None:
         if path is None:
             if query or opened is not None:
                 load_demo(session, first)
             else:
-                arrival.greet(session, first)
+                arrival.show_first_demo(session, first)
         else:
             load_files(session, [path])
 
-    # Whoever only asks for the page, and never looks at it, makes nothing be computed.
+    # Nothing is computed until the browser has opened its websocket.
     later = session.tasks.later
-    view.when_seen(lambda: later(lambda: arrival.arrive(session, query, otherwise)))
+    view.when_seen(lambda: later(lambda: arrival.arrive(session, query, fallback)))
     return result
 
 
-def asked() -> str:
+def request_query() -> str:
     """Return what the address that was asked for says behind its question mark."""
     arguments = pn.state.session_args or {}
     pairs = [(name, value) for name, values in arguments.items() for value in values[:1]]
@@ -97,23 +98,24 @@ def asked() -> str:
 
 def _close(session: Session, context: Any) -> None:
     session.close()
-    tidy_soon()
+    collect_later()
 
 
-def _told(fail: Callable[[Exception], None] | None, error: Exception) -> None:
+def _report(fail: Callable[[Exception], None] | None, error: Exception) -> None:
     if fail is not None:
         fail(error)
 
 
-def layout(session: Session) -> pmui.Page:
-    """Return the page of a session."""
+def layout(session: Session, greeting: bool = False) -> pmui.Page:
+    """Return the page of a session, with a welcome on a first visit if it is to greet."""
     view: Any = session.view
-    tagline = words(
+    tagline = text_line(
         "Skinning weights that follow the body, not the air",
         sx={"color": "text.secondary", "fontSize": 13, "display": {"xs": "none", "sm": "block"}},
         margin=(2, 0, 0, 16),
     )
     main = pmui.Column(
+        *([Welcome(session, sizing_mode="stretch_width")] if greeting else []),
         pmui.Column(
             view,
             messages(session),
@@ -144,14 +146,14 @@ def layout(session: Session) -> pmui.Page:
 
     def themed(event: Any) -> None:
         session.state.dark = event.new
-        view.tell(dark=event.new)
+        view.send(dark=event.new)
 
     def remembered(event: Any) -> None:
         if event.new is not None:
             session.tasks.later(lambda: result.param.update(dark_theme=event.new))
 
     def sized(event: Any) -> None:
-        # The canvas comes first where both have no room side by side.
+        # The canvas comes first where both do not fit side by side.
         wide = event.new >= NARROW
         session.tasks.later(lambda: result.param.update(sidebar_open=wide))
 
@@ -160,17 +162,17 @@ def layout(session: Session) -> pmui.Page:
         if event.new >= 0 and 0 < view.window_width < NARROW:
             session.tasks.later(lambda: result.param.update(sidebar_open=False))
 
-    def told(event: Any) -> None:
-        # Over the canvas nobody reads what lies behind the sidebar.
+    def close_sidebar(event: Any) -> None:
+        # On narrow windows the sidebar would cover the message.
         if event.new and event.new[0] == "error" and 0 < view.window_width < NARROW:
             session.tasks.later(lambda: result.param.update(sidebar_open=False))
 
-    let_go(result)
+    detach_from_panel(result)
     result.param.watch(themed, "dark_theme")
     view.param.watch(sized, "window_width")
-    session.state.param.watch(told, "message")
+    session.state.param.watch(close_sidebar, "message")
     session.state.param.watch(toured, "tour")
-    session.state.param.watch(lambda event: tidy_soon(), "binding")
+    session.state.param.watch(lambda event: collect_later(), "binding")
     view.param.watch(remembered, "dark")
     session.state.dark = result.dark_theme
     return result

@@ -8,7 +8,7 @@ from ..widgets.view import SceneView
 
 
 def begin(schedule: Schedule) -> Session:
-    """Return a new session with a view of its own, which everything follows.
+    """Return a new session with its view and watchers.
 
     Parameters
     ----------

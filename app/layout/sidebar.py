@@ -8,22 +8,21 @@ from ..commands.session import Session
 from ..panels import BUILDERS
 from ..panels.bone import bone
 from ..panels.character import character
-from ..panels.controls import column, lead, when
+from ..panels.controls import column, intro, when
 from ..panels.export import export
 from ..panels.templates import skeleton_menu
 from ..state import PANELS
 from ..widgets.tabs import Tabs
 
 NO_SKELETON = (
-    "This mesh has no skeleton, so it has no bones to measure from, to weigh or to move; its graph "
-    "can be seen. Choose a skeleton above, export it together with its armature, or drop it "
-    "together with a skeleton in a JSON file of the same name."
+    "This mesh has no skeleton. Choose a template above, or drop a file with one. "
+    "The graph can be explored."
 )
 
 
 def sidebar(session: Session) -> list[Any]:
-    """Return what stands in the sidebar, from top to bottom."""
-    # What concerns one character has no place beside two others.
+    """Return the sidebar's contents, from top to bottom."""
+    # Controls of one character are hidden while two are compared.
     alone = when(
         lambda panel, opened: panel != "pairs" or opened is None,
         session.state.param.panel,
@@ -53,11 +52,11 @@ def panels(session: Session) -> tuple[Tabs, pmui.Column]:
         margin=(10, 20, 0, 20),
         sizing_mode="stretch_width",
     )
-    missing = lead(NO_SKELETON)
+    missing = intro(NO_SKELETON)
     place = column(missing)
     built: dict[str, Any] = {}
 
-    def shown(*events: Any) -> None:
+    def update(*events: Any) -> None:
         tabs.value = state.panel
         missing.visible = state.bare and not PANELS[state.panel].works_without_skeleton
         for panel in PANELS:
@@ -71,7 +70,7 @@ def panels(session: Session) -> tuple[Tabs, pmui.Column]:
     def chosen(event: Any) -> None:
         state.panel = event.new
 
-    state.param.watch(shown, ["panel", "rig"])
+    state.param.watch(update, ["panel", "rig"])
     tabs.param.watch(chosen, "value")
-    shown()
+    update()
     return tabs, place

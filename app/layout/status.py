@@ -1,4 +1,4 @@
-"""What is told about the work: progress, counts and seconds, warnings, errors."""
+"""Status of the work: progress, counts and seconds, warnings, errors."""
 
 from typing import Any
 
@@ -11,8 +11,8 @@ from cutcell.rig import Rig
 from ..commands.binding import cancel
 from ..commands.check import go_to
 from ..commands.session import Session
-from ..jobs.messages import sentence, shown
-from ..panels.controls import column, row, when, words
+from ..jobs.messages import sentence, visible_text
+from ..panels.controls import column, row, text_line, when
 from ..scenes.warnings import Door, warnings
 from ..state import State
 from ..widgets.modules import style
@@ -38,7 +38,7 @@ DOORS = {
 
 # The line keeps its height whatever it says: the canvas above must not jump.
 _CUT = {"whiteSpace": "nowrap", "overflow": "hidden", "textOverflow": "ellipsis"}
-# The text stands in a paragraph of its own.
+# The text is in a separate paragraph.
 _ONE_LINE = {"display": "block", **_CUT, "& > p": {**_CUT, "margin": 0}}
 
 
@@ -46,7 +46,7 @@ def status_line(session: Session) -> pmui.Row:
     """Return the slim line under the canvas."""
     state = session.state
     small = {"fontSize": "12px", "lineHeight": 1.4, "fontVariantNumeric": "tabular-nums"}
-    counts = words(
+    counts = text_line(
         when(
             lambda *_: summary(state),
             state.param.rig,
@@ -60,7 +60,7 @@ def status_line(session: Session) -> pmui.Row:
         margin=(10, 16),
         sizing_mode="stretch_width",
     )
-    stage = words(
+    stage = text_line(
         when(stage_text, state.param.stage),
         visible=state.param.busy,
         sx={**small, **_ONE_LINE, "minWidth": "150px", "maxWidth": "46vw"},
@@ -100,19 +100,19 @@ def messages(session: Session) -> pmui.Column:
     """Return the place over the canvas where errors and warnings are shown."""
     state = session.state
     # The sentence is the title: titles are shown as they are, never read as HTML.
-    look = {
+    appearance = {
         "bgcolor": "background.paper",
         "boxShadow": "0 4px 18px rgba(10, 20, 40, .16)",
         "& .MuiAlertTitle-root": {"fontSize": 13, "fontWeight": 400, "m": 0},
     }
     alert = pmui.Alert(
-        closeable=True, margin=0, sizing_mode="stretch_width", visible=False, sx=look,
+        closeable=True, margin=0, sizing_mode="stretch_width", visible=False, sx=appearance,
         variant="outlined",
     )  # fmt: skip
 
-    def told(*events: Any) -> None:
+    def update(*events: Any) -> None:
         if events and all(only_weights(event) for event in events):
-            return  # what was warned of stays as it was
+            return  # the warnings did not change
         severity, text = state.message or warning(state) or ("info", "")
         alert.param.update(severity=severity, title=text, closed=False, visible=bool(text))
         leads = [] if state.message else [door for door in warnings(state) if door.code]
@@ -123,16 +123,16 @@ def messages(session: Session) -> pmui.Column:
         if event.new:
             alert.visible = doors.visible = False
 
-    state.param.watch(told, ["message", "binding", "bare_graph"])
+    state.param.watch(update, ["message", "binding", "bare_graph"])
     alert.param.watch(closed, "closed")
     doors = pmui.Row(margin=(6, 0, 0, 0), visible=False, sx=DOORS)
     place = column(alert, doors, stylesheets=[style("messages_place")])
 
-    def beside(*events: Any) -> None:
+    def update_pair(*events: Any) -> None:
         place.css_classes = ["beside-tour"] if state.tour >= 0 else []
 
-    state.param.watch(beside, "tour")
-    beside()
+    state.param.watch(update_pair, "tour")
+    update_pair()
     return place
 
 
@@ -158,11 +158,11 @@ def only_weights(event: Any) -> bool:
 def warning(state: State) -> tuple[str, str] | None:
     """Return what a person should know about the result."""
     texts = [door.text for door in warnings(state)]
-    return ("warning", " ".join(sentence(shown(text)) for text in texts)) if texts else None
+    return ("warning", " ".join(sentence(visible_text(text)) for text in texts)) if texts else None
 
 
 def stage_text(stage: str) -> str:
-    """Return a stage as it is told to a person."""
+    """Return the text of a stage for people."""
     return TITLES.get(stage, sentence(stage).rstrip(".") if stage else "Starting")
 
 

@@ -9,7 +9,7 @@ SHEET = "46dvh"
 """How high the sidebar is in a narrow window: a sheet at the bottom, the canvas above it."""
 
 _SHEET = {
-    # What its sliders change stays seen, and can be turned meanwhile.
+    # The scene that its sliders change stays visible and can be turned.
     "pointerEvents": "none",
     "& .MuiBackdrop-root": {"display": "none"},
     "& .MuiDrawer-paper": {
@@ -26,6 +26,12 @@ _SHEET = {
     },
 }
 
+FOCUS = {"outline": "2px solid #e05a00", "outlineOffset": "1px"}
+"""What has the focus of the keyboard looks like this everywhere; the style sheets say the same."""
+
+_NO_RIPPLE = {"defaultProps": {"disableFocusRipple": True}}
+"""Focus is an outline that stays, and no pulse."""
+
 _SHAPE = {
     "shape": {"borderRadius": 8},
     "typography": {
@@ -39,13 +45,24 @@ _SHAPE = {
             "styleOverrides": {
                 # Dark paper is as dark over the canvas as beside it.
                 "paper": {"backgroundImage": "none"},
-                # What lies over the bar on top needs no room below it.
+                # Elements over the top bar need no space below it.
                 "modal": {
                     "& .MuiDrawer-paper > .MuiToolbar-root": {"display": "none"},
                     NARROW: _SHEET,
                 },
             }
         },
+        "MuiButtonBase": {"styleOverrides": {"root": {"&.Mui-focusVisible": FOCUS}}},
+        **dict.fromkeys(
+            ("MuiButton", "MuiIconButton", "MuiToggleButton", "MuiSwitch", "MuiCheckbox"),
+            _NO_RIPPLE,
+        ),
+        "MuiAccordionSummary": {
+            "styleOverrides": {"root": {"&.Mui-focusVisible": {"backgroundColor": "transparent"}}}
+        },
+        "MuiSlider": {"styleOverrides": {"thumb": {"&.Mui-focusVisible": FOCUS}}},
+        # The page's name is its first heading.
+        "MuiTypography": {"defaultProps": {"variantMapping": {"h3": "h1", "h5": "div"}}},
         "MuiMenu": {"defaultProps": {"transitionDuration": {"enter": 160, "exit": 0}}},
     },
 }

@@ -7,6 +7,13 @@ import panel_material_ui as pmui
 from ..commands.session import Session
 from .controls import offer, row, section, select_box, unique_names, when
 
+TOGGLES = (
+    ("skeleton", "visibility_off", "visibility", "Show the bones"),
+    ("faint_skeleton", "opacity", "water_drop", "Fade the bones"),
+    ("wireframe", "grid_off", "grid_on", "Show the wireframe"),
+)
+"""What can be switched beside the bone: a choice, its icons off and on, and what it does."""
+
 
 def bone(session: Session) -> pmui.Column:
     """Return the section of the chosen bone."""
@@ -24,15 +31,18 @@ def bone(session: Session) -> pmui.Column:
     state.param.watch(listed, ["rig", "joint"])
     select.param.watch(chosen, "value")
     listed()
-    toggle = pmui.ToggleIcon.from_param(
-        state.param.skeleton,
-        label="",
-        icon="visibility_off",
-        active_icon="visibility",
-        description="Show the bones",
-        size="18px",
-        margin=(4, 0, 0, 8),
-    )
-    chooser = row(select, toggle)
+    toggles = [
+        pmui.ToggleIcon.from_param(
+            state.param[name],
+            label="",
+            icon=icon,
+            active_icon=active,
+            description=description,
+            size="18px",
+            margin=(4, 0, 0, 6),
+        )
+        for name, icon, active, description in TOGGLES
+    ]
+    chooser = row(select, *toggles)
     has_skeleton = when(lambda rig: not state.bare, state.param.rig)
     return section("", chooser, margin=(2, 20, 4, 20), visible=has_skeleton)

@@ -15,7 +15,7 @@ from ..widgets.file_drop import FileDrop
 from .controls import GAP, as_text, caption, section, select_box, unique_names
 
 MAX_FAULTS = 2
-"""The panel Check tells of all."""
+"""The panel Check lists all."""
 OWN = "Your own"
 HINT = f"GLB, glTF, VRM, FBX, USD, OBJ, … · up to {MAX_UPLOAD // 2**20} MB"
 
@@ -37,7 +37,7 @@ def character(session: Session) -> pmui.Column:
     def now() -> str:
         return state.demo or f"~{session.uploads.key}"
 
-    def shown(*events: Any) -> None:
+    def update(*events: Any) -> None:
         listed = session.uploads.offered()
         choices = {} if now() == "~" and session.given is None else {OWN: "~"}
         if session.given is not None:
@@ -53,8 +53,8 @@ def character(session: Session) -> pmui.Column:
         lesson.object = as_text(" ".join([lessons.get(state.demo) or name, *problems]))
 
     select.param.watch(chosen, "value")
-    state.param.watch(shown, ["demo", "rig", "diagnosis"])
-    shown()
+    state.param.watch(update, ["demo", "rig", "diagnosis"])
+    update()
     drop = FileDrop(receiver(session), hint=HINT, sizing_mode="stretch_width", margin=GAP)
     return section("", select, lesson, drop, margin=(16, 20, 4, 20))
 

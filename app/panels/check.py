@@ -3,25 +3,29 @@
 from functools import partial
 from typing import Any
 
+import numpy as np
 import panel_material_ui as pmui
+from numpy.typing import NDArray
 
 from cutcell.diagnosis import SEVERITIES, Finding
+from cutcell.diagnosis.leaks import moves_own_part
 from cutcell.rig import Rig
 from cutcell.runtime.display import shown_name
 
 from ..commands.check import look_at, repair, take_back
-from ..commands.correct import leave_out
+from ..commands.correct import keep_file_vertices, leave_out, lock
 from ..commands.export import export_repaired
 from ..commands.session import Session
 from ..state import State
-from .controls import LINE, button, caption, column, lead, section, when, words
+from ..state.check import EXPORT
+from .controls import LINE, button, caption, column, has_weights, intro, section, text_line, when
 
 ICONS = {"error": "error", "warning": "warning", "note": "info"}
 MAX_DETAILS = 8
 OF_PARTS = ("boneless-components", "unreachable-vertices")
 """What can be mended by a choice of what parts of the mesh follow."""
 LEFT_OUT = ("stray-weights", "joints-outside")
-"""What is mended by joints that carry no weight."""
+"""What is mended by joints that are locked or excluded."""
 
 
 def check(session: Session) -> pmui.Column:
@@ -30,25 +34,25 @@ def check(session: Session) -> pmui.Column:
     place = column()
 
     def listed(*events: Any) -> None:
-        place.objects = [*_repairs(session), *_findings(session)]
+        place.objects = [*_repairs(session), *_findings(session), *_exported(session)]
 
-    state.param.watch(listed, ["diagnosis", "finding", "repair"])
+    state.param.watch(listed, ["diagnosis", "export_diagnosis", "finding", "repair"])
     listed()
     return column(
-        lead(when(lambda *_: told(state), state.param.diagnosis, state.param.rig)),
+        intro(when(lambda *_: summary(state), state.param.diagnosis, state.param.rig)),
         section("", place, margin=(6, 20, 4, 20)),
     )
 
 
-def told(state: State) -> str:
+def summary(state: State) -> str:
     """Say how much was found."""
     if state.rig is None:
         return ""
     if state.diagnosis is None:
-        return "The mesh, the skeleton and the weights of the file are checked once it is bound."
+        return "The file is checked once weights are computed."
     if not state.diagnosis.findings:
-        return "Nothing is wrong with the mesh, the skeleton or the weights of the file."
-    return f"Found: {counted(state.diagnosis.counts)}. Choose one to see where it is."
+        return "No problems in the mesh, skeleton or weights."
+    return f"{counted(state.diagnosis.counts)}. Choose one to see it."
 
 
 def counted(counts: dict[str, int]) -> str:
@@ -71,17 +75,36 @@ def _findings(session: Session) -> list[Any]:
     ]
 
 
-def _entry(session: Session, finding: Finding) -> pmui.Column:
+def _exported(session: Session) -> list[Any]:
+    """Return the findings about the weights that an export contains."""
+    state = session.state
+    if state.bare or state.binding is None:
+        return []
+    diagnosis = state.export_diagnosis
+    if diagnosis is None:
+        lines: list[Any] = [_line("Checking the weights ...")]
+    else:
+        lines = [_entry(session, one, EXPORT) for one in diagnosis.findings]
+    return [section("Weights in the export", *(lines or [_line("No faults.")]), margin=(8, 0))]
+
+
+def _entry(session: Session, finding: Finding, prefix: str = "") -> pmui.Column:
     """Return a finding as a line; with advice and repair if it is looked at."""
-    is_chosen = session.state.finding == finding.code
+    code = prefix + finding.code
+    is_chosen = session.state.finding == code
     title = button(
         finding.title,
-        lambda: look_at(session, finding.code),
+        lambda: look_at(session, code),
         icon=ICONS[finding.severity],
         **LINE,
     )
     lines = [title, _line(finding.message)]
-    if is_chosen:
+    if is_chosen and prefix:
+        lines += [_line(text) for text in finding.details[:MAX_DETAILS]]
+        if has_weights(session.state.rig) and len(finding.vertices):
+            keep = partial(keep_file_vertices, session, finding.vertices)
+            lines.append(button("Use the file's weights there", keep, icon="history"))
+    elif is_chosen:
         more = len(finding.details) - MAX_DETAILS
         lines += [_line(text) for text in finding.details[:MAX_DETAILS]]
         lines += [_line(f"and {more} more")] if more > 0 else []
@@ -89,22 +112,37 @@ def _entry(session: Session, finding: Finding) -> pmui.Column:
         if finding.repair:
             lines.append(_line(f"Repair: {finding.repair}.", "text.primary"))
             lines.append(button("Repair", lambda: repair(session, [finding.code]), icon="build"))
-        carrying = [j for j in finding.joints if session.state.rig.skeleton.deform[j]]
-        if finding.code in LEFT_OUT and carrying:
-            label = _left_out(session.state.rig, carrying)
-            lines.append(button(label, lambda: leave_out(session, carrying), icon="link_off"))
+        if finding.code in LEFT_OUT:
+            lines += _joint_choices(session, finding.joints)
         if finding.code in OF_PARTS and not session.state.bare:
             vertex = int(finding.vertices[0])
             see = partial(session.state.param.update, panel="weights", part=vertex)
-            lines.append(button("Choose what its parts follow", see, icon="category"))
+            lines.append(button("Choose how these parts are bound", see, icon="category"))
     return column(*lines, margin=(0, 0, 6, 0))
 
 
-def _left_out(rig: Rig, joints: list[int]) -> str:
-    subject = f"these {len(joints)} joints"
+def _joint_choices(session: Session, joints: NDArray[np.intp]) -> list[pmui.Button]:
+    """Return buttons that lock joints that move a part of their own, and exclude the others."""
+    rig = session.state.rig
+    joints = joints[rig.skeleton.deform[joints]]
+    moves = np.zeros(len(joints), bool)
+    if has_weights(rig):
+        moves = moves_own_part(rig.weights[:, joints])
+    choices = (
+        ("Lock {} to file weights", "lock", lock, joints[moves].tolist()),
+        ("Exclude {} from binding", "link_off", leave_out, joints[~moves].tolist()),
+    )
+    return [
+        button(label.format(_joints(rig, which)), partial(act, session, which), icon=icon)
+        for label, icon, act, which in choices
+        if which
+    ]
+
+
+def _joints(rig: Rig, joints: list[int]) -> str:
     if len(joints) == 1:
-        subject = shown_name(rig.skeleton.names[joints[0]])
-    return f"Let {subject} carry no weight"
+        return shown_name(rig.skeleton.names[joints[0]])
+    return f"these {len(joints)} joints"
 
 
 def _repairs(session: Session) -> list[Any]:
@@ -117,13 +155,13 @@ def _repairs(session: Session) -> list[Any]:
         rows.append(button(f"Repair all {len(able)}", lambda: repair(session, codes), icon="build"))
     if state.repair is None:
         return rows
-    now = "" if state.diagnosis is None else f", now {counted(state.diagnosis.counts)}"
+    now = "" if state.diagnosis is None else f" → {counted(state.diagnosis.counts)}"
     return [
         *rows,
-        _line(f"Repaired. Before: {counted(state.repair.counts)}{now}.", "text.primary"),
+        _line(f"Repaired: {counted(state.repair.counts)}{now}.", "text.primary"),
         *(_line(text) for text in state.repair.done),
         button(
-            "Download it with its own weights",
+            "Download with original weights",
             lambda: export_repaired(session, session.view.offer),
             icon="download",
         ),
@@ -135,6 +173,6 @@ def _line(text: str, color: str = "text.secondary") -> pmui.Typography:
     if color == "text.secondary":
         return caption(text, margin=(0, 0, 4, 6))
     style = {"color": color, "lineHeight": 1.45, "display": "block", "letterSpacing": 0}
-    return words(
+    return text_line(
         text, variant="caption", sx=style, margin=(0, 0, 4, 6), sizing_mode="stretch_width"
     )

@@ -20,7 +20,7 @@ from .controls import (
     caption,
     column,
     follow,
-    lead,
+    intro,
     play_button,
     rest_button,
     row,
@@ -29,12 +29,12 @@ from .controls import (
     when,
 )  # fmt: skip
 
-FIELDS = {"Chosen bone": "bone", "All bones": "all"}
+FIELDS = {"Selected bone": "bone", "All bones": "all"}
 ERROR = {"Error": "error"}
 COLUMNS = [
-    ("L1", "Weight error against the file's own: 0 the same, 2 nothing in common"),
-    ("cm²", "Deformation error against the file's own, the longest side scaled to 1 m"),
-    ("s", "Seconds it took"),
+    ("L1", "Weight error against the original weights: 0 same, 2 nothing in common"),
+    ("cm²", "Mean squared deformation error, the longest side scaled to 1 m"),
+    ("s", "Seconds"),
 ]
 WATCHED = ["methods", "compared", "comparing", "queued", "binding", "rig"]
 
@@ -62,7 +62,7 @@ def compare(session: Session) -> pmui.Column:
     controls = (_field(state), _minus(state), table, stop, motion)
     about_errors = caption(when(about, state.param.rig))
     return column(
-        lead("Two to four methods side by side, under one camera."),
+        intro("Two to four methods side by side, under one camera."),
         section("", about_errors, *controls, margin=(4, 20, 4, 20)),
     )
 
@@ -70,8 +70,8 @@ def compare(session: Session) -> pmui.Column:
 def about(rig: Rig | None) -> str:
     """Return what the columns of errors tell, and against what."""
     if rig is not None and rig.weights is None:
-        return "The file has no weights of its own to tell errors against."
-    return "L1 (weights) and cm² (motion) are errors against the file's own weights."
+        return "The file has no weights to compare with."
+    return "L1 (weights) and cm² (motion): the paper's errors against the original weights."
 
 
 def _field(state: State) -> pmui.RadioButtonGroup:
@@ -141,12 +141,12 @@ def _note(state: State, name: str, one: Any, chosen: bool) -> tuple[str, str]:
     if one is not None and one.failed:
         return one.failed[:1].upper() + one.failed[1:], "failed"
     if one is not None and one.unweighted:
-        return f"{one.unweighted:.1%} without weight", "told"
+        return f"{one.unweighted:.1%} without weight", "note"
     if one is None and chosen:
         if state.comparing != name:
-            return "Waiting", "told"
+            return "Waiting", "note"
         if state.queued:
-            return "Waiting for what others compare", "told"
+            return "Waiting for other visitors", "note"
         return "Computing", "running"
     return "", ""
 

@@ -11,7 +11,7 @@ from ..commands import correct
 from ..commands.session import Session
 from ..scenes.components import MOST, Component, chosen, listed, vertices_of
 from ..widgets.rows import Rows
-from .controls import GAP, caption, column, offer, section, select_box, unique_names
+from .controls import GAP, caption, column, folded, offer, select_box, unique_names
 
 WAYS = {
     "As computed": "",
@@ -19,16 +19,18 @@ WAYS = {
     "With the body it touches": "touching",
     "Separately": "itself",
 }
+FROM_FILE = {"As in the file": "file"}
 WATCHED = ["panel", "rig", "corrections", "part"]
-SHORT = {"glued": "glued", "touching": "follows", "itself": "by itself"}
+SHORT = {"glued": "rigid", "touching": "follows", "itself": "separate", "file": "original"}
 
 
 def parts_of_mesh(session: Session) -> pmui.Column:
     """Return the section that lists the connected components; hidden where there is one."""
     state, memo = session.state, session.memo
     about = caption()
+    parts: list[Component] = []
     rows = Rows(
-        lambda row: _choose(session, held[row]),
+        lambda row: _choose(session, parts[row]),
         label="Parts of the mesh",
         sizing_mode="stretch_width",
         margin=0,
@@ -36,44 +38,47 @@ def parts_of_mesh(session: Session) -> pmui.Column:
     )
     place = column(rows, margin=GAP, max_height=200, scroll="y")
     way = select_box("Bind this part", WAYS, value="", margin=(16, 0, 4, 0))
-    glue = select_box("Glued to", margin=(12, 0, 4, 0), searchable=True)
-    held: list[Component] = []
-    whole = section("Parts of the mesh", about, place, way, glue)
+    glue = select_box("Joint", margin=(12, 0, 4, 0), searchable=True)
+    whole = folded("Parts of the mesh", about, place, way, glue, needed=state.param.part)
 
     def show() -> None:
         if state.panel != "weights":
             return  # it is shown when somebody looks
-        held[:] = listed(state, memo)
-        whole.visible = len(held) > 1
+        parts[:] = listed(state, memo)
+        whole.visible = len(parts) > 1
         if not whole.visible:
             return
         number = chosen(state, memo)
-        most = max(one.vertices for one in held)
+        most = max(one.vertices for one in parts)
         names = state.rig.skeleton.names
         rows.param.update(
-            rows=[(_title(one), _follows(one, names), one.vertices / most) for one in held],
+            rows=[(_title(one), _follows(one, names), one.vertices / most) for one in parts],
             chosen=number,
         )
-        more = " The largest are listed." if len(held) == MOST else ""
+        more = " The largest are listed." if len(parts) == MOST else ""
         about.object = (
-            f"{len(held)} parts share no edge. Choose one to see it apart, again to see all.{more}"
+            f"{len(parts)} separate parts. Click to isolate one, again to show all.{more}"
         )
-        way.visible = 0 <= number < len(held)
-        now = held[number].correction if way.visible else None
-        way.value = "" if now is None else now.how
+        way.visible = 0 <= number < len(parts)
+        now = parts[number].correction if way.visible else None
+        has_weights = state.rig.weights is not None
+        how = "" if now is None else now.how
+        # The largest part is the body itself.
+        offered = {t: w for t, w in WAYS.items() if w != "touching" or number or w == how}
+        way.param.update(options={**offered, **(FROM_FILE if has_weights else {})}, value=how)
         glue.visible = now is not None and now.how == "glued"
         if now is not None and now.joint is not None:
             offer(glue, unique_names(names), names.index(now.joint))
 
     def changed(event: Any) -> None:
-        one = _now(held, chosen(state, memo))
+        one = _now(parts, chosen(state, memo))
         if one is None or event.new == ("" if one.correction is None else one.correction.how):
             return
         joint = state.rig.skeleton.names[one.joint] if event.new == "glued" else None
         _bind(session, one, PartCorrection(event.new, joint) if event.new else None)
 
     def glued(event: Any) -> None:
-        one = _now(held, chosen(state, memo))
+        one = _now(parts, chosen(state, memo))
         if one is None or one.correction is None or event.new is None:
             return
         joint = state.rig.skeleton.names[glue.options.index(event.new)]
@@ -89,8 +94,8 @@ def parts_of_mesh(session: Session) -> pmui.Column:
     return whole
 
 
-def _now(held: list[Component], number: int) -> Component | None:
-    return held[number] if 0 <= number < len(held) else None
+def _now(parts: list[Component], number: int) -> Component | None:
+    return parts[number] if 0 <= number < len(parts) else None
 
 
 def _choose(session: Session, one: Component) -> None:
@@ -114,4 +119,5 @@ def _follows(one: Component, names: tuple[str, ...]) -> str:
     joint = shown_name(names[one.joint])
     if one.correction is None:
         return f"{joint} {one.share:.0%}"
-    return f"{SHORT[one.correction.how]}: {joint}"
+    how = SHORT[one.correction.how]
+    return how if one.correction.how == "file" else f"{how}: {joint}"

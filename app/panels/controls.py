@@ -1,4 +1,4 @@
-"""What the sections of the sidebar have in common."""
+"""Controls shared by the sections of the sidebar."""
 
 import re
 from collections.abc import Callable, Sequence
@@ -30,16 +30,16 @@ CONTROL: dict[str, Any] = {"size": "small", "margin": GAP, "sizing_mode": "stret
 def as_text(text: str) -> str:
     """Return a text that Panel shows as it stands: it takes texts for Markdown, and so for HTML.
 
-    What a file calls its joints could otherwise bring a script along.
+    Names of joints in a file could otherwise contain a script.
     """
-    return _PUNCTUATION.sub(lambda found: f"&#{ord(found.group())};", printable(text or ""))
+    return _PUNCTUATION.sub(lambda match: f"&#{ord(match.group())};", printable(text or ""))
 
 
 _PUNCTUATION = re.compile(r"[!-&(-+\-/<-@\[-`{-~]|[.:](?=\S)|(?<=\d)\.")
 """All but what ends sentences and their parts; an address, for one, would become a link."""
 
 
-def words(text: Any, **params: Any) -> pmui.Typography:
+def text_line(text: Any, **params: Any) -> pmui.Typography:
     """Return a text, or what follows a parameter, as it stands."""
     content = as_text(text) if isinstance(text, str) else when(as_text, text)
     return pmui.Typography(content, **params)
@@ -50,7 +50,7 @@ def section(title: str, *objects: Any, **params: Any) -> pmui.Column:
     params = {"margin": (14, 20, 4, 20), "sizing_mode": "stretch_width", **params}
     if not title:
         return pmui.Column(*objects, **params)
-    heading = words(
+    heading = text_line(
         title,
         variant="overline",
         margin=(0, 0, 2, 0),
@@ -59,17 +59,46 @@ def section(title: str, *objects: Any, **params: Any) -> pmui.Column:
     return pmui.Column(heading, *objects, **params)
 
 
-def lead(text: Any) -> pmui.Typography:
+def folded(title: str, *objects: Any, needed: Any = None, **params: Any) -> pmui.Column:
+    """Return a section that opens when its heading is pressed, or a parameter needs it."""
+    content = column(*objects)
+    accordion = pmui.Accordion(
+        (title, content), margin=0, sizing_mode="stretch_width", elevation=0, sx=_FOLDED,
+        disable_gutters=True, title_variant="overline",
+    )  # fmt: skip
+
+    def opened(*events: Any) -> None:
+        value = getattr(needed.owner, needed.name)
+        if value is not None and value is not False:  # a part may be 0
+            accordion.active = [0]
+
+    if needed is not None:
+        needed.owner.param.watch(opened, needed.name)
+        opened()
+    return pmui.Column(accordion, margin=(2, 20), sizing_mode="stretch_width", **params)
+
+
+_FOLDED = {
+    "background": "none",
+    "&::before": {"display": "none"},
+    "& .MuiAccordionSummary-root": {"minHeight": 36, "p": 0},
+    "& .MuiAccordionSummary-content": {"my": "4px !important"},
+    "& .title": {"fontWeight": 600, "letterSpacing": "0.08em", "color": "text.secondary"},
+    "& .MuiAccordionDetails-root": {"p": "0 !important"},
+}
+
+
+def intro(text: Any) -> pmui.Typography:
     """Return the sentence that a panel begins with: what is seen there."""
     style = {"fontSize": "13px", "lineHeight": 1.45, "color": "text.primary", "display": "block"}
-    return words(text, sx=style, margin=(12, 20, 0, 20), sizing_mode="stretch_width")
+    return text_line(text, sx=style, margin=(12, 20, 0, 20), sizing_mode="stretch_width")
 
 
 def caption(text: Any = "", **params: Any) -> pmui.Typography:
     """Return a line of small, quiet text."""
     style = {"color": "text.secondary", "lineHeight": 1.45, "display": "block", "letterSpacing": 0}
     params = {"margin": (2, 0, 6, 0), "sizing_mode": "stretch_width", **params}
-    return words(text, variant="caption", sx=style, **params)
+    return text_line(text, variant="caption", sx=style, **params)
 
 
 def when(function: Callable[..., Any], *parameters: Any) -> Any:
@@ -115,7 +144,7 @@ def follow(
 ) -> Any:
     """Let a menu show a parameter of the state, and set it.
 
-    `offered` tells the menu's choices and which of them is taken; they are told again whenever the
+    `offered` returns the menu's choices and the chosen one; it is called again whenever the
     parameter or one of those watched changes.
     """
 
@@ -150,6 +179,11 @@ def slider(parameter: Any, label: str, whole: bool = False, **params: Any) -> An
     return made
 
 
+def has_weights(rig: Any) -> bool:
+    """Whether a character has weights in its file."""
+    return rig is not None and rig.weights is not None
+
+
 def switch(parameter: Any, **params: Any) -> pmui.Switch:
     """Return a switch that follows a parameter, under the parameter's own label."""
     params = {"label": parameter.label, "size": "small", "margin": (3, 0), **params}
@@ -157,7 +191,7 @@ def switch(parameter: Any, **params: Any) -> pmui.Switch:
 
 
 def button(label: Any, act: Callable[[], Any], **params: Any) -> pmui.Button:
-    """Return a button, as wide as there is room."""
+    """Return a button that fills the width."""
     params = {**CONTROL, "variant": "outlined", **params}
     return pmui.Button(label=label, on_click=lambda event: act(), **params)
 

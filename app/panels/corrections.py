@@ -9,10 +9,10 @@ from cutcell.editing.corrections import Corrections
 
 from ..commands import correct
 from ..commands.session import Session
-from .controls import BESIDE, CONTROL, button, caption, row, section, when
+from .controls import BESIDE, CONTROL, button, caption, folded, row, when
 
 MAX_FILE = 4 * 2**20
-NONE = "Nothing is corrected. What is goes into the exported file, and into files of their own."
+NONE = "No corrections yet. They are included in the export and can be saved as JSON."
 
 
 def corrections(session: Session) -> pmui.Column:
@@ -27,7 +27,7 @@ def corrections(session: Session) -> pmui.Column:
         icon="folder_open",
         max_file_size=MAX_FILE,
         variant="outlined",
-        sx={"&:focus-within": {"outline": "2px solid", "outlineOffset": "1px"}},
+        sx={"&:focus-within": {"outline": "2px solid #e05a00", "outlineOffset": "1px"}},
         **{**CONTROL, "margin": BESIDE},
     )
 
@@ -37,9 +37,9 @@ def corrections(session: Session) -> pmui.Column:
             correct.open_text(session, event.new.decode(errors="replace"))
 
     opener.param.watch(opened, "value")
-    return section(
+    return folded(
         "Corrections",
-        caption(when(told, state.param.corrections)),
+        caption(when(summary, state.param.corrections)),
         row(
             button("Save", lambda: correct.save(session), **style),
             opener,
@@ -48,12 +48,13 @@ def corrections(session: Session) -> pmui.Column:
     )
 
 
-def told(held: Corrections) -> str:
+def summary(corrections: Corrections) -> str:
     """Say how much is corrected."""
     numbers: list[tuple[Any, str]] = [
-        (held.joints, "joint"), (held.parts, "part"), (held.vertices, "vertex"),
+        (corrections.joints, "joint"), (corrections.parts, "part"),
+        (corrections.vertices, "vertex"),
     ]  # fmt: skip
     parts = [count(len(which), one) for which, one in numbers if which]
     if not parts:
         return NONE
-    return f"Corrected: {', '.join(parts)}. They go into the exported file, too."
+    return f"Corrected: {', '.join(parts)}. Included in the export."

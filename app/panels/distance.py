@@ -11,7 +11,7 @@ from .controls import (
     caption,
     choice,
     column,
-    lead,
+    intro,
     play_button,
     section,
     slider,
@@ -26,21 +26,21 @@ def distance(session: Session) -> pmui.Column:
     """Return the controls of the panel Geodesics."""
     state = session.state
     idle = caption(
-        "This bone carries no weight, so no distance begins at it.",
+        "This bone does not deform the mesh, so it has no distance field.",
         visible=when(weightless, state.param.rig, state.param.joint),
     )
     return column(
-        lead("How far it is from the chosen bone, along the shortest path through the body."),
+        intro("Distance to the selected bone, along the shortest path through the body."),
         section("", idle, _one(session), margin=(8, 20, 4, 20)),
         section("Shown with it", *_more(state)),
         section("Wavefront", *_wave(state)),
-        section("Measures side by side", *_beside(state)),
+        section("Measures side by side", *_comparison(state)),
     )
 
 
 def _face(state: State) -> Any:
     faces = {"Distance": "field", "Winding number": "winding"}
-    has_cut = when(lambda axis: axis != "off", state.param.cut_axis)
+    has_cut = when(lambda axis: axis not in ("auto", "off"), state.param.cut_axis)
     return choice(state.param.cut_face, faces, visible=has_cut)
 
 
@@ -58,7 +58,7 @@ def _switches(state: State) -> list[Any]:
     return [state.param[f"beside_{name}"] for name in MEASURES]
 
 
-def _beside(state: State) -> list[Any]:
+def _comparison(state: State) -> list[Any]:
     """Return a switch for each measure, of which four at most can be on, and their R."""
     all_on = _switches(state)
 
@@ -73,22 +73,21 @@ def _beside(state: State) -> list[Any]:
         visible=any_chosen,
     )
     hint = (
-        "Up to four, under one camera and on one scale; the last three go through the cut-cell "
-        "graph. Click the body: each draws its own path."
+        "Up to four, on one scale. The last three use the cut-cell graph. Click the body to draw "
+        "the paths."
     )
     return [caption(hint), *switches, rate]
 
 
 def _more(state: State) -> list[Any]:
     hint = caption(
-        "Click the body: the shortest path from there to the bone is drawn.",
+        "Click the body to draw the shortest path from there to the bone.",
         visible=when(
             lambda vertex, path: path and vertex is None, state.param.vertex, state.param.path
         ),
     )
     explain = caption(
-        "Points on the bone look for their nearest nodes of the graph. These sources begin "
-        "with their straight distance to the bone.",
+        "Graph nodes nearest to the bone. Each starts at its straight distance to the bone.",
         visible=state.param.starts,
     )
     starts = column(

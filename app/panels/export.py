@@ -4,13 +4,14 @@ from collections.abc import Callable
 
 import panel_material_ui as pmui
 
+from cutcell.editing.corrections import Corrections
 from cutcell.io import keeps_document
 from cutcell.io.materials.transfer import has_materials
 from cutcell.rig import Rig
 
 from ..commands import export as actions
 from ..commands.session import Session
-from .controls import BESIDE, button, caption, menu, row, section, when
+from .controls import BESIDE, button, caption, folded, menu, row, when
 
 
 def export(session: Session) -> pmui.Column:
@@ -38,23 +39,27 @@ def export(session: Session) -> pmui.Column:
         "Nodes and edges of the graph (NPZ)": lambda: actions.export_graph(session, "npz", offer),
     }
     empty = when(lambda rig: rig is None, state.param.rig)
-    return section(
+    return folded(
         "Export",
         bound,
         row(
-            menu("Picture, film", "movie", films, margin=BESIDE, disabled=empty),
-            menu("Numbers", "table_chart", numbers, disabled=empty),
+            menu("Image, video", "movie", films, margin=BESIDE, disabled=empty),
+            menu("Data", "table_chart", numbers, disabled=empty),
         ),
-        caption(when(_described, state.param.rig)),
+        caption(when(_described, state.param.rig, state.param.corrections, state.param.repair)),
     )
 
 
-def _described(rig: Rig | None) -> str:
-    """Say what the bound file holds."""
+def _described(rig: Rig | None, corrections: Corrections, repair: object) -> str:
+    """Return what the exported file contains."""
     if rig is None or keeps_document(rig):
-        summary = "The GLB is as it was, but for the weights."
+        moved = any(one.position is not None for one in corrections.joints.values())
+        changed = ["weights"]
+        changed += ["skeleton"] if moved or corrections.structural else []
+        changed += ["mesh"] if repair is not None else []
+        summary = f"Only {' and '.join(changed)} of the GLB change."
     elif has_materials(rig):
-        summary = "The GLB is a new one: mesh, skeleton, weights, motions and base colours."
+        summary = "A new GLB: mesh, skeleton, weights, clips and base colours."
     else:
-        summary = "The GLB is a new one: mesh, skeleton, weights and motions, without materials."
+        summary = "A new GLB: mesh, skeleton, weights and clips, no materials."
     return f"{summary} Images show the current view."

@@ -13,14 +13,27 @@ from ..commands.binding import bind
 from ..commands.session import Session
 from ..scenes.common import theme_of
 from ..state import LAYERS, State
-from .controls import GAP, caption, choice, lead, section, slider, weightless, when, words
+from ..state.graph import READABLE
+from .controls import (
+    BUTTONS,
+    GAP,
+    caption,
+    choice,
+    follow,
+    intro,
+    section,
+    slider,
+    text_line,
+    weightless,
+    when,
+)
 from .cutting import cutting
 
 KINDS = {"mesh_edges": MESH, "interior_edges": INTERIOR, "surface_edges": SURFACE}
 LEAF_TITLES = {"point": "Points", "extend": "Extended", "fit": "Fitted"}
 SEARCHED = (
-    "Interior edges only carry the search: a distance runs straight wherever there is line of "
-    "sight. Click the body to see the lines of sight to the chosen bone."
+    "Interior edges only carry the search: paths run straight along lines of sight. Click the "
+    "body to see them."
 )
 """What interior edges are where paths need not follow them."""
 AXES = {"X": "x", "Y": "y", "Z": "z"}
@@ -30,7 +43,8 @@ def graph(session: Session) -> pmui.Column:
     """Return the controls of the panel Graph."""
     state = session.state
     return pmui.Column(
-        lead("The paths that distances are measured on: along the mesh and through the inside."),
+        intro("The paths that distances are measured on: along the mesh and through the inside."),
+        section("Resolution", _shown(state)),
         section(
             "Layers", *[_layer(state, name) for name in LAYERS], _nodes(state), *_colors(state)
         ),
@@ -41,6 +55,19 @@ def graph(session: Session) -> pmui.Column:
     )
 
 
+def _shown(state: State) -> pmui.RadioButtonGroup:
+    """Return the choice between a graph that is easy to read and the one of the weights."""
+
+    def options() -> tuple[dict[str, int], int]:
+        other = state.graph_resolution or READABLE
+        return {f"R = {other}": other, f"Weights: R = {state.resolution}": 0}, (
+            state.graph_resolution
+        )
+
+    menu = pmui.RadioButtonGroup(**BUTTONS)
+    return follow(menu, state, "graph_resolution", options, ["resolution"])
+
+
 def _layer(state: State, name: str) -> pmui.Row:
     switch = pmui.Switch.from_param(
         state.param[name],
@@ -49,7 +76,7 @@ def _layer(state: State, name: str) -> pmui.Row:
         margin=(1, 0),
         sx=when(lambda _: _switch_colors(state, name), state.param.dark) if name in KINDS else {},
     )
-    number = words(
+    number = text_line(
         when(lambda *_: count(state, name), *_built(state), state.param.rig),
         sx={
             "fontSize": "12px",
@@ -87,17 +114,17 @@ def count(state: State, layer: str) -> str:
     """Return how many faces or edges a layer has, as text."""
     if layer == "body":
         return "" if state.rig is None else f"{len(state.rig.mesh.faces):,} faces"
-    if state.graph is None:
+    if state.shown_graph is None:
         return ""
-    return f"{np.count_nonzero(state.graph.edge_kind == KINDS[layer]):,}"
+    return f"{np.count_nonzero(state.shown_graph.edge_kind == KINDS[layer]):,}"
 
 
 def _colors(state: State) -> list[Any]:
     idle = caption(
         "The chosen bone carries no weight, so no distance begins at it.",
         visible=when(
-            lambda shown, rig, joint, slicing: (
-                shown == "distance" and not slicing and weightless(rig, joint)
+            lambda update, rig, joint, slicing: (
+                update == "distance" and not slicing and weightless(rig, joint)
             ),
             state.param.edge_colors,
             state.param.rig,
@@ -153,8 +180,8 @@ def _cut(state: State) -> tuple[Any, Any]:
     return state.param.cut_axis, state.param.slicing
 
 
-def _built(state: State) -> tuple[Any, Any]:
-    return state.param.binding, state.param.bare_graph
+def _built(state: State) -> tuple[Any, ...]:
+    return state.param.binding, state.param.bare_graph, state.param.easy_graph
 
 
 def _ends(value: int) -> dict[str, int]:
@@ -177,12 +204,12 @@ def _build(session: Session) -> list[Any]:
     def chosen(event: Any) -> None:
         state.resolution = event.new
 
-    def shown(event: Any) -> None:
-        # The box may take the slider's ends along, and they must come back.
+    def update(event: Any) -> None:
+        # The box may move the slider's ends, which are reset here.
         resolution.param.update(value=event.new, **_ends(event.new))
 
     resolution.param.watch(chosen, "value_throttled")
-    state.param.watch(shown, "resolution")
+    state.param.watch(update, "resolution")
     threshold = slider(state.param.winding_threshold, "Winding threshold τ", step=0.01)
     again = pmui.Button(
         label="Recompute",
@@ -192,7 +219,7 @@ def _build(session: Session) -> list[Any]:
         sizing_mode="stretch_width",
         on_click=lambda event: bind(session),
         visible=when(
-            lambda rig, binding, bare, busy: rig is not None and not (binding or bare or busy),
+            lambda rig, binding, bare, _, busy: rig is not None and not (binding or bare or busy),
             state.param.rig,
             *_built(state),
             state.param.busy,

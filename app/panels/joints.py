@@ -17,7 +17,7 @@ from ..commands.session import Session
 from ..scenes.joints import joint_rows, shares_of
 from ..state import State
 from ..widgets.joint_tree import JointTree
-from .controls import CONTROL, GAP, as_text, button, caption, section, text_box, when, words
+from .controls import CONTROL, GAP, as_text, button, caption, folded, text_box, text_line, when
 from .moving import place
 from .structure import structure
 
@@ -70,9 +70,9 @@ def joints(session: Session) -> pmui.Column:
     counts = caption(when(_counted, state.param.rig))
     guesser = pmui.Button(
         label="Detect deforming joints", size="small", variant="text", margin=0, on_click=anew,
-        description="From their names, and where they lie in the body",
+        description="Detect deforming joints by name and position",
     )  # fmt: skip
-    return section("Joints", counts, tree, guesser, *_chosen(session))
+    return folded("Joints", counts, tree, guesser, *_chosen(session))
 
 
 def _character(state: State) -> Any:
@@ -87,7 +87,7 @@ def _choose(state: State, joint: int) -> None:
 def _chosen(session: Session) -> list[Any]:
     """Return what can be corrected of the chosen joint."""
     state = session.state
-    heading = words("", sx={"fontWeight": 600, "fontSize": 13}, margin=(6, 0, 0, 0))
+    heading = text_line("", sx={"fontWeight": 600, "fontSize": 13}, margin=(6, 0, 0, 0))
     holds = caption("", margin=0)
     called = text_box("Name")
     carries = _switch("Deforms the mesh")
@@ -96,12 +96,12 @@ def _chosen(session: Session) -> list[Any]:
         label="Reach", start=-DOUBLINGS, end=DOUBLINGS, step=STEP, value=0.0,
         show_value=False, track=False, tooltips=False, **CONTROL,
     )  # fmt: skip
-    radius = text_box("Radius, in the file's units", placeholder="measured from the body")
+    radius = text_box("Radius (file units)", placeholder="measured from the body")
     reset = button("Reset", lambda: changes(**_AS_COMPUTED, **_put_back(state)), icon="undo")
     showing = [False]
 
-    def tell() -> None:
-        holds.object = as_text(_held(session))
+    def update() -> None:
+        holds.object = as_text(_weight_text(session))
 
     def show() -> None:
         rig = state.rig
@@ -110,7 +110,7 @@ def _chosen(session: Session) -> list[Any]:
         name = rig.skeleton.names[state.joint]
         one = state.corrections.joints.get(name, JointCorrection())
         heading.object = as_text(shown_name(name))
-        tell()
+        update()
         showing[0] = True
         try:
             called.value = name
@@ -125,9 +125,9 @@ def _chosen(session: Session) -> list[Any]:
         finally:
             showing[0] = False
 
-    def changes(**wanted: Any) -> None:
+    def changes(**values: Any) -> None:
         if not showing[0] and state.rig is not None:
-            correct.correct_joint(session, state.joint, **wanted)
+            correct.correct_joint(session, state.joint, **values)
 
     def reached(event: Any) -> None:
         changes(gain=round(float(2.0**event.new), 3))
@@ -143,7 +143,7 @@ def _chosen(session: Session) -> list[Any]:
     gain.param.watch(reached, "value")
     radius.param.watch(lambda event: changes(radius=_read(event.new)), "value")
     state.param.watch(lambda *events: show(), ["rig", "joint", "corrections", "falloff"])
-    state.param.watch(lambda event: session.tasks.after_a_pause(tell, "held"), "binding")
+    state.param.watch(lambda event: session.tasks.after_a_pause(update, "held"), "binding")
     show()
     controls = [heading, holds, called, structure(session), carries, locked, gain, radius]
     return [*controls, *place(session), reset]
@@ -182,15 +182,15 @@ def _doublings(gain: float) -> float:
     return float(np.clip(round(float(np.log2(gain)), 1), -DOUBLINGS, DOUBLINGS))
 
 
-def _held(session: Session) -> str:
+def _weight_text(session: Session) -> str:
     """Say how much of the skin the chosen joint holds."""
     state = session.state
-    computed, own = shares_of(state, session.memo)
+    computed, original = shares_of(state, session.memo)
     lines = []
     if computed is not None:
-        lines.append(f"Holds {_percent(computed[state.joint])} of the skin")
-    if own is not None:
-        lines.append(f"{_percent(own[state.joint])} in the file")
+        lines.append(f"Moves {_percent(computed[state.joint])} of the skin")
+    if original is not None:
+        lines.append(f"{_percent(original[state.joint])} in the file")
     text = ", ".join(lines)
     return text[:1].upper() + text[1:] + "." if text else ""
 
@@ -204,5 +204,5 @@ def _counted(rig: Any) -> str:
         return ""
     chosen = rig.skeleton.deform
     if chosen.all():
-        return f"All {len(chosen)} joints may carry weight."
-    return f"{chosen.sum()} of {len(chosen)} joints may carry weight."
+        return f"All {len(chosen)} joints deform the mesh."
+    return f"{chosen.sum()} of {len(chosen)} joints deform the mesh."

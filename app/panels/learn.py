@@ -7,7 +7,7 @@ import panel_material_ui as pmui
 from ..commands.session import Session
 from ..commands.tour import go
 from ..state.tour import TOUR
-from .controls import GAP, LINE, button, caption, column, lead, section, when
+from .controls import GAP, LINE, button, caption, column, intro, section, when
 
 
 def learn(session: Session) -> pmui.Column:
@@ -28,7 +28,7 @@ def learn(session: Session) -> pmui.Column:
     hint = "Each step sets the scene. Look around and change anything."
     steps = [_entry(session, index) for index in range(len(TOUR))]
     return column(
-        lead(f"How skin follows bones, in {len(TOUR)} short steps."),
+        intro(f"How skin follows bones, in {len(TOUR)} short steps."),
         section("", caption(hint), start, *steps, margin=(4, 20, 4, 20)),
     )
 

@@ -2,10 +2,12 @@
 
 from typing import Any
 
+import numpy as np
 from panel.io import hold
 
 from cutcell.editing.corrections import JointCorrection
 from cutcell.errors import ParameterError
+from cutcell.rig import Rig
 from cutcell.rig.checks import shown
 
 from ..commands import moving
@@ -14,6 +16,8 @@ from ..state import State
 from .controls import BESIDE, button, caption, row, switch, text_box
 
 NUMBER = "%.6g"
+NOTHING = 1e-9
+"""Of the longest side."""
 
 
 def place(session: Session) -> list[Any]:
@@ -37,7 +41,7 @@ def place(session: Session) -> list[Any]:
             place = rig.skeleton.joints[state.joint].tolist()
             with hold():  # one message for all three: each alone keeps a dragged joint waiting
                 for field, value in zip(fields, place, strict=True):
-                    field.value = NUMBER % value
+                    field.value = _written(rig, value)
             mirrored.visible = moving.partner_of(session) is not None
             back.disabled = _moved(state) is None
         finally:
@@ -47,7 +51,7 @@ def place(session: Session) -> list[Any]:
         if showing[0] or state.rig is None:
             return
         at: list[Any] = state.rig.skeleton.joints[state.joint].tolist()
-        if event.new == NUMBER % at[axis]:
+        if event.new == _written(state.rig, at[axis]):
             return
         try:
             at[axis] = float(event.new)
@@ -62,12 +66,18 @@ def place(session: Session) -> list[Any]:
     state.param.watch(lambda *events: show(), ["rig", "joint", "corrections", "dragged"])
     show()
     return [
-        caption("Where it stands, in the file's units", margin=(8, 0, 0, 0)),
+        caption("Position (file units)", margin=(8, 0, 0, 0)),
         row(*fields),
         switch(state.param.joint_handle),
         mirrored,
         row(centre, back),
     ]
+
+
+def _written(rig: Rig, value: float) -> str:
+    """Return a coordinate; what is nothing beside the mesh is zero."""
+    extent = float(np.ptp(rig.mesh.bounds, axis=0).max())
+    return NUMBER % (value if abs(value) > NOTHING * extent else 0.0)
 
 
 def _moved(state: State) -> Any:

@@ -18,7 +18,7 @@ from .controls import (
     button,
     caption,
     column,
-    lead,
+    intro,
     row,
     section,
     select_box,
@@ -26,8 +26,8 @@ from .controls import (
 )
 
 NONE_OPEN = (
-    "Here the near-duplicates of a data set stand side by side. Find them by cutcell dataset "
-    "audit FOLDER, and open what it found by cutcell app --pairs audit."
+    "Compare near-duplicates of a data set. Run cutcell dataset audit FOLDER, then cutcell app "
+    "--pairs audit."
 )
 TIERS = {
     "All": "all",
@@ -52,7 +52,7 @@ def pairs(session: Session) -> pmui.Column:
     """Return the controls of the panel Pairs."""
     state = session.state
     if state.opened is None:
-        return column(lead(NONE_OPEN))
+        return column(intro(NONE_OPEN))
     watched = (state.param.opened, state.param.pair, state.param.tier)
 
     def to(label: str, icon: str, count: int) -> Any:
@@ -63,7 +63,7 @@ def pairs(session: Session) -> pmui.Column:
 
     steps = row(to("Previous", "arrow_back", -1), to("Next", "arrow_forward", 1))
     return column(
-        lead(when(lambda *_: told(state), *watched)),
+        intro(when(lambda *_: summary(state), *watched)),
         section(
             "",
             _tiers(session),
@@ -74,19 +74,19 @@ def pairs(session: Session) -> pmui.Column:
         section("What they are", _verdict(session)),
         section(
             "What is kept",
-            caption(when(lambda *_: kept(state), *watched)),
+            caption(when(lambda *_: threshold_text(state), *watched)),
             caption(when(lambda opened: f"{opened.folder / 'audit.json'} lists it.", watched[0])),
         ),
     )
 
 
-def told(state: State) -> str:
+def summary(state: State) -> str:
     """Say which pair is looked at, of how many."""
     count, stepped = len(state.opened.pairs), state.stepped
     if not count:
         return "The audit found no near-duplicates."
     if not stepped:
-        return "There are none of these."
+        return "No such pairs."
     if state.pair not in stepped:
         return f"{len(stepped):,} of {count:,} pairs."
     of = f" of {count:,} in all" if len(stepped) < count else ""
@@ -117,7 +117,7 @@ def facts(state: State) -> str:
     return ". ".join(sentences) + "."
 
 
-def kept(state: State) -> str:
+def threshold_text(state: State) -> str:
     """Say how many characters are kept, and whether those of the pair are."""
     audit, pair = state.opened.audit, state.chosen_pair
     counts = f"{len(audit.keep):,} of {len(audit.names):,} characters are kept."
@@ -139,16 +139,16 @@ def _tiers(session: Session) -> pmui.Select:
     state = session.state
     select = select_box("Step through", TIERS)
 
-    def shown(*events: Any) -> None:
+    def update(*events: Any) -> None:
         select.value = state.tier
 
     def chosen(event: Any) -> None:
         if event.new is not None and event.new != state.tier:
             actions.choose_tier(session, event.new)
 
-    state.param.watch(shown, "tier")
+    state.param.watch(update, "tier")
     select.param.watch(chosen, "value")
-    shown()
+    update()
     return select
 
 
@@ -156,7 +156,7 @@ def _verdict(session: Session) -> pmui.RadioButtonGroup:
     state = session.state
     row = pmui.RadioButtonGroup(options=VERDICTS, value="", **BUTTONS)
 
-    def shown(*events: Any) -> None:
+    def update(*events: Any) -> None:
         pair = state.chosen_pair
         row.value = "" if pair is None else state.opened.audit.verdict(pair)
 
@@ -164,7 +164,7 @@ def _verdict(session: Session) -> pmui.RadioButtonGroup:
         if event.new is not None:
             actions.overrule(session, event.new)
 
-    state.param.watch(shown, ["opened", "pair"])
+    state.param.watch(update, ["opened", "pair"])
     row.param.watch(chosen, "value")
-    shown()
+    update()
     return row

@@ -2,6 +2,7 @@
 
 from typing import Any
 
+import numpy as np
 import panel_material_ui as pmui
 from bokeh.models import PrintfTickFormatter
 
@@ -22,7 +23,7 @@ from .controls import (
     choice,
     column,
     follow,
-    lead,
+    intro,
     offer,
     play_button,
     rest_button,
@@ -45,7 +46,7 @@ WORST = 8
 def pose(session: Session) -> pmui.Column:
     """Return the controls of the panel Pose."""
     return column(
-        lead("How the skin follows when bones turn, by hand or in a motion."),
+        intro("Pose bones by hand or play a motion."),
         _turning(session),
         _motion(session),
         _colours(session),
@@ -69,8 +70,8 @@ def _how_to_turn(rig: Any, joint: int, brush: bool) -> str:
         return ""
     name = shown_name(rig.skeleton.names[joint])
     if brush:
-        return f"Turn {name}: drag the sliders; the brush takes its rings away."
-    return f"Turn {name}: drag its rings, or the sliders."
+        return f"Use the sliders to rotate {name}. The rings are hidden while painting."
+    return f"Drag the rings or the sliders to rotate {name}."
 
 
 def _angle(session: Session, axis: int) -> pmui.FloatSlider:
@@ -97,12 +98,12 @@ def _angle(session: Session, axis: int) -> pmui.FloatSlider:
     def shown_angle() -> float:
         return float(state.turns.get(state.joint, (0, 0, 0))[axis])
 
-    def shown(*events: Any) -> None:
+    def update(*events: Any) -> None:
         slider.value = float(round(shown_angle()))
 
     slider.param.watch(turned, "value")
-    state.param.watch(shown, ["turns", "joint"])
-    shown()
+    state.param.watch(update, ["turns", "joint"])
+    update()
     return slider
 
 
@@ -174,7 +175,7 @@ def _comparison(session: Session) -> pmui.Column:
     )
     worst = Rows(
         lambda row: actions.show_turn(session, *_turn_of(state, row)),
-        label="The worst turns",
+        label="Largest errors",
         sizing_mode="stretch_width",
         margin=(0, -8),
     )
@@ -193,24 +194,24 @@ def _comparison(session: Session) -> pmui.Column:
         state.param.binding,
     )
     return section(
-        "Against the file's weights",
+        "Compare with original weights",
         choice(state.param.rival, views), heat, now, heading, worst,
         visible=with_rival,
     )  # fmt: skip
 
 
-WORST_TEXT = "The worst turns by 30°, mean over the vertices. Press one to see it:"
+WORST_TEXT = "Largest errors for 30° rotations (root mean square). Click to show."
 
 
 def error_text(state: State, error: tuple[float, float] | None) -> str:
-    """Return the error of what is seen, in a sentence."""
+    """Return the text of the error of the visible pose."""
     if error is None:
         return 'Turn on "Error as colours" to measure the motion.' if not state.heat else ""
     if not state.posed:
-        return "At rest there is no error. Distances are squared, the longest side scaled to 1 m."
-    mean, greatest = error
-    over = "over the motion" if state.moving else "in this pose"
-    return f"Mean {mean:.3g} cm² {over}, greatest {greatest:.3g} cm² (longest side 1 m)."
+        return "No error in the rest pose. Lengths are for a longest side of 1 m."
+    rms, largest = error
+    where = "over the motion" if state.moving else "in this pose"
+    return f"RMS {rms:.3g} mm {where}, at most {largest:.3g} mm (longest side 1 m)."
 
 
 def worst_rows(state: State) -> list[tuple[str, str, float]]:
@@ -218,7 +219,11 @@ def worst_rows(state: State) -> list[tuple[str, str, float]]:
     turns = _worst(state)
     top = turns[0].mean if turns else 1.0
     return [
-        (f"{shown_name(one.name)} about {one.axis.upper()}", f"{one.mean:.3g} cm²", one.mean / top)
+        (
+            f"{shown_name(one.name)} about {one.axis.upper()}",
+            f"{10 * np.sqrt(one.mean):.3g} mm",
+            float(np.sqrt(one.mean / top)),
+        )
         for one in turns
     ]
 

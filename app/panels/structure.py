@@ -15,13 +15,13 @@ def structure(session: Session) -> pmui.Column:
     """Return what changes which joints there are."""
     state = session.state
     on = select_box("Parent", [NOTHING], value=NOTHING, margin=(8, 0))
-    add = button("Add a joint", lambda: actions.add(session), icon="add", margin=(4, 4, 4, 0))
+    add = button("Add joint", lambda: actions.add(session), icon="add", margin=(4, 4, 4, 0))
     remove = button(
         "Remove joint", lambda: actions.remove(session), icon="remove", margin=(4, 0, 4, 4)
     )
     cache: dict[str, list[str]] = {"names": []}
 
-    def shown(*events: Any) -> None:
+    def update(*events: Any) -> None:
         if state.rig is None or state.joint >= len(state.rig.skeleton.names):
             return
         skeleton = state.rig.skeleton
@@ -38,11 +38,11 @@ def structure(session: Session) -> pmui.Column:
             actions.hang_on(session, parent)
 
     on.param.watch(chosen, "value")
-    state.param.watch(shown, ["rig", "joint", "corrections"])
-    shown()
+    state.param.watch(update, ["rig", "joint", "corrections"])
+    update()
     return column(
         on,
         row(add, remove),
-        caption("A new joint divides the bone; on a last joint, or a fork, it begins another one."),
+        caption("Splits the bone; on a leaf or fork it starts a new one."),
         margin=GAP,
     )

@@ -14,7 +14,7 @@ from .controls import caption, section, select_box, when
 NONE = "None"
 CHANGED = "Your own"
 TITLES = {template.capitalize(): template for template in TEMPLATES}
-HINT = "The file has no skeleton. Choose one: it is fitted into the body, then drag its joints."
+HINT = "This mesh has no skeleton. Choose a template to fit, then drag its joints."
 
 
 def skeleton_menu(session: Session) -> pmui.Column:
@@ -23,7 +23,7 @@ def skeleton_menu(session: Session) -> pmui.Column:
     select = select_box("Skeleton", [NONE, *TITLES], value=NONE)
     hint = caption(HINT, visible=when(lambda rig: rig is not None and state.bare, state.param.rig))
 
-    def shown(*events: Any) -> None:
+    def update(*events: Any) -> None:
         now = chosen_template(state)
         options = [NONE, *TITLES, *([CHANGED] if now == CHANGED else [])]
         select.param.update(options=options, value=now)
@@ -38,8 +38,8 @@ def skeleton_menu(session: Session) -> pmui.Column:
 
     select.param.watch(chosen, "value")
     # Also where nothing came of it: the menu then says again what there is.
-    state.param.watch(shown, ["rig", "corrections", "message"])
-    shown()
+    state.param.watch(update, ["rig", "corrections", "message"])
+    update()
     of_bare = when(lambda own: own is not None and not len(own.skeleton.joints), state.param.own)
     return section("", select, hint, margin=(2, 20, 4, 20), visible=of_bare)
 

@@ -5,13 +5,29 @@ from typing import Any
 import numpy as np
 import panel_material_ui as pmui
 
+from cutcell.editing.binding_warnings import SAME
 from cutcell.method import FALLOFFS
 
+from ..commands.correct import keep_file_parts
 from ..commands.session import Session
 from ..state import State
 from .brush import brush
 from .components import parts_of_mesh
-from .controls import caption, choice, column, follow, lead, section, select_box, slider, when
+from .controls import (
+    button,
+    caption,
+    choice,
+    column,
+    folded,
+    follow,
+    has_weights,
+    intro,
+    section,
+    select_box,
+    slider,
+    text_line,
+    when,
+)
 from .corrections import corrections
 from .joints import joints
 
@@ -25,6 +41,7 @@ DIFFERENCE = {
     "Difference from the file's": "difference",
     "Difference of the selected bone": "bone_difference",
 }
+SOURCE = {"fontSize": 13, "fontWeight": 600}
 FALLOFF_TITLES = {"rig": "Animation", "paper": "Paper"}
 
 
@@ -34,52 +51,79 @@ def weights(session: Session) -> pmui.Column:
     select = select_box("Colour by", SHOWN)
 
     def offered() -> tuple[dict[str, str], str]:
-        has_weights = state.rig is not None and state.rig.weights is not None
-        options = {**SHOWN, **(DIFFERENCE if has_weights else {})}
+        options = {**SHOWN, **(DIFFERENCE if has_weights(state.rig) else {})}
         return options, state.weights_shown if state.weights_shown in options.values() else "mix"
 
     follow(select, state, "weights_shown", offered, ["rig"])
-    facts = caption(told(state))
+    facts = caption(summary(state))
+    source = text_line(exported(state), sx=SOURCE, margin=(8, 0, 0, 0))
 
-    def tell() -> None:
-        facts.object = told(state)
+    def update() -> None:
+        facts.object, source.object = summary(state), exported(state)
 
     # The colours go first.
-    state.param.watch(lambda *events: session.tasks.after_a_pause(tell, "told"), ["binding", "rig"])
+    state.param.watch(
+        lambda *events: session.tasks.after_a_pause(update, "told"), ["binding", "rig"]
+    )
     return column(
-        lead("How strongly each bone moves the skin."),
-        section("", select, *_sides(state), facts, margin=(8, 20, 4, 20)),
+        intro("How strongly each bone moves the skin."),
+        section(
+            "", source, _from_file(session), select, *_sides(state), facts, margin=(0, 20, 4, 20)
+        ),
         brush(session),
         joints(session),
-        section("Falloff with distance", *_falloff(state)),
+        folded("Falloff", *_falloff(state)),
         parts_of_mesh(session),
         corrections(session),
     )
 
 
+def _from_file(session: Session) -> pmui.Button:
+    """Return the button that starts from the file's weights."""
+    rig, binding = session.state.param.rig, session.state.param.binding
+    return button(
+        "Start from the file's weights",
+        lambda: keep_file_parts(session),
+        icon="history",
+        variant="text",
+        visible=when(lambda rig, bound: has_weights(rig) and bound is not None, rig, binding),
+    )
+
+
+def exported(state: State) -> str:
+    """Return which weights an exported file contains."""
+    if state.binding is None:
+        return ""
+    if not has_weights(state.rig):
+        return "Export: computed weights."
+    differs = np.abs(state.binding.weights - state.rig.weights).max(axis=1, initial=0) > SAME
+    if not differs.any():
+        return "Export: the file's weights."
+    as_in_file = 1 - differs.mean()
+    if as_in_file < 0.005 or not state.corrections:
+        return "Export: recomputed weights."
+    return f"Export: recomputed weights, the file's at {as_in_file:.0%} of the vertices."
+
+
 def _sides(state: State) -> list[Any]:
     """Return the choices between what was computed and what the file says."""
-    names = {"Computed": "ours", "From file": "file"}
+    names = {"Recomputed": "ours", "Original": "file"}
     whose = choice(
         state.param.weights_of,
         names,
         visible=when(
-            lambda rig, shown: _has_own(rig) and shown not in DIFFERENCE.values(),
+            lambda rig, colors: has_weights(rig) and colors not in DIFFERENCE.values(),
             state.param.rig,
             state.param.weights_shown,
         ),
     )
     signed = when(
-        lambda rig, shown: _has_own(rig) and shown == "bone_difference",
+        lambda rig, colors: has_weights(rig) and colors == "bone_difference",
         state.param.rig,
         state.param.weights_shown,
     )
-    truth = {"The file is right": "file", "Ours are right": "ours"}
+    truth = {"Reference: file": "file", "Reference: computed": "ours"}
     return [whose, choice(state.param.truth, truth, visible=signed)]
-
-
-def _has_own(rig: Any) -> bool:
-    return rig is not None and rig.weights is not None
 
 
 def _falloff(state: State) -> list[Any]:
@@ -93,12 +137,17 @@ def _falloff(state: State) -> list[Any]:
     return [
         *([choice(state.param.falloff, kernels)] if len(kernels) > 1 else []),
         alpha,
+        choice(
+            state.param.refine,
+            {"Rules": "none", "Rules and learned": "learned"},
+            visible=when(lambda falloff: falloff == "rig", state.param.falloff),
+        ),
         slider(state.param.max_influences, "Max influences", whole=True),
         slider(state.param.threshold, "Ignore weights below", step=0.005, end=0.3),
     ]
 
 
-def told(state: State) -> str:
+def summary(state: State) -> str:
     """Return what there is to say of the weights in a line."""
     if state.binding is None:
         return ""
@@ -110,5 +159,5 @@ def told(state: State) -> str:
         # Of |a - b| = a + b - 2 min(a, b) the last is zero where ours is: nearly everywhere.
         both = np.minimum(weights.ravel()[positive], file_weights.ravel()[positive]).sum()
         difference = ((len(weights) + file_weights.sum()) / 2 - both) / max(len(weights), 1)
-        text += f"; they differ from the file's by {difference:.0%}"
+        text += f", {100 * difference:.0f} % different from the file"
     return text + "."

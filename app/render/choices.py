@@ -1,4 +1,4 @@
-"""What can be chosen of a scene, and the page's state in which it is."""
+"""Choices of a scene, and the page's state for them."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -37,7 +37,7 @@ TURN_AXES = ("x", "y", "z")
 
 @dataclass(frozen=True)
 class Choices:
-    """What to show of a rig; each field is a choice of the page.
+    """Choices for showing a rig, as on the page.
 
     Parameters
     ----------
@@ -127,9 +127,6 @@ def state_of(rig: Rig, choices: Choices) -> State:
     if choices.shown is not None:
         state.weights_shown = check_choice("shown", choices.shown, SHOWN)
     state.param.update(**method_of(choices.method, GRAPH))
-    apply(state, choices.settings)
-    if state.pose_colors == "materials" and not has_materials(rig):
-        raise ParameterError(f"the file of {rig.name} has no materials with colours of their own")
     if choices.turn is not None:
         axis, degrees = choices.turn
         k = TURN_AXES.index(check_choice("axis", axis, TURN_AXES))
@@ -145,6 +142,9 @@ def state_of(rig: Rig, choices: Choices) -> State:
     state.heat = choices.error
     state.compare_field = "error" if choices.error else "bone" if choices.bone else "all"
     state.methods = _methods(rig, choices.methods)
+    apply(state, choices.settings)
+    if state.pose_colors == "materials" and not has_materials(rig):
+        raise ParameterError(f"the file of {rig.name} has no materials with colours of their own")
     return state
 
 

@@ -1,4 +1,4 @@
-"""What `cutcell render` is told about the inside, as choices of the page."""
+"""Options of `cutcell render` for the inside, as choices of the page."""
 
 import re
 from collections.abc import Callable, Mapping
@@ -26,7 +26,7 @@ AXES = ("x", "y", "z")
 
 
 def settings_of(**options: Any) -> dict[str, Any]:
-    """Return the choices of the page that options stand for, by their names in `READERS`.
+    """Return the choices of the page for options, by their names in `READERS`.
 
     Raises
     ------

@@ -1,19 +1,20 @@
-"""What is to be drawn of a scene: from where, how large, and whether it moves."""
+"""Request for a picture of a scene: camera, size and motion."""
 
-import numpy as np
+from dataclasses import replace
 
+from cutcell.errors import ParameterError
 from cutcell.rig import Rig
 from cutcell.rig.checks import check_choice, check_number
-from cutcell_viewers.camera import Camera, framing
-from cutcell_viewers.character import drawn_segments
+from cutcell_viewers.camera import Camera
 from cutcell_viewers.description import Description
-from cutcell_viewers.film import Order
+from cutcell_viewers.film import Order, ground
 from cutcell_viewers.finding_scene import camera_on_marks
 from cutcell_viewers.pose_scene import clip_in_scene
 
-from ..scenes.common import first_joint
-from .choices import VIEWS, Choices
-from .names import find_bone, find_clip
+from ..scenes.common import camera_on_bone
+from .address import read_camera
+from .choices import VIEWS, Choices, state_of
+from .names import find_clip
 
 
 def order(
@@ -26,6 +27,10 @@ def order(
     turntable: bool = False,
     legend: bool = True,
     near: float | None = None,
+    camera: str | None = None,
+    background: str = "",
+    transparent: bool = False,
+    eye: Camera | None = None,
 ) -> Order:
     """Return what is to be drawn: a picture, or a film where it turns or moves.
 
@@ -44,12 +49,20 @@ def order(
     legend : bool
     near : float, optional
         How much is seen around the bone, in parts of the longest side.
+    camera : str, optional
+        Where to look from, as addresses write it.
+    background : str
+        A colour instead of the theme's background.
+    transparent : bool
+    eye : Camera, optional
+        Where to look from if nothing else says it.
 
     Raises
     ------
     ParameterError
-        No such view.
+        See `check_picture`.
     """
+    check_picture(view=view, near=near, camera=camera, background=background)
     direction = None if view is None else VIEWS[check_choice("view", view, VIEWS)]
     motion = None
     if choices.clip is not None and choices.time is None:
@@ -57,27 +70,42 @@ def order(
         motion = clip_in_scene(rig, clip)
     theme = "dark" if choices.dark else "light"
     aspect = size[0] / size[1]
-    camera = camera_on_marks(description, aspect, direction) if choices.finding else None
+    looking = eye if view is None and near is None else None
+    if camera is not None:
+        looking = read_camera(camera)
+    if choices.finding and looking is None:
+        looking = camera_on_marks(description, aspect, direction)
     direction = direction or VIEWS["three-quarter"]
     if near is not None:
-        camera = _near(
-            rig, description, choices, check_number("near", near, 0.01, 1), aspect, direction
-        )
-    return Order(description, theme, size, camera, direction, turntable, motion, legend)
+        part = check_number("near", near, 0.01, 1)
+        looking = camera_on_bone(state_of(rig, choices), part, aspect, direction)
+    order = Order(description, theme, size, looking, direction, turntable, motion, legend)
+    return replace(order, background="transparent" if transparent else background)
 
 
-def _near(
-    rig: Rig,
-    description: Description,
-    choices: Choices,
-    part: float,
-    aspect: float,
-    direction: tuple[float, float, float],
-) -> Camera:
-    """Return a camera that looks at the middle of the chosen bone, at rest."""
-    start, end, of = drawn_segments(rig)
-    of_bone = of == (first_joint(rig) if choices.bone is None else find_bone(rig, choices.bone))
-    ends = np.concatenate([start[of_bone], end[of_bone]]) if of_bone.any() else description.bounds
-    half = part / 2 * float(np.ptp(description.bounds, axis=0).max())
-    middle = ends.mean(axis=0)
-    return framing(np.stack([middle - half, middle + half]), aspect, direction)
+def check_picture(
+    *,
+    view: str | None = None,
+    near: float | None = None,
+    camera: str | None = None,
+    background: str = "",
+    transparent: bool = False,
+    kind: str = ".png",
+    **others: object,
+) -> None:
+    """Raise an error for what no picture follows, before anything is computed.
+
+    Raises
+    ------
+    ParameterError
+        No such view, camera or colour; or two options that contradict each other.
+    """
+    if view is not None:
+        check_choice("view", view, VIEWS)
+    if camera is not None:
+        read_camera(camera)
+        if view is not None or near is not None:
+            raise ParameterError("camera is where to look from: leave out view and near")
+    if transparent and background:
+        raise ParameterError("a transparent picture has no background: leave one of them out")
+    ground("light", "transparent" if transparent else background, kind)

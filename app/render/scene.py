@@ -17,6 +17,7 @@ from ..commands.pose import motion_error
 from ..scenes import following, resolve
 from ..scenes.common import has_field
 from ..scenes.distance import wants_field
+from ..scenes.graph import build_shown
 from ..scenes.measures import measuring
 from .choices import Choices, state_of
 from .names import find_clip
@@ -28,7 +29,7 @@ def describe(
     *,
     binding: Any = None,
     textures: Textures | None = None,
-    resolution: int = 64,
+    resolution: int | None = None,
     progress: Progress = silent,
 ) -> Description:
     """Return the scene that the page shows for some choices.
@@ -41,8 +42,9 @@ def describe(
         Of the rig; computed when left out.
     textures : Textures, optional
         What shows it in its file's materials, where these are chosen; read when left out.
-    resolution : int
-        For that.
+    resolution : int, optional
+        For that, and of the graph that is shown; when left out, weights use 64 and the graph that
+        is shown is easier to read.
     progress : callable
         See `cutcell.runtime.progress`.
 
@@ -65,6 +67,11 @@ def describe(
     """
     choices = choices or Choices()
     state = state_of(rig, choices)
+    if resolution is not None and "graph_resolution" not in choices.settings:
+        state.graph_resolution = 0
+    resolution = state.resolution = resolution or choices.method.resolution
+    if choices.panel == "graph" and state.graph_inputs is not None:
+        state.easy_graph = (state.graph_inputs, build_shown(state.graph_inputs, progress))
     if state.bare:
         state.bare_graph = build_graph(
             rig.mesh, resolution, method=choices.method, progress=progress
@@ -77,7 +84,7 @@ def describe(
     if state.panel == "check":
         state.diagnosis = diagnose(rig, resolution, progress=progress)
         state.finding = choices.finding or ""
-        if state.finding and state.found is None:
+        if state.finding and state.selected_finding is None:
             codes = ", ".join(one.code for one in state.diagnosis.findings) or "none at all"
             raise ParameterError(f'{rig.name} has no finding "{state.finding}"; there are {codes}')
     if wants_field(state):

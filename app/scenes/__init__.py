@@ -23,13 +23,13 @@ RIGID = "parts fixed to one bone"
 
 
 def resolve(state: State, memo: Memo | None = None) -> Description:
-    """Return the scene that a state stands for.
+    """Return the scene of a state.
 
     Parameters
     ----------
     state : State
     memo : Memo, optional
-        Speeds up a series of calls; changes nothing in what comes out.
+        Speeds up a series of calls; does not change the result.
     """
     if state.rig is None:
         return Description()
@@ -44,7 +44,7 @@ def resolve(state: State, memo: Memo | None = None) -> Description:
 
 
 def following(state: State, memo: Memo | None = None) -> Description:
-    """Return the scene that a state stands for as it goes through a motion.
+    """Return the scene of a state during a motion.
 
     The body follows the joints on every panel, by the weights that are held; what cannot follow
     would be left behind, and is left out. Nothing is then inside for which the body would have to

@@ -10,10 +10,11 @@ from cutcell_viewers.palette import BODY, MARK, Color
 from cutcell_viewers.skin import skin_of_weights
 
 from ..state import State
+from ..state.check import EXPORT
 from .common import character
 from .memo import Memo
 
-SEE_FINDING = 0.5
+BODY_OPACITY_OF_FINDINGS = 0.5
 """How opaque the body is while a finding is marked: it may be behind or inside."""
 
 
@@ -25,24 +26,27 @@ def named(finding: Finding) -> str:
 
 def check(state: State, memo: Memo) -> Description:
     """Return the scene of the panel Diagnose; plain while no finding is looked at."""
-    rig, finding = state.rig, state.found
+    rig, finding = state.rig, state.selected_finding
     if finding is None:
         return Description(character(state, memo))
     marks = memo("finding", (rig, finding), lambda: finding_marks(rig, finding))
     if not marks:
         return Description(character(state, memo))
-    actors = character(state, memo, opacity=SEE_FINDING, behind=True)
+    actors = character(state, memo, opacity=BODY_OPACITY_OF_FINDINGS, behind=True)
     swatches: tuple[tuple[Color, str], ...] = ((MARK, named(finding)),)
     placed = memo("finding pose", (rig, finding), lambda: finding_pose(rig, finding))
     if placed is not None:
-        skin = memo("file skin", (rig,), lambda: skin_of_weights(rig.weights))
+        is_export = state.finding.startswith(EXPORT)
+        weighted = state.export_diagnosis.rig if is_export else rig
+        skin = memo("finding skin", (weighted,), lambda: skin_of_weights(weighted.weights))
         actors["body"] = replace(actors["body"], skin=skin)
         actors.pop("vertex", None)  # it stays where it is at rest
         turned = rig.skeleton.names[finding.pose.joint]
         swatches += (
             (
                 BODY,
-                f"posed by the file's weights: {turned} turned by {abs(finding.pose.degrees):g}°",
+                f"posed by {'exported' if is_export else 'file'} weights: {turned} turned by "
+                f"{abs(finding.pose.degrees):g}°",
             ),
         )
     legend = Legend(finding.title, swatches=swatches)

@@ -1,4 +1,4 @@
-"""What the scenes of all panels have in common: body, bones, cut, theme."""
+"""Elements shared by the scenes of all panels: body, bones, cut, theme."""
 
 import re
 from dataclasses import replace
@@ -10,28 +10,32 @@ from numpy.typing import NDArray
 
 from cutcell.rig import Rig
 from cutcell.runtime.display import shown_name
-from cutcell_viewers.camera import Camera
+from cutcell_viewers.camera import Camera, framing
 from cutcell_viewers.character import attachments, body, bones, drawn_segments, to_scene
 from cutcell_viewers.description import Actor, Cut, Description
 from cutcell_viewers.graph_scene import cut_at
+from cutcell_viewers.joint_colors import colors_of
 from cutcell_viewers.marks import vertex_mark
-from cutcell_viewers.palette import THEMES, Theme, joint_colors, to_hex
+from cutcell_viewers.palette import THEMES, Theme, to_hex
 from cutcell_viewers.skin import skin_of_weights
 
 from ..state import PANELS, State
 from .memo import Memo
 
-SEE_PATH = 0.42
+FAINT = 0.25
+"""How opaque bones are that are not to hide what is behind them."""
+
+BODY_OPACITY_WITH_PATH = 0.42
 """How opaque the body is while a path inside it is to be seen."""
 
-SEE_THROUGH = 0.22
+GRAPH_BODY_OPACITY = 0.22
 """How opaque the body is while what lies inside is looked at."""
 
 
 def character(
     state: State, memo: Memo, *, bones_coloured: bool = False, **look: Any
 ) -> dict[str, Actor]:
-    """Return the body, what hangs on it, the bones, and the mark of the chosen vertex.
+    """Return the body, its attachments, the bones, and the mark of the chosen vertex.
 
     Parameters
     ----------
@@ -41,7 +45,7 @@ def character(
     bones_coloured : bool
         Whether each bone has the colour that its weights are shown in.
     **look
-        Fields of the body's `Actor`; those that say how it is seen hold for what hangs on
+        Fields of the body's `Actor`; those of its appearance apply to attachments
         it as well.
     """
     rig = state.rig
@@ -57,7 +61,7 @@ def character(
         mark["vertex"] = memo("vertex", of, lambda: vertex_mark(rig, state.vertex, weights))
     visibility = {name: look[name] for name in ("visible", "opacity", "clipped") if name in look}
     return {
-        "body": replace(plain, skin=skin, **look),
+        "body": replace(plain, skin=skin, edges=state.wireframe, **look),
         **{name: replace(actor, **visibility) for name, actor in hung.items()},
         **mark,
         **_skeleton(state, memo, bones_coloured),
@@ -72,7 +76,7 @@ def _skeleton(state: State, memo: Memo, coloured: bool) -> dict[str, Actor]:
     visible_bones = _behind_cut(state, *segments) if PANELS[state.panel].cuts else None
 
     def make() -> dict[str, Actor]:
-        colors = joint_colors(rig.skeleton.parents) if coloured else None
+        colors = colors_of(rig) if coloured else None
         return bones(rig, state.joint, state.skeleton, colors, visible_bones)
 
     inputs = (
@@ -82,7 +86,9 @@ def _skeleton(state: State, memo: Memo, coloured: bool) -> dict[str, Actor]:
         coloured,
         None if visible_bones is None else visible_bones.tobytes(),
     )
-    return memo("bones", inputs, make)
+    actors = memo("bones", inputs, make)
+    opacity = FAINT if state.faint_skeleton else 1.0
+    return {name: replace(actor, opacity=opacity) for name, actor in actors.items()}
 
 
 def _behind_cut(state: State, start: NDArray, end: NDArray, joint: NDArray) -> NDArray | None:
@@ -102,9 +108,9 @@ def plain(state: State, memo: Memo) -> Description:
 
 def cut_of(state: State) -> Cut | None:
     """Return the cutting plane, across the box of the body; none through bodies side by side."""
-    if state.cut_axis == "off" or (state.panel == "distance" and state.measures):
+    if state.cut_across == "off" or (state.panel == "distance" and state.measures):
         return None
-    across = cut_normal(state) if state.cut_axis == "free" else state.cut_axis
+    across = cut_normal(state) if state.cut_across == "free" else state.cut_across
     return cut_at(bounds_of(state), across, state.cut_position)
 
 
@@ -127,7 +133,7 @@ def cut_normal(state: State) -> NDArray[np.float64]:
 
 def cells_of(state: State, count: float) -> float:
     """Return the length of some cells of the lattice, in the scene's units."""
-    resolution = state.graph.lattice.resolution
+    resolution = state.graph_resolution or state.resolution
     return count * float(np.ptp(bounds_of(state), axis=0).max()) / resolution
 
 
@@ -163,7 +169,7 @@ def bones_part(state: State) -> dict[str, Any]:
 
 
 def theme_part(theme: Theme) -> dict[str, str]:
-    """Return how a theme is told to the view."""
+    """Return a theme as a message for the view."""
     card = "rgba(255,255,255,.72)" if theme.name == "light" else "rgba(24,28,36,.72)"
     top, bottom, ink = to_hex(theme.top), to_hex(theme.bottom), to_hex(theme.ink)
     paper = "#ffffff" if theme.name == "light" else "#1b2028"
@@ -171,8 +177,21 @@ def theme_part(theme: Theme) -> dict[str, str]:
 
 
 def camera_part(camera: Camera) -> dict[str, Any]:
-    """Return how a camera is told to the view."""
+    """Return a camera as a message for the view."""
     return {"position": list(camera.position), "focal_point": list(camera.focal_point)}
+
+
+def camera_on_bone(
+    state: State, part: float, aspect: float, direction: tuple[float, float, float]
+) -> Camera:
+    """Return a camera on the chosen bone at rest that sees some part of the longest side."""
+    start, end, joint = drawn_segments(state.rig)
+    bounds = bounds_of(state)
+    of_bone = joint == state.joint
+    ends = np.concatenate([start[of_bone], end[of_bone]]) if of_bone.any() else bounds
+    half = part / 2 * float(np.ptp(bounds, axis=0).max())
+    middle = ends.mean(axis=0)
+    return framing(np.stack([middle - half, middle + half]), aspect, direction)
 
 
 def first_joint(rig: Rig) -> int:

@@ -141,19 +141,24 @@ def field_shown(state: State) -> str:
 
 
 def error_looks(
-    state: State, known: dict[str, Any]
+    state: State, cached: dict[str, Any]
 ) -> tuple[dict[str, dict[str, Any]], Legend | None]:
     """Return the colours of the deformation error, on one scale for all methods."""
-    errors = {name: errors_of(state, name) for name in known}
+    errors = {name: errors_of(state, name) for name in cached}
     measured = {name: one for name, one in errors.items() if one is not None}
     if not measured:
-        return {name: {} for name in known}, None
-    limits = max(error_limits(one.vertex) for one in measured.values())
-    styles: dict[str, dict[str, Any]] = {name: {} for name in known}
+        return {name: {} for name in cached}, None
+    limits = max(error_limits(_lengths(one)) for one in measured.values())
+    styles: dict[str, dict[str, Any]] = {name: {} for name in cached}
     for name, one in measured.items():
-        values = one.vertex.astype(np.float32)
+        values = _lengths(one).astype(np.float32)
         styles[name] = {"scalars": values, "colormap": "error", "limits": limits}
-    return styles, Legend("Worst error in any turn by 30°", "error", "0", f"{limits[1]:g} cm²")
+    return styles, Legend("Largest error for 30° turns", "error", "0", f"{limits[1]:g} mm")
+
+
+def _lengths(errors: Any) -> NDArray[np.float64]:
+    """Return errors of positions in mm; the metric squares them, in cm²."""
+    return np.asarray(10 * np.sqrt(errors.vertex))
 
 
 def errors_of(state: State, name: str) -> Any:

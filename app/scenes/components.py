@@ -17,7 +17,7 @@ from .memo import Memo
 
 MOST = 300
 """Components that are listed, the largest first."""
-SEE_PART = 0.22
+DIMMED_OPACITY = 0.22
 """How opaque the body is beside a component that is looked at."""
 
 
@@ -100,7 +100,7 @@ def seen_apart(state: State, memo: Memo, actors: dict[str, Actor]) -> dict[str, 
         "part", (body.cells, state.binding.graph, state.part), lambda: _faces(state, memo, body)
     )
     alone = replace(body, cells=part, closed=False, opacity=1.0)
-    dim: dict[str, Any] = {"opacity": SEE_PART, "behind": True}
+    dim: dict[str, Any] = {"opacity": DIMMED_OPACITY, "behind": True}
     return {**actors, "body": replace(body, **dim), "part": alone}
 
 

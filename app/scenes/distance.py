@@ -11,7 +11,7 @@ from cutcell_viewers.palette import BODY, MARK, SOURCE
 from cutcell_viewers.start_scene import first_distances, start_scene
 
 from ..state import State
-from .common import SEE_PATH, character, cut_of, has_field, in_scene, theme_of
+from .common import BODY_OPACITY_WITH_PATH, character, cut_of, has_field, in_scene, theme_of
 from .measures import measured_of, side_by_side
 from .memo import Memo
 from .section import field_section, winding_section
@@ -32,7 +32,7 @@ def distance(state: State, memo: Memo) -> Description:
         return Description(character(state, memo), cut=cut)
     path = path_of(state, memo)
     inside = (path is not None and len(path) > 0) or state.starts
-    see = SEE_PATH if inside and cut is None else 1.0
+    see = BODY_OPACITY_WITH_PATH if inside and cut is None else 1.0
     actors = character(state, memo, **colors, film=state.wave, opacity=see)
     swatches = legend.swatches
     if cut is not None and state.cut_face == "winding":
@@ -61,7 +61,7 @@ def distance(state: State, memo: Memo) -> Description:
 def _surface(state: State, memo: Memo) -> tuple[dict[str, Any], Legend, tuple[float, float]]:
     """Return the colours of the body, the legend and the field's limits.
 
-    The vertices' distances are known at once; those inside follow, and may reach farther.
+    Distances at vertices are available at once; those inside follow and may be larger.
     """
     rig, binding, joint, field = state.rig, state.binding, state.joint, field_of(state)
 
@@ -118,7 +118,7 @@ def wants_field(state: State) -> bool:
         and (
             state.edge_colors == "distance"
             or (state.vertex is not None and state.path)
-            or (state.cut_axis != "off" and state.graph_face == "field")
+            or (state.cut_across != "off" and state.graph_face == "field")
         )
     )
     return is_needed and has_field(state)

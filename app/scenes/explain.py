@@ -9,8 +9,8 @@ from cutcell.editing import Explanation, JointShare
 from cutcell.editing.explain import STEPS
 from cutcell_viewers.character import to_scene
 from cutcell_viewers.description import Actor
+from cutcell_viewers.joint_colors import colors_of
 from cutcell_viewers.marks import path_tube
-from cutcell_viewers.palette import joint_colors
 
 from ..state import State
 from .memo import Memo
@@ -23,9 +23,9 @@ def explanation_of(state: State) -> Explanation | None:
     """Return what explains the chosen vertex, if that is asked for and there."""
     if not state.explain or state.explanation is None:
         return None
-    binding, found = state.explanation
-    current = binding is state.binding and found.vertex == state.vertex
-    return found if current else None
+    binding, explanation = state.explanation
+    current = binding is state.binding and explanation.vertex == state.vertex
+    return explanation if current else None
 
 
 def explanation_facts(state: State) -> dict[int, dict[str, Any]]:
@@ -75,10 +75,10 @@ def explained_paths(state: State, memo: Memo) -> dict[str, Actor]:
     )
 
 
-def _tubes(state: State, found: Explanation) -> dict[str, Actor]:
+def _tubes(state: State, explanation: Explanation) -> dict[str, Actor]:
     rig, tubes = state.rig, {}
-    colors = joint_colors(rig.skeleton.parents)
-    for share in found.joints[:MAX_JOINTS]:
+    colors = colors_of(rig)
+    for share in explanation.joints[:MAX_JOINTS]:
         if share.path and share.weight > 0:
             points = np.array([share.path[0].start, *(piece.end for piece in share.path)])
             tube = path_tube(rig, to_scene(rig, points))

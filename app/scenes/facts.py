@@ -1,4 +1,4 @@
-"""What there is to know of one vertex: a pure function of the state."""
+"""Facts about one vertex: a pure function of the state."""
 
 from typing import Any
 
@@ -12,7 +12,8 @@ from cutcell.graph import MESH, CutCellGraph
 from cutcell.graph.winding import winding_number
 from cutcell.runtime.display import shown_name
 from cutcell_viewers.graph_scene import KINDS
-from cutcell_viewers.palette import joint_colors, to_hex
+from cutcell_viewers.joint_colors import colors_of
+from cutcell_viewers.palette import to_hex
 
 from ..state import State
 from .explain import explanation_facts
@@ -33,7 +34,7 @@ def vertex_facts(state: State, memo: Memo) -> dict[str, Any] | None:
     dict or None
         "vertex", "computed"; once it is bound also "weights" and "distances" (a list of bones
         each, the most important first), "component", "reached", "reason"; and "artist",
-        whether the file has weights of its own; "explain", whether it is asked why, and "why", the
+        whether the file has weights; "explain", whether it is asked why, and "why", the
         answer for each joint, once it is there (see `explanation_facts`); "overruled", whether
         a person gave it its weights, and "offered", joints that it may be given weight of.
     """
@@ -43,7 +44,7 @@ def vertex_facts(state: State, memo: Memo) -> dict[str, Any] | None:
     facts: dict[str, Any] = {"vertex": int(vertex), "computed": binding is not None}
     if binding is None:
         return facts
-    colors = memo("colors", (rig,), lambda: joint_colors(rig.skeleton.parents))
+    colors = memo("colors", (rig,), lambda: colors_of(rig))
 
     def bone(joint: int, **values: Any) -> dict[str, Any]:
         color = to_hex(tuple(colors[joint]))
@@ -108,7 +109,7 @@ def node_facts(state: State, memo: Memo) -> dict[str, Any] | None:
         kind of the edge, length in the file's units), "degree", "triangle" (its face and that
         face's corners, of a surface node) and "vertices" (of a mesh node).
     """
-    graph, node = state.graph, state.node
+    graph, node = state.shown_graph, state.node
     if state.panel != "graph" or graph is None or node is None or node >= len(graph.nodes):
         return None
     indptr, indices, lengths = graph.adjacency
@@ -140,7 +141,7 @@ def _winding(state: State, position: NDArray[np.float64]) -> float:
 
 
 def components(graph: CutCellGraph) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """Return the part of the mesh that each vertex hangs together with, and the parts' sizes.
+    """Return each vertex's connected component, and the components and sizes.
 
     Returns
     -------

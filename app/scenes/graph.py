@@ -3,25 +3,33 @@
 from dataclasses import replace
 from typing import Any
 
-from cutcell.graph import INTERIOR, MESH, SURFACE, slice_rays
+from cutcell import build_graph
+from cutcell.graph import INTERIOR, MESH, SURFACE, CutCellGraph, slice_rays
+from cutcell.runtime.progress import Progress, silent
 from cutcell_viewers.character import to_scene
 from cutcell_viewers.description import Actor, Cut, Description, Legend
 from cutcell_viewers.distance_scene import distance_legend, distance_limits
-from cutcell_viewers.graph_scene import component_colors, depth_field, graph_scene, node_marks
+from cutcell_viewers.graph_scene import (
+    component_colors,
+    depth_field,
+    graph_scene,
+    nearest_nodes,
+    node_marks,
+)
 from cutcell_viewers.marks import path_tube
 from cutcell_viewers.palette import MARK
 from cutcell_viewers.slice_scene import file_axis, slice_place, slice_scene
 
 from ..state import LAYERS, State
-from .common import SEE_THROUGH, cells_of, character, cut_of, theme_of
+from .common import GRAPH_BODY_OPACITY, cells_of, character, cut_of, theme_of
 from .distance import field_of, path_of
 from .memo import Memo
 from .section import field_section, winding_section
 
-SEE_FACE = 0.82
+FACE_OPACITY = 0.82
 """How opaque the face of a cut is: the edges behind it are to be seen."""
-FACE_CELLS = 3
-"""How many cells behind a cut are its face."""
+FACE_CELLS = 1.5
+"""How many cells behind a cut are its face: one or two layers of the lattice."""
 KINDS = {
     "mesh_edges": "mesh: thin lines, balls",
     "interior_edges": "interior: thick lines, squares",
@@ -36,7 +44,7 @@ SHELL = 0.5
 
 def graph(state: State, memo: Memo) -> Description:
     """Return the scene of the panel Graph: the layers of the graph, or a slice's rays."""
-    if state.slicing and state.graph is not None:
+    if state.slicing:
         return _slice(state, memo)
     cut = cut_of(state)
     thick = slab_of(state) if cut is not None else {}
@@ -46,8 +54,9 @@ def graph(state: State, memo: Memo) -> Description:
     if cut is not None and state.graph is not None:
         face, legend = _face(state, memo, cut, legend)
         actors |= face
-    if state.node is not None and state.graph is not None and state.node < len(state.graph.nodes):
-        inputs = (state.rig, state.graph, state.node, state.dark)
+    shown = state.shown_graph
+    if state.node is not None and shown is not None and state.node < len(shown.nodes):
+        inputs = (state.rig, shown, state.node, state.dark)
         actors |= memo("node", inputs, lambda: node_marks(*inputs[:3], theme_of(state)))
     path = sight_of(state, memo)
     if path is not None and len(path):
@@ -55,19 +64,32 @@ def graph(state: State, memo: Memo) -> Description:
         actors["path"] = memo("sight", (path,), lambda: path_tube(state.rig, places))
         hint = f"lines of sight that vertex {state.vertex:,} is measured along"
         swatches = ((MARK, hint), *(() if legend is None else legend.swatches))
-        legend = replace(legend or Legend("The graph's edges"), swatches=swatches)
+        legend = replace(legend or Legend(_title(state)), swatches=swatches)
     for name, actor in actors.items():
         if actor.clipped:
-            slab = thick.get("interior" if name == "interior edges" else "rest", 0.0)
+            slab = thick.get("interior" if name.startswith("interior") else "rest", 0.0)
             actors[name] = replace(actor, slab=slab)
     return Description(actors, cut=cut, legend=legend)
 
 
+def build_shown(inputs: tuple[Any, ...], progress: Progress = silent) -> CutCellGraph:
+    """Return the graph that `GraphChoices.graph_inputs` describe."""
+    mesh, resolution, connectivity, threshold, orient = inputs
+    return build_graph(
+        mesh,
+        resolution,
+        connectivity=connectivity,
+        winding_threshold=threshold,
+        orient=orient,
+        progress=progress,
+    )
+
+
 def graph_layers(state: State, memo: Memo) -> tuple[dict[str, Actor], Legend | None]:
     """Return the graph's actors, and how to read their colours."""
-    if state.graph is None:
+    if state.shown_graph is None:
         return {}, None
-    rig, lattice, theme = state.rig, state.graph, theme_of(state)
+    rig, lattice, theme = state.rig, state.shown_graph, theme_of(state)
     field, style, legend = _field(state, memo)
     drawn = memo(
         "graph",
@@ -100,7 +122,7 @@ def _face(
         legend = replace(distance_legend(state.rig, state.joint, limits), swatches=swatches)
     else:
         return {}, legend
-    return {**face, "inside": replace(face["inside"], opacity=SEE_FACE)}, legend
+    return {**face, "inside": replace(face["inside"], opacity=FACE_OPACITY)}, legend
 
 
 def sight_of(state: State, memo: Memo) -> Any:
@@ -110,56 +132,68 @@ def sight_of(state: State, memo: Memo) -> Any:
 
 def _thin(state: State, name: str) -> float:
     """Return how opaque edges are: those inside a whole body would else be one orange blob."""
-    whole = state.cut_axis == "off" and name == "interior edges"
+    whole = state.cut_across == "off" and name == "interior edges"
     return X_RAY if whole and state.edge_colors == "kind" else 1.0
 
 
 def _field(state: State, memo: Memo) -> tuple[Any, dict[str, Any], Legend | None]:
     """Return what edges are coloured by: values at nodes, how they are shown, the legend."""
+    shown = state.shown_graph
     if state.edge_colors == "depth":
-        depth = memo("depth", (state.graph,), lambda: depth_field(state.graph))
+        depth = memo("depth", (shown,), lambda: depth_field(shown))
         most = distance_limits(depth)[1]
         legend = Legend("Depth below the surface", "depth", "0", f"{most:.3f} of the longest side")
         return depth, {"shades": "depth"}, legend
     if state.edge_colors == "component":
-        colors, count = memo("parts", (state.graph,), lambda: component_colors(state.graph))
+        colors, count = memo("parts", (shown,), lambda: component_colors(shown))
         legend = Legend(f"{count:,} connected component{'s' * (count != 1)}")
         return None, {"colors": colors}, legend
     field = field_of(state) if state.edge_colors == "distance" else None
     if field is None:
         return None, {}, kinds_legend(state)
     legend = distance_legend(state.rig, state.joint, distance_limits(field))
+    if shown is not state.graph:
+        of_weights = field
+        nearest = memo("nearest", (shown, state.graph), lambda: nearest_nodes(shown, state.graph))
+        field = memo("field there", (field, nearest), lambda: of_weights[nearest])
     return field, {"kinds": (MESH, INTERIOR, SURFACE)}, legend
 
 
 def kinds_legend(state: State) -> Legend | None:
-    """Return what the colours of the layers of edges that are seen stand for."""
+    """Return the legend of the visible layers of edges."""
     colored = zip(theme_of(state).edges, KINDS.items(), strict=True)
     layers = tuple((color, text) for color, (name, text) in colored if getattr(state, name))
-    return Legend("The graph's edges", swatches=layers) if layers else None
+    return Legend(_title(state), swatches=layers) if layers else None
+
+
+def _title(state: State) -> str:
+    shown = state.graph_resolution or state.resolution
+    return f"Graph, R = {shown}" + (
+        "" if shown == state.resolution else f" (weights: {state.resolution})"
+    )
 
 
 def body_opacity(state: State) -> float:
     """Return how opaque the body is: see-through where the graph would else be hidden."""
-    whole = state.cut_axis == "off"
+    whole = state.cut_across == "off"
     looks_inside = whole and (state.interior_edges or state.surface_edges)
-    return SEE_THROUGH if looks_inside and state.graph is not None else 1.0
+    return GRAPH_BODY_OPACITY if looks_inside and state.shown_graph is not None else 1.0
 
 
 def slab_of(state: State) -> dict[str, float]:
     """Return how much is kept behind the cut, of the interior and of the rest; 0 is all."""
-    if state.graph is None or state.cut_keeps == "half":
+    if state.shown_graph is None or state.cut_keeps == "half":
         return {}
     if state.cut_keeps == "face":
         return {"interior": cells_of(state, FACE_CELLS)}
-    thick = cells_of(state, state.slab * state.graph.lattice.resolution)
+    thick = cells_of(state, state.slab * state.shown_graph.lattice.resolution)
     return {"interior": thick, "rest": thick}
 
 
 def _slice(state: State, memo: Memo) -> Description:
     """Return the scene of one slice: its rays, and the body behind it."""
     rig, theme = state.rig, theme_of(state)
-    resolution = state.graph.lattice.resolution
+    resolution = state.graph_resolution or state.resolution
     place = slice_place(rig, state.slice_axis, state.slice_position, resolution)
     normal, index, cut = place
     axis, _ = file_axis(rig, state.slice_rays)

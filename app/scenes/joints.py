@@ -9,7 +9,8 @@ from cutcell.editing.corrections import JointCorrection
 from cutcell.metrics import vertex_shares
 from cutcell.rig.deform_joints import DeformJoints
 from cutcell.runtime.display import shown_name
-from cutcell_viewers.palette import joint_colors, to_hex
+from cutcell_viewers.joint_colors import colors_of
+from cutcell_viewers.palette import to_hex
 
 from ..state import State
 from .memo import Memo
@@ -53,13 +54,13 @@ def joint_rows(state: State, memo: Memo, guess: DeformJoints | None) -> list[dic
     """
     rig = state.rig
     skeleton = rig.skeleton
-    colors = memo("colors", (rig,), lambda: joint_colors(skeleton.parents))
-    computed, own = shares_of(state, memo)
+    colors = memo("colors", (rig,), lambda: colors_of(rig))
+    computed, original = shares_of(state, memo)
     rows = []
     for joint in in_order(skeleton):
         name = skeleton.names[joint]
         one = state.corrections.joints.get(name, JointCorrection())
-        holds = 0.0 if own is None else float(own[joint])
+        holds = 0.0 if original is None else float(original[joint])
         control = guess is not None and not guess.deform[joint] and holds < STRAY
         rows.append(
             {
@@ -72,19 +73,19 @@ def joint_rows(state: State, memo: Memo, guess: DeformJoints | None) -> list[dic
                 "carries": bool(skeleton.deform[joint]),
                 "changed": one.deform is not None,
                 "ours": None if computed is None else float(computed[joint]),
-                "file": None if own is None else float(own[joint]),
+                "file": None if original is None else float(original[joint]),
                 "locked": one.locked,
                 "gain": one.gain,
                 "radius": one.radius,
             }
         )
-        if not rows[-1]["why"] and own is not None and not holds and not rows[-1]["carries"]:
+        if not rows[-1]["why"] and original is not None and not holds and not rows[-1]["carries"]:
             rows[-1]["why"] = "no weight in the file"
     return rows
 
 
 def in_order(skeleton: Any) -> list[int]:
-    """Return the joints so that each comes behind its parent, with all that hang on it."""
+    """Return the joints in depth-first order."""
     ordered: list[int] = []
     waiting = np.flatnonzero(skeleton.parents < 0)[::-1].tolist()
     while waiting:

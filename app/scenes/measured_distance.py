@@ -157,7 +157,7 @@ def _search(
 ) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
     """Return how far each node is, and the node before it: none at a source, which is negative.
 
-    All sources hang on one node more, at the distances at which they start.
+    An additional node is joined to all sources, at their initial distances.
     """
     least = 1e-12  # a sparse matrix has no link of length zero
     a = np.concatenate([links[:, 0], np.full(len(sources), count)])

@@ -18,7 +18,7 @@ from cutcell_viewers.palette import BODY
 
 from ..state import State
 from ..state.distance import MEASURES
-from .common import SEE_PATH, character
+from .common import BODY_OPACITY_WITH_PATH, character
 from .measured_distance import Measure, MeasuredDistance, measure_distance
 from .memo import Memo
 
@@ -30,7 +30,7 @@ WITH_RESOLUTION = ("voxel", "6", "26", "any")
 
 
 def side_by_side(state: State, memo: Memo) -> Description:
-    """Return the scene of some measures, each in a view of its own."""
+    """Return the scene of some measures, one view each."""
     names, rig, joint = state.measures, state.rig, state.joint
     results = {name: measured_of(state, name) for name in names}
     computed = [one for one in results.values() if one is not None]
@@ -58,7 +58,7 @@ def side_by_side(state: State, memo: Memo) -> Description:
             title += f" · {path_length(path) / _size(rig):.3f}"
         elif path is not None:
             title += " · no path"
-        see = 1.0 if path is None else SEE_PATH
+        see = 1.0 if path is None else BODY_OPACITY_WITH_PATH
         if len(one.sides):
             voxels = memo("voxels", (rig, one, limits), partial(_voxels, rig, one, limits))
             actors["voxels"] = replace(voxels, view=view, film=state.wave, opacity=see)

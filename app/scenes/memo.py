@@ -8,16 +8,16 @@ class Memo:
     """Keeps the last result of each costly step, for as long as its inputs are the same."""
 
     def __init__(self) -> None:
-        self._kept: dict[str, tuple[tuple[Any, ...], Any]] = {}
+        self._cached: dict[str, tuple[tuple[Any, ...], Any]] = {}
 
     def __call__(self, name: str, inputs: tuple[Any, ...], make: Callable[[], Any]) -> Any:
         """Return what `make` returned when it was last called with the same inputs.
 
         Numbers and texts are compared by value, all else by identity.
         """
-        cached = self._kept.get(name)
+        cached = self._cached.get(name)
         if cached is None or not _same_inputs(cached[0], inputs):
-            cached = self._kept[name] = (inputs, make())
+            cached = self._cached[name] = (inputs, make())
         return cached[1]
 
 

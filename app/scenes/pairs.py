@@ -33,7 +33,7 @@ def pairs(state: State, memo: Memo) -> Description:
 
 
 def side_by_side(state: State) -> dict[str, Actor]:
-    """Return both characters in the colours of their own weights, a view each."""
+    """Return both characters in the colours of their weights, one view each."""
     actors: dict[str, Actor] = {}
     for view, rig in enumerate(state.beside.rigs):
         placed = into_box(rig, bounds_of(state))

@@ -8,7 +8,7 @@ import numpy as np
 from cutcell.rig import Clip
 from cutcell_viewers.character import body, pose_in_scene
 from cutcell_viewers.description import Actor, Apart, Description, Legend
-from cutcell_viewers.error_scene import Gap, error_legend, error_limits, error_look, squared_unit
+from cutcell_viewers.error_scene import Gap, error_legend, error_limits, error_look, millimetres
 from cutcell_viewers.materials import Textures
 from cutcell_viewers.palette import GHOST
 from cutcell_viewers.pose_scene import joint_turns, swing, turn
@@ -38,7 +38,7 @@ def pose(state: State, memo: Memo) -> Description:
         reference_skin = memo(
             "apart",
             (state.rig,),
-            lambda: Apart(skin_of_weights(state.rig.weights), squared_unit(state.rig)),
+            lambda: Apart(skin_of_weights(state.rig.weights), millimetres(state.rig)),
         )
         style = memo(
             "error look",
@@ -84,7 +84,7 @@ def _attachments_in_materials(actors: dict[str, Actor], textures: Textures) -> d
 
 
 def _colours(
-    state: State, memo: Memo, held: Any, name: str
+    state: State, memo: Memo, weights: Any, name: str
 ) -> tuple[dict[str, Any], Legend | None, bool]:
     """Return the look of a body as it moves, by its materials or by the weights that are given.
 
@@ -93,9 +93,9 @@ def _colours(
     textures = textures_of(state)
     if textures is not None:
         return {"materials": textures.body}, None, False
-    if state.pose_colors == "plain" or held is None:
+    if state.pose_colors == "plain" or weights is None:
         return {}, None, False
-    return weights_look(state, memo, held, name)
+    return weights_look(state, memo, weights, name)
 
 
 def has_rival(state: State) -> bool:
@@ -115,7 +115,7 @@ def gap_of(state: State, memo: Memo) -> Gap:
 
 
 def error_of(state: State, memo: Memo) -> tuple[float, float] | None:
-    """Return the mean and greatest error in cm² of the pose or motion that is on, if known."""
+    """Return the root mean square and greatest error in mm of the pose or motion, if known."""
     if not has_rival(state):
         return None
     if state.moving:
@@ -124,21 +124,21 @@ def error_of(state: State, memo: Memo) -> tuple[float, float] | None:
     placed = pose_of(state)
     if placed is None:
         return (0.0, 0.0)
-    squared = squared_of(state, placed, memo)
-    return float(squared.mean()), float(squared.max())
+    lengths = lengths_of(state, placed, memo)
+    return float(np.sqrt(np.square(lengths).mean())), float(lengths.max())
 
 
 def motion_error_of(state: State) -> Any:
-    """Return mean, greatest and nearly greatest error of the motion in cm², if known."""
+    """Return the root mean square, greatest and nearly greatest error of the motion in mm."""
     cached = state.motion_error
     is_current = cached is not None and cached[0] is state.binding and cached[1] == state.motion
     return cached[2] if is_current else None
 
 
-def squared_of(state: State, placed: np.ndarray, memo: Memo) -> np.ndarray:
-    """Return the error of each vertex in the pose that the sliders make, in cm²."""
+def lengths_of(state: State, placed: np.ndarray, memo: Memo) -> np.ndarray:
+    """Return the error of each vertex in the pose of the sliders, in mm."""
     inputs = (state.binding, state.turns)
-    return memo("squared", inputs, lambda: gap_of(state, memo).squared(placed))
+    return memo("error", inputs, lambda: gap_of(state, memo).lengths(placed))
 
 
 def error_limits_of(state: State, placed: np.ndarray | None, memo: Memo) -> tuple[float, float]:
@@ -146,7 +146,7 @@ def error_limits_of(state: State, placed: np.ndarray | None, memo: Memo) -> tupl
     if state.moving:
         error = motion_error_of(state)
         return error_limits([0.0 if error is None else error[2]])
-    return error_limits([0.0] if placed is None else squared_of(state, placed, memo))
+    return error_limits([0.0] if placed is None else lengths_of(state, placed, memo))
 
 
 def pose_of(state: State) -> np.ndarray | None:
@@ -197,7 +197,7 @@ def clip_of(state: State) -> Clip | None:
 
 
 def clip_part(state: State, clip: Clip | None) -> dict[str, Any] | None:
-    """Return a motion as the view is told it."""
+    """Return a motion as a message for the view."""
     if clip is None or not len(times := clip.times):
         return None
     most = max(MAX_NUMBERS // max(16 * clip.joints, 1), 2)

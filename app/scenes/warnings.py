@@ -1,4 +1,4 @@
-"""What a person is warned of, and which finding of the check tells where it is."""
+"""Warnings for a person, each with the finding of the check that locates it."""
 
 from dataclasses import dataclass
 
@@ -36,7 +36,7 @@ class Door:
 
     @property
     def label(self) -> str:
-        """What the button says that leads there."""
+        """The label of the button that leads there."""
         return f"Show: {TITLES[self.code].lower()}" if self.code else ""
 
 

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cutcell_viewers.description import Actor, Description, Legend
+from cutcell_viewers.joint_colors import colors_of
 from cutcell_viewers.marks import vertex_dots
-from cutcell_viewers.palette import joint_colors
 from cutcell_viewers.weights_scene import (
     bone_difference_colors,
     count_colors,
@@ -27,7 +27,7 @@ from .memo import Memo
 
 DIFFERENCES = ("difference", "bone_difference")
 """What tells two sides apart."""
-SEE_PATHS = 0.42
+BODY_OPACITY_WITH_PATHS = 0.42
 """How opaque the body is while paths inside it are to be seen."""
 FILES = "In the file"
 """What the legend begins with where it is of the file's own weights."""
@@ -36,13 +36,13 @@ FILES = "In the file"
 def weights(state: State, memo: Memo) -> Description:
     """Return the scene of the panel Weights; plain where there are no weights at all."""
     state = as_dragged(state)
-    held = weights_seen(state)
-    if held is None:
+    weights = weights_seen(state)
+    if weights is None:
         return Description(character(state, memo))
-    style, legend, coloured = weights_look(state, memo, held)
+    style, legend, coloured = weights_look(state, memo, weights)
     paths = explained_paths(state, memo)
     if paths:
-        style = {**style, "opacity": SEE_PATHS}
+        style = {**style, "opacity": BODY_OPACITY_WITH_PATHS}
     actors = character(state, memo, bones_coloured=coloured, **style)
     if not paths:
         actors = seen_apart(state, memo, actors)
@@ -64,14 +64,14 @@ def as_dragged(state: Any) -> Any:
     """Return a state as it is seen while joints are dragged."""
     if state.dragged is None:
         return state
-    snapshot = state.still() if isinstance(state, State) else SimpleNamespace(**vars(state))
+    snapshot = state.snapshot() if isinstance(state, State) else SimpleNamespace(**vars(state))
     snapshot.rig, snapshot.binding = state.dragged.rig, state.dragged.binding
     snapshot.weights = snapshot.binding.weights
     return snapshot
 
 
 def weights_look(
-    state: State, memo: Memo, held: NDArray, name: str = "weights"
+    state: State, memo: Memo, weights: NDArray, name: str = "weights"
 ) -> tuple[dict[str, Any], Legend, bool]:
     """Return how a body is coloured by weights, how to read it, and whether bones are, too.
 
@@ -83,28 +83,28 @@ def weights_look(
     name : str
         What the memo keeps it under.
     """
-    shown = weights_shown(state)
-    which = state.joint if shown in ("bone", "bone_difference") else -1
+    colors = weights_shown(state)
+    which = state.joint if colors in ("bone", "bone_difference") else -1
     style, legend = memo(
         name,
         (
             state.rig.mesh,
             state.rig.weights,
             state.rig.skeleton.names,
-            held,
+            weights,
             state.weights,
-            shown,
+            colors,
             which,
             state.truth,
         ),
-        lambda: coloring(state, shown, held),
+        lambda: coloring(state, colors, weights),
     )
-    coloured = shown in ("mix", "dominant")
+    coloured = colors in ("mix", "dominant")
     if coloured:
         bone = state.rig.skeleton.names[state.joint]
-        color = joint_colors(state.rig.skeleton.parents)[state.joint]
+        color = colors_of(state.rig)[state.joint]
         legend = replace(legend, swatches=((tuple(color.tolist()), bone),))
-    if held is state.rig.weights and shown not in DIFFERENCES:
+    if weights is state.rig.weights and colors not in DIFFERENCES:
         legend = replace(legend, title=f"{FILES}: {legend.title}")
     return style, legend, coloured
 
@@ -133,6 +133,7 @@ def painted_colors(state: State, vertices: NDArray, rows: NDArray) -> dict[str, 
         rig=SimpleNamespace(
             skeleton=state.rig.skeleton,
             weights=None if file_weights is None else file_weights[vertices],
+            colors=colors_of(state.rig),
         ),
         weights=rows,
         joint=state.joint,
@@ -158,18 +159,18 @@ def weights_shown(state: State) -> str:
     return state.weights_shown
 
 
-def coloring(state: Any, shown: str, held: NDArray) -> tuple[dict[str, Any], Legend]:
+def coloring(state: Any, colors: str, weights: NDArray) -> tuple[dict[str, Any], Legend]:
     """Return the fields of the body's `Actor` that colour it, and how to read them."""
     rig = state.rig
-    if shown == "difference":
+    if colors == "difference":
         return difference_colors(rig, state.weights, rig.weights)
-    if shown == "bone_difference":
-        computed, own = state.weights, rig.weights
-        pair = (computed, own) if state.truth == "file" else (own, computed)
+    if colors == "bone_difference":
+        computed, original = state.weights, rig.weights
+        pair = (computed, original) if state.truth == "file" else (original, computed)
         who = ("ours", "the file") if state.truth == "file" else ("the file", "ours")
         return bone_difference_colors(rig, *pair, state.joint, who)
-    if shown == "count":
-        return count_colors(rig, held)
-    if shown == "dominant":
-        return dominant_colors(rig, held)
-    return weight_colors(rig, held, state.joint if shown == "bone" else None)
+    if colors == "count":
+        return count_colors(rig, weights)
+    if colors == "dominant":
+        return dominant_colors(rig, weights)
+    return weight_colors(rig, weights, state.joint if colors == "bone" else None)

@@ -145,7 +145,7 @@ class PageHandler(RequestHandler):
         self._text = text
 
     def prepare(self) -> None:
-        """Refuse where there is no room; let no other site put the page into a frame."""
+        """Refuse when the server is full; let no other site put the page into a frame."""
         self.set_header("Cache-Control", "no-store")
         self.set_header("Content-Security-Policy", "frame-ancestors 'self'")
         if full(self._context):
@@ -153,7 +153,7 @@ class PageHandler(RequestHandler):
             self.finish(PLAIN.format(FULL))
 
     def head(self) -> None:
-        """Tell that the server is there and has room."""
+        """Report that the server is up and not full."""
 
     def get(self) -> None:
         """Answer with the page."""
@@ -173,7 +173,7 @@ class PageHandler(RequestHandler):
 
 
 class SocketHandler(WSHandler):
-    """Lets only pages of this server open a websocket, as long as there is room."""
+    """Accepts websockets only from pages of this server, up to the limit of sessions."""
 
     def initialize(
         self, application_context: Any, bokeh_websocket_path: str, hosts: Collection[str] = ()
@@ -191,14 +191,14 @@ class SocketHandler(WSHandler):
         else:
             await super().prepare()
 
-    def open(self, *given: Any, **more: Any) -> None:
+    def open(self, *args: Any, **more: Any) -> None:
         """Begin, or rejoin, the session of the token that came along."""
         try:
             get_token_payload(str(self._token))
         except Exception:
             self.close(1008, "no token of a session")
         else:
-            super().open(*given, **more)
+            super().open(*args, **more)
 
     def check_origin(self, origin: str) -> bool:
         """Whether a page of this origin may talk to the server."""
@@ -216,7 +216,7 @@ class SocketHandler(WSHandler):
 class Lasting(StaticFileHandler):
     """Answers with files that browsers may keep, since another version has another address."""
 
-    def get_cache_time(self, *given: Any) -> int:
+    def get_cache_time(self, *args: Any) -> int:
         """Return for how many seconds."""
         return KEPT_SECONDS
 
@@ -241,7 +241,7 @@ class Strange(Matcher):
 
 
 class Misdirected(RequestHandler):
-    """Answers who asks for another host; see `Strange`."""
+    """Answers requests for another host; see `Strange`."""
 
     def initialize(self, hosts: Collection[str]) -> None:
         """Take what the routes give."""
@@ -254,8 +254,7 @@ class Misdirected(RequestHandler):
         requested = escape(self.request.host[:100])
         self.finish(
             PLAIN.format(
-                f"This server does not know itself as {requested}. Open {escape(links)}. To serve "
-                "under another name, behind a proxy for one, put it into the environment "
-                "variable BOKEH_ALLOW_WS_ORIGIN, with its port, and start again."
+                f"Unknown host name: {requested}. Open {escape(links)}. To serve under another "
+                "name, set BOKEH_ALLOW_WS_ORIGIN to it, with its port."
             )
         )

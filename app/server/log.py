@@ -1,4 +1,4 @@
-"""The server's log, on a terminal that whoever visits must not be able to write to."""
+"""The server's log, on a terminal that visitors must not be able to write to."""
 
 import logging
 

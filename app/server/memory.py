@@ -14,7 +14,7 @@ _LOCK = threading.Lock()
 _WAITING: list[threading.Timer] = []
 
 
-def let_go(page: object) -> None:
+def detach_from_panel(page: object) -> None:
     """Take a page out of Panel's own state, which outlives it.
 
     The page would tell the browser twice with every choice whether Panel is busy, before anything
@@ -33,8 +33,8 @@ def settle() -> None:
     gc.freeze()
 
 
-def tidy_soon() -> None:
-    """Collect what is no longer used, a moment from now, on a thread of its own."""
+def collect_later() -> None:
+    """Collect unused objects soon, on another thread."""
     with _LOCK:
         while _WAITING:
             _WAITING.pop().cancel()

@@ -41,21 +41,21 @@ class State(
     PairsChoices,
     Common,
 ):
-    """What the page shows."""
+    """State of the page."""
 
     @property
     def quick(self) -> bool:
         """Whether what stands there is small enough to be described at once."""
         if self.rig is None:
             return True
-        if self.cut_axis != "off" and PANELS[self.panel].cuts:
+        if self.cut_across != "off" and PANELS[self.panel].cuts:
             return False  # the face of a cut takes some tenths of a second
         mesh, graph, joints = self.rig.mesh, self.graph, len(self.rig.skeleton.joints)
-        shown = len(mesh.vertices) + len(mesh.faces) + A_JOINT * joints
-        size = 0 if graph is None else len(graph.nodes) + len(graph.edges)
-        return shown <= QUICK_MESH and size <= QUICK_GRAPH
+        mesh_size = len(mesh.vertices) + len(mesh.faces) + A_JOINT * joints
+        graph_size = 0 if graph is None else len(graph.nodes) + len(graph.edges)
+        return mesh_size <= QUICK_MESH and graph_size <= QUICK_GRAPH
 
-    def still(self) -> Any:
+    def snapshot(self) -> Any:
         """Return all of it as it is now, for a thread that takes its time to look at it."""
         kinds = [kind for kind in type(self).__mro__ if kind.__module__.startswith(__name__)]
         worked_out = {

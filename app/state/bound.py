@@ -1,4 +1,4 @@
-"""What is bound, and what is being bound: the life of a binding."""
+"""The current binding and the requested one."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
@@ -17,7 +17,7 @@ Request = dict[str, Any]
 
 @dataclass(frozen=True, eq=False)
 class Bound:
-    """What was computed last, and for what.
+    """The last binding, and its request.
 
     Parameters
     ----------
@@ -46,7 +46,7 @@ class Binder:
 
     Attributes
     ----------
-    wanted : Request
+    requested : Request
         What is being bound, or was last.
     bound : Bound or None
         What was computed last.
@@ -57,28 +57,28 @@ class Binder:
     """
 
     def __init__(self) -> None:
-        self.wanted: Request = {}
+        self.requested: Request = {}
         self.bound: Bound | None = None
         self.is_diagnosed = False
         self.notice = ""
 
     def request(
-        self, wanted: Request, mesh: TriangleMesh, of_graph: Sequence[str]
+        self, requested: Request, mesh: TriangleMesh, of_graph: Sequence[str]
     ) -> CutCellGraph | None:
         """Begin something else; return the graph of the last binding if it has the same.
 
         Parameters
         ----------
-        wanted : Request
+        requested : Request
         mesh : TriangleMesh
         of_graph : sequence of str
             The parameters that the graph depends on: joints do not matter.
         """
-        self.wanted = wanted
+        self.requested = requested
         if self.bound is None or self.bound.mesh is not mesh:
             self.bound = None  # two of them need not be in memory
             return None
-        is_same = all(self.bound.request[name] == wanted[name] for name in of_graph)
+        is_same = all(self.bound.request[name] == requested[name] for name in of_graph)
         return self.bound.graph if is_same else None
 
     def arrived(self, bound: Bound) -> str:
@@ -92,9 +92,9 @@ class Binder:
         if self.bound is not None:
             self.bound = replace(self.bound, corrections=corrections)
 
-    def withdrawn(self, wanted: Request | None = None) -> None:
+    def withdrawn(self, requested: Request | None = None) -> None:
         """Want something else without binding it: what there is; by default nothing."""
-        self.wanted = wanted or {}
+        self.requested = requested or {}
 
     def is_for(self, request: Request) -> bool:
         """Whether what was computed is for a request."""

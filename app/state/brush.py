@@ -1,4 +1,4 @@
-"""What a person can choose of the brush that paints weights."""
+"""Choices of the brush that paints weights."""
 
 from dataclasses import dataclass
 from typing import Any, get_args

@@ -1,4 +1,4 @@
-"""What the panel Check shows: what is wrong with the character, and what was repaired."""
+"""State of the panel Check: findings, and repairs."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -7,10 +7,13 @@ import param
 
 from cutcell.rig import Rig
 
+EXPORT = "export:"
+"""Before the code of a finding about the weights that an export contains."""
+
 
 @dataclass(frozen=True, eq=False)
 class Repair:
-    """What was repaired of the character that stands there.
+    """Repairs of the current character.
 
     Parameters
     ----------
@@ -31,12 +34,17 @@ class DiagnosisChoices(param.Parameterized):
     """The findings, and which of them is looked at."""
 
     diagnosis: Any = param.Parameter(None, doc="The cutcell.Diagnosis, or None so far.")
-    finding: Any = param.String("", doc="Code of the finding that is looked at; else empty.")
+    export_diagnosis: Any = param.Parameter(
+        None, doc="The cutcell.Diagnosis of the weights that an export contains, or None so far."
+    )
+    finding: Any = param.String(
+        "", doc="Code of the selected finding, after `EXPORT` one of the export; else empty."
+    )
     repair: Any = param.Parameter(None, doc="A `Repair` of this character, or None.")
 
     @property
-    def found(self) -> Any:
+    def selected_finding(self) -> Any:
         """The finding that is looked at, or None."""
-        if self.diagnosis is None or self.finding not in self.diagnosis:
-            return None
-        return self.diagnosis[self.finding]
+        code = self.finding.removeprefix(EXPORT)
+        diagnosis = self.diagnosis if code == self.finding else self.export_diagnosis
+        return diagnosis[code] if diagnosis is not None and code in diagnosis else None

@@ -1,4 +1,4 @@
-"""What every panel shares: the character, the chosen bone and vertex, and how work goes on."""
+"""State that all panels share: the character, the chosen bone and vertex, and progress."""
 
 from typing import Any
 
@@ -6,8 +6,8 @@ import param
 
 from .panels import PANELS
 
-CUTS = ("off", "x", "y", "z", "free")
-"""What the body is cut across; a free plane has any direction."""
+CUTS = ("auto", "off", "x", "y", "z", "free")
+"""What the body is cut across; a free plane has any direction, and auto is z on the panel graph."""
 
 
 class Common(param.Parameterized):
@@ -23,8 +23,10 @@ class Common(param.Parameterized):
     joint: Any = param.Integer(0, doc="The chosen joint.")
     vertex: Any = param.Integer(None, allow_None=True, doc="The clicked vertex, or None.")
     skeleton: Any = param.Boolean(True, label="Skeleton")
+    faint_skeleton: Any = param.Boolean(False, doc="Whether bones are see-through.")
+    wireframe: Any = param.Boolean(False, doc="Whether edges of the mesh are drawn on the body.")
 
-    cut_axis: Any = param.Selector(default="off", objects=list(CUTS))
+    cut_axis: Any = param.Selector(default="auto", objects=list(CUTS))
     cut_position: Any = param.Number(0.5, bounds=(0, 1))
     cut_yaw: Any = param.Number(
         30.0, bounds=(-180, 180), doc="Where a free plane looks to, around the upright axis."
@@ -57,13 +59,19 @@ class Common(param.Parameterized):
         return self.rig is not None and not len(self.rig.skeleton.joints)
 
     @property
+    def cut_across(self) -> str:
+        """What the body is cut across on this panel; "off" for nothing."""
+        auto = "z" if self.panel == "graph" else "off"
+        return auto if self.cut_axis == "auto" else str(self.cut_axis)
+
+    @property
     def graph(self) -> Any:
         """The graph of what stands there; None so far."""
         return self.bare_graph if self.binding is None else self.binding.graph
 
     @property
     def weights(self) -> Any:
-        """What the character is posed with: what was computed, else the file's own."""
+        """Weights that pose the character: the computed ones, else the file's."""
         if self.binding is not None:
             return self.binding.weights
         return None if self.rig is None else self.rig.weights

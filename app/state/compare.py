@@ -1,4 +1,4 @@
-"""What a person can choose on the panel Compare."""
+"""Choices of the panel Compare."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""What a person corrects of the binding, and its form in an address."""
+"""Corrections of the binding, and their form in an address."""
 
 import base64
 import binascii
@@ -24,7 +24,7 @@ MAX_BYTES = 4 * 2**20
 
 
 class CorrectionsChoices(param.Parameterized):
-    """What is corrected of the character that stands there."""
+    """Corrections of the current character."""
 
     corrections: Any = param.Parameter(Corrections(), doc="A cutcell.Corrections.")
     own: Any = param.Parameter(None, doc="The character where nothing is corrected: a cutcell.Rig.")
@@ -47,7 +47,7 @@ class CorrectionsChoices(param.Parameterized):
 
 @dataclass(frozen=True, eq=False)
 class Dragged:
-    """What is seen while joints are dragged.
+    """Preview while joints are dragged.
 
     Parameters
     ----------
@@ -96,12 +96,12 @@ def changes(state: Any, rig: Rig, corrections: Corrections) -> dict[str, Any]:
     """
     changed = {"corrections": corrections, "rig": rig}
     if same_structure(state.rig, rig):
-        return news(state, changed)
+        return changed_only(state, changed)
     number = _numbers(state.rig, rig)
     turns = {number[j]: turn for j, turn in state.turns.items() if j in number}
     joint = number.get(state.joint, 0)
     computed = dict.fromkeys(("binding", "bare_graph", "field", "dragged"))
-    return news(state, {**changed, **computed, "turns": turns, "joint": joint})
+    return changed_only(state, {**changed, **computed, "turns": turns, "joint": joint})
 
 
 def same_structure(one: Rig, other: Rig) -> bool:
@@ -164,7 +164,7 @@ def tidy(corrections: Corrections) -> Corrections:
     return replace(corrections, joints=joints)
 
 
-def news(state: Any, choices: dict[str, Any]) -> dict[str, Any]:
+def changed_only(state: Any, choices: dict[str, Any]) -> dict[str, Any]:
     """Return what of some choices the state does not hold; param takes the same for new."""
     large = {name: getattr(state, name) for name in ("rig", "own", "corrections", "binding")}
     return {

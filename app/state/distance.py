@@ -1,4 +1,4 @@
-"""What a person can choose on the panel Geodesics."""
+"""Choices of the panel Distance."""
 
 from typing import Any, Literal
 

@@ -1,4 +1,4 @@
-"""What a person can choose on the panel Graph."""
+"""Choices of the panel Graph."""
 
 from typing import Any
 
@@ -7,6 +7,9 @@ import param
 from cutcell.geodesics import LEAVES
 
 from .method import default
+
+READABLE = 40
+"""Lattice cells along the longest side of a graph that is easy to read on a screen."""
 
 LAYERS = {
     "body": "body",
@@ -20,6 +23,10 @@ LAYERS = {
 class GraphChoices(param.Parameterized):
     """How the graph is built, and what of it is seen."""
 
+    graph_resolution: Any = param.Integer(
+        READABLE, bounds=(0, 512), doc="Of the graph that is shown; 0 for the one of the weights."
+    )
+    easy_graph: Any = param.Parameter(None, doc="(what it was built from, graph) to show.")
     resolution: Any = param.Integer(
         default("resolution"), doc="Lattice cells along the longest side."
     )
@@ -29,10 +36,10 @@ class GraphChoices(param.Parameterized):
     leaf: Any = param.Selector(default=default("leaf"), objects=list(LEAVES))
 
     body: Any = param.Boolean(True, label="Surface")
-    mesh_edges: Any = param.Boolean(False, label="Mesh edges")
+    mesh_edges: Any = param.Boolean(True, label="Mesh edges")
     interior_edges: Any = param.Boolean(True, label="Interior edges")
-    surface_edges: Any = param.Boolean(False, label="Surface edges")
-    nodes: Any = param.Boolean(False, label="Nodes")
+    surface_edges: Any = param.Boolean(True, label="Surface edges")
+    nodes: Any = param.Boolean(True, label="Nodes")
     edge_colors: Any = param.Selector(
         default="kind", objects=["kind", "depth", "distance", "component"]
     )
@@ -54,3 +61,27 @@ class GraphChoices(param.Parameterized):
         default="x", objects=["x", "y", "z"], doc="Which way they run."
     )
     slice_position: Any = param.Number(0.5, bounds=(0, 1), doc="Across the box of the body.")
+
+    @property
+    def graph_inputs(self) -> tuple[Any, ...] | None:
+        """What the graph that is shown is built from; None where it is the one of the weights."""
+        state: Any = self
+        if self.graph_resolution in (0, self.resolution) or state.rig is None:
+            return None
+        return (
+            state.rig.mesh,
+            self.graph_resolution,
+            self.connectivity,
+            self.winding_threshold,
+            self.orient,
+        )
+
+    @property
+    def shown_graph(self) -> Any:
+        """The graph that the panel shows; None until it is built."""
+        state: Any = self
+        inputs = self.graph_inputs
+        if inputs is None:
+            return state.graph
+        built, graph = self.easy_graph or ((), None)
+        return graph if built == inputs else None

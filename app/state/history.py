@@ -1,4 +1,4 @@
-"""What was chosen before, and before that."""
+"""History of choices."""
 
 from collections.abc import Collection
 from typing import Any
@@ -28,10 +28,10 @@ class History:
 
     @property
     def now(self) -> Choices:
-        """What is chosen now."""
+        """The present choices."""
         return self._now
 
-    def here(self, now: Choices) -> None:
+    def replace_current(self, now: Choices) -> None:
         """Note what is chosen now in place of what was; it is no step."""
         self._now = now
 
@@ -71,7 +71,7 @@ class History:
         self._now, self._last = now, (changed, time)
 
     def part(self) -> None:
-        """Let the next change be a step of its own, however soon it follows."""
+        """Make the next change a separate step, however soon it follows."""
         self._last = (frozenset(), -1e9)
 
     def withdraw(self, now: Choices) -> None:

@@ -13,14 +13,15 @@ WEIGHTS = tuple(WeightOptions.__annotations__)
 
 
 def default(name: str) -> Any:
-    """Return what `cutcell.bind` takes when it is not told."""
+    """Return the default of an option of `cutcell.bind`."""
     value = getattr(cutcell.ANIMATION, name)
     return cutcell.PAPER.alpha if name == "alpha" else value
 
 
 def effective(options: dict[str, Any]) -> dict[str, Any]:
-    """Leave out what the falloff does not ask for, which the core refuses: alpha is the paper's."""
-    return {n: v for n, v in options.items() if n != "alpha" or options["falloff"] == "paper"}
+    """Leave out what the falloff does not use, which the core refuses."""
+    unused = "refine" if options["falloff"] == "paper" else "alpha"
+    return {name: value for name, value in options.items() if name != unused}
 
 
 def method_of(state: Any, names: tuple[str, ...] = (*GRAPH, *WEIGHTS)) -> dict[str, Any]:

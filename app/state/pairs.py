@@ -1,4 +1,4 @@
-"""What a person can choose on the panel Pairs: which pair of an audit is looked at."""
+"""Choices of the panel Pairs: the pair of an audit."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""What a person can choose on the panel Pose."""
+"""Choices of the panel Pose."""
 
 from typing import TYPE_CHECKING, Any
 

@@ -86,6 +86,7 @@ CUT = {"cut_axis": "z", "cut_position": 0.5, "skeleton": False}
 
 
 EDGES = {"slicing": False, "mesh_edges": False, "interior_edges": False, "surface_edges": False}
+INTERIOR = {**EDGES, "interior_edges": True, "nodes": False}
 
 TOUR = (
     Step(
@@ -169,7 +170,7 @@ TOUR = (
             focus="spine2",
             near=0.55,
             angles=(0.0, 2.0),
-            choices={"slicing": True, "resolution": 40, "skeleton": False},
+            choices={"slicing": True, "graph_resolution": 40, "skeleton": False},
         ),
     ),
     Step(
@@ -189,7 +190,7 @@ TOUR = (
             focus="upper_arm.L",
             near=0.24,
             angles=(14.0, 10.0),
-            choices={**CUT, **EDGES, "interior_edges": True, "resolution": 40},
+            choices={**CUT, **EDGES, "interior_edges": True},
         ),
         (
             Offer("Mesh", {**EDGES, "mesh_edges": True}),
@@ -216,9 +217,9 @@ TOUR = (
             focus="hand.L",
             near=0.26,
             angles=(10.0, 4.0),
-            choices={"resolution": 20, "skeleton": False},
+            choices={**INTERIOR, "cut_axis": "off", "graph_resolution": 20, "skeleton": False},
         ),
-        tuple(Offer(f"R = {cells}", {"resolution": cells}) for cells in (20, 64, 128)),
+        tuple(Offer(f"R = {cells}", {"graph_resolution": cells}) for cells in (20, 64, 128)),
     ),
     Step(
         "Sources on the bone",
@@ -319,7 +320,7 @@ TOUR = (
             near=0.5,
             angles=(4.0, 6.0),
             demo="biped_flipped_arm",
-            choices={**CUT, "orient": False},
+            choices={**CUT, **INTERIOR, "orient": False},
         ),
         (
             Offer("As in the file", {"orient": False}),

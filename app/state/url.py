@@ -1,4 +1,4 @@
-"""What a person chose, as plain values: for the address, for undo, for coming back."""
+"""Choices as plain values, for the address, undo and reloading."""
 
 import re
 from typing import Any
@@ -35,36 +35,36 @@ def simple(state: State) -> dict[str, param.Parameter]:
     return {n: p for n, p in allowed.items() if n not in OWN and isinstance(p, kinds)}
 
 
-def taken(state: State) -> dict[str, Any]:
+def snapshot(state: State) -> dict[str, Any]:
     """Return all choices as they are, with those that are `NOTED`."""
     return {name: getattr(state, name) for name in (*simple(state), *NOTED)}
 
 
 def defaults(state: State) -> dict[str, Any]:
-    """Return the choices that a person begins with; panel, bone and clip are left alone."""
+    """Return the initial choices without panel, bone and clip."""
     plain = {name: p.default for name, p in simple(state).items() if name != "panel"}
     return {**plain, "turns": {}, "methods": standard(state.rig), "minus": "",
             "corrections": Corrections()}  # fmt: skip
 
 
 def to_query(
-    state: State, kept: str = "", camera: list[float] | None = None, corrections: str = ""
+    state: State, upload_key: str = "", camera: list[float] | None = None, corrections: str = ""
 ) -> str:
     """Return what the address says behind its question mark.
 
     Parameters
     ----------
     state : State
-    kept : str
+    upload_key : str
         The key of an uploaded character, where one stands there.
     camera : list of 6 float, optional
         Where the eye is and what it looks at; left out where it is as at the start.
     corrections : str
-        As `CorrectionsFile.said` tells them.
+        As `CorrectionsFile.text_of` returns them.
     """
     values: dict[str, str] = {}
-    if state.demo or kept:
-        values["rig"] = state.demo or f"~{kept}"
+    if state.demo or upload_key:
+        values["rig"] = state.demo or f"~{upload_key}"
     values["panel"] = state.panel
     if state.rig is not None:
         if not state.bare:

@@ -1,10 +1,10 @@
-"""What a person can choose on the panel Weights."""
+"""Choices of the panel Weights."""
 
 from typing import Any
 
 import param
 
-from cutcell.method import FALLOFFS
+from cutcell.method import FALLOFFS, REFINES
 
 from .method import default
 
@@ -36,6 +36,7 @@ class WeightsChoices(param.Parameterized):
     )
 
     falloff: Any = param.Selector(default=default("falloff"), objects=list(FALLOFFS))
+    refine: Any = param.Selector(default=default("refine"), objects=list(REFINES))
     alpha: Any = param.Number(default("alpha"), bounds=(0, 1))
     max_influences: Any = param.Integer(default("max_influences"), bounds=(1, MOST))
     threshold: Any = param.Number(default("threshold"), bounds=(0, 1))

@@ -1,1 +1,1 @@
-"""What Panel has no widget for: each is a Panel component whose view is a module of `frontend/`."""
+"""Widgets that Panel lacks: each is a Panel component whose view is a module of `frontend/`."""

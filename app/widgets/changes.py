@@ -1,4 +1,4 @@
-"""What a browser is told, so that one description of a scene becomes another."""
+"""Messages for the browser that turn one description of a scene into another."""
 
 from typing import Any
 
@@ -64,7 +64,7 @@ def _part(old: Actor | None, new: Actor) -> dict[str, Any]:
     if new.skin is not None and (old is None or not _same_skin(old, new)):
         part["skin"] = _skin(new.skin)
     if old is None or old.apart is not new.apart:
-        part["apart"] = _apart(new.apart)
+        part["apart"] = _reference_skin(new.apart)
     part.update(_colouring(old, new))
     if (old is not None and old.film) != new.film:
         part["animation"] = new.film
@@ -84,7 +84,7 @@ def _images(images: NDArray[np.uint8] | None) -> dict[str, Any] | None:
     return {"count": len(images), "side": images.shape[1], "pixels": _flat(images, np.uint8)}
 
 
-def _apart(apart: Apart | None) -> dict[str, Any] | None:
+def _reference_skin(apart: Apart | None) -> dict[str, Any] | None:
     if apart is None:
         return None
     return {**_skin(apart.skin), "unit": apart.unit}
@@ -138,6 +138,7 @@ def _settings(actor: Actor) -> dict[str, Any]:
         "behind": actor.behind,
         "closed": actor.closed and actor.opacity == 1,
         "hull": actor.hull,
+        "edges": actor.edges,
         "coloured": any(x is not None for x in (actor.colors, actor.scalars, actor.materials)),
     }
     place = {"overlay": actor.overlay, "view": actor.view}

@@ -30,7 +30,7 @@ class Inspector(JSComponent):
 
     def _follow(self, *events: Any) -> None:
         state = self._session.state
-        # What the tour clicks shows its point in the scene, and needs no card.
+        # Vertices that the tour clicks are marked in the scene and need no card.
         memo = self._session.memo
         node = node_facts(state, memo)
         self.facts = node or (None if points_out(state) else vertex_facts(state, memo))
@@ -49,12 +49,12 @@ class Inspector(JSComponent):
         elif data.get("type") == "bone":
             pick(self._session, int(data["joint"]))
 
-    def _overrule(self, given: list[list[float]] | None) -> None:
+    def _overrule(self, overrides: list[list[float]] | None) -> None:
         """Give the vertex weights, pairs of joint and weight; none for those that are computed."""
         session, vertex = self._session, self._session.state.vertex
         if vertex is None or session.state.binding is None:
             return
-        weights = None if given is None else {int(joint): float(w) for joint, w in given}
+        weights = None if overrides is None else {int(joint): float(w) for joint, w in overrides}
         overrule(session, vertex, weights)
 
 

@@ -10,7 +10,7 @@ from .modules import script
 
 
 class Rows(JSComponent):
-    """Rows in order, longest bar first as a rule; a click on one is told.
+    """Rows in order, usually longest bar first; a click on one calls a function.
 
     Parameters
     ----------

@@ -7,7 +7,7 @@ from panel.custom import JSComponent
 from panel.models.katex import KATEX_VERSION
 
 from ..commands.session import Session
-from ..commands.tour import go, offer, taken
+from ..commands.tour import go, offer, pressed_offers
 from ..state.tour import TOUR
 from .modules import script, style
 
@@ -50,15 +50,15 @@ def tour_card(session: Session) -> TourCard:
     card = TourCard(
         session,
         step=state.tour,
-        taken=taken(state),
+        taken=pressed_offers(state),
         steps=steps,
         stylesheets=[style("tour_card_place")],
         margin=0,
     )
 
-    def told(*events: Any) -> None:
-        card.param.update(step=state.tour, taken=taken(state))
+    def update(*events: Any) -> None:
+        card.param.update(step=state.tour, taken=pressed_offers(state))
 
     names = {name for step in TOUR for one in step.offers for name in one.choices}
-    state.param.watch(told, ["tour", *sorted(names)])
+    state.param.watch(update, ["tour", *sorted(names)])
     return card

@@ -7,7 +7,7 @@ import param
 from panel.custom import JSComponent
 from panel.models.vtk import VTK_VERSION
 
-from cutcell_viewers.camera import Camera
+from cutcell_viewers.camera import PAGE_HEIGHT, Camera
 from cutcell_viewers.description import Description
 from cutcell_viewers.lighting import LIGHTS
 
@@ -45,18 +45,18 @@ class SceneView(JSComponent):
         self.camera: Camera | None = None
         self.at_home = True
         self.on_camera: Callable[[], None] = lambda: None
-        self.aspect = 4 / 3
+        self.aspect, self.page_height = 4 / 3, PAGE_HEIGHT
         self.time = 0.0
         self.calm = False
         self._ready = False
-        self._seen = False
+        self._is_visible = False
         self._pictures = False
         self._awaited: list[Callable[[], Any]] = []
         self._count = 0
         self._parts: dict[str, Any] = {}
-        self._shown = Description()
-        self._wanted = Description()
-        self._sent: set[str] = set()
+        self._sent = Description()
+        self._next = Description()
+        self._sent_arrays: set[str] = set()
         self._listeners: dict[str, Callable[[dict[str, Any]], Any]] = {}
 
     def listen(self, kind: str, act: Callable[[dict[str, Any]], Any]) -> None:
@@ -66,17 +66,17 @@ class SceneView(JSComponent):
     def when_seen(self, act: Callable[[], Any]) -> None:
         """Do something once, as soon as a browser has the view."""
         self._awaited.append(act)
-        if self._seen:
+        if self._is_visible:
             self._begin()
 
     def present(self, description: Description) -> None:
         """Make the view what a description says."""
-        self._wanted = description
+        self._next = description
         if self._ready:
-            self._send(changes(self._shown, description, self._sent))
-            self._shown = description
+            self._send(changes(self._sent, description, self._sent_arrays))
+            self._sent = description
 
-    def tell(self, **parts: Any) -> None:
+    def send(self, **parts: Any) -> None:
         """Send the parts of the view that are no actors: see `scenes.common`.
 
         The last value of each is kept, for a browser that comes later.
@@ -85,8 +85,8 @@ class SceneView(JSComponent):
         if self._ready:
             self._send(parts)
 
-    def told(self, name: str) -> Any:
-        """Return what was last told of a part of the view; None if nothing was."""
+    def last_sent(self, name: str) -> Any:
+        """Return the last value sent for a part of the view; None if none was."""
         return self._parts.get(name)
 
     def offer(self, name: str, content: bytes) -> None:
@@ -94,7 +94,7 @@ class SceneView(JSComponent):
         self._send_msg({"download": {"name": name, "content": content}})
 
     def answer(self, **message: Any) -> None:
-        """Tell the browser what it asked for; it is not told again to one that comes later."""
+        """Answer a request of the browser; the answer is not sent again to a new one."""
         self._send_msg(message)
 
     def _send(self, message: dict[str, Any]) -> None:
@@ -116,10 +116,10 @@ class SceneView(JSComponent):
             self.calm = bool(data.get("calm", False))
             self.window_width = int(data.get("width", 0))
             self._pictures = bool(data.get("pictures", False))
-            self._sent.clear()
-            first = {"lights": LIGHTS, **changes(Description(), self._wanted, self._sent)}
+            self._sent_arrays.clear()
+            first = {"lights": LIGHTS, **changes(Description(), self._next, self._sent_arrays)}
             self._send({**first, **self._parts})
-            self._shown = self._wanted
+            self._sent = self._next
             self._begin()
         elif kind in self._listeners:
             self._listeners[kind](data)
@@ -128,11 +128,12 @@ class SceneView(JSComponent):
         elif kind == "camera":
             self.camera = Camera(tuple(data["position"]), tuple(data["focal_point"]))
             self.aspect = min(max(float(data.get("aspect", self.aspect)), 0.3), 4.0)
+            self.page_height = min(max(float(data.get("height", self.page_height)), 100.0), 4000.0)
             self.at_home = bool(data.get("home", False))
             self.on_camera()
 
     def _begin(self) -> None:
-        self._seen = True
+        self._is_visible = True
         awaited, self._awaited = self._awaited, []
         for act in awaited:
             act()

@@ -98,6 +98,11 @@ METHOD_OPTIONS: dict[str, tuple[Any, Any, str, str, str]] = {
         "Decrease of weight with distance. rig: for animation. paper: the paper's kernel (its"
         " equation 1), a soft feature of the distance. Default: rig; paper with --method paper.",
     ),
+    "refine": (
+        str, "none", "--refine", "R",
+        "Correction of the rig falloff. learned: by a small model that learned from rigs of many"
+        " makers.",
+    ),
     "alpha": (
         float | None, None, "--alpha", "A",
         "Shape of the paper's falloff, 0 to 1: 0 is linear in the distance, 1 quadratic."

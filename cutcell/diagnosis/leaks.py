@@ -22,6 +22,8 @@ STRAY = 0.002
 """Of all weight: a joint that holds less in the file was hardly meant to move skin."""
 OWNED = 0.01
 """Of the surface, that such a joint is nearest to: a binding would give it about as much."""
+LEADING = 0.5
+"""A joint with more weight than this somewhere has a part to move, however small."""
 AWAY = 0.1
 """Of the longest side: where a joint is so much farther through the body than the nearest one, an
 island of its influence is no part of the limb that it moves."""
@@ -63,7 +65,7 @@ def _stray(
         "warning",
         f"{count(len(stray), 'joint', 'hold')} hardly any weight, yet would get much of the skin "
         "when the rig is bound again, for no other is nearer.",
-        "If it is a control, let it carry no weight: --no-deform, or the joint's box on the page.",
+        _stray_advice(weights[:, stray]),
         vertices=vertices,
         joints=stray,
         details=tuple(
@@ -73,6 +75,24 @@ def _stray(
         ),
         pose=pose_of(subject, worst, np.flatnonzero(nearest == worst)),
     )
+
+
+def moves_own_part(weights: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Return which joints lead some vertex, as eyes and jaws do and controls do not; shape (j,).
+
+    Shapes: weights (n, j).
+    """
+    moves: NDArray[np.bool_] = weights.max(axis=0, initial=0) > LEADING
+    return moves
+
+
+def _stray_advice(weights: NDArray[np.float64]) -> str:
+    moves, advice = moves_own_part(weights), []
+    if moves.any():
+        advice.append("Lock joints that lead a part, such as eyes, to their weights in the file.")
+    if not moves.all():
+        advice.append("Exclude controls: --no-deform, or the joint's box on the page.")
+    return " ".join(advice)
 
 
 def _islands(

@@ -21,7 +21,8 @@ from .subject import Subject
 from .sweep import check_sweep
 from .weights import check_weights
 
-CHECKS = (check_mesh, check_joints, check_parts, check_weights, check_leaks, check_sweep)
+WEIGHT_CHECKS = (check_weights, check_leaks, check_sweep)
+CHECKS = (check_mesh, check_joints, check_parts, *WEIGHT_CHECKS)
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,6 +95,7 @@ def diagnose(
     resolution: int = 64,
     *,
     distances: BoneDistances | None = None,
+    only_weights: bool = False,
     progress: Progress = silent,
 ) -> Diagnosis:
     """Find faults of a rig.
@@ -106,6 +108,8 @@ def diagnose(
         R, as of `build_graph`: thin parts are those of this lattice.
     distances : BoneDistances, optional
         Of this rig, such as those of a `Binding`; measured when left out.
+    only_weights : bool
+        Whether only the weights are checked.
     progress : callable
         See `cutcell.runtime.progress`; stages are "graph", "distances" and "checks".
 
@@ -131,8 +135,9 @@ def diagnose(
     findings: list[Finding] = []
     _ = subject.graph
     _ = subject.distances
-    for done, check in enumerate(CHECKS):
-        progress("checks", done / len(CHECKS))
+    checks = WEIGHT_CHECKS if only_weights else CHECKS
+    for done, check in enumerate(checks):
+        progress("checks", done / len(checks))
         findings += check(subject)
     progress("checks", 1.0)
     return Diagnosis(rig, by_severity(findings))

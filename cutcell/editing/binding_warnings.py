@@ -36,7 +36,7 @@ def binding_warnings(
         *_of_distances(distances.graph, distances),
         *_weightless(rig, weights),
         *_blocked_by_locks(rig, distances.graph, corrections, is_locked),
-        *_breaking_locks(rig, corrections, is_locked),
+        *_against_locks(rig, corrections, is_locked),
     )
 
 
@@ -78,7 +78,7 @@ def _blocked_by_locks(
     if rig.weights is None or not is_locked.any():
         return
     for vertex, part in corrections.parts.items():
-        if part.how == "itself":
+        if part.how in ("itself", "file"):
             continue
         component = SurfaceOperators.of(graph).component[graph.vertex_node]
         corrected, binding = np.zeros(len(is_locked)), "follows what it touches"
@@ -94,10 +94,10 @@ def _blocked_by_locks(
             )
 
 
-def _breaking_locks(
+def _against_locks(
     rig: Rig, corrections: Corrections, is_locked: NDArray[np.bool_]
 ) -> Iterator[str]:
-    """Report locked joints whose weights change, as vertices are set by hand."""
+    """Report locked joints that keep the file's weights where vertices are set by hand."""
     if rig.weights is None or not is_locked.any() or not corrections.vertices:
         return
     column = {rig.skeleton.names[j]: j for j in np.flatnonzero(is_locked)}
@@ -110,8 +110,8 @@ def _breaking_locks(
     if changed.any():
         count = int(differs[:, changed].any(axis=1).sum())
         yield (
-            f"{count} vertices that are set by hand change the weights of locked joints: "
-            f"{_names(rig, changed)}"
+            f"{count} vertices are set by hand, but these joints are locked and keep the file's "
+            f"weights there: {_names(rig, changed)}"
         )
 
 

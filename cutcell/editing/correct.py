@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import ParameterError, SkeletonError
+from ..errors import ParameterError, SkeletonError, WeightsError
 from ..graph import CutCellGraph
 from ..method import Method
 from ..rig import Rig
@@ -15,7 +16,7 @@ from ..weights.adjustments import Adjustments
 from ..weights.rig_falloff.rigid_accessories import attach
 from ..weights.rig_falloff.surface_operators import SurfaceOperators
 from .corrections import Corrections
-from .locks import joint_index
+from .locks import joint_index, lock_joints
 from .restructure import restructured
 
 JOINTS_FOR_GAINS = 8
@@ -41,6 +42,8 @@ def corrected_rig(rig: Rig, corrections: Corrections) -> Rig:
     ------
     ParameterError
         A joint or a vertex that the rig does not have, or weights that its file cannot store.
+    WeightsError
+        A part is to keep weights that the file does not have.
     SkeletonError
         No joint would be left, or none to carry weight; two would share a name, or be each other's
         ancestors; or one is too far from the mesh.
@@ -64,6 +67,8 @@ def corrected_rig(rig: Rig, corrections: Corrections) -> Rig:
     for part in corrections.parts.values():
         if part.joint is not None:
             joint_index(rig.skeleton, part.joint)
+        if part.how == "file" and rig.weights is None:
+            raise WeightsError(f"{rig.name} has no weights for its parts to keep")
     deform, joints = rig.skeleton.deform.copy(), rig.skeleton.joints.copy()
     for name, one in corrections.joints.items():
         joint = joint_index(rig.skeleton, name)
@@ -108,7 +113,7 @@ def corrected_parts(
     rig: Rig, graph: CutCellGraph, weights: NDArray[np.float64], corrections: Corrections
 ) -> NDArray[np.float64]:
     """Glue components to joints, or let them follow the body where they touch it."""
-    if all(part.how == "itself" for part in corrections.parts.values()):
+    if all(part.how in ("itself", "file") for part in corrections.parts.values()):
         return weights
     surface = SurfaceOperators.of(graph)
     node, weights = graph.vertex_node, weights.copy()
@@ -139,17 +144,31 @@ def corrected_parts(
     return weights
 
 
-def apply_vertex_overrides(
-    rig: Rig, weights: NDArray[np.float64], corrections: Corrections
+def apply_overrides(
+    rig: Rig,
+    graph: CutCellGraph,
+    weights: NDArray[np.float64],
+    corrections: Corrections,
+    locked: Sequence[int | str] = (),
 ) -> NDArray[np.float64]:
-    """Replace the weights of single vertices by those that were set by hand."""
-    if not corrections.vertices:
+    """Put in the file's weights of parts that keep them, then what was set by hand.
+
+    Locked joints keep the file's weights all the same.
+    """
+    in_file = [v for v, part in corrections.parts.items() if part.how == "file"]
+    if in_file and rig.weights is not None:
+        component = SurfaceOperators.of(graph).component[graph.vertex_node]
+        from_file = np.isin(component, component[in_file]) & rig.weights.any(axis=1)
+        weights = np.where(from_file[:, None], rig.weights, weights)
+    overrides = corrections.vertices
+    if not overrides:
         return weights
-    weights, index, overrides = weights.copy(), _first_of(rig), corrections.vertices
+    weights, index = weights.copy(), _first_of(rig)
     weights[list(overrides)] = 0
     row = [vertex for vertex, joints in overrides.items() for _ in joints]
     column = [index[name] for joints in overrides.values() for name in joints]
     weights[row, column] = [value for joints in overrides.values() for value in joints.values()]
+    weights[list(overrides)] = lock_joints(rig, weights, locked)[list(overrides)]
     return weights
 
 

@@ -15,7 +15,7 @@ from ..errors import FileError, ParameterError
 from ..rig.checks import check_choice, check_flag, check_integer, check_number, one_line, shown
 from ..runtime.writing import write_all
 
-How = Literal["glued", "touching", "itself"]
+How = Literal["glued", "touching", "itself", "file"]
 MIN_GAIN, MAX_GAIN = 0.05, 20.0
 MAX_VERTEX = 2**31 - 2
 FARTHEST = 1e30
@@ -93,9 +93,9 @@ class PartCorrection:
 
     Parameters
     ----------
-    how : {"glued", "touching", "itself"}
-        Glued to a joint; rigid, as the body is bound where it touches; or as any other skin, even
-        if it is small or holds bones of one joint only.
+    how : {"glued", "touching", "itself", "file"}
+        Glued to a joint; rigid, as the body is bound where it touches; as any other skin, even
+        if it is small or holds bones of one joint only; or with the file's weights.
     joint : str, optional
         What it is glued to.
     """

@@ -28,7 +28,7 @@ from ..weights.rig_falloff.division import facing
 from ..weights.skinning_weights import weight_context, weight_steps
 from .correct import (
     adjustments_of,
-    apply_vertex_overrides,
+    apply_overrides,
     corrected_parts,
     corrected_rig,
     joints_measured,
@@ -39,6 +39,7 @@ from .locks import lock_joints
 
 STEPS = {
     "falloff": "shares by distance",
+    "learned": "corrected by the model",
     "spread": "spread over skin",
     "rigid": "rigid components",
     "tail": "tail subtracted",
@@ -237,9 +238,11 @@ def _rows(
         if step.name in STEPS:
             rows[step.name] = row
     if corrections:
-        weights = corrected_parts(rig, context.distances.graph, weights, corrections)
-        weights = lock_joints(rig, weights, locked_by(corrections), context.method.max_influences)
-        rows["correct"] = apply_vertex_overrides(rig, weights, corrections)[vertex]
+        graph = context.distances.graph
+        weights = corrected_parts(rig, graph, weights, corrections)
+        locked = locked_by(corrections)
+        weights = lock_joints(rig, weights, locked, context.method.max_influences)
+        rows["correct"] = apply_overrides(rig, graph, weights, corrections, locked)[vertex]
     return rows
 
 

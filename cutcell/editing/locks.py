@@ -21,6 +21,9 @@ def lock_joints(
 ) -> NDArray[np.float64]:
     """Put back the rig's own weights of some joints; the others share what these leave.
 
+    Where no other joint has weight, the rig's own weights of the others come back, too. A vertex
+    without weights in the file keeps those of the joints that are not locked, if it has any.
+
     Shapes: weights (n, j); returns (n, j).
     """
     is_locked = locked_joints(rig, locked)
@@ -31,10 +34,11 @@ def lock_joints(
     if max_influences is not None:
         free = _largest(free, max_influences - (locked_weights > 0).sum(axis=1))
     others = np.where(is_locked, 0.0, rig.weights)
-    share, rest = free.sum(axis=1, keepdims=True), others.sum(axis=1, keepdims=True)
-    result = locked_weights + np.divide(free * rest, share, out=others, where=share > 0)
+    share = free.sum(axis=1, keepdims=True)
     has_weight = rig.weights.any(axis=1, keepdims=True)
-    return np.where(has_weight, result, weights)
+    rest = np.where(has_weight, others.sum(axis=1, keepdims=True), 1.0)
+    result = locked_weights + np.divide(free * rest, share, out=others, where=share > 0)
+    return np.where(has_weight | (share > 0), result, weights)
 
 
 def locked_joints(rig: Rig, locked: Sequence[int | str]) -> NDArray[np.bool_]:

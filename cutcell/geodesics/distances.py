@@ -15,6 +15,7 @@ from ..method import ANIMATION, DistanceOptions, Method, MethodName, method_of
 from ..rig import Skeleton
 from ..rig.checks import check_integer, check_number, check_positions
 from ..runtime.progress import Progress, silent
+from ..runtime.repr import short_repr
 from .bones import Bones, Sources
 from .fallback import NOT_ALLOWED, REACHED, UNREACHED, UNUSED, straight_to_nearest
 from .solver import BoneDistanceSolver
@@ -43,6 +44,8 @@ class BoneDistances:
         `geodesics.FALLBACK_REASONS`. These have straight distances to a few bones.
     solver : BoneDistanceSolver
         What computed them, for more distances along the same graph.
+    skeleton : Skeleton or None
+        What the bones are of; None where bones were given.
     """
 
     at_welded: NDArray[np.float64]
@@ -52,6 +55,9 @@ class BoneDistances:
     sources: Sources
     fallback: NDArray[np.uint8]
     solver: BoneDistanceSolver
+    skeleton: Skeleton | None = None
+
+    __repr__ = short_repr
 
     @property
     def graph(self) -> CutCellGraph:
@@ -249,9 +255,9 @@ def bone_distances(
         joint[np.ix_(np.unique(bones.joint), lost)] = _least(straight, bones)
     shared = nearest_joints, bones, sources
     if allowed is None:
-        return BoneDistances(joint, None, *shared, fallback[graph.vertex_node], solver)
+        return BoneDistances(joint, None, *shared, fallback[graph.vertex_node], solver, skeleton)
     first = np.unique(node, return_index=True)[1]
-    return BoneDistances(joint[:, first], joint, *shared, fallback, solver)
+    return BoneDistances(joint[:, first], joint, *shared, fallback, solver, skeleton)
 
 
 def distances_from(graph: CutCellGraph, bones: Bones, samples: int, joints: int) -> BoneDistances:

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
+from ..runtime.repr import short_repr
 from .interior import InteriorPoints
 from .lattice import Lattice
 from .neighbours import Adjacency, list_neighbours
@@ -71,6 +72,8 @@ class CutCellGraph:
     interior: InteriorPoints
     inverted: NDArray[np.bool_]
     winding_threshold: float = 0.5
+
+    __repr__ = short_repr
 
     @property
     def first_point(self) -> int:

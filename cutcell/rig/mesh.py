@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import MeshError
+from ..runtime.repr import short_repr
 from .arrays import as_array, check_finite, frozen
 
 
@@ -37,6 +38,8 @@ class TriangleMesh:
     if TYPE_CHECKING:  # what is given may be of other types than what is kept
 
         def __init__(self, vertices: ArrayLike, faces: ArrayLike) -> None: ...
+
+    __repr__ = short_repr
 
     def __post_init__(self) -> None:
         vertices = as_array(self.vertices, np.float64, (None, 3), "vertices", MeshError)

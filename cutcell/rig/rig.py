@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..errors import SkeletonError, WeightsError
 from ..runtime.memory import check_matrix
+from ..runtime.repr import short_repr
 from .arrays import as_array, frozen
 from .clip import Clip
 from .mesh import TriangleMesh
@@ -136,6 +137,8 @@ class Rig:
             origin: ArrayLike | None = None,
             source: Any = None,
         ) -> None: ...
+
+    __repr__ = short_repr
 
     def __post_init__(self) -> None:
         shape = (len(self.mesh.vertices), len(self.skeleton.joints))

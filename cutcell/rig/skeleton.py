@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import SkeletonError
+from ..runtime.repr import short_repr
 from .arrays import as_array, check_finite, frozen
 from .checks import shown
 
@@ -62,6 +63,8 @@ class Skeleton:
             deform: ArrayLike | None = None,
             orientations: ArrayLike | None = None,
         ) -> None: ...
+
+    __repr__ = short_repr
 
     def __post_init__(self) -> None:
         joints = as_array(self.joints, np.float64, (None, 3), "joints", SkeletonError)

@@ -16,6 +16,7 @@ from ..runtime.progress import Progress, Tell, share_of, silent
 from ..runtime.threads import in_threads, parts, threads
 from .adjustments import Adjustments
 from .context import Step, WeightContext
+from .learned.shares import LEARNED_STEP
 from .paper_kernel import paper_kernel
 from .prune import A_PART, prune
 from .rig_falloff.pipeline import RIG_STEPS, divide_and_prepare
@@ -50,7 +51,7 @@ def skinning_weights(
         See `cutcell.runtime.progress`; the stage is called "weights".
     **options
         Single options of the method: `falloff` ("paper" is equation 1, "rig" is made to animate
-        with, see docs/falloff.md), `alpha`, `max_influences`, `threshold`.
+        with, see docs/falloff.md), `refine`, `alpha`, `max_influences`, `threshold`.
 
     Returns
     -------
@@ -108,11 +109,13 @@ def weight_steps(context: WeightContext) -> tuple[Step, ...]:
     falloff: tuple[Step, ...] = (Step("falloff", equation_1, is_per_vertex),)
     if context.division is not None:
         falloff = RIG_STEPS
+        if context.method.refine == "learned":
+            falloff = (RIG_STEPS[0], LEARNED_STEP, *RIG_STEPS[1:])
     expand = Step("vertices", per_vertex, True)
     if not is_per_vertex:
         return (*falloff, Step("normalise", limit), expand)
     if context.division is not None:
-        falloff = (*RIG_STEPS, expand)
+        falloff = (*falloff, expand)
     return (*falloff, Step("storable", permit, True), Step("normalise", limit, True))
 
 

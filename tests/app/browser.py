@@ -245,6 +245,7 @@ class Visit:
         """Wait until the weights are there and drawn."""
         self.status.wait_for(timeout=BIND_MS)
         self.settle()
+        self.unfold()
 
     def dismiss(self) -> None:
         """Close the message over the canvas."""
@@ -288,6 +289,14 @@ class Visit:
         """Choose a panel."""
         self.page.get_by_role("tab", name=title, exact=True).click()
         self.settle()
+        self.unfold()
+
+    def unfold(self) -> None:
+        """Open all sections of the panel."""
+        headings = self.page.locator(".MuiAccordionSummary-root[aria-expanded=false]:visible")
+        for heading in reversed(headings.all()):
+            heading.click()
+        expect(headings).to_have_count(0)
 
     def switch(self, name: str) -> None:
         """Turn a switch over."""

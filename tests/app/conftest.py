@@ -37,7 +37,7 @@ def session(loop: Loop) -> Iterator[Session]:
 @pytest.fixture
 def bound(session: Session, loop: Loop) -> Session:
     """Let the session show a bound character."""
-    session.state.resolution = 16
+    session.state.param.update(resolution=16, graph_resolution=0)
     loading.show_rig(session, arm_rig())
     loop.run_until(lambda: session.state.binding is not None)
     return session

@@ -29,7 +29,7 @@ def test_the_graph_is_used_again_where_only_joints_differ(binder, mesh):
     assert binder.is_for(COARSE)
     assert binder.request({**COARSE, "leaf": "point"}, mesh, GRAPH) == "graph"
     assert binder.request(FINE, mesh, GRAPH) is None
-    assert binder.wanted == FINE
+    assert binder.requested == FINE
     assert binder.is_for(COARSE), "what failed or was cancelled leaves it as it was"
 
 
@@ -55,4 +55,4 @@ def test_weights_follow_corrections_and_nothing_else_changes(binder):
     assert binder.bound.graph == "graph"
     assert before.corrections == Corrections(), "what is frozen stays"
     binder.withdrawn()
-    assert binder.wanted == {}
+    assert binder.requested == {}

@@ -218,7 +218,7 @@ def test_a_component_does_not_tell_back_what_it_was_told(visit):
 
 def test_the_picture_comes_out_as_a_png(visit, tmp_path):
     with visit.page.expect_download() as download:
-        visit.button("Picture, film", exact=False).click()
+        visit.button("Image, video", exact=False).click()
         visit.page.get_by_role("menuitem", name="Picture (PNG)").click()
     path = tmp_path / "picture.png"
     download.value.save_as(path)

@@ -137,7 +137,7 @@ def test_what_the_card_draws_is_where_the_points_are(visit):
 
 
 def test_the_worst_turns_are_a_click_away(visit):
-    rows = visit.page.get_by_role("list", name="The worst turns").get_by_role("button")
+    rows = visit.page.get_by_role("list", name="Largest errors").get_by_role("button")
     rows.first.wait_for()
     before = visit.look()
     name = rows.first.locator("span").inner_text()
@@ -148,7 +148,7 @@ def test_the_worst_turns_are_a_click_away(visit):
     visit.settle()
     assert angle(visit, axis) == 30
     expect(rows.first).to_have_attribute("aria-current", "true")
-    visit.expect_text(re.compile(r"Mean [\d.e-]+ cm² in this pose"))
+    visit.expect_text(re.compile(r"RMS [\d.e-]+ mm in this pose"))
     coloured = visit.look()
     assert changed(before, coloured) > 0.01
     black = (coloured.max(axis=2) < 25).mean()  # no value is without a colour, nor any place
@@ -158,8 +158,8 @@ def test_the_worst_turns_are_a_click_away(visit):
 
 
 def test_the_files_weights_are_a_ghost_or_a_neighbour(visit):
-    visit.page.get_by_role("list", name="The worst turns").get_by_role("button").first.click()
-    visit.expect_text(re.compile(r"Mean [\d.e-]+ cm² in this pose"))
+    visit.page.get_by_role("list", name="Largest errors").get_by_role("button").first.click()
+    visit.expect_text(re.compile(r"RMS [\d.e-]+ mm in this pose"))
     alone = visit.look()
     visit.button("Ghost").click()
     ghost = visit.look()
@@ -202,8 +202,8 @@ def test_a_motion_runs_halts_and_is_moved_through(visit):
 
 def test_a_film_and_the_numbers_come_out(visit, tmp_path):
     for menu, item, start in (
-        ("Picture, film", "Motion (MP4)", b"ftyp"),
-        ("Numbers", "Weights (CSV)", b"vertex,"),
+        ("Image, video", "Motion (MP4)", b"ftyp"),
+        ("Data", "Weights (CSV)", b"vertex,"),
     ):
         visit.button(menu).click()
         with visit.page.expect_download() as download:

@@ -70,7 +70,7 @@ def test_who_waits_is_told_so_and_can_leave(sessions, loop):
     try:
         session.state.param.update(panel="compare", methods=["now", "euclidean"])
         loop.run_until(lambda: session.state.queued)
-        assert note(session, "now") == "Waiting for what others compare"
+        assert note(session, "now") == "Waiting for other visitors"
     finally:
         for job in others:
             COMPARING.give_back(job)

@@ -11,10 +11,11 @@ import cutcell
 from cutcell import Corrections, JointCorrection, PartCorrection
 from cutcell.rig import TriangleMesh
 from cutcell.rig.deform_joints import deform_joints
-from cutcell_app.commands import arrival, correct, keys, loading, look, tour
+from cutcell_app.commands import arrival, correct, keys, loading, look, moving, tour
 from cutcell_app.commands.binding import restore
 from cutcell_app.panels.components import parts_of_mesh
 from cutcell_app.panels.joints import joints
+from cutcell_app.panels.weights import exported
 from cutcell_app.scenes import resolve
 from cutcell_app.scenes.facts import vertex_facts
 from cutcell_app.scenes.warnings import warnings
@@ -153,10 +154,33 @@ def test_a_lock_that_overrules_a_part_is_warned_of(bound, loop):
     assert not any("vertex 3 " in door.text for door in warnings(bound.state))
 
 
+def test_all_parts_start_from_the_files_weights(bound, loop):
+    assert "recomputed" in exported(bound.state)
+    correct.keep_file_parts(bound)
+    settled(bound, loop)
+    np.testing.assert_array_equal(bound.state.binding.weights, bound.state.rig.weights)
+    the_same_as_bind(bound)
+    assert "recomputed" not in exported(bound.state)
+    loading.show_rig(bound, arm_rig().with_weights(None))
+    loop.run_until(lambda: bound.state.binding is not None)
+    assert "file's" not in exported(bound.state)
+
+
+def test_single_vertices_get_the_files_weights(bound, loop):
+    which, before = np.array([3, 30]), bound.state.binding.weights
+    correct.keep_file_vertices(bound, which)
+    settled(bound, loop)
+    weights = bound.state.binding.weights
+    np.testing.assert_allclose(weights[which], bound.state.rig.weights[which], atol=1e-12)
+    others = np.delete(np.arange(len(weights)), which)
+    np.testing.assert_array_equal(weights[others], before[others])
+    the_same_as_bind(bound)
+
+
 def test_an_address_brings_them_back(bound, loop):
     correct.correct(bound, ALL)
     settled(bound, loop)
-    said = from_query(bound.view.told("address"), bound.state)[1]["corrections"]
+    said = from_query(bound.view.last_sent("address"), bound.state)[1]["corrections"]
     assert from_text(said) == ALL
     bound.arrival = {"corrections": said}
     loading.show_rig(bound, arm_rig())
@@ -180,7 +204,7 @@ def test_what_an_address_has_no_room_for_is_kept_by_the_server(bound, loop):
     )  # fmt: skip
     correct.correct(bound, many)
     settled(bound, loop)
-    said = from_query(bound.view.told("address"), bound.state)[1]["corrections"]
+    said = from_query(bound.view.last_sent("address"), bound.state)[1]["corrections"]
     assert said.startswith("~")
     assert len(to_text(many)) > MAX_IN_ADDRESS > len(said)
     correct.clear(bound)
@@ -325,8 +349,12 @@ def test_parts_are_glued_and_seen_apart(session, loop):
         f"Part 1 · {first}",
         f"Part 2 · {len(vertices) - first}",
     ]
+    rows._handle_msg({"row": 0})
+    loop.run_for(0.05)
+    assert "touching" not in way.options.values(), "the body cannot follow itself"
     rows._handle_msg({"row": 1})
     loop.run_for(0.05)
+    assert "touching" in way.options.values()
     assert (rows.chosen, session.state.part, way.value) == (1, first, "")
     scene = resolve(session.state)
     assert len(scene.actors["part"].cells) == len(button.faces)
@@ -338,7 +366,7 @@ def test_parts_are_glued_and_seen_apart(session, loop):
     glue.value = "wrist"
     loop.run_for(0.05)
     assert (session.state.binding.weights[first:, 2] == 1).all()
-    assert rows.rows[1][1] == "glued: wrist"
+    assert rows.rows[1][1] == "rigid: wrist"
     way.value = "itself"
     loop.run_until(lambda: not session.tasks.running)
     parts = {first: PartCorrection("itself")}
@@ -360,3 +388,19 @@ def test_a_step_of_the_tour_shows_what_it_speaks_of_uncorrected(session, loop):
     loop.run_until(lambda: not session.tasks.running)
     assert not session.state.corrections
     assert session.state.rig.skeleton.deform[3]
+
+
+def test_tools_are_put_down_for_another_character(bound):
+    bound.state.param.update(brush=True, joint_handle=True)
+    loading.show_rig(bound, arm_rig())
+    assert not bound.state.brush
+    assert not bound.state.joint_handle
+
+
+def test_a_coordinate_that_is_rounding_noise_is_shown_as_zero(bound):
+    section = joints(bound)
+    joint = bound.state.rig.skeleton.joints[2].tolist()
+    bound.state.joint = 2
+    moving.put(bound, [3.55e-15, *joint[1:]])
+    (x,) = (field for field in section.select(pmui.TextInput) if field.label == "X")
+    assert x.value == "0"

@@ -45,15 +45,15 @@ def test_a_plane_faces_the_eye(bound):
 
 def test_the_handles_are_there_while_there_is_a_plane(bound):
     state = bound.state
-    assert bound.view.told("handles") is None
+    assert bound.view.last_sent("handles") is None
     state.param.update(panel="graph", cut_axis="y")
-    np.testing.assert_allclose(bound.view.told("handles")["box"], bounds_of(state))
+    np.testing.assert_allclose(bound.view.last_sent("handles")["box"], bounds_of(state))
     state.slicing = True
-    assert bound.view.told("handles") is None
+    assert bound.view.last_sent("handles") is None
     state.param.update(panel="distance")
-    assert bound.view.told("handles") is not None
+    assert bound.view.last_sent("handles") is not None
     state.panel = "weights"
-    assert bound.view.told("handles") is None
+    assert bound.view.last_sent("handles") is None
 
 
 def test_the_box_of_the_body_is_measured_once(bound):

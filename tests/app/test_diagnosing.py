@@ -3,18 +3,22 @@
 from dataclasses import replace
 
 import numpy as np
+import panel_material_ui as pmui
 import pytest
 
 import cutcell
+from cutcell import Corrections, JointCorrection
+from cutcell.diagnosis import Diagnosis, Finding
 from cutcell.rig import TriangleMesh
 from cutcell_app.commands import loading
 from cutcell_app.commands.check import look_at, repair, take_back
 from cutcell_app.commands.export import export_repaired
 from cutcell_app.panels.character import faults
-from cutcell_app.panels.check import check, told
+from cutcell_app.panels.check import check, summary
 from cutcell_app.scenes import resolve
 from cutcell_app.scenes.common import bounds_of
 from cutcell_app.state import State
+from cutcell_app.state.check import EXPORT
 from cutcell_viewers.camera import sees
 from cutcell_viewers.finding_scene import finding_marks
 from tests.app.test_bare import bare_arm
@@ -59,7 +63,7 @@ def texts(session):
 
 def test_what_is_bound_is_diagnosed(spoiled):
     assert codes(spoiled) == ["unweighted-vertices", "inverted-faces"]
-    assert told(spoiled.state) == "Found: 1 error, 1 warning. Choose one to see where it is."
+    assert summary(spoiled.state) == "1 error, 1 warning. Choose one to see it."
     assert "Vertices without weight" in texts(spoiled)
     assert "Repair all 2" in texts(spoiled)
     assert faults(spoiled.state) == [f.message for f in spoiled.state.diagnosis.findings]
@@ -67,7 +71,7 @@ def test_what_is_bound_is_diagnosed(spoiled):
 
 def test_a_sound_character_is_said_to_be_sound(bound, loop):
     loop.run_until(lambda: bound.state.diagnosis is not None)
-    assert told(bound.state).startswith("Nothing is wrong")
+    assert summary(bound.state).startswith("No problems")
     assert faults(bound.state) == []
 
 
@@ -83,7 +87,7 @@ def test_a_finding_is_marked_and_gone_to(spoiled):
     assert "Binding already treats them as flipped" in texts(spoiled)
     assert sees(spoiled.view.camera, marked.points, spoiled.view.aspect)
     look_at(spoiled, "inverted-faces")
-    assert spoiled.state.found is None
+    assert spoiled.state.selected_finding is None
 
 
 def test_a_repair_is_bound_and_can_be_taken_back(spoiled, loop):
@@ -96,7 +100,7 @@ def test_a_repair_is_bound_and_can_be_taken_back(spoiled, loop):
     repair(spoiled, ["unweighted-vertices"])
     loop.run_until(lambda: state.diagnosis is not None and not state.diagnosis.findings)
     assert len(state.repair.done) == 2
-    assert "Before: 1 error, 1 warning, now nothing" in texts(spoiled).replace("&#44;", ",")
+    assert "Repaired: 1 error, 1 warning → nothing" in texts(spoiled).replace("&#44;", ",")
     take_back(spoiled)
     loop.run_until(lambda: state.diagnosis is not None)
     assert state.rig is original
@@ -137,3 +141,36 @@ def test_joints_and_vertices_get_beads():
         low, high = bounds_of(State(rig=rig))
         assert (middle >= low - 0.1).all()
         assert (middle <= high + 0.1).all()
+
+
+def test_the_weights_of_the_export_are_checked(spoiled, loop):
+    state = spoiled.state
+    loop.run_until(lambda: state.export_diagnosis is not None)
+    assert state.export_diagnosis.findings == ()
+    assert codes(spoiled) == ["unweighted-vertices", "inverted-faces"]
+    weights = state.binding.weights.copy()
+    weights[:5] = 0
+    state.binding = replace(state.binding, weights=weights)
+    loop.run_until(lambda: state.export_diagnosis.findings)
+    look_at(spoiled, EXPORT + "unweighted-vertices")
+    assert state.selected_finding.vertices.tolist() == list(range(5))
+    look_at(spoiled, "unweighted-vertices")
+    assert state.selected_finding.vertices.tolist() == list(range(3))
+
+
+def test_joints_that_lead_a_part_are_locked_not_excluded(bound, loop):
+    loop.run_until(lambda: bound.state.diagnosis is not None)
+    rig = bound.state.rig
+    eye, control = 2, 1
+    weights = rig.weights.copy()
+    weights[:, control] = np.minimum(weights[:, control], 0.2)
+    weights[:, eye] = 0
+    weights[:2, [eye, control]] = [1, 0]
+    weights[:, 0] = 1 - weights[:, 1:].sum(axis=1)
+    bound.state.rig = rig.with_weights(weights)
+    finding = Finding("stray-weights", "warning", "", "", joints=np.array([control, eye]))
+    bound.state.param.update(diagnosis=Diagnosis(rig, (finding,)), finding=finding.code)
+    buttons = {button.label: button for button in check(bound).select(pmui.Button)}
+    next(b for label, b in buttons.items() if "Exclude elbow" in label)
+    next(b for label, b in buttons.items() if "Lock wrist" in label).clicks += 1
+    assert bound.state.corrections == Corrections(joints={"wrist": JointCorrection(locked=True)})

@@ -208,10 +208,10 @@ def test_a_machine_that_cannot_draw_is_told_so(bound, loop, small, monkeypatch):
 
 
 def test_the_panel_says_whether_colours_come_along(tmp_path, demo_paths):
-    assert "as it was" in _described(cutcell.load(demo_paths[0]))
+    assert "keeps everything" in _described(cutcell.load(demo_paths[0]))
     path = tmp_path / "column.obj"
     path.write_text("".join(f"v {x} {y} {z}\n" for x, y, z in COLUMN) + "f 1 2 3\nf 2 3 4\n")
-    assert "without materials" in _described(cutcell.load(path))
+    assert "no materials" in _described(cutcell.load(path))
     colors = "".join(f"v {x} {y} {z} {x} {y} 0\n" for x, y, z in COLUMN)
     path.write_text(colors + "f 1 2 3\nf 2 3 4\n")
     assert "base colours" in _described(cutcell.load(path))

@@ -80,7 +80,7 @@ def test_a_vertex_apart_from_the_rest_says_why_it_fell_back(rig):
 
 def test_a_node_tells_where_it_is_and_what_it_leads_to(rig, binding):
     graph = binding.graph
-    state = State(rig=rig, binding=binding, panel="graph")
+    state = State(rig=rig, binding=binding, panel="graph", graph_resolution=0)
     assert node_facts(state, Memo()) is None
     for kind, name in enumerate(("mesh", "interior", "surface")):
         state.node = node = int(np.flatnonzero((graph.node_kind == kind) & graph.connected)[0])

@@ -210,7 +210,7 @@ def test_keys(session, loop):
     act("child")
     state.cut_axis = "x"
     act("undo")
-    assert state.cut_axis == "off"
+    assert state.cut_axis == "auto"
     act("redo")
     assert state.cut_axis == "x"
     act("play")
@@ -218,7 +218,7 @@ def test_keys(session, loop):
     act("play")
     assert not state.playing
     act("reset")
-    assert (state.cut_axis, state.turns, state.moving) == ("off", {}, False)
+    assert (state.cut_axis, state.turns, state.moving) == ("auto", {}, False)
     act("dance")
 
 
@@ -229,13 +229,13 @@ def test_the_choice_of_joints_that_deform_can_be_undone(bound, loop):
     assert bound.state.binding.weights[:, 2].max() == 0
     keys.act(bound, "undo")
     assert bound.state.rig is before
-    assert bound.view.told("able") == [False, True]
+    assert bound.view.last_sent("able") == [False, True]
     loop.run_until(lambda: not bound.tasks.running)
     assert bound.state.binding.weights[:, 2].max() > 0
     keys.act(bound, "redo")
     loop.run_until(lambda: not bound.tasks.running)
     assert bound.state.binding.weights[:, 2].max() == 0
-    assert bound.view.told("able") == [True, False]
+    assert bound.view.last_sent("able") == [True, False]
 
 
 def test_a_repair_can_be_undone(session, loop):

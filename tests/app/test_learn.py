@@ -30,7 +30,9 @@ def computed_at(state, resolution):
 def test_a_step_sets_the_scene_and_can_be_left_and_taken_up(session, loop):
     go(session, 6)
     state, look = session.state, TOUR[6].look
-    loop.run_until(lambda: computed_at(state, look.choices["resolution"]), 90)
+    loop.run_until(lambda: state.binding is not None and state.shown_graph is not None, 90)
+    assert state.shown_graph.lattice.resolution == look.choices["graph_resolution"] == 20
+    assert state.graph.lattice.resolution == state.resolution == 64
     assert (state.tour, state.demo, state.panel) == (6, look.demo, "graph")
     assert state.rig.skeleton.names[state.joint] == look.bone
     assert session.view.camera == camera_of(session, look)
@@ -76,7 +78,7 @@ def test_a_link_of_a_person_on_the_tour_brings_back_what_they_made_of_it(session
     go(session, 9)
     loop.run_until(lambda: session.state.binding is not None)
     session.state.param.update(connectivity="any", panel="learn")
-    query = session.view.told("address")
+    query = session.view.last_sent("address")
     again = begin(loop)
     arrival.arrive(again, query, lambda: None)
     loop.run_until(lambda: again.state.binding is not None)

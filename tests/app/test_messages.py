@@ -10,7 +10,7 @@ import pytest
 
 from cutcell.errors import FileError
 from cutcell.runtime.display import printable
-from cutcell_app.jobs.messages import sentence, told
+from cutcell_app.jobs.messages import error_text, sentence
 from cutcell_app.panels.controls import as_text, unique_names
 from cutcell_app.server.log import Printable
 
@@ -20,7 +20,7 @@ from cutcell_app.server.log import Printable
     [
         (FileError("/tmp/cutcell-a/b/rig.glb: the file is empty"), "rig.glb: the file is empty."),
         (FileError('joint "a\x1b[31m\nb" is bad'), 'Joint "a\\x1b[31m\\nb" is bad.'),
-        (MemoryError("Unable to allocate 44.0 GiB"), "There is not enough memory for this; a"),
+        (MemoryError("Unable to allocate 44.0 GiB"), "Not enough memory. "),
         (
             OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), "/tmp/cutcell-x/a.csv"),
             "The server's disk is full. ",
@@ -30,7 +30,7 @@ from cutcell_app.server.log import Printable
     ],
 )
 def test_errors_are_told_without_folders(error, expected):
-    message = told(error)
+    message = error_text(error)
     assert expected in message
     assert message.endswith(".")
     assert "/" not in message

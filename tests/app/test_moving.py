@@ -55,7 +55,7 @@ def test_the_weights_follow_a_joint_while_it_is_dragged(held, loop):
     state, rig = held.state, arm_rig()
     before, steps = state.binding.weights, len(held.history._past)
     bones = resolve(state).actors["bones"].points
-    assert held.view.told("mover")["at"] == pytest.approx([0, 0, 0])
+    assert held.view.last_sent("mover")["at"] == pytest.approx([0, 0, 0])
     fields = pmui.Column(*place(held)).select(pmui.TextInput)
     drag(held, [0.1, 0.05, 0])
     assert [field.value for field in fields] == ["0.1", "0.05", "0"]
@@ -69,7 +69,7 @@ def test_the_weights_follow_a_joint_while_it_is_dragged(held, loop):
     drag(held, [0.4, 0.1, 0], done=True)
     assert state.corrections == Corrections({"elbow": JointCorrection(position=(0.4, 0.1, 0))})
     assert [field.value for field in fields] == ["0.4", "0.1", "0"]
-    assert held.view.told("mover")["at"] == pytest.approx([0.4, 0, -0.1])
+    assert held.view.last_sent("mover")["at"] == pytest.approx([0.4, 0, -0.1])
     settled(held, loop)
     the_same_as_bind(held, rig)
     assert not np.array_equal(resolve(state).actors["body"].colors, on_the_way)
@@ -92,7 +92,7 @@ def test_what_is_left_while_it_is_dragged_is_as_it_was(held, loop):
     drag(held, [0.1, 0.05, 0])
     held.state.panel = "graph"
     assert held.state.dragged is None
-    assert held.view.told("mover") is None
+    assert held.view.last_sent("mover") is None
     settled(held, loop)
     held.state.panel = "weights"
     drag(held, [0.1, 0.05, 0], joint=0)  # of a joint that is no longer chosen
@@ -158,7 +158,7 @@ def test_the_other_side_moves_along(session, loop):
     state = session.state
     state.param.update(joint=1, joint_handle=True)
     loop.run_until(lambda: not session.tasks.running)
-    told = session.view.told("mover")["mirror"]
+    told = session.view.last_sent("mover")["mirror"]
     assert np.abs(told) == pytest.approx([1, 0, 0, 0])
     drag(session, [0.7, 0.1, 0.05], joint=1, done=True)
     assert {n: one.position for n, one in state.corrections.joints.items()} == {
@@ -169,11 +169,11 @@ def test_the_other_side_moves_along(session, loop):
     moving.put_back(session)
     assert not state.corrections
     state.mirrored = False
-    assert session.view.told("mover")["mirror"] is None
+    assert session.view.last_sent("mover")["mirror"] is None
     moving.put(session, [0.7, 0, 0])
     assert list(state.corrections.joints) == ["arm.L"]
     state.param.update(mirrored=True, joint=0)
-    assert session.view.told("mover")["mirror"] is None, "it is its own mirror image"
+    assert session.view.last_sent("mover")["mirror"] is None, "it is its own mirror image"
 
 
 def test_the_middle_of_a_limb_is_not_of_what_lies_beside_it():

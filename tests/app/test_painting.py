@@ -172,8 +172,8 @@ def test_it_paints_while_the_character_is_posed(painter, loop):
     state = painter.state
     state.panel = "pose"
     pose.turn_joint(painter, 2, 40.0)
-    assert painter.view.told("gizmo") is None, "rings would be in the way"
-    assert painter.view.told("brush")["radius"] == pytest.approx(radius_of(state))
+    assert painter.view.last_sent("gizmo") is None, "rings would be in the way"
+    assert painter.view.last_sent("brush")["radius"] == pytest.approx(radius_of(state))
     stroke(painter, MIDDLE)
     settled(painter, loop)
     assert "scalars" in painter.answers[-1]["painted"]
@@ -187,11 +187,11 @@ def test_it_paints_while_the_character_is_posed(painter, loop):
     settled(painter, loop)
     assert np.array_equal(posed, state.binding.weights), "a stroke lies on the surface at rest"
     state.param.update(panel="pose", moving=True, playing=True)
-    assert painter.view.told("brush") is None
+    assert painter.view.last_sent("brush") is None
     state.playing = False
-    assert painter.view.told("brush") is not None
+    assert painter.view.last_sent("brush") is not None
     state.panel = "graph"
-    assert painter.view.told("brush") is None
+    assert painter.view.last_sent("brush") is None
 
 
 def test_what_is_painted_stays_with_the_address_and_after_rebinding(painter, loop):
@@ -203,7 +203,7 @@ def test_what_is_painted_stays_with_the_address_and_after_rebinding(painter, loo
     held = state.corrections
     assert len(held.vertices) > MAX_VERTICES
     assert len(to_text(held)) > MAX_IN_ADDRESS
-    said = from_query(painter.view.told("address"), state)[1]["corrections"]
+    said = from_query(painter.view.last_sent("address"), state)[1]["corrections"]
     assert len(said) < MAX_IN_ADDRESS
     painter.arrival = {"corrections": said}
     loading.show_rig(painter, arm_rig())
@@ -232,7 +232,7 @@ def test_keys_and_switches(painter, loop):
     assert state.brush_strength == 1
     keys.act(painter, "brush away")
     assert not state.brush
-    assert painter.view.told("brush") is None
+    assert painter.view.last_sent("brush") is None
     state.panel = "graph"
     keys.act(painter, "brush")
     assert (state.panel, state.brush) == ("weights", True)
@@ -283,11 +283,12 @@ def test_the_other_side_is_painted_where_there_is_one(session, loop):
     state = session.state
     names = state.rig.skeleton.names
     state.param.update(joint=names.index("forearm.L"), brush=True, brush_radius=0.05)
-    part = session.view.told("brush")
+    part = session.view.last_sent("brush")
     assert np.linalg.norm(part["mirror"][:3]) == pytest.approx(1)
-    vertex = int(np.abs(state.weights[:, state.joint] - 0.5).argmin())
+    mesh, joint = state.rig.mesh, state.rig.skeleton.joints[state.joint]
+    distance = np.linalg.norm(mesh.vertices - joint, axis=1)
+    vertex = int(np.where(state.weights[:, state.joint] < 0.5, distance, np.inf).argmin())
     point = [vertex, vertex, vertex, 1, 0, 0]
-    state.brush_mode = "subtract"
     session.view._listeners["brush"]({"points": point, "first": True, "done": True})
     loop.run_until(lambda: not session.tasks.running)
     x = state.rig.mesh.vertices[list(state.corrections.vertices), 0]
@@ -295,13 +296,13 @@ def test_the_other_side_is_painted_where_there_is_one(session, loop):
     assert (x < 0).any()
     assert state.corrections.joints == {}
     state.panel = "pose"
-    assert session.view.told("brush") == part
+    assert session.view.last_sent("brush") == part
     pose.turn_joint(session, 0, 20.0)
-    assert session.view.told("brush")["mirror"] is None, "its image is not where it paints"
+    assert session.view.last_sent("brush")["mirror"] is None, "its image is not where it paints"
     state.panel = "weights"
-    assert session.view.told("brush") == part
+    assert session.view.last_sent("brush") == part
     state.brush_mirrored = False
-    assert session.view.told("brush")["mirror"] is None
+    assert session.view.last_sent("brush")["mirror"] is None
     assert brush.paints(state)
 
 
@@ -355,7 +356,7 @@ def test_a_selection_is_of_one_mesh(painter, loop):
     brush.select(painter, np.arange(len(state.rig.mesh.vertices)) < 5)
     assert selected(state).sum() == 5
     section = section_of_brush(painter)
-    assert any("Strokes stay on 5 vertices of" in text.object for text in texts(section))
+    assert any("Strokes are limited to 5 vertices of" in text.object for text in texts(section))
     loading.load_demo(painter, "octopus")
     loop.run_until(lambda: not painter.tasks.running)
     assert selected(state) is None

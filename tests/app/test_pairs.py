@@ -5,9 +5,9 @@ import pytest
 
 from cutcell.dataset import load_audit
 from cutcell_app.commands import keys, loading, pairs
+from cutcell_app.layout import status
 from cutcell_app.layout.session import begin
-from cutcell_app.layout.status import summary
-from cutcell_app.panels.pairs import facts, kept, told
+from cutcell_app.panels.pairs import facts, summary, threshold_text
 from cutcell_app.panels.pairs import pairs as panel
 from cutcell_app.scenes import resolve
 from cutcell_app.scenes.common import bounds_of
@@ -54,14 +54,14 @@ def test_both_stand_side_by_side_as_large_as_each_other(looking):
     assert scene.actors["bones of B"].visible
     state.skeleton = False
     assert not resolve(state).actors["bones of B"].visible
-    assert summary(state).count("3 joints") == 2
+    assert status.summary(state).count("3 joints") == 2
 
 
 def test_one_steps_through_all_pairs_or_those_of_a_tier(looking, loop):
     state = looking.state
     count = len(state.opened.pairs)
     assert count == 3
-    assert told(state) == "Pair 1 of 3."
+    assert summary(state) == "Pair 1 of 3."
     keys.act(looking, "next")
     assert state.beside is None
     loop.run_until(lambda: state.beside is not None)
@@ -74,7 +74,7 @@ def test_one_steps_through_all_pairs_or_those_of_a_tier(looking, loop):
     assert state.stepped == twins
     assert state.pair in twins
     pairs.choose_tier(looking, "overruled")
-    assert told(state) == "There are none of these."
+    assert summary(state) == "No such pairs."
     keys.act(looking, "previous")
     assert state.pair in twins
 
@@ -89,7 +89,7 @@ def test_what_is_known_of_a_pair_is_told(looking):
 def test_a_verdict_changes_what_is_kept_and_stays_in_the_folder(looking, loop, audited):
     state = looking.state
     before = len(state.opened.audit.keep)
-    assert f"{before} of 3 characters are kept." in kept(state)
+    assert f"{before} of 3 characters are kept." in threshold_text(state)
     for place in range(3):
         state.pair = place
         pairs.overrule(looking, "different")

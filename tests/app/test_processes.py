@@ -133,7 +133,7 @@ def test_what_is_not_wanted_ends_with_all_that_it_started(tmp_path):
             raise Cancelled
 
     with pytest.raises(Cancelled):
-        in_process(starts_another, path, wanted=wanted)
+        in_process(starts_another, path, check=wanted)
     for pid in map(int, path.read_text().split()):
         wait_until(lambda pid=pid: gone(pid))
 

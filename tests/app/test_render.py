@@ -19,6 +19,7 @@ from cutcell_app.render import VIEWS, Choices, check, describe, find_bone, find_
 from cutcell_app.render.options import READERS
 from cutcell_app.render_flags import CHOICES, PICTURE, SETTINGS
 from cutcell_assets import demo_path
+from cutcell_viewers.camera import Camera
 from tests.viewers.arm import arm_rig
 from tests.viewers.textures import wall
 
@@ -103,7 +104,7 @@ def test_each_choice_of_the_command_reaches_the_picture(drawn, tmp_path):
     assert not last.description.actors["bones"].visible
     assert not last.legend
     assert last.direction == VIEWS["back"]
-    assert last.description.legend.high.endswith("cm²")
+    assert last.description.legend.high.endswith("mm")
 
 
 def test_what_is_seen_inside_reaches_the_picture(drawn, tmp_path):
@@ -312,6 +313,57 @@ def test_numbers_that_cannot_be_saved_are_told(rig, tmp_path, name, tables, erro
     tables = {k: np.zeros(2) if v is None else rig.weights for k, v in tables.items()}
     with pytest.raises(error, match=words):
         save_numbers(tmp_path / name, rig, **tables)
+
+
+def test_the_address_of_a_page_is_drawn_from_where_it_looks(drawn, tmp_path):
+    query = (
+        "?rig=biped&panel=graph&bone=hips&cut_axis=x&mesh_edges=0&graph_resolution=24"
+        "&camera=1,2,3,0,1,0"
+    )
+    for address in (query, "http://127.0.0.1:5006/" + query):
+        result = run(demo_path("robot"), tmp_path / "a.png", "--address", address)
+        assert result.exit_code == 0, result.stderr
+        scene = drawn[-1].description
+        assert scene.cut.normal == (1, 0, 0)
+        assert not scene.actors["mesh edges"].visible
+        assert scene.legend.title == "Graph, R = 24 (weights: 16)"
+        assert drawn[-1].camera == Camera((1, 2, 3), (0, 1, 0))
+    run(demo_path("robot"), tmp_path / "a.png", "--address", query, "--cut", "z", "--view", "back")
+    assert drawn[-1].description.cut.normal == (0, 0, 1)
+    assert drawn[-1].camera is None
+    assert drawn[-1].direction == VIEWS["back"]
+
+
+def test_an_address_opens_the_panel_and_the_settings_it_says(drawn, tmp_path):
+    robot = cutcell.load(demo_path("robot"))
+    names = robot.skeleton.names
+    query = f"?panel=pose&bone={names[3]}&turns=3:0,0,40&weights_shown=dominant&falloff=paper"
+    assert run(demo_path("robot"), tmp_path / "a.png", "--address", query).exit_code == 0
+    assert drawn[-1].description.pose is not None
+    assert "ominant" in drawn[-1].description.legend.title
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        ("--address", "?panel=graph&kitchen=1"),
+        ("--address", "?step=3"),
+        ("--address", "?corrections=abc"),
+        ("--camera", "1,2,3"),
+        ("--camera", "1,2,3,0,0,0", "--view", "back"),
+    ],
+)
+def test_what_cannot_be_followed_is_refused(drawn, tmp_path, options):
+    assert run(demo_path("robot"), tmp_path / "a.png", *options).exit_code == 2
+    assert not drawn
+
+
+def test_a_view_of_a_finding_is_seen_from_there(drawn, tmp_path):
+    for view in ("front", "back"):
+        options = ("--panel", "check", "--finding", "unreachable-vertices", "--view", view)
+        assert run(demo_path("biped_cape"), tmp_path / "a.png", *options).exit_code == 0
+        away = np.subtract(drawn[-1].camera.position, drawn[-1].camera.focal_point)
+        assert np.sign(away[2]) == np.sign(VIEWS[view][2])
 
 
 def test_each_flag_is_a_choice_a_setting_or_asked_for_of_the_picture():

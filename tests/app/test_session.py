@@ -13,9 +13,10 @@ import pytest
 import cutcell
 from cutcell.errors import MeshError
 from cutcell_app import scenes
-from cutcell_app.commands import binding, loading, look
+from cutcell_app.commands import binding, keys, loading, look
 from cutcell_app.layout.session import begin
 from cutcell_app.layout.status import stage_text, summary, warning
+from cutcell_viewers.character import drawn_segments
 from cutcell_viewers.description import Actor
 from tests.viewers.arm import arm_rig
 
@@ -111,14 +112,14 @@ def test_unexpected_errors_are_told_kindly_and_logged(bound, loop, monkeypatch, 
     monkeypatch.setattr(cutcell, "bind", broken)
     binding.bind(bound)
     loop.run_until(lambda: bound.state.message is not None)
-    assert "unexpected" in bound.state.message[1]
+    assert "Unexpected" in bound.state.message[1]
     assert "the sky fell" in caplog.text
 
 
 def test_what_goes_wrong_on_the_pages_own_thread_is_told_too(session, loop):
     session.tasks.later(lambda: [].pop())
     loop.run_until(lambda: session.state.message is not None)
-    assert "unexpected" in session.state.message[1]
+    assert "Unexpected" in session.state.message[1]
 
 
 def test_cancelling_keeps_what_was_there(bound, loop, monkeypatch):
@@ -298,7 +299,7 @@ def test_a_vertex_is_chosen_and_forgotten_with_its_character(bound, loop):
 
 def test_the_wave_is_told_once_and_not_frame_by_frame(bound, loop):
     told = []
-    bound.view.tell = lambda **parts: told.append(parts)
+    bound.view.send = lambda **parts: told.append(parts)
     bound.state.panel = "distance"
     loop.run_until(lambda: bound.state.field is not None)
     bound.state.param.update(wave=True, animating=True)
@@ -379,7 +380,7 @@ def test_running_out_of_memory_is_a_sentence_and_the_page_goes_on(bound, loop, m
         patch.setattr(cutcell, "bind", too_much)
         bound.state.resolution = 24
         loop.run_until(lambda: bound.state.message is not None)
-    assert "not enough memory" in bound.state.message[1]
+    assert "Not enough memory" in bound.state.message[1]
     assert bound.state.binding is before
     bound.state.resolution = 20
     loop.run_until(lambda: bound.state.binding is not before)
@@ -413,6 +414,24 @@ def test_an_error_that_nobody_looks_at_is_measured_no_longer(session, loop, monk
     assert not session.tasks.jobs("errors").running
     session.state.panel = "pose"
     assert session.tasks.jobs("errors").running
+
+
+def test_a_key_frames_the_chosen_bone(bound):
+    bound.state.joint = 0
+    keys.act(bound, "frame")
+    camera, (start, end, joint) = bound.view.camera, drawn_segments(bound.state.rig)
+    middle = np.concatenate([start[joint == 1], end[joint == 1]]).mean(axis=0)
+    bound.state.joint = 1
+    keys.act(bound, "frame")
+    np.testing.assert_allclose(bound.view.camera.focal_point, middle, atol=1e-9)
+    assert bound.view.camera != camera
+    away = np.subtract(bound.view.camera.position, middle)
+    before = np.subtract(camera.position, camera.focal_point)
+    np.testing.assert_allclose(away / np.linalg.norm(away), before / np.linalg.norm(before))
+    bound.state.tour = 0
+    bound.state.joint = 0
+    keys.act(bound, "frame")
+    np.testing.assert_allclose(bound.view.camera.focal_point, middle, atol=1e-9)
 
 
 def test_meshes_of_the_server_are_shown_with_every_character(bound):

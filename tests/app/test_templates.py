@@ -52,7 +52,7 @@ def test_a_template_is_fitted_and_bound(fitted, loop):
     assert state.rig.skeleton.names == tuple(f"bone.{n}" for n in range(1, 6))
     assert state.weights.shape == (len(state.rig.mesh.vertices), 5)
     assert "bones" in resolve(state).actors
-    assert fitted.view.told("bones")["names"][0] == "bone.1"
+    assert fitted.view.last_sent("bones")["names"][0] == "bone.1"
     assert chosen_template(state) == fitted.menu.value == "Chain"
 
 
@@ -161,7 +161,7 @@ def test_a_joint_is_renamed(fitted, loop):
     assert state.rig.skeleton.names[1] == field.value == "elbow"
     assert state.rig.skeleton.parents.tolist() == [-1, 0, 1, 2, 3]
     np.testing.assert_array_equal(state.weights, weights)
-    assert fitted.view.told("bones")["names"][1] == "elbow"
+    assert fitted.view.last_sent("bones")["names"][1] == "elbow"
     for wrong, says in (("bone.1", "already"), (" ", "needs a name")):
         field.value = wrong
         assert says in state.message[1]

@@ -111,7 +111,7 @@ def test_a_cut_is_six_numbers(scene):
 
 
 def test_nothing_is_sent_before_the_browser_is_ready(view, scene):
-    view.tell(theme=theme_part(DARK))
+    view.send(theme=theme_part(DARK))
     view.present(scene)
     assert view.sent == []
     view._handle_msg({"type": "ready", "width": 900})
@@ -123,7 +123,7 @@ def test_nothing_is_sent_before_the_browser_is_ready(view, scene):
 
 def test_a_browser_that_comes_again_gets_everything_again(view, scene):
     view.present(scene)
-    view.tell(camera=camera_part(framing(scene.bounds)))
+    view.send(camera=camera_part(framing(scene.bounds)))
     view._handle_msg({"type": "ready"})
     view._handle_msg({"type": "ready"})
     first, second = view.sent

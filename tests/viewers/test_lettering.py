@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from PIL import Image
 
 from cutcell_viewers import lettering
 from cutcell_viewers.description import Legend
@@ -16,5 +17,27 @@ def test_a_legend_is_as_wide_as_its_title(height, monkeypatch):
         lettering, "_shortened", lambda *of: written.append(shortened(*of)) or written[-1]
     )
     title = "Each bone's colour, mixed by weight"
-    lettering.write_legend(np.full((height, 980, 3), 255, np.uint8), Legend(title), LIGHT)
+    lettering.legend_card(Legend(title), LIGHT, (980, height))
     assert written == [title]
+
+
+def test_a_legend_takes_the_same_part_of_a_picture_of_any_size():
+    legend = Legend("Distance from hand.L", "distance", "0", "1")
+    parts = [
+        lettering.legend_card(legend, LIGHT, (4 * k, 3 * k)).height / (3 * k)
+        for k in (200, 400, 1000)
+    ]
+    assert max(parts) < 1.08 * min(parts)
+
+
+def test_a_legend_covers_nothing():
+    covered = np.zeros((300, 400), bool)
+    card = Image.new("RGBA", (100, 60))
+    corners = []
+    for _ in range(4):
+        x, y = lettering.free_corner(covered, card)
+        assert not covered[y : y + 60, x : x + 100].any()
+        corners.append((x > 200, y > 150))
+        covered[y : y + 60, x : x + 100] = True
+    assert corners == [(False, True), (True, True), (False, False), (True, False)]
+    assert lettering.free_corner(covered, card) is None

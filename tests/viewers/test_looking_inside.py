@@ -11,6 +11,7 @@ from cutcell.geodesics import shortest_path
 from cutcell.graph import slice_rays
 from cutcell_viewers.character import to_scene
 from cutcell_viewers.graph_scene import cut_at, depth_field
+from cutcell_viewers.joint_colors import colors_of
 from cutcell_viewers.marks import beads, path_tube, rods, tube, vertex_mark
 from cutcell_viewers.palette import EYES, JOINT_COLORS, LIGHT, _srgb_to_oklab, as_seen, joint_colors
 from cutcell_viewers.plane_section import from_scene, part_above, plane_section
@@ -241,7 +242,7 @@ def test_ways_to_colour_weights(rig):
     held = np.array([[0.7, 0.3, 0.0], [0.0, 0.0, 1.0], [0.2, 0.5, 0.3]])
     look, _ = dominant_colors(rig, held)
     assert look["reading"].values.tolist() == [0, 2, 1]
-    expected = joint_colors(rig.skeleton.parents)[[0, 2, 1]]
+    expected = colors_of(rig)[[0, 2, 1]]
     np.testing.assert_allclose(look["colors"] / 255, expected, atol=0.01)
     look, legend = count_colors(rig, held)
     assert look["scalars"].tolist() == [2, 1, 3]

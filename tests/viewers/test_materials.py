@@ -150,7 +150,7 @@ def picture(rig, pose=None):
     try:
         actors = {"body": body(rig, materials=found.body)}
         scene.show(Description(actors, images=found.images, pose=pose))
-        scene.look(FRONT)
+        scene.set_camera(FRONT)
         return scene.render_png()
     finally:
         scene.close()

@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 
 from cutcell_viewers import palette
+from cutcell_viewers.joint_colors import colors_of
+from tests.viewers.arm import arm_rig
 
 
 def test_the_papers_colours():
@@ -55,3 +57,30 @@ def test_the_three_kinds_of_edges_are_told_apart_by_every_eye(theme):
     # Green and orange of the paper are hardly two colours to an eye without middle cones.
     paper = palette.differences([palette.INTERIOR, palette.SURFACE])[0, 1]
     assert paper < 0.1
+
+
+def test_colours_of_joints_repeat_only_when_all_are_used():
+    count = len(palette.JOINT_COLORS)
+    # Sixteen joints in a star, of which four have no skin.
+    parents, idle = np.array([-1, *[0] * 15]), [1, 2, 3, 4]
+    colors = palette.joint_colors(parents, idle=idle)
+    assert len(np.unique(np.delete(colors, idle, axis=0), axis=0)) == count
+
+
+def test_parts_whose_skin_touches_have_other_colours():
+    rng = np.random.default_rng(0)
+    parents = np.concatenate([[-1], [int(rng.integers(k)) for k in range(1, 80)]])
+    touching = np.array([(a, b) for a in range(80) for b in (a + 7, a + 20, a + 33) if b < 80])
+    colors = palette.joint_colors(parents, touching)
+    assert (np.abs(colors[touching[:, 0]] - colors[touching[:, 1]]).max(axis=1) > 0).all()
+
+
+def test_a_rig_takes_its_touching_parts_from_the_files_weights():
+    rig = arm_rig()
+    weights = np.zeros_like(rig.weights)
+    weights[:, 2] = rig.mesh.vertices[:, 0] > 0
+    weights[:, 0] = 1 - weights[:, 2]
+    rig = rig.with_weights(weights)
+    colors = colors_of(rig)
+    assert colors_of(rig) is colors
+    assert (colors[0] != colors[2]).any()

@@ -7,13 +7,17 @@ import pytest
 from PIL import Image
 
 import cutcell
+from cutcell.errors import ParameterError
 from cutcell_viewers import palette
 from cutcell_viewers.camera import Camera, framing
 from cutcell_viewers.description import Actor, Description
 from cutcell_viewers.distance_scene import distance_scene
+from cutcell_viewers.film import ground
 from cutcell_viewers.graph_scene import cut_at, graph_scene
+from cutcell_viewers.palette import LIGHT
 from cutcell_viewers.pose_scene import joint_turns, pose_scene, turn
 from cutcell_viewers.scene import Scene, render_png
+from cutcell_viewers.studio import Studio
 from cutcell_viewers.weights_scene import weights_scene
 from tests.viewers.arm import arm_rig
 
@@ -112,7 +116,7 @@ def test_a_scene_can_be_changed_in_place(rig, scenes):
         assert set(scene.names) == {"body", "bones", "bone outlines", "attachment 0"}
         scene.show(scenes["graph"])
         assert set(scene.names) == {"mesh edges", "interior edges", "surface edges"}
-        scene.look(framing(scenes["graph"].bounds))
+        scene.set_camera(framing(scenes["graph"].bounds))
         changed = scene.render_png()
     finally:
         scene.close()
@@ -127,7 +131,7 @@ def test_nodes_have_their_forms_in_pictures():
             color=(1.0, 0.0, 0.0), width=60, form=form,
         )  # fmt: skip
         camera = Camera((0.0, 0.0, 4.0), (0.0, 0.0, 0.0))
-        picture = render_png(Description({"node": point}), size=(200, 200), camera=camera)
+        picture = render_png(Description({"node": point}), size=(800, 800), camera=camera)
         red = picture.astype(int)
         return (red[:, :, 0] - red[:, :, 1] > 60).sum(axis=1)
 
@@ -135,3 +139,47 @@ def test_nodes_have_their_forms_in_pictures():
     assert square.sum() > ball.sum() > triangle.sum() > 500
     rows = np.flatnonzero(triangle)
     assert triangle[rows[-1] - 3] > 2 * triangle[rows[0] + 3]  # it stands on its base
+
+
+def test_widths_are_the_same_part_of_a_picture_of_any_size():
+    ends = np.array([[-1, 0, 0], [1, 0, 0]], np.float32)
+    camera = Camera((0.0, 0.0, 4.0), (0.0, 0.0, 0.0))
+
+    def part(side, **width):
+        line = Actor("lines", ends, np.array([[0, 1]], np.int32), color=(1.0, 0.0, 0.0), **width)
+        picture = render_png(Description({"line": line}), size=(side, side), camera=camera)
+        column = picture[:, side // 2].astype(int)
+        return (column[:, 0] - column[:, 1] > 60).sum() / side
+
+    for width in ({"width": 20}, {"width": 4, "thick": 0.02}):
+        assert part(300, **width) == pytest.approx(part(1200, **width), abs=0.006)
+    # A radius of the scene: as thick as a surface of that size.
+    assert part(1200, width=4, thick=0.02) == pytest.approx(
+        0.04 / (8 * np.tan(np.radians(15))), abs=0.002
+    )
+
+
+def test_where_no_corner_is_free_the_legend_stands_below_the_figures(rig):
+    scene = weights_scene(rig, rig.weights)
+    near = Camera((0.5, 0.0, 0.6), (0.5, 0.0, 0.0))  # the body fills the picture
+    with Studio(scene, size=(300, 300)) as studio:
+        picture = studio.draw(near)
+    strip = np.abs(picture[-3, :].astype(int) - 255 * np.array(LIGHT.bottom)).max(axis=1)
+    assert (strip < 3).all()
+
+
+def test_a_ground_of_one_colour_or_none(rig):
+    scene = weights_scene(rig, rig.weights)
+    theme, clear = ground("light", "#102030")
+    assert not clear
+    with Studio(scene, theme, (200, 150)) as studio:
+        assert studio.draw(studio.camera())[0, 0].tolist() == [16, 32, 48]
+    theme, clear = ground("light", "transparent")
+    with Studio(scene, theme, (200, 150), transparent=clear) as studio:
+        picture = studio.draw(studio.camera())
+    assert picture.shape == (150, 200, 4)
+    assert picture[0, 0, 3] == 0
+    assert picture[:, :, 3].max() == 255
+    for background, kind in (("transparent", ".jpg"), ("kitchen", ".png")):
+        with pytest.raises(ParameterError):
+            ground("light", background, kind)

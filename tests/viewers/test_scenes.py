@@ -20,6 +20,7 @@ from cutcell_viewers.character import (
 from cutcell_viewers.description import Description
 from cutcell_viewers.distance_scene import distance_scene
 from cutcell_viewers.graph_scene import LAYERS, NODES, cut_at, graph_scene
+from cutcell_viewers.joint_colors import colors_of
 from cutcell_viewers.palette import UNREACHED, colormap, to_bytes
 from cutcell_viewers.pose_scene import joint_turns, pose_at, pose_scene, swing, turn
 from cutcell_viewers.skin import moved
@@ -100,7 +101,7 @@ def test_what_carries_no_weight_is_drawn_apart_from_bones(rig):
 
 
 def test_bones_have_the_colours_of_their_joints_and_outlines_around_them(rig):
-    colors = palette.joint_colors(rig.skeleton.parents)
+    colors = colors_of(rig)
     drawn = bones(rig, 1, colors=colors)
     own = palette.to_bytes(colors)
     assert (drawn["bones"].colors.reshape(3, 6, 3) == own[:, None]).all()
@@ -119,7 +120,7 @@ def test_weights_of_one_joint_and_of_all(rig):
     assert one.legend is not None
     assert "elbow" in one.legend.title
     every = weights_scene(rig, rig.weights)
-    expected = palette.to_bytes(rig.weights @ palette.joint_colors(rig.skeleton.parents))
+    expected = palette.to_bytes(rig.weights @ colors_of(rig))
     np.testing.assert_array_equal(every.actors["body"].colors, expected)
     assert "Each bone" in every.legend.title
 

@@ -13,8 +13,9 @@ from .surface_operators import SurfaceOperators
 PENALTY = 2.0
 """Added to the factor 1 of a bone's distance, for the surface of a component that the bone is
 outside of while it is inside another one."""
-RIGID = 0.9
-"""A component is rigid if one joint is the strongest on more than this part of its area."""
+RIGID = 0.9, 0.92
+"""A component is rigid if one joint is the strongest on the second part of its area; less and less
+rigid down to the first."""
 
 
 def joint_containment(surface: SurfaceOperators, bones: Bones, joints: int) -> NDArray[np.float64]:
@@ -28,8 +29,7 @@ def joint_containment(surface: SurfaceOperators, bones: Bones, joints: int) -> N
         return np.ones((1, joints))
     of_bone = bone_containment(surface.points, surface.faces, surface.component, bones)
     containment = np.zeros((len(of_bone), joints))
-    for bone, joint in enumerate(bones.joint):
-        containment[:, joint] = np.maximum(containment[:, joint], of_bone[:, bone])
+    np.maximum.at(containment.T, bones.joint, of_bone.T)
     return containment
 
 
@@ -43,13 +43,8 @@ def cross_component_penalty(containment: NDArray[np.float64]) -> NDArray[np.floa
     Shapes: containment (components, j); returns (components, j).
     """
     of_joint, of_component = containment.max(axis=0), containment.max(axis=1, keepdims=True)
-    belongs = np.divide(
-        containment,
-        np.minimum(of_joint, of_component),
-        out=np.ones_like(containment),
-        where=containment > 0,
-    )
-    belongs[(containment == 0) & (of_joint > 0)] = 0
+    belongs = containment / np.maximum(np.minimum(of_joint, of_component), 1e-300)
+    belongs[:, of_joint == 0] = 1
     penalty = 1 + PENALTY * (1 - np.minimum(belongs, 1))
     penalty[of_component[:, 0] == 0] = 1
     return penalty
@@ -65,10 +60,17 @@ def make_rigid(
     component, strongest = surface.component, weights.argmax(axis=1)
     entries = surface.areas, (component, strongest)
     votes = csr_array(entries, (len(independent), weights.shape[1]))
-    joint, most = votes.argmax(axis=1), votes.max(axis=1).toarray().ravel()
-    rigid = ((most > RIGID * votes.sum(axis=1)) & ~independent)[component]
-    if not rigid.any():
+    share = votes.max(axis=1).toarray().ravel() / np.maximum(votes.sum(axis=1), 1e-300)
+    rigidity = np.where(independent, 0.0, ramp(share, *RIGID))[component]
+    chosen = np.flatnonzero(rigidity)
+    if not len(chosen):
         return weights
     result = weights.copy()
-    result[rigid] = np.eye(weights.shape[1])[joint[component[rigid]]]
+    result[chosen] *= 1 - rigidity[chosen, None]
+    result[chosen, votes.argmax(axis=1)[component[chosen]]] += rigidity[chosen]
     return result
+
+
+def ramp(share: NDArray[np.float64], low: float, high: float) -> NDArray[np.float64]:
+    """Rise from 0 up to `low` to 1 from `high` on, so that no small change decides."""
+    return np.clip((share - low) / (high - low), 0, 1)

@@ -9,6 +9,7 @@ from scipy.sparse import csr_array
 from ...geodesics.bones import TIE
 from ...geodesics.nearest import NodeGrid
 from ...graph import CutCellGraph
+from .containment import ramp
 from .surface_operators import SurfaceOperators
 
 SMALL = 0.25
@@ -16,9 +17,9 @@ SMALL = 0.25
 CONTACT = 1.0
 """Lattice cells: an accessory touches the body wherever it is at most this much farther from it
 than at its nearest vertex."""
-DOMINANT = 0.6
-"""An accessory follows one joint alone if that joint has more than this part of the body's weight
-where they touch, or is the strongest on more than this part of the contact."""
+DOMINANT = 0.6, 0.65
+"""An accessory follows one joint alone that has the second part of the body's weight where they
+touch, or is the strongest on as much of the contact; up to the first, the mean of the weights."""
 
 
 def attach_accessories(
@@ -26,7 +27,7 @@ def attach_accessories(
     surface: SurfaceOperators,
     containment: NDArray[np.float64],
     weights: NDArray[np.float64],
-    independent: NDArray[np.bool_] | None = None,
+    independent: NDArray[np.bool_],
 ) -> NDArray[np.float64]:
     """Let small components without bones follow what they sit on: eyes, buttons, horns, armour.
 
@@ -38,9 +39,7 @@ def attach_accessories(
     # A component without area, such as a vertex without a face, touches nothing.
     has_area = np.bincount(component, areas, len(containment)) > 0
     is_small = _longest_sides(points, component) <= SMALL
-    is_accessory = has_area & is_small & (containment.max(axis=1) == 0)
-    if independent is not None:
-        is_accessory &= ~independent
+    is_accessory = has_area & is_small & (containment.max(axis=1) == 0) & ~independent
     if not is_accessory.any():
         return weights
     on_body = ~is_accessory[component]
@@ -92,10 +91,9 @@ def _contact_weights(
     total = np.maximum(gather.sum(axis=1), 1e-300)[:, None]
     mean = gather @ touched / total
     strongest = gather @ joints[touched.argmax(axis=1)] / total
-    share = np.where(strongest.max(axis=1, keepdims=True) > DOMINANT, strongest, mean)
-    alone = share.max(axis=1) > DOMINANT
-    mean[alone] = joints[share[alone].argmax(axis=1)]
-    return mean
+    share = np.maximum(strongest, mean)
+    alone = ramp(share.max(axis=1, keepdims=True), *DOMINANT)
+    return mean + alone * (joints[share.argmax(axis=1)] - mean)
 
 
 def _longest_sides(

@@ -101,3 +101,29 @@ test("a pointer that joins moves and zooms with the next", () => {
   heard.pointermove(pointer(300, 100, {pointerId: 2}))
   close([made.distance], [2])
 })
+
+test("zoom keeps what is under the pointer where it is", () => {
+  const {made} = orbit()
+  made.setHome([1, 2, 5], [0, 1, 0])
+  // Where a point beside the target is seen, in pixels from the target.
+  const seen = (place) => {
+    const out = made.position.map((x, i) => (x - made.target[i]) / made.distance)
+    const right = [Math.cos(made.yaw), 0, -Math.sin(made.yaw)]
+    const up = [0, 1, 2].map((i) => {
+      const [j, k] = [(i + 1) % 3, (i + 2) % 3]
+      return out[j] * right[k] - out[k] * right[j]
+    })
+    const from = place.map((x, i) => x - made.target[i])
+    const dot = (v) => v.reduce((sum, x, i) => sum + x * from[i], 0)
+    const scale = 500 / (2 * made.distance * Math.tan(15 * Math.PI / 180))
+    return [scale * dot(right), -scale * dot(up)]
+  }
+  const place = [0.3, 1, -0.3 * Math.tan(made.yaw)]
+  const before = seen(place)
+  made.zoom(0.5, before)
+  const after = seen(place)
+  assert.ok(Math.abs(after[0] - before[0]) < 1e-6 && Math.abs(after[1] - before[1]) < 1e-6)
+  made.setHome([1, 2, 5], [0, 1, 0])
+  made.zoom(0.5)
+  close(made.target, [0, 1, 0])
+})

@@ -2,7 +2,7 @@ import assert from "node:assert/strict"
 import {test} from "node:test"
 
 import {pickBone, REACH, toSegment, TOUCH} from "../../../app/frontend/pick.js"
-import {hitLine, told} from "../../../app/frontend/surface.js"
+import {hitLine, valueAt} from "../../../app/frontend/surface.js"
 
 // A renderer whose canvas has the scene's own x and y as pixels; what is behind z = 0 is not seen.
 const renderer = {
@@ -52,7 +52,7 @@ test("the nearest line is found", () => {
 })
 
 test("what is read under the pointer is a name, a number or a part", () => {
-  const at = (reading, values) => told({reading: {text: "it is ", ...reading}, values}, 1)
+  const at = (reading, values) => valueAt({reading: {text: "it is ", ...reading}, values}, 1)
   assert.equal(at({}, [0, 0.25]), "it is 0.250")
   assert.equal(at({}, [0, 3]), "it is 3")
   assert.equal(at({names: ["arm", "leg"]}, [0, 1]), "it is leg")

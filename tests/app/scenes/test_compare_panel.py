@@ -9,7 +9,7 @@ import cutcell
 from cutcell.baselines import METHODS, BaselineBinding
 from cutcell.metrics import deformation_error, weight_l1
 from cutcell.runtime.progress import silent
-from cutcell_app.commands.compare import Compared, choose, measured, wanted
+from cutcell_app.commands.compare import Compared, choose, measured, next_method
 from cutcell_app.panels.compare import _field, about, rows_of
 from cutcell_app.scenes import Memo, resolve
 from cutcell_app.scenes.compare import WAITING, caption_of, field_shown, title_of
@@ -90,9 +90,10 @@ def test_errors_share_one_scale(state, rig, binding, euclidean):
     state.compare_field = "error"
     scene = resolve(state)
     one, other = scene.actors["body"], scene.actors["body 2"]
+    lengths = 10 * np.sqrt(euclidean.errors.vertex)  # mm, of cm²
     assert one.limits == other.limits
-    assert one.limits[1] >= np.quantile(euclidean.errors.vertex, 0.99)
-    np.testing.assert_allclose(other.scalars, euclidean.errors.vertex, rtol=1e-6)
+    assert one.limits[1] >= np.quantile(lengths, 0.99)
+    np.testing.assert_allclose(other.scalars, lengths, rtol=1e-6)
     assert scene.actors["body 1"].scalars is None  # the file's own was not measured yet
 
 
@@ -112,7 +113,7 @@ def test_results_of_another_character_are_never_shown(state):
     state.param.update(rig=other, binding=cutcell.bind(other, 16))
     assert caption_of(state, "euclidean").endswith("waiting")
     assert resolve(state).actors["body 2"].opacity == WAITING
-    assert wanted(state) == NOW
+    assert next_method(state) == NOW
     state.binding = None
     assert resolve(state).views == ()
 
@@ -189,8 +190,8 @@ def test_a_memo_keeps_what_did_not_change(state):
 
 def test_without_the_files_own_weights_no_error_is_promised(rig):
     assert about(None) == about(rig)
-    assert about(rig).endswith("against the file's own weights.")
-    assert "no weights of its own" in about(rig.with_weights(None))
+    assert about(rig).endswith("against the original weights.")
+    assert "no weights" in about(rig.with_weights(None))
 
 
 def test_without_weights_of_its_own_no_error_is_offered_or_shown(state, rig, binding):

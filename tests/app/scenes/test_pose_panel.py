@@ -79,14 +79,14 @@ def test_the_error_is_told_and_coloured(state, rig, binding):
     assert error_of(state, memo) == (0.0, 0.0)
     state.turns = {1: (0, 40, 0)}
     scene = resolve(state, memo)
-    squared = Gap(rig, binding.weights, rig.weights).squared(scene.pose)
-    mean, greatest = error_of(state, memo)
-    assert mean == pytest.approx(float(squared.mean()))
-    assert greatest == pytest.approx(float(squared.max()))
+    lengths = Gap(rig, binding.weights, rig.weights).lengths(scene.pose)
+    rms, greatest = error_of(state, memo)
+    assert rms == pytest.approx(np.sqrt(np.square(lengths).mean()))
+    assert greatest == pytest.approx(float(lengths.max()))
     body = scene.actors["body"]
     assert body.apart is not None
-    assert body.limits[1] >= np.quantile(squared, 0.99)
-    assert scene.legend.high.endswith("cm²")
+    assert body.limits[1] >= np.quantile(lengths, 0.99)
+    assert scene.legend.high.endswith("mm")
 
 
 def test_the_error_of_a_motion_is_known_once_it_was_measured(state, binding):

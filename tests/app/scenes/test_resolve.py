@@ -7,8 +7,9 @@ import pytest
 
 import cutcell
 from cutcell_app.scenes import RIGID, Memo, following, resolve
-from cutcell_app.scenes.common import SEE_THROUGH, bones_part, cells_of, first_joint
+from cutcell_app.scenes.common import GRAPH_BODY_OPACITY, bones_part, cells_of, first_joint
 from cutcell_app.scenes.distance import field_of, wants_field
+from cutcell_app.scenes.graph import build_shown
 from cutcell_app.scenes.pose import clip_of, clip_part, pose_of
 from cutcell_app.state import LAYERS, PANELS, State
 from cutcell_viewers.palette import DARK, LIGHT
@@ -27,7 +28,7 @@ def binding(rig):
 
 @pytest.fixture
 def state(rig, binding):
-    return State(rig=rig, binding=binding, joint=1)
+    return State(rig=rig, binding=binding, joint=1, resolution=16, graph_resolution=0)
 
 
 def visible(state):
@@ -184,14 +185,43 @@ def test_the_distance_on_the_surface(state, binding):
     assert "wrist" in resolve(state).legend.title
 
 
+def test_the_graph_opens_cut_away_with_all_its_kinds_and_easy_to_read(rig, binding):
+    state = State(rig=rig, binding=binding, panel="graph", resolution=16)
+    assert not visible(state) & set(LAYERS.values()) - {"body"}  # it is still to be built
+    state.easy_graph = (state.graph_inputs, build_shown(state.graph_inputs))
+    seen = visible(state)
+    assert seen > {"mesh edges", "interior edges", "surface edges", "surface nodes"}
+    scene = resolve(state)
+    assert scene.cut is not None
+    assert scene.legend.title == "Graph, R = 40 (weights: 16)"
+    assert len(scene.actors["interior nodes"].cells) > 40
+    state.param.update(
+        edge_colors="distance", field=(binding.distances, 0, binding.distances.field(0))
+    )
+    assert resolve(state).actors["interior edges"].scalars is not None
+    state.param.update(graph_resolution=0, edge_colors="kind")
+    assert resolve(state).legend.title == "Graph, R = 16"
+
+
+def test_widths_follow_the_spacing_of_each_kind(state):
+    state.panel = "graph"
+    coarse = resolve(state).actors
+    state.graph_resolution = 48
+    state.easy_graph = (state.graph_inputs, build_shown(state.graph_inputs))
+    fine = resolve(state).actors
+    assert fine["mesh edges"].thick == coarse["mesh edges"].thick
+    for name in ("interior edges", "interior nodes", "surface nodes"):
+        assert coarse[name].thick / fine[name].thick == pytest.approx(3, rel=0.05)
+
+
 def test_the_body_is_see_through_only_where_it_would_hide_the_graph(state):
     def opacity():
         return resolve(state).actors["body"].opacity
 
-    state.param.update(panel="graph", interior_edges=False)
+    state.param.update(panel="graph", cut_axis="off", interior_edges=False, surface_edges=False)
     assert opacity() == 1
     state.interior_edges = True
-    assert opacity() == SEE_THROUGH
+    assert opacity() == GRAPH_BODY_OPACITY
     state.cut_axis = "x"
     assert opacity() == 1
     state.param.update(cut_axis="off", panel="weights")
@@ -200,12 +230,14 @@ def test_the_body_is_see_through_only_where_it_would_hide_the_graph(state):
 
 def test_the_cut_and_its_slab(state):
     state.panel = "graph"
+    assert resolve(state).cut.normal == (0, 0, 1)
+    state.cut_axis = "off"
     assert resolve(state).cut is None
     state.param.update(cut_axis="x", cut_position=1.0)
     scene = resolve(state)
     assert scene.cut.origin[0] == pytest.approx(1.5)
-    assert scene.actors["interior edges"].slab == pytest.approx(3 * 3.0 / 16)
-    assert scene.actors["interior edges"].slab == cells_of(state, 3)
+    assert scene.actors["interior edges"].slab == pytest.approx(1.5 * 3.0 / 16)
+    assert scene.actors["interior edges"].slab == cells_of(state, 1.5)
     assert scene.actors["mesh edges"].slab == 0
     state.cut_keeps = "half"
     assert resolve(state).actors["interior edges"].slab == 0
@@ -261,6 +293,7 @@ def test_the_legend_of_a_motion_names_only_what_moves(state, binding):
     state.param.update(panel="graph", mesh_edges=True)
     assert resolve(state).legend is not None
     assert following(state).legend is None
+    assert resolve(state).legend.title == "Graph, R = 16"
     state.body = False
     for name in ("body", "attachment 0"):
         moving = following(state).actors[name]
@@ -278,7 +311,6 @@ def test_the_graph_is_told_apart_by_form_and_its_nodes_can_be_looked_at(state, b
     state.param.update(panel="graph", mesh_edges=True, surface_edges=True, nodes=True)
     actors = resolve(state).actors
     edges = [actors[f"{kind} edges"] for kind in ("mesh", "interior", "surface")]
-    assert len({edge.width for edge in edges}) == 3
     assert [edge.dash > 0 for edge in edges] == [False, False, True]
     nodes = [actors[f"{kind} nodes"] for kind in ("mesh", "interior", "surface")]
     assert [node.form for node in nodes] == ["round", "square", "triangle"]
@@ -302,3 +334,12 @@ def test_any_angle_shows_the_lines_of_sight_of_a_vertex(state, binding):
     assert "lines of sight" in scene.legend.swatches[0][1]
     state.connectivity = 6
     assert "path" not in resolve(state).actors
+
+
+def test_a_wireframe_and_faint_bones_can_be_switched_on(state):
+    state.panel = "weights"
+    assert not resolve(state).actors["body"].edges
+    state.param.update(wireframe=True, faint_skeleton=True)
+    actors = resolve(state).actors
+    assert actors["body"].edges
+    assert 0 < actors["bones"].opacity < 0.5

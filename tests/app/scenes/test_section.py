@@ -37,7 +37,7 @@ def test_the_face_shows_what_is_chosen(state):
     scene = resolve(state, memo)
     assert scene.legend.title == "Winding number"
     assert scene.actors["body"].scalars is None
-    state.param.update(panel="graph", cut_axis="y", graph_face="open")
+    state.param.update(panel="graph", graph_resolution=0, cut_axis="y", graph_face="open")
     assert "inside" not in resolve(state, memo).actors
     for face, title in (("field", "Distance from"), ("winding", "Winding number")):
         state.graph_face = face

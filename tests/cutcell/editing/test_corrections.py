@@ -177,13 +177,15 @@ def test_a_lock_overrules_a_part_and_a_warning_names_both(how):
         assert not any(f"vertex {first}" in text for text in found)
 
 
-def test_vertices_set_by_hand_that_change_locked_joints_are_warned_of():
+def test_locked_joints_keep_the_files_weights_at_vertices_set_by_hand():
     locked = {"head": JointCorrection(locked=True)}
     own = {name: w for name, w in zip(WORM.skeleton.names, WORM.weights[0], strict=True) if w}
     for weights, changes in (({"head": 1.0}, True), (own, False)):
         corrections = Corrections(joints=locked, vertices={0: weights})
-        found = cutcell.bind(WORM, 24, corrections=corrections).warnings
-        assert any("by hand" in text and "head" in text for text in found) == changes
+        binding = cutcell.bind(WORM, 24, corrections=corrections)
+        assert any("head" in text for text in binding.warnings) == changes
+        np.testing.assert_array_equal(binding.weights[:, HEAD], WORM.weights[:, HEAD])
+        np.testing.assert_allclose(binding.weights.sum(axis=1), 1)
 
 
 def test_parts_are_glued_follow_or_are_bound_by_themselves():
@@ -198,6 +200,21 @@ def test_parts_are_glued_follow_or_are_bound_by_themselves():
     itself = bound(rig, parts={first: PartCorrection("itself")})
     np.testing.assert_allclose(itself.sum(axis=1), 1)
     assert not np.allclose(itself[first:], plain)
+
+
+def test_a_part_as_in_the_file_has_exactly_the_files_weights():
+    rig, first = with_button()
+    joints = len(rig.skeleton.names)
+    rig = rig.with_weights(np.full((len(rig.mesh.vertices), joints), 1 / joints))
+    corrections = Corrections(
+        joints={"head": JointCorrection(locked=True)}, parts={first: PartCorrection("file")}
+    )
+    assert Corrections.from_json(corrections.to_json()) == corrections
+    weights = cutcell.bind(rig, 24, smoothing=1, corrections=corrections).weights
+    np.testing.assert_array_equal(weights[first:], rig.weights[first:])
+    assert not np.allclose(weights[:first], rig.weights[:first])
+    with pytest.raises(WeightsError):
+        bound(rig.with_weights(None), parts={first: PartCorrection("file")})
 
 
 def test_a_vertex_is_overruled_after_all_else():

@@ -177,6 +177,8 @@ def test_locks_leave_no_vertex_empty():
     rig = rig_of(np.zeros((4, 5)))
     computed = one_hot([0, 1, 1, 2], 5)
     np.testing.assert_array_equal(lock_joints(rig, computed, ["b"]), computed)
+    mixed = np.full((4, 5), 0.2)
+    np.testing.assert_allclose(lock_joints(rig, mixed, ["b"]), [[0.25, 0, 0.25, 0.25, 0.25]] * 4)
     everything = lock_joints(rig_of(one_hot([1, 1, 1, 1], 5)), computed, range(5))
     np.testing.assert_array_equal(everything, one_hot([1, 1, 1, 1], 5))
 

@@ -6,7 +6,7 @@ import pytest
 from cutcell import Rig, Skeleton, TriangleMesh, bind, build_graph, winding_number
 from cutcell.geodesics import Bones
 from cutcell.weights.rig_falloff.components import POINTS, bone_containment, label_components
-from cutcell.weights.rig_falloff.containment import cross_component_penalty, make_rigid
+from cutcell.weights.rig_falloff.containment import RIGID, cross_component_penalty, make_rigid, ramp
 from cutcell.weights.rig_falloff.rigid_accessories import attach_accessories
 from cutcell.weights.rig_falloff.surface_operators import SurfaceOperators
 from tests import meshes
@@ -89,7 +89,8 @@ def test_a_body_in_patches_has_no_accessories():
     containment = np.zeros((int(surface.component.max()) + 1, 2))
     containment[0, 0] = 1
     weights = np.random.default_rng(0).random((len(surface.points), 2))
-    assert attach_accessories(graph, surface, containment, weights) is weights
+    independent = np.zeros(len(containment), bool)
+    assert attach_accessories(graph, surface, containment, weights, independent) is weights
 
 
 def test_a_lone_component_has_no_penalty():
@@ -101,11 +102,15 @@ def test_a_component_follows_the_joint_that_nearly_all_of_it_follows():
     one, two = grid_box(8), grid_box(8)
     vertices, faces = joined(one, (two[0] + [0, 1, 0], two[1]))
     surface = SurfaceOperators.over(vertices, faces.astype(np.int32))
-    first = vertices[:, 0] <= 0.9375
-    weights = np.where(first[:, None], [0.6, 0.4], [0.4, 0.6])
+    weights = np.tile([0.6, 0.4], (len(vertices), 1))
+    weights[5] = 0.4, 0.6
     followed = make_rigid(surface, weights, np.array([False, True]))
     np.testing.assert_array_equal(followed[: len(one[0])], [[1, 0]] * len(one[0]))
     np.testing.assert_array_equal(followed[len(one[0]) :], weights[len(one[0]) :])
+    # Up to where it is rigid, nothing jumps.
+    assert ramp(np.array([0.5, RIGID[0], np.mean(RIGID), RIGID[1]]), *RIGID) == pytest.approx(
+        [0, 0, 0.5, 1]
+    )
     split = np.where(vertices[:, :1] < 0.7, [0.6, 0.4], [0.4, 0.6])
     assert make_rigid(surface, split, np.zeros(2, bool)) is split
 

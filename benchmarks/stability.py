@@ -1,0 +1,104 @@
+"""Measure how much weights change where the character is the same in every way that counts.
+
+    python -m benchmarks.stability [SET...] [--resolution 64]
+
+Each character of a set (rigs, wild, train) is bound again with noise of a millionth of its size,
+with its vertices in another order, turned by 90 degrees, and welded; the table lists the share of
+vertices with a weight that changed by more than 0.01, in thousandths, and the largest change.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+import cutcell
+from cutcell.geometry.weld import WELD_TOLERANCE, weld
+from cutcell.rig import Rig
+
+from .tables import Table
+from .wild import SETS, characters
+
+NOISE = 1e-6
+"""Of the longest side."""
+CHANGED = 0.01
+"""A weight that changes by more than this has changed."""
+ALLOWED = 1e-3
+"""Part of the vertices that may change."""
+
+
+def moved(rig: Rig, vertices: NDArray, joints: NDArray, turn: NDArray | None = None) -> Rig:
+    """Return a rig without weights whose vertices and joints are elsewhere."""
+    skeleton = replace(rig.skeleton, joints=joints)
+    if turn is not None and skeleton.orientations is not None:
+        skeleton = replace(skeleton, orientations=turn @ skeleton.orientations)
+    return Rig(cutcell.TriangleMesh(vertices, rig.mesh.faces), skeleton)
+
+
+def variants(rig: Rig, seed: int = 0) -> Iterator[tuple[str, Rig, NDArray[np.intp]]]:
+    """Yield a name, the same character in another form, and which vertex there each one here is."""
+    rng = np.random.default_rng(seed)
+    vertices, joints, count = rig.mesh.vertices, rig.skeleton.joints, len(rig.mesh.vertices)
+    size = np.ptp(vertices, axis=0).max()
+    node = weld(vertices, WELD_TOLERANCE * size)[1]
+    noise = rng.uniform(-NOISE, NOISE, (int(node.max()) + 1, 3)) * size
+    same = np.arange(count)
+    yield "noise", moved(rig, vertices + noise[node], joints), same
+    order = rng.permutation(count)
+    place = np.argsort(order)
+    mesh = cutcell.TriangleMesh(vertices[order], place[rig.mesh.faces])
+    yield "order", Rig(mesh, rig.skeleton), place
+    for axis in range(3):
+        turn = np.roll(np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]]), (axis, axis), (0, 1))
+        yield f"turn {'xyz'[axis]}", moved(rig, vertices @ turn.T, joints @ turn.T, turn), same
+    first = np.unique(node, return_index=True)[1]
+    mesh = cutcell.TriangleMesh(vertices[first], node[rig.mesh.faces])
+    yield "weld", Rig(mesh, rig.skeleton), node
+
+
+def change(rig: Rig, resolution: int = 64) -> dict[str, tuple[float, float]]:
+    """Return the part of the vertices that change and the largest change, for each variant."""
+    rig = Rig(rig.mesh, rig.skeleton)
+    weights = cutcell.bind(rig, resolution).weights
+    result = {}
+    for name, other, place in variants(rig):
+        away = np.abs(cutcell.bind(other, resolution).weights[place] - weights).max(axis=1)
+        result[name] = float((away > CHANGED).mean()), float(away.max())
+    return result
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Run the script."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("sets", nargs="*", metavar="SET", help=f"of {', '.join(SETS)}")
+    parser.add_argument("--resolution", type=int, default=64)
+    options = parser.parse_args(arguments)
+    table: Table | None = None
+    stable: dict[str, list[bool]] = {}
+    for group in options.sets or SETS:
+        for name, rig in characters(group):
+            changes = change(rig, options.resolution)
+            table = table or Table("Stability", ["character", *changes, "largest"])
+            table.add(
+                name,
+                *(f"{1000 * part:.1f}" for part, _ in changes.values()),
+                f"{max(largest for _, largest in changes.values()):.2f}",
+            )
+            for variant, (part, _) in changes.items():
+                stable.setdefault(variant, []).append(part <= ALLOWED)
+            print(
+                name, {key: f"{1000 * part:.1f}" for key, (part, _) in changes.items()}, flush=True
+            )
+    if table:
+        print(table.markdown())
+        print(
+            *(f"{name}: {sum(is_stable)} of {len(is_stable)}" for name, is_stable in stable.items())
+        )
+
+
+if __name__ == "__main__":
+    main()
