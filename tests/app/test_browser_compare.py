@@ -111,7 +111,7 @@ def test_differences_errors_and_poses_are_seen(visit):
     assert changed(plain, difference) > 0.005
     assert captions(visit)[0] == "cutcell (current settings) − From file"
     visit.button("Error").click()
-    visit.expect_text("Worst error in any turn by 30°")
+    visit.expect_text("Largest error for 30° turns")
     assert changed(difference, visit.look()) > 0.005
     still = visit.points("body 1")
     visit.button("Play").click()
