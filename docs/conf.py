@@ -10,7 +10,7 @@ from cutcell import __version__  # noqa: E402
 
 project = "cutcell"
 author = "The cutcell authors"
-copyright = "2026, the cutcell authors"  # noqa: A001  Sphinx's name for it
+copyright = "2026, the cutcell authors"
 version = release = __version__
 
 extensions = [

@@ -10,12 +10,12 @@ The solution follows.
 """
 
 import numpy as np
+from PIL import Image
 
 import cutcell
 import cutcell_viewers
 from cutcell_assets import demo_path
 from cutcell_viewers.pose_scene import joint_turns, pose_scene, turn
-from PIL import Image
 
 rig = cutcell.load(demo_path("biped"))
 names = rig.skeleton.names

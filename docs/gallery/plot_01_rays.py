@@ -12,5 +12,7 @@ from cutcell_app.render import Choices, describe
 from cutcell_assets import demo_path
 
 rig = cutcell.load(demo_path("biped"))
-scene = describe(rig, Choices("graph", settings={"slicing": True, "slice_axis": "z", "body": False}))
+scene = describe(
+    rig, Choices("graph", settings={"slicing": True, "slice_axis": "z", "body": False})
+)
 picture = cutcell_viewers.show(scene)

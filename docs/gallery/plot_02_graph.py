@@ -11,6 +11,18 @@ from cutcell_app.render import Choices, describe
 from cutcell_assets import demo_path
 
 rig = cutcell.load(demo_path("biped"))
-scene = describe(rig, Choices("graph", settings={"cut_axis": "z", "cut_keeps": "half", "mesh_edges": True,
-                            "surface_edges": True, "body": False, "resolution": 24}))
+scene = describe(
+    rig,
+    Choices(
+        "graph",
+        settings={
+            "cut_axis": "z",
+            "cut_keeps": "half",
+            "mesh_edges": True,
+            "surface_edges": True,
+            "body": False,
+            "resolution": 24,
+        },
+    ),
+)
 picture = cutcell_viewers.show(scene)

@@ -11,6 +11,12 @@ from cutcell_app.render import Choices, describe
 from cutcell_assets import demo_path
 
 rig = cutcell.load(demo_path("biped"))
-scene = describe(rig, Choices("distance", bone="thigh.L", settings={
-    "beside_6": True, "beside_26": True, "beside_any": True, "cut_axis": "z"}))
+scene = describe(
+    rig,
+    Choices(
+        "distance",
+        bone="thigh.L",
+        settings={"beside_6": True, "beside_26": True, "beside_any": True, "cut_axis": "z"},
+    ),
+)
 picture = cutcell_viewers.show(scene, size=(1200, 675))

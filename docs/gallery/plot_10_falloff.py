@@ -5,11 +5,12 @@ The paper's falloff
 The parameter alpha of the paper says how fast weights decrease with distance.
 """
 
+from PIL import Image
+
 import cutcell
 import cutcell_viewers
 from cutcell_assets import demo_path
 from cutcell_viewers.weights_scene import weights_scene
-from PIL import Image
 
 rig = cutcell.load(demo_path("biped"))
 joint = rig.skeleton.names.index("chest")

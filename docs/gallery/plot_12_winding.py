@@ -11,5 +11,7 @@ from cutcell_app.render import Choices, describe
 from cutcell_assets import demo_path
 
 rig = cutcell.load(demo_path("biped_cape"))
-scene = describe(rig, Choices("distance", bone="hips", settings={"cut_axis": "z", "cut_face": "winding"}))
+scene = describe(
+    rig, Choices("distance", bone="hips", settings={"cut_axis": "z", "cut_face": "winding"})
+)
 picture = cutcell_viewers.show(scene)

@@ -5,11 +5,12 @@ A torn mesh has the same weights
 Every triangle of the second character has its own vertices. The graph joins them, and the weights agree.
 """
 
+from PIL import Image
+
 import cutcell
 import cutcell_viewers
 from cutcell_assets import demo_path
 from cutcell_viewers.weights_scene import weights_scene
-from PIL import Image
 
 picture = Image.new("RGB", (1000, 600))
 for column, name in enumerate(["biped", "biped_soup"]):

@@ -11,5 +11,7 @@ from cutcell_app.render import Choices, describe
 from cutcell_assets import demo_path
 
 rig = cutcell.load(demo_path("biped"))
-scene = describe(rig, Choices("distance", bone="thigh.L", settings={"starts": True, "cut_axis": "z"}))
+scene = describe(
+    rig, Choices("distance", bone="thigh.L", settings={"starts": True, "cut_axis": "z"})
+)
 picture = cutcell_viewers.show(scene)

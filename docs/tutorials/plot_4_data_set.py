@@ -7,8 +7,8 @@ A data set
 
 from pathlib import Path
 
-from cutcell_assets import demo_path
 from cutcell.dataset import Store, bind_all
+from cutcell_assets import demo_path
 
 # %%
 # Two characters stand for a folder of thousands. Each is bound in a subprocess, so that a broken file stops
