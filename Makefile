@@ -28,7 +28,7 @@ exit $$((tests ? tests : lint))
 endef
 
 .DEFAULT_GOAL := help
-.PHONY: help app test quick test-networks lint format assets lock clean
+.PHONY: help app test quick test-networks lint format assets docs lock clean
 
 help: ## Show this list
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## /  make \1|/' \
@@ -63,6 +63,10 @@ assets: $(VENV)/.test ## Make the demo characters again
 lock: $(VENV)/.test ## Choose the locked versions again
 	@scripts/lock.sh
 
+docs: $(VENV)/.docs ## Build the documentation site in build/docs; every example runs, warnings are errors
+	@$(PYTHON) -m sphinx --fail-on-warning --keep-going --quiet docs build/docs
+	@echo "The site is at build/docs/index.html"
+
 clean: ## Remove .venv and all that was made here
 	rm -rf $(VENV) build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis test-output
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
@@ -73,6 +77,10 @@ $(VENV)/.app: $(SETUP)
 
 $(VENV)/.test: $(SETUP)
 	@scripts/setup.sh test
+
+$(VENV)/.docs: $(SETUP)
+	@scripts/setup.sh docs
+	@touch $@
 
 $(VENV)/.networks: $(VENV)/.test scripts/get_torch.py
 	@$(PYTHON) scripts/get_torch.py

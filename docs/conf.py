@@ -1,0 +1,68 @@
+"""Settings of the documentation site: `make docs`. Nothing is fetched from elsewhere."""
+
+import sys
+from pathlib import Path
+
+DOCS = Path(__file__).resolve().parent
+sys.path[:0] = [str(DOCS), str(DOCS.parent)]
+
+from cutcell import __version__  # noqa: E402
+
+project = "cutcell"
+author = "The cutcell authors"
+copyright = "2026, the cutcell authors"
+version = release = __version__
+
+extensions = [
+    "myst_parser",
+    "numpydoc",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.autosummary",
+    "sphinx.ext.viewcode",
+    "sphinx_copybutton",
+    "sphinx_gallery.gen_gallery",
+]
+source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
+exclude_patterns = ["README.md"]  # the list of documents in the checkout
+myst_enable_extensions = ["dollarmath", "colon_fence"]
+myst_heading_anchors = 4
+
+autosummary_generate = True
+autodoc_typehints = "none"  # the docstrings name the types
+numpydoc_show_class_members = False
+
+sphinx_gallery_conf = {
+    "examples_dirs": ["gallery", "tutorials", "exercises"],
+    "gallery_dirs": ["auto_gallery", "auto_tutorials", "auto_exercises"],
+    "filename_pattern": "",
+    "image_scrapers": ("gallery_pictures", "matplotlib"),
+    "download_all_examples": False,
+    "show_signature": False,
+    "min_reported_time": 1e9,
+    "within_subsection_order": "FileNameSortKey",
+    "abort_on_example_error": True,
+}
+
+html_theme = "pydata_sphinx_theme"
+html_title = "cutcell"
+html_theme_options = {
+    "navigation_with_keys": False,
+    "secondary_sidebar_items": ["page-toc"],
+    "footer_start": ["copyright"],
+    "footer_end": [],
+}
+html_show_sphinx = False
+html_copy_source = False
+copybutton_prompt_text = r">>> |\$ "
+copybutton_prompt_is_regexp = True
+
+CHECKOUT = "https://github.com/cutcell/cutcell/blob/main/"
+
+
+def setup(app):
+    """Let links to files outside this folder lead into the repository."""
+
+    def outside(app, name, source):
+        source[0] = source[0].replace("](../", f"]({CHECKOUT}")
+
+    app.connect("source-read", outside)

@@ -1,0 +1,41 @@
+"""
+Paint and export
+================
+
+Corrections change computed weights where you know better: a stroke of the brush, a part that follows one joint, or a
+joint that does not deform. They can be stored and applied again.
+"""
+
+import numpy as np
+
+import cutcell
+import cutcell_viewers
+from cutcell_assets import demo_path
+from cutcell_viewers.weights_scene import weights_scene
+
+rig = cutcell.load(demo_path("biped"))
+binding = cutcell.bind(rig)
+
+# %%
+# A stroke passes vertices of the surface. Here it is one vertex at the shoulder, and the brush adds weight of the
+# upper arm around it. Rows still sum to one.
+
+joint = rig.skeleton.names.index("upper_arm.L")
+height = float(np.ptp(rig.mesh.vertices[:, 1]))
+shoulder = np.linalg.norm(rig.mesh.vertices - rig.skeleton.joints[joint], axis=1).argmin()
+brush = cutcell.Brush(radius=0.06 * height, mode="add", strength=0.8)
+painted = cutcell.paint_weights(rig, binding.weights, joint, [shoulder], brush, mirrored=True)
+picture = cutcell_viewers.show(weights_scene(rig, painted, joint))
+
+# %%
+# Corrections describe decisions about joints and parts, apart from any weights. This one takes a joint out of the
+# binding, and its skin goes to the nearest others.
+
+corrections = cutcell.Corrections(joints={"neck": cutcell.JointCorrection(deform=False)})
+corrected = cutcell.bind(rig, corrections=corrections)
+print("weight of the neck:", corrected.weights[:, rig.skeleton.names.index("neck")].sum())
+
+# %%
+# Saved with the character, the weights are ready for any program that reads glTF.
+
+cutcell.save("painted.glb", rig.with_weights(painted))
