@@ -153,7 +153,7 @@ def follow(
         menu.param.update(options=options, value=value)
 
     def chosen(event: Any) -> None:
-        if event.new is not None:
+        if event.new not in (None, offered()[1]):  # else nobody chose it
             setattr(state, name, event.new)
 
     state.param.watch(listed, [*watched, name])

@@ -47,6 +47,7 @@ def test_every_layer_can_be_switched(visit):
 
 def test_the_cutting_plane_moves_through_the_body(visit):
     visit.panel("Graph")
+    visit.button("Whole").click()
     whole = visit.look()
     visit.button("Cut X").click()
     half = visit.look()
