@@ -72,7 +72,7 @@ export class Insets {
   // What always stands over the canvas.
   get edges() {
     const {legend, transport, hint, root} = this.overlay
-    return [legend, transport, hint, root.querySelector(".tools")]
+    return [legend, transport, hint, ...root.querySelectorAll(".tools")]
   }
 
   // What cards take, from each edge.
