@@ -90,9 +90,7 @@ def render(
     given = [name for name in context.params if _is_given(context, name)]
     if out.suffix.lower() == ".html":
         _check_interactive(given)
-        _write_page(
-            rig, out, choices=choices, options=options, skeleton=skeleton_file, quiet=quiet
-        )
+        _write_page(rig, out, choices=choices, options=options, skeleton=skeleton_file, quiet=quiet)
         return
     moves = picture["turntable"] or (choices["clip"] is not None and choices["time"] is None)
     film.check_picture_file(out, moves=moves)

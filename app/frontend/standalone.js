@@ -11,6 +11,8 @@ import {View} from "./view.js"
 const TYPES = {f4: Float32Array, u4: Uint32Array, i4: Int32Array, u2: Uint16Array, u1: Uint8Array}
 const VIEWS = [["weights", "Weights"], ["distance", "Distance"], ["graph", "Graph"]]
 const AXES = ["Cut x", "Cut y", "Cut z"]
+const TOGETHER = [["scalars", "table", "limits"], ["clipped", "slab"]]  // entries that are read at once
+const LOW = 300  // pixels
 const LEAST = 5e-3  // a weight that a card would show as 0.00
 
 // The bytes of an element of the page.
@@ -31,6 +33,14 @@ function reader(buffer) {
   }
 }
 
+// The entries of an actor's part that are not as before.
+function fresh(part, before) {
+  const now = {...before.reading && {reading: null}, ...part}
+  const differs = (name) => JSON.stringify(now[name]) !== JSON.stringify(before[name])
+  const names = Object.keys(now).filter((name) => (TOGETHER.find((all) => all.includes(name)) ?? [name]).some(differs))
+  return Object.fromEntries(names.map((name) => [name, now[name]]))
+}
+
 // What a widget of the page hears of its server.
 function standIn(acts, rest = {}) {
   const listeners = {}
@@ -48,7 +58,6 @@ class Page {
     const {view, joint} = scenes
     Object.assign(this, {shown: view, joint, vertices: read(scenes.vertices)})
     this.dark = matchMedia("(prefers-color-scheme: dark)")
-    this.low = matchMedia("(max-height: 400px)")  // a legend would cover the character
     this.card = standIn({bone: ({joint}) => this.choose(joint), close: () => this.pick(null)}, {facts: null})
     const overlay = new Overlay()
     document.body.append(this.makeControls(), element("main", {}, overlay.root, inspector({model: this.card})))
@@ -83,9 +92,18 @@ class Page {
   }
 
   begin() {
-    for (const query of [this.dark, this.low]) { query.addEventListener("change", () => this.present()) }
+    this.dark.addEventListener("change", () => this.present())
     this.send(this.read(this.scenes.first))
     this.show(this.shown)
+    new ResizeObserver(() => this.fit()).observe(this.view.overlay.root)
+  }
+
+  // Where there is little space, nothing is drawn over the character.
+  fit() {
+    const isLow = this.view.overlay.root.clientHeight < LOW
+    if (isLow === this.isLow) { return }
+    this.isLow = isLow
+    this.present()
   }
 
   send(message) {
@@ -164,21 +182,20 @@ class Page {
     this.clips.hidden = isGraph || !scenes.clips.length
     this.reset.hidden = isGraph || clip >= 0
     this.axes.hidden = this.slider.hidden = !isGraph
-    const gizmo = isGraph || clip >= 0 ? null : scenes.rings[one]
-    const overlays = this.read({legend: this.low.matches ? null : scene.legend ?? null, gizmo})
+    const turns = this.joints.value < scenes.joints.length && !isGraph && clip < 0 && !this.isLow
+    const gizmo = turns ? scenes.rings[one] : null
+    const overlays = this.read({legend: this.isLow ? null : scene.legend ?? null, gizmo})
     this.send({theme: scenes.themes[theme], ...this.changes({...scene.actors, ...this.mark}), ...overlays})
   }
 
   // What differs from the actors that are there; nothing else has to be read.
   changes(actors) {
     const {sent} = this
-    const fresh = (part, before = {}) => Object.entries({...before.reading && {reading: null}, ...part})
-      .filter(([name, value]) => JSON.stringify(value) !== JSON.stringify(before[name]))
     this.sent = actors
     return {
       remove: Object.keys(sent).filter((name) => !actors[name]),
-      actors: this.read(Object.fromEntries(Object.entries(actors).map(([name, part]) =>
-        [name, Object.fromEntries(fresh(part, sent[name]))]))),
+      actors: this.read(Object.fromEntries(
+        Object.entries(actors).map(([name, part]) => [name, fresh(part, sent[name] ?? {})]))),
     }
   }
 

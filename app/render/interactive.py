@@ -24,11 +24,13 @@ from cutcell.rig.checks import check_choice
 from cutcell.runtime.display import shown_name
 from cutcell.runtime.progress import Progress, silent
 from cutcell_viewers.camera import framing
-from cutcell_viewers.description import Description
+from cutcell_viewers.character import bones
+from cutcell_viewers.description import Description, Legend
 from cutcell_viewers.joint_colors import colors_of
 from cutcell_viewers.lighting import LIGHTS
 from cutcell_viewers.marks import vertex_mark
 from cutcell_viewers.palette import THEMES, to_hex
+from cutcell_viewers.weights_scene import MIXED
 
 from ..scenes import Memo, following, resolve
 from ..scenes.common import bones_part, bounds_of, camera_part, first_joint, theme_part
@@ -142,12 +144,19 @@ def _joints(state: State, memo: Memo, progress: Progress) -> dict[str, list[Any]
         rings.append(gizmo_part(state))
         state.panel = "distance"
         distances.append(_message(following(state, memo)))
-    state.param.update(panel="pose", weights_shown="mix")
     return {
-        "weights": [*weights, _message(resolve(state, memo))],
+        "weights": [*weights, _mixed(state, memo)],
         "distance": distances,
         "rings": rings,
     }
+
+
+def _mixed(state: State, memo: Memo) -> dict[str, Any]:
+    """Return the weights of all joints, of which none is chosen."""
+    state.param.update(panel="pose", weights_shown="mix")
+    scene, rig = resolve(state, memo), state.rig
+    actors = {**scene.actors, **bones(rig, colors=colors_of(rig))}
+    return _message(replace(scene, actors=actors, legend=Legend(MIXED)))
 
 
 def _message(scene: Description) -> dict[str, Any]:
