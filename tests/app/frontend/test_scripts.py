@@ -41,7 +41,7 @@ def test_every_module_and_style_is_used():
     rendered = {name for name, text in modules.items() if "export function render(" in text}
     assert rendered == {
         "view", "file_drop", "inspector", "joint_tree", "methods", "rows", "tabs",
-        "tour_card",
+        "tour_card", "welcome",
     }  # fmt: skip
     assert '/component_state.js"></script>' in head()  # it runs before any other
     for name in modules.keys() - rendered - {"component_state"}:
