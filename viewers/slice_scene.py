@@ -74,11 +74,11 @@ def slice_scene(
     marks = [(INTERIOR, "thick: kept"), (BONE_IDLE, "thin: dropped"), (SURFACE, "crossings")]
     if reference is not None:
         differs, missed = rays.decided_otherwise(reference), reference.decided_otherwise(rays)
-        ends = [
-            placed(np.concatenate([end[differs], other[missed]]))
-            for end, other in ((rays.low, reference.low), (rays.high, reference.high))
-        ]
-        points, faces, _ = rods(*ends, np.full(len(ends[0]), DIFFERENT * cell))
+        start, end = (
+            placed(np.concatenate([ends[differs], others[missed]]))
+            for ends, others in ((rays.low, reference.low), (rays.high, reference.high))
+        )
+        points, faces, _ = rods(start, end, DIFFERENT * cell)
         if len(points):
             actors["slice differences"] = _solid(points, faces, color=MARK)
         count = max(int(differs.sum()), int(missed.sum()))
