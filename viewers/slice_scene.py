@@ -9,10 +9,12 @@ from cutcell.rig import Rig
 from .character import to_scene
 from .description import Actor, Cut, Legend, Reading
 from .marks import beads, rods
-from .palette import BONE_IDLE, INTERIOR, SURFACE, Theme
+from .palette import BONE_IDLE, INTERIOR, MARK, SURFACE, Theme
 
-KEPT, DROPPED = 0.13, 0.045
+INSIDE, DROPPED = 0.13, 0.045
 """How thick a segment is drawn, in cells of the lattice."""
+DIFFERENT = 0.3
+"""How thick a segment is marked that two methods decide differently, in cells."""
 BEAD = 0.2
 MARGIN = 1.5
 """How far beyond the body rays are drawn, in cells."""
@@ -20,21 +22,26 @@ ALIKE = 0.005
 """Winding numbers that differ by less are told as one."""
 
 
-def slice_scene(rig: Rig, rays: RaySlice, theme: Theme) -> tuple[dict[str, Actor], Legend]:
+def slice_scene(
+    rig: Rig, rays: RaySlice, theme: Theme, reference: RaySlice | None = None
+) -> tuple[dict[str, Actor], Legend]:
     """Return a slice's rays as actors, and how to read them.
 
     Parameters
     ----------
     rig : Rig
-    found : RaySlice
+    rays : RaySlice
         Of the rig's mesh.
     theme : Theme
+    reference : RaySlice, optional
+        The same slice by other means: segments that it decides otherwise are marked.
 
     Returns
     -------
     actors : dict of str to Actor
         "slice rays", thick where kept and coloured by the winding number; "slice crossings",
-        "slice points" (of the lattice, inside) and "slice outline" (of the mesh).
+        "slice points" (of the lattice, inside) and "slice outline" (of the mesh); with a
+        reference, "slice differences".
     legend : Legend
     """
     lattice = rays.lattice
@@ -44,7 +51,7 @@ def slice_scene(rig: Rig, rays: RaySlice, theme: Theme) -> tuple[dict[str, Actor
         return to_scene(rig, lattice.to_file(points))
 
     low, high, winding, is_inside = _joined(rays, _reach(rig, rays))
-    size = cell * np.where(is_inside, KEPT, DROPPED)
+    size = cell * np.where(is_inside, INSIDE, DROPPED)
     points, faces, of = rods(placed(low), placed(high), size)
     number = winding[of].astype(np.float32)
     actors = {
@@ -56,7 +63,7 @@ def slice_scene(rig: Rig, rays: RaySlice, theme: Theme) -> tuple[dict[str, Actor
             reading=Reading("winding number ", number),
         )
     }
-    tips = rays.high[rays.kept]
+    tips = rays.high[rays.inside]
     inside = tips[_on_lattice(tips, lattice.resolution)]
     for name, at, color in (
         ("slice points", inside, INTERIOR),
@@ -64,6 +71,18 @@ def slice_scene(rig: Rig, rays: RaySlice, theme: Theme) -> tuple[dict[str, Actor
     ):
         points, faces = beads(placed(at), BEAD * cell)
         actors[name] = _solid(points, faces, color=color)
+    marks = [(INTERIOR, "thick: kept"), (BONE_IDLE, "thin: dropped"), (SURFACE, "crossings")]
+    if reference is not None:
+        differs, missed = rays.decided_otherwise(reference), reference.decided_otherwise(rays)
+        start, end = (
+            placed(np.concatenate([ends[differs], others[missed]]))
+            for ends, others in ((rays.low, reference.low), (rays.high, reference.high))
+        )
+        points, faces, _ = rods(start, end, DIFFERENT * cell)
+        if len(points):
+            actors["slice differences"] = _solid(points, faces, color=MARK)
+        count = max(int(differs.sum()), int(missed.sum()))
+        marks.append((MARK, f"decided otherwise: {count:,} of {len(rays.low):,}"))
     outline = _outline(rig, rays)
     actors["slice outline"] = Actor(
         "lines",
@@ -77,7 +96,7 @@ def slice_scene(rig: Rig, rays: RaySlice, theme: Theme) -> tuple[dict[str, Actor
         "winding",
         "0",
         "1",
-        ((INTERIOR, "thick: kept"), (BONE_IDLE, "thin: dropped"), (SURFACE, "crossings")),
+        tuple(marks),
     )
     return actors, legend
 
@@ -139,7 +158,7 @@ def _joined(
     middle = (rays.low + rays.high) / 2
     near = ((middle >= box[0]) & (middle <= box[1])).all(axis=1)
     low, high, winding, is_inside = (
-        values[near] for values in (rays.low, rays.high, rays.winding, rays.kept)
+        values[near] for values in (rays.low, rays.high, rays.winding, rays.inside)
     )
     follows = (np.abs(low[1:] - high[:-1]) < 1e-12).all(axis=1)
     alike = (is_inside[1:] == is_inside[:-1]) & (np.abs(winding[1:] - winding[:-1]) < ALIKE)

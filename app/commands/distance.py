@@ -6,8 +6,9 @@ from cutcell.runtime.progress import Progress
 
 from ..scenes.distance import farthest, field_of, has_field, wants_field
 from ..scenes.graph import build_shown
-from ..scenes.measures import measured_of, measuring
-from ..state.distance import MEASURES
+from ..scenes.measured_distance import error_points
+from ..scenes.measures import measured_of, measuring, method_of
+from ..state.distance import CONVERGED, MEASURES
 from .session import Session
 
 WAVE_SECONDS = 6.0
@@ -77,6 +78,28 @@ def find_field(session: Session) -> None:
         state.field = (distances, joint, field)
 
     session.tasks.jobs("field").start(work, done, session.fail, lambda stage, fraction: None)
+
+
+def find_errors(session: Session) -> None:
+    """Measure the errors of the chosen bone's distances over the resolution."""
+    state = session.state
+    rig, distances, joint = state.rig, state.binding.distances, state.joint
+    method = method_of(state, CONVERGED)
+    state.measuring_errors = True
+
+    def done(points: Any) -> None:
+        state.param.update(errors=(distances, joint, points), measuring_errors=False)
+
+    def failed(error: Exception) -> None:
+        state.measuring_errors = False
+        session.fail(error)
+
+    session.tasks.jobs("errors").start(
+        lambda progress: error_points(rig, distances, joint, method, progress),
+        done,
+        failed,
+        lambda stage, fraction: None,
+    )
 
 
 def find_measured(session: Session) -> None:

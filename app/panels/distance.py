@@ -2,12 +2,15 @@
 
 from typing import Any
 
+import panel as pn
 import panel_material_ui as pmui
 
+from ..commands.distance import find_errors
 from ..commands.session import Session
 from ..state import State
-from ..state.distance import MAX_MEASURES, MEASURES
+from ..state.distance import CONVERGED, MAX_MEASURES, MEASURES
 from .controls import (
+    button,
     caption,
     choice,
     column,
@@ -20,6 +23,7 @@ from .controls import (
     when,
 )  # fmt: skip
 from .cutting import cutting
+from .error_curves import error_curves
 
 
 def distance(session: Session) -> pmui.Column:
@@ -35,6 +39,7 @@ def distance(session: Session) -> pmui.Column:
         section("Shown with it", *_more(state)),
         section("Wavefront", *_wave(state)),
         section("Measures side by side", *_comparison(state)),
+        section("Error and time over R", *_errors(session)),
     )
 
 
@@ -73,10 +78,37 @@ def _comparison(state: State) -> list[Any]:
         visible=any_chosen,
     )
     hint = (
-        "Up to four, on one scale. The last three use the cut-cell graph. Click the body to draw "
+        "Up to four, on one scale. The last four use the cut-cell graph. Click the body to draw "
         "the paths."
     )
     return [caption(hint), *switches, rate]
+
+
+def _errors(session: Session) -> list[Any]:
+    """Return a button that measures errors over R, and the curves."""
+    state = session.state
+
+    def curves(errors: Any, binding: Any, joint: int) -> pmui.Column:
+        is_of_this = errors and binding and errors[:2] == (binding.distances, joint)
+        return column(*error_curves(errors[2])) if is_of_this else column()
+
+    measure = button(
+        when(lambda runs: "Measuring" if runs else "Measure", state.param.measuring_errors),
+        lambda: find_errors(session),
+        disabled=when(
+            lambda runs, binding, rig, joint: runs or binding is None or weightless(rig, joint),
+            state.param.measuring_errors,
+            state.param.binding,
+            state.param.rig,
+            state.param.joint,
+        ),
+    )
+    shown = pn.bind(curves, state.param.errors, state.param.binding, state.param.joint)
+    return [
+        caption(f"Mean error against any angle at R = {CONVERGED}, and seconds."),
+        measure,
+        pn.panel(shown, margin=0, sizing_mode="stretch_width"),
+    ]
 
 
 def _more(state: State) -> list[Any]:

@@ -1,5 +1,6 @@
 """The graph: how it is built, which of its layers are seen, and where it is cut."""
 
+from importlib.util import find_spec
 from typing import Any
 
 import numpy as np
@@ -13,7 +14,7 @@ from ..commands.binding import bind
 from ..commands.session import Session
 from ..scenes.common import theme_of
 from ..state import LAYERS, State
-from ..state.graph import READABLE
+from ..state.graph import LIBRARIES, READABLE
 from .controls import (
     BUTTONS,
     GAP,
@@ -31,6 +32,7 @@ from .cutting import cutting
 
 KINDS = {"mesh_edges": MESH, "interior_edges": INTERIOR, "surface_edges": SURFACE}
 LEAF_TITLES = {"point": "Points", "extend": "Extended", "fit": "Fitted"}
+LIBRARY_TITLES = {"open3d": "Open3D", "embree": "Embree", "fast": "libigl, fast"}
 SEARCHED = (
     "Interior edges only carry the search: paths run straight along lines of sight. Click the "
     "body to see them."
@@ -168,12 +170,34 @@ def _inside(session: Session) -> list[Any]:
             caption("Ray direction", margin=(2, 0, 0, 0)),
             choice(state.param.slice_rays, AXES),
             slider(state.param.slice_position, "Position", step=0.005),
+            *_libraries(state),
             caption("Rest the pointer on a ray: it tells the winding number there."),
             margin=0,
             sizing_mode="stretch_width",
             visible=state.param.slicing,
         ),
     ]
+
+
+def _libraries(state: State) -> list[Any]:
+    """Return what else can cast the rays and compute winding numbers, as far as installed."""
+    selects = (
+        ("Rays by", state.param.slice_caster, "rays", {"cutcell": "raster"}),
+        ("Winding numbers by", state.param.slice_winding, "winding", {"cutcell, exact": "exact"}),
+    )
+    shown = []
+    for label, parameter, option, own in selects:
+        installed = {
+            LIBRARY_TITLES[name]: name
+            for name, module in LIBRARIES[option].items()
+            if find_spec(module)
+        }
+        if installed:
+            shown += [
+                caption(label, margin=(2, 0, 0, 0)),
+                choice(parameter, {**own, **installed}),
+            ]
+    return shown
 
 
 def _cut(state: State) -> tuple[Any, Any]:

@@ -4,7 +4,7 @@ from dataclasses import replace
 from typing import Any
 
 from cutcell import build_graph
-from cutcell.graph import INTERIOR, MESH, SURFACE, CutCellGraph, slice_rays
+from cutcell.graph import INTERIOR, MESH, SURFACE, CutCellGraph, RaySlice, slice_rays
 from cutcell.runtime.progress import Progress, silent
 from cutcell_viewers.character import to_scene
 from cutcell_viewers.description import Actor, Cut, Description, Legend
@@ -200,21 +200,32 @@ def _slice(state: State, memo: Memo) -> Description:
     if axis == normal:
         axis = (normal + 1) % 3
     inputs = (rig, resolution, axis, normal, index, state.winding_threshold, state.orient)
-    nodes = memo(
-        "slice",
-        inputs,
-        lambda: slice_rays(
-            rig.mesh,
-            resolution,
-            axis=axis,
-            normal=normal,
-            index=index,
-            winding_threshold=state.winding_threshold,
-            orient=state.orient,
-        ),
-    )
+
+    def cast(name: str, *libraries: str) -> RaySlice:
+        """Divide the rays by our own means, or by libraries."""
+        options = dict(zip(("rays", "winding"), libraries, strict=False))
+        return memo(
+            name,
+            (*inputs, *libraries),
+            lambda: slice_rays(
+                rig.mesh,
+                resolution,
+                axis=axis,
+                normal=normal,
+                index=index,
+                winding_threshold=state.winding_threshold,
+                orient=state.orient,
+                **options,
+            ),
+        )
+
+    chosen = state.slice_caster, state.slice_winding
+    reference = None if chosen == ("raster", "exact") else cast("slice")
+    rays = cast("slice by libraries", *chosen) if reference else cast("slice")
     actors, legend = memo(
-        "slice scene", (nodes, theme.name), lambda: slice_scene(rig, nodes, theme)
+        "slice scene",
+        (rays, reference, theme.name),
+        lambda: slice_scene(rig, rays, theme, reference),
     )
     shell = character(state, memo, visible=state.body, opacity=SHELL)
     for name in {"bones", "bone outlines"} & shell.keys():

@@ -1,5 +1,6 @@
 """One joint's distance by several measures, each with its paths, to compare the graph with."""
 
+import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from itertools import product
@@ -22,8 +23,9 @@ from cutcell.graph import build_graph
 from cutcell.method import Method
 from cutcell.rig import Rig
 from cutcell.rig.checks import check_choice
+from cutcell.runtime.progress import Progress
 
-from ..state.distance import MEASURES, Measure
+from ..state.distance import CONVERGED, MEASURES, RESOLUTIONS, Measure
 
 SIDES = np.array([
     [[0, 0, 0], [0, 0, 1], [0, 1, 1], [0, 1, 0]],
@@ -74,7 +76,51 @@ def measure_distance(
     return _in_graph(rig, bones, joint, method.with_options(connectivity=_CONNECTIVITY[measure]))
 
 
-_CONNECTIVITY = {"6": 6, "26": 26, "any": "any"}
+_CONNECTIVITY = {"6": 6, "26": 26, "any": "any", "converged": "any"}
+
+
+def mean_error(one: MeasuredDistance, converged: MeasuredDistance) -> float:
+    """Return the mean difference of distances, as a part of the mean distance.
+
+    Only vertices count that both reach; NaN where there are none.
+    """
+    both = np.isfinite(one.vertices) & np.isfinite(converged.vertices)
+    if not both.any():
+        return float("nan")
+    away = np.abs(one.vertices - converged.vertices)[both].mean()
+    return float(away / converged.vertices[both].mean())
+
+
+@dataclass(frozen=True)
+class ErrorPoint:
+    """The mean error of a connectivity at a resolution, and seconds for graph and distances."""
+
+    measure: Measure
+    resolution: int
+    error: float
+    seconds: float
+
+
+def error_points(
+    rig: Rig, distances: BoneDistances, joint: int, method: Method, progress: Progress
+) -> list[ErrorPoint]:
+    """Measure the error of each connectivity over the resolution."""
+
+    def measured(measure: Measure, resolution: int) -> MeasuredDistance:
+        with_resolution = method.with_options(resolution=resolution)
+        return measure_distance(rig, distances, joint, measure, with_resolution)
+
+    converged = measured("converged", CONVERGED)
+    points: list[ErrorPoint] = []
+    measures: tuple[Measure, ...] = ("6", "26", "any")
+    pairs = list(product(measures, RESOLUTIONS))
+    for measure, resolution in pairs:
+        progress("errors", len(points) / len(pairs))
+        began = time.perf_counter()
+        one = measured(measure, resolution)
+        seconds = time.perf_counter() - began
+        points.append(ErrorPoint(measure, resolution, mean_error(one, converged), seconds))
+    return points
 
 
 def _straight(body: Body) -> MeasuredDistance:

@@ -17,9 +17,9 @@ from cutcell_viewers.marks import path_tube
 from cutcell_viewers.palette import BODY
 
 from ..state import State
-from ..state.distance import MEASURES
+from ..state.distance import CONVERGED, MEASURES
 from .common import BODY_OPACITY_WITH_PATH, character
-from .measured_distance import Measure, MeasuredDistance, measure_distance
+from .measured_distance import Measure, MeasuredDistance, mean_error, measure_distance
 from .memo import Memo
 
 WAITING = 0.28
@@ -34,6 +34,7 @@ def side_by_side(state: State, memo: Memo) -> Description:
     names, rig, joint = state.measures, state.rig, state.joint
     results = {name: measured_of(state, name) for name in names}
     computed = [one for one in results.values() if one is not None]
+    converged = results.get("converged")
     limits = (0.0, max((distance_limits(one.vertices)[1] for one in computed), default=1.0))
     shared = character(state, memo)
     plain = shared.pop("body")
@@ -51,6 +52,8 @@ def side_by_side(state: State, memo: Memo) -> Description:
             (rig, one, joint, limits),
             partial(distance_colors, rig, one.vertices, joint, limits),
         )
+        if converged is not None and name != "converged":
+            title += f" · error {mean_error(one, converged):.1%}"
         path = _path(state, memo, name, one)
         if path is not None and len(path):
             tube = memo(f"tube {name}", (rig, path), partial(path_tube, rig, path))
@@ -73,7 +76,11 @@ def side_by_side(state: State, memo: Memo) -> Description:
 
 def title_of(name: Measure, resolution: int) -> str:
     """Return what stands over a measure's view."""
-    return f"{MEASURES[name]}, R = {resolution}" if name in WITH_RESOLUTION else MEASURES[name]
+    if name == "converged":
+        resolution = CONVERGED
+    elif name not in WITH_RESOLUTION:
+        return MEASURES[name]
+    return f"{MEASURES[name]}, R = {resolution}"
 
 
 def measured_of(state: State, name: Measure) -> MeasuredDistance | None:
@@ -84,13 +91,18 @@ def measured_of(state: State, name: Measure) -> MeasuredDistance | None:
     return one if resolution == state.beside_resolution or name not in WITH_RESOLUTION else None
 
 
+def method_of(state: State, resolution: int) -> cutcell.Method:
+    """Return the method that measures side by side follow."""
+    return cutcell.ANIMATION.with_options(
+        resolution=resolution, winding_threshold=state.winding_threshold, orient=state.orient
+    )
+
+
 def measuring(state: State, name: Measure) -> Callable[[], tuple[BoneDistances, int, int, Any]]:
     """Return what measures what is chosen now, and returns it as `State.measured` keeps it."""
     rig, distances, joint = state.rig, state.binding.distances, state.joint
     resolution = state.beside_resolution
-    method = cutcell.ANIMATION.with_options(
-        resolution=resolution, winding_threshold=state.winding_threshold, orient=state.orient
-    )
+    method = method_of(state, CONVERGED if name == "converged" else resolution)
 
     def measure() -> tuple[BoneDistances, int, int, Any]:
         result = measure_distance(rig, distances, joint, name, method)

@@ -4,7 +4,13 @@ from typing import Any, Literal
 
 import param
 
-Measure = Literal["straight", "surface", "voxel", "6", "26", "any"]
+Measure = Literal["straight", "surface", "voxel", "6", "26", "any", "converged"]
+
+RESOLUTIONS = (16, 32, 64, 128)
+"""R that can be compared."""
+
+CONVERGED = 192
+"""R of the distances, along paths of any angle, that others are compared with."""
 
 MAX_MEASURES = 4
 """That stand side by side."""
@@ -16,6 +22,7 @@ MEASURES: dict[Measure, str] = {
     "6": "6 neighbours",
     "26": "26 neighbours",
     "any": "Any angle",
+    "converged": "Converged",
 }
 """What measures of a distance are called."""
 
@@ -37,11 +44,15 @@ class GeodesicsChoices(param.Parameterized):
     beside_6: Any = param.Boolean(False, label=MEASURES["6"])
     beside_26: Any = param.Boolean(False, label=MEASURES["26"])
     beside_any: Any = param.Boolean(False, label=MEASURES["any"])
+    beside_converged: Any = param.Boolean(False, label=f"Converged: any angle, R = {CONVERGED}")
     beside_resolution: Any = param.Selector(
-        default=64, objects=[16, 32, 64, 128], doc="R of voxels and graphs that stand side by side."
+        default=64, objects=list(RESOLUTIONS), doc="R of voxels and graphs that stand side by side."
     )
     measured: Any = param.Dict({}, doc="By measure: (distances, joint, R, MeasuredDistance).")
     measuring: Any = param.String("", doc="The measure that is being computed; empty for none.")
+
+    errors: Any = param.Parameter(None, doc="(distances, joint, `ErrorPoint`s), once measured.")
+    measuring_errors: Any = param.Boolean(False, doc="Whether errors are being measured.")
 
     @property
     def measures(self) -> list[Measure]:

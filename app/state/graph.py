@@ -11,6 +11,12 @@ from .method import default
 READABLE = 40
 """Lattice cells along the longest side of a graph that is easy to read on a screen."""
 
+LIBRARIES = {
+    "rays": {"open3d": "open3d", "embree": "embreex"},
+    "winding": {"fast": "igl"},
+}
+"""Other means of casting rays and of winding numbers, and the module that each needs."""
+
 LAYERS = {
     "body": "body",
     "mesh_edges": "mesh edges",
@@ -59,6 +65,14 @@ class GraphChoices(param.Parameterized):
     slice_axis: Any = param.Selector(default="z", objects=["x", "y", "z"], doc="Its normal.")
     slice_rays: Any = param.Selector(
         default="x", objects=["x", "y", "z"], doc="Which way they run."
+    )
+    slice_caster: Any = param.Selector(
+        default="raster", objects=["raster", *LIBRARIES["rays"]], doc="What casts the rays."
+    )
+    slice_winding: Any = param.Selector(
+        default="exact",
+        objects=["exact", *LIBRARIES["winding"]],
+        doc="What computes winding numbers.",
     )
     slice_position: Any = param.Number(0.5, bounds=(0, 1), doc="Across the box of the body.")
 

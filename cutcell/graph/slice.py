@@ -16,10 +16,12 @@ from ..method import check_resolution
 from ..rig import TriangleMesh
 from ..rig.checks import check_choice, check_integer, check_number
 from .lattice import Lattice
+from .ray_tracers import CASTERS
 from .rays import AXES, cast_rays, points_on_rays
 from .segments import divide_rays
 from .surface import prepare_surface
 from .winding.exact import WindingNumbers
+from .winding.libigl import fast_winding_numbers
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,7 +37,7 @@ class RaySlice:
         which lack an end.
     winding : array, shape (s,), float64
         The winding number at each segment's midpoint.
-    kept : array, shape (s,), bool
+    inside : array, shape (s,), bool
         Whether it is at least tau.
     crossing : array, shape (c, 3), float64
         Ray hits.
@@ -48,11 +50,40 @@ class RaySlice:
     low: NDArray[np.float64]
     high: NDArray[np.float64]
     winding: NDArray[np.float64]
-    kept: NDArray[np.bool_]
+    inside: NDArray[np.bool_]
     crossing: NDArray[np.float64]
     sign: NDArray[np.int8]
     triangle: NDArray[np.int32]
     lattice: Lattice
+
+    def decided_otherwise(self, reference: RaySlice) -> NDArray[np.bool_]:
+        """Compare each segment with what lies at its midpoint in another slice.
+
+        Parameters
+        ----------
+        reference : RaySlice
+            Of the same mesh, resolution, slice and direction of rays.
+
+        Returns
+        -------
+        array, shape (s,), bool
+            Whether only one of the two counts the midpoint as inside.
+        """
+        axis = int(np.argmax((self.high - self.low).sum(axis=0)))
+        scale = np.full(3, self.lattice.resolution)
+        scale[axis] = 0
+
+        def along(points: NDArray[np.float64]) -> NDArray[np.float64]:
+            """Return one number a point (k, 3), ascending ray by ray."""
+            return np.floor(points * scale).sum(axis=1) * 2 + points[:, axis]
+
+        middle = along((self.low + self.high) / 2)
+        start, end = along(reference.low), along(reference.high)
+        if not len(start):
+            return self.inside
+        last = np.searchsorted(start, middle, side="right") - 1
+        inside = (last >= 0) & (middle <= end[last]) & reference.inside[last]
+        return np.asarray(inside != self.inside)
 
 
 def slice_rays(
@@ -64,6 +95,8 @@ def slice_rays(
     index: int,
     winding_threshold: float = 0.5,
     orient: bool = True,
+    rays: str = "raster",
+    winding: str = "exact",
 ) -> RaySlice:
     """Divide the rays of one slice of the lattice into segments.
 
@@ -81,6 +114,8 @@ def slice_rays(
     winding_threshold : float
         tau: segments with at least this winding number are kept.
     orient : bool
+    rays : {"raster", "open3d", "embree"}
+    winding : {"exact", "fast"}
         As of `build_graph`.
 
     Returns
@@ -91,6 +126,8 @@ def slice_rays(
     ------
     ParameterError
         A parameter is out of its range, or the rays would leave the slice.
+    MissingLibraryError
+        `rays` or `winding` names a library that is not installed.
 
     References
     ----------
@@ -103,26 +140,34 @@ def slice_rays(
         raise ParameterError(f"axis and normal are both {axis}; rays lie in their slice")
     index = check_integer("index", index, 0, resolution - 1)
     threshold = check_number("winding_threshold", winding_threshold, 0, 1)
+    check_choice("rays", rays, ("raster", *CASTERS))
+    check_choice("winding", winding, ("exact", "fast"))
 
     surface = prepare_surface(mesh, resolution, orient)
-    hits = cast_rays(surface.vertices, surface.faces, resolution, axis)
-    rays = np.arange(resolution)
-    rays = index * resolution + rays if normal == AXES[axis][0] else rays * resolution + index
-    segments = divide_rays(hits, rays, resolution)
+    caster = CASTERS.get(rays, cast_rays)
+    hits = caster(surface.vertices, surface.faces, resolution, axis)
+    numbers = np.arange(resolution)
+    first = normal == AXES[axis][0]
+    numbers = index * resolution + numbers if first else numbers * resolution + index
+    segments = divide_rays(hits, numbers, resolution)
     is_shown = segments.has_ends & (segments.low < segments.high)
     low, high = (
         segments.points(position, resolution, axis)[is_shown]
         for position in (segments.low, segments.high)
     )
-    winding = WindingNumbers(surface.vertices, surface.faces).at((low + high) / 2)
+    middle = (low + high) / 2
+    if winding == "exact":
+        at_middle = WindingNumbers(surface.vertices, surface.faces).at(middle)
+    else:
+        at_middle = fast_winding_numbers(surface, middle)
     ray = np.repeat(np.arange(resolution**2), np.diff(hits.start))
-    in_slice = np.isin(ray, rays)
+    in_slice = np.isin(ray, numbers)
     crossing = points_on_rays(ray[in_slice], hits.position[in_slice], resolution, axis)
     return RaySlice(
         low,
         high,
-        winding,
-        winding >= threshold,
+        at_middle,
+        at_middle >= threshold,
         crossing,
         hits.sign[in_slice],
         hits.triangle[in_slice],

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import cutcell
+from cutcell.editing.corrections import Corrections
 from cutcell.runtime.progress import silent
 from cutcell_app.commands import binding, loading
 from cutcell_app.commands.export import (
@@ -208,10 +209,13 @@ def test_a_machine_that_cannot_draw_is_told_so(bound, loop, small, monkeypatch):
 
 
 def test_the_panel_says_whether_colours_come_along(tmp_path, demo_paths):
-    assert "keeps everything" in _described(cutcell.load(demo_paths[0]))
+    def said(path):
+        return _described(cutcell.load(path), Corrections(), None)
+
+    assert "Only weights" in said(demo_paths[0])
     path = tmp_path / "column.obj"
     path.write_text("".join(f"v {x} {y} {z}\n" for x, y, z in COLUMN) + "f 1 2 3\nf 2 3 4\n")
-    assert "no materials" in _described(cutcell.load(path))
+    assert "no materials" in said(path)
     colors = "".join(f"v {x} {y} {z} {x} {y} 0\n" for x, y, z in COLUMN)
     path.write_text(colors + "f 1 2 3\nf 2 3 4\n")
-    assert "base colours" in _described(cutcell.load(path))
+    assert "base colours" in said(path)

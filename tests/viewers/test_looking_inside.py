@@ -1,5 +1,6 @@
 """Slices with their rays, sections, marks, starts: what is drawn is what the core found."""
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -77,6 +78,16 @@ def test_a_slices_rays_tell_their_winding_number(rig):
     body = to_scene(rig, rig.mesh.vertices)
     assert ((inside > body.min(axis=0)) & (inside < body.max(axis=0))).all()
     assert "inding" in legend.title
+
+
+def test_segments_that_are_decided_otherwise_are_marked(rig):
+    normal, index, _ = slice_place(rig, "z", 0.5, 16)
+    rays = slice_rays(rig.mesh, 16, axis=0, normal=normal, index=index)
+    nowhere = replace(rays, inside=np.zeros_like(rays.inside))
+    actors, legend = slice_scene(rig, rays, LIGHT, nowhere)
+    assert len(actors["slice differences"].points) == 8 * 2 * rays.inside.sum()
+    assert f"{rays.inside.sum()} of" in legend.swatches[-1][1]
+    assert "slice differences" not in slice_scene(rig, rays, LIGHT, rays)[0]
 
 
 def scene_bounds(rig):

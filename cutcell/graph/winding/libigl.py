@@ -7,6 +7,7 @@ may be decided otherwise.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +16,16 @@ from ..ray_tracers import optional_library
 from ..rays import RayHits
 from ..segments import InsideIntervals, inside_intervals
 from ..surface import Surface
+
+
+def fast_winding_numbers(surface: Surface, points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Approximate the winding number at points (k, 3), after Barill et al. 2018."""
+    igl = optional_library("igl", 'winding="fast"', "libigl")
+    if len(points) == 0:
+        return np.empty(0)
+    faces = surface.faces.astype(np.int64)
+    numbers: NDArray[np.float64] = igl.fast_winding_number(surface.vertices, faces, points)
+    return numbers
 
 
 def fast_intervals(
@@ -27,13 +38,5 @@ def fast_intervals(
     Barill, Dickson, Schmidt, Levin & Jacobson, "Fast winding numbers for soups and
     clouds", 2018.
     """
-    igl = optional_library("igl", 'winding="fast"', "libigl")
-    faces = surface.faces.astype(np.int64)
-
-    def winding_number(points: NDArray[np.float64]) -> NDArray[np.float64]:
-        if len(points) == 0:
-            return np.empty(0)
-        numbers: NDArray[np.float64] = igl.fast_winding_number(surface.vertices, faces, points)
-        return numbers
-
+    winding_number = partial(fast_winding_numbers, surface)
     return inside_intervals(surface, hits, winding_threshold, winding_number)

@@ -5,13 +5,21 @@ import pytest
 
 import cutcell
 from cutcell.geodesics import path_length
+from cutcell.runtime.progress import silent
 from cutcell_app.commands import loading
+from cutcell_app.panels.error_curves import error_curves
 from cutcell_app.scenes import following, resolve
 from cutcell_app.scenes.distance import farthest, wants_field
-from cutcell_app.scenes.measured_distance import MEASURES, measure_distance
+from cutcell_app.scenes.measured_distance import (
+    MEASURES,
+    error_points,
+    mean_error,
+    measure_distance,
+)
 from cutcell_app.scenes.measures import WAITING, measured_of, measuring
 from cutcell_app.state import State
 from cutcell_app.state.distance import MEASURES as NAMED
+from cutcell_app.state.distance import RESOLUTIONS
 from cutcell_app.state.url import from_query, to_query
 from cutcell_viewers.palette import BODY
 from tests.viewers.arm import arm_rig
@@ -49,6 +57,28 @@ def test_each_measure_has_a_view_and_all_have_one_scale(state, rig, binding):
         assert found.max() <= farthest(state) == body.limits[1]
     assert scene.actors["voxels"].view == 1
     assert not wants_field(state)  # of the single view
+
+
+def test_beside_the_converged_one_each_says_its_error(state):
+    state.param.update(beside_straight=False, beside_voxel=False, beside_converged=True)
+    state.measured = {**state.measured, "converged": measuring(state, "converged")()}
+    one, converged = (measured_of(state, name) for name in ("any", "converged"))
+    error = mean_error(one, converged)
+    assert 0 < error < 0.1
+    assert resolve(state).views[0] == f"Any angle, R = 16 · error {error:.1%}"
+    assert mean_error(converged, converged) == 0
+
+
+def test_errors_are_less_at_a_higher_resolution(rig, binding):
+    method = cutcell.ANIMATION.with_options(resolution=16)
+    points = error_points(rig, binding.distances, 1, method, silent)
+    assert {point.resolution for point in points} == set(RESOLUTIONS)
+    first, last = (
+        next(p.error for p in points if (p.measure, p.resolution) == ("any", resolution))
+        for resolution in (RESOLUTIONS[0], RESOLUTIONS[-1])
+    )
+    assert last < first
+    assert len(error_curves(points)) == 2
 
 
 def test_from_a_clicked_vertex_each_draws_its_path(state):

@@ -26,7 +26,7 @@ def test_kept_segments_are_the_graphs_interior_edges(shape, axis, normal):
     graph = build_graph(mesh, 12, connectivity=6)
     found = slice_rays(mesh, 12, axis=axis, normal=normal, index=5)
     long = np.linalg.norm(found.high - found.low, axis=1) > 1e-12
-    kept = ((found.low + found.high) / 2)[found.kept & long]
+    kept = ((found.low + found.high) / 2)[found.inside & long]
     expected = middles_in(graph, axis, normal, 5)
     assert len(expected) > 0
     order = lambda points: points[np.lexsort(points.round(9).T)]  # noqa: E731
@@ -40,8 +40,8 @@ def test_segments_hang_together_and_tell_their_winding_number():
     np.testing.assert_allclose(found.low[:, 0], 0.45)
     middle = found.lattice.to_file((found.low + found.high) / 2)
     np.testing.assert_allclose(found.winding, winding_number(mesh, middle), atol=1e-12)
-    np.testing.assert_array_equal(found.kept, found.winding >= 0.3)
-    assert 0 < found.kept.sum() < len(found.kept)
+    np.testing.assert_array_equal(found.inside, found.winding >= 0.3)
+    assert 0 < found.inside.sum() < len(found.inside)
 
 
 def test_on_a_closed_mesh_each_ray_enters_as_often_as_it_leaves():
@@ -69,3 +69,26 @@ def test_a_slice_that_is_none_is_refused(wrong, said):
     mesh = TriangleMesh(*meshes.box())
     with pytest.raises(ParameterError, match=said):
         slice_rays(mesh, 8, **{"axis": 0, "normal": 1, "index": 0, **wrong})
+
+
+@pytest.mark.parametrize(
+    ("module", "libraries"),
+    [("embreex", {"rays": "embree"}), ("open3d", {"rays": "open3d"}), ("igl", {"winding": "fast"})],
+)
+def test_libraries_decide_a_closed_mesh_alike(module, libraries):
+    pytest.importorskip(module, reason=f"{module} is not installed", exc_type=ImportError)
+    mesh = TriangleMesh(*meshes.ball())
+    own, other = (slice_rays(mesh, 12, axis=0, normal=2, index=6, **by) for by in ({}, libraries))
+    assert own.inside.any()
+    assert not own.decided_otherwise(other).any()
+    assert not other.decided_otherwise(own).any()
+
+
+def test_segments_that_another_threshold_decides_otherwise_are_named():
+    mesh = TriangleMesh(*meshes.ball_with_holes())
+    low, high = (
+        slice_rays(mesh, 12, axis=1, normal=2, index=6, winding_threshold=tau) for tau in (0.3, 0.9)
+    )
+    differs = low.decided_otherwise(high)
+    assert differs.any()
+    np.testing.assert_array_equal(differs, (low.winding >= 0.3) & (low.winding < 0.9))
