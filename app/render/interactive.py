@@ -121,7 +121,9 @@ def _record(rig: Rig, binding: Binding, progress: Progress) -> dict[str, Any]:
 def _graph(state: State, memo: Memo, progress: Progress) -> list[dict[str, Any]]:
     """Return the scene of the graph in a light and a dark theme."""
     state.param.update(panel="graph", skeleton=False)
-    state.resolution = state.binding.graph.lattice.resolution
+    state.resolution = state.graph.lattice.resolution
+    state.connectivity = state.graph.connectivity
+    state.winding_threshold = state.graph.winding_threshold
     state.graph_resolution = min(state.graph_resolution, state.resolution)
     if state.graph_inputs is not None:
         state.easy_graph = (state.graph_inputs, build_shown(state.graph_inputs, progress))
