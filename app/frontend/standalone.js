@@ -228,13 +228,17 @@ class Page {
 }
 
 export async function open() {
+  const note = document.querySelector("p")
   try {
+    if (!document.createElement("canvas").getContext("webgl2")) { throw new Error("it offers no WebGL 2") }
     const [script, arrays, scenes] = await Promise.all(
       [unpacked("vtk").text(), unpacked("arrays").arrayBuffer(), unpacked("scenes").json()])
     document.head.append(element("script", {textContent: script}))
     new Page(scenes, reader(arrays), window.vtk).begin()
+    note.remove()
   } catch (error) {
-    document.body.replaceChildren(element("p", {}, `This browser cannot show the character: ${error.message}.`))
+    document.body.replaceChildren(note)
+    note.textContent = `This browser cannot show the character: ${error.message}.`
     throw error
   }
 }

@@ -9,13 +9,12 @@ import html
 import json
 import re
 from dataclasses import replace
-from pathlib import Path
 from string import Template
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from panel.models.vtk import VTK_VERSION
+from panel.io.resources import DIST_DIR
 
 from cutcell import Binding, bind
 from cutcell.geodesics import FALLBACK_REASONS
@@ -30,6 +29,7 @@ from cutcell_viewers.joint_colors import colors_of
 from cutcell_viewers.lighting import LIGHTS
 from cutcell_viewers.marks import vertex_mark
 from cutcell_viewers.palette import THEMES, to_hex
+from cutcell_viewers.skin import skin_of_weights
 from cutcell_viewers.weights_scene import MIXED
 
 from ..scenes import Memo, following, resolve
@@ -40,6 +40,7 @@ from ..scenes.pose import clip_part, gizmo_part
 from ..state import State
 from ..widgets.changes import changes
 from ..widgets.modules import FOLDER, style
+from ..widgets.view import SceneView
 from .packed import Packed
 
 VIEWS = ("weights", "distance", "graph")
@@ -127,10 +128,14 @@ def _graph(state: State, memo: Memo, progress: Progress) -> list[dict[str, Any]]
     state.graph_resolution = min(state.graph_resolution, state.resolution)
     if state.graph_inputs is not None:
         state.easy_graph = (state.graph_inputs, build_shown(state.graph_inputs, progress))
-    scenes = []
+    scenes, skin = [], skin_of_weights(state.weights)
     for dark in (False, True):
         state.dark = dark
-        scenes.append(_message(resolve(state, memo)))
+        scene = resolve(state, memo)
+        # Cards are of vertices alone: a click goes through nodes to the body.
+        actors = {name: replace(actor, reading=None) for name, actor in scene.actors.items()}
+        actors["body"] = replace(actors["body"], skin=skin)
+        scenes.append(_message(replace(scene, actors=actors)))
     state.param.update(skeleton=True, dark=False)
     return scenes
 
@@ -233,11 +238,8 @@ def _data(name: str, script: str) -> str:
 
 def _vtk() -> bytes:
     """Return vtk.js as Panel's server sends it, without the address of its source map."""
-    import panel
-
-    folder = Path(panel.__file__).parent / "dist" / "bundled" / "abstractvtkplot"
-    content = (folder / f"vtk.js@{VTK_VERSION}" / "vtk.js").read_bytes()
-    return content.partition(b"//# sourceMappingURL")[0]
+    path = DIST_DIR / SceneView.vtk_url.partition("panel/")[2]
+    return path.read_bytes().partition(b"//# sourceMappingURL")[0]
 
 
 def _compressed(content: bytes | bytearray) -> str:

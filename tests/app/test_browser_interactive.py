@@ -96,12 +96,20 @@ def test_a_clip_plays_and_a_ring_turns_the_joint(alone):
     np.testing.assert_array_equal(alone.points(), rest)
 
 
-def test_a_slider_moves_the_cut_of_the_graph(alone):
-    alone.button("Graph").click()
+def test_a_slider_moves_the_cut_of_the_graph(browser, robot, binding, tmp_path):
+    path = tmp_path / "graph.html"
+    path.write_text(interactive_page(robot, binding, view="graph"), encoding="utf-8")
+    alone = Alone(browser, path.as_uri())
     cut = alone.look()
     alone.slide("Position of the cut", "Home")
     assert changed(cut, alone.look()) > 0.05
     assert alone.report()["actors"]["interior edges"]["cells"] > 1000
+    alone.slide("Position of the cut", "End")
+    alone.click_vertex()
+    alone.button("Weights").click()
+    alone.settle()
+    assert "vertex" in alone.report()["actors"]
+    alone.close()
 
 
 def test_it_fits_a_small_frame_and_follows_the_dark_theme(browser, path, tmp_path):
