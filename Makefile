@@ -69,6 +69,7 @@ docs: $(VENV)/.docs ## Build the documentation site in build/docs; every example
 
 clean: ## Remove .venv and all that was made here
 	rm -rf $(VENV) build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis test-output
+	rm -rf docs/api docs/auto_* docs/sg_execution_times.rst
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
 
 # Stamps: written when the set-up has succeeded, out of date when its recipe changes.

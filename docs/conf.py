@@ -40,7 +40,6 @@ sphinx_gallery_conf = {
     "show_signature": False,
     "min_reported_time": 1e9,
     "within_subsection_order": "FileNameSortKey",
-    "abort_on_example_error": True,
 }
 
 html_theme = "pydata_sphinx_theme"
