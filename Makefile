@@ -79,8 +79,9 @@ $(VENV)/.app: $(SETUP)
 $(VENV)/.test: $(SETUP)
 	@scripts/setup.sh test
 
-$(VENV)/.docs: $(SETUP)
+$(VENV)/.docs: $(SETUP) scripts/get_system_libraries.py scripts/debian.py
 	@scripts/setup.sh docs
+	@$(PYTHON) scripts/get_system_libraries.py
 	@touch $@
 
 $(VENV)/.networks: $(VENV)/.test scripts/get_torch.py

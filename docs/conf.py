@@ -28,6 +28,7 @@ myst_enable_extensions = ["dollarmath", "colon_fence"]
 myst_heading_anchors = 4
 
 autosummary_generate = True
+autosummary_ignore_module_all = False
 autodoc_typehints = "none"  # the docstrings name the types
 numpydoc_show_class_members = False
 

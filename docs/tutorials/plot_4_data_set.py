@@ -5,6 +5,7 @@ A data set
 `cutcell.dataset` binds a folder of characters in parallel and stores distances, weights and metrics in one store.
 """
 
+from pathlib import Path
 from tempfile import mkdtemp
 
 from cutcell.dataset import Store, bind_all
@@ -14,7 +15,7 @@ from cutcell_assets import demo_path
 # Two characters stand for a folder of thousands. Each is bound in a subprocess, so that a broken file stops
 # nothing. A second call skips what is there.
 
-folder = mkdtemp(prefix="store-")
+folder = Path(mkdtemp(prefix="store-"))
 report = bind_all([demo_path("robot"), demo_path("rabbit")], folder, workers=1)
 print(report.bound, "bound,", report.failed, "failed")
 
