@@ -23,7 +23,5 @@ def listed(path: str) -> object:
 def test_every_public_name_has_a_page(package):
     pages = [listed(path) for path in LISTED]
     names = [name for name in package.__all__ if name != "__version__"]
-    missing = [
-        name for name in names if not any(getattr(package, name) is page for page in pages)
-    ]
+    missing = [name for name in names if not any(getattr(package, name) is page for page in pages)]
     assert missing == []
