@@ -69,6 +69,7 @@ docs: $(VENV)/.docs ## Build the documentation site in build/docs; every example
 
 clean: ## Remove .venv and all that was made here
 	rm -rf $(VENV) build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis test-output
+	rm -rf docs/api docs/auto_* docs/sg_execution_times.rst
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
 
 # Stamps: written when the set-up has succeeded, out of date when its recipe changes.
@@ -78,8 +79,9 @@ $(VENV)/.app: $(SETUP)
 $(VENV)/.test: $(SETUP)
 	@scripts/setup.sh test
 
-$(VENV)/.docs: $(SETUP)
+$(VENV)/.docs: $(SETUP) scripts/get_system_libraries.py scripts/debian.py
 	@scripts/setup.sh docs
+	@$(PYTHON) scripts/get_system_libraries.py
 	@touch $@
 
 $(VENV)/.networks: $(VENV)/.test scripts/get_torch.py

@@ -28,6 +28,7 @@ myst_enable_extensions = ["dollarmath", "colon_fence"]
 myst_heading_anchors = 4
 
 autosummary_generate = True
+autosummary_ignore_module_all = False
 autodoc_typehints = "none"  # the docstrings name the types
 numpydoc_show_class_members = False
 
@@ -40,7 +41,6 @@ sphinx_gallery_conf = {
     "show_signature": False,
     "min_reported_time": 1e9,
     "within_subsection_order": "FileNameSortKey",
-    "abort_on_example_error": True,
 }
 
 html_theme = "pydata_sphinx_theme"

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # Set up .venv with one of the extras of pyproject.toml, in the versions of requirements.lock.
-# Usage: scripts/setup.sh app|test
+# Usage: scripts/setup.sh app|docs|test
 set -euo pipefail
 cd "$(dirname "$0")/.."
 venv=.venv
-extra=${1:?usage: scripts/setup.sh app|test}
+extra=${1:?usage: scripts/setup.sh app|docs|test}
 
 say() { printf '%s\n' "$*" >&2; }
 fail() { printf 'set-up stopped: %s\n' "$*" >&2; exit 1; }

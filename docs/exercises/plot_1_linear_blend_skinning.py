@@ -21,7 +21,8 @@ from cutcell_viewers.pose_scene import joint_turns, pose_scene, turn
 
 rig = cutcell.load(demo_path("biped"))
 joint = rig.skeleton.names.index("upper_arm.L")
-matrices = joint_turns(rig, {joint: turn("z", 60)})
+turns = joint_turns(rig, {joint: turn("z", 60)})
+matrices = cutcell.forward_kinematics(rig.skeleton, turns)
 
 
 def skin(vertices, weights, matrices):

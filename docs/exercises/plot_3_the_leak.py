@@ -47,7 +47,8 @@ for name, weights in {"straight": straight, "through the body": falloff(through)
 # %%
 
 arm = names.index("upper_arm.L")
-matrices = joint_turns(rig, {arm: turn("z", 70)})
+turns = joint_turns(rig, {arm: turn("z", 70)})
+matrices = cutcell.forward_kinematics(rig.skeleton, turns)
 picture = Image.new("RGB", (1000, 600))
 for column, weights in enumerate([straight, falloff(through)]):
     scene = pose_scene(rig, weights, matrices, chosen=arm)

@@ -2,7 +2,8 @@
 The paper's falloff
 ===================
 
-The parameter alpha of the paper says how fast weights decrease with distance.
+The parameter alpha of the paper says how fast weights decrease with distance. From left to right it is 0, 0.5 and
+1.
 """
 
 from PIL import Image

@@ -2,7 +2,7 @@
 Methods side by side
 ====================
 
-The weights of one bone by cutcell, bone heat, straight distances, and in the file.
+The weights of one bone by cutcell, bone heat and straight distances.
 """
 
 import cutcell

@@ -6,6 +6,7 @@ A data set
 """
 
 from pathlib import Path
+from tempfile import mkdtemp
 
 from cutcell.dataset import Store, bind_all
 from cutcell_assets import demo_path
@@ -14,13 +15,13 @@ from cutcell_assets import demo_path
 # Two characters stand for a folder of thousands. Each is bound in a subprocess, so that a broken file stops
 # nothing. A second call skips what is there.
 
-folder = Path("store")
+folder = Path(mkdtemp(prefix="store-"))
 report = bind_all([demo_path("robot"), demo_path("rabbit")], folder, workers=1)
-print(report)
+print(report.bound, "bound,", report.failed, "failed")
 
 # %%
 # The store holds one entry per character. `cutcell.dataset.RigDataset` reads it in PyTorch, and
 # ``cutcell dataset export`` writes it in the formats of RigNet, UniRig and Puppeteer.
 
-for key, entry in Store(folder).entries():
-    print(key, entry.name, entry.weights.shape)
+for name, entry in Store(folder).entries():
+    print(name, entry.weights.shape)

@@ -17,15 +17,18 @@ rig = cutcell.load(demo_path("biped"))
 binding = cutcell.bind(rig)
 
 # %%
-# A stroke passes vertices of the surface. Here it is one vertex at the shoulder, and the brush adds weight of the
-# upper arm around it. Rows still sum to one.
+# A stroke passes vertices of the surface. Here it is one vertex at the collar, and the brush adds weight of the head
+# around it, so that the collar follows the head. Rows still sum to one.
 
-joint = rig.skeleton.names.index("upper_arm.L")
+names = rig.skeleton.names
+head, neck = names.index("head"), names.index("neck")
 height = float(np.ptp(rig.mesh.vertices[:, 1]))
-shoulder = np.linalg.norm(rig.mesh.vertices - rig.skeleton.joints[joint], axis=1).argmin()
-brush = cutcell.Brush(radius=0.06 * height, mode="add", strength=0.8)
-painted = cutcell.paint_weights(rig, binding.weights, joint, [shoulder], brush, mirrored=True)
-picture = cutcell_viewers.show(weights_scene(rig, painted, joint))
+collar = np.linalg.norm(rig.mesh.vertices - rig.skeleton.joints[neck], axis=1).argmin()
+brush = cutcell.Brush(radius=0.08 * height, mode="add", strength=0.8)
+painted = cutcell.paint_weights(rig, binding.weights, head, [collar], brush, mirrored=True)
+for weights in (binding.weights, painted):
+    print("weight of the head at the collar:", weights[collar, head].round(2))
+picture = cutcell_viewers.show(weights_scene(rig, painted, head))
 
 # %%
 # Corrections describe decisions about joints and parts, apart from any weights. This one takes a joint out of the
@@ -33,7 +36,7 @@ picture = cutcell_viewers.show(weights_scene(rig, painted, joint))
 
 corrections = cutcell.Corrections(joints={"neck": cutcell.JointCorrection(deform=False)})
 corrected = cutcell.bind(rig, corrections=corrections)
-print("weight of the neck:", corrected.weights[:, rig.skeleton.names.index("neck")].sum())
+print("weight of the neck:", corrected.weights[:, neck].sum())
 
 # %%
 # Saved with the character, the weights are ready for any program that reads glTF.
