@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import html
-import sys
 import webbrowser
 from dataclasses import dataclass
 from importlib.metadata import entry_points
@@ -14,6 +13,7 @@ from typing import Any
 from ..errors import MissingLibraryError
 from ..rig.checks import check_number
 from ..rig.inputs import RigLike, as_rig
+from ..runtime.notebook import is_notebook
 from ..runtime.writing import write_all
 
 __all__ = ["Page", "show"]
@@ -78,7 +78,7 @@ def show(rig: RigLike, binding: Any = None, *, height: int = 520) -> Page:
     """
     height = int(check_number("height", height, 100, 10000))
     page = Page(_page_maker()(as_rig(rig), binding), height)
-    if not _is_notebook():
+    if not is_notebook():
         with NamedTemporaryFile(suffix=".html", delete=False) as file:
             file.write(page.content.encode())
         webbrowser.open(Path(file.name).as_uri())
@@ -96,8 +96,3 @@ def _page_maker() -> Any:
         "interactive pages need libraries that are not installed; "
         "install them by: pip install 'cutcell[app]'"
     )
-
-
-def _is_notebook() -> bool:
-    ipython = sys.modules.get("IPython")
-    return ipython is not None and ipython.get_ipython() is not None
