@@ -29,6 +29,7 @@ def test_pairs_are_stepped_through_and_overruled(browser, tmp_path):
         visit.settle()
         visit.button("Next").click()
         visit.expect_text("Pair 3 of 3.")
+        visit.settle()
         visit.button("Different").click()
         visit.expect_text(re.compile(r"2 of 3 characters are kept"))
         visit.page.reload()
