@@ -67,6 +67,7 @@ def setup(app):
     """Let links to files outside this folder lead into the repository."""
 
     def outside(app, name, source):
-        source[0] = source[0].replace("](../", f"]({CHECKOUT}")
+        if "/" not in name:  # in a folder below, `..` is this one
+            source[0] = source[0].replace("](../", f"]({CHECKOUT}")
 
     app.connect("source-read", outside)
