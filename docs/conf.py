@@ -6,12 +6,12 @@ from pathlib import Path
 DOCS = Path(__file__).resolve().parent
 sys.path[:0] = [str(DOCS), str(DOCS.parent)]
 
-from cutcell import __version__  # noqa: E402
+import cutcell  # noqa: E402
 
 project = "cutcell"
 author = "The cutcell authors"
 copyright = "2026, the cutcell authors"
-version = release = __version__
+version = release = cutcell.__version__
 
 extensions = [
     "myst_parser",
@@ -28,8 +28,11 @@ myst_enable_extensions = ["dollarmath", "colon_fence"]
 myst_heading_anchors = 4
 
 autosummary_generate = True
-autosummary_ignore_module_all = False
+autosummary_context = {"with_a_page": ", ".join(cutcell.__all__)}
 autodoc_typehints = "none"  # the docstrings name the types
+autodoc_preserve_defaults = True
+default_role = "py:obj"
+templates_path = ["_templates"]
 numpydoc_show_class_members = False
 
 sphinx_gallery_conf = {
@@ -39,6 +42,7 @@ sphinx_gallery_conf = {
     "image_scrapers": ("gallery_pictures", "matplotlib"),
     "download_all_examples": False,
     "show_signature": False,
+    "capture_repr": (),
     "min_reported_time": 1e9,
     "within_subsection_order": "FileNameSortKey",
 }
@@ -63,6 +67,7 @@ def setup(app):
     """Let links to files outside this folder lead into the repository."""
 
     def outside(app, name, source):
-        source[0] = source[0].replace("](../", f"]({CHECKOUT}")
+        if "/" not in name:  # in a folder below, `..` is this one
+            source[0] = source[0].replace("](../", f"]({CHECKOUT}")
 
     app.connect("source-read", outside)

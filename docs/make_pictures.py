@@ -1,5 +1,7 @@
 """Makes the pictures of the README and the docs: `python docs/make_pictures.py`.
 
+`scenes`, `figures` or `page` behind the command make these alone.
+
 Those of the page need a Chromium; see scripts/get_chromium.py.
 """
 
@@ -44,11 +46,10 @@ TOE, CHEST = 10876, 4911
 
 
 def main() -> None:
-    """Make all pictures."""
+    """Make the pictures that the command line names, or all."""
     PICTURES.mkdir(exist_ok=True)
-    scenes()
-    figures()
-    page()
+    for name in sys.argv[1:] or ["scenes", "figures", "page"]:
+        {"scenes": scenes, "figures": figures, "page": page}[name]()
     for path in sorted(PICTURES.glob("*.png")):
         shrink(path)
         print(f"{path.relative_to(ROOT)}  {path.stat().st_size // 1024} kB")
@@ -133,13 +134,14 @@ def page() -> None:
             visit.page.mouse.move(700, 895)
         panels(visit)
         comparisons(visit)
+        check(visit)
         tour(visit)
         visit.close()
         browser.close()
 
 
 def panels(visit: Visit) -> None:
-    """Take a picture of each thing that docs/page.md tells of."""
+    """Take a picture of each thing that docs/page/ shows."""
     visit.panel("Graph")
     visit.switch("One slice and its rays")
     visit.page.mouse.move(860, 330)
@@ -177,11 +179,24 @@ def comparisons(visit: Visit) -> None:
     take(visit, "compare")
 
 
+def check(visit: Visit) -> None:
+    """Take a picture of a finding that is looked at."""
+    open_address(visit, "?rig=biped_cape&panel=check")
+    visit.dismiss()
+    visit.page.get_by_role("button", name="Unreachable vertices").click()
+    take(visit, "check")
+
+
 def tour(visit: Visit) -> None:
     """Take a picture of the step that shows why straight distance does not do."""
-    visit.page.goto(f"{visit.url}/?step=3")
-    visit.wait_until_bound()
+    open_address(visit, "?step=3")
     take(visit, "learn")
+
+
+def open_address(visit: Visit, query: str) -> None:
+    """Load the page anew with other choices."""
+    visit.page.goto(visit.url.partition("?")[0] + query)
+    visit.wait_until_bound()
 
 
 def click_vertex(visit: Visit, vertex: int) -> None:

@@ -13,6 +13,7 @@ from cutcell.cli.app import app
 ROOT = Path(__file__).resolve().parent.parent
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 PAGES = [ROOT / name for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")]
+DOCUMENTS = [*PAGES, *sorted((ROOT / "docs").rglob("*.md"))]
 
 
 def in_a_folder_of_its_own(tmp_path, monkeypatch):
@@ -43,11 +44,13 @@ def test_the_commands_run(tmp_path, monkeypatch):
         assert CliRunner().invoke(app, command.split()).exit_code == 0
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+@pytest.mark.parametrize("page", DOCUMENTS, ids=lambda page: page.name)
 def test_links_lead_somewhere(page):
     text = page.read_text(encoding="utf-8")
-    links = re.findall(r"\]\(([^)#]+)\)", text) + re.findall(r'src(?:set)?="([^"]+)"', text)
-    assert [link for link in links if not (ROOT / link).exists()] == []
+    links = re.findall(r"(?<!\")\]\(([^)#]+)", text) + re.findall(r'src(?:set)?="([^"]+)"', text)
+    # `make docs` writes pages into docs/auto_*, and fails where one is missing.
+    local = [link for link in links if not link.startswith(("http", "auto_"))]
+    assert [link for link in local if not (page.parent / link).exists()] == []
 
 
 def test_make_targets_that_are_spoken_of_exist():

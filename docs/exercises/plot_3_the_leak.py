@@ -38,7 +38,7 @@ through = cutcell.bone_distances(graph, rig.skeleton).all_joints().T
 through = np.nan_to_num(through, nan=np.inf, posinf=np.inf)
 
 # %%
-# Straight weights are those of exercise 2.
+# Exercise 2 saved the straight weights: run it first.
 
 straight = np.load("straight_weights.npy")
 for name, weights in {"straight": straight, "through the body": falloff(through)}.items():
