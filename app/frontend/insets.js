@@ -104,7 +104,14 @@ export class Insets {
     const small = several && this.renderer.tilesIn(insets)[0][2] < NARROW_FEET
     // There they always need space, whatever is behind them and however it is turned.
     for (const part of slim || small ? [legend, transport] : []) {
-      if (!part.hidden) { take("bottom", box.bottom - this.boxOf(part).top) }
+      if (part.hidden) { continue }
+      const {right, top} = this.boxOf(part)
+      // A telephone on its side is too low for the legend to be below the character.
+      if (part === legend && !several && box.width > box.height) {
+        take("left", right - box.left)
+      } else {
+        take("bottom", box.bottom - top)
+      }
     }
     return insets
   }
