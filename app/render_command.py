@@ -1,4 +1,4 @@
-"""The command `cutcell render`: a picture or a film of what the page shows."""
+"""The command `cutcell render`: a picture, a film or an interactive page of what the page shows."""
 
 import re
 from pathlib import Path
@@ -10,6 +10,7 @@ from cutcell.cli.console import for_people, print_line, print_warnings, progress
 from cutcell.cli.networks import offer_networks
 from cutcell.cli.options import (
     FILES,
+    METHOD_OPTIONS,
     Networks,
     RigFile,
     SkeletonFile,
@@ -45,7 +46,11 @@ EPILOG = """Examples:
 
 - `cutcell render character.glb --panel pose --clip walk --error walk.gif`
 
-- `cutcell render character.glb --panel compare --methods now,bone_heat,artist compare.png`"""
+- `cutcell render character.glb --panel compare --methods now,bone_heat,artist compare.png`
+
+- `cutcell render character.glb character.html`"""
+INTERACTIVE = {"rig", "out", "panel", "bone", "skeleton_file", "quiet", *METHOD_OPTIONS}
+"""Parameters of the command that an interactive page follows."""
 
 
 @for_people
@@ -59,7 +64,9 @@ def render(
     out: Annotated[
         Path,
         typer.Argument(
-            metavar="OUT", help="A picture: .png or .jpg. What moves is a film: .mp4 or .gif."
+            metavar="OUT",
+            help="A picture: .png or .jpg. What moves is a film: .mp4 or .gif. An interactive page"
+            " that needs no server: .html.",
         ),
     ],
     *,
@@ -75,11 +82,16 @@ def render(
         typer.Option("--quiet", "-q", help="No bars, no warnings.", rich_help_panel=FILES),
     ] = False,
 ) -> None:
-    """Draw a character as the page shows it, into a picture or a film.
+    """Draw a character as the page shows it, into a picture, a film or an interactive page.
 
     Weights are computed first; nothing of the character's file is changed.
     """
     scenes, film, worker = _libraries()
+    given = [name for name in context.params if _is_given(context, name)]
+    if out.suffix.lower() == ".html":
+        _check_interactive(given)
+        _write_page(rig, out, choices=choices, options=options, skeleton=skeleton_file, quiet=quiet)
+        return
     moves = picture["turntable"] or (choices["clip"] is not None and choices["time"] is None)
     film.check_picture_file(out, moves=moves)
     scenes.check_picture(**picture, kind=out.suffix.lower())
@@ -88,7 +100,6 @@ def render(
     from cutcell.io.files import naming
 
     page = scenes.read_address(address) if address else scenes.Address()
-    given = [name for name in context.params if _is_given(context, name)]
     method = chosen_method(
         {**options, **{name: v for name, v in page.method.items() if name not in given}}
     )
@@ -131,6 +142,50 @@ def render(
             ]
         )
         print_line(f"{out}: {size[0]} x {size[1]} pixels, {_kilobytes(out)}")
+
+
+def _write_page(
+    rig: Path,
+    out: Path,
+    *,
+    choices: dict[str, Any],
+    options: dict[str, Any],
+    skeleton: Path | None,
+    quiet: bool,
+) -> None:
+    from cutcell.binding import bind
+    from cutcell.io import load
+    from cutcell.io.files import naming
+    from cutcell.rig.checks import check_choice
+    from cutcell.runtime.writing import check_place, write_all
+
+    from .render import find_bone
+    from .render.interactive import VIEWS, interactive_page
+
+    check_place(out)
+    view = check_choice("panel", choices["panel"] or "weights", VIEWS)
+    method, loaded = chosen_method(options), load(rig, skeleton=skeleton)
+    with naming(rig):
+        loaded.skeleton.require_joints()
+        joint = None if choices["bone"] is None else find_bone(loaded, choices["bone"])
+    with progress_bars(quiet) as progress:
+        binding = bind(loaded, method=method, progress=progress)
+        page = interactive_page(loaded, binding, joint=joint, view=view, progress=progress)
+        write_all({out: page.encode()})
+    if not quiet:
+        print_warnings([*loaded.warnings, *binding.warnings])
+        print_line(f"{out}: an interactive page, {_kilobytes(out)}")
+
+
+def _check_interactive(given: list[str]) -> None:
+    """Raise an error for an option that an interactive page does not follow."""
+    flags = {name: row[2].split()[0] for name, row in (CHOICES | SETTINGS | PICTURE).items()}
+    for name in given:
+        if name not in INTERACTIVE:
+            raise ParameterError(
+                f"{flags.get(name, f'--{name}')} does not apply to an interactive page, which has"
+                " controls of its own: leave it out"
+            )
 
 
 def _libraries() -> tuple[Any, Any, Any]:

@@ -48,6 +48,8 @@ from .graph import build_graph as build_graph
 from .graph.winding import winding_number as winding_number
 from .io import load as load
 from .io import save as save
+from .io.interactive import Page as Page
+from .io.interactive import show as show
 from .method import ANIMATION as ANIMATION
 from .method import PAPER as PAPER
 from .method import Method as Method

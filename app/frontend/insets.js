@@ -72,7 +72,7 @@ export class Insets {
   // What always stands over the canvas.
   get edges() {
     const {legend, transport, hint, root} = this.overlay
-    return [legend, transport, hint, root.querySelector(".tools")]
+    return [legend, transport, hint, ...root.querySelectorAll(".tools")]
   }
 
   // What cards take, from each edge.
@@ -80,7 +80,8 @@ export class Insets {
     const several = this.renderer.views.length > 1
     const insets = noCards(several)
     const slim = box.width < SLIM
-    if (slim || (several && this.renderer.tilesIn(insets)[0][2] < NARROW_VIEW)) { insets.top = UNDER_TOOLS }
+    const narrow = slim || (several && this.renderer.tilesIn(insets)[0][2] < NARROW_VIEW)
+    if (narrow && this.overlay.root.querySelector(".tools")) { insets.top = UNDER_TOOLS }
     const {legend, transport} = this.overlay
     const take = (edge, pixels, of = insets) => { of[edge] = Math.max(of[edge], pixels + GAP) }
     const beside = {left: 0, right: 0}
@@ -100,9 +101,9 @@ export class Insets {
       }
     }
     if (!slim && !several) { return this.clear(insets, box, beside, edges) }
-    const narrow = several && this.renderer.tilesIn(insets)[0][2] < NARROW_FEET
+    const small = several && this.renderer.tilesIn(insets)[0][2] < NARROW_FEET
     // There they always need space, whatever is behind them and however it is turned.
-    for (const part of slim || narrow ? [legend, transport] : []) {
+    for (const part of slim || small ? [legend, transport] : []) {
       if (!part.hidden) { take("bottom", box.bottom - this.boxOf(part).top) }
     }
     return insets

@@ -181,6 +181,18 @@ function typedNumbers(card) {
   return new Map(edited.map((input) => [input.getAttribute("aria-label"), input.value]))
 }
 
+function explanation(model, facts) {
+  const why = element("button", "why", facts.explain ? "Hide why" : "Why these weights?")
+  why.type = "button"
+  why.setAttribute("aria-expanded", String(facts.explain))
+  why.addEventListener("click", () => model.send_msg({type: "explain"}))
+  const parts = [why]
+  if (facts.explain && !facts.why.length) { parts.push(element("div", "quiet", "Tracing paths …")) }
+  parts.push(...facts.why.map((bone, number) => explained(bone, number === 0)))
+  if (facts.explain) { parts.push(overruling(model, facts)) }
+  return parts
+}
+
 function card(model, facts) {
   if (facts.node !== undefined) { return nodeCard(model, facts) }
   const root = empty(model, "Vertex", facts.vertex)
@@ -188,10 +200,11 @@ function card(model, facts) {
     root.append(element("div", "quiet", "Its weights come as soon as they are computed."))
     return root
   }
+  const asks = facts.explain !== undefined  // a page without a server has no answers
   const {number, of, vertices} = facts.component
   const part = of === 1 ? "The mesh is one part" : `Part ${number} of ${of} of the mesh`
   const size = `${vertices.toLocaleString("en")} ${vertices === 1 ? "vertex" : "vertices"}`
-  if (of === 1) {
+  if (of === 1 || !asks) {
     root.append(element("div", "quiet", `${part} · ${size}`))
   } else {
     const apart = element("button", "quiet part", `${part} · ${size}`)
@@ -224,14 +237,7 @@ function card(model, facts) {
     root.append(row(model, bone, [bar(color, distance / most)], distance.toFixed(3), spoken))
   }
 
-  const why = element("button", "why", facts.explain ? "Hide why" : "Why these weights?")
-  why.type = "button"
-  why.setAttribute("aria-expanded", String(facts.explain))
-  why.addEventListener("click", () => model.send_msg({type: "explain"}))
-  root.append(why)
-  if (facts.explain && !facts.why.length) { root.append(element("div", "quiet", "Tracing paths …")) }
-  root.append(...facts.why.map((bone, number) => explained(bone, number === 0)))
-  if (facts.explain) { root.append(overruling(model, facts)) }
+  if (asks) { root.append(...explanation(model, facts)) }
 
   const state = element("div", "state")
   const dot = element("span", "dot")

@@ -27,7 +27,7 @@ import {acceptDrops, Uploader} from "./upload.js"
 
 const CALM = 150  // milliseconds without a change, after which a slow machine draws in full
 
-class View {
+export class View {
   constructor(model, vtk, overlay) {
     this.model = model
     this.overlay = overlay
@@ -66,6 +66,18 @@ class View {
       play: (on) => model.send_msg({type: "play", on}),
       seek: (time) => { this.time = time; this.applyPose(); this.changed(); this.tellTime() },
     })
+    this.rendered = new Rendered(overlay, model)
+    this.messages = 0
+    this.posed = 0
+    this.insets = new Insets({
+      overlay, renderer: this.renderer, orbit: this.orbit,
+      changed: () => this.changed(), rested: () => this.rested(),
+    })
+  }
+
+  // The rest of the page around the canvas, which a server stands behind.
+  join() {
+    const {model, overlay} = this
     const uploader = new Uploader(model, {
       started: (files) => overlay.say(`Sending ${files.map((f) => f.name).join(", ")}`, () => uploader.cancel()),
       moved: () => {},
@@ -83,13 +95,6 @@ class View {
     this.connection = new Connection(overlay)
     this.names = new Names(overlay.root)
     this.sheet = new Sheet(overlay.root)
-    this.rendered = new Rendered(overlay, model)
-    this.messages = 0
-    this.posed = 0
-    this.insets = new Insets({
-      overlay, renderer: this.renderer, orbit: this.orbit,
-      changed: () => this.changed(), rested: () => this.rested(),
-    })
   }
 
   receive(message) {
@@ -275,10 +280,10 @@ class View {
     this.gone = true
     this.playing = false
     window.removeEventListener("popstate", this.wentBack)
-    this.keys.remove()
-    this.connection.remove()
-    this.names.remove()
-    this.sheet.remove()
+    this.keys?.remove()
+    this.connection?.remove()
+    this.names?.remove()
+    this.sheet?.remove()
     this.insets.remove()
     clearTimeout(this.calming)
     cancelAnimationFrame(this.waiting)
@@ -323,7 +328,9 @@ export function render({model}) {
     const trial = document.createElement("canvas").getContext("webgl2")
     if (!trial) { throw new Error("this browser offers no WebGL 2") }
     trial.getExtension("WEBGL_lose_context")?.loseContext()
-    begin(new View(model, vtk, overlay), false)
+    const made = new View(model, vtk, overlay)
+    made.join()
+    begin(made, false)
     window.__cutcell = Object.assign(view, probe(view))
   }).catch((error) => {
     console.info(`The server draws the 3D view: ${error.message}.`)

@@ -25,6 +25,7 @@ def export(session: Session) -> pmui.Column:
         variant="contained",
     )
     films: dict[str, Callable[[], None]] = {
+        "Interactive page (HTML)": lambda: actions.export_interactive(session, offer),
         "Picture (PNG)": lambda: actions.export_picture(session, offer),
         "Turntable (MP4)": lambda: actions.export_turntable(session, "mp4", offer),
         "Turntable (GIF)": lambda: actions.export_turntable(session, "gif", offer),

@@ -57,11 +57,14 @@ def following(state: State, memo: Memo | None = None) -> Description:
     memo : Memo, optional
         As in `resolve`.
     """
+    memo = memo or Memo()
     whole = resolve(state, memo)
     actors = dict(whole.actors)
     bodies = [name for name in actors if name.startswith("body") and actors[name].skin is None]
     if bodies:
-        skin = skin_of_weights(state.weights)
+        # As `character` does where the body follows on any panel.
+        inputs = (state.rig, state.weights)
+        skin = memo("skin", inputs, lambda: skin_of_weights(state.weights))
         actors |= {name: replace(actors[name], skin=skin) for name in bodies}
     actors = {name: actor for name, actor in actors.items() if actor.skin is not None}
     if not PANELS[state.panel].poses:

@@ -196,11 +196,11 @@ def clip_of(state: State) -> Clip | None:
     return swing(state.rig, state.joint, state.axis, SWING_DEGREES)
 
 
-def clip_part(state: State, clip: Clip | None) -> dict[str, Any] | None:
-    """Return a motion as a message for the view."""
+def clip_part(state: State, clip: Clip | None, limit: int = MAX_NUMBERS) -> dict[str, Any] | None:
+    """Return a motion as a message for the view, of a number of numbers at most."""
     if clip is None or not len(times := clip.times):
         return None
-    most = max(MAX_NUMBERS // max(16 * clip.joints, 1), 2)
+    most = max(limit // max(16 * clip.joints, 1), 2)
     if len(times) > most:
         times = np.linspace(0, clip.duration, most)
     matrices = np.empty((len(times), clip.joints, 4, 4), np.float32)

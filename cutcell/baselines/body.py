@@ -89,6 +89,6 @@ def follow_nearest(body: Body, distance: NDArray[np.float64], why: str) -> tuple
 def unreached(lost: NDArray[np.intp], body: Body, why: str) -> str:
     """Say how many vertices follow their nearest bones, and why."""
     return (
-        f"{len(lost)} of {len(body.points)} welded vertices follow their nearest bones in a "
+        f"{len(lost):,} of {len(body.points):,} welded vertices follow their nearest bones in a "
         f"straight line: {why}"
     )

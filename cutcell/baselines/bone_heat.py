@@ -75,8 +75,8 @@ def bone_heat(
         distance, share, unseen = _warmth(body)
         if unseen:
             run.warnings.append(
-                f"{unseen} of {len(body.points)} welded vertices lie on components that no bone "
-                "sees; their nearest bones warm them through the surface"
+                f"{unseen:,} of {len(body.points):,} welded vertices lie on components that no "
+                "bone sees; their nearest bones warm them through the surface"
             )
         run.end("heat")
         screening = heat / np.maximum(distance, MIN_DISTANCE) ** 2

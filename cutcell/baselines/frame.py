@@ -89,7 +89,7 @@ def _finish(
     if len(lost):
         full[lost] = _nearest(rig, body, lost)
         warnings = (
-            f"{len(lost)} of {len(full)} vertices got no weight that their file can store; "
+            f"{len(lost):,} of {len(full):,} vertices got no weight that their file can store; "
             "they follow their nearest bone",
         )
     full /= full.sum(axis=1, keepdims=True)

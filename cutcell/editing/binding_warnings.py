@@ -44,14 +44,14 @@ def _of_distances(graph: CutCellGraph, distances: BoneDistances) -> Iterator[str
     inverted = int(graph.inverted.sum())
     if inverted:
         yield (
-            f"{inverted} of {len(graph.inverted)} faces are inside out and count as turned round; "
-            "the mesh itself stays as it is"
+            f"{inverted:,} of {len(graph.inverted):,} faces are inside out and count as turned "
+            "round; the mesh itself stays as it is"
         )
     for reason, text in enumerate(FALLBACK_REASONS[1:], start=1):
         count = int((distances.fallback == reason).sum())
         if count:
             yield (
-                f"{count} of {len(distances.fallback)} vertices follow their nearest bones "
+                f"{count:,} of {len(distances.fallback):,} vertices follow their nearest bones "
                 f"in a straight line: {text}"
             )
     if not (graph.node_kind == 1).any():

@@ -34,6 +34,8 @@ from numba.core.codegen import get_host_cpu_features
 from numba.core.compiler import CompileResult
 from numba.core.serialize import dumps
 
+from .notebook import is_notebook
+
 PACKAGE = Path(__file__).resolve().parents[1]
 SOURCES = (
     "runtime/compiled.py",
@@ -46,6 +48,7 @@ SOURCES = (
 """Files of the functions of a binding: a change of any one makes all compiled functions stale."""
 KEPT = 3
 """How many older sets of functions are left in a folder, for other versions that use it, too."""
+ANNOUNCEMENT = "Compiling, once on this machine. This takes a minute or two."
 COMPLETE = "complete"
 """Name of the file that says that all functions of a binding are there."""
 
@@ -102,11 +105,14 @@ def is_complete() -> bool:
 
 @cache
 def announce() -> None:
-    """Log, once in a process, that this machine is to compile the functions of a binding."""
+    """Say, once in a process, that this machine is to compile the functions of a binding.
+
+    It is logged; in a notebook, which shows no log of this level, it is printed, too.
+    """
     if not is_complete():
-        logging.getLogger("cutcell.compile").info(
-            "Compiling, once on this machine. This takes a minute or two."
-        )
+        logging.getLogger("cutcell.compile").info(ANNOUNCEMENT)
+        if is_notebook():
+            print(ANNOUNCEMENT, file=sys.stderr)
 
 
 def mark_complete() -> None:

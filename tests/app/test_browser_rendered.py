@@ -35,7 +35,7 @@ def from_afar(picture):
     return picture[:height, :width].reshape(height // 8, 8, width // 8, 8, 3).mean(axis=(1, 3))
 
 
-@pytest.mark.parametrize("panel", ["Distance", "Weights", "Pose", "Compare", "Check"])
+@pytest.mark.parametrize("panel", ["Graph", "Distance", "Weights", "Pose", "Compare", "Check"])
 def test_the_server_draws_what_the_browser_shows(visit, panel):
     visit.panel(panel)
     visit.settle()

@@ -1,7 +1,11 @@
 """What a person takes along from a session: the bound character, pictures, films, numbers."""
 
+import base64
+import gzip
 import io
+import json
 import os
+import re
 import signal
 import time
 from dataclasses import replace
@@ -16,6 +20,7 @@ from cutcell.runtime.progress import silent
 from cutcell_app.commands import binding, loading
 from cutcell_app.commands.export import (
     export_bound,
+    export_interactive,
     export_motion,
     export_numbers,
     export_picture,
@@ -39,6 +44,18 @@ def test_the_bound_character_can_be_taken_along(bound, loop, tmp_path):
     path.write_bytes(content)
     loaded = cutcell.load(path)
     np.testing.assert_allclose(loaded.weights, bound.state.binding.weights, atol=1e-6)
+
+
+def test_the_interactive_page_begins_with_what_is_seen(bound, loop):
+    bound.state.param.update(panel="graph", joint=1)
+    files = []
+    export_interactive(bound, lambda *file: files.append(file))
+    loop.run_until(lambda: bool(files))
+    name, content = files[0]
+    assert name == "arm.html"
+    packed = re.search(rb'id="scenes">([^<]*)<', content).group(1)
+    scenes = json.loads(gzip.decompress(base64.b64decode(packed)))
+    assert (scenes["view"], scenes["joint"]) == ("graph", 1)
 
 
 @pytest.mark.parametrize(

@@ -1,6 +1,9 @@
 """`cutcell render`, and the page's scenes in a notebook."""
 
+import base64
+import gzip
 import inspect
+import json
 import re
 from dataclasses import fields
 from pathlib import Path
@@ -370,3 +373,35 @@ def test_each_flag_is_a_choice_a_setting_or_asked_for_of_the_picture():
     assert CHOICES.keys() < {field.name for field in fields(Choices)}
     assert SETTINGS.keys() == READERS.keys()
     assert PICTURE.keys() <= inspect.signature(order).parameters.keys()
+
+
+def test_an_html_file_is_an_interactive_page(tmp_path):
+    cutcell.save(tmp_path / "arm.glb", arm_rig())
+    rig, out = cutcell.load(tmp_path / "arm.glb"), tmp_path / "arm.html"
+    result = run(tmp_path / "arm.glb", out, "--panel", "distance", "--bone", rig.skeleton.names[1])
+    assert result.exit_code == 0, result.output
+    page = out.read_text(encoding="utf-8")
+    scenes = json.loads(unpacked(page, "scenes"))
+    assert (scenes["view"], scenes["joint"]) == ("distance", 1)
+    joints = len(rig.skeleton.joints)
+    assert (len(scenes["weights"]), len(scenes["distance"])) == (joints + 1, joints)
+    weights = cutcell.bind(rig, 16).weights
+    kind, first, count, unit = scenes["weights"][1]["actors"]["body"]["scalars"]["$"]
+    stored = unit * np.frombuffer(unpacked(page, "arrays"), kind, count, first)
+    np.testing.assert_allclose(stored, weights[:, 1], atol=1e-4)
+
+
+@pytest.mark.parametrize(
+    "options", [["--clip", "1"], ["--turntable"], ["--panel", "check"], ["--bone", "no such bone"]]
+)
+def test_an_interactive_page_refuses_what_it_does_not_follow(options, tmp_path):
+    cutcell.save(tmp_path / "arm.glb", arm_rig())
+    result = run(tmp_path / "arm.glb", tmp_path / "arm.html", *options)
+    assert result.exit_code == 2
+    assert not (tmp_path / "arm.html").exists()
+
+
+def unpacked(page, name):
+    """Return the bytes of an element of an interactive page."""
+    content = re.search(rf'id="{name}">([^<]*)<', page).group(1)
+    return gzip.decompress(base64.b64decode(content))

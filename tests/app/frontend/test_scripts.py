@@ -13,6 +13,7 @@ from cutcell_app.layout.page import NARROW
 from cutcell_app.layout.theme import NARROW as NARROW_MEDIA
 from cutcell_app.layout.theme import SHEET
 from cutcell_app.panels.pose import RING_COLORS
+from cutcell_app.scenes.facts import NO_WEIGHT
 from cutcell_app.widgets.modules import FOLDER, head, script, style
 from cutcell_app.widgets.view import SceneView
 from cutcell_viewers.camera import FRONT, VIEW_ANGLE
@@ -44,7 +45,7 @@ def test_every_module_and_style_is_used():
         "tour_card", "welcome",
     }  # fmt: skip
     assert '/component_state.js"></script>' in head()  # it runs before any other
-    for name in modules.keys() - rendered - {"component_state"}:
+    for name in modules.keys() - rendered - {"component_state", "standalone"}:
         assert any(f'"./{name}.js"' in text for text in modules.values()), name
     python = "".join(path.read_text() for path in (ROOT / "app").rglob("*.py"))
     for path in FOLDER.glob("*.css"):
@@ -64,5 +65,6 @@ def test_what_both_sides_draw_with_is_the_same():
     assert constant("gizmo.js", "RING_COLORS") == list(RING_COLORS)
     assert constant("colour.js", "QUIET") == [round(255 * x) for x in BODY]
     assert constant("sheet.js", "HEIGHT") == SHEET
+    assert constant("standalone.js", "LEAST") == NO_WEIGHT
     assert NARROW_MEDIA.endswith(constant("sheet.js", "NARROW"))
     assert f"max-width: {NARROW - 0.05:.2f}px" in NARROW_MEDIA

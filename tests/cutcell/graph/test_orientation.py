@@ -184,7 +184,7 @@ def test_the_inverted_arm_of_the_demo_is_full():
     np.testing.assert_array_equal(inverted_faces(broken.mesh), differs)
     assert interior(broken.mesh) == interior(whole.mesh)
     binding = cutcell.bind(broken, 24)
-    assert any(f"{differs.sum()} of {len(differs)} faces are inside out" in w
+    assert any(f"{differs.sum():,} of {len(differs):,} faces are inside out" in w
                for w in binding.warnings)  # fmt: skip
 
 

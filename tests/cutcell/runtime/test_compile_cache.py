@@ -9,6 +9,7 @@ import sys
 from ast import literal_eval
 from importlib.util import find_spec
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -56,6 +57,13 @@ def test_a_first_compile_is_logged_once(folder, monkeypatch, caplog):
     compile_cache.announce.cache_clear()
     outcome(1j)
     assert len(caplog.records) == 2, "the others are there: this one takes a moment"
+
+
+def test_a_notebook_is_told_of_a_first_compile(folder, monkeypatch, capsys):
+    monkeypatch.setitem(sys.modules, "IPython", SimpleNamespace(get_ipython=object))
+    compile_cache.announce.cache_clear()
+    outcome()
+    assert capsys.readouterr().err.strip() == compile_cache.ANNOUNCEMENT
 
 
 def with_checksum(content):

@@ -28,7 +28,7 @@ MAX_BYTES_PER_BYTE = {"ATTRIBUTES": 1024, "TRIANGLES": 12, "INDICES": 4}
 """Bytes that one compressed byte can hold. Attributes: 2 bits for each 4 bytes of 256 elements;
 triangles: 1 byte for each, that is 3 indices of 4 bytes."""
 DRACO = "KHR_draco_mesh_compression"
-SECONDS_A_MEGABYTE, MIN_SECONDS = 10.0, 10.0
+SECONDS_A_MEGABYTE, MIN_SECONDS = 10.0, 60.0
 MEMORY_A_BYTE, MIN_MEMORY = 500, 2**29
 """Limits of Draco's decoder: a byte holds up to some 20 vertices of a regular grid."""
 

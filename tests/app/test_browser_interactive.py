@@ -1,0 +1,127 @@
+"""The interactive page in one file, opened from the disk."""
+
+import html
+import re
+
+import numpy as np
+import pytest
+from playwright.sync_api import expect
+
+import cutcell
+from cutcell_app.render.interactive import interactive_page
+from tests.app.browser import Visit, changed
+
+MAX_BYTES = 10_000_000
+# The page's policy forbids what Playwright's own waiting does: to evaluate text.
+WAIT = """async () => {{
+  while (!window.__cutcell?.messages || !({})) {{ await new Promise(requestAnimationFrame) }}
+}}"""
+FRAMED = '<!doctype html><iframe width="320" height="240" srcdoc="{}"></iframe>'
+
+
+class Alone(Visit):
+    """A page without a server."""
+
+    def settle(self):
+        """Wait until what was chosen is drawn."""
+        self.page.evaluate(WAIT.format("__cutcell.report().idle"))
+
+    def select(self, label, value):
+        """Take an option of a list by its value."""
+        self.page.get_by_role("combobox", name=label).select_option(str(value))
+
+    def check(self):
+        """Check that nothing was requested but the file itself."""
+        inline = ("data:", "blob:", "about:")
+        requests = [url for url in self.requests if not url.startswith(inline)]
+        assert requests == [self.url]
+        assert self.complaints == []
+
+
+@pytest.fixture(scope="module")
+def binding(robot):
+    return cutcell.bind(robot)
+
+
+@pytest.fixture(scope="module")
+def path(robot, binding, tmp_path_factory):
+    path = tmp_path_factory.mktemp("interactive") / "robot.html"
+    path.write_text(interactive_page(robot, binding), encoding="utf-8")
+    return path
+
+
+@pytest.fixture
+def alone(browser, path):
+    alone = Alone(browser, path.as_uri())
+    alone.settle()
+    yield alone
+    alone.close()
+
+
+def test_joints_views_and_vertices_are_shown_without_a_server(alone, path, binding):
+    assert path.stat().st_size < MAX_BYTES
+    first = alone.look()
+    joints = np.argsort(-binding.weights.sum(axis=0))
+    alone.select("Joint", joints[0])
+    weights = alone.look()
+    assert changed(first, weights) > 0.01
+    alone.button("Distance").click()
+    assert changed(weights, alone.look()) > 0.01
+    vertex = alone.click_vertex()
+    strongest = int(binding.weights[vertex].argmax())
+    shown = alone.card.get_by_role("button", name=re.compile("weight"))
+    expect(shown.first).to_contain_text(f"{binding.weights[vertex, strongest]:.2f}")
+    distance = binding.distances.at(strongest, vertex)
+    expect(alone.card).to_contain_text(f"{distance:.3f}")
+    alone.close_card()
+
+
+def test_a_clip_plays_and_a_ring_turns_the_joint(alone):
+    rest = alone.points()
+    alone.select("Clip", 0)
+    alone.page.evaluate(WAIT.format("__cutcell.report().time > 0.1"))
+    alone.button("Pause the motion").click()
+    alone.settle()
+    assert np.abs(alone.points() - rest).max() > 1e-3
+    alone.select("Clip", -1)
+    alone.settle()
+    np.testing.assert_array_equal(alone.points(), rest)
+    x, y = alone.page.evaluate("__cutcell.gizmo.handle(2)")
+    alone.page.mouse.move(x, y)
+    alone.page.mouse.down()
+    alone.page.mouse.move(x + 40, y + 40)
+    alone.page.mouse.up()
+    assert np.abs(alone.points() - rest).max() > 1e-3
+    alone.button("Reset pose").click()
+    np.testing.assert_array_equal(alone.points(), rest)
+
+
+def test_a_slider_moves_the_cut_of_the_graph(browser, robot, binding, tmp_path):
+    path = tmp_path / "graph.html"
+    path.write_text(interactive_page(robot, binding, view="graph"), encoding="utf-8")
+    alone = Alone(browser, path.as_uri())
+    cut = alone.look()
+    alone.slide("Position of the cut", "Home")
+    assert changed(cut, alone.look()) > 0.05
+    assert alone.report()["actors"]["interior edges"]["cells"] > 1000
+    alone.slide("Position of the cut", "End")
+    alone.click_vertex()
+    alone.button("Weights").click()
+    alone.settle()
+    assert "vertex" in alone.report()["actors"]
+    alone.close()
+
+
+def test_it_fits_a_small_frame_and_follows_the_dark_theme(browser, path, tmp_path):
+    page = tmp_path / "frame.html"
+    page.write_text(FRAMED.format(html.escape(path.read_text(encoding="utf-8"))), encoding="utf-8")
+    alone = Alone(browser, page.as_uri(), color_scheme="dark")
+    frame = alone.page.frame_locator("iframe")
+    expect(frame.get_by_role("application")).to_be_visible()
+    inside = alone.page.frames[1]
+    inside.evaluate(WAIT.format("__cutcell.report().actors.body"))
+    sizes = "[document.documentElement.scrollWidth, document.documentElement.scrollHeight]"
+    assert inside.evaluate(sizes) == [320, 240]
+    color = "getComputedStyle(document.body).backgroundColor"
+    assert inside.evaluate(color) == "rgb(27, 32, 40)"
+    alone.close()
