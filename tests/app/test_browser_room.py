@@ -23,6 +23,17 @@ BEHIND = """(element) => {
   }
   return behind
 }"""
+TOP_AND_BOTTOM = """() => {
+  const {renderer} = window.__cutcell
+  const {rest} = renderer.actors.get("body")
+  let [top, bottom] = [Infinity, -Infinity]
+  for (let i = 0; i < rest.length; i += 3) {
+    const y = renderer.project([rest[i], rest[i + 1], rest[i + 2]])[1]
+    top = Math.min(top, y)
+    bottom = Math.max(bottom, y)
+  }
+  return [top, bottom]
+}"""
 MIDDLE = "__cutcell.renderer.insets.left - __cutcell.renderer.insets.right"
 
 
@@ -39,6 +50,17 @@ def behind(visit, place):
     place.wait_for()
     visit.settle()
     return place.evaluate(BEHIND)
+
+
+def test_on_a_telephone_on_its_side_the_legend_is_beside_the_character(visit):
+    before = visit.page.viewport_size
+    visit.page.set_viewport_size({"width": 844, "height": 390})
+    visit.panel("Distance")
+    assert behind(visit, visit.page.locator(".legend")) == 0
+    top, bottom = visit.page.evaluate(TOP_AND_BOTTOM)
+    canvas = visit.page.get_by_role("application").bounding_box()
+    assert bottom - top > 0.5 * canvas["height"]
+    visit.page.set_viewport_size(before)
 
 
 @pytest.mark.parametrize("demo", ["rabbit", "biped"])
