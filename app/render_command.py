@@ -160,7 +160,7 @@ def _write_page(
     from cutcell.runtime.writing import check_place, write_all
 
     from .render import find_bone
-    from .render.interactive import VIEWS, interactive_page
+    from .standalone.page import VIEWS, interactive_page
 
     check_place(out)
     view = check_choice("panel", choices["panel"] or "weights", VIEWS)

@@ -24,8 +24,6 @@ from ..files.receive import safe_name
 from ..files.table_export import save_numbers
 from ..jobs.jobs import COMPUTING, DRAWING, Slots
 from ..jobs.processes import in_process
-from ..render.interactive import VIEWS as INTERACTIVE_VIEWS
-from ..render.interactive import interactive_page
 from ..scenes import Memo, following, resolve
 from ..scenes.pose import SWING_DEGREES, clip_of
 from ..state import State
@@ -113,18 +111,20 @@ def export_motion(session: Session, ending: str, done: Done) -> None:
     _draw(session, ending, done, order)
 
 
-def export_interactive(session: Session, done: Done) -> None:
-    """Write the character as an interactive page that needs no server, and hand over the HTML."""
+def export_interactive(session: Session, page: Callable[..., str], done: Done) -> None:
+    """Write the character as an interactive page that needs no server, and hand over the HTML.
+
+    `page` is given the rig, its binding, the chosen joint and how to report progress.
+    """
     state = session.state
     if state.binding is None:
         state.message = ("info", "There are no weights to show yet.")
         return
     rig, binding, joint = state.rig, state.binding, state.joint
-    view = state.panel if state.panel in INTERACTIVE_VIEWS else "weights"
 
     def write(path: Path, progress: Progress) -> None:
-        page = interactive_page(rig, binding, joint=joint, view=view, progress=progress)
-        path.write_text(page, encoding="utf-8")
+        content = page(rig, binding, joint=joint, progress=progress)
+        path.write_text(content, encoding="utf-8")
 
     _hand_over(session, f"{_stem(session)}.html", write, done)
 

@@ -1,6 +1,7 @@
 """Export: the character with its new weights, pictures, films, numbers."""
 
 from collections.abc import Callable
+from functools import partial
 
 import panel_material_ui as pmui
 
@@ -11,6 +12,8 @@ from cutcell.rig import Rig
 
 from ..commands import export as actions
 from ..commands.session import Session
+from ..standalone.page import VIEWS, interactive_page
+from ..state import State
 from .controls import BESIDE, button, caption, folded, menu, row, when
 
 
@@ -25,7 +28,7 @@ def export(session: Session) -> pmui.Column:
         variant="contained",
     )
     films: dict[str, Callable[[], None]] = {
-        "Interactive page (HTML)": lambda: actions.export_interactive(session, offer),
+        "Interactive page (HTML)": lambda: actions.export_interactive(session, page(state), offer),
         "Picture (PNG)": lambda: actions.export_picture(session, offer),
         "Turntable (MP4)": lambda: actions.export_turntable(session, "mp4", offer),
         "Turntable (GIF)": lambda: actions.export_turntable(session, "gif", offer),
@@ -49,6 +52,12 @@ def export(session: Session) -> pmui.Column:
         ),
         caption(when(_described, state.param.rig, state.param.corrections, state.param.repair)),
     )
+
+
+def page(state: State) -> Callable[..., str]:
+    """Return what makes the interactive page of a state, which begins with what is seen."""
+    view = state.panel if state.panel in VIEWS else "weights"
+    return partial(interactive_page, view=view)
 
 
 def _described(rig: Rig | None, corrections: Corrections, repair: object) -> str:

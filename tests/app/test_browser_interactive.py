@@ -8,7 +8,7 @@ import pytest
 from playwright.sync_api import expect
 
 import cutcell
-from cutcell_app.render.interactive import interactive_page
+from cutcell_app.standalone.page import interactive_page
 from tests.app.browser import Visit, changed
 
 MAX_BYTES = 10_000_000

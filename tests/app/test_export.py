@@ -28,7 +28,7 @@ from cutcell_app.commands.export import (
 )
 from cutcell_app.jobs import jobs
 from cutcell_app.jobs.jobs import Jobs
-from cutcell_app.panels.export import _described
+from cutcell_app.panels.export import _described, page
 from cutcell_app.state import PANELS
 from tests.cutcell.io.gltf.gltf_builder import COLUMN
 from tests.cutcell.io.gltf.test_vrm import VRM1, avatar
@@ -49,7 +49,7 @@ def test_the_bound_character_can_be_taken_along(bound, loop, tmp_path):
 def test_the_interactive_page_begins_with_what_is_seen(bound, loop):
     bound.state.param.update(panel="graph", joint=1)
     files = []
-    export_interactive(bound, lambda *file: files.append(file))
+    export_interactive(bound, page(bound.state), lambda *file: files.append(file))
     loop.run_until(lambda: bool(files))
     name, content = files[0]
     assert name == "arm.html"

@@ -17,6 +17,7 @@ ROOMS = (
     {"files", "scenes"},
     {"commands"},
     {"widgets"},
+    {"standalone"},
     {"panels"},
     {"layout"},
     {"serve", "render", "render_flags"},
