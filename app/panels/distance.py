@@ -103,11 +103,11 @@ def _errors(session: Session) -> list[Any]:
             state.param.joint,
         ),
     )
-    shown = pn.bind(curves, state.param.errors, state.param.binding, state.param.joint)
+    plots = pn.bind(curves, state.param.errors, state.param.binding, state.param.joint)
     return [
         caption(f"Mean error against any angle at R = {CONVERGED}, and seconds."),
         measure,
-        pn.panel(shown, margin=0, sizing_mode="stretch_width"),
+        pn.panel(plots, margin=0, sizing_mode="stretch_width"),
     ]
 
 

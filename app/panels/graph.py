@@ -185,19 +185,19 @@ def _libraries(state: State) -> list[Any]:
         ("Rays by", state.param.slice_caster, "rays", {"cutcell": "raster"}),
         ("Winding numbers by", state.param.slice_winding, "winding", {"cutcell, exact": "exact"}),
     )
-    shown = []
-    for label, parameter, option, own in selects:
+    controls = []
+    for label, parameter, option, built_in in selects:
         installed = {
             LIBRARY_TITLES[name]: name
             for name, module in LIBRARIES[option].items()
             if find_spec(module)
         }
         if installed:
-            shown += [
+            controls += [
                 caption(label, margin=(2, 0, 0, 0)),
-                choice(parameter, {**own, **installed}),
+                choice(parameter, {**built_in, **installed}),
             ]
-    return shown
+    return controls
 
 
 def _cut(state: State) -> tuple[Any, Any]:
