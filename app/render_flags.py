@@ -93,7 +93,7 @@ SETTINGS: Flags = {
     "measures": (
         str | None, None, "--measures", "A,B",
         "The distance by two to four measures side by side, on the panel distance: straight,"
-        " surface, voxel, 6, 26, any. R is that of --resolution.", INSIDE,
+        " surface, voxel, 6, 26, any, converged. R is that of --resolution.", INSIDE,
     ),
 }  # fmt: skip
 """What `render.settings_of` reads."""

@@ -1,5 +1,5 @@
 // A page in one file, without a server: plays the messages that a server would send, which were
-// recorded for each joint (render/interactive.py).
+// recorded for each joint (standalone/page.py).
 
 import {button, element} from "./elements.js"
 import {render as inspector} from "./inspector.js"
@@ -21,7 +21,7 @@ function unpacked(id) {
   return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip")))
 }
 
-// A message with its arrays, as a server sends it; see render/packed.py.
+// A message with its arrays, as a server sends it; see standalone/packed.py.
 function reader(buffer) {
   return function read(value) {
     if (Array.isArray(value)) { return value.map(read) }

@@ -1,6 +1,5 @@
 """The graph: how it is built, which of its layers are seen, and where it is cut."""
 
-from importlib.util import find_spec
 from typing import Any
 
 import numpy as np
@@ -14,7 +13,7 @@ from ..commands.binding import bind
 from ..commands.session import Session
 from ..scenes.common import theme_of
 from ..state import LAYERS, State
-from ..state.graph import LIBRARIES, READABLE
+from ..state.graph import READABLE
 from .controls import (
     BUTTONS,
     GAP,
@@ -32,7 +31,13 @@ from .cutting import cutting
 
 KINDS = {"mesh_edges": MESH, "interior_edges": INTERIOR, "surface_edges": SURFACE}
 LEAF_TITLES = {"point": "Points", "extend": "Extended", "fit": "Fitted"}
-LIBRARY_TITLES = {"open3d": "Open3D", "embree": "Embree", "fast": "libigl, fast"}
+LIBRARY_TITLES = {
+    "raster": "cutcell",
+    "open3d": "Open3D",
+    "embree": "Embree",
+    "exact": "cutcell, exact",
+    "fast": "libigl, fast",
+}
 SEARCHED = (
     "Interior edges only carry the search: paths run straight along lines of sight. Click the "
     "body to see them."
@@ -181,22 +186,14 @@ def _inside(session: Session) -> list[Any]:
 
 def _libraries(state: State) -> list[Any]:
     """Return what else can cast the rays and compute winding numbers, as far as installed."""
-    selects = (
-        ("Rays by", state.param.slice_caster, "rays", {"cutcell": "raster"}),
-        ("Winding numbers by", state.param.slice_winding, "winding", {"cutcell, exact": "exact"}),
-    )
     controls = []
-    for label, parameter, option, built_in in selects:
-        installed = {
-            LIBRARY_TITLES[name]: name
-            for name, module in LIBRARIES[option].items()
-            if find_spec(module)
-        }
-        if installed:
-            controls += [
-                caption(label, margin=(2, 0, 0, 0)),
-                choice(parameter, {**built_in, **installed}),
-            ]
+    for label, parameter in (
+        ("Rays by", state.param.slice_caster),
+        ("Winding numbers by", state.param.slice_winding),
+    ):
+        if len(parameter.objects) > 1:
+            options = {LIBRARY_TITLES[name]: name for name in parameter.objects}
+            controls += [caption(label, margin=(2, 0, 0, 0)), choice(parameter, options)]
     return controls
 
 

@@ -1,5 +1,6 @@
 """Choices of the panel Graph."""
 
+from importlib.util import find_spec
 from typing import Any
 
 import param
@@ -11,11 +12,9 @@ from .method import default
 READABLE = 40
 """Lattice cells along the longest side of a graph that is easy to read on a screen."""
 
-LIBRARIES = {
-    "rays": {"open3d": "open3d", "embree": "embreex"},
-    "winding": {"fast": "igl"},
-}
-"""Other means of casting rays and of winding numbers, and the module that each needs."""
+MODULES = {"open3d": "open3d", "embree": "embreex", "fast": "igl"}
+"""What else casts rays or computes winding numbers, and the module that each needs."""
+INSTALLED = [name for name, module in MODULES.items() if find_spec(module)]
 
 LAYERS = {
     "body": "body",
@@ -67,11 +66,13 @@ class GraphChoices(param.Parameterized):
         default="x", objects=["x", "y", "z"], doc="Which way they run."
     )
     slice_caster: Any = param.Selector(
-        default="raster", objects=["raster", *LIBRARIES["rays"]], doc="What casts the rays."
+        default="raster",
+        objects=["raster", *(name for name in INSTALLED if name != "fast")],
+        doc="What casts the rays.",
     )
     slice_winding: Any = param.Selector(
         default="exact",
-        objects=["exact", *LIBRARIES["winding"]],
+        objects=["exact", *(name for name in INSTALLED if name == "fast")],
         doc="What computes winding numbers.",
     )
     slice_position: Any = param.Number(0.5, bounds=(0, 1), doc="Across the box of the body.")

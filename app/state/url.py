@@ -15,7 +15,7 @@ from .tour import TOUR
 
 OWN = frozenset({"name", "demo", "queued", "joint", "dark", "moving", "playing", "clip", "skipped",
                  "busy", "stage", "fraction", "message", "tour", "vertex", "part",
-                 "animating", "joint_handle"}) | BRUSH  # fmt: skip
+                 "animating", "joint_handle", "measuring_errors"}) | BRUSH  # fmt: skip
 """What goes with one person or one moment, or has a word of its own in the address."""
 
 NOTED = ("joint", "turns", "clip", "methods", "minus", "corrections")

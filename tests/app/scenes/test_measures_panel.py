@@ -69,6 +69,12 @@ def test_beside_the_converged_one_each_says_its_error(state):
     assert mean_error(converged, converged) == 0
 
 
+def test_an_address_does_not_say_that_errors_are_being_measured(state):
+    before = to_query(state)
+    state.measuring_errors = True
+    assert to_query(state) == before
+
+
 def test_errors_are_less_at_a_higher_resolution(rig, binding):
     method = cutcell.ANIMATION.with_options(resolution=16)
     points = error_points(rig, binding.distances, 1, method, silent)
