@@ -1,6 +1,7 @@
 """The command `cutcell render`: a picture, a film or an interactive page of what the page shows."""
 
 import re
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -45,6 +46,8 @@ EPILOG = """Examples:
 - `cutcell render character.glb --panel graph --cut z --dark graph.png`
 
 - `cutcell render character.glb --panel pose --clip walk --error walk.gif`
+
+- `cutcell render character.glb --panel distance --bone hand.L --sweep wave wave.mp4`
 
 - `cutcell render character.glb --panel compare --methods now,bone_heat,artist compare.png`
 
@@ -92,9 +95,12 @@ def render(
         _check_interactive(given)
         _write_page(rig, out, choices=choices, options=options, skeleton=skeleton_file, quiet=quiet)
         return
-    moves = picture["turntable"] or (choices["clip"] is not None and choices["time"] is None)
-    film.check_picture_file(out, moves=moves)
-    scenes.check_picture(**picture, kind=out.suffix.lower())
+    swept = choices["sweep"] is not None
+    moves = (
+        picture["turntable"] or swept or (choices["clip"] is not None and choices["time"] is None)
+    )
+    kind = film.check_picture_file(out, moves=moves)
+    scenes.check_picture(**picture, kind=kind)
     size = _size(picture.pop("size")) or (FILM_SIZE if moves else PICTURE_SIZE)
     from cutcell.io import load
     from cutcell.io.files import naming
@@ -123,15 +129,19 @@ def render(
     textures = scenes.textures_for(loaded, chosen)
     with progress_bars(quiet) as progress:
         binding = None if no_skeleton else bind(loaded, method=method, progress=progress)
-        description = scenes.describe(
-            loaded,
-            chosen,
-            binding=binding,
-            textures=textures,
-            resolution=method.resolution if "resolution" in given else None,
-            progress=progress,
-        )
+        computed = {
+            "binding": binding,
+            "resolution": method.resolution if "resolution" in given else None,
+            "progress": progress,
+        }
+        frames = ()
+        if swept:
+            frames = scenes.describe_sweep(loaded, chosen, film.FRAMES[kind], **computed)
+            description = frames[-1]
+        else:
+            description = scenes.describe(loaded, chosen, textures=textures, **computed)
         order = scenes.order(loaded, description, chosen, size=size, eye=page.camera, **picture)
+        order = replace(order, scenes=frames)
         worker.draw_apart(order, out, progress)
     if not quiet:
         print_warnings(

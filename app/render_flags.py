@@ -45,6 +45,11 @@ CHOICES: Flags = {
         float | None, None, "--time", "SECONDS",
         "With --clip: a picture of that moment instead of a film.", HOW,
     ),
+    "sweep": (
+        str | None, None, "--sweep", "WHAT",
+        "Film the wave as it runs from the bone to the farthest vertex, or the cut from one end of"
+        " the body to the other: wave, cut.", HOW,
+    ),
     "dark": (bool, False, "--dark", "", "On a dark ground.", HOW),
     "skeleton": (bool, True, "--bones/--no-bones", "", "Draw the skeleton, too.", HOW),
 }  # fmt: skip

@@ -27,7 +27,7 @@ from cutcell_viewers.camera import Camera, framing  # noqa: E402
 from cutcell_viewers.character import body  # noqa: E402
 from cutcell_viewers.description import Description  # noqa: E402
 from cutcell_viewers.distance_scene import distance_scene  # noqa: E402
-from cutcell_viewers.film import palette_of  # noqa: E402
+from cutcell_viewers.gif import palette_of  # noqa: E402
 from cutcell_viewers.graph_scene import cut_at, graph_scene  # noqa: E402
 from cutcell_viewers.palette import DARK, LIGHT  # noqa: E402
 from cutcell_viewers.pose_scene import pose_scene  # noqa: E402

@@ -1,8 +1,7 @@
-"""Films of a scene: a turn around it, or a motion; as MP4, GIF, or a single picture."""
+"""Films of a scene: a turn around it, a motion or a sweep; as MP4, GIF, or a single picture."""
 
 from __future__ import annotations
 
-import zlib
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from io import BytesIO
@@ -21,6 +20,7 @@ from cutcell.runtime.writing import check_place, write_all
 
 from .camera import PAGE_HEIGHT, Camera, around, sees
 from .description import Description
+from .gif import write_gif
 from .mp4 import find_ffmpeg, write_mp4
 from .palette import THEMES, Theme
 from .skin import moved
@@ -62,6 +62,9 @@ class Order:
         How high a page's canvas is that looks the same, in its pixels: widths of lines follow.
     background : str
         A colour instead of the theme's ground, as style sheets write it; or "transparent", in PNG.
+    scenes : tuple of Description
+        The frames of a film, instead of a motion. The camera and the legend's place are those of
+        `description`.
     """
 
     description: Description
@@ -74,6 +77,12 @@ class Order:
     legend: bool = True
     page_height: float = PAGE_HEIGHT
     background: str = ""
+    scenes: tuple[Description, ...] = ()
+
+    @property
+    def moves(self) -> bool:
+        """Whether it is a film."""
+        return self.turntable or self.motion is not None or bool(self.scenes)
 
 
 def draw(order: Order, path: str | Path, progress: Progress = silent) -> None:
@@ -96,7 +105,7 @@ def draw(order: Order, path: str | Path, progress: Progress = silent) -> None:
         MP4 without ffmpeg.
     """
     path = Path(path)
-    kind = check_picture_file(path, moves=order.turntable or order.motion is not None)
+    kind = check_picture_file(path, moves=order.moves)
     progress("drawing", 0.0)
     # A film's frames have even sides: MP4 stores colours for two by two pixels at once.
     width, height = (side - side % 2 for side in order.size) if kind in FILMS else order.size
@@ -109,7 +118,7 @@ def draw(order: Order, path: str | Path, progress: Progress = silent) -> None:
         if kind in PICTURES:
             _write_picture(path, studio.draw(camera))
         else:
-            write = write_mp4 if kind == ".mp4" else _write_gif
+            write = write_mp4 if kind == ".mp4" else write_gif
             write(path, _frames(order, studio, camera, FRAMES[kind], progress), FRAMES[kind])
     progress("drawing", 1.0)
 
@@ -155,7 +164,7 @@ def check_picture_file(path: Path, moves: bool = False) -> str:
         raise FileError(
             f"{path.name}: {'' if other else f'a picture cannot be saved as {kind!r}; '}"
             f"{what} as {' or '.join(fitting)}"
-            + ("; ask for a turntable or a clip" if other and not moves else "")
+            + ("; ask for a turntable, a clip or a sweep" if other and not moves else "")
         )
     if kind == ".mp4":
         find_ffmpeg()
@@ -163,39 +172,20 @@ def check_picture_file(path: Path, moves: bool = False) -> str:
     return kind
 
 
-def palette_of(pixels: NDArray[np.uint8]) -> Image.Image:
-    """Return 256 colours for pictures: half for what is frequent, half for all that is there.
-
-    A legend's colours are few pixels in a large background, and must stay distinguishable.
-
-    Parameters
-    ----------
-    pixels : array, shape (height, width, 3), uint8
-        Of all the pictures that share the colours.
-
-    Returns
-    -------
-    PIL.Image.Image
-        For the `palette` of `Image.quantize`.
-    """
-    flat = pixels.reshape(-1, 3)
-    every = np.unique(flat >> 2, axis=0) << 2
-    repeats = max(len(flat) // max(len(every), 1), 1)
-    mixed = np.concatenate([flat, np.repeat(every, repeats, axis=0)])
-    rows = mixed[: len(mixed) // 256 * 256].reshape(-1, 256, 3)
-    return Image.fromarray(np.ascontiguousarray(rows)).quantize(256, Image.Quantize.MEDIANCUT)
-
-
 def _frames(
     order: Order, studio: Studio, camera: Camera, fps: int, progress: Progress
 ) -> Iterator[NDArray[np.uint8]]:
-    length = _length(order)
-    count = max(round(length * fps), 2)
+    count = len(order.scenes) or max(round(_length(order) * fps), 2)
+    if order.scenes:
+        studio.is_steady = True
+        studio.draw(camera)
     for k in range(count):
         progress("drawing", k / count)
         if order.motion is not None:
             pose = pose_at(order.motion, k / fps)
             studio.show(replace(order.description, pose=pose))
+        elif order.scenes:
+            studio.show(order.scenes[k])
         angle = 2 * np.pi * k / count if order.turntable else 0.0
         yield studio.draw(around(camera, angle))
 
@@ -259,37 +249,4 @@ def _write_picture(path: Path, pixels: NDArray[np.uint8]) -> None:
     written = BytesIO()
     kind = Image.registered_extensions()[path.suffix.lower()]
     Image.fromarray(pixels).save(written, format=kind, quality=92)
-    write_all({path: written.getvalue()})
-
-
-def _write_gif(path: Path, frames: Iterator[NDArray[np.uint8]], rate: int) -> None:
-    # One palette for all frames: what stands still does not flicker, and the file is small.
-    # Till it is known the frames are kept packed; most of each is one smooth gradient.
-    packed: list[bytes] = []
-    shape: tuple[int, ...] = ()
-    for pixels in frames:
-        shape = pixels.shape
-        packed.append(zlib.compress(pixels.tobytes(), 1))
-
-    def unpacked(at: int) -> NDArray[np.uint8]:
-        return np.frombuffer(zlib.decompress(packed[at]), np.uint8).reshape(shape)
-
-    sampled = range(0, len(packed), max(len(packed) // 8, 1))
-    palette = palette_of(np.concatenate([unpacked(at)[::2, ::2] for at in sampled]))
-
-    def images() -> Iterator[Image.Image]:
-        for at in range(len(packed)):
-            picture = Image.fromarray(unpacked(at))
-            yield picture.quantize(palette=palette, dither=Image.Dither.NONE)
-
-    every = images()
-    written = BytesIO()
-    next(every).save(
-        written,
-        format="gif",
-        save_all=True,
-        append_images=every,
-        duration=1000 // rate,
-        loop=0,
-    )
     write_all({path: written.getvalue()})

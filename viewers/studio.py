@@ -35,6 +35,11 @@ class Studio:
     transparent : bool
         Whether pictures have no ground, but a fourth channel.
 
+    Attributes
+    ----------
+    is_steady : bool
+        Whether the legend stays where it is on the first picture that is drawn from now on.
+
     Examples
     --------
     >>> with Studio(description, size=(800, 600)) as studio:  # doctest: +SKIP
@@ -51,9 +56,11 @@ class Studio:
         transparent: bool = False,
     ) -> None:
         self.theme, self.size, self.legend = theme, size, legend
+        self.is_steady = False
         self._transparent, self._ratio = transparent, size[1] / page_height
         self._scenes: list[Scene] = []
         self._description = description
+        self._legend_place: tuple[int, int] | None = None
         self._divide(size)
 
     def _divide(self, size: tuple[int, int]) -> None:
@@ -98,12 +105,14 @@ class Studio:
         if legend is None:
             return picture
         card = legend_card(legend, self.theme, self.size)
-        place = free_corner(covered, card)
+        place = self._legend_place or free_corner(covered, card)
         if place is None:
             # No corner is free: the legend gets a strip below the figures.
             self._divide((self.size[0], max(self.size[1] - round(1.25 * card.height), 16)))
             picture, covered = self._draw_views(camera)
             place = free_corner(covered, card) or (0, self.size[1] - card.height)
+        if self.is_steady:
+            self._legend_place = place
         return put_card(picture, card, place)
 
     def _draw_views(self, camera: Camera) -> tuple[NDArray[np.uint8], NDArray[np.bool_]]:

@@ -44,7 +44,7 @@ def draw_apart(order: Order, path: str | Path, progress: Progress = silent) -> N
         See `draw`; and this machine has no OpenGL.
     """
     path = Path(path)
-    check_picture_file(path, moves=order.turntable or order.motion is not None)
+    check_picture_file(path, moves=order.moves)
     with tempfile.TemporaryDirectory(prefix="cutcell-draw-") as folder:
         order_path, drawn = Path(folder) / "order", Path(folder) / f"drawn{path.suffix.lower()}"
         order_path.write_bytes(pickle.dumps(order))

@@ -15,7 +15,7 @@ from cutcell.rig import Clip
 from cutcell.runtime.progress import Progress
 from cutcell_viewers.camera import Camera
 from cutcell_viewers.description import Description
-from cutcell_viewers.film import Order
+from cutcell_viewers.film import FRAMES, Order
 from cutcell_viewers.pose_scene import clip_in_scene, pose_at, swing
 from cutcell_viewers.worker import draw_apart
 
@@ -26,6 +26,7 @@ from ..jobs.jobs import COMPUTING, DRAWING, Slots
 from ..jobs.processes import in_process
 from ..scenes import Memo, following, resolve
 from ..scenes.pose import SWING_DEGREES, clip_of
+from ..scenes.sweep import sweep_of, sweep_scenes
 from ..state import State
 from .session import Session
 
@@ -82,14 +83,14 @@ def export_picture(session: Session, done: Done) -> None:
         session,
         "png",
         done,
-        lambda view_state: view_state.order(PICTURE_PIXELS, view_state.posed()),
+        lambda view_state, _: view_state.order(PICTURE_PIXELS, view_state.posed()),
     )
 
 
 def export_turntable(session: Session, ending: str, done: Done) -> None:
     """Film what is seen while the camera goes around it once; "mp4" or "gif"."""
 
-    def order(view_state: Seen) -> Order:
+    def order(view_state: Seen, progress: Progress) -> Order:
         return replace(view_state.order(FILM_PIXELS, view_state.posed()), turntable=True)
 
     _draw(session, ending, done, order)
@@ -101,12 +102,26 @@ def export_motion(session: Session, ending: str, done: Done) -> None:
         session.state.message = ("info", "There are no weights to move the skin by yet.")
         return
 
-    def order(view_state: Seen) -> Order:
+    def order(view_state: Seen, progress: Progress) -> Order:
         motion = clip_in_scene(view_state.state.rig, chosen_clip(view_state.state))
         return replace(
             view_state.order(FILM_PIXELS, following(view_state.state, view_state.memo)),
             motion=motion,
         )
+
+    _draw(session, ending, done, order)
+
+
+def export_sweep(session: Session, ending: str, done: Done) -> None:
+    """Film the wavefront where it is shown, else the cut, as it runs from 0 to 1."""
+    name, rate = sweep_of(session.state), FRAMES[f".{ending}"]
+    if name is None:
+        session.state.message = ("info", "Turn on the wavefront or a cut first.")
+        return
+
+    def order(view_state: Seen, progress: Progress) -> Order:
+        scenes = sweep_scenes(view_state.state, name, rate, view_state.memo, progress)
+        return replace(view_state.order(FILM_PIXELS, scenes[-1]), scenes=scenes)
 
     _draw(session, ending, done, order)
 
@@ -203,14 +218,20 @@ def picture_size(pixels: int, aspect: float) -> tuple[int, int]:
     return 2 * round(height * aspect / 2), 2 * round(height / 2)
 
 
-def _draw(session: Session, ending: str, done: Done, order: Callable[[Seen], Order]) -> None:
+def _draw(
+    session: Session, ending: str, done: Done, order: Callable[[Seen, Progress], Order]
+) -> None:
     """Draw what is seen now; describing a large character takes a while, too."""
     snapshot = Seen.now(session)
     stage = "drawing the picture" if ending == "png" else "drawing the film"
 
     def write(path: Path, progress: Progress) -> None:
         progress(stage, 0.0)
-        draw_apart(order(snapshot), path, lambda _, fraction: progress(stage, fraction))
+
+        def report(_: str, fraction: float) -> None:
+            progress(stage, fraction)
+
+        draw_apart(order(snapshot, report), path, report)
 
     _hand_over(session, f"{_stem(session)}-{snapshot.state.panel}.{ending}", write, done, DRAWING)
 

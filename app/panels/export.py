@@ -34,6 +34,8 @@ def export(session: Session) -> pmui.Column:
         "Turntable (GIF)": lambda: actions.export_turntable(session, "gif", offer),
         "Motion (MP4)": lambda: actions.export_motion(session, "mp4", offer),
         "Motion (GIF)": lambda: actions.export_motion(session, "gif", offer),
+        "Sweep (MP4)": lambda: actions.export_sweep(session, "mp4", offer),
+        "Sweep (GIF)": lambda: actions.export_sweep(session, "gif", offer),
     }
     numbers: dict[str, Callable[[], None]] = {
         "Weights (CSV)": lambda: actions.export_numbers(session, "weights", "csv", offer),

@@ -5,7 +5,7 @@ from .choices import RENDERED, VIEWS, Choices, check
 from .names import find_bone, find_clip
 from .options import settings_of
 from .order import check_picture, order
-from .scene import describe, textures_for
+from .scene import describe, describe_sweep, textures_for
 
 __all__ = [
     "RENDERED",
@@ -15,6 +15,7 @@ __all__ = [
     "check",
     "check_picture",
     "describe",
+    "describe_sweep",
     "find_bone",
     "find_clip",
     "order",

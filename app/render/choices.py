@@ -12,6 +12,7 @@ from cutcell.rig import Rig
 from cutcell.rig.checks import check_choice
 
 from ..scenes.common import first_joint
+from ..scenes.sweep import SWEEPS, has_cut
 from ..state import PANELS, State
 from ..state.compare import NOW, standard
 from ..state.method import GRAPH, method_of
@@ -64,6 +65,8 @@ class Choices:
         Name or number, from 1, of a motion of the rig, which poses it.
     time : float, optional
         Of that, only the pose at this second.
+    sweep : str, optional
+        For a film: "wave" or "cut", which runs from 0 to 1.
     skeleton, dark : bool
     """
 
@@ -78,6 +81,7 @@ class Choices:
     finding: str | None = None
     clip: str | None = None
     time: float | None = None
+    sweep: str | None = None
     skeleton: bool = True
     dark: bool = False
 
@@ -143,9 +147,29 @@ def state_of(rig: Rig, choices: Choices) -> State:
     state.compare_field = "error" if choices.error else "bone" if choices.bone else "all"
     state.methods = _methods(rig, choices.methods)
     apply(state, choices.settings)
+    if choices.sweep is not None:
+        _check_sweep(state, choices)
     if state.pose_colors == "materials" and not has_materials(rig):
         raise ParameterError(f"the file of {rig.name} has no materials with colours of their own")
     return state
+
+
+def _check_sweep(state: State, choices: Choices) -> None:
+    """Raise an error for a sweep of what is not shown; show the wave."""
+    name = check_choice("sweep", choices.sweep, SWEEPS)
+    if choices.clip is not None:
+        raise ParameterError("a film follows a clip or a sweep: leave one of them out")
+    if name == "cut" and not has_cut(state):
+        raise ParameterError(
+            "there is no cut to move: add --cut x, y or z, on the panel graph or distance"
+        )
+    if name == "wave":
+        if state.panel != "distance":
+            raise ParameterError("the wave is on the panel distance: add --panel distance")
+        if not state.rig.skeleton.deform[state.joint]:
+            bone = state.rig.skeleton.names[state.joint]
+            raise ParameterError(f'no wave begins at "{bone}", which moves nothing: choose another')
+        state.wave = True
 
 
 def _methods(rig: Rig, names: Sequence[str]) -> list[str]:

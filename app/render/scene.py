@@ -19,6 +19,8 @@ from ..scenes.common import has_field
 from ..scenes.distance import wants_field
 from ..scenes.graph import build_shown
 from ..scenes.measures import measuring
+from ..scenes.sweep import sweep_scenes
+from ..state import State
 from .choices import Choices, state_of
 from .names import find_clip
 
@@ -66,6 +68,48 @@ def describe(
     >>> cutcell_viewers.show(scene)  # doctest: +SKIP
     """
     choices = choices or Choices()
+    state = _computed(rig, choices, binding, textures, resolution, progress)
+    if choices.clip is None or state.bare:
+        return resolve(state)
+    clip = find_clip(rig, choices.clip)
+    if choices.error and state.panel == "pose":
+        gap = Gap(rig, state.binding.weights, rig.weights)  # type: ignore[arg-type]
+        state.motion_error = (state.binding, state.motion, motion_error(rig, clip, gap, progress))
+    time = choices.time or 0.0
+    return replace(following(state), pose=pose_at(rig, clip, time))
+
+
+def describe_sweep(
+    rig: Rig,
+    choices: Choices,
+    rate: int,
+    *,
+    binding: Any = None,
+    resolution: int | None = None,
+    progress: Progress = silent,
+) -> tuple[Description, ...]:
+    """Return the scenes of a film of `choices.sweep`, for the `scenes` of a `film.Order`.
+
+    Parameters
+    ----------
+    rig, choices, binding, resolution, progress
+        As of `describe`.
+    rate : int
+        Frames a second.
+    """
+    state = _computed(rig, choices, binding, None, resolution, progress)
+    return sweep_scenes(state.snapshot(), choices.sweep or "", rate, progress=progress)
+
+
+def _computed(
+    rig: Rig,
+    choices: Choices,
+    binding: Any,
+    textures: Textures | None,
+    resolution: int | None,
+    progress: Progress,
+) -> State:
+    """Return the page's state with all that its scene shows computed."""
     state = state_of(rig, choices)
     if resolution is not None and "graph_resolution" not in choices.settings:
         state.graph_resolution = 0
@@ -76,7 +120,7 @@ def describe(
         state.bare_graph = build_graph(
             rig.mesh, resolution, method=choices.method, progress=progress
         )
-        return resolve(state)
+        return state
     if binding is None:
         binding = bind(rig, resolution, method=choices.method, progress=progress)
     state.binding = binding
@@ -104,14 +148,7 @@ def describe(
         for name in state.methods:
             measure = measured(rig, name, state.binding, resolution, progress)
             state.compared = {**state.compared, name: measure}
-    if choices.clip is None:
-        return resolve(state)
-    clip = find_clip(rig, choices.clip)
-    if choices.error and state.panel == "pose":
-        gap = Gap(rig, state.binding.weights, rig.weights)  # type: ignore[arg-type]
-        state.motion_error = (state.binding, state.motion, motion_error(rig, clip, gap, progress))
-    time = choices.time or 0.0
-    return replace(following(state), pose=pose_at(rig, clip, time))
+    return state
 
 
 def textures_for(rig: Rig, choices: Choices) -> Textures | None:

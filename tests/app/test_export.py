@@ -24,6 +24,7 @@ from cutcell_app.commands.export import (
     export_motion,
     export_numbers,
     export_picture,
+    export_sweep,
     export_turntable,
 )
 from cutcell_app.jobs import jobs
@@ -143,6 +144,31 @@ def test_the_body_goes_through_a_filmed_motion_on_every_panel(bound, loop, panel
 def test_no_motion_is_filmed_before_there_are_weights(session):
     export_motion(session, "gif", lambda name, content: None)
     assert session.state.message[0] == "info"
+
+
+@pytest.mark.parametrize("what", ["front", "cut"])
+def test_the_wavefront_or_the_cut_is_filmed_where_it_is_shown(bound, loop, what, monkeypatch):
+    orders = []
+
+    def remember(order, path, progress):
+        orders.append(order)
+        path.write_bytes(b"drawn")
+
+    monkeypatch.setattr("cutcell_app.commands.export.draw_apart", remember)
+    bound.state.param.update(panel="distance", cut_axis="x", wave=what == "front")
+    name, _ = taken(loop, export_sweep, bound, "gif")
+    assert name == "arm-distance.gif"
+    scenes = orders[0].scenes
+    assert len(scenes) == 120
+    moved = [scene.front if what == "front" else scene.cut.origin for scene in scenes]
+    assert moved[0] < moved[60] < moved[-1]
+    assert scenes[0].cut is not None
+
+
+def test_no_sweep_is_filmed_where_nothing_can_move(bound):
+    bound.state.panel = "weights"
+    export_sweep(bound, "gif", lambda name, content: pytest.fail("nothing moves"))
+    assert bound.state.message[0] == "info"
 
 
 def test_drawing_leaves_the_page_free_and_can_be_cancelled(bound, loop, small):

@@ -5,7 +5,7 @@ import gzip
 import inspect
 import json
 import re
-from dataclasses import fields
+from dataclasses import fields, replace
 from pathlib import Path
 
 import numpy as np
@@ -139,6 +139,45 @@ def test_what_is_seen_inside_reaches_the_picture(drawn, tmp_path):
     assert drawn[-1].camera is not None
 
 
+@pytest.mark.parametrize(("ending", "count"), [("gif", 120), ("mp4", 180)])
+def test_the_wave_is_filmed_from_the_bone_to_the_farthest_vertex(drawn, tmp_path, ending, count):
+    options = ("--panel", "distance", "--sweep", "wave", "--turntable")
+    result = run(demo_path("robot"), tmp_path / f"a.{ending}", *options)
+    assert result.exit_code == 0, result.stderr
+    scenes = drawn[-1].scenes
+    body = scenes[0].actors["body"]
+    farthest = body.scalars[body.scalars < body.limits[1]].max()  # the limit: unreached
+    fronts = np.array([one.front for one in scenes])
+    assert len(scenes) == count
+    assert fronts[0] == 0
+    assert (np.diff(fronts) >= 0).all()
+    assert fronts[-1] >= farthest
+    assert {one.actors["body"].limits for one in scenes} == {body.limits}
+    assert len({one.legend for one in scenes}) == 1
+    assert drawn[-1].turntable
+
+
+@pytest.mark.parametrize("panel", ["graph", "distance"])
+def test_the_cut_is_filmed_through_the_whole_body(drawn, tmp_path, panel):
+    result = run(
+        demo_path("robot"), tmp_path / "a.gif", "--panel", panel, "--cut", "x", "--sweep", "cut"
+    )
+    assert result.exit_code == 0, result.stderr
+    scenes = drawn[-1].scenes
+    x = np.array([one.cut.origin[0] for one in scenes])
+    body = scenes[0].actors["body"].points[:, 0]
+    np.testing.assert_allclose(x[[0, -1]], [body.min(), body.max()], atol=1e-6)
+    assert (np.diff(x) >= 0).all()
+    assert drawn[-1].description is scenes[-1]
+
+
+def test_no_wave_begins_at_a_bone_that_moves_nothing(rig):
+    skeleton = replace(rig.skeleton, deform=[True, False, True])
+    still = replace(rig, skeleton=skeleton, weights=None)
+    with pytest.raises(ParameterError, match="elbow"):
+        check(still, Choices("distance", bone="elbow", sweep="wave"))
+
+
 def test_a_finding_is_seen_from_where_it_is_asked_for(drawn, tmp_path):
     def look(*options):
         finding = ("--panel", "check", "--finding", "unreachable-vertices")
@@ -206,7 +245,13 @@ def test_measures_side_by_side_know_some_resolutions():
         ("a.png", ("--time", "1"), "name the clip"),
         ("a.gif", ("--clip", "no such clip"), 'has no clip "no such clip"'),
         ("a.png", ("--turntable",), ".mp4 or .gif"),
-        ("a.mp4", (), "ask for a turntable or a clip"),
+        ("a.mp4", (), "turntable, a clip or a sweep"),
+        ("a.png", ("--panel", "distance", "--sweep", "wave"), ".mp4 or .gif"),
+        ("a.gif", ("--sweep", "wave"), "add --panel distance"),
+        ("a.gif", ("--panel", "distance", "--sweep", "cut"), "add --cut"),
+        ("a.gif", ("--panel", "graph", "--slice", "z", "--sweep", "cut"), "add --cut"),
+        ("a.gif", ("--panel", "graph", "--sweep", "slice"), "sweep must be one of"),
+        ("a.gif", ("--panel", "distance", "--sweep", "wave", "--clip", "1"), "a clip or a sweep"),
         ("a.tga", (), "cannot be saved"),
         ("no/a.png", (), "no folder"),
     ],
@@ -392,7 +437,14 @@ def test_an_html_file_is_an_interactive_page(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "options", [["--clip", "1"], ["--turntable"], ["--panel", "check"], ["--bone", "no such bone"]]
+    "options",
+    [
+        ["--clip", "1"],
+        ["--turntable"],
+        ["--panel", "distance", "--sweep", "wave"],
+        ["--panel", "check"],
+        ["--bone", "no such bone"],
+    ],
 )
 def test_an_interactive_page_refuses_what_it_does_not_follow(options, tmp_path):
     cutcell.save(tmp_path / "arm.glb", arm_rig())

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from PIL import Image
+from PIL.ImageSequence import Iterator
 
 import cutcell_viewers.worker
 from cutcell import Clip
@@ -96,6 +97,25 @@ def test_a_turntable_goes_around_once_and_shows_other_sides(scene, tmp_path):
         last = np.asarray(film.convert("RGB")).astype(int)
     assert apart(first, quarter) > 0.02
     assert apart(first, last) < apart(first, quarter)
+
+
+def test_a_film_of_scenes_shows_each_and_its_legend_stays(scene, tmp_path):
+    """The legend is in the corner that the whole scene leaves free, on all frames."""
+    empty = replace(scene, actors={})
+    camera = Camera((1.2, 1.0, 7.0), (1.2, 1.0, 0.0))  # the body is at the lower left
+    draw(Order(scene, size=SIZE, camera=camera, scenes=(empty, scene)), tmp_path / "a.gif")
+    with Image.open(tmp_path / "a.gif") as film:
+        assert film.n_frames == 2
+        first, last = (np.asarray(one.convert("RGB")).astype(int) for one in Iterator(film))
+    with Studio(scene, size=SIZE) as studio:
+        whole = studio.draw(camera).astype(int)
+        studio.show(empty)
+        alone = studio.draw(camera).astype(int)
+    assert apart(last, whole) < 0.02
+    assert apart(first, last) > 0.02
+    lower_left = np.s_[90:, :60]
+    assert np.ptp(alone[lower_left], axis=(0, 1)).max() > 100
+    assert np.ptp(first[lower_left], axis=(0, 1)).max() < 20
 
 
 def test_a_motion_can_be_played_as_mp4(scene, motion, tmp_path):
